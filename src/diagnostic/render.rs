@@ -1,0 +1,144 @@
+//! A diagnostic for people, for editors (one line) and for programs (JSON).
+
+use codespan_reporting::diagnostic::{Diagnostic as Report, Label, Severity as Level};
+use codespan_reporting::term::{self, termcolor::Buffer};
+use serde::Serialize;
+
+use super::{Diagnostic, Severity};
+use crate::source::Files;
+
+/// The message with the source line, a caret and its notes; with ANSI colours if `colour`.
+#[must_use]
+pub fn human(diagnostic: &Diagnostic, files: &Files, colour: bool) -> String {
+    let level = match diagnostic.severity {
+        Severity::Error => Level::Error,
+        Severity::Warning => Level::Warning,
+        Severity::Note => Level::Note,
+    };
+    let mut labels = Vec::new();
+    if let Some(span) = diagnostic.span {
+        let words = diagnostic.label.clone().unwrap_or_default();
+        labels.push(Label::primary(span.file, span.start as usize..span.end as usize).with_message(words));
+    }
+    for (span, words) in &diagnostic.related {
+        labels.push(Label::secondary(span.file, span.start as usize..span.end as usize).with_message(words));
+    }
+    let report = Report::new(level)
+        .with_code(diagnostic.code.as_ref())
+        .with_message(&diagnostic.message)
+        .with_labels(labels)
+        .with_notes(diagnostic.notes.clone());
+    let mut buffer = if colour {
+        Buffer::ansi()
+    } else {
+        Buffer::no_color()
+    };
+    // Writing to memory fails for a span outside its file only; the one-line form then still tells.
+    if term::emit_to_write_style(&mut buffer, &term::Config::default(), files, &report).is_err() {
+        return short(diagnostic, files) + "\n";
+    }
+    String::from_utf8_lossy(&buffer.into_inner()).into_owned()
+}
+
+/// `file:line:column: error[E0001]: message`, as editors read it.
+#[must_use]
+pub fn short(diagnostic: &Diagnostic, files: &Files) -> String {
+    let Json {
+        severity,
+        code,
+        message,
+        file,
+        line,
+        column,
+        ..
+    } = json(diagnostic, files);
+    let level = match severity {
+        Severity::Error => "error",
+        Severity::Warning => "warning",
+        Severity::Note => "note",
+    };
+    match (file, line, column) {
+        (Some(file), Some(line), Some(column)) => {
+            format!("{file}:{line}:{column}: {level}[{code}]: {message}")
+        }
+        _ => format!("{level}[{code}]: {message}"),
+    }
+}
+
+/// A diagnostic as programs read it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Json {
+    severity: Severity,
+    code: String,
+    message: String,
+    file: Option<String>,
+    line: Option<usize>,
+    column: Option<usize>,
+    notes: Vec<String>,
+}
+
+/// The one JSON form of a diagnostic: place resolved, notes kept.
+#[must_use]
+pub fn json(diagnostic: &Diagnostic, files: &Files) -> Json {
+    let place = diagnostic
+        .span
+        .map(|span| (files.get(span.file).name(), files.position(span)));
+    Json {
+        severity: diagnostic.severity,
+        code: diagnostic.code.to_string(),
+        message: diagnostic.message.clone(),
+        file: place.map(|(name, _)| name.to_owned()),
+        line: place.map(|(_, at)| at.line),
+        column: place.map(|(_, at)| at.column),
+        notes: diagnostic.notes.clone(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::source::{File, Span};
+
+    fn example() -> (Diagnostic, Files) {
+        let mut files = Files::default();
+        let id = files.add(File::new("a.glsl", "void f() {\n  é = 1;\n}\n"));
+        let diagnostic = Diagnostic::error("E0100", "unknown variable `é`")
+            .at(Span::new(id, 13, 15))
+            .label("not declared")
+            .note("declare it first");
+        (diagnostic, files)
+    }
+
+    #[test]
+    fn the_human_form_shows_the_line_a_caret_and_the_note() {
+        let (diagnostic, files) = example();
+        let text = human(&diagnostic, &files, false);
+        assert!(text.contains("error[E0100]: unknown variable `é`"), "{text}");
+        assert!(text.contains("a.glsl:2:3"), "{text}");
+        assert!(text.contains("^ not declared"), "{text}");
+        assert!(text.contains("= declare it first"), "{text}");
+        assert!(!text.contains('\u{1b}'));
+        assert!(human(&diagnostic, &files, true).contains('\u{1b}'));
+    }
+
+    #[test]
+    fn the_short_form_is_one_line() {
+        let (diagnostic, files) = example();
+        assert_eq!(
+            short(&diagnostic, &files),
+            "a.glsl:2:3: error[E0100]: unknown variable `é`"
+        );
+    }
+
+    #[test]
+    fn a_span_past_the_end_still_renders() {
+        let (diagnostic, files) = example();
+        let span = Span {
+            end: 4000,
+            start: 3000,
+            ..diagnostic.span.unwrap()
+        };
+        let text = human(&diagnostic.at(span), &files, false);
+        assert!(text.contains("unknown variable"), "{text}");
+    }
+}

@@ -1,0 +1,10 @@
+//! What the author wrote: files, and spans that lead back to a line and a column.
+//!
+//! Every later stage speaks of the author's text through [`Span`]s; only a renderer turns one into a
+//! line and a column, by asking [`Files`].
+
+mod file;
+mod span;
+
+pub use file::{File, FileId, Files, Position};
+pub use span::Span;
