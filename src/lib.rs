@@ -1,4 +1,7 @@
 //! toyproof checks, renders and converts ShaderToy shaders, and says how far each picture can be trusted.
 
 pub mod diagnostic;
+pub mod frame;
+pub mod image;
+pub mod output;
 pub mod source;

@@ -4,7 +4,9 @@
 //! line and a column, by asking [`Files`].
 
 mod file;
+mod find;
 mod span;
 
 pub use file::{File, FileId, Files, Position};
+pub use find::{EXTENSIONS, Found, FoundIn, MAX_BYTES, ReadError, find, read, read_text};
 pub use span::Span;

@@ -1,0 +1,153 @@
+//! PNG (8 bits) and EXR (32-bit floats) files.
+
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+
+use image::{DynamicImage, ExtendedColorType, ImageEncoder, ImageFormat, ImageReader, Limits, Rgba32FImage};
+use thiserror::Error;
+
+use super::{Image, MAX_SIDE, check_size, quantise};
+
+/// Why a picture could not be read or written.
+#[derive(Debug, Error)]
+pub enum ImageError {
+    /// Neither `.png` nor `.exr`.
+    #[error("{0}: a picture is written as .png (8 bits) or .exr (floats)")]
+    Extension(PathBuf),
+    /// The file is not a picture, or cannot be read.
+    #[error("{path}: not a picture that can be read: {error}")]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// The decoder's words.
+        error: String,
+    },
+    /// The encoder failed.
+    #[error("{path}: cannot be written: {error}")]
+    Unwritable {
+        /// The file.
+        path: PathBuf,
+        /// The encoder's words.
+        error: String,
+    },
+}
+
+/// The bytes of a picture file in the format that `path` ends in: PNG holds RGB clamped to [0, 1] and
+/// rounded to 8 bits, EXR the RGBA floats as they are. Nothing is written.
+///
+/// # Errors
+/// [`ImageError::Extension`] for other endings, [`ImageError::Unwritable`] if the encoder fails.
+pub fn encode(image: &Image, path: &Path) -> Result<Vec<u8>, ImageError> {
+    let format = path.extension().and_then(|extension| extension.to_str());
+    let [width, height] = image.size();
+    let top_down = image.rows().rev().flatten();
+    let mut bytes = Cursor::new(Vec::new());
+    let written = match format.map(str::to_ascii_lowercase).as_deref() {
+        Some("png") => {
+            let rgb: Vec<u8> = top_down.flat_map(|p| [p[0], p[1], p[2]].map(quantise)).collect();
+            image::codecs::png::PngEncoder::new_with_quality(
+                &mut bytes,
+                image::codecs::png::CompressionType::Fast,
+                image::codecs::png::FilterType::Adaptive,
+            )
+            .write_image(&rgb, width, height, ExtendedColorType::Rgb8)
+        }
+        Some("exr") => {
+            let rgba: Vec<f32> = top_down.flatten().copied().collect();
+            image::codecs::openexr::OpenExrEncoder::new(&mut bytes).write_image(
+                bytemuck::cast_slice(&rgba),
+                width,
+                height,
+                ExtendedColorType::Rgba32F,
+            )
+        }
+        _ => return Err(ImageError::Extension(path.to_owned())),
+    };
+    match written {
+        Ok(()) => Ok(bytes.into_inner()),
+        Err(error) => Err(ImageError::Unwritable {
+            path: path.to_owned(),
+            error: error.to_string(),
+        }),
+    }
+}
+
+/// Reads a PNG or an EXR; 8- and 16-bit values become `value / max`, without any transfer function.
+///
+/// # Errors
+/// [`ImageError::Unreadable`], also for pictures over the size limit.
+pub fn read(path: &Path) -> Result<Image, ImageError> {
+    let unreadable = |error: String| ImageError::Unreadable {
+        path: path.to_owned(),
+        error,
+    };
+    let mut reader = ImageReader::open(path)
+        .and_then(ImageReader::with_guessed_format)
+        .map_err(|error| unreadable(error.to_string()))?;
+    if !matches!(reader.format(), Some(ImageFormat::Png | ImageFormat::OpenExr)) {
+        return Err(unreadable("only PNG and EXR are understood".to_owned()));
+    }
+    let mut limits = Limits::default();
+    limits.max_image_width = Some(MAX_SIDE);
+    limits.max_image_height = Some(MAX_SIDE);
+    limits.max_alloc = Some(1 << 30);
+    reader.limits(limits);
+    let decoded = reader.decode().map_err(|error| unreadable(error.to_string()))?;
+    let [width, height] =
+        check_size(decoded.width().into(), decoded.height().into()).map_err(unreadable)?;
+    let rgba: Rgba32FImage = match decoded {
+        DynamicImage::ImageRgba32F(floats) => floats,
+        other => other.into_rgba32f(),
+    };
+    let pixels = rgba
+        .rows()
+        .rev()
+        .flat_map(|row| row.map(|pixel| pixel.0))
+        .collect();
+    Ok(Image::new(width, height, pixels))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output;
+
+    fn sample() -> Image {
+        let pixels = vec![
+            [0.0, 0.25, 0.5, 1.0],
+            [1.0, 1.0, 1.0, 1.0],
+            [-2.0, 7.5, 1e-7, 1.0],
+            [0.1, 0.2, 0.3, 1.0],
+        ];
+        Image::new(2, 2, pixels)
+    }
+
+    #[test]
+    fn exr_keeps_every_float_and_the_rows() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.exr");
+        output::write(&path, &encode(&sample(), &path).unwrap()).unwrap();
+        assert_eq!(read(&path).unwrap(), sample());
+    }
+
+    #[test]
+    fn png_clamps_quantises_and_puts_the_bottom_row_last() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        output::write(&path, &encode(&sample(), &path).unwrap()).unwrap();
+        let raw = image::open(&path).unwrap().into_rgb8();
+        assert_eq!(raw.get_pixel(0, 0).0, [0, 255, 0], "top left");
+        assert_eq!(raw.get_pixel(0, 1).0, [0, 64, 128], "bottom left");
+        assert_eq!(read(&path).unwrap().get(0, 0)[1], 64.0 / 255.0);
+    }
+
+    #[test]
+    fn other_endings_and_other_files_are_refused_by_name() {
+        let error = encode(&sample(), Path::new("a.jpg")).unwrap_err();
+        assert!(error.to_string().contains("a.jpg") && error.to_string().contains(".png"));
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        std::fs::write(&path, "no picture").unwrap();
+        assert!(read(&path).unwrap_err().to_string().contains("not a picture"));
+    }
+}

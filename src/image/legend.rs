@@ -1,0 +1,163 @@
+//! The difference of two pictures as a picture: a colour for each decade, and a legend of the scale.
+
+use font8x8::{BASIC_FONTS, UnicodeFonts};
+
+use super::Image;
+
+/// Colours of the decades below the tolerance, from 1e−7 up: rounding, in cool colours.
+const COOL: [[f32; 3]; 4] = [[0.05, 0.05, 0.2], [0.08, 0.12, 0.4], [0.1, 0.25, 0.6], [0.15, 0.45, 0.75]];
+/// Colours above it, up to 1: differences that are seen, in warm colours.
+const WARM: [[f32; 3]; 3] = [[0.75, 0.55, 0.1], [0.95, 0.35, 0.1], [1.0, 0.1, 0.1]];
+/// A pixel that differs but cannot be decided in float32.
+const UNDECIDED: [f32; 3] = [0.45, 0.2, 0.6];
+const INK: [f32; 3] = [0.85, 0.85, 0.85];
+const GLYPH: u32 = 8;
+
+/// How a pixel of the difference picture is shown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Mark {
+    /// By the size of its difference, ≥ 0; NaN counts as 1.
+    By(f32),
+    /// As one that differs but is not counted.
+    Undecided,
+}
+
+/// What the legend tells.
+#[derive(Debug, Clone, Copy)]
+pub struct Legend {
+    /// Differences up to this are shown in cool colours; a power of ten in [1e−6, 1e−1].
+    pub tolerance: f32,
+}
+
+/// The difference picture of `size`, one mark a pixel (bottom row first), with the legend in a strip below
+/// it. The picture is at least as wide as the legend needs.
+#[must_use]
+pub fn difference(size: [u32; 2], marks: &[Mark], legend: Legend) -> Image {
+    let entries = legend.entries();
+    let columns = entries.iter().map(|(words, _)| words.len() as u32 + 3).max().unwrap_or(0);
+    let cell = columns * GLYPH;
+    let [width, height] = size;
+    let wide = width.max(cell);
+    let per_row = (wide / cell).max(1);
+    let rows = (entries.len() as u32).div_ceil(per_row);
+    let line = GLYPH + 4;
+    let strip = rows * line + 4;
+    let mut canvas = Canvas::new(wide, height + strip);
+    for (index, mark) in marks.iter().enumerate() {
+        let (x, y) = (index as u32 % width, index as u32 / width);
+        canvas.set(x, y + strip, legend.colour(*mark));
+    }
+    for (index, (words, colour)) in entries.iter().enumerate() {
+        let index = index as u32;
+        let x = (index % per_row) * cell + 4;
+        let top = strip - 4 - (index / per_row) * line;
+        canvas.fill(x, top - GLYPH, GLYPH, *colour);
+        canvas.write(x + GLYPH + 4, top, words);
+    }
+    canvas.finish()
+}
+
+impl Legend {
+    fn colour(self, mark: Mark) -> [f32; 3] {
+        match mark {
+            Mark::Undecided => UNDECIDED,
+            Mark::By(difference) => {
+                let difference = if difference.is_nan() { 1.0 } else { difference };
+                self.bands()
+                    .rev()
+                    .find(|&(from, _)| difference > from)
+                    .map_or([0.0; 3], |(_, colour)| colour)
+            }
+        }
+    }
+
+    /// The lower bound and the colour of each decade, upwards.
+    fn bands(self) -> impl DoubleEndedIterator<Item = (f32, [f32; 3])> {
+        let decades = self.tolerance.log10().round() as i32;
+        let cool = COOL.into_iter().enumerate().map(move |(i, colour)| (decades - 4 + i as i32, colour));
+        let warm = WARM.into_iter().enumerate().map(move |(i, colour)| (decades + i as i32, colour));
+        cool.chain(warm).map(|(decade, colour)| (10f32.powi(decade), colour))
+    }
+
+    fn entries(self) -> Vec<(String, [f32; 3])> {
+        let mut entries: Vec<_> = self
+            .bands()
+            .map(|(from, colour)| (format!("> {from:.0e}"), colour))
+            .collect();
+        entries.push(("undecided".to_owned(), UNDECIDED));
+        entries
+    }
+}
+
+/// A picture that is being drawn; y upwards.
+struct Canvas {
+    width: u32,
+    height: u32,
+    pixels: Vec<[f32; 4]>,
+}
+
+impl Canvas {
+    fn new(width: u32, height: u32) -> Self {
+        let pixels = vec![[0.0, 0.0, 0.0, 1.0]; width as usize * height as usize];
+        Self { width, height, pixels }
+    }
+
+    fn set(&mut self, x: u32, y: u32, [r, g, b]: [f32; 3]) {
+        if x < self.width && y < self.height {
+            self.pixels[y as usize * self.width as usize + x as usize] = [r, g, b, 1.0];
+        }
+    }
+
+    /// A square with its lower left corner at (x, y).
+    fn fill(&mut self, x: u32, y: u32, side: u32, colour: [f32; 3]) {
+        for dy in 0..side {
+            for dx in 0..side {
+                self.set(x + dx, y + dy, colour);
+            }
+        }
+    }
+
+    /// Words with their upper edge at `top`.
+    fn write(&mut self, x: u32, top: u32, words: &str) {
+        for (column, character) in words.chars().enumerate() {
+            let rows = BASIC_FONTS.get(character).unwrap_or_default();
+            for (row, bits) in rows.iter().enumerate() {
+                for bit in (0..GLYPH).filter(|bit| bits & (1 << bit) != 0) {
+                    self.set(x + column as u32 * GLYPH + bit, top - 1 - row as u32, INK);
+                }
+            }
+        }
+    }
+
+    fn finish(self) -> Image {
+        Image::new(self.width, self.height, self.pixels)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LEGEND: Legend = Legend { tolerance: 1e-3 };
+
+    #[test]
+    fn each_decade_has_its_colour_and_equal_pixels_are_black() {
+        assert_eq!(LEGEND.colour(Mark::By(0.0)), [0.0; 3]);
+        assert_eq!(LEGEND.colour(Mark::By(0.9e-3)), COOL[3]);
+        assert_eq!(LEGEND.colour(Mark::By(1.1e-3)), WARM[0]);
+        assert_eq!(LEGEND.colour(Mark::By(0.5)), WARM[2]);
+        assert_eq!(LEGEND.colour(Mark::By(f32::NAN)), WARM[2]);
+    }
+
+    #[test]
+    fn the_picture_stands_above_a_legend_that_names_the_scale() {
+        let marks = vec![Mark::By(1.0); 4];
+        let picture = difference([2, 2], &marks, LEGEND);
+        let [width, height] = picture.size();
+        assert!(width >= 64 && height > 2 + GLYPH);
+        assert_eq!(picture.get(0, height - 1), [1.0, 0.1, 0.1, 1.0], "the upper left pixel");
+        assert!(picture.pixels().iter().any(|p| p[..3] == INK), "words are written");
+        let names: Vec<_> = LEGEND.entries().into_iter().map(|(name, _)| name).collect();
+        assert!(names.contains(&"> 1e-3".to_owned()), "{names:?}");
+    }
+}

@@ -1,0 +1,116 @@
+//! Pictures: linear f32 RGBA in memory, PNG and EXR in files.
+//!
+//! Rows run upwards, as fragment coordinates do: row 0 is the bottom. [`file`] is the one place that
+//! flips rows and quantises.
+
+mod file;
+mod legend;
+
+pub use file::{ImageError, encode, read};
+pub use legend::{Legend, Mark, difference};
+
+use serde::{Deserialize, Serialize};
+
+/// The longest side of a picture, in pixels: what Vulkan drivers commonly take.
+pub const MAX_SIDE: u32 = 16_384;
+
+/// The most pixels of a picture: one 8K frame (7680×4320) and a little.
+pub const MAX_PIXELS: u64 = 1 << 25;
+
+/// A picture of linear RGBA floats, bottom row first. Colours are nominally in [0, 1] but are kept as they
+/// are, NaN and infinities included.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Image {
+    width: u32,
+    height: u32,
+    pixels: Vec<[f32; 4]>,
+}
+
+impl Image {
+    /// A picture from its pixels, bottom row first.
+    ///
+    /// # Panics
+    /// If the count of pixels is not `width · height`.
+    #[must_use]
+    pub fn new(width: u32, height: u32, pixels: Vec<[f32; 4]>) -> Self {
+        assert_eq!(pixels.len(), width as usize * height as usize);
+        Self {
+            width,
+            height,
+            pixels,
+        }
+    }
+
+    /// Width and height in pixels.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        [self.width, self.height]
+    }
+
+    /// All pixels, bottom row first.
+    #[must_use]
+    pub fn pixels(&self) -> &[[f32; 4]] {
+        &self.pixels
+    }
+
+    /// The pixel at (x, y), y upwards from the bottom.
+    #[must_use]
+    pub fn get(&self, x: u32, y: u32) -> [f32; 4] {
+        self.pixels[y as usize * self.width as usize + x as usize]
+    }
+
+    /// The rows, from the bottom up.
+    pub fn rows(&self) -> impl DoubleEndedIterator<Item = &[[f32; 4]]> {
+        self.pixels.chunks(self.width as usize)
+    }
+}
+
+/// The 8-bit value of a colour component: `round_ties_even(255 · clamp(c, 0, 1))`; NaN becomes 0.
+#[must_use]
+pub fn quantise(component: f32) -> u8 {
+    (component.clamp(0.0, 1.0) * 255.0).round_ties_even() as u8
+}
+
+/// Whether a picture of that size can be made; says what is wrong otherwise.
+///
+/// # Errors
+/// A sentence without a full stop, naming the limit.
+pub fn check_size(width: u64, height: u64) -> Result<[u32; 2], String> {
+    let side = u64::from(MAX_SIDE);
+    if width == 0 || height == 0 {
+        return Err(format!(
+            "a picture of {width}×{height} pixels has nothing to show; both sides must be at least 1"
+        ));
+    }
+    if width > side || height > side || width * height > MAX_PIXELS {
+        return Err(format!(
+            "a picture of {width}×{height} pixels is too large; each side may be at most {MAX_SIDE}, \
+             and the picture at most {} million pixels",
+            MAX_PIXELS / 1_000_000
+        ));
+    }
+    Ok([width as u32, height as u32])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantises_as_float_targets_are_stored_in_eight_bits() {
+        assert_eq!(quantise(-1.0), 0);
+        assert_eq!(quantise(2.0), 255);
+        assert_eq!(quantise(f32::NAN), 0);
+        assert_eq!(quantise(0.5), 128, "127.5 rounds to even");
+        assert_eq!(quantise(126.5 / 255.0), 126, "126.5 rounds to even");
+    }
+
+    #[test]
+    fn sizes_are_checked_without_overflow() {
+        assert_eq!(check_size(7680, 4320), Ok([7680, 4320]));
+        assert!(check_size(0, 5).unwrap_err().contains("nothing to show"));
+        assert!(check_size(100_000, 100_000).unwrap_err().contains("too large"));
+        assert!(check_size(u64::MAX, u64::MAX).unwrap_err().contains("too large"));
+        assert!(check_size(16_384, 16_384).unwrap_err().contains("million"));
+    }
+}

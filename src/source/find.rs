@@ -1,0 +1,226 @@
+//! Shaders named on a command line: files, folders and standard input.
+
+use std::ffi::OsStr;
+use std::fs::File as OsFile;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+use walkdir::WalkDir;
+
+use super::File;
+
+/// What a folder is searched for.
+pub const EXTENSIONS: [&str; 4] = ["glsl", "frag", "fs", "shadertoy"];
+
+/// The most bytes that a text may have. ShaderToy's own editor takes 65,536 characters a tab.
+pub const MAX_BYTES: u64 = 1 << 20;
+
+/// Where an input's text comes from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum FoundIn {
+    /// `-`.
+    StandardInput,
+    /// A file.
+    File(PathBuf),
+}
+
+/// One input: where it is, and where its outputs go below an output folder.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Found {
+    /// Where the text is.
+    pub place: FoundIn,
+    /// Below the folder that was named; just the file's name for a file named itself.
+    pub relative: PathBuf,
+}
+
+impl Found {
+    /// The name that messages and reports use: the path as the user typed it.
+    #[must_use]
+    pub fn name(&self) -> String {
+        match &self.place {
+            FoundIn::StandardInput => "<stdin>".to_owned(),
+            FoundIn::File(path) => path.display().to_string(),
+        }
+    }
+}
+
+/// Why an input's text could not be had.
+#[derive(Debug, Error)]
+pub enum ReadError {
+    /// There is nothing of that name.
+    #[error("{0}: no such file or folder")]
+    Missing(PathBuf),
+    /// A folder without any shader.
+    #[error("{0}: no shader in this folder (looked for .glsl .frag .fs .shadertoy, also in the folders below)")]
+    NoShader(PathBuf),
+    /// The system refused.
+    #[error("{name}: cannot be read: {error}")]
+    Unreadable {
+        /// The file or folder.
+        name: String,
+        /// The system's own words.
+        error: io::Error,
+    },
+    /// More than [`MAX_BYTES`].
+    #[error("{name}: larger than {} KiB, the most that a shader or a scene may have", MAX_BYTES >> 10)]
+    TooLarge {
+        /// The file.
+        name: String,
+    },
+    /// Not UTF-8.
+    #[error("{name}:{line}:{column}: not UTF-8 text; save the file as UTF-8")]
+    NotUtf8 {
+        /// The file.
+        name: String,
+        /// Line of the first byte that is not UTF-8, from 1.
+        line: usize,
+        /// Its column, from 1.
+        column: usize,
+    },
+}
+
+impl ReadError {
+    /// Whether what the file holds is at fault, rather than the path or the system.
+    #[must_use]
+    pub fn blames_content(&self) -> bool {
+        matches!(self, Self::TooLarge { .. } | Self::NotUtf8 { .. })
+    }
+}
+
+/// The shaders that one argument names; a folder gives those below it, in the order of their names.
+#[must_use]
+pub fn find(argument: &Path) -> Vec<Result<Found, ReadError>> {
+    if argument == Path::new("-") {
+        return vec![Ok(Found {
+            place: FoundIn::StandardInput,
+            relative: PathBuf::from("stdin"),
+        })];
+    }
+    if !argument.is_dir() {
+        let name = argument.file_name().unwrap_or(argument.as_os_str());
+        return vec![if argument.exists() {
+            Ok(Found {
+                place: FoundIn::File(argument.to_owned()),
+                relative: PathBuf::from(name),
+            })
+        } else {
+            Err(ReadError::Missing(argument.to_owned()))
+        }];
+    }
+    let found: Vec<_> = WalkDir::new(argument)
+        .follow_links(true)
+        .sort_by_file_name()
+        .into_iter()
+        .filter_map(|entry| match entry {
+            Ok(entry) if entry.file_type().is_file() && is_shader(entry.path()) => Some(Ok(Found {
+                relative: entry.path().strip_prefix(argument).unwrap_or(entry.path()).to_owned(),
+                place: FoundIn::File(entry.into_path()),
+            })),
+            Ok(_) => None,
+            Err(error) => Some(Err(ReadError::Unreadable {
+                name: error.path().unwrap_or(argument).display().to_string(),
+                error: error.into(),
+            })),
+        })
+        .collect();
+    if found.is_empty() {
+        return vec![Err(ReadError::NoShader(argument.to_owned()))];
+    }
+    found
+}
+
+fn is_shader(path: &Path) -> bool {
+    path.extension()
+        .and_then(OsStr::to_str)
+        .is_some_and(|extension| EXTENSIONS.contains(&extension))
+}
+
+/// The text of an input, without a byte order mark.
+///
+/// # Errors
+/// Those of [`ReadError`]; no more than [`MAX_BYTES`] are ever read.
+pub fn read(found: &Found) -> Result<File, ReadError> {
+    match &found.place {
+        FoundIn::StandardInput => read_from(io::stdin().lock(), found.name()),
+        FoundIn::File(path) => read_text(path),
+    }
+}
+
+/// The text of a file, without a byte order mark.
+///
+/// # Errors
+/// Those of [`ReadError`]; no more than [`MAX_BYTES`] are ever read.
+pub fn read_text(path: &Path) -> Result<File, ReadError> {
+    let name = path.display().to_string();
+    match OsFile::open(path) {
+        Ok(file) => read_from(file, name),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Err(ReadError::Missing(path.to_owned())),
+        Err(error) => Err(ReadError::Unreadable { name, error }),
+    }
+}
+
+fn read_from(input: impl Read, name: String) -> Result<File, ReadError> {
+    let mut bytes = Vec::new();
+    if let Err(error) = input.take(MAX_BYTES + 1).read_to_end(&mut bytes) {
+        return Err(ReadError::Unreadable { name, error });
+    }
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(ReadError::TooLarge { name });
+    }
+    match String::from_utf8(bytes) {
+        Ok(text) => Ok(File::new(name, text.strip_prefix('\u{feff}').unwrap_or(&text))),
+        Err(error) => {
+            let valid = error.utf8_error().valid_up_to();
+            let text = String::from_utf8_lossy(&error.as_bytes()[..valid]).into_owned();
+            let at = File::new("", text).position(valid);
+            Err(ReadError::NotUtf8 {
+                name,
+                line: at.line,
+                column: at.column,
+            })
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    #[test]
+    fn a_folder_gives_its_shaders_in_order_with_relative_paths() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::create_dir(folder.path().join("b")).unwrap();
+        for name in ["z.frag", "a.glsl", "b/c.fs", "notes.txt"] {
+            fs::write(folder.path().join(name), "").unwrap();
+        }
+        let relative: Vec<_> = find(folder.path())
+            .into_iter()
+            .map(|found| found.unwrap().relative)
+            .collect();
+        assert_eq!(relative, ["a.glsl", "b/c.fs", "z.frag"].map(PathBuf::from));
+    }
+
+    #[test]
+    fn an_endless_file_is_too_large_and_not_read_to_its_end() {
+        let endless = read_from(io::repeat(b' '), "x".to_owned());
+        assert!(matches!(endless, Err(ReadError::TooLarge { .. })));
+    }
+
+    #[test]
+    fn a_byte_that_is_not_utf8_is_named_by_line_and_column() {
+        let error = read_from(&b"ok\nab\xffc"[..], "x".to_owned()).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "x:2:3: not UTF-8 text; save the file as UTF-8"
+        );
+        assert!(error.blames_content());
+    }
+
+    #[test]
+    fn a_byte_order_mark_is_not_part_of_the_text() {
+        let file = read_from("\u{feff}void".as_bytes(), "x".to_owned()).unwrap();
+        assert_eq!(file.text(), "void");
+    }
+}
