@@ -1,7 +1,11 @@
 //! toyproof checks, renders and converts ShaderToy shaders, and says how far each picture can be trusted.
 
 pub mod diagnostic;
+pub mod emit;
 pub mod frame;
+pub mod glsl;
+pub mod gpu;
 pub mod image;
+pub mod module;
 pub mod output;
 pub mod source;

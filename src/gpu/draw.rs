@@ -1,0 +1,185 @@
+//! Painting one frame and reading it back.
+
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+use wgpu::{BindGroup, Buffer, BufferUsages, PollType, RenderPipeline, Texture, TextureUsages};
+
+use super::device::{Device, LoopCap, PROBED_ITERATIONS};
+use super::pipeline::FORMAT;
+use super::Failure;
+use crate::frame::Frame;
+use crate::image::Image;
+use crate::module::ValidModule;
+use crate::{emit, glsl, source};
+
+/// A picture that a shader painted.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Drawn {
+    /// The picture, as the float target holds it.
+    pub image: Image,
+    /// Adapter and driver.
+    pub device: String,
+    /// Pixels in which the driver ended a loop by force; their colours mean nothing.
+    pub cut_short: u64,
+    /// Time for naga to parse, validate and write.
+    pub translate: Duration,
+    /// Time for the driver to compile.
+    pub compile: Duration,
+    /// Time to paint and read back.
+    pub draw: Duration,
+}
+
+/// A shader that is compiled and ready to paint.
+#[derive(Debug)]
+pub(super) struct Scene {
+    size: [u32; 2],
+    pipeline: RenderPipeline,
+    bindings: BindGroup,
+    target: Texture,
+    readback: Buffer,
+    bytes_per_row: u32,
+}
+
+/// A colour that no shader leaves: alpha is 0 or 1 where one painted.
+const UNPAINTED: wgpu::Color = wgpu::Color { r: 0.0, g: 0.0, b: 0.0, a: 0.5 };
+
+/// How many pixels of a picture with watched loops tell of one that was ended by force. A pixel that nothing
+/// painted does so too, unless the shader discards: code after an endless loop is never reached.
+pub(super) fn cut_short(watched: &Image, discards: bool) -> u64 {
+    let cut = |alpha: f32| alpha == 0.0 || (alpha == 0.5 && !discards);
+    watched.pixels().iter().filter(|pixel| cut(pixel[3])).count() as u64
+}
+
+impl Device {
+    /// Compiles: a pipeline, and a draw that covers no pixel, since drivers compile when they first draw.
+    pub(super) fn prepare(&self, words: &[u32], frame: &Frame) -> Result<Scene, Failure> {
+        let [width, height] = frame.size;
+        self.checked(|| {
+            let target = self.device.create_texture(&wgpu::TextureDescriptor {
+                label: None,
+                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: FORMAT,
+                usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC,
+                view_formats: &[],
+            });
+            let bytes_per_row = (16 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+            let readback = self.device.create_buffer(&wgpu::BufferDescriptor {
+                label: None,
+                size: u64::from(bytes_per_row) * u64::from(height),
+                usage: BufferUsages::MAP_READ | BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            });
+            let scene = Scene {
+                size: frame.size,
+                pipeline: self.layout.pipeline(&self.device, words),
+                bindings: self.layout.bind(&self.device, &self.queue, frame, self.filterable),
+                target,
+                readback,
+                bytes_per_row,
+            };
+            self.submit(&scene, 3..6)?;
+            Ok(scene)
+        })
+    }
+
+    /// Paints and reads back. The target's first row has the smallest fragment coordinates: it is the bottom.
+    pub(super) fn paint(&self, scene: &Scene) -> Result<Image, Failure> {
+        self.checked(|| {
+            self.submit(scene, 0..3)?;
+            let slice = scene.readback.slice(..);
+            slice.map_async(wgpu::MapMode::Read, |_| {});
+            self.wait()?;
+            let view = slice.get_mapped_range().map_err(|error| Failure::Device(error.to_string()))?;
+            let [width, height] = scene.size;
+            let pixels = view
+                .chunks(scene.bytes_per_row as usize)
+                .flat_map(|row| row[..16 * width as usize].chunks_exact(16))
+                .map(bytemuck::pod_read_unaligned)
+                .collect();
+            Ok(Image::new(width, height, pixels))
+        })
+    }
+
+    fn submit(&self, scene: &Scene, vertices: std::ops::Range<u32>) -> Result<(), Failure> {
+        let view = scene.target.create_view(&Default::default());
+        let mut commands = self.device.create_command_encoder(&Default::default());
+        {
+            let mut pass = commands.begin_render_pass(&wgpu::RenderPassDescriptor {
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: &view,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(UNPAINTED),
+                        store: wgpu::StoreOp::Store,
+                    },
+                })],
+                ..Default::default()
+            });
+            pass.set_pipeline(&scene.pipeline);
+            pass.set_bind_group(0, &scene.bindings, &[]);
+            pass.draw(vertices, 0..1);
+        }
+        let [width, height] = scene.size;
+        commands.copy_texture_to_buffer(
+            scene.target.as_image_copy(),
+            wgpu::TexelCopyBufferInfo {
+                buffer: &scene.readback,
+                layout: wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(scene.bytes_per_row),
+                    rows_per_image: None,
+                },
+            },
+            wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        );
+        self.queue.submit([commands.finish()]);
+        self.wait()
+    }
+
+    fn wait(&self) -> Result<(), Failure> {
+        self.device
+            .poll(PollType::wait_indefinitely())
+            .map(|_| ())
+            .map_err(|error| Failure::Device(error.to_string()))
+    }
+
+    /// Collects what wgpu reports aside: errors of validation and memory, and the loss of the device.
+    fn checked<T>(&self, work: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
+        use wgpu::ErrorFilter::{Internal, OutOfMemory, Validation};
+        let scopes = [Internal, OutOfMemory, Validation].map(|filter| self.device.push_error_scope(filter));
+        let result = work();
+        // The scope that was opened last closes first.
+        let errors: Vec<_> =
+            scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop())).collect();
+        let lost = self.lost.lock().ok().and_then(|lost| lost.clone());
+        match (errors.into_iter().next(), lost) {
+            (Some(error), _) => Err(Failure::Device(error.to_string())),
+            (None, Some(lost)) => Err(Failure::Device(lost)),
+            (None, None) => result,
+        }
+    }
+}
+
+/// One pixel, and as many iterations as `iFrame` says: the count tells how many the driver granted.
+const COUNT: &str = "void mainImage(out vec4 c, in vec2 p) {
+    float count = 0.0;
+    for (int i = 0; i < iFrame; i++) count += 1.0;
+    c = vec4(count);
+}";
+
+/// Measures whether the driver ends loops by force.
+pub(super) fn measure_cap(device: &Device) -> Result<LoopCap, Failure> {
+    let mut files = source::Files::default();
+    let file = files.add(source::File::new("<loop cap>", COUNT));
+    let lowered = glsl::lower(&files, file).map_err(Failure::Invalid)?;
+    let module = ValidModule::parse(&lowered).map_err(Failure::Invalid)?;
+    let words = emit::spirv::words(&module).map_err(Failure::Naga)?;
+    let frame = Frame { size: [1, 1], frame: PROBED_ITERATIONS as i32, ..Frame::default() };
+    let count = device.paint(&device.prepare(&words, &frame)?)?.get(0, 0)[0] as u32;
+    Ok(if count < PROBED_ITERATIONS { LoopCap::After(count) } else { LoopCap::NoneUpTo(count) })
+}

@@ -1,0 +1,123 @@
+//! Running a shader on a Vulkan driver, where nothing that it does can hurt us.
+//!
+//! naga and the driver run in a worker process: [`Worker`] is the parent's side, [`serve`] the child's.
+//! A hang, a crash, a panic, a lost device or exhausted memory costs one shader; the worker is started
+//! anew for the next.
+
+mod device;
+mod driver;
+mod draw;
+mod pipeline;
+mod protocol;
+mod serve;
+mod worker;
+
+use std::fmt;
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+pub use device::{Driver, LoopCap};
+pub use driver::{INSTALL_HINT, is_pinned_by_user, lavapipe_manifest, manifests};
+pub use draw::Drawn;
+pub use serve::{MEMORY_BYTES, serve};
+pub use worker::Worker;
+
+use crate::diagnostic::Diagnostic;
+
+/// Which adapter runs the shader.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub enum On {
+    /// lavapipe where it is installed, else the first adapter.
+    Auto,
+    /// Mesa's lavapipe and nothing else.
+    Lavapipe,
+    /// The first adapter whose name holds these words, in any case.
+    Named(String),
+}
+
+/// How far the driver may rearrange arithmetic.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum FloatMode {
+    /// As written: every operation carries `NoContraction`.
+    #[default]
+    Strict,
+    /// As the driver likes.
+    Fast,
+}
+
+/// What the worker was doing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Phase {
+    /// Loading the driver.
+    Starting,
+    /// naga parses, validates and writes.
+    Translating,
+    /// The driver compiles.
+    Compiling,
+    /// The frame is painted and read back.
+    Drawing,
+    /// The frame is painted again to see whether the driver ended a loop by force.
+    WatchingLoops,
+}
+
+impl fmt::Display for Phase {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Starting => "the Vulkan driver was starting",
+            Self::Translating => "naga was translating the shader",
+            Self::Compiling => "the driver was compiling the shader",
+            Self::Drawing => "the driver was painting the frame",
+            Self::WatchingLoops => "the driver was painting the frame with its loops watched",
+        })
+    }
+}
+
+/// Why there is no picture.
+#[derive(Debug, Clone, PartialEq, Error, Serialize, Deserialize)]
+pub enum Failure {
+    /// The shader does not compile.
+    #[error("the shader does not compile")]
+    Invalid(Vec<Diagnostic>),
+    /// naga gave up on a shader that may well be valid.
+    #[error("naga cannot translate this shader: {0}")]
+    Naga(String),
+    /// The deadline passed.
+    #[error("stopped after {:.1} s, while {phase}", after.as_secs_f64())]
+    Timeout {
+        /// What was going on.
+        phase: Phase,
+        /// The deadline.
+        after: Duration,
+    },
+    /// The memory limit was reached.
+    #[error("out of memory while {phase} (limit {} GiB)", MEMORY_BYTES >> 30)]
+    OutOfMemory {
+        /// What was going on.
+        phase: Phase,
+    },
+    /// The stack overflowed: recursion on something nested very deep.
+    #[error("nested too deep: the stack overflowed while {phase}")]
+    StackOverflow {
+        /// What was going on.
+        phase: Phase,
+    },
+    /// The worker died.
+    #[error("the worker process {how} while {phase}")]
+    Crash {
+        /// What was going on.
+        phase: Phase,
+        /// Signal or exit code, and the last words.
+        how: String,
+    },
+    /// The driver refused or lost the device.
+    #[error("the Vulkan driver failed: {0}")]
+    Device(String),
+    /// There is no such driver.
+    #[error("{0}")]
+    NoDriver(String),
+    /// The worker process could not be started or spoken to.
+    #[error("cannot run the worker process: {0}")]
+    Worker(String),
+}

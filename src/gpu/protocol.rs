@@ -1,0 +1,83 @@
+//! What parent and worker say to each other: length-prefixed postcard messages over pipes.
+
+use std::io::{self, Read, Write};
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+use super::{Driver, Drawn, Failure, FloatMode, On, Phase};
+use crate::emit::Target;
+use crate::frame::Frame;
+use crate::glsl::Lowered;
+
+/// What the parent asks for.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) enum Job {
+    /// Which Vulkan drivers are there, and which would be chosen.
+    Probe(On),
+    /// Translate and emit; strict decorations on SPIR-V if asked for.
+    Translate(Lowered, Target, FloatMode),
+    /// Translate, compile and paint a frame.
+    Draw(Box<(Lowered, Frame, FloatMode, On)>),
+}
+
+/// What the worker says, any number of phases and then the end.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) enum Reply {
+    Phase(Phase),
+    Done(Result<Output, Failure>),
+}
+
+/// What a job gives.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) enum Output {
+    Drivers(Vec<Driver>),
+    Translated(Vec<u8>),
+    Drawn(Box<Drawn>),
+}
+
+/// The longest message: a frame of the largest size and its surroundings.
+const MAX_MESSAGE: u64 = 1 << 30;
+
+pub(super) fn send(mut to: impl Write, message: &impl Serialize) -> io::Result<()> {
+    let bytes = postcard::to_stdvec(message).map_err(io::Error::other)?;
+    to.write_all(&(bytes.len() as u64).to_le_bytes())?;
+    to.write_all(&bytes)?;
+    to.flush()
+}
+
+pub(super) fn receive<T: DeserializeOwned>(mut from: impl Read) -> io::Result<T> {
+    let mut length = [0; 8];
+    from.read_exact(&mut length)?;
+    let length = u64::from_le_bytes(length);
+    if length > MAX_MESSAGE {
+        return Err(io::Error::other("a message longer than any there is"));
+    }
+    let mut bytes = Vec::new();
+    if from.take(length).read_to_end(&mut bytes)? as u64 != length {
+        return Err(io::ErrorKind::UnexpectedEof.into());
+    }
+    postcard::from_bytes(&bytes).map_err(io::Error::other)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::Image;
+
+    #[test]
+    fn pixels_arrive_bit_for_bit() {
+        let nan = f32::from_bits(0x7fc0_1234);
+        let image = Image::new(1, 1, vec![[nan, -0.0, f32::INFINITY, 1e-45]]);
+        let mut pipe = Vec::new();
+        send(&mut pipe, &image).unwrap();
+        let back: Image = receive(&pipe[..]).unwrap();
+        assert_eq!(back.get(0, 0).map(f32::to_bits), image.get(0, 0).map(f32::to_bits));
+    }
+
+    #[test]
+    fn garbage_is_an_error_and_not_an_allocation() {
+        assert!(receive::<Image>(&[0xff; 64][..]).is_err());
+        assert!(receive::<Image>(&b"short"[..]).is_err());
+    }
+}

@@ -1,0 +1,209 @@
+//! The parent's side: start the worker, hold it to its deadline, say what became of it.
+
+use std::collections::VecDeque;
+use std::io::Read;
+use std::path::PathBuf;
+use std::process::{Child, ChildStderr, ChildStdin, Command, ExitStatus, Stdio};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+use super::protocol::{Job, Output, Reply, receive, send};
+use super::{Driver, Drawn, Failure, FloatMode, On, Phase, driver};
+use crate::emit::Target;
+use crate::frame::Frame;
+use crate::glsl::Lowered;
+
+/// A worker process that is started when it is first needed, and anew after each that died.
+#[derive(Debug)]
+pub struct Worker {
+    program: PathBuf,
+    arguments: Vec<String>,
+    on: On,
+    timeout: Duration,
+    live: Option<Live>,
+}
+
+/// How long a worker that closed its pipe may take to end.
+const GRACE: Duration = Duration::from_millis(500);
+/// How much of a worker's last words is kept, in bytes.
+const LAST_WORDS: usize = 4096;
+
+impl Worker {
+    /// A worker that is `program` with `arguments`, which must call [`super::serve`] on its standard streams.
+    #[must_use]
+    pub fn new(program: PathBuf, arguments: Vec<String>, on: On, timeout: Duration) -> Self {
+        Self { program, arguments, on, timeout, live: None }
+    }
+
+    /// The Vulkan drivers that are there; the chosen one first.
+    ///
+    /// # Errors
+    /// [`Failure::NoDriver`] if none can be used.
+    pub fn probe(&mut self) -> Result<Vec<Driver>, Failure> {
+        match self.run(&Job::Probe(self.on.clone()))? {
+            Output::Drivers(drivers) => Ok(drivers),
+            _ => Err(out_of_turn()),
+        }
+    }
+
+    /// The shader in another language.
+    ///
+    /// # Errors
+    /// Why not.
+    pub fn translate(
+        &mut self,
+        lowered: Lowered,
+        target: Target,
+        float: FloatMode,
+    ) -> Result<Vec<u8>, Failure> {
+        match self.run(&Job::Translate(lowered, target, float))? {
+            Output::Translated(bytes) => Ok(bytes),
+            _ => Err(out_of_turn()),
+        }
+    }
+
+    /// The picture that the shader paints.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn draw(&mut self, lowered: Lowered, frame: Frame, float: FloatMode) -> Result<Drawn, Failure> {
+        match self.run(&Job::Draw(Box::new((lowered, frame, float, self.on.clone()))))? {
+            Output::Drawn(drawn) => Ok(*drawn),
+            _ => Err(out_of_turn()),
+        }
+    }
+
+    fn run(&mut self, job: &Job) -> Result<Output, Failure> {
+        let deadline = Instant::now() + self.timeout;
+        let mut live = match self.live.take() {
+            Some(live) => live,
+            None => self.start()?,
+        };
+        let mut phase = Phase::Starting;
+        // A worker that died is told by its replies' end; sending is best effort.
+        let sent = send(&mut live.requests, job);
+        loop {
+            match live.replies.recv_timeout(deadline.saturating_duration_since(Instant::now())) {
+                Ok(Reply::Phase(now)) => phase = now,
+                Ok(Reply::Done(result)) => {
+                    self.live = Some(live);
+                    return result;
+                }
+                Err(RecvTimeoutError::Timeout) => {
+                    live.end();
+                    return Err(Failure::Timeout { phase, after: self.timeout });
+                }
+                Err(RecvTimeoutError::Disconnected) => {
+                    let (status, words) = live.end();
+                    return Err(match sent {
+                        Err(error) if status.is_none() => Failure::Worker(error.to_string()),
+                        _ => classify(phase, status, &words),
+                    });
+                }
+            }
+        }
+    }
+
+    fn start(&self) -> Result<Live, Failure> {
+        let mut command = Command::new(&self.program);
+        command.args(&self.arguments);
+        if !driver::is_pinned_by_user()
+            && let (On::Auto | On::Lavapipe, Some(manifest)) = (&self.on, driver::lavapipe_manifest())
+        {
+            // Loading one driver instead of all takes 20 ms instead of 170.
+            for name in driver::PINS {
+                command.env(name, &manifest);
+            }
+        }
+        if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
+            command.env("XDG_RUNTIME_DIR", std::env::temp_dir());
+        }
+        let mut child = command
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .map_err(|error| Failure::Worker(format!("{}: {error}", self.program.display())))?;
+        let missing = || Failure::Worker("no pipe to the worker".to_owned());
+        let requests = child.stdin.take().ok_or_else(missing)?;
+        let mut output = child.stdout.take().ok_or_else(missing)?;
+        let errors = child.stderr.take().ok_or_else(missing)?;
+        let (sender, replies) = mpsc::channel();
+        thread::spawn(move || {
+            while let Ok(reply) = receive(&mut output) {
+                if sender.send(reply).is_err() {
+                    break;
+                }
+            }
+        });
+        Ok(Live { child, requests, replies, words: thread::spawn(move || last_words(errors)) })
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        if let Some(live) = self.live.take() {
+            live.end();
+        }
+    }
+}
+
+/// A running worker.
+#[derive(Debug)]
+struct Live {
+    child: Child,
+    requests: ChildStdin,
+    replies: Receiver<Reply>,
+    words: JoinHandle<String>,
+}
+
+impl Live {
+    /// Ends the worker; gives how it ended if it did so by itself, and its last words.
+    fn end(mut self) -> (Option<ExitStatus>, String) {
+        drop(self.requests);
+        let deadline = Instant::now() + GRACE;
+        let closed = matches!(self.replies.try_recv(), Err(mpsc::TryRecvError::Disconnected));
+        let mut status = None;
+        while closed && status.is_none() && Instant::now() < deadline {
+            status = self.child.try_wait().ok().flatten();
+            thread::sleep(Duration::from_millis(2));
+        }
+        if status.is_none() {
+            // Killing fails only for a child that has ended.
+            let _ = self.child.kill();
+            let _ = self.child.wait();
+        }
+        (status, self.words.join().unwrap_or_default())
+    }
+}
+
+fn last_words(mut from: ChildStderr) -> String {
+    let mut kept = VecDeque::new();
+    let mut buffer = [0; 1024];
+    while let Ok(count @ 1..) = from.read(&mut buffer) {
+        kept.extend(&buffer[..count]);
+        kept.drain(..kept.len().saturating_sub(LAST_WORDS));
+    }
+    String::from_utf8_lossy(kept.make_contiguous()).trim().to_owned()
+}
+
+/// What a worker died of. Rust's allocator, its stack guard and LLVM say so in known words.
+fn classify(phase: Phase, status: Option<ExitStatus>, words: &str) -> Failure {
+    if words.contains("has overflowed its stack") {
+        return Failure::StackOverflow { phase };
+    }
+    if words.contains("memory allocation of") || words.contains("out of memory") {
+        return Failure::OutOfMemory { phase };
+    }
+    let end = status.map_or_else(|| "stopped answering".to_owned(), |status| format!("died ({status})"));
+    let how = match words.lines().last() {
+        Some(last) => format!("{end}, saying “{last}”,"),
+        None => end,
+    };
+    Failure::Crash { phase, how }
+}
+
+fn out_of_turn() -> Failure {
+    Failure::Worker("it answered another question than was asked".to_owned())
+}

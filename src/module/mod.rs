@@ -1,0 +1,166 @@
+//! naga's module: parsed from what `glsl` lowered, and validated.
+
+mod loops;
+
+use naga::front::glsl::{Frontend, Options};
+use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
+use naga::{Module, ShaderStage};
+
+use crate::diagnostic::Diagnostic;
+use crate::glsl::Lowered;
+
+/// A module that naga has validated: the only thing that later stages take.
+#[derive(Debug, Clone)]
+pub struct ValidModule {
+    module: Module,
+    info: ModuleInfo,
+}
+
+impl ValidModule {
+    /// naga's module.
+    #[must_use]
+    pub fn module(&self) -> &Module {
+        &self.module
+    }
+
+    /// What naga's validator found out about it.
+    #[must_use]
+    pub fn info(&self) -> &ModuleInfo {
+        &self.info
+    }
+
+    /// Parses and validates a lowered shader; what it does not use is dropped.
+    ///
+    /// # Errors
+    /// naga's complaint, on the author's own lines.
+    pub fn parse(lowered: &Lowered) -> Result<Self, Vec<Diagnostic>> {
+        let mut module = Frontend::default()
+            .parse(&Options::from(ShaderStage::Fragment), lowered.text())
+            .map_err(|errors| {
+                errors
+                    .errors
+                    .iter()
+                    .map(|error| complaint("E0900", &error.kind.to_string(), error.meta, lowered))
+                    .collect::<Vec<_>>()
+            })?;
+        naga::compact::compact(&mut module, naga::compact::KeepUnused::No);
+        Self::validate(module).map_err(|error| {
+            let span = error.spans().next().map_or(naga::Span::UNDEFINED, |(span, _)| *span);
+            vec![complaint("E0901", &chain(error.as_inner()), span, lowered)]
+        })
+    }
+
+    fn validate(module: Module) -> Result<Self, naga::WithSpan<naga::valid::ValidationError>> {
+        let info = Validator::new(ValidationFlags::all(), Capabilities::default()).validate(&module)?;
+        Ok(Self { module, info })
+    }
+
+    /// Whether any function holds a loop.
+    #[must_use]
+    pub fn has_loops(&self) -> bool {
+        loops::any(&self.module)
+    }
+
+    /// Whether a pixel may be left unpainted by `discard`.
+    #[must_use]
+    pub fn discards(&self) -> bool {
+        (0..self.module.entry_points.len()).any(|entry| self.info.get_entry_point(entry).may_kill)
+    }
+
+    /// The same shader, but alpha tells whether every loop was left by its own means: 1 where it was, 0
+    /// where the driver ended one.
+    ///
+    /// # Errors
+    /// naga's words, should it refuse the result.
+    pub fn with_loops_watched(&self) -> Result<Self, String> {
+        let mut module = self.module.clone();
+        loops::watch(&mut module);
+        Self::validate(module).map_err(|error| chain(error.as_inner()))
+    }
+}
+
+fn complaint(code: &'static str, message: &str, span: naga::Span, lowered: &Lowered) -> Diagnostic {
+    let diagnostic = Diagnostic::error(code, format!("naga cannot translate this: {message}"));
+    match span.to_range().and_then(|range| lowered.origin(range)) {
+        Some(span) => diagnostic.at(span),
+        None => diagnostic,
+    }
+}
+
+/// An error with all of its causes, outermost first.
+fn chain(error: &dyn std::error::Error) -> String {
+    let mut words = error.to_string();
+    let mut source = error.source();
+    while let Some(cause) = source {
+        words = format!("{words}: {cause}");
+        source = cause.source();
+    }
+    words
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnostic::short;
+    use crate::glsl::lower;
+    use crate::source::{File, Files};
+
+    fn parse(text: &str) -> Result<ValidModule, Vec<String>> {
+        let mut files = Files::default();
+        let file = files.add(File::new("s", text));
+        let lowered = lower(&files, file).unwrap();
+        ValidModule::parse(&lowered)
+            .map_err(|diagnostics| diagnostics.iter().map(|d| short(d, &files)).collect())
+    }
+
+    #[test]
+    fn only_inputs_that_are_used_stay() {
+        let module = parse("void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel1, p); }").unwrap();
+        let bindings: Vec<_> = module
+            .module()
+            .global_variables
+            .iter()
+            .filter_map(|(_, global)| Some(global.binding.as_ref()?.binding))
+            .collect();
+        assert_eq!(bindings, [3, 4]);
+    }
+
+    #[test]
+    fn errors_stand_on_the_authors_line_and_column() {
+        let errors = parse("void mainImage(out vec4 c, in vec2 p) {\n  c = vec4(q, 0, 1);\n}").unwrap_err();
+        assert_eq!(errors, ["s:2:12: error[E0900]: naga cannot translate this: Unknown variable: q"]);
+    }
+
+    #[test]
+    fn a_watched_module_is_valid_and_counts_each_way_out() {
+        let module = parse(
+            "float f(float x) { for (int i = 0; i < 9; i++) { if (x > 4.0) return x; if (x > 3.0) break; x += 1.0; } return 0.0; }\n\
+             void mainImage(out vec4 c, in vec2 p) {\n\
+               float x = 0.0; do { x += f(x); } while (x < 3.0);\n\
+               switch (int(x)) { case 0: x = 1.0; break; default: x = 2.0; break; }\n\
+               c = vec4(x);\n\
+             }",
+        )
+        .unwrap();
+        let watched = module.with_loops_watched().unwrap();
+        let text = naga::back::wgsl::write_string(
+            watched.module(),
+            watched.info(),
+            naga::back::wgsl::WriterFlags::empty(),
+        )
+        .unwrap();
+        // Two loops opened; left by a condition and a return, a break and a condition.
+        assert_eq!(text.matches("+ 1u").count(), 2, "{text}");
+        assert_eq!(text.matches("- 1u").count(), 4, "{text}");
+        assert!(text.contains("select(0f, 1f,"), "{text}");
+    }
+
+    #[test]
+    fn loops_are_seen_wherever_they_stand() {
+        let with = "float f() { float x = 0.0; if (true) { while (x < 3.0) x += 1.0; } return x; }\n\
+                    void mainImage(out vec4 c, in vec2 p) { c = vec4(f()); }";
+        assert!(parse(with).unwrap().has_loops());
+        let without = "void mainImage(out vec4 c, in vec2 p) { c = vec4(p, 0.0, 1.0); }";
+        assert!(!parse(without).unwrap().has_loops());
+    }
+}
