@@ -8,4 +8,6 @@ pub mod gpu;
 pub mod image;
 pub mod module;
 pub mod output;
+pub mod scene;
 pub mod source;
+pub mod trace;
