@@ -1,5 +1,7 @@
 //! toyproof checks, renders and converts ShaderToy shaders, and says how far each picture can be trusted.
 
+pub mod cli;
+pub mod compare;
 pub mod diagnostic;
 pub mod emit;
 pub mod frame;
@@ -8,6 +10,7 @@ pub mod gpu;
 pub mod image;
 pub mod module;
 pub mod output;
+pub mod report;
 pub mod scene;
 pub mod source;
 pub mod trace;

@@ -3,9 +3,9 @@
 use std::collections::HashSet;
 
 use naga::ShaderStage;
-use naga::back::spv::{Options, PipelineOptions, WriterFlags, write_vec};
+use naga::back::spv::{BindingInfo, Options, PipelineOptions, WriterFlags, write_vec};
 
-use super::{BOUNDS, ENTRY_POINT};
+use super::{BOUNDS, ENTRY_POINT, bindings};
 use crate::module::ValidModule;
 
 /// naga's words: names kept, no flipping of coordinates, indices clamped, loops as they are.
@@ -15,6 +15,16 @@ use crate::module::ValidModule;
 pub fn words(module: &ValidModule) -> Result<Vec<u32>, String> {
     let options = Options {
         flags: WriterFlags::DEBUG | WriterFlags::LABEL_VARYINGS,
+        binding_map: bindings(module)
+            .map(|(binding, _)| {
+                let same = BindingInfo {
+                    descriptor_set: binding.group,
+                    binding: binding.binding,
+                    binding_array_size: None,
+                };
+                (binding, same)
+            })
+            .collect(),
         fake_missing_bindings: false,
         bounds_check_policies: BOUNDS,
         force_loop_bounding: false,

@@ -158,11 +158,16 @@ impl Device {
             scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop())).collect();
         let lost = self.lost.lock().ok().and_then(|lost| lost.clone());
         match (errors.into_iter().next(), lost) {
-            (Some(error), _) => Err(Failure::Device(error.to_string())),
+            (Some(error), _) => Err(Failure::Device(one_line(&error.to_string()))),
             (None, Some(lost)) => Err(Failure::Device(lost)),
             (None, None) => result,
         }
     }
+}
+
+/// wgpu lays its errors out over several lines; a reason is one sentence.
+fn one_line(words: &str) -> String {
+    words.lines().map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join(": ")
 }
 
 /// One pixel, and as many iterations as `iFrame` says: the count tells how many the driver granted.

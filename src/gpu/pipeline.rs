@@ -130,7 +130,9 @@ impl Layout {
 
 #[expect(unsafe_code, reason = "only a passthrough module runs naga's words as they are")]
 fn module(device: &Device, words: &[u32]) -> ShaderModule {
+    let entry = wgpu::PassthroughShaderEntryPoint { name: "main".into(), workgroup_size: (0, 0, 0) };
     let descriptor = wgpu::ShaderModuleDescriptorPassthrough {
+        entry_points: std::slice::from_ref(&entry).into(),
         spirv: Some(words.into()),
         ..Default::default()
     };

@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 use std::io::Read;
+use std::os::unix::process::CommandExt;
 use std::path::PathBuf;
 use std::process::{Child, ChildStderr, ChildStdin, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
@@ -21,6 +22,7 @@ pub struct Worker {
     arguments: Vec<String>,
     on: On,
     timeout: Duration,
+    all_drivers: bool,
     live: Option<Live>,
 }
 
@@ -33,7 +35,14 @@ impl Worker {
     /// A worker that is `program` with `arguments`, which must call [`super::serve`] on its standard streams.
     #[must_use]
     pub fn new(program: PathBuf, arguments: Vec<String>, on: On, timeout: Duration) -> Self {
-        Self { program, arguments, on, timeout, live: None }
+        Self { program, arguments, on, timeout, all_drivers: false, live: None }
+    }
+
+    /// The same, loading every installed driver, also where one is known to be enough.
+    #[must_use]
+    pub fn with_all_drivers(mut self) -> Self {
+        self.all_drivers = true;
+        self
     }
 
     /// The Vulkan drivers that are there; the chosen one first.
@@ -108,7 +117,8 @@ impl Worker {
     fn start(&self) -> Result<Live, Failure> {
         let mut command = Command::new(&self.program);
         command.args(&self.arguments);
-        if !driver::is_pinned_by_user()
+        if !self.all_drivers
+            && !driver::is_pinned_by_user()
             && let (On::Auto | On::Lavapipe, Some(manifest)) = (&self.on, driver::lavapipe_manifest())
         {
             // Loading one driver instead of all takes 20 ms instead of 170.
@@ -120,6 +130,8 @@ impl Worker {
             command.env("XDG_RUNTIME_DIR", std::env::temp_dir());
         }
         let mut child = command
+            // Out of reach of the terminal's interrupt, so that the shader in hand is finished.
+            .process_group(0)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())

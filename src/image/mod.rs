@@ -5,9 +5,11 @@
 
 mod file;
 mod legend;
+mod noise;
 
 pub use file::{ImageError, encode, read};
 pub use legend::{Legend, Mark, difference};
+pub use noise::noise;
 
 use serde::{Deserialize, Serialize};
 

@@ -62,7 +62,7 @@ const PLACE: f64 = 4.0;
 const OFFSETS: [f64; 3] = [0.0, 1e-4, 1e-3];
 const T_MINS: [f64; 2] = [0.0, 1e-3];
 /// How often the scene is asked again in each style, each time with other signs.
-const PATTERNS: u32 = 6;
+const PATTERNS: u32 = 8;
 
 /// Everything moved by its bound, the signs drawn from a pattern.
 struct Moved {
@@ -97,7 +97,10 @@ impl Doubt<f64> for Moved {
     }
 
     fn discriminant(&self, disc: f64, f2: f64) -> f64 {
-        disc + self.sign(2) * DISCRIMINANT * U * f2
+        let bound = DISCRIMINANT * U * f2;
+        // Between a miss and a hit lies the ray that grazes, whose colour may be like neither's.
+        let grazes = self.pattern % 2 == 1 && self.pattern > 1 && disc.abs() <= bound;
+        if grazes { 0.0 } else { disc + self.sign(2) * bound }
     }
 
     fn point(&self, point: glam::DVec3, origin: glam::DVec3, depth: u32) -> glam::DVec3 {

@@ -1,0 +1,67 @@
+//! `toyproof compare`
+
+use std::path::PathBuf;
+
+use super::{Exit, Terminal};
+use crate::compare::{TOLERANCE, compare};
+use crate::image::{self, Legend};
+
+/// Compare two pictures: exit code 0 if they agree, 1 if they differ
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example:\n  toyproof compare reference.png mine.png --diff difference.png")]
+pub(super) struct Args {
+    /// The picture that is expected (.png, .exr)
+    a: PathBuf,
+    /// The picture that is judged
+    b: PathBuf,
+    /// Draw where and how much they differ
+    #[arg(long, value_name = "PICTURE")]
+    diff: Option<PathBuf>,
+}
+
+pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
+    let (a, b) = match (image::read(&args.a), image::read(&args.b)) {
+        (Ok(a), Ok(b)) => (a, b),
+        (a, b) => {
+            for error in [a.err(), b.err()].into_iter().flatten() {
+                terminal.error(error);
+            }
+            return Exit::Trouble;
+        }
+    };
+    if a.size() != b.size() {
+        let [[aw, ah], [bw, bh]] = [a.size(), b.size()];
+        terminal.error(format_args!(
+            "{} has {aw}×{ah} pixels and {} has {bw}×{bh}; only pictures of one size can be compared",
+            args.a.display(),
+            args.b.display()
+        ));
+        return Exit::Trouble;
+    }
+    let (comparison, marks) = compare(&a, &b, None);
+    if let Some(path) = &args.diff {
+        let picture = image::difference(a.size(), &marks, Legend { tolerance: TOLERANCE as f32 });
+        match image::encode(&picture, path) {
+            Ok(bytes) if terminal.write(path, &bytes) => {}
+            Ok(_) => return Exit::Trouble,
+            Err(error) => {
+                terminal.error(error);
+                return Exit::Trouble;
+            }
+        }
+    }
+    let pixels = comparison.pixels;
+    match comparison.differing {
+        0 => terminal.result(&format!("all {pixels} pixels agree, to {:.1e}", comparison.max_abs)),
+        differing => terminal.result(&format!(
+            "{differing} of {pixels} pixels differ by more than {TOLERANCE}, by at most {:.4} ({} in 8 bits)",
+            comparison.max_abs, comparison.max_8bit
+        )),
+    }
+    for (name, pixel) in [("first", comparison.first), ("worst", comparison.worst)] {
+        if let Some(pixel) = pixel {
+            terminal.result(&format!("{name} {}", crate::report::place(&pixel)));
+        }
+    }
+    if comparison.differing == 0 { Exit::Good } else { Exit::Bad }
+}

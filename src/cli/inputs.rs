@@ -1,0 +1,165 @@
+//! Arguments that several commands share: the frame, the driver, the deadline.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+use std::time::Duration;
+
+use clap::ValueEnum;
+
+use crate::frame::Frame;
+use crate::gpu::{FloatMode, On, Worker};
+use crate::image::{self, Image, check_size};
+
+/// What ShaderToy's inputs are set to.
+#[derive(Debug, Clone, clap::Args)]
+#[command(next_help_heading = "The frame")]
+pub(super) struct FrameArgs {
+    /// Width and height in pixels [default: the scene's, else 640x360]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub(super) size: Option<[u32; 2]>,
+    /// iTime, in seconds
+    #[arg(long, value_name = "S", default_value_t = 0.0, allow_negative_numbers = true)]
+    time: f32,
+    /// iFrame
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(i32).range(0..))]
+    frame: i32,
+    /// iMouse, in pixels
+    #[arg(long, value_name = "X,Y[,Z,W]", value_parser = mouse, allow_hyphen_values = true)]
+    mouse: Option<[f32; 4]>,
+    /// iDate: year, month from 0, day, seconds since midnight
+    #[arg(long, value_name = "Y,M,D,S", value_parser = date)]
+    date: Option<[f32; 4]>,
+    /// A picture (.png, .exr) or `noise` for iChannel0
+    #[arg(long, value_name = "FILE|noise")]
+    channel0: Option<PathBuf>,
+    /// The same for iChannel1
+    #[arg(long, value_name = "FILE|noise")]
+    channel1: Option<PathBuf>,
+    /// The same for iChannel2
+    #[arg(long, value_name = "FILE|noise")]
+    channel2: Option<PathBuf>,
+    /// The same for iChannel3
+    #[arg(long, value_name = "FILE|noise")]
+    channel3: Option<PathBuf>,
+}
+
+impl FrameArgs {
+    /// The frame, its channels loaded; its size is the flag's or the default.
+    pub(super) fn frame(&self) -> Result<Frame, String> {
+        let default = Frame::default();
+        let channel = |path: &Option<PathBuf>| -> Result<Option<Image>, String> {
+            match path {
+                None => Ok(None),
+                Some(path) if path.as_os_str() == "noise" => Ok(Some(image::noise())),
+                Some(path) => image::read(path).map(Some).map_err(|error| error.to_string()),
+            }
+        };
+        Ok(Frame {
+            size: self.size.unwrap_or(default.size),
+            time: self.time,
+            frame: self.frame,
+            mouse: self.mouse.unwrap_or_default(),
+            date: self.date.unwrap_or_default(),
+            channels: [
+                channel(&self.channel0)?,
+                channel(&self.channel1)?,
+                channel(&self.channel2)?,
+                channel(&self.channel3)?,
+            ],
+        })
+    }
+}
+
+/// Where and how the shader runs.
+#[derive(Debug, Clone, clap::Args)]
+#[command(next_help_heading = "The driver")]
+pub(super) struct DriverArgs {
+    /// `auto` (lavapipe where it is installed, else the first), `lavapipe`, or words of an adapter's name
+    #[arg(long, value_name = "ADAPTER", default_value = "auto", value_parser = on)]
+    pub(super) on: On,
+    /// `strict` holds the driver to the arithmetic as written, `fast` lets it rearrange
+    #[arg(long, value_enum, default_value_t = Float::Strict)]
+    float: Float,
+    /// Stop a shader after this long (10s, 500ms, 2m)
+    #[arg(long, value_name = "TIME", default_value = "10s", value_parser = humantime::parse_duration)]
+    timeout: Duration,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum Float {
+    Strict,
+    Fast,
+}
+
+impl From<Float> for FloatMode {
+    fn from(float: Float) -> Self {
+        match float {
+            Float::Strict => Self::Strict,
+            Float::Fast => Self::Fast,
+        }
+    }
+}
+
+impl DriverArgs {
+    pub(super) fn float(&self) -> FloatMode {
+        self.float.into()
+    }
+
+    pub(super) fn worker(&self) -> Result<Worker, String> {
+        worker(self.on.clone(), self.timeout)
+    }
+}
+
+/// This program again, as the worker.
+pub(super) fn worker(on: On, timeout: Duration) -> Result<Worker, String> {
+    let program = std::env::current_exe()
+        .map_err(|error| format!("cannot find the program itself to run it as a worker: {error}"))?;
+    Ok(Worker::new(program, vec!["worker".to_owned()], on, timeout))
+}
+
+pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
+    let (width, height) = text.split_once(['x', 'X', '×']).ok_or("a size is written 640x360")?;
+    let side = |side: &str| side.parse::<u64>().map_err(|_| format!("“{side}” is no number of pixels"));
+    check_size(side(width)?, side(height)?)
+}
+
+pub(super) fn on(text: &str) -> Result<On, String> {
+    Ok(match text {
+        "" => return Err("name an adapter, or say auto".to_owned()),
+        "auto" => On::Auto,
+        "lavapipe" => On::Lavapipe,
+        name => On::Named(name.to_owned()),
+    })
+}
+
+fn numbers(text: &str) -> Result<Vec<f32>, String> {
+    text.split(',').map(|part| f32::from_str(part.trim()).map_err(|_| format!("“{part}” is no number"))).collect()
+}
+
+fn mouse(text: &str) -> Result<[f32; 4], String> {
+    match numbers(text)?[..] {
+        [x, y] => Ok([x, y, 0.0, 0.0]),
+        [x, y, z, w] => Ok([x, y, z, w]),
+        _ => Err("a mouse is two or four numbers: X,Y or X,Y,Z,W".to_owned()),
+    }
+}
+
+fn date(text: &str) -> Result<[f32; 4], String> {
+    numbers(text)?.try_into().map_err(|_| "a date is four numbers: year, month from 0, day, seconds".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_read_as_people_write_them() {
+        assert_eq!(size("640x360"), Ok([640, 360]));
+        assert_eq!(mouse("1,-2.5"), Ok([1.0, -2.5, 0.0, 0.0]));
+        assert_eq!(on("llvm"), Ok(On::Named("llvm".to_owned())));
+        for bad in ["640", "0x0", "ax3", "100000x100000", "1x-1"] {
+            assert!(size(bad).is_err(), "{bad}");
+        }
+        assert!(mouse("1,2,3").is_err() && date("2026,1").is_err() && numbers("1,b").is_err());
+    }
+}

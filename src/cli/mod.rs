@@ -1,0 +1,83 @@
+//! The command line: one file for each command. Each turns its arguments into the stages' own terms,
+//! composes the stages and prints what came out.
+
+mod check;
+mod compare;
+mod convert;
+mod course;
+mod doctor;
+mod inputs;
+mod render;
+mod run;
+mod scenes;
+mod shader;
+mod terminal;
+mod worker;
+
+use clap::{Parser, Subcommand};
+
+use self::terminal::Terminal;
+
+/// Checks, renders and converts ShaderToy shaders.
+#[derive(Debug, Parser)]
+#[command(version, about, propagate_version = true, max_term_width = 110)]
+pub struct Cli {
+    #[command(subcommand)]
+    command: Command,
+    /// Say more: times, and the driver that ran
+    #[arg(short, long, global = true)]
+    verbose: bool,
+    /// Say nothing but results
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    quiet: bool,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Compare what shaders paint with the reference tracer, and give a verdict on each
+    Check(check::Args),
+    /// Render a scene with the reference tracer
+    Render(render::Args),
+    /// Run shaders and keep the pictures that they paint
+    Run(run::Args),
+    /// Translate shaders to WGSL, SPIR-V, Metal, HLSL or GLSL ES
+    Convert(convert::Args),
+    /// Compare two pictures
+    Compare(compare::Args),
+    /// List the course's scenes and shaders, or write them to a folder
+    Scenes(scenes::Args),
+    /// Say which Vulkan drivers are installed, what is missing and how to get it
+    Doctor(doctor::Args),
+    /// Serve as the worker process of another command
+    #[command(hide = true)]
+    Worker,
+}
+
+/// How a command ended, in the manner of grep, diff and cmp.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Exit {
+    /// Exit code 0.
+    Good,
+    /// Exit code 1: a shader is at fault, or pictures differ.
+    Bad,
+    /// Exit code 2: something else is.
+    Trouble,
+}
+
+impl Cli {
+    /// Does what the arguments ask for.
+    #[must_use]
+    pub fn run(self) -> Exit {
+        let terminal = Terminal::new(self.quiet, self.verbose);
+        match self.command {
+            Command::Check(args) => check::run(args, &terminal),
+            Command::Render(args) => render::run(&args, &terminal),
+            Command::Run(args) => run::run(args, &terminal),
+            Command::Convert(args) => convert::run(args, &terminal),
+            Command::Compare(args) => compare::run(&args, &terminal),
+            Command::Scenes(args) => scenes::run(&args, &terminal),
+            Command::Doctor(args) => doctor::run(args, &terminal),
+            Command::Worker => worker::run(),
+        }
+    }
+}

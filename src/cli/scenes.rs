@@ -1,0 +1,41 @@
+//! `toyproof scenes`
+
+use std::path::PathBuf;
+
+use super::{Exit, Terminal, course};
+use crate::scene;
+use crate::source::{File, Files};
+
+/// List the course's scenes and shaders, or write them to a folder
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example:\n  toyproof scenes --write course\n  toyproof check course --out pictures")]
+pub(super) struct Args {
+    /// Write every shader and its scene into this folder
+    #[arg(long, value_name = "DIR")]
+    write: Option<PathBuf>,
+}
+
+pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
+    let Some(folder) = &args.write else {
+        for (name, text) in course::files() {
+            if let Some(stem) = name.strip_suffix(".toml") {
+                terminal.result(&format!("{stem:<24} {}", title(name, text)));
+            }
+        }
+        terminal.say("`toyproof scenes --write DIR` writes their shaders (.glsl) and scenes (.toml)");
+        return Exit::Good;
+    };
+    for (name, text) in course::files() {
+        if !terminal.write(&folder.join(name), text.as_bytes()) {
+            return Exit::Trouble;
+        }
+    }
+    terminal.say(&format!("wrote {} files to {}", course::files().count(), folder.display()));
+    Exit::Good
+}
+
+fn title(name: &str, text: &str) -> String {
+    let mut files = Files::default();
+    let file = files.add(File::new(name, text));
+    scene::parse(&files, file).map(|scene| scene.title).unwrap_or_default()
+}

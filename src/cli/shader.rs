@@ -1,0 +1,115 @@
+//! What the commands that take shaders share: reading one, lowering it, and naming its outputs.
+
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+
+use crate::diagnostic::Diagnostic;
+use crate::glsl::{self, Lowered};
+use crate::gpu::Failure;
+use crate::source::{self, File, Files, Found, ReadError, Span};
+
+/// A shader's text and what naga is fed, or why there is none.
+pub(super) struct Shader {
+    pub(super) name: String,
+    pub(super) files: Files,
+    pub(super) lowered: Result<Lowered, Unusable>,
+}
+
+/// Why a shader cannot be used.
+pub(super) enum Unusable {
+    /// What it holds is at fault.
+    Invalid(Vec<Diagnostic>),
+    /// It cannot be had.
+    Trouble(String),
+}
+
+impl Shader {
+    pub(super) fn load(found: &Result<Found, ReadError>) -> Self {
+        let mut files = Files::default();
+        let (name, lowered) = match found {
+            Err(error) => (subject(error), Err(Unusable::Trouble(error.to_string()))),
+            Ok(found) => (found.name(), Self::read(found, &mut files)),
+        };
+        Self { name, files, lowered }
+    }
+
+    fn read(found: &Found, files: &mut Files) -> Result<Lowered, Unusable> {
+        match source::read(found) {
+            Ok(text) => {
+                let file = files.add(text);
+                glsl::lower(files, file).map_err(Unusable::Invalid)
+            }
+            Err(error) if error.blames_content() => {
+                // An empty stand-in, so that the message has a file to name.
+                let file = files.add(File::new(found.name(), ""));
+                let diagnostic = Diagnostic::error("E0001", error.to_string()).at(Span::new(file, 0, 0));
+                Err(Unusable::Invalid(vec![diagnostic]))
+            }
+            Err(error) => Err(Unusable::Trouble(error.to_string())),
+        }
+    }
+}
+
+fn subject(error: &ReadError) -> String {
+    match error {
+        ReadError::Missing(path) | ReadError::NoShader(path) => path.display().to_string(),
+        ReadError::Unreadable { name, .. } | ReadError::TooLarge { name } | ReadError::NotUtf8 { name, .. } => {
+            name.clone()
+        }
+    }
+}
+
+/// All shaders that the arguments name, in their order.
+pub(super) fn find(arguments: &[PathBuf]) -> Vec<Result<Found, ReadError>> {
+    arguments.iter().flat_map(|argument| source::find(argument)).collect()
+}
+
+/// Whether it is the shader that does not compile, rather than the tools around it.
+pub(super) fn is_invalid(failure: &Failure) -> bool {
+    matches!(failure, Failure::Invalid(_) | Failure::StackOverflow { .. })
+}
+
+/// Names for outputs below a folder: the input's own place and stem, made unlike any other's.
+#[derive(Debug, Default)]
+pub(super) struct Names {
+    taken: HashSet<PathBuf>,
+}
+
+impl Names {
+    /// The place of an input's outputs, without an ending.
+    pub(super) fn place(&mut self, relative: &Path) -> PathBuf {
+        let stem = relative.with_extension("");
+        let whole = relative.to_owned();
+        let numbered = (2..).map(|n| {
+            let mut name = stem.clone().into_os_string();
+            name.push(format!("-{n}"));
+            PathBuf::from(name)
+        });
+        let free = [stem.clone(), whole].into_iter().chain(numbered).find(|name| self.taken.insert(name.clone()));
+        free.unwrap_or(stem)
+    }
+}
+
+/// `place` with words behind its last name.
+pub(super) fn with_suffix(place: &Path, suffix: &str) -> PathBuf {
+    let mut name = place.as_os_str().to_owned();
+    name.push(suffix);
+    PathBuf::from(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_two_inputs_share_an_output() {
+        let mut names = Names::default();
+        let places: Vec<_> = ["a/x.glsl", "a/x.frag", "a/x.glsl", "x.glsl"]
+            .iter()
+            .map(|relative| names.place(Path::new(relative)))
+            .collect();
+        assert_eq!(places, ["a/x", "a/x.frag", "a/x.glsl", "x"].map(PathBuf::from));
+        assert_eq!(names.place(Path::new("x.glsl")), Path::new("x.glsl"));
+        assert_eq!(names.place(Path::new("x.glsl")), Path::new("x-2"));
+    }
+}

@@ -1,0 +1,102 @@
+//! The one place that prints.
+
+use std::io::{self, Write};
+use std::path::Path;
+use std::time::Duration;
+
+use anstyle::{AnsiColor, Style};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use crate::diagnostic::{self, Diagnostic};
+use crate::output;
+use crate::source::Files;
+
+/// What a command says, and to whom. Colours are stripped where they are not wanted: in files, in pipes, and
+/// where `NO_COLOR` is set.
+#[derive(Debug)]
+pub(super) struct Terminal {
+    quiet: bool,
+    verbose: bool,
+}
+
+impl Terminal {
+    pub(super) fn new(quiet: bool, verbose: bool) -> Self {
+        Self { quiet, verbose }
+    }
+
+    /// A result, on standard output.
+    pub(super) fn result(&self, text: &str) {
+        // A reader that closed its end has all it wants.
+        let _ = writeln!(anstream::stdout().lock(), "{text}");
+    }
+
+    /// Bytes that are the result, on standard output.
+    pub(super) fn bytes(&self, bytes: &[u8]) -> io::Result<()> {
+        let mut stdout = io::stdout().lock();
+        stdout.write_all(bytes)?;
+        stdout.flush()
+    }
+
+    /// What helps, on standard error; not with `--quiet`.
+    pub(super) fn say(&self, text: &str) {
+        if !self.quiet {
+            let _ = writeln!(anstream::stderr().lock(), "{text}");
+        }
+    }
+
+    /// What only `--verbose` wants, on standard error.
+    pub(super) fn detail(&self, text: &str) {
+        if self.verbose {
+            let _ = writeln!(anstream::stderr().lock(), "{text}");
+        }
+    }
+
+    /// What went wrong, on standard error.
+    pub(super) fn error(&self, text: impl std::fmt::Display) {
+        let style = Style::new().fg_color(Some(AnsiColor::Red.into())).bold();
+        let _ = writeln!(anstream::stderr().lock(), "{style}error{style:#}: {text}");
+    }
+
+    /// Diagnostics with their source lines, on standard error.
+    pub(super) fn diagnostics(&self, diagnostics: &[Diagnostic], files: &Files) {
+        let mut stderr = anstream::stderr().lock();
+        for diagnostic in diagnostics {
+            let _ = write!(stderr, "{}", diagnostic::human(diagnostic, files, true));
+        }
+    }
+
+    /// Writes a file whole, or to standard output if it is named `-`; says what went wrong.
+    pub(super) fn write(&self, path: &Path, bytes: &[u8]) -> bool {
+        let written = if path == Path::new("-") { self.bytes(bytes) } else { output::write(path, bytes) };
+        if let Err(error) = &written {
+            self.error(format_args!("cannot write {error}"));
+        }
+        written.is_ok()
+    }
+
+    /// A bar of so many steps, on a terminal only.
+    pub(super) fn bar(&self, steps: u64, what: &str) -> ProgressBar {
+        let bar = self.progress(ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr()));
+        bar.set_style(
+            ProgressStyle::with_template("{msg} {wide_bar} {percent} % {eta}")
+                .unwrap_or_else(|_| ProgressStyle::default_bar()),
+        );
+        bar.set_message(what.to_owned());
+        bar
+    }
+
+    /// A sign of life with a few words, on a terminal only.
+    pub(super) fn spinner(&self, what: &str) -> ProgressBar {
+        let spinner = self.progress(ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr()));
+        spinner.set_message(what.to_owned());
+        spinner.enable_steady_tick(Duration::from_millis(100));
+        spinner
+    }
+
+    fn progress(&self, bar: ProgressBar) -> ProgressBar {
+        if self.quiet {
+            bar.set_draw_target(ProgressDrawTarget::hidden());
+        }
+        bar
+    }
+}

@@ -1,0 +1,122 @@
+//! The report as programs read it: `verdict.json`, and `--format json` on standard output.
+
+use serde::Serialize;
+
+use crate::compare::{Comparison, Verdict};
+use crate::diagnostic;
+
+/// The JSON Schema of a [`Report`].
+pub const SCHEMA: &str = include_str!("verdict.schema.json");
+
+/// All shaders of one run.
+#[derive(Debug, Serialize)]
+pub struct Report {
+    version: u32,
+    tool: String,
+    /// Adapter and driver; null if nothing ran.
+    device: Option<String>,
+    shaders: Vec<Record>,
+}
+
+impl Report {
+    /// A report of these shaders, in their order.
+    #[must_use]
+    pub fn new(device: Option<String>, shaders: Vec<Record>) -> Self {
+        Self {
+            version: 1,
+            tool: format!("toyproof {}", env!("CARGO_PKG_VERSION")),
+            device,
+            shaders,
+        }
+    }
+
+    /// The shaders' records.
+    #[must_use]
+    pub fn shaders(&self) -> &[Record] {
+        &self.shaders
+    }
+
+    /// The report as the text of `verdict.json`.
+    #[must_use]
+    pub fn json(&self) -> String {
+        // Strings, numbers and options always serialise; serde_json writes infinite floats as null.
+        serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
+    }
+}
+
+/// What was found of one shader. Questions that were not asked are null.
+#[derive(Debug, Serialize)]
+pub struct Record {
+    /// Its name, as the user gave it.
+    pub shader: String,
+    /// The scene's, if there is one.
+    pub scene: Option<String>,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Why, in one sentence.
+    pub reason: String,
+    /// Not asked: it needs an evaluator in f64.
+    pub maths: (),
+    /// Not asked: it needs an evaluator in f64.
+    pub rounding: (),
+    /// Not asked: it needs an evaluator in f32.
+    pub toolchain: (),
+    /// The picture beside the reference's; null without a scene or a picture.
+    pub picture: Option<Comparison>,
+    /// No mistakes are recognised yet.
+    pub mistake: (),
+    /// What was said of the shader and its scene.
+    pub diagnostics: Vec<diagnostic::Json>,
+    /// How long it took.
+    pub seconds: Seconds,
+}
+
+/// Times in seconds; null for what was not done.
+#[derive(Debug, Default, Serialize)]
+pub struct Seconds {
+    /// naga: parse, validate, write.
+    pub translate: Option<f64>,
+    /// The driver: compile, paint, read back.
+    pub gpu: Option<f64>,
+    /// Not done.
+    pub eval: (),
+    /// The reference tracer.
+    pub trace: Option<f64>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn record(picture: Option<Comparison>) -> Record {
+        Record {
+            shader: "a.glsl".to_owned(),
+            scene: None,
+            verdict: Verdict::Ok,
+            reason: "it paints".to_owned(),
+            maths: (),
+            rounding: (),
+            toolchain: (),
+            picture,
+            mistake: (),
+            diagnostics: Vec::new(),
+            seconds: Seconds::default(),
+        }
+    }
+
+    #[test]
+    fn reports_follow_the_schema_and_other_things_do_not() {
+        let schema = serde_json::from_str(SCHEMA).unwrap();
+        let validator = jsonschema::validator_for(&schema).unwrap();
+        let black = crate::image::Image::new(1, 1, vec![[0.0; 4]]);
+        let white = crate::image::Image::new(1, 1, vec![[1.0; 4]]);
+        let (comparison, _) = crate::compare::compare(&black, &white, None);
+        let report = Report::new(Some("x".to_owned()), vec![record(None), record(Some(comparison))]);
+        let mut json: serde_json::Value = serde_json::from_str(&report.json()).unwrap();
+        assert!(validator.is_valid(&json), "{:?}", validator.iter_errors(&json).collect::<Vec<_>>());
+        json["shaders"][0]["verdict"] = "splendid".into();
+        assert!(!validator.is_valid(&json));
+        json["shaders"][0].as_object_mut().unwrap().remove("verdict");
+        assert!(!validator.is_valid(&json));
+    }
+}
