@@ -61,51 +61,80 @@ const PLACE: f64 = 4.0;
 /// Starts off the surface that shaders use, in scene units, and the smallest t that they accept.
 const OFFSETS: [f64; 3] = [0.0, 1e-4, 1e-3];
 const T_MINS: [f64; 2] = [0.0, 1e-3];
-/// How often the scene is asked again in each style, each time with other signs.
-const PATTERNS: u32 = 8;
+/// Shares of the bounds. Colours are not monotonous in what is moved: a ray that the whole bound turns from a
+/// hit into a miss is turned by less into one that barely hits.
+const SCALES: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
 
-/// Everything moved by its bound, the signs drawn from a pattern.
+/// The style of secondary rays, and everything moved by a share of its bound.
 struct Moved {
     offset: f64,
     t_min: f64,
-    pattern: u32,
+    scale: f64,
+    signs: Signs,
+    /// Whether a ray that may hit or miss is taken to graze.
+    grazes: bool,
+}
+
+#[derive(Clone, Copy)]
+enum Signs {
+    Plus,
+    Minus,
+    /// Drawn by hashing.
+    Mixed(u32),
 }
 
 impl Moved {
-    /// −1 or 1, or 0 in the pattern that moves nothing.
-    fn sign(&self, role: u32) -> f64 {
-        match self.pattern {
-            0 => 0.0,
-            1 => 1.0,
-            2 => -1.0,
-            pattern => {
-                // Multiplicative hashing (Knuth, The Art of Computer Programming 3, section 6.4).
-                let mixed = (pattern * 64 + role).wrapping_mul(2_654_435_769);
-                if mixed >> 31 == 0 { 1.0 } else { -1.0 }
-            }
-        }
+    const NOT: Self = Self { offset: 0.0, t_min: 0.0, scale: 0.0, signs: Signs::Plus, grazes: false };
+
+    /// A signed share of a bound, for each role in the picture another sign.
+    fn share(&self, role: u32) -> f64 {
+        let positive = match self.signs {
+            Signs::Plus => true,
+            Signs::Minus => false,
+            // Multiplicative hashing (Knuth, The Art of Computer Programming 3, section 6.4).
+            Signs::Mixed(salt) => (salt * 64 + role).wrapping_mul(2_654_435_769) >> 31 == 0,
+        };
+        if positive { self.scale } else { -self.scale }
     }
+}
+
+/// Every style with nothing moved and with everything moved one way or the other; in the exact style all
+/// shares and signs.
+fn variants() -> impl Iterator<Item = Moved> {
+    let styles = OFFSETS.into_iter().flat_map(|offset| {
+        T_MINS.into_iter().flat_map(move |t_min| {
+            let style = move |scale, signs| Moved { offset, t_min, scale, signs, grazes: false };
+            [style(0.0, Signs::Plus), style(1.0, Signs::Plus), style(1.0, Signs::Minus)]
+        })
+    });
+    let moves = SCALES.into_iter().zip(1..).flat_map(|(scale, salt)| {
+        [Signs::Plus, Signs::Minus, Signs::Mixed(2 * salt), Signs::Mixed(2 * salt + 1)]
+            .into_iter()
+            .zip([false, false, false, true])
+            .map(move |(signs, grazes)| Moved { scale, signs, grazes, ..Moved::NOT })
+    });
+    let grazing = [Moved { grazes: true, ..Moved::NOT }];
+    styles.chain(moves).chain(grazing)
 }
 
 impl Doubt<f64> for Moved {
     fn place(&self, place: f64, side: u32, axis: u32) -> f64 {
-        place + self.sign(axis) * PLACE * U * f64::from(side)
+        place + self.share(axis) * PLACE * U * f64::from(side)
     }
 
     fn draw(&self, product: f64, seed: f64, sine: f64, axis: u32) -> f64 {
-        product + self.sign(axis) * sampler::draw_bound(seed, sine)
+        product + self.share(axis) * sampler::draw_bound(seed, sine)
     }
 
     fn discriminant(&self, disc: f64, f2: f64) -> f64 {
         let bound = DISCRIMINANT * U * f2;
         // Between a miss and a hit lies the ray that grazes, whose colour may be like neither's.
-        let grazes = self.pattern % 2 == 1 && self.pattern > 1 && disc.abs() <= bound;
-        if grazes { 0.0 } else { disc + self.sign(2) * bound }
+        if self.grazes && disc.abs() <= bound { 0.0 } else { disc + self.share(2) * bound }
     }
 
     fn point(&self, point: glam::DVec3, origin: glam::DVec3, depth: u32) -> glam::DVec3 {
         let size = origin.abs().max_element().max(point.abs().max_element());
-        let signs = [0, 1, 2].map(|axis| self.sign(3 + 3 * (depth % 16) + axis));
+        let signs = [0, 1, 2].map(|axis| self.share(3 + 3 * (depth % 16) + axis));
         point + glam::DVec3::from_array(signs) * (POINT * U * size)
     }
 
@@ -168,14 +197,6 @@ impl Tracer<f64> {
         let mean = |total: f64| total / f64::from(self.film.samples);
         Hull { low: sum.low.map(mean), high: sum.high.map(mean) }
     }
-}
-
-fn variants() -> impl Iterator<Item = Moved> {
-    OFFSETS.into_iter().flat_map(|offset| {
-        T_MINS.into_iter().flat_map(move |t_min| {
-            (0..PATTERNS).map(move |pattern| Moved { offset, t_min, pattern })
-        })
-    })
 }
 
 #[cfg(test)]
