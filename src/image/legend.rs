@@ -9,7 +9,7 @@ const COOL: [[f32; 3]; 4] = [[0.05, 0.05, 0.2], [0.08, 0.12, 0.4], [0.1, 0.25, 0
 /// Colours above it, up to 1: differences that are seen, in warm colours.
 const WARM: [[f32; 3]; 3] = [[0.75, 0.55, 0.1], [0.95, 0.35, 0.1], [1.0, 0.1, 0.1]];
 /// A pixel that differs but cannot be decided in float32.
-const UNDECIDED: [f32; 3] = [0.45, 0.2, 0.6];
+const UNDECIDED: [f32; 3] = [0.8, 0.35, 1.0];
 const INK: [f32; 3] = [0.85, 0.85, 0.85];
 const GLYPH: u32 = 8;
 

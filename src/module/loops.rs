@@ -3,10 +3,15 @@
 //! Mesa's llvmpipe before version 23 leaves every loop of an invocation after 65,535 iterations in total, and
 //! says nothing. [`watch`] makes that visible: a private counter goes up before each loop and down on each
 //! way out that the shader itself takes, so it is above zero at the end exactly where a loop was cut short.
+//!
+//! An optimiser takes for granted that a loop is left by its own ways out, and would fold such a counter to
+//! zero. So the counter is the element of an array, under an index that is always 0 but not known to be.
+
+use std::num::NonZeroU32;
 
 use naga::{
-    BinaryOperator, Block, Expression, Function, GlobalVariable, Handle, Literal, Module, Range, Scalar, Span,
-    Statement, TypeInner,
+    Arena, BinaryOperator, Block, Expression, Function, GlobalVariable, Handle, Literal, Module, Range, Scalar,
+    Span, Statement, Type, TypeInner,
 };
 
 /// Whether any function holds a loop.
@@ -32,35 +37,97 @@ fn block_has_loop(block: &Block) -> bool {
 
 /// Counts open loops and lets the entry point's alpha be 1 where none is open at the end, else 0.
 pub(super) fn watch(module: &mut Module) {
-    let uint = module.types.insert(
-        naga::Type { name: None, inner: TypeInner::Scalar(Scalar::U32) },
+    let uint = scalar_type(module);
+    let array = module.types.insert(
+        Type {
+            name: None,
+            inner: TypeInner::Array {
+                base: uint,
+                size: naga::ArraySize::Constant(const { NonZeroU32::new(2).unwrap() }),
+                stride: 4,
+            },
+        },
         Span::UNDEFINED,
     );
-    let zero = module.global_expressions.append(Expression::Literal(Literal::U32(0)), Span::UNDEFINED);
-    let open = module.global_variables.append(
+    let counter = Counter {
+        open: private(module, "toyproof_open_loops", array),
+        index: private(module, "toyproof_always_zero", uint),
+    };
+    for (_, function) in module.functions.iter_mut() {
+        Watch::over(function, counter);
+    }
+    for entry in &mut module.entry_points {
+        Watch::over(&mut entry.function, counter);
+        hide_zero(&mut entry.function, counter);
+        report(&mut entry.function, counter);
+    }
+}
+
+/// The private variables of the counter.
+#[derive(Clone, Copy)]
+struct Counter {
+    /// Two numbers, of which one counts.
+    open: Handle<GlobalVariable>,
+    /// Which.
+    index: Handle<GlobalVariable>,
+}
+
+impl Counter {
+    /// Appends what loads the counter; gives its pointer, its value, and what must be emitted.
+    fn load(self, expressions: &mut Arena<Expression>) -> (Handle<Expression>, Handle<Expression>, Range<Expression>) {
+        let mut append = |expression| expressions.append(expression, Span::UNDEFINED);
+        let base = append(Expression::GlobalVariable(self.open));
+        let which = append(Expression::GlobalVariable(self.index));
+        let index = append(Expression::Load { pointer: which });
+        let pointer = append(Expression::Access { base, index });
+        let value = append(Expression::Load { pointer });
+        (pointer, value, Range::new_from_bounds(index, value))
+    }
+}
+
+fn scalar_type(module: &mut Module) -> Handle<Type> {
+    module.types.insert(Type { name: None, inner: TypeInner::Scalar(Scalar::U32) }, Span::UNDEFINED)
+}
+
+fn private(module: &mut Module, name: &str, ty: Handle<Type>) -> Handle<GlobalVariable> {
+    let zero = module.global_expressions.append(Expression::ZeroValue(ty), Span::UNDEFINED);
+    module.global_variables.append(
         GlobalVariable {
-            name: Some("toyproof_open_loops".to_owned()),
+            name: Some(name.to_owned()),
             space: naga::AddressSpace::Private,
             binding: None,
-            ty: uint,
+            ty,
             init: Some(zero),
             memory_decorations: naga::MemoryDecorations::empty(),
         },
         Span::UNDEFINED,
-    );
-    for (_, function) in module.functions.iter_mut() {
-        Watch::over(function, open);
-    }
-    for entry in &mut module.entry_points {
-        Watch::over(&mut entry.function, open);
-        report(&mut entry.function, open);
-    }
+    )
+}
+
+/// Sets the index at the entry point's start: the position's x is below 2¹⁶, which no driver knows.
+fn hide_zero(entry: &mut Function, counter: Counter) {
+    let Some(position) = entry.arguments.iter().position(|argument| {
+        matches!(argument.binding, Some(naga::Binding::BuiltIn(naga::BuiltIn::Position { .. })))
+    }) else {
+        return;
+    };
+    let mut append = |expression| entry.expressions.append(expression, Span::UNDEFINED);
+    let pointer = append(Expression::GlobalVariable(counter.index));
+    let sixteen = append(Expression::Literal(Literal::U32(16)));
+    let base = append(Expression::FunctionArgument(position as u32));
+    let x = append(Expression::AccessIndex { base, index: 0 });
+    let left = append(Expression::As { expr: x, kind: naga::ScalarKind::Uint, convert: Some(4) });
+    let value = append(Expression::Binary { op: BinaryOperator::ShiftRight, left, right: sixteen });
+    let mut start = Block::new();
+    start.push(Statement::Emit(Range::new_from_bounds(x, value)), Span::UNDEFINED);
+    start.push(Statement::Store { pointer, value }, Span::UNDEFINED);
+    entry.body.splice(0..0, start);
 }
 
 /// Rewrites the blocks of one function.
 struct Watch<'a> {
     function: &'a mut Function,
-    open: Handle<GlobalVariable>,
+    counter: Counter,
 }
 
 /// What a `break` leaves, and how many loops a `return` leaves.
@@ -71,9 +138,9 @@ struct Within {
 }
 
 impl Watch<'_> {
-    fn over(function: &mut Function, open: Handle<GlobalVariable>) {
+    fn over(function: &mut Function, counter: Counter) {
         let body = std::mem::take(&mut function.body);
-        let body = Watch { function, open }.block(body, Within { loops: 0, switch: false });
+        let body = Watch { function, counter }.block(body, Within { loops: 0, switch: false });
         function.body = body;
     }
 
@@ -131,35 +198,34 @@ impl Watch<'_> {
             return;
         }
         let expressions = &mut self.function.expressions;
-        let mut append = |expression| expressions.append(expression, Span::UNDEFINED);
-        let pointer = append(Expression::GlobalVariable(self.open));
-        let right = append(Expression::Literal(Literal::U32(amount)));
-        let left = append(Expression::Load { pointer });
-        let value = append(Expression::Binary { op: operator, left, right });
-        out.push(Statement::Emit(Range::new_from_bounds(left, value)), Span::UNDEFINED);
+        let right = expressions.append(Expression::Literal(Literal::U32(amount)), Span::UNDEFINED);
+        let (pointer, left, load) = self.counter.load(expressions);
+        let value = expressions.append(Expression::Binary { op: operator, left, right }, Span::UNDEFINED);
+        out.push(Statement::Emit(load), Span::UNDEFINED);
+        out.push(Statement::Emit(Range::new_from_bounds(value, value)), Span::UNDEFINED);
         out.push(Statement::Store { pointer, value }, Span::UNDEFINED);
     }
 }
 
 /// Sets the alpha that the entry point is about to return. naga's GLSL front end gives it the form: call the
 /// author's `main`, load each output from its private variable, return a struct of them.
-fn report(entry: &mut Function, open: Handle<GlobalVariable>) {
+fn report(entry: &mut Function, counter: Counter) {
     let Some(colour) = returned_variable(entry) else {
         return;
     };
     let expressions = &mut entry.expressions;
+    let (_, left, load) = counter.load(expressions);
     let mut append = |expression| expressions.append(expression, Span::UNDEFINED);
     let base = append(Expression::GlobalVariable(colour));
-    let counter = append(Expression::GlobalVariable(open));
     let [cut, whole] = [0.0, 1.0].map(|alpha| append(Expression::Literal(Literal::F32(alpha))));
     let none = append(Expression::Literal(Literal::U32(0)));
-    let first = append(Expression::AccessIndex { base, index: 3 });
-    let left = append(Expression::Load { pointer: counter });
+    let alpha = append(Expression::AccessIndex { base, index: 3 });
     let condition = append(Expression::Binary { op: BinaryOperator::Equal, left, right: none });
     let value = append(Expression::Select { condition, accept: whole, reject: cut });
     let mut report = Block::new();
-    report.push(Statement::Emit(Range::new_from_bounds(first, value)), Span::UNDEFINED);
-    report.push(Statement::Store { pointer: first, value }, Span::UNDEFINED);
+    report.push(Statement::Emit(load), Span::UNDEFINED);
+    report.push(Statement::Emit(Range::new_from_bounds(alpha, value)), Span::UNDEFINED);
+    report.push(Statement::Store { pointer: alpha, value }, Span::UNDEFINED);
     let after_main = entry
         .body
         .iter()
