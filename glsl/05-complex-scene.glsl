@@ -2,9 +2,9 @@
 
 const float SCREEN_DEPTH = -2.0;
 const float NO_HIT = 1.0e6;
-const int SPHERES = 43;
 const float SHRINK = 2.8;
 const vec3 AMBIENT = vec3(0.15);
+const vec3 LIGHT = vec3(4.0, 5.0, 2.0);
 
 struct Ray {
     vec3 origin;
@@ -17,25 +17,19 @@ struct Sphere {
     vec3 color;
 };
 
-Sphere spheres[SPHERES];
-vec3 lightPosition;
+struct Intersection {
+    float t;
+    Sphere sphere;
+};
 
+// Right, left, up, down, front, back.
 vec3 side(int i) {
-    if (i == 0) return vec3(1.0, 0.0, 0.0);
-    if (i == 1) return vec3(-1.0, 0.0, 0.0);
-    if (i == 2) return vec3(0.0, 1.0, 0.0);
-    if (i == 3) return vec3(0.0, -1.0, 0.0);
-    if (i == 4) return vec3(0.0, 0.0, 1.0);
-    return vec3(0.0, 0.0, -1.0);
+    vec3 axis = vec3(i / 2 == 0, i / 2 == 1, i / 2 == 2);
+    return i % 2 == 0 ? axis : -axis;
 }
 
 vec3 sideColor(int i) {
-    if (i == 0) return vec3(0.9, 0.2, 0.2);
-    if (i == 1) return vec3(0.9, 0.6, 0.1);
-    if (i == 2) return vec3(0.2, 0.8, 0.3);
-    if (i == 3) return vec3(0.1, 0.7, 0.7);
-    if (i == 4) return vec3(0.2, 0.3, 0.9);
-    return vec3(0.7, 0.3, 0.8);
+    return 0.5 + 0.4 * side(i);
 }
 
 // Once round in 240 frames, about the y axis of the parent.
@@ -50,19 +44,6 @@ Sphere childOf(Sphere parent, int i, int frame) {
     float radius = parent.radius / SHRINK;
     vec3 center = parent.center + (parent.radius + radius) * turn(side(i), frame);
     return Sphere(center, radius, 0.5 * (parent.color + sideColor(i)));
-}
-
-void makeScene(int frame) {
-    spheres[0] = Sphere(vec3(0.0, 0.0, -6.0), 1.0, vec3(0.9, 0.9, 0.8));
-    int next = 1;
-    for (int i = 0; i < 6; i++) {
-        Sphere child = childOf(spheres[0], i, frame);
-        spheres[next++] = child;
-        for (int j = 0; j < 6; j++) {
-            spheres[next++] = childOf(child, j, frame);
-        }
-    }
-    lightPosition = vec3(4.0, 5.0, 2.0);
 }
 
 float intersectSphere(Ray ray, Sphere sphere) {
@@ -84,6 +65,28 @@ float intersectSphere(Ray ray, Sphere sphere) {
     return NO_HIT;
 }
 
+void keepNearest(Ray ray, Sphere sphere, inout Intersection hit) {
+    float t = intersectSphere(ray, sphere);
+    if (t < hit.t) {
+        hit.t = t;
+        hit.sphere = sphere;
+    }
+}
+
+Intersection hitScene(Ray ray, int frame) {
+    Sphere parent = Sphere(vec3(0.0, 0.0, -6.0), 1.0, vec3(0.9, 0.9, 0.8));
+    Intersection hit = Intersection(NO_HIT, parent);
+    keepNearest(ray, parent, hit);
+    for (int i = 0; i < 6; i++) {
+        Sphere child = childOf(parent, i, frame);
+        keepNearest(ray, child, hit);
+        for (int j = 0; j < 6; j++) {
+            keepNearest(ray, childOf(child, j, frame), hit);
+        }
+    }
+    return hit;
+}
+
 Ray cameraRay(vec2 fragCoord) {
     float aspect = iResolution.x / iResolution.y;
     float x = fragCoord.x / iResolution.x * 2.0 - 1.0;
@@ -92,26 +95,15 @@ Ray cameraRay(vec2 fragCoord) {
 }
 
 void mainImage(out vec4 fragColor, in vec2 fragCoord) {
-    makeScene(iFrame);
     Ray ray = cameraRay(fragCoord);
     vec3 color = vec3(0.05, 0.05, 0.1);
 
-    float nearest = NO_HIT;
-    int hit = -1;
-    for (int i = 0; i < SPHERES; i++) {
-        float t = intersectSphere(ray, spheres[i]);
-        if (t < nearest) {
-            nearest = t;
-            hit = i;
-        }
-    }
-    for (int i = 0; i < SPHERES; i++) {
-        if (i == hit) {
-            vec3 point = ray.origin + nearest * ray.direction;
-            vec3 normal = normalize(point - spheres[i].center);
-            vec3 toLight = normalize(lightPosition - point);
-            color = spheres[i].color * (AMBIENT + vec3(0.85) * max(dot(normal, toLight), 0.0));
-        }
+    Intersection hit = hitScene(ray, iFrame);
+    if (hit.t < NO_HIT) {
+        vec3 point = ray.origin + hit.t * ray.direction;
+        vec3 normal = normalize(point - hit.sphere.center);
+        vec3 toLight = normalize(LIGHT - point);
+        color = hit.sphere.color * (AMBIENT + vec3(0.85) * max(dot(normal, toLight), 0.0));
     }
     fragColor = vec4(color, 1.0);
 }

@@ -152,8 +152,11 @@ impl Checker<'_> {
             record.verdict = stopped.verdict;
             record.reason = stopped.reason;
             self.terminal.diagnostics(&stopped.diagnostics, &stopped.files);
-            record.diagnostics =
-                stopped.diagnostics.iter().map(|d| diagnostic::json(d, &stopped.files)).collect();
+            let told = stopped
+                .diagnostics
+                .iter()
+                .map(|d| diagnostic::json(d, &stopped.files));
+            record.diagnostics.extend(told);
         }
         record
     }
@@ -174,10 +177,16 @@ impl Checker<'_> {
         let mut frame = self.frame.clone();
         let tracer = match reference {
             None => None,
-            Some(Reference { scene: Err(unusable), files, .. }) => {
+            Some(Reference {
+                scene: Err(unusable),
+                files,
+                ..
+            }) => {
                 return Err(Stopped::unusable(unusable, files, Verdict::Error));
             }
-            Some(Reference { scene: Ok(mut scene), .. }) => {
+            Some(Reference {
+                scene: Ok(mut scene), ..
+            }) => {
                 frame.size = self.args.frame.size.unwrap_or(scene.film.size);
                 scene.film.size = frame.size;
                 Some(Tracer::<f64>::new(&scene))
@@ -188,8 +197,17 @@ impl Checker<'_> {
         let drawn = drawn.map_err(|failure| Stopped::failure(failure, files))?;
         record.seconds.translate = Some(drawn.translate.as_secs_f64());
         record.seconds.gpu = Some((drawn.compile + drawn.draw).as_secs_f64());
-        if drawn.cut_short > 0 {
-            return Err(Stopped::because(Verdict::Timeout, cut_short(drawn.cut_short)));
+        match drawn.cut_short {
+            Some(0) => {}
+            Some(pixels) => return Err(Stopped::because(Verdict::Timeout, cut_short(pixels))),
+            None => self.warn(
+                record,
+                &Diagnostic::warning(
+                    "W0001",
+                    "it could not be told in time whether this driver ended a loop by force",
+                )
+                .note("Mesa before 23 stops at 65,535 iterations; give more time with --timeout"),
+            ),
         }
         let actual = drawn.image;
         self.device = Some(drawn.device);
@@ -199,9 +217,14 @@ impl Checker<'_> {
             let hull = |x, y| tracer.hull(x, y);
             let (comparison, marks) = compare(&expected, &actual, Some(&hull));
             (record.verdict, record.reason) = judge(&comparison);
-            let legend = Legend { tolerance: TOLERANCE as f32 };
+            let legend = Legend {
+                tolerance: TOLERANCE as f32,
+            };
             pictures.push(("-reference.png", expected));
-            pictures.push(("-difference.png", image::difference(actual.size(), &marks, legend)));
+            pictures.push((
+                "-difference.png",
+                image::difference(actual.size(), &marks, legend),
+            ));
             record.picture = Some(comparison);
         }
         pictures.push(("-actual.png", actual));
@@ -212,6 +235,12 @@ impl Checker<'_> {
             }
         }
         Ok(())
+    }
+
+    fn warn(&self, record: &mut Record, warning: &Diagnostic) {
+        let files = Files::default();
+        self.terminal.diagnostics(std::slice::from_ref(warning), &files);
+        record.diagnostics.push(diagnostic::json(warning, &files));
     }
 
     fn keep(&mut self, path: &Path, picture: &Image) {
@@ -243,11 +272,21 @@ impl Checker<'_> {
             }
             Err(error) => Err(Unusable::Trouble(error.to_string())),
         };
-        Some(Reference { name: path.display().to_string(), scene, files })
+        Some(Reference {
+            name: path.display().to_string(),
+            scene,
+            files,
+        })
     }
 
     fn finish(self, records: Vec<Record>) -> Exit {
-        let Self { args, terminal, device, mut trouble, .. } = self;
+        let Self {
+            args,
+            terminal,
+            device,
+            mut trouble,
+            ..
+        } = self;
         let no_driver = records.iter().any(|record| record.reason.contains(INSTALL_HINT));
         let report = Report::new(device, records);
         if args.format == Format::Human {
@@ -293,7 +332,9 @@ fn at_once(
         });
         let drawn = worker.draw(lowered, frame, float);
         let traced = traced.map(|thread| {
-            thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+            thread
+                .join()
+                .unwrap_or_else(|panic| std::panic::resume_unwind(panic))
         });
         (drawn, traced)
     })
@@ -309,7 +350,12 @@ struct Stopped {
 
 impl Stopped {
     fn because(verdict: Verdict, reason: String) -> Self {
-        Self { verdict, reason, diagnostics: Vec::new(), files: Files::default() }
+        Self {
+            verdict,
+            reason,
+            diagnostics: Vec::new(),
+            files: Files::default(),
+        }
     }
 
     /// `verdict` is for what the text itself is guilty of.
@@ -321,10 +367,16 @@ impl Stopped {
     }
 
     fn invalid(verdict: Verdict, diagnostics: Vec<Diagnostic>, files: Files) -> Self {
-        let reason = diagnostics
-            .first()
-            .map_or_else(|| "it does not compile".to_owned(), |first| diagnostic::short(first, &files));
-        Self { verdict, reason, diagnostics, files }
+        let reason = diagnostics.first().map_or_else(
+            || "it does not compile".to_owned(),
+            |first| diagnostic::short(first, &files),
+        );
+        Self {
+            verdict,
+            reason,
+            diagnostics,
+            files,
+        }
     }
 
     fn failure(failure: Failure, files: Files) -> Self {

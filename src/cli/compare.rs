@@ -40,7 +40,13 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     }
     let (comparison, marks) = compare(&a, &b, None);
     if let Some(path) = &args.diff {
-        let picture = image::difference(a.size(), &marks, Legend { tolerance: TOLERANCE as f32 });
+        let picture = image::difference(
+            a.size(),
+            &marks,
+            Legend {
+                tolerance: TOLERANCE as f32,
+            },
+        );
         match image::encode(&picture, path) {
             Ok(bytes) if terminal.write(path, &bytes) => {}
             Ok(_) => return Exit::Trouble,
@@ -52,7 +58,10 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     }
     let pixels = comparison.pixels;
     match comparison.differing {
-        0 => terminal.result(&format!("all {pixels} pixels agree, to {:.1e}", comparison.max_abs)),
+        0 => terminal.result(&format!(
+            "all {pixels} pixels agree, to {:.1e}",
+            comparison.max_abs
+        )),
         differing => terminal.result(&format!(
             "{differing} of {pixels} pixels differ by more than {TOLERANCE}, by at most {:.4} ({} in 8 bits)",
             comparison.max_abs, comparison.max_8bit
@@ -63,5 +72,9 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             terminal.result(&format!("{name} {}", crate::report::place(&pixel)));
         }
     }
-    if comparison.differing == 0 { Exit::Good } else { Exit::Bad }
+    if comparison.differing == 0 {
+        Exit::Good
+    } else {
+        Exit::Bad
+    }
 }

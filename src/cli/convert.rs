@@ -66,14 +66,19 @@ impl To {
 
     fn of(path: &Path) -> Option<Self> {
         let target = Target::of(path)?;
-        Self::value_variants().iter().copied().find(|to| to.target() == Some(target))
+        Self::value_variants()
+            .iter()
+            .copied()
+            .find(|to| to.target() == Some(target))
     }
 }
 
 pub(super) fn run(args: Args, terminal: &Terminal) -> Exit {
     let inputs = find(&args.shaders);
     let standard = args.output == Path::new("-");
-    let of_extension = (!standard && !args.output.is_dir()).then(|| To::of(&args.output)).flatten();
+    let of_extension = (!standard && !args.output.is_dir())
+        .then(|| To::of(&args.output))
+        .flatten();
     let several = inputs.len() > 1 || args.shaders.iter().any(|path| path.is_dir());
     let Some(to) = args.to.or(of_extension) else {
         terminal.error(format_args!(
@@ -104,9 +109,10 @@ pub(super) fn run(args: Args, terminal: &Terminal) -> Exit {
         let shader = Shader::load(input);
         let path = match (one, input) {
             (true, _) | (false, Err(_)) => args.output.clone(),
-            (false, Ok(found)) => {
-                with_suffix(&args.output.join(names.place(&found.relative)), &format!(".{}", to.extension()))
-            }
+            (false, Ok(found)) => with_suffix(
+                &args.output.join(names.place(&found.relative)),
+                &format!(".{}", to.extension()),
+            ),
         };
         exit = exit.max(match translate(shader, to, &args, &mut worker, terminal) {
             Ok(bytes) if terminal.write(&path, &bytes) => Exit::Good,
@@ -140,7 +146,11 @@ fn translate(
         }
         failure => {
             terminal.error(format_args!("{}: {failure}", shader.name));
-            if is_invalid(&failure) { Exit::Bad } else { Exit::Trouble }
+            if is_invalid(&failure) {
+                Exit::Bad
+            } else {
+                Exit::Trouble
+            }
         }
     })
 }

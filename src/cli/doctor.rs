@@ -27,10 +27,16 @@ pub(super) fn run(args: Args, terminal: &Terminal) -> Exit {
         terminal.result("  none");
     }
     if is_pinned_by_user() {
-        terminal.result("  VK_DRIVER_FILES or VK_ICD_FILENAMES is set: only the drivers that it names are loaded");
+        terminal.result(
+            "  VK_DRIVER_FILES or VK_ICD_FILENAMES is set: only the drivers that it names are loaded",
+        );
     }
-    let drivers = inputs::worker(args.on.clone(), PATIENCE)
-        .and_then(|worker| worker.with_all_drivers().probe().map_err(|failure| failure.to_string()));
+    let drivers = inputs::worker(args.on.clone(), PATIENCE).and_then(|worker| {
+        worker
+            .with_all_drivers()
+            .probe()
+            .map_err(|failure| failure.to_string())
+    });
     match drivers {
         Ok(drivers) => {
             terminal.result(&format!("\nChosen, {}:", reason(&args.on)));
@@ -75,7 +81,9 @@ fn describe(driver: &Driver) -> String {
         None => "could not be measured".to_owned(),
         Some(LoopCap::NoneUpTo(tried)) => format!("run to their end (tried {tried} iterations)"),
         Some(LoopCap::After(count)) => {
-            format!("are ended by force after {count} iterations of a pixel (Mesa before 23); `check` tells which")
+            format!(
+                "are ended by force after {count} iterations of a pixel (Mesa before 23); `check` tells which"
+            )
         }
     };
     format!(

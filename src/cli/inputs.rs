@@ -118,8 +118,13 @@ pub(super) fn worker(on: On, timeout: Duration) -> Result<Worker, String> {
 }
 
 pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
-    let (width, height) = text.split_once(['x', 'X', '×']).ok_or("a size is written 640x360")?;
-    let side = |side: &str| side.parse::<u64>().map_err(|_| format!("“{side}” is no number of pixels"));
+    let (width, height) = text
+        .split_once(['x', 'X', '×'])
+        .ok_or("a size is written 640x360")?;
+    let side = |side: &str| {
+        side.parse::<u64>()
+            .map_err(|_| format!("“{side}” is no number of pixels"))
+    };
     check_size(side(width)?, side(height)?)
 }
 
@@ -133,7 +138,9 @@ pub(super) fn on(text: &str) -> Result<On, String> {
 }
 
 fn numbers(text: &str) -> Result<Vec<f32>, String> {
-    text.split(',').map(|part| f32::from_str(part.trim()).map_err(|_| format!("“{part}” is no number"))).collect()
+    text.split(',')
+        .map(|part| f32::from_str(part.trim()).map_err(|_| format!("“{part}” is no number")))
+        .collect()
 }
 
 fn mouse(text: &str) -> Result<[f32; 4], String> {
@@ -145,7 +152,9 @@ fn mouse(text: &str) -> Result<[f32; 4], String> {
 }
 
 fn date(text: &str) -> Result<[f32; 4], String> {
-    numbers(text)?.try_into().map_err(|_| "a date is four numbers: year, month from 0, day, seconds".to_owned())
+    numbers(text)?
+        .try_into()
+        .map_err(|_| "a date is four numbers: year, month from 0, day, seconds".to_owned())
 }
 
 #[cfg(test)]

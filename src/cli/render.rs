@@ -13,8 +13,10 @@ use crate::trace::{Real, Tracer};
 
 /// Render a scene with the reference tracer
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Examples:\n  toyproof render glsl/02-sphere.toml -o reference.png\n  \
-                        toyproof render scene.toml -o reference.exr --size 1920x1080 --samples 64")]
+#[command(
+    after_help = "Examples:\n  toyproof render glsl/02-sphere.toml -o reference.png\n  \
+                        toyproof render scene.toml -o reference.exr --size 1920x1080 --samples 64"
+)]
 pub(super) struct Args {
     /// The scene, in TOML
     scene: PathBuf,
@@ -70,7 +72,9 @@ fn load(path: &Path, terminal: &Terminal) -> Option<Scene> {
             return None;
         }
     };
-    scene::parse(&files, file).map_err(|diagnostics| terminal.diagnostics(&diagnostics, &files)).ok()
+    scene::parse(&files, file)
+        .map_err(|diagnostics| terminal.diagnostics(&diagnostics, &files))
+        .ok()
 }
 
 /// The picture, with a bar that shows its rows.

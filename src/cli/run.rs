@@ -2,16 +2,19 @@
 
 use std::path::{Path, PathBuf};
 
+use super::check::cut_short;
 use super::inputs::{DriverArgs, FrameArgs};
 use super::shader::{Names, Shader, Unusable, find, is_invalid, with_suffix};
 use super::{Exit, Terminal};
-use crate::gpu::Failure;
+use crate::gpu::{Drawn, Failure};
 use crate::image;
 
 /// Run shaders and keep the pictures that they paint
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Examples:\n  toyproof run glsl/02-sphere.glsl -o sphere.png --time 1.5\n  \
-                        toyproof run glsl -o pictures")]
+#[command(
+    after_help = "Examples:\n  toyproof run glsl/02-sphere.glsl -o sphere.png --time 1.5\n  \
+                        toyproof run glsl -o pictures"
+)]
 pub(super) struct Args {
     /// Shaders: files, folders, or - for standard input
     #[arg(required = true)]
@@ -56,8 +59,11 @@ pub(super) fn run(args: Args, terminal: &Terminal) -> Exit {
         };
         spinner.finish_and_clear();
         exit = exit.max(match outcome {
-            Ok(drawn) if drawn.cut_short > 0 => {
-                terminal.error(format_args!("{}: {}", shader.name, super::check::cut_short(drawn.cut_short)));
+            Ok(Drawn {
+                cut_short: Some(pixels @ 1..),
+                ..
+            }) => {
+                terminal.error(format_args!("{}: {}", shader.name, cut_short(pixels)));
                 Exit::Bad
             }
             Ok(drawn) => {
@@ -79,7 +85,11 @@ pub(super) fn run(args: Args, terminal: &Terminal) -> Exit {
 }
 
 fn keep(picture: &image::Image, path: &Path, terminal: &Terminal) -> Exit {
-    let format = if path == Path::new("-") { Path::new("-.png") } else { path };
+    let format = if path == Path::new("-") {
+        Path::new("-.png")
+    } else {
+        path
+    };
     match image::encode(picture, format) {
         Ok(bytes) if terminal.write(path, &bytes) => Exit::Good,
         Ok(_) => Exit::Trouble,

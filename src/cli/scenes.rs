@@ -30,12 +30,18 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             return Exit::Trouble;
         }
     }
-    terminal.say(&format!("wrote {} files to {}", course::files().count(), folder.display()));
+    terminal.say(&format!(
+        "wrote {} files to {}",
+        course::files().count(),
+        folder.display()
+    ));
     Exit::Good
 }
 
 fn title(name: &str, text: &str) -> String {
     let mut files = Files::default();
     let file = files.add(File::new(name, text));
-    scene::parse(&files, file).map(|scene| scene.title).unwrap_or_default()
+    scene::parse(&files, file)
+        .map(|scene| scene.title)
+        .unwrap_or_default()
 }

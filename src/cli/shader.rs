@@ -53,15 +53,18 @@ impl Shader {
 fn subject(error: &ReadError) -> String {
     match error {
         ReadError::Missing(path) | ReadError::NoShader(path) => path.display().to_string(),
-        ReadError::Unreadable { name, .. } | ReadError::TooLarge { name } | ReadError::NotUtf8 { name, .. } => {
-            name.clone()
-        }
+        ReadError::Unreadable { name, .. }
+        | ReadError::TooLarge { name }
+        | ReadError::NotUtf8 { name, .. } => name.clone(),
     }
 }
 
 /// All shaders that the arguments name, in their order.
 pub(super) fn find(arguments: &[PathBuf]) -> Vec<Result<Found, ReadError>> {
-    arguments.iter().flat_map(|argument| source::find(argument)).collect()
+    arguments
+        .iter()
+        .flat_map(|argument| source::find(argument))
+        .collect()
 }
 
 /// Whether it is the shader that does not compile, rather than the tools around it.
@@ -85,7 +88,10 @@ impl Names {
             name.push(format!("-{n}"));
             PathBuf::from(name)
         });
-        let free = [stem.clone(), whole].into_iter().chain(numbered).find(|name| self.taken.insert(name.clone()));
+        let free = [stem.clone(), whole]
+            .into_iter()
+            .chain(numbered)
+            .find(|name| self.taken.insert(name.clone()));
         free.unwrap_or(stem)
     }
 }

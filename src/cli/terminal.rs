@@ -67,7 +67,11 @@ impl Terminal {
 
     /// Writes a file whole, or to standard output if it is named `-`; says what went wrong.
     pub(super) fn write(&self, path: &Path, bytes: &[u8]) -> bool {
-        let written = if path == Path::new("-") { self.bytes(bytes) } else { output::write(path, bytes) };
+        let written = if path == Path::new("-") {
+            self.bytes(bytes)
+        } else {
+            output::write(path, bytes)
+        };
         if let Err(error) = &written {
             self.error(format_args!("cannot write {error}"));
         }
@@ -76,7 +80,10 @@ impl Terminal {
 
     /// A bar of so many steps, on a terminal only.
     pub(super) fn bar(&self, steps: u64, what: &str) -> ProgressBar {
-        let bar = self.progress(ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr()));
+        let bar = self.progress(ProgressBar::with_draw_target(
+            Some(steps),
+            ProgressDrawTarget::stderr(),
+        ));
         bar.set_style(
             ProgressStyle::with_template("{msg} {wide_bar} {percent} % {eta}")
                 .unwrap_or_else(|_| ProgressStyle::default_bar()),

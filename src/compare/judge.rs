@@ -61,7 +61,12 @@ pub const MAX_UNDECIDED: f64 = 0.05;
 pub fn judge(comparison: &Comparison) -> (Verdict, String) {
     let share = |count: u64| count as f64 / comparison.pixels.max(1) as f64;
     let percent = |count: u64| 100.0 * share(count);
-    let Comparison { pixels, differing, undecided, .. } = *comparison;
+    let Comparison {
+        pixels,
+        differing,
+        undecided,
+        ..
+    } = *comparison;
     if share(differing) > MAX_DIFFERING {
         let reason = format!(
             "{differing} of {pixels} pixels ({:.2} %) differ from the reference by more than float32 explains",

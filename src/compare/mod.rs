@@ -90,21 +90,33 @@ pub fn compare(
         .collect();
     let place = |index: usize| {
         let (x, y) = (index as u32 % width, index as u32 / width);
-        Pixel { x, y, expected: rgb(reference, x, y), actual: rgb(actual, x, y) }
+        Pixel {
+            x,
+            y,
+            expected: rgb(reference, x, y),
+            actual: rgb(actual, x, y),
+        }
     };
     let count = |standing| standings.iter().filter(|(s, _)| *s == standing).count() as u64;
     let differing = count(Standing::Differs);
-    let told = if differing > 0 { Standing::Differs } else { Standing::Undecided };
+    let told = if differing > 0 {
+        Standing::Differs
+    } else {
+        Standing::Undecided
+    };
     let mut told = standings.iter().enumerate().filter(|(_, (s, _))| *s == told);
     let first = told.clone().next();
-    let worst = told.by_ref().max_by(|(i, (_, a)), (j, (_, b))| a.total_cmp(b).then(j.cmp(i)));
+    let worst = told
+        .by_ref()
+        .max_by(|(i, (_, a)), (j, (_, b))| a.total_cmp(b).then(j.cmp(i)));
     let levels = (0..standings.len()).map(|index| {
         let pixel = place(index);
         let levels = |i: usize| quantise(pixel.expected[i]).abs_diff(quantise(pixel.actual[i]));
         levels(0).max(levels(1)).max(levels(2))
     });
-    let (differing_8bit, max_8bit) =
-        levels.fold((0, 0), |(count, max), level| (count + u64::from(level > 0), max.max(level)));
+    let (differing_8bit, max_8bit) = levels.fold((0, 0), |(count, max), level| {
+        (count + u64::from(level > 0), max.max(level))
+    });
     let comparison = Comparison {
         pixels: standings.len() as u64,
         differing,
@@ -133,7 +145,9 @@ fn rgb(image: &Image, x: u32, y: u32) -> [f32; 3] {
 
 /// The largest difference of a component.
 fn difference(a: [f32; 3], b: [f32; 3]) -> f64 {
-    (0..3).map(|i| component_difference(a[i], b[i])).fold(0.0, f64::max)
+    (0..3)
+        .map(|i| component_difference(a[i], b[i]))
+        .fold(0.0, f64::max)
 }
 
 fn component_difference(a: f32, b: f32) -> f64 {
@@ -146,7 +160,11 @@ fn component_difference(a: f32, b: f32) -> f64 {
 
 fn mean_absolute(a: &Image, b: &Image) -> f64 {
     let components = |image: &Image| -> Vec<f32> {
-        image.pixels().iter().flat_map(|&[r, g, b, _]| [r, g, b]).collect()
+        image
+            .pixels()
+            .iter()
+            .flat_map(|&[r, g, b, _]| [r, g, b])
+            .collect()
     };
     let (a, b) = (components(a), components(b));
     let sum: f64 = a.iter().zip(&b).map(|(&a, &b)| component_difference(a, b)).sum();
@@ -167,7 +185,14 @@ mod tests {
         let a = image(&[[0.1, 0.2, 0.3], [f32::NAN, 2.0, -1.0], [0.0; 3], [1.0; 3]]);
         let b = image(&[[0.1, 0.2, 0.3], [f32::NAN, 7.0, -0.0], [0.0; 3], [1.0; 3]]);
         let (comparison, _) = compare(&a, &b, None);
-        assert_eq!((comparison.differing, comparison.max_abs, comparison.differing_8bit), (0, 0.0, 0));
+        assert_eq!(
+            (
+                comparison.differing,
+                comparison.max_abs,
+                comparison.differing_8bit
+            ),
+            (0, 0.0, 0)
+        );
         assert_eq!((comparison.first, comparison.worst), (None, None));
     }
 
@@ -189,7 +214,10 @@ mod tests {
     fn a_pixel_within_the_hull_is_undecided_and_one_outside_differs() {
         let a = image(&[[0.0; 3]; 2]);
         let b = image(&[[0.5; 3], [0.8; 3]]);
-        let hull = |_, _| Hull { low: [0.0; 3], high: [0.6; 3] };
+        let hull = |_, _| Hull {
+            low: [0.0; 3],
+            high: [0.6; 3],
+        };
         let (comparison, marks) = compare(&a, &b, Some(&hull));
         assert_eq!((comparison.undecided, comparison.differing), (1, 1));
         assert_eq!(marks[0], Mark::Undecided);

@@ -7,6 +7,9 @@ use serde::Serialize;
 use super::{Diagnostic, Severity};
 use crate::source::Files;
 
+/// The longest source line that is shown, in bytes; a longer one hides what it should show.
+const MAX_LINE: usize = 400;
+
 /// The message with the source line, a caret and its notes; with ANSI colours if `colour`.
 #[must_use]
 pub fn human(diagnostic: &Diagnostic, files: &Files, colour: bool) -> String {
@@ -15,6 +18,17 @@ pub fn human(diagnostic: &Diagnostic, files: &Files, colour: bool) -> String {
         Severity::Warning => Level::Warning,
         Severity::Note => Level::Note,
     };
+    let spans = diagnostic
+        .span
+        .into_iter()
+        .chain(diagnostic.related.iter().map(|(span, _)| *span));
+    if spans
+        .into_iter()
+        .any(|span| files.get(span.file).longest_line(span.start, span.end) > MAX_LINE)
+    {
+        let notes = diagnostic.notes.iter().map(|note| format!("  = {note}\n"));
+        return short(diagnostic, files) + "\n" + &notes.collect::<String>();
+    }
     let mut labels = Vec::new();
     if let Some(span) = diagnostic.span {
         let words = diagnostic.label.clone().unwrap_or_default();
@@ -127,6 +141,19 @@ mod tests {
         assert_eq!(
             short(&diagnostic, &files),
             "a.glsl:2:3: error[E0100]: unknown variable `é`"
+        );
+    }
+
+    #[test]
+    fn a_line_too_long_to_show_is_named_by_its_column() {
+        let mut files = Files::default();
+        let id = files.add(File::new("a.glsl", "x".repeat(20_000)));
+        let diagnostic = Diagnostic::error("E0100", "no")
+            .at(Span::new(id, 9_000, 9_001))
+            .note("break it");
+        assert_eq!(
+            human(&diagnostic, &files, false),
+            "a.glsl:1:9001: error[E0100]: no\n  = break it\n"
         );
     }
 

@@ -18,8 +18,15 @@ pub(super) fn write(module: &ValidModule) -> Result<String, String> {
         multiview: None,
     };
     let mut text = String::new();
-    Writer::new(&mut text, module.module(), module.info(), &options, &pipeline, BOUNDS)
-        .and_then(|mut writer| writer.write())
-        .map_err(|error| error.to_string())?;
+    Writer::new(
+        &mut text,
+        module.module(),
+        module.info(),
+        &options,
+        &pipeline,
+        BOUNDS,
+    )
+    .and_then(|mut writer| writer.write())
+    .map_err(|error| error.to_string())?;
     Ok(text)
 }

@@ -8,11 +8,18 @@ use crate::module::ValidModule;
 pub(super) fn write(module: &ValidModule) -> Result<String, String> {
     let binding_map = bindings(module)
         .map(|(binding, _)| {
-            let target = BindTarget { register: binding.binding, ..BindTarget::default() };
+            let target = BindTarget {
+                register: binding.binding,
+                ..BindTarget::default()
+            };
             (binding, target)
         })
         .collect();
-    let options = Options { binding_map, force_loop_bounding: false, ..Options::default() };
+    let options = Options {
+        binding_map,
+        force_loop_bounding: false,
+        ..Options::default()
+    };
     let pipeline = PipelineOptions::default();
     let mut text = String::new();
     Writer::new(&mut text, &options, &pipeline)

@@ -60,7 +60,9 @@ impl Target {
         match extension {
             "glsl" => Some(Self::Glsl),
             "msl" => Some(Self::Msl),
-            _ => Self::ALL.into_iter().find(|target| target.extension() == extension),
+            _ => Self::ALL
+                .into_iter()
+                .find(|target| target.extension() == extension),
         }
     }
 }

@@ -25,7 +25,12 @@ pub(super) fn write(module: &ValidModule) -> Result<String, String> {
         force_loop_bounding: false,
         ..Options::default()
     };
-    msl::write_string(module.module(), module.info(), &options, &PipelineOptions::default())
-        .map(|(text, _)| text)
-        .map_err(|error| error.to_string())
+    msl::write_string(
+        module.module(),
+        module.info(),
+        &options,
+        &PipelineOptions::default(),
+    )
+    .map(|(text, _)| text)
+    .map_err(|error| error.to_string())
 }

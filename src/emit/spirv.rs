@@ -30,8 +30,10 @@ pub fn words(module: &ValidModule) -> Result<Vec<u32>, String> {
         force_loop_bounding: false,
         ..Options::default()
     };
-    let pipeline =
-        PipelineOptions { shader_stage: ShaderStage::Fragment, entry_point: ENTRY_POINT.to_owned() };
+    let pipeline = PipelineOptions {
+        shader_stage: ShaderStage::Fragment,
+        entry_point: ENTRY_POINT.to_owned(),
+    };
     write_vec(module.module(), module.info(), &options, Some(&pipeline)).map_err(|error| error.to_string())
 }
 
@@ -95,7 +97,11 @@ pub fn strict(words: &[u32]) -> Vec<u32> {
         .into_iter()
         .flat_map(|result| [3 << 16 | op::DECORATE, result, op::NO_CONTRACTION]);
     let (head, tail) = words.split_at(first_type);
-    head.iter().copied().chain(decorations).chain(tail.iter().copied()).collect()
+    head.iter()
+        .copied()
+        .chain(decorations)
+        .chain(tail.iter().copied())
+        .collect()
 }
 
 /// Each instruction with the index of its first word.

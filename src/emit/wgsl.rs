@@ -12,7 +12,11 @@ const DERIVATIVES: &str = "diagnostic(off, derivative_uniformity);\n";
 pub(super) fn write(module: &ValidModule) -> Result<String, String> {
     let text = write_string(module.module(), module.info(), WriterFlags::empty())
         .map_err(|error| error.to_string())?;
-    Ok(if takes_derivatives(module) { DERIVATIVES.to_owned() + &text } else { text })
+    Ok(if takes_derivatives(module) {
+        DERIVATIVES.to_owned() + &text
+    } else {
+        text
+    })
 }
 
 fn takes_derivatives(module: &ValidModule) -> bool {
@@ -25,7 +29,10 @@ fn takes_derivatives(module: &ValidModule) -> bool {
             matches!(
                 expression,
                 Expression::Derivative { .. }
-                    | Expression::ImageSample { level: SampleLevel::Auto | SampleLevel::Bias(_), .. }
+                    | Expression::ImageSample {
+                        level: SampleLevel::Auto | SampleLevel::Bias(_),
+                        ..
+                    }
             )
         })
 }

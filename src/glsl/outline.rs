@@ -43,31 +43,41 @@ pub(super) fn check(files: &Files, file: FileId) -> Result<(), Diagnostic> {
             Kind::Close(bracket) => match open.pop() {
                 Some((opening, _)) if closes(opening, bracket) => {}
                 Some((opening, at)) => {
-                    return Err(Diagnostic::error("E0003", format!("`{opening}` is closed by `{bracket}`"))
-                        .at(span(1))
-                        .related(at, format!("this `{opening}` is still open")));
+                    return Err(
+                        Diagnostic::error("E0003", format!("`{opening}` is closed by `{bracket}`"))
+                            .at(span(1))
+                            .related(at, format!("this `{opening}` is still open")),
+                    );
                 }
                 None => {
-                    return Err(Diagnostic::error("E0003", format!("nothing is open that this `{bracket}` closes"))
-                        .at(span(1)));
+                    return Err(Diagnostic::error(
+                        "E0003",
+                        format!("nothing is open that this `{bracket}` closes"),
+                    )
+                    .at(span(1)));
                 }
             },
         }
     }
     if let (false, Some((bracket, at))) = (conditional, open.pop()) {
-        return Err(Diagnostic::error("E0003", format!("this `{bracket}` is never closed"))
-            .at(at)
-            .note("the file ends before its partner"));
+        return Err(
+            Diagnostic::error("E0003", format!("this `{bracket}` is never closed"))
+                .at(at)
+                .note("the file ends before its partner"),
+        );
     }
     if !defines_main_image {
-        return Err(Diagnostic::error("E0002", "the shader has no function `mainImage`")
-            .at(Span::new(file, 0, 0))
-            .note(MAIN_IMAGE));
+        return Err(
+            Diagnostic::error("E0002", "the shader has no function `mainImage`")
+                .at(Span::new(file, 0, 0))
+                .note(MAIN_IMAGE),
+        );
     }
     Ok(())
 }
 
-const MAIN_IMAGE: &str = "ShaderToy calls `void mainImage(out vec4 fragColor, in vec2 fragCoord)` for each pixel";
+const MAIN_IMAGE: &str =
+    "ShaderToy calls `void mainImage(out vec4 fragColor, in vec2 fragCoord)` for each pixel";
 
 fn closes(opening: char, closing: char) -> bool {
     matches!((opening, closing), ('(', ')') | ('[', ']') | ('{', '}'))
@@ -101,7 +111,10 @@ fn tokens(text: &str) -> impl Iterator<Item = Token<'_>> {
             if let Some(comment) = rest.strip_prefix("/*") {
                 let Some(end) = comment.find("*/") else {
                     at = text.len();
-                    return Some(Token { at: start, kind: Kind::UnclosedComment });
+                    return Some(Token {
+                        at: start,
+                        kind: Kind::UnclosedComment,
+                    });
                 };
                 at += end + 4;
                 continue;
@@ -148,11 +161,26 @@ mod tests {
     fn each_break_of_the_outline_has_its_own_message_and_place() {
         for (text, expected) in [
             (" \n", "error[E0002]: the file is empty"),
-            ("// mainImage\nfloat f;", "s:1:1: error[E0002]: the shader has no function `mainImage`"),
-            ("void mainImage() {\n  if (a) {\n}", "s:1:18: error[E0003]: this `{` is never closed"),
-            ("void mainImage() {}\n}", "s:2:1: error[E0003]: nothing is open that this `}` closes"),
-            ("void mainImage() { f(1]; }", "s:1:23: error[E0003]: `(` is closed by `]`"),
-            ("void mainImage() {} /* x", "s:1:21: error[E0003]: this comment is never closed"),
+            (
+                "// mainImage\nfloat f;",
+                "s:1:1: error[E0002]: the shader has no function `mainImage`",
+            ),
+            (
+                "void mainImage() {\n  if (a) {\n}",
+                "s:1:18: error[E0003]: this `{` is never closed",
+            ),
+            (
+                "void mainImage() {}\n}",
+                "s:2:1: error[E0003]: nothing is open that this `}` closes",
+            ),
+            (
+                "void mainImage() { f(1]; }",
+                "s:1:23: error[E0003]: `(` is closed by `]`",
+            ),
+            (
+                "void mainImage() {} /* x",
+                "s:1:21: error[E0003]: this comment is never closed",
+            ),
         ] {
             assert_eq!(verdict(text), expected);
         }

@@ -59,14 +59,22 @@ fn adapters() -> Vec<Adapter> {
 /// The adapter that `on` asks for comes first; the others follow in the loader's order.
 fn choose(mut adapters: Vec<Adapter>, on: &On) -> Result<Vec<Adapter>, Failure> {
     if adapters.is_empty() {
-        return Err(Failure::NoDriver(format!("no Vulkan driver found; {INSTALL_HINT}")));
+        return Err(Failure::NoDriver(format!(
+            "no Vulkan driver found; {INSTALL_HINT}"
+        )));
     }
     let names: Vec<String> = adapters.iter().map(|adapter| adapter.get_info().name).collect();
-    let holds = |words: &str| names.iter().position(|name| name.to_lowercase().contains(&words.to_lowercase()));
+    let holds = |words: &str| {
+        names
+            .iter()
+            .position(|name| name.to_lowercase().contains(&words.to_lowercase()))
+    };
     let chosen = match on {
         On::Auto => holds("llvmpipe").unwrap_or(0),
         On::Lavapipe => holds("llvmpipe").ok_or_else(|| {
-            Failure::NoDriver(format!("lavapipe is not among the Vulkan drivers here; {INSTALL_HINT}"))
+            Failure::NoDriver(format!(
+                "lavapipe is not among the Vulkan drivers here; {INSTALL_HINT}"
+            ))
         })?,
         On::Named(words) => holds(words).ok_or_else(|| {
             Failure::NoDriver(format!(
@@ -93,7 +101,9 @@ fn describe(adapter: Adapter) -> Driver {
         software: info.device_type == DeviceType::Cpu,
         float32_filterable: adapter.features().contains(Features::FLOAT32_FILTERABLE),
         float_controls: float_controls(&adapter),
-        loop_cap: Device::of(adapter).and_then(|mut device| device.measured_cap()).ok(),
+        loop_cap: Device::of(adapter)
+            .and_then(|mut device| device.measured_cap())
+            .ok(),
     }
 }
 
@@ -101,7 +111,10 @@ fn version(info: &wgpu::AdapterInfo) -> String {
     format!("{} {}", info.driver, info.driver_info).trim().to_owned()
 }
 
-#[expect(unsafe_code, reason = "wgpu does not tell float controls; Vulkan's own query does")]
+#[expect(
+    unsafe_code,
+    reason = "wgpu does not tell float controls; Vulkan's own query does"
+)]
 fn float_controls(adapter: &Adapter) -> Vec<String> {
     use ash::vk;
     let mut float = vk::PhysicalDeviceFloatControlsProperties::default();
@@ -121,7 +134,10 @@ fn float_controls(adapter: &Adapter) -> Vec<String> {
         (float.shader_denorm_flush_to_zero_float32, "DenormFlushToZero"),
         (float.shader_rounding_mode_rte_float32, "RoundingModeRTE"),
         (float.shader_rounding_mode_rtz_float32, "RoundingModeRTZ"),
-        (float.shader_signed_zero_inf_nan_preserve_float32, "SignedZeroInfNanPreserve"),
+        (
+            float.shader_signed_zero_inf_nan_preserve_float32,
+            "SignedZeroInfNanPreserve",
+        ),
     ]
     .into_iter()
     .filter_map(|(has, name)| (has == vk::TRUE).then(|| name.to_owned()))
@@ -153,7 +169,15 @@ impl Device {
         });
         let filterable = !filterable.is_empty();
         let layout = Layout::new(&device, filterable);
-        Ok(Self { device, queue, layout, filterable, lost, adapter, cap: None })
+        Ok(Self {
+            device,
+            queue,
+            layout,
+            filterable,
+            lost,
+            adapter,
+            cap: None,
+        })
     }
 
     /// The adapter's name and its driver's, for reports.

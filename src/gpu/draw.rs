@@ -5,9 +5,9 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 use wgpu::{BindGroup, Buffer, BufferUsages, PollType, RenderPipeline, Texture, TextureUsages};
 
+use super::Failure;
 use super::device::{Device, LoopCap, PROBED_ITERATIONS};
 use super::pipeline::FORMAT;
-use super::Failure;
 use crate::frame::Frame;
 use crate::image::Image;
 use crate::module::ValidModule;
@@ -20,8 +20,11 @@ pub struct Drawn {
     pub image: Image,
     /// Adapter and driver.
     pub device: String,
-    /// Pixels in which the driver ended a loop by force; their colours mean nothing.
-    pub cut_short: u64,
+    /// Whether the driver might have ended a loop by force.
+    pub(super) may_be_cut_short: bool,
+    /// Pixels in which the driver ended a loop by force, whose colours mean nothing; none if that could not be
+    /// found out in time.
+    pub cut_short: Option<u64>,
     /// Time for naga to parse, validate and write.
     pub translate: Duration,
     /// Time for the driver to compile.
@@ -41,11 +44,28 @@ pub(super) struct Scene {
     bytes_per_row: u32,
 }
 
-/// A colour that no shader leaves: alpha is 0 or 1 where one painted.
-const UNPAINTED: wgpu::Color = wgpu::Color { r: 0.0, g: 0.0, b: 0.0, a: 0.5 };
+/// A colour that no shader leaves: the alpha of probes is a whole number, that of shaders 1.
+const UNPAINTED: wgpu::Color = wgpu::Color {
+    r: 0.0,
+    g: 0.0,
+    b: 0.0,
+    a: 0.5,
+};
+
+/// llvmpipe runs this many pixels together, on the widest processors, and counts their iterations as one.
+const LANES: f32 = 16.0;
+
+/// Whether a driver that stops after `cap` iterations can have stopped any pixel of a picture that tells the
+/// iterations of each.
+pub(super) fn may_reach(iterations: &Image, cap: u32) -> bool {
+    iterations
+        .pixels()
+        .iter()
+        .any(|pixel| pixel[3] >= cap as f32 / LANES)
+}
 
 /// How many pixels of a picture with watched loops tell of one that was ended by force. A pixel that nothing
-/// painted does so too, unless the shader discards: code after an endless loop is never reached.
+/// painted does so too, unless the shader discards: code after an endless loop may never be reached.
 pub(super) fn cut_short(watched: &Image, discards: bool) -> u64 {
     let cut = |alpha: f32| alpha == 0.0 || (alpha == 0.5 && !discards);
     watched.pixels().iter().filter(|pixel| cut(pixel[3])).count() as u64
@@ -58,7 +78,11 @@ impl Device {
         self.checked(|| {
             let target = self.device.create_texture(&wgpu::TextureDescriptor {
                 label: None,
-                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+                size: wgpu::Extent3d {
+                    width,
+                    height,
+                    depth_or_array_layers: 1,
+                },
                 mip_level_count: 1,
                 sample_count: 1,
                 dimension: wgpu::TextureDimension::D2,
@@ -76,7 +100,9 @@ impl Device {
             let scene = Scene {
                 size: frame.size,
                 pipeline: self.layout.pipeline(&self.device, words),
-                bindings: self.layout.bind(&self.device, &self.queue, frame, self.filterable),
+                bindings: self
+                    .layout
+                    .bind(&self.device, &self.queue, frame, self.filterable),
                 target,
                 readback,
                 bytes_per_row,
@@ -93,7 +119,9 @@ impl Device {
             let slice = scene.readback.slice(..);
             slice.map_async(wgpu::MapMode::Read, |_| {});
             self.wait()?;
-            let view = slice.get_mapped_range().map_err(|error| Failure::Device(error.to_string()))?;
+            let view = slice
+                .get_mapped_range()
+                .map_err(|error| Failure::Device(error.to_string()))?;
             let [width, height] = scene.size;
             let pixels = view
                 .chunks(scene.bytes_per_row as usize)
@@ -135,7 +163,11 @@ impl Device {
                     rows_per_image: None,
                 },
             },
-            wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            wgpu::Extent3d {
+                width,
+                height,
+                depth_or_array_layers: 1,
+            },
         );
         self.queue.submit([commands.finish()]);
         self.wait()
@@ -154,8 +186,11 @@ impl Device {
         let scopes = [Internal, OutOfMemory, Validation].map(|filter| self.device.push_error_scope(filter));
         let result = work();
         // The scope that was opened last closes first.
-        let errors: Vec<_> =
-            scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop())).collect();
+        let errors: Vec<_> = scopes
+            .into_iter()
+            .rev()
+            .filter_map(|scope| pollster::block_on(scope.pop()))
+            .collect();
         let lost = self.lost.lock().ok().and_then(|lost| lost.clone());
         match (errors.into_iter().next(), lost) {
             (Some(error), _) => Err(Failure::Device(one_line(&error.to_string()))),
@@ -167,7 +202,12 @@ impl Device {
 
 /// wgpu lays its errors out over several lines; a reason is one sentence.
 fn one_line(words: &str) -> String {
-    words.lines().map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join(": ")
+    words
+        .lines()
+        .map(str::trim)
+        .filter(|line| !line.is_empty())
+        .collect::<Vec<_>>()
+        .join(": ")
 }
 
 /// One pixel, and as many iterations as `iFrame` says: the count tells how many the driver granted.
@@ -184,7 +224,15 @@ pub(super) fn measure_cap(device: &Device) -> Result<LoopCap, Failure> {
     let lowered = glsl::lower(&files, file).map_err(Failure::Invalid)?;
     let module = ValidModule::parse(&lowered).map_err(Failure::Invalid)?;
     let words = emit::spirv::words(&module).map_err(Failure::Naga)?;
-    let frame = Frame { size: [1, 1], frame: PROBED_ITERATIONS as i32, ..Frame::default() };
+    let frame = Frame {
+        size: [1, 1],
+        frame: PROBED_ITERATIONS as i32,
+        ..Frame::default()
+    };
     let count = device.paint(&device.prepare(&words, &frame)?)?.get(0, 0)[0] as u32;
-    Ok(if count < PROBED_ITERATIONS { LoopCap::After(count) } else { LoopCap::NoneUpTo(count) })
+    Ok(if count < PROBED_ITERATIONS {
+        LoopCap::After(count)
+    } else {
+        LoopCap::NoneUpTo(count)
+    })
 }

@@ -53,9 +53,16 @@ pub fn lavapipe_manifest() -> Option<PathBuf> {
 }
 
 fn choose_lavapipe(manifests: Vec<PathBuf>) -> Option<PathBuf> {
-    let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let mut ours: Vec<_> =
-        manifests.into_iter().filter(|path| name(path).starts_with("lvp_icd.")).collect();
+    let name = |path: &Path| {
+        path.file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned()
+    };
+    let mut ours: Vec<_> = manifests
+        .into_iter()
+        .filter(|path| name(path).starts_with("lvp_icd."))
+        .collect();
     ours.sort_by_key(|path| !name(path).contains(env::consts::ARCH));
     ours.into_iter().next()
 }

@@ -5,8 +5,8 @@
 //! anew for the next.
 
 mod device;
-mod driver;
 mod draw;
+mod driver;
 mod pipeline;
 mod protocol;
 mod serve;
@@ -19,8 +19,8 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 pub use device::{Driver, LoopCap};
-pub use driver::{INSTALL_HINT, is_pinned_by_user, lavapipe_manifest, manifests};
 pub use draw::Drawn;
+pub use driver::{INSTALL_HINT, is_pinned_by_user, lavapipe_manifest, manifests};
 pub use serve::{MEMORY_BYTES, serve};
 pub use worker::Worker;
 

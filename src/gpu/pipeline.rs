@@ -3,8 +3,8 @@
 use std::num::NonZeroU64;
 
 use wgpu::{
-    BindGroup, BindGroupLayout, BindGroupLayoutEntry, BindingType, Buffer, BufferUsages, Device, PipelineLayout,
-    RenderPipeline, ShaderModule, ShaderStages, TextureFormat, TextureUsages,
+    BindGroup, BindGroupLayout, BindGroupLayoutEntry, BindingType, Buffer, BufferUsages, Device,
+    PipelineLayout, RenderPipeline, ShaderModule, ShaderStages, TextureFormat, TextureUsages,
 };
 
 use crate::frame::{BLOCK_BYTES, Frame};
@@ -48,7 +48,10 @@ impl Layout {
         } else {
             wgpu::SamplerBindingType::NonFiltering
         };
-        let pairs = [texture, BindingType::Sampler(filtering)].into_iter().cycle().take(8);
+        let pairs = [texture, BindingType::Sampler(filtering)]
+            .into_iter()
+            .cycle()
+            .take(8);
         let entries: Vec<_> = (0..)
             .zip(std::iter::once(block).chain(pairs))
             .map(|(binding, ty)| BindGroupLayoutEntry {
@@ -58,8 +61,10 @@ impl Layout {
                 count: None,
             })
             .collect();
-        let bindings =
-            device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries });
+        let bindings = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: None,
+            entries: &entries,
+        });
         let pipeline = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             bind_group_layouts: &[Some(&bindings)],
             ..Default::default()
@@ -68,7 +73,11 @@ impl Layout {
             label: None,
             source: wgpu::ShaderSource::Wgsl(VERTICES.into()),
         });
-        Self { bindings, pipeline, vertices }
+        Self {
+            bindings,
+            pipeline,
+            vertices,
+        }
     }
 
     /// The pipeline that paints with these words, which naga wrote from a module that it validated.
@@ -98,9 +107,19 @@ impl Layout {
     }
 
     /// The frame's block and channels, bound.
-    pub(super) fn bind(&self, device: &Device, queue: &wgpu::Queue, frame: &Frame, filterable: bool) -> BindGroup {
+    pub(super) fn bind(
+        &self,
+        device: &Device,
+        queue: &wgpu::Queue,
+        frame: &Frame,
+        filterable: bool,
+    ) -> BindGroup {
         let block = uniform(device, queue, &frame.block());
-        let filter = if filterable { wgpu::FilterMode::Linear } else { wgpu::FilterMode::Nearest };
+        let filter = if filterable {
+            wgpu::FilterMode::Linear
+        } else {
+            wgpu::FilterMode::Nearest
+        };
         let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
             address_mode_u: wgpu::AddressMode::Repeat,
             address_mode_v: wgpu::AddressMode::Repeat,
@@ -114,7 +133,10 @@ impl Layout {
             .each_ref()
             .map(|channel| texture(device, queue, channel.as_ref().unwrap_or(&black)));
         let pairs = views.iter().flat_map(|view| {
-            [wgpu::BindingResource::TextureView(view), wgpu::BindingResource::Sampler(&sampler)]
+            [
+                wgpu::BindingResource::TextureView(view),
+                wgpu::BindingResource::Sampler(&sampler),
+            ]
         });
         let entries: Vec<_> = (0..)
             .zip(std::iter::once(block.as_entire_binding()).chain(pairs))
@@ -128,9 +150,15 @@ impl Layout {
     }
 }
 
-#[expect(unsafe_code, reason = "only a passthrough module runs naga's words as they are")]
+#[expect(
+    unsafe_code,
+    reason = "only a passthrough module runs naga's words as they are"
+)]
 fn module(device: &Device, words: &[u32]) -> ShaderModule {
-    let entry = wgpu::PassthroughShaderEntryPoint { name: "main".into(), workgroup_size: (0, 0, 0) };
+    let entry = wgpu::PassthroughShaderEntryPoint {
+        name: "main".into(),
+        workgroup_size: (0, 0, 0),
+    };
     let descriptor = wgpu::ShaderModuleDescriptorPassthrough {
         entry_points: std::slice::from_ref(&entry).into(),
         spirv: Some(words.into()),
@@ -155,7 +183,11 @@ fn uniform(device: &Device, queue: &wgpu::Queue, bytes: &[u8]) -> Buffer {
 /// A channel's texture: row 0 is the bottom, as texture coordinates have it.
 fn texture(device: &Device, queue: &wgpu::Queue, image: &Image) -> wgpu::TextureView {
     let [width, height] = image.size();
-    let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+    let size = wgpu::Extent3d {
+        width,
+        height,
+        depth_or_array_layers: 1,
+    };
     let texture = device.create_texture(&wgpu::TextureDescriptor {
         label: None,
         size,
@@ -169,7 +201,11 @@ fn texture(device: &Device, queue: &wgpu::Queue, image: &Image) -> wgpu::Texture
     queue.write_texture(
         texture.as_image_copy(),
         bytemuck::cast_slice(image.pixels()),
-        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(16 * width), rows_per_image: None },
+        wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(16 * width),
+            rows_per_image: None,
+        },
         size,
     );
     texture.create_view(&Default::default())

@@ -5,7 +5,7 @@ use std::io::{self, Read, Write};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use super::{Driver, Drawn, Failure, FloatMode, On, Phase};
+use super::{Drawn, Driver, Failure, FloatMode, On, Phase};
 use crate::emit::Target;
 use crate::frame::Frame;
 use crate::glsl::Lowered;
@@ -18,7 +18,18 @@ pub(super) enum Job {
     /// Translate and emit; strict decorations on SPIR-V if asked for.
     Translate(Lowered, Target, FloatMode),
     /// Translate, compile and paint a frame.
-    Draw(Box<(Lowered, Frame, FloatMode, On)>),
+    Draw(Box<Shot>),
+    /// Tell in how many pixels of that frame the driver ends a loop by force.
+    WatchLoops(Box<Shot>),
+}
+
+/// A shader and the frame that it paints.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct Shot {
+    pub(super) lowered: Lowered,
+    pub(super) frame: Frame,
+    pub(super) float: FloatMode,
+    pub(super) on: On,
 }
 
 /// What the worker says, any number of phases and then the end.
@@ -34,6 +45,7 @@ pub(super) enum Output {
     Drivers(Vec<Driver>),
     Translated(Vec<u8>),
     Drawn(Box<Drawn>),
+    CutShort(u64),
 }
 
 /// The longest message: a frame of the largest size and its surroundings.
@@ -72,7 +84,10 @@ mod tests {
         let mut pipe = Vec::new();
         send(&mut pipe, &image).unwrap();
         let back: Image = receive(&pipe[..]).unwrap();
-        assert_eq!(back.get(0, 0).map(f32::to_bits), image.get(0, 0).map(f32::to_bits));
+        assert_eq!(
+            back.get(0, 0).map(f32::to_bits),
+            image.get(0, 0).map(f32::to_bits)
+        );
     }
 
     #[test]

@@ -7,12 +7,11 @@ use std::thread;
 use std::time::Instant;
 
 use super::device::{self, Device};
-use super::protocol::{Job, Output, Reply, receive, send};
+use super::protocol::{Job, Output, Reply, Shot, receive, send};
 use super::{Failure, FloatMode, On, Phase, draw};
 use crate::emit::{self, Target};
-use crate::frame::Frame;
 use crate::glsl::Lowered;
-use crate::module::ValidModule;
+use crate::module::{Probe, ValidModule};
 
 /// The most memory that a worker may map, in bytes.
 pub const MEMORY_BYTES: u64 = 6 << 30;
@@ -35,10 +34,19 @@ fn confine() {
     #[cfg(target_os = "linux")]
     {
         use rustix::process::{Resource, Rlimit, Signal, set_parent_process_death_signal, setrlimit};
-        let limit = Rlimit { current: Some(MEMORY_BYTES), maximum: Some(MEMORY_BYTES) };
+        let limit = Rlimit {
+            current: Some(MEMORY_BYTES),
+            maximum: Some(MEMORY_BYTES),
+        };
         // Where the system refuses, a hard limit is in force that is stricter still, or there is none to be had.
         let _ = setrlimit(Resource::As, limit);
-        let _ = setrlimit(Resource::Core, Rlimit { current: Some(0), maximum: Some(0) });
+        let _ = setrlimit(
+            Resource::Core,
+            Rlimit {
+                current: Some(0),
+                maximum: Some(0),
+            },
+        );
         let _ = set_parent_process_death_signal(Some(Signal::KILL));
     }
 }
@@ -57,10 +65,8 @@ impl<W: Write> Server<W> {
                 Job::Translate(lowered, target, float) => {
                     self.guarded(|server| server.translate(lowered, target, float))
                 }
-                Job::Draw(job) => {
-                    let (lowered, frame, float, on) = *job;
-                    self.guarded(|server| server.draw(lowered, &frame, float, &on))
-                }
+                Job::Draw(shot) => self.guarded(|server| server.draw(*shot)),
+                Job::WatchLoops(shot) => self.guarded(|server| server.watch_loops(*shot)),
             };
             if matches!(result, Err(Failure::Device(_))) {
                 self.device = None;
@@ -89,50 +95,86 @@ impl<W: Write> Server<W> {
         self.phase(Phase::Translating)?;
         apart(move || {
             let module = ValidModule::parse(&lowered).map_err(Failure::Invalid)?;
-            if (target, float) == (Target::Spirv, FloatMode::Strict) {
-                let words = emit::spirv::words(&module).map_err(Failure::Naga)?;
-                return Ok(emit::spirv::bytes(&emit::spirv::strict(&words)));
+            match target {
+                Target::Spirv => Ok(emit::spirv::bytes(&words(&module, float)?)),
+                _ => emit::emit(&module, target).map_err(Failure::Naga),
             }
-            emit::emit(&module, target).map_err(Failure::Naga)
         })
         .map(Output::Translated)
     }
 
-    fn draw(&mut self, lowered: Lowered, frame: &Frame, float: FloatMode, on: &On) -> Result<Output, Failure> {
+    fn draw(&mut self, shot: Shot) -> Result<Output, Failure> {
         self.phase(Phase::Translating)?;
         let start = Instant::now();
-        let shader = apart(move || Translated::new(&lowered, float))?;
+        let Shot {
+            lowered,
+            frame,
+            float,
+            on,
+        } = shot;
+        let (words, loops) = apart(move || {
+            let module = ValidModule::parse(&lowered).map_err(Failure::Invalid)?;
+            Ok((words(&module, float)?, module.has_loops()))
+        })?;
         let translate = start.elapsed();
+        self.open(&on)?;
+        self.phase(Phase::Compiling)?;
+        let start = Instant::now();
+        let scene = self.device()?.prepare(&words, &frame)?;
+        let compile = start.elapsed();
+        self.phase(Phase::Drawing)?;
+        let start = Instant::now();
+        let device = self.device()?;
+        let image = device.paint(&scene)?;
+        Ok(Output::Drawn(Box::new(draw::Drawn {
+            image,
+            device: device.name(),
+            may_be_cut_short: loops && device.loop_cap()?.is_some(),
+            cut_short: Some(0),
+            translate,
+            compile,
+            draw: start.elapsed(),
+        })))
+    }
+
+    fn watch_loops(&mut self, shot: Shot) -> Result<Output, Failure> {
+        self.phase(Phase::WatchingLoops)?;
+        let Shot {
+            lowered,
+            frame,
+            float,
+            on,
+        } = shot;
+        let (module, iterations) = apart(move || {
+            let module = ValidModule::parse(&lowered).map_err(Failure::Invalid)?;
+            let iterations = probed(&module, Probe::Iterations, float)?;
+            Ok((module, iterations))
+        })?;
+        self.open(&on)?;
+        let device = self.device()?;
+        let Some(cap) = device.loop_cap()? else {
+            return Ok(Output::CutShort(0));
+        };
+        // What follows an endless loop may say anything, also that there were few iterations.
+        if !module.has_endless_loop() {
+            let iterations = device.paint(&device.prepare(&iterations, &frame)?)?;
+            if !draw::may_reach(&iterations, cap) {
+                return Ok(Output::CutShort(0));
+            }
+        }
+        let discards = module.discards();
+        let open = apart(move || probed(&module, Probe::OpenLoops, float))?;
+        let device = self.device()?;
+        let open = device.paint(&device.prepare(&open, &frame)?)?;
+        Ok(Output::CutShort(draw::cut_short(&open, discards)))
+    }
+
+    fn open(&mut self, on: &On) -> Result<(), Failure> {
         if self.device.as_ref().is_none_or(|(open, _)| open != on) {
             self.phase(Phase::Starting)?;
             self.device = Some((on.clone(), Device::open(on)?));
         }
-        self.phase(Phase::Compiling)?;
-        let start = Instant::now();
-        let scene = self.device()?.prepare(&shader.words, frame)?;
-        let compile = start.elapsed();
-        self.phase(Phase::Drawing)?;
-        let start = Instant::now();
-        let image = self.device()?.paint(&scene)?;
-        let drawing = start.elapsed();
-        let mut cut_short = 0;
-        if let Some(watched) = shader.watched
-            && self.device()?.loop_cap()?.is_some()
-        {
-            self.phase(Phase::WatchingLoops)?;
-            let device = self.device()?;
-            let scene = device.prepare(&watched, frame)?;
-            cut_short = draw::cut_short(&device.paint(&scene)?, shader.discards);
-        }
-        let device = self.device()?;
-        Ok(Output::Drawn(Box::new(draw::Drawn {
-            image,
-            device: device.name(),
-            cut_short,
-            translate,
-            compile,
-            draw: drawing,
-        })))
+        Ok(())
     }
 
     fn device(&mut self) -> Result<&mut Device, Failure> {
@@ -143,30 +185,17 @@ impl<W: Write> Server<W> {
     }
 }
 
-/// A shader's words, and those of the same shader with its loops watched if it has any.
-struct Translated {
-    words: Vec<u32>,
-    watched: Option<Vec<u32>>,
-    discards: bool,
+/// The words that run.
+fn words(module: &ValidModule, float: FloatMode) -> Result<Vec<u32>, Failure> {
+    let words = emit::spirv::words(module).map_err(Failure::Naga)?;
+    Ok(match float {
+        FloatMode::Strict => emit::spirv::strict(&words),
+        FloatMode::Fast => words,
+    })
 }
 
-impl Translated {
-    fn new(lowered: &Lowered, float: FloatMode) -> Result<Self, Failure> {
-        let module = ValidModule::parse(lowered).map_err(Failure::Invalid)?;
-        let words = |module: &ValidModule| {
-            let words = emit::spirv::words(module).map_err(Failure::Naga)?;
-            Ok(match float {
-                FloatMode::Strict => emit::spirv::strict(&words),
-                FloatMode::Fast => words,
-            })
-        };
-        let watched = if module.has_loops() {
-            Some(words(&module.with_loops_watched().map_err(Failure::Naga)?)?)
-        } else {
-            None
-        };
-        Ok(Self { words: words(&module)?, watched, discards: module.discards() })
-    }
+fn probed(module: &ValidModule, probe: Probe, float: FloatMode) -> Result<Vec<u32>, Failure> {
+    words(&module.probed(probe).map_err(Failure::Naga)?, float)
 }
 
 /// Runs naga on a thread with room for its recursion; its panics become failures.
@@ -179,7 +208,12 @@ fn apart<T: Send + 'static>(
         .spawn(work)
         .map_err(|error| Failure::Worker(error.to_string()))?
         .join()
-        .unwrap_or_else(|payload| Err(Failure::Naga(format!("it panicked: {}", words_of(payload.as_ref())))))
+        .unwrap_or_else(|payload| {
+            Err(Failure::Naga(format!(
+                "it panicked: {}",
+                words_of(payload.as_ref())
+            )))
+        })
 }
 
 fn words_of(payload: &(dyn Any + Send)) -> String {

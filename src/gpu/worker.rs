@@ -9,8 +9,8 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use super::protocol::{Job, Output, Reply, receive, send};
-use super::{Driver, Drawn, Failure, FloatMode, On, Phase, driver};
+use super::protocol::{Job, Output, Reply, Shot, receive, send};
+use super::{Drawn, Driver, Failure, FloatMode, On, Phase, driver};
 use crate::emit::Target;
 use crate::frame::Frame;
 use crate::glsl::Lowered;
@@ -35,7 +35,14 @@ impl Worker {
     /// A worker that is `program` with `arguments`, which must call [`super::serve`] on its standard streams.
     #[must_use]
     pub fn new(program: PathBuf, arguments: Vec<String>, on: On, timeout: Duration) -> Self {
-        Self { program, arguments, on, timeout, all_drivers: false, live: None }
+        Self {
+            program,
+            arguments,
+            on,
+            timeout,
+            all_drivers: false,
+            live: None,
+        }
     }
 
     /// The same, loading every installed driver, also where one is known to be enough.
@@ -72,15 +79,31 @@ impl Worker {
         }
     }
 
-    /// The picture that the shader paints.
+    /// The picture that the shader paints. Where the driver may end loops by force, the frame is painted again to
+    /// see whether it did, under a deadline of its own.
     ///
     /// # Errors
     /// Why there is none.
     pub fn draw(&mut self, lowered: Lowered, frame: Frame, float: FloatMode) -> Result<Drawn, Failure> {
-        match self.run(&Job::Draw(Box::new((lowered, frame, float, self.on.clone()))))? {
-            Output::Drawn(drawn) => Ok(*drawn),
-            _ => Err(out_of_turn()),
+        let shot = Box::new(Shot {
+            lowered,
+            frame,
+            float,
+            on: self.on.clone(),
+        });
+        let job = Job::Draw(shot);
+        let mut drawn = match self.run(&job)? {
+            Output::Drawn(drawn) => *drawn,
+            _ => return Err(out_of_turn()),
+        };
+        if let (true, Job::Draw(shot)) = (drawn.may_be_cut_short, job) {
+            // Whatever stops this, the picture stands.
+            drawn.cut_short = match self.run(&Job::WatchLoops(shot)) {
+                Ok(Output::CutShort(pixels)) => Some(pixels),
+                _ => None,
+            };
         }
+        Ok(drawn)
     }
 
     fn run(&mut self, job: &Job) -> Result<Output, Failure> {
@@ -93,7 +116,10 @@ impl Worker {
         // A worker that died is told by its replies' end; sending is best effort.
         let sent = send(&mut live.requests, job);
         loop {
-            match live.replies.recv_timeout(deadline.saturating_duration_since(Instant::now())) {
+            match live
+                .replies
+                .recv_timeout(deadline.saturating_duration_since(Instant::now()))
+            {
                 Ok(Reply::Phase(now)) => phase = now,
                 Ok(Reply::Done(result)) => {
                     self.live = Some(live);
@@ -101,7 +127,10 @@ impl Worker {
                 }
                 Err(RecvTimeoutError::Timeout) => {
                     live.end();
-                    return Err(Failure::Timeout { phase, after: self.timeout });
+                    return Err(Failure::Timeout {
+                        phase,
+                        after: self.timeout,
+                    });
                 }
                 Err(RecvTimeoutError::Disconnected) => {
                     let (status, words) = live.end();
@@ -149,7 +178,12 @@ impl Worker {
                 }
             }
         });
-        Ok(Live { child, requests, replies, words: thread::spawn(move || last_words(errors)) })
+        Ok(Live {
+            child,
+            requests,
+            replies,
+            words: thread::spawn(move || last_words(errors)),
+        })
     }
 }
 
@@ -208,7 +242,10 @@ fn classify(phase: Phase, status: Option<ExitStatus>, words: &str) -> Failure {
     if words.contains("memory allocation of") || words.contains("out of memory") {
         return Failure::OutOfMemory { phase };
     }
-    let end = status.map_or_else(|| "stopped answering".to_owned(), |status| format!("died ({status})"));
+    let end = status.map_or_else(
+        || "stopped answering".to_owned(),
+        |status| format!("died ({status})"),
+    );
     let how = match words.lines().last() {
         Some(last) => format!("{end}, saying “{last}”,"),
         None => end,

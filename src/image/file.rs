@@ -93,8 +93,7 @@ pub fn read(path: &Path) -> Result<Image, ImageError> {
     limits.max_alloc = Some(1 << 30);
     reader.limits(limits);
     let decoded = reader.decode().map_err(|error| unreadable(error.to_string()))?;
-    let [width, height] =
-        check_size(decoded.width().into(), decoded.height().into()).map_err(unreadable)?;
+    let [width, height] = check_size(decoded.width().into(), decoded.height().into()).map_err(unreadable)?;
     let rgba: Rgba32FImage = match decoded {
         DynamicImage::ImageRgba32F(floats) => floats,
         other => other.into_rgba32f(),

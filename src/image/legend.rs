@@ -5,7 +5,12 @@ use font8x8::{BASIC_FONTS, UnicodeFonts};
 use super::Image;
 
 /// Colours of the decades below the tolerance, from 1e−7 up: rounding, in cool colours.
-const COOL: [[f32; 3]; 4] = [[0.05, 0.05, 0.2], [0.08, 0.12, 0.4], [0.1, 0.25, 0.6], [0.15, 0.45, 0.75]];
+const COOL: [[f32; 3]; 4] = [
+    [0.05, 0.05, 0.2],
+    [0.08, 0.12, 0.4],
+    [0.1, 0.25, 0.6],
+    [0.15, 0.45, 0.75],
+];
 /// Colours above it, up to 1: differences that are seen, in warm colours.
 const WARM: [[f32; 3]; 3] = [[0.75, 0.55, 0.1], [0.95, 0.35, 0.1], [1.0, 0.1, 0.1]];
 /// A pixel that differs but cannot be decided in float32.
@@ -34,7 +39,11 @@ pub struct Legend {
 #[must_use]
 pub fn difference(size: [u32; 2], marks: &[Mark], legend: Legend) -> Image {
     let entries = legend.entries();
-    let columns = entries.iter().map(|(words, _)| words.len() as u32 + 3).max().unwrap_or(0);
+    let columns = entries
+        .iter()
+        .map(|(words, _)| words.len() as u32 + 3)
+        .max()
+        .unwrap_or(0);
     let cell = columns * GLYPH;
     let [width, height] = size;
     let wide = width.max(cell);
@@ -74,9 +83,16 @@ impl Legend {
     /// The lower bound and the colour of each decade, upwards.
     fn bands(self) -> impl DoubleEndedIterator<Item = (f32, [f32; 3])> {
         let decades = self.tolerance.log10().round() as i32;
-        let cool = COOL.into_iter().enumerate().map(move |(i, colour)| (decades - 4 + i as i32, colour));
-        let warm = WARM.into_iter().enumerate().map(move |(i, colour)| (decades + i as i32, colour));
-        cool.chain(warm).map(|(decade, colour)| (10f32.powi(decade), colour))
+        let cool = COOL
+            .into_iter()
+            .enumerate()
+            .map(move |(i, colour)| (decades - 4 + i as i32, colour));
+        let warm = WARM
+            .into_iter()
+            .enumerate()
+            .map(move |(i, colour)| (decades + i as i32, colour));
+        cool.chain(warm)
+            .map(|(decade, colour)| (10f32.powi(decade), colour))
     }
 
     fn entries(self) -> Vec<(String, [f32; 3])> {
@@ -99,7 +115,11 @@ struct Canvas {
 impl Canvas {
     fn new(width: u32, height: u32) -> Self {
         let pixels = vec![[0.0, 0.0, 0.0, 1.0]; width as usize * height as usize];
-        Self { width, height, pixels }
+        Self {
+            width,
+            height,
+            pixels,
+        }
     }
 
     fn set(&mut self, x: u32, y: u32, [r, g, b]: [f32; 3]) {
@@ -155,8 +175,15 @@ mod tests {
         let picture = difference([2, 2], &marks, LEGEND);
         let [width, height] = picture.size();
         assert!(width >= 64 && height > 2 + GLYPH);
-        assert_eq!(picture.get(0, height - 1), [1.0, 0.1, 0.1, 1.0], "the upper left pixel");
-        assert!(picture.pixels().iter().any(|p| p[..3] == INK), "words are written");
+        assert_eq!(
+            picture.get(0, height - 1),
+            [1.0, 0.1, 0.1, 1.0],
+            "the upper left pixel"
+        );
+        assert!(
+            picture.pixels().iter().any(|p| p[..3] == INK),
+            "words are written"
+        );
         let names: Vec<_> = LEGEND.entries().into_iter().map(|(name, _)| name).collect();
         assert!(names.contains(&"> 1e-3".to_owned()), "{names:?}");
     }

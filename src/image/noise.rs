@@ -34,7 +34,12 @@ mod tests {
             // The mean of 65,536 even draws strays by 0.0011 at one standard deviation.
             assert!((mean - 0.5).abs() < 0.005, "{mean}");
         }
-        let product = image.pixels().iter().map(|p| (p[0] - 0.5) * (p[1] - 0.5)).sum::<f32>() / count;
+        let product = image
+            .pixels()
+            .iter()
+            .map(|p| (p[0] - 0.5) * (p[1] - 0.5))
+            .sum::<f32>()
+            / count;
         assert!(product.abs() < 0.002, "{product}");
     }
 }

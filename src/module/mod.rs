@@ -2,6 +2,8 @@
 
 mod loops;
 
+pub use loops::Probe;
+
 use naga::front::glsl::{Frontend, Options};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{Module, ShaderStage};
@@ -45,7 +47,10 @@ impl ValidModule {
             })?;
         naga::compact::compact(&mut module, naga::compact::KeepUnused::No);
         Self::validate(module).map_err(|error| {
-            let span = error.spans().next().map_or(naga::Span::UNDEFINED, |(span, _)| *span);
+            let span = error
+                .spans()
+                .next()
+                .map_or(naga::Span::UNDEFINED, |(span, _)| *span);
             vec![complaint("E0901", &chain(error.as_inner()), span, lowered)]
         })
     }
@@ -61,20 +66,25 @@ impl ValidModule {
         loops::any(&self.module)
     }
 
+    /// Whether any function holds a loop that has no way out.
+    #[must_use]
+    pub fn has_endless_loop(&self) -> bool {
+        loops::any_endless(&self.module)
+    }
+
     /// Whether a pixel may be left unpainted by `discard`.
     #[must_use]
     pub fn discards(&self) -> bool {
         (0..self.module.entry_points.len()).any(|entry| self.info.get_entry_point(entry).may_kill)
     }
 
-    /// The same shader, but alpha tells whether every loop was left by its own means: 1 where it was, 0
-    /// where the driver ended one.
+    /// The same shader, but its alpha tells what became of its loops.
     ///
     /// # Errors
     /// naga's words, should it refuse the result.
-    pub fn with_loops_watched(&self) -> Result<Self, String> {
+    pub fn probed(&self, probe: Probe) -> Result<Self, String> {
         let mut module = self.module.clone();
-        loops::watch(&mut module);
+        loops::probe(&mut module, probe);
         Self::validate(module).map_err(|error| chain(error.as_inner()))
     }
 }
@@ -128,11 +138,14 @@ mod tests {
     #[test]
     fn errors_stand_on_the_authors_line_and_column() {
         let errors = parse("void mainImage(out vec4 c, in vec2 p) {\n  c = vec4(q, 0, 1);\n}").unwrap_err();
-        assert_eq!(errors, ["s:2:12: error[E0900]: naga cannot translate this: Unknown variable: q"]);
+        assert_eq!(
+            errors,
+            ["s:2:12: error[E0900]: naga cannot translate this: Unknown variable: q"]
+        );
     }
 
     #[test]
-    fn a_watched_module_is_valid_and_counts_each_way_out() {
+    fn probes_are_valid_and_count_at_each_place() {
         let module = parse(
             "float f(float x) { for (int i = 0; i < 9; i++) { if (x > 4.0) return x; if (x > 3.0) break; x += 1.0; } return 0.0; }\n\
              void mainImage(out vec4 c, in vec2 p) {\n\
@@ -142,24 +155,30 @@ mod tests {
              }",
         )
         .unwrap();
-        let watched = module.with_loops_watched().unwrap();
-        let text = naga::back::wgsl::write_string(
-            watched.module(),
-            watched.info(),
-            naga::back::wgsl::WriterFlags::empty(),
-        )
-        .unwrap();
-        // Two loops opened; left by a condition and a return, a break and a condition.
-        assert_eq!(text.matches("+ 1u").count(), 2, "{text}");
-        assert_eq!(text.matches("- 1u").count(), 4, "{text}");
-        assert!(text.contains("select(0f, 1f,"), "{text}");
+        let text = |probe| {
+            let probed = module.probed(probe).unwrap();
+            let flags = naga::back::wgsl::WriterFlags::empty();
+            naga::back::wgsl::write_string(probed.module(), probed.info(), flags).unwrap()
+        };
+        let open = text(Probe::OpenLoops);
+        // Two loops opened; left by a condition, a return and a break, and by a condition.
+        assert_eq!(open.matches("+ 1u").count(), 2, "{open}");
+        assert_eq!(open.matches("- 1u").count(), 4, "{open}");
+        assert!(open.contains("select(0f, 1f,"), "{open}");
+        let iterations = text(Probe::Iterations);
+        assert_eq!(iterations.matches("+ 1u").count(), 2, "{iterations}");
+        assert!(iterations.contains("f32("), "{iterations}");
     }
 
     #[test]
     fn loops_are_seen_wherever_they_stand() {
         let with = "float f() { float x = 0.0; if (true) { while (x < 3.0) x += 1.0; } return x; }\n\
                     void mainImage(out vec4 c, in vec2 p) { c = vec4(f()); }";
-        assert!(parse(with).unwrap().has_loops());
+        assert!(parse(with).unwrap().has_loops() && !parse(with).unwrap().has_endless_loop());
+        let endless = with
+            .replace("x < 3.0", "true")
+            .replace("while (true) x += 1.0;", "for (;;) x += 1.0;");
+        assert!(parse(&endless).unwrap().has_endless_loop());
         let without = "void mainImage(out vec4 c, in vec2 p) { c = vec4(p, 0.0, 1.0); }";
         assert!(!parse(without).unwrap().has_loops());
     }

@@ -113,7 +113,11 @@ mod tests {
         let (comparison, _) = crate::compare::compare(&black, &white, None);
         let report = Report::new(Some("x".to_owned()), vec![record(None), record(Some(comparison))]);
         let mut json: serde_json::Value = serde_json::from_str(&report.json()).unwrap();
-        assert!(validator.is_valid(&json), "{:?}", validator.iter_errors(&json).collect::<Vec<_>>());
+        assert!(
+            validator.is_valid(&json),
+            "{:?}",
+            validator.iter_errors(&json).collect::<Vec<_>>()
+        );
         json["shaders"][0]["verdict"] = "splendid".into();
         assert!(!validator.is_valid(&json));
         json["shaders"][0].as_object_mut().unwrap().remove("verdict");

@@ -9,8 +9,10 @@ use crate::compare::{Comparison, Pixel, Verdict};
 #[must_use]
 pub fn line(record: &Record) -> String {
     let style = style(record.verdict);
-    let mut text =
-        format!("{style}{:<12}{style:#} {}: {}", record.verdict, record.shader, record.reason);
+    let mut text = format!(
+        "{style}{:<12}{style:#} {}: {}",
+        record.verdict, record.shader, record.reason
+    );
     if let Some(picture) = &record.picture {
         text += &format!("\n{:13}{}", "", numbers(picture));
         if record.verdict == Verdict::Wrong {
@@ -59,7 +61,10 @@ fn numbers(picture: &Comparison) -> String {
             plural(u64::from(picture.max_8bit), "level", "levels"),
         ),
     };
-    format!("{levels}; as floats by at most {:.1e}, {:.1e} on average", picture.max_abs, picture.mean_abs)
+    format!(
+        "{levels}; as floats by at most {:.1e}, {:.1e} on average",
+        picture.max_abs, picture.mean_abs
+    )
 }
 
 /// A pixel in words: where it is, what was expected and what was found.

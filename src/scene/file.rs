@@ -29,9 +29,16 @@ pub fn parse(files: &Files, file: FileId) -> Result<Scene, Vec<Diagnostic>> {
             None => diagnostic.at(Span::new(file, 0, 0)),
         }]
     })?;
-    let mut checks = Checks { file, diagnostics: Vec::new() };
+    let mut checks = Checks {
+        file,
+        diagnostics: Vec::new(),
+    };
     let scene = document.check(&mut checks);
-    if checks.diagnostics.is_empty() { Ok(scene) } else { Err(checks.diagnostics) }
+    if checks.diagnostics.is_empty() {
+        Ok(scene)
+    } else {
+        Err(checks.diagnostics)
+    }
 }
 
 fn one_sentence(message: &str) -> String {
@@ -131,7 +138,8 @@ struct Checks {
 
 impl Checks {
     fn refuse(&mut self, bytes: Range<usize>, message: String) {
-        self.diagnostics.push(Diagnostic::error("E0502", message).at(span(self.file, bytes)));
+        self.diagnostics
+            .push(Diagnostic::error("E0502", message).at(span(self.file, bytes)));
     }
 
     fn point(&mut self, what: &str, value: Option<Triple>, default: [f64; 3]) -> [f64; 3] {
@@ -149,7 +157,10 @@ impl Checks {
             return default;
         };
         if !value.get_ref().iter().all(|x| x.is_finite() && *x >= 0.0) {
-            self.refuse(value.span(), format!("{what} must be three finite numbers, none below 0"));
+            self.refuse(
+                value.span(),
+                format!("{what} must be three finite numbers, none below 0"),
+            );
         }
         value.into_inner()
     }
@@ -157,7 +168,10 @@ impl Checks {
     fn positive(&mut self, what: &str, value: &Spanned<f64>) -> f64 {
         let number = *value.get_ref();
         if !(number.is_finite() && number > 0.0) {
-            self.refuse(value.span(), format!("{what} must be a finite number above 0, not {number}"));
+            self.refuse(
+                value.span(),
+                format!("{what} must be a finite number above 0, not {number}"),
+            );
         }
         number
     }
@@ -168,7 +182,10 @@ impl Checks {
         };
         let number = *value.get_ref();
         if !(1..=max).contains(&number) {
-            self.refuse(value.span(), format!("{what} must be a whole number from 1 to {max}, not {number}"));
+            self.refuse(
+                value.span(),
+                format!("{what} must be a whole number from 1 to {max}, not {number}"),
+            );
         }
         number as u32
     }
@@ -244,15 +261,24 @@ fn background(table: Option<Spanned<BackgroundTable>>, checks: &mut Checks) -> B
     };
     let bytes = table.span();
     match table.into_inner() {
-        BackgroundTable { color, bottom: None, top: None } => {
-            Background::Uniform(checks.color("color", color, black))
-        }
-        BackgroundTable { color: None, bottom: Some(bottom), top: Some(top) } => Background::Gradient {
+        BackgroundTable {
+            color,
+            bottom: None,
+            top: None,
+        } => Background::Uniform(checks.color("color", color, black)),
+        BackgroundTable {
+            color: None,
+            bottom: Some(bottom),
+            top: Some(top),
+        } => Background::Gradient {
             bottom: checks.color("bottom", Some(bottom), black),
             top: checks.color("top", Some(top), black),
         },
         _ => {
-            checks.refuse(bytes, "a background has either a color, or a bottom and a top".to_owned());
+            checks.refuse(
+                bytes,
+                "a background has either a color, or a bottom and a top".to_owned(),
+            );
             Background::Uniform(black)
         }
     }
@@ -275,8 +301,22 @@ mod tests {
     #[test]
     fn an_empty_file_is_the_empty_scene_with_all_defaults() {
         let scene = read("").unwrap();
-        assert_eq!(scene.film, Film { size: [640, 360], samples: 1, sampler: Sampler::Center, max_depth: 1 });
-        assert_eq!(scene.camera, Camera { eye: [0.0; 3], screen_distance: 2.0 });
+        assert_eq!(
+            scene.film,
+            Film {
+                size: [640, 360],
+                samples: 1,
+                sampler: Sampler::Center,
+                max_depth: 1
+            }
+        );
+        assert_eq!(
+            scene.camera,
+            Camera {
+                eye: [0.0; 3],
+                screen_distance: 2.0
+            }
+        );
         assert_eq!(scene.background, Background::Uniform([0.0; 3]));
     }
 
@@ -288,9 +328,30 @@ mod tests {
              [[light]]\nposition = [5, 5, 0]\nshadow = false\n{SPHERE}"
         ))
         .unwrap();
-        assert_eq!(scene.film, Film { size: [4, 2], samples: 3, sampler: Sampler::SineHash, max_depth: 9 });
-        assert_eq!(scene.background, Background::Gradient { bottom: [0.0; 3], top: [1.0; 3] });
-        assert_eq!(scene.lights[0], Light { position: [5.0, 5.0, 0.0], color: [1.0; 3], shadow: false });
+        assert_eq!(
+            scene.film,
+            Film {
+                size: [4, 2],
+                samples: 3,
+                sampler: Sampler::SineHash,
+                max_depth: 9
+            }
+        );
+        assert_eq!(
+            scene.background,
+            Background::Gradient {
+                bottom: [0.0; 3],
+                top: [1.0; 3]
+            }
+        );
+        assert_eq!(
+            scene.lights[0],
+            Light {
+                position: [5.0, 5.0, 0.0],
+                color: [1.0; 3],
+                shadow: false
+            }
+        );
         assert_eq!(scene.spheres[0].radius, 1.5);
         assert_eq!(scene.spheres[0].material.model, Model::Facing);
     }
@@ -298,29 +359,80 @@ mod tests {
     #[test]
     fn each_mistake_is_told_by_line_column_and_what_was_expected() {
         for (text, place, words) in [
-            ("[film]\nsise = [1, 1]", "s.toml:2:1: error[E0501]", "unknown field `sise`, expected one of"),
-            ("[camera]\neye = [0, 0]", "s.toml:2:7: error[E0501]", "array of length 3"),
+            (
+                "[film]\nsise = [1, 1]",
+                "s.toml:2:1: error[E0501]",
+                "unknown field `sise`, expected one of",
+            ),
+            (
+                "[camera]\neye = [0, 0]",
+                "s.toml:2:7: error[E0501]",
+                "array of length 3",
+            ),
             ("[camera]\neye = \"here\"", "s.toml:2:7: error[E0501]", "expected"),
-            ("[camera]\neye = [0, nan, 0]", "s.toml:2:7: error[E0502]", "finite"),
-            ("[camera]\nscreen_distance = -1", "s.toml:2:19: error[E0502]", "above 0, not -1"),
-            ("[film]\nsize = [0, 0]", "s.toml:2:8: error[E0502]", "nothing to show"),
-            ("[film]\nsize = [100000, 100000]", "s.toml:2:8: error[E0502]", "too large"),
-            ("[film]\nsamples = 0", "s.toml:2:11: error[E0502]", "from 1 to 65536, not 0"),
-            ("[film]\nsampler = \"sobel\"", "s.toml:2:11: error[E0501]", "unknown variant `sobel`"),
-            ("[background]\ntop = [1, 1, 1]", "s.toml:1:1: error[E0502]", "a bottom and a top"),
-            ("ambient = [-1, 0, 0]", "s.toml:1:11: error[E0502]", "none below 0"),
+            (
+                "[camera]\neye = [0, nan, 0]",
+                "s.toml:2:7: error[E0502]",
+                "finite",
+            ),
+            (
+                "[camera]\nscreen_distance = -1",
+                "s.toml:2:19: error[E0502]",
+                "above 0, not -1",
+            ),
+            (
+                "[film]\nsize = [0, 0]",
+                "s.toml:2:8: error[E0502]",
+                "nothing to show",
+            ),
+            (
+                "[film]\nsize = [100000, 100000]",
+                "s.toml:2:8: error[E0502]",
+                "too large",
+            ),
+            (
+                "[film]\nsamples = 0",
+                "s.toml:2:11: error[E0502]",
+                "from 1 to 65536, not 0",
+            ),
+            (
+                "[film]\nsampler = \"sobel\"",
+                "s.toml:2:11: error[E0501]",
+                "unknown variant `sobel`",
+            ),
+            (
+                "[background]\ntop = [1, 1, 1]",
+                "s.toml:1:1: error[E0502]",
+                "a bottom and a top",
+            ),
+            (
+                "ambient = [-1, 0, 0]",
+                "s.toml:1:11: error[E0502]",
+                "none below 0",
+            ),
             ("title = ", "s.toml:1:9: error[E0501]", ""),
         ] {
             let errors = read(text).unwrap_err();
-            assert!(errors[0].starts_with(place) && errors[0].contains(words), "{text}: {errors:?}");
+            assert!(
+                errors[0].starts_with(place) && errors[0].contains(words),
+                "{text}: {errors:?}"
+            );
             assert!(!errors[0].contains('\n'));
         }
         let radius = read(&SPHERE.replace("1.5", "0.0")).unwrap_err();
-        assert!(radius[0].starts_with("s.toml:3:10: error[E0502]: radius must be"), "{radius:?}");
+        assert!(
+            radius[0].starts_with("s.toml:3:10: error[E0502]: radius must be"),
+            "{radius:?}"
+        );
     }
 
     #[test]
     fn every_value_out_of_range_is_told_at_once() {
-        assert_eq!(read("ambient = [inf, 0, 0]\n[film]\nsamples = 0\nmax_depth = 0").unwrap_err().len(), 3);
+        assert_eq!(
+            read("ambient = [inf, 0, 0]\n[film]\nsamples = 0\nmax_depth = 0")
+                .unwrap_err()
+                .len(),
+            3
+        );
     }
 }

@@ -69,6 +69,17 @@ impl File {
         }
     }
 
+    /// The length in bytes of the longest line that bytes `start..end` touch.
+    #[must_use]
+    pub fn longest_line(&self, start: u32, end: u32) -> usize {
+        let line = |byte: u32| self.position(byte as usize).line - 1;
+        (line(start)..=line(end))
+            .filter_map(|index| self.line_range(index))
+            .map(|range| range.len())
+            .max()
+            .unwrap_or(0)
+    }
+
     fn line_range(&self, index: usize) -> Option<Range<usize>> {
         let start = *self.line_starts.get(index)?;
         let end = self

@@ -52,7 +52,9 @@ pub enum ReadError {
     #[error("{0}: no such file or folder")]
     Missing(PathBuf),
     /// A folder without any shader.
-    #[error("{0}: no shader in this folder (looked for .glsl .frag .fs .shadertoy, also in the folders below)")]
+    #[error(
+        "{0}: no shader in this folder (looked for .glsl .frag .fs .shadertoy, also in the folders below)"
+    )]
     NoShader(PathBuf),
     /// The system refused.
     #[error("{name}: cannot be read: {error}")]
@@ -114,7 +116,11 @@ pub fn find(argument: &Path) -> Vec<Result<Found, ReadError>> {
         .into_iter()
         .filter_map(|entry| match entry {
             Ok(entry) if entry.file_type().is_file() && is_shader(entry.path()) => Some(Ok(Found {
-                relative: entry.path().strip_prefix(argument).unwrap_or(entry.path()).to_owned(),
+                relative: entry
+                    .path()
+                    .strip_prefix(argument)
+                    .unwrap_or(entry.path())
+                    .to_owned(),
                 place: FoundIn::File(entry.into_path()),
             })),
             Ok(_) => None,
@@ -211,10 +217,7 @@ mod tests {
     #[test]
     fn a_byte_that_is_not_utf8_is_named_by_line_and_column() {
         let error = read_from(&b"ok\nab\xffc"[..], "x".to_owned()).unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "x:2:3: not UTF-8 text; save the file as UTF-8"
-        );
+        assert_eq!(error.to_string(), "x:2:3: not UTF-8 text; save the file as UTF-8");
         assert!(error.blames_content());
     }
 

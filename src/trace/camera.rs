@@ -29,6 +29,10 @@ impl<T: Real> Camera<T> {
         let two = T::from_f64(2.0);
         let x = fx / self.width * two - T::one();
         let y = (fy / self.height * two - T::one()) / (self.width / self.height);
-        Ray { origin: self.eye, direction: T::Vec3::new(x, y, -self.screen_distance).normalize(), from: None }
+        Ray {
+            origin: self.eye,
+            direction: T::Vec3::new(x, y, -self.screen_distance).normalize(),
+            from: None,
+        }
     }
 }

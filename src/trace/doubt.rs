@@ -84,7 +84,13 @@ enum Signs {
 }
 
 impl Moved {
-    const NOT: Self = Self { offset: 0.0, t_min: 0.0, scale: 0.0, signs: Signs::Plus, grazes: false };
+    const NOT: Self = Self {
+        offset: 0.0,
+        t_min: 0.0,
+        scale: 0.0,
+        signs: Signs::Plus,
+        grazes: false,
+    };
 
     /// A signed share of a bound, for each role in the picture another sign.
     fn share(&self, role: u32) -> f64 {
@@ -103,17 +109,40 @@ impl Moved {
 fn variants() -> impl Iterator<Item = Moved> {
     let styles = OFFSETS.into_iter().flat_map(|offset| {
         T_MINS.into_iter().flat_map(move |t_min| {
-            let style = move |scale, signs| Moved { offset, t_min, scale, signs, grazes: false };
-            [style(0.0, Signs::Plus), style(1.0, Signs::Plus), style(1.0, Signs::Minus)]
+            let style = move |scale, signs| Moved {
+                offset,
+                t_min,
+                scale,
+                signs,
+                grazes: false,
+            };
+            [
+                style(0.0, Signs::Plus),
+                style(1.0, Signs::Plus),
+                style(1.0, Signs::Minus),
+            ]
         })
     });
     let moves = SCALES.into_iter().zip(1..).flat_map(|(scale, salt)| {
-        [Signs::Plus, Signs::Minus, Signs::Mixed(2 * salt), Signs::Mixed(2 * salt + 1)]
-            .into_iter()
-            .zip([false, false, false, true])
-            .map(move |(signs, grazes)| Moved { scale, signs, grazes, ..Moved::NOT })
+        [
+            Signs::Plus,
+            Signs::Minus,
+            Signs::Mixed(2 * salt),
+            Signs::Mixed(2 * salt + 1),
+        ]
+        .into_iter()
+        .zip([false, false, false, true])
+        .map(move |(signs, grazes)| Moved {
+            scale,
+            signs,
+            grazes,
+            ..Moved::NOT
+        })
     });
-    let grazing = [Moved { grazes: true, ..Moved::NOT }];
+    let grazing = [Moved {
+        grazes: true,
+        ..Moved::NOT
+    }];
     styles.chain(moves).chain(grazing)
 }
 
@@ -129,7 +158,11 @@ impl Doubt<f64> for Moved {
     fn discriminant(&self, disc: f64, f2: f64) -> f64 {
         let bound = DISCRIMINANT * U * f2;
         // Between a miss and a hit lies the ray that grazes, whose colour may be like neither's.
-        if self.grazes && disc.abs() <= bound { 0.0 } else { disc + self.share(2) * bound }
+        if self.grazes && disc.abs() <= bound {
+            0.0
+        } else {
+            disc + self.share(2) * bound
+        }
     }
 
     fn point(&self, point: glam::DVec3, origin: glam::DVec3, depth: u32) -> glam::DVec3 {
@@ -163,7 +196,11 @@ impl Hull {
     pub fn distance(&self, color: [f64; 3]) -> f64 {
         let outside = |i: usize| {
             let [low, high, value] = [self.low[i], self.high[i], color[i]].map(|v| v.clamp(0.0, 1.0));
-            if value.is_nan() { f64::INFINITY } else { (low - value).max(value - high).max(0.0) }
+            if value.is_nan() {
+                f64::INFINITY
+            } else {
+                (low - value).max(value - high).max(0.0)
+            }
         };
         (0..3).map(outside).fold(0.0, f64::max)
     }
@@ -178,7 +215,10 @@ impl Tracer<f64> {
     /// foresee may leave it.
     #[must_use]
     pub fn hull(&self, x: u32, y: u32) -> Hull {
-        let mut sum = Hull { low: [0.0; 3], high: [0.0; 3] };
+        let mut sum = Hull {
+            low: [0.0; 3],
+            high: [0.0; 3],
+        };
         for sample in 0..self.film.samples {
             let mut low = [f64::INFINITY; 3];
             let mut high = [f64::NEG_INFINITY; 3];
@@ -195,7 +235,10 @@ impl Tracer<f64> {
             }
         }
         let mean = |total: f64| total / f64::from(self.film.samples);
-        Hull { low: sum.low.map(mean), high: sum.high.map(mean) }
+        Hull {
+            low: sum.low.map(mean),
+            high: sum.high.map(mean),
+        }
     }
 }
 
@@ -238,7 +281,10 @@ mod tests {
 
     #[test]
     fn the_distance_is_zero_inside_and_infinite_for_nan() {
-        let hull = Hull { low: [0.2; 3], high: [0.4, 0.4, 7.0] };
+        let hull = Hull {
+            low: [0.2; 3],
+            high: [0.4, 0.4, 7.0],
+        };
         assert_eq!(hull.distance([0.3, 0.2, 1.5]), 0.0);
         assert!((hull.distance([0.3, 0.1, 0.3]) - 0.1).abs() < 1e-15);
         assert_eq!(hull.distance([f64::NAN, 0.3, 0.3]), f64::INFINITY);

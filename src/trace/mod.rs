@@ -34,7 +34,11 @@ impl<T: Real> Tracer<T> {
     /// A tracer of `scene`; its numbers are rounded to `T` once, here.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
-        Self { film: scene.film, camera: Camera::new(scene), world: World::new(scene) }
+        Self {
+            film: scene.film,
+            camera: Camera::new(scene),
+            world: World::new(scene),
+        }
     }
 
     /// The whole picture, unclamped; `row_done` is called once for each row, from any thread.
@@ -125,8 +129,14 @@ mod tests {
     #[test]
     fn what_lies_behind_the_eye_is_not_seen_and_from_inside_the_far_side_is() {
         let facing = "{ model = \"facing\", color = [1, 1, 1] }";
-        near(pixel(&(ONE.to_owned() + &ball("[0, 0, 6]", "1.5", facing)), 0, 0), [0.0; 3]);
-        near(pixel(&(ONE.to_owned() + &ball("[0, 0, 1]", "3", facing)), 0, 0), [1.0; 3]);
+        near(
+            pixel(&(ONE.to_owned() + &ball("[0, 0, 6]", "1.5", facing)), 0, 0),
+            [0.0; 3],
+        );
+        near(
+            pixel(&(ONE.to_owned() + &ball("[0, 0, 1]", "3", facing)), 0, 0),
+            [1.0; 3],
+        );
     }
 
     #[test]
@@ -137,7 +147,10 @@ mod tests {
         );
         // The hit is (0, 0, −5), N = +z, L = (0, 5, 5) / √50.
         let cosine = 0.5f64.sqrt();
-        near(pixel(&text, 0, 0), [0.1 + 0.5 * cosine, 0.5 * (0.1 + cosine), 0.1 + cosine]);
+        near(
+            pixel(&text, 0, 0),
+            [0.1 + 0.5 * cosine, 0.5 * (0.1 + cosine), 0.1 + cosine],
+        );
     }
 
     #[test]
@@ -148,7 +161,11 @@ mod tests {
                 ball("[0, 0, -6]", "1", "{ model = \"lambert\", color = [1, 1, 1] }")
             );
             // Straight from the side: the eye's own ray passes below the blocker.
-            pixel(&text.replace("position = [0, 0, 0]", "position = [0, 3, -2]"), 0, 0)[0]
+            pixel(
+                &text.replace("position = [0, 0, 0]", "position = [0, 3, -2]"),
+                0,
+                0,
+            )[0]
         };
         let matte = "{ model = \"lambert\", color = [1, 1, 1] }";
         let between = ball("[0, 1.5, -3.5]", "0.5", matte);
@@ -170,7 +187,9 @@ mod tests {
         near(pixel(&text(7), 0, 0), [0.0; 3]);
         let one = ball("[0, 0, -6]", "1", "{ model = \"mirror\", color = [0.5, 1, 1] }");
         let open = |depth: u32| {
-            format!("[film]\nsize = [1, 1]\nmax_depth = {depth}\n[background]\nbottom = [1, 1, 1]\ntop = [0.2, 1, 1]\n{one}")
+            format!(
+                "[film]\nsize = [1, 1]\nmax_depth = {depth}\n[background]\nbottom = [1, 1, 1]\ntop = [0.2, 1, 1]\n{one}"
+            )
         };
         near(pixel(&open(1), 0, 0), [0.0; 3]);
         near(pixel(&open(2), 0, 0), [0.3, 1.0, 1.0]);
@@ -198,7 +217,11 @@ mod tests {
     fn both_precisions_agree_to_float32() {
         let text = format!(
             "[film]\nsize = [32, 18]\nmax_depth = 5\n[background]\nbottom = [0.1, 0.1, 0.3]\ntop = [0.7, 0.8, 0.9]\n{}{}",
-            ball("[0, 0, -6]", "1.5", "{ model = \"mirror\", color = [1, 0.9, 0.8] }"),
+            ball(
+                "[0, 0, -6]",
+                "1.5",
+                "{ model = \"mirror\", color = [1, 0.9, 0.8] }"
+            ),
             ball("[-1, 1, -4]", "0.7", "{ model = \"facing\", color = [1, 0, 0] }")
         );
         let single = Tracer::<f32>::new(&scene(&text)).picture(|| ());

@@ -104,12 +104,20 @@ impl<T: Real> World<T> {
     }
 
     fn leave(&self, hit: &Hit<T>, direction: T::Vec3, doubt: &impl Doubt<T>) -> Ray<T> {
-        Ray { origin: hit.point + hit.normal * doubt.offset(), direction, from: Some(hit.sphere) }
+        Ray {
+            origin: hit.point + hit.normal * doubt.offset(),
+            direction,
+            from: Some(hit.sphere),
+        }
     }
 
     fn intersect(&self, sphere: usize, ray: &Ray<T>, doubt: &impl Doubt<T>) -> Option<T> {
         let shape = &self.surfaces[sphere].shape;
-        if ray.from == Some(sphere) { shape.intersect_own(ray, doubt) } else { shape.intersect(ray, doubt) }
+        if ray.from == Some(sphere) {
+            shape.intersect_own(ray, doubt)
+        } else {
+            shape.intersect(ray, doubt)
+        }
     }
 
     fn nearest(&self, ray: &Ray<T>, depth: u32, doubt: &impl Doubt<T>) -> Option<Hit<T>> {
@@ -126,7 +134,11 @@ impl<T: Real> World<T> {
         let sphere = nearest?;
         let Shape { center, radius } = self.surfaces[sphere].shape;
         let point = doubt.point(ray.origin + ray.direction * t_nearest, ray.origin, depth);
-        Some(Hit { point, normal: (point - center) / radius, sphere })
+        Some(Hit {
+            point,
+            normal: (point - center) / radius,
+            sphere,
+        })
     }
 
     fn background(&self, direction: T::Vec3) -> T::Vec3 {
