@@ -54,7 +54,7 @@ enum Format {
     Json,
 }
 
-pub(super) fn run(args: Args, terminal: &Terminal) -> Exit {
+pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let (worker, frame) = match (args.driver.worker(), args.frame.frame()) {
         (Ok(worker), Ok(frame)) => (worker, frame),
         (Err(error), _) | (_, Err(error)) => {
@@ -64,7 +64,7 @@ pub(super) fn run(args: Args, terminal: &Terminal) -> Exit {
     };
     let interrupted = stop_on_interrupt();
     let mut checker = Checker {
-        args: &args,
+        args,
         terminal,
         worker,
         frame,
@@ -369,7 +369,10 @@ impl Stopped {
     fn invalid(verdict: Verdict, diagnostics: Vec<Diagnostic>, files: Files) -> Self {
         let reason = diagnostics.first().map_or_else(
             || "it does not compile".to_owned(),
-            |first| diagnostic::short(first, &files),
+            |first| match first.span.map(|span| files.position(span)) {
+                Some(at) => format!("{} (line {}, column {})", first.message, at.line, at.column),
+                None => first.message.clone(),
+            },
         );
         Self {
             verdict,

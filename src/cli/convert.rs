@@ -73,7 +73,7 @@ impl To {
     }
 }
 
-pub(super) fn run(args: Args, terminal: &Terminal) -> Exit {
+pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let inputs = find(&args.shaders);
     let standard = args.output == Path::new("-");
     let of_extension = (!standard && !args.output.is_dir())
@@ -114,7 +114,7 @@ pub(super) fn run(args: Args, terminal: &Terminal) -> Exit {
                 &format!(".{}", to.extension()),
             ),
         };
-        exit = exit.max(match translate(shader, to, &args, &mut worker, terminal) {
+        exit = exit.max(match translate(shader, to, args, &mut worker, terminal) {
             Ok(bytes) if terminal.write(&path, &bytes) => Exit::Good,
             Ok(_) => Exit::Trouble,
             Err(exit) => exit,

@@ -17,7 +17,7 @@ pub(super) struct Args {
 /// Loading every driver of a machine takes longer than one shader.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-pub(super) fn run(args: Args, terminal: &Terminal) -> Exit {
+pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let manifests = manifests();
     terminal.result("Vulkan drivers installed:");
     for path in &manifests {

@@ -70,13 +70,13 @@ impl Cli {
     pub fn run(self) -> Exit {
         let terminal = Terminal::new(self.quiet, self.verbose);
         match self.command {
-            Command::Check(args) => check::run(args, &terminal),
+            Command::Check(args) => check::run(&args, &terminal),
             Command::Render(args) => render::run(&args, &terminal),
-            Command::Run(args) => run::run(args, &terminal),
-            Command::Convert(args) => convert::run(args, &terminal),
+            Command::Run(args) => run::run(&args, &terminal),
+            Command::Convert(args) => convert::run(&args, &terminal),
             Command::Compare(args) => compare::run(&args, &terminal),
             Command::Scenes(args) => scenes::run(&args, &terminal),
-            Command::Doctor(args) => doctor::run(args, &terminal),
+            Command::Doctor(args) => doctor::run(&args, &terminal),
             Command::Worker => worker::run(),
         }
     }

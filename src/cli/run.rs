@@ -28,7 +28,7 @@ pub(super) struct Args {
     driver: DriverArgs,
 }
 
-pub(super) fn run(args: Args, terminal: &Terminal) -> Exit {
+pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let (mut worker, frame) = match (args.driver.worker(), args.frame.frame()) {
         (Ok(worker), Ok(frame)) => (worker, frame),
         (Err(error), _) | (_, Err(error)) => {

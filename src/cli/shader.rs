@@ -3,10 +3,10 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{self, Diagnostic};
 use crate::glsl::{self, Lowered};
 use crate::gpu::Failure;
-use crate::source::{self, File, Files, Found, ReadError, Span};
+use crate::source::{self, Files, Found, ReadError};
 
 /// A shader's text and what naga is fed, or why there is none.
 pub(super) struct Shader {
@@ -39,13 +39,10 @@ impl Shader {
                 let file = files.add(text);
                 glsl::lower(files, file).map_err(Unusable::Invalid)
             }
-            Err(error) if error.blames_content() => {
-                // An empty stand-in, so that the message has a file to name.
-                let file = files.add(File::new(found.name(), ""));
-                let diagnostic = Diagnostic::error("E0001", error.to_string()).at(Span::new(file, 0, 0));
-                Err(Unusable::Invalid(vec![diagnostic]))
-            }
-            Err(error) => Err(Unusable::Trouble(error.to_string())),
+            Err(error) => Err(match diagnostic::of_content(error, files) {
+                Ok(diagnostic) => Unusable::Invalid(vec![diagnostic]),
+                Err(error) => Unusable::Trouble(error.to_string()),
+            }),
         }
     }
 }
@@ -53,9 +50,8 @@ impl Shader {
 fn subject(error: &ReadError) -> String {
     match error {
         ReadError::Missing(path) | ReadError::NoShader(path) => path.display().to_string(),
-        ReadError::Unreadable { name, .. }
-        | ReadError::TooLarge { name }
-        | ReadError::NotUtf8 { name, .. } => name.clone(),
+        ReadError::Unreadable { name, .. } | ReadError::TooLarge { name } => name.clone(),
+        ReadError::NotUtf8 { file, .. } => file.name().to_owned(),
     }
 }
 

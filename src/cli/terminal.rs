@@ -19,6 +19,10 @@ pub(super) struct Terminal {
     verbose: bool,
 }
 
+#[expect(
+    clippy::unused_self,
+    reason = "what is printed in any case is still the terminal's to print"
+)]
 impl Terminal {
     pub(super) fn new(quiet: bool, verbose: bool) -> Self {
         Self { quiet, verbose }
@@ -57,11 +61,15 @@ impl Terminal {
         let _ = writeln!(anstream::stderr().lock(), "{style}error{style:#}: {text}");
     }
 
-    /// Diagnostics with their source lines, on standard error.
+    /// Diagnostics with their source lines, on standard error; with `--quiet` a line each.
     pub(super) fn diagnostics(&self, diagnostics: &[Diagnostic], files: &Files) {
         let mut stderr = anstream::stderr().lock();
         for diagnostic in diagnostics {
-            let _ = write!(stderr, "{}", diagnostic::human(diagnostic, files, true));
+            let _ = if self.quiet {
+                writeln!(stderr, "{}", diagnostic::short(diagnostic, files))
+            } else {
+                write!(stderr, "{}", diagnostic::human(diagnostic, files, true))
+            };
         }
     }
 

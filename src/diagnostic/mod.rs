@@ -1,11 +1,13 @@
 //! What is wrong, where, and the way out: one value, three renderings.
 
+mod content;
 mod render;
 
 use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
+pub use content::of_content;
 pub use render::{Json, human, json, short};
 
 use crate::source::Span;

@@ -49,7 +49,8 @@ mod op {
     pub(super) const TYPE_FLOAT: u32 = 22;
     pub(super) const TYPE_VECTOR: u32 = 23;
     pub(super) const TYPE_MATRIX: u32 = 24;
-    pub(super) const TYPE_FIRST: u32 = 19;
+    /// `OpTypeVoid` to `OpConstantNull`.
+    pub(super) const TYPES_AND_CONSTANTS: std::ops::RangeInclusive<u32> = 19..=46;
     pub(super) const DECORATE: u32 = 71;
     pub(super) const F_NEGATE: u32 = 127;
     pub(super) const F_ADD: u32 = 129;
@@ -74,8 +75,8 @@ pub fn strict(words: &[u32]) -> Vec<u32> {
     let mut first_type = words.len();
     for (at, instruction) in instructions(words) {
         let opcode = instruction[0] & 0xffff;
-        // Decorations stand before the first type; OpTypeVoid (19) opens the types.
-        if opcode >= op::TYPE_FIRST && opcode <= 46 {
+        // Decorations stand before the first type or constant.
+        if op::TYPES_AND_CONSTANTS.contains(&opcode) {
             first_type = first_type.min(at);
         }
         match opcode {

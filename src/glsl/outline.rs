@@ -10,7 +10,9 @@ pub(super) const MAX_NESTING: usize = 256;
 pub(super) fn check(files: &Files, file: FileId) -> Result<(), Diagnostic> {
     let text = files.get(file).text();
     if text.trim().is_empty() {
-        return Err(Diagnostic::error("E0002", "the file is empty").note(MAIN_IMAGE));
+        return Err(Diagnostic::error("E0002", "the file is empty")
+            .at(Span::new(file, 0, 0))
+            .note(MAIN_IMAGE));
     }
     let mut open: Vec<(char, Span)> = Vec::new();
     let mut defines_main_image = false;
@@ -160,7 +162,7 @@ mod tests {
     #[test]
     fn each_break_of_the_outline_has_its_own_message_and_place() {
         for (text, expected) in [
-            (" \n", "error[E0002]: the file is empty"),
+            (" \n", "s:1:1: error[E0002]: the file is empty"),
             (
                 "// mainImage\nfloat f;",
                 "s:1:1: error[E0002]: the shader has no function `mainImage`",

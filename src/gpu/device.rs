@@ -41,7 +41,7 @@ pub(super) const PROBED_ITERATIONS: u32 = 70_000;
 /// An open device and what all its pipelines share.
 #[derive(Debug)]
 pub(super) struct Device {
-    pub(super) device: wgpu::Device,
+    pub(super) gpu: wgpu::Device,
     pub(super) queue: wgpu::Queue,
     pub(super) layout: Layout,
     pub(super) filterable: bool,
@@ -140,7 +140,8 @@ fn float_controls(adapter: &Adapter) -> Vec<String> {
         ),
     ]
     .into_iter()
-    .filter_map(|(has, name)| (has == vk::TRUE).then(|| name.to_owned()))
+    .filter(|&(has, _)| has == vk::TRUE)
+    .map(|(_, name)| name.to_owned())
     .collect()
 }
 
@@ -170,7 +171,7 @@ impl Device {
         let filterable = !filterable.is_empty();
         let layout = Layout::new(&device, filterable);
         Ok(Self {
-            device,
+            gpu: device,
             queue,
             layout,
             filterable,

@@ -5,13 +5,14 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 use wgpu::{BindGroup, Buffer, BufferUsages, PollType, RenderPipeline, Texture, TextureUsages};
 
-use super::Failure;
 use super::device::{Device, LoopCap, PROBED_ITERATIONS};
 use super::pipeline::FORMAT;
+use super::{Failure, FloatMode, On};
 use crate::frame::Frame;
+use crate::glsl::{self, Lowered};
 use crate::image::Image;
 use crate::module::ValidModule;
-use crate::{emit, glsl, source};
+use crate::{emit, source};
 
 /// A picture that a shader painted.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -44,6 +45,15 @@ pub(super) struct Scene {
     bytes_per_row: u32,
 }
 
+/// The words that run.
+pub(super) fn words(module: &ValidModule, float: FloatMode) -> Result<Vec<u32>, Failure> {
+    let words = emit::spirv::words(module).map_err(Failure::Naga)?;
+    Ok(match float {
+        FloatMode::Strict => emit::spirv::strict(&words),
+        FloatMode::Fast => words,
+    })
+}
+
 /// A colour that no shader leaves: the alpha of probes is a whole number, that of shaders 1.
 const UNPAINTED: wgpu::Color = wgpu::Color {
     r: 0.0,
@@ -67,7 +77,8 @@ pub(super) fn may_reach(iterations: &Image, cap: u32) -> bool {
 /// How many pixels of a picture with watched loops tell of one that was ended by force. A pixel that nothing
 /// painted does so too, unless the shader discards: code after an endless loop may never be reached.
 pub(super) fn cut_short(watched: &Image, discards: bool) -> u64 {
-    let cut = |alpha: f32| alpha == 0.0 || (alpha == 0.5 && !discards);
+    let unpainted = UNPAINTED.a as f32;
+    let cut = |alpha: f32| alpha < unpainted || (alpha <= unpainted && !discards);
     watched.pixels().iter().filter(|pixel| cut(pixel[3])).count() as u64
 }
 
@@ -76,7 +87,7 @@ impl Device {
     pub(super) fn prepare(&self, words: &[u32], frame: &Frame) -> Result<Scene, Failure> {
         let [width, height] = frame.size;
         self.checked(|| {
-            let target = self.device.create_texture(&wgpu::TextureDescriptor {
+            let target = self.gpu.create_texture(&wgpu::TextureDescriptor {
                 label: None,
                 size: wgpu::Extent3d {
                     width,
@@ -91,7 +102,7 @@ impl Device {
                 view_formats: &[],
             });
             let bytes_per_row = (16 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-            let readback = self.device.create_buffer(&wgpu::BufferDescriptor {
+            let readback = self.gpu.create_buffer(&wgpu::BufferDescriptor {
                 label: None,
                 size: u64::from(bytes_per_row) * u64::from(height),
                 usage: BufferUsages::MAP_READ | BufferUsages::COPY_DST,
@@ -99,10 +110,8 @@ impl Device {
             });
             let scene = Scene {
                 size: frame.size,
-                pipeline: self.layout.pipeline(&self.device, words),
-                bindings: self
-                    .layout
-                    .bind(&self.device, &self.queue, frame, self.filterable),
+                pipeline: self.layout.pipeline(&self.gpu, words),
+                bindings: self.layout.bind(&self.gpu, &self.queue, frame, self.filterable),
                 target,
                 readback,
                 bytes_per_row,
@@ -134,7 +143,7 @@ impl Device {
 
     fn submit(&self, scene: &Scene, vertices: std::ops::Range<u32>) -> Result<(), Failure> {
         let view = scene.target.create_view(&Default::default());
-        let mut commands = self.device.create_command_encoder(&Default::default());
+        let mut commands = self.gpu.create_command_encoder(&Default::default());
         {
             let mut pass = commands.begin_render_pass(&wgpu::RenderPassDescriptor {
                 color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -174,7 +183,7 @@ impl Device {
     }
 
     fn wait(&self) -> Result<(), Failure> {
-        self.device
+        self.gpu
             .poll(PollType::wait_indefinitely())
             .map(|_| ())
             .map_err(|error| Failure::Device(error.to_string()))
@@ -183,7 +192,7 @@ impl Device {
     /// Collects what wgpu reports aside: errors of validation and memory, and the loss of the device.
     fn checked<T>(&self, work: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
         use wgpu::ErrorFilter::{Internal, OutOfMemory, Validation};
-        let scopes = [Internal, OutOfMemory, Validation].map(|filter| self.device.push_error_scope(filter));
+        let scopes = [Internal, OutOfMemory, Validation].map(|filter| self.gpu.push_error_scope(filter));
         let result = work();
         // The scope that was opened last closes first.
         let errors: Vec<_> = scopes
@@ -208,6 +217,34 @@ fn one_line(words: &str) -> String {
         .filter(|line| !line.is_empty())
         .collect::<Vec<_>>()
         .join(": ")
+}
+
+/// A shader compiled on a device of this process: for measuring, where the worker's protection is not wanted.
+#[derive(Debug)]
+pub struct Painter {
+    device: Device,
+    scene: Scene,
+}
+
+impl Painter {
+    /// Translates and compiles.
+    ///
+    /// # Errors
+    /// Why it cannot be run.
+    pub fn new(lowered: &Lowered, frame: &Frame, float: FloatMode, on: &On) -> Result<Self, Failure> {
+        let module = ValidModule::parse(lowered).map_err(Failure::Invalid)?;
+        let device = Device::open(on)?;
+        let scene = device.prepare(&words(&module, float)?, frame)?;
+        Ok(Self { device, scene })
+    }
+
+    /// Paints and reads back.
+    ///
+    /// # Errors
+    /// If the device is lost.
+    pub fn paint(&mut self) -> Result<Image, Failure> {
+        self.device.paint(&self.scene)
+    }
 }
 
 /// One pixel, and as many iterations as `iFrame` says: the count tells how many the driver granted.

@@ -96,7 +96,7 @@ impl<W: Write> Server<W> {
         apart(move || {
             let module = ValidModule::parse(&lowered).map_err(Failure::Invalid)?;
             match target {
-                Target::Spirv => Ok(emit::spirv::bytes(&words(&module, float)?)),
+                Target::Spirv => Ok(emit::spirv::bytes(&draw::words(&module, float)?)),
                 _ => emit::emit(&module, target).map_err(Failure::Naga),
             }
         })
@@ -114,7 +114,7 @@ impl<W: Write> Server<W> {
         } = shot;
         let (words, loops) = apart(move || {
             let module = ValidModule::parse(&lowered).map_err(Failure::Invalid)?;
-            Ok((words(&module, float)?, module.has_loops()))
+            Ok((draw::words(&module, float)?, module.has_loops()))
         })?;
         let translate = start.elapsed();
         self.open(&on)?;
@@ -185,17 +185,8 @@ impl<W: Write> Server<W> {
     }
 }
 
-/// The words that run.
-fn words(module: &ValidModule, float: FloatMode) -> Result<Vec<u32>, Failure> {
-    let words = emit::spirv::words(module).map_err(Failure::Naga)?;
-    Ok(match float {
-        FloatMode::Strict => emit::spirv::strict(&words),
-        FloatMode::Fast => words,
-    })
-}
-
 fn probed(module: &ValidModule, probe: Probe, float: FloatMode) -> Result<Vec<u32>, Failure> {
-    words(&module.probed(probe).map_err(Failure::Naga)?, float)
+    draw::words(&module.probed(probe).map_err(Failure::Naga)?, float)
 }
 
 /// Runs naga on a thread with room for its recursion; its panics become failures.

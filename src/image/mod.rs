@@ -62,6 +62,7 @@ impl Image {
     }
 
     /// The rows, from the bottom up.
+    #[must_use]
     pub fn rows(&self) -> impl DoubleEndedIterator<Item = &[[f32; 4]]> {
         self.pixels.chunks(self.width as usize)
     }

@@ -9,21 +9,21 @@ use crate::compare::{Comparison, Pixel, Verdict};
 #[must_use]
 pub fn line(record: &Record) -> String {
     let style = style(record.verdict);
-    let mut text = format!(
+    let mut lines = vec![format!(
         "{style}{:<12}{style:#} {}: {}",
         record.verdict, record.shader, record.reason
-    );
+    )];
     if let Some(picture) = &record.picture {
-        text += &format!("\n{:13}{}", "", numbers(picture));
+        lines.push(numbers(picture));
         if record.verdict == Verdict::Wrong {
-            for (name, pixel) in [("first", picture.first), ("worst", picture.worst)] {
-                if let Some(pixel) = pixel {
-                    text += &format!("\n{:13}{name} {}", "", place(&pixel));
-                }
-            }
+            let pixels = [("first", picture.first), ("worst", picture.worst)];
+            let places = pixels
+                .into_iter()
+                .filter_map(|(name, pixel)| Some(format!("{name} {}", place(&pixel?))));
+            lines.extend(places);
         }
     }
-    text
+    lines.join(&format!("\n{:13}", ""))
 }
 
 /// How many shaders have each verdict, best first.

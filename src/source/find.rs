@@ -65,30 +65,26 @@ pub enum ReadError {
         error: io::Error,
     },
     /// More than [`MAX_BYTES`].
-    #[error("{name}: larger than {} KiB, the most that a shader or a scene may have", MAX_BYTES >> 10)]
+    #[error("{name}: {TOO_LARGE}")]
     TooLarge {
         /// The file.
         name: String,
     },
     /// Not UTF-8.
-    #[error("{name}:{line}:{column}: not UTF-8 text; save the file as UTF-8")]
+    #[error("{}:{}:{}: {NOT_UTF8}", file.name(), file.position(*at).line, file.position(*at).column)]
     NotUtf8 {
-        /// The file.
-        name: String,
-        /// Line of the first byte that is not UTF-8, from 1.
-        line: usize,
-        /// Its column, from 1.
-        column: usize,
+        /// The file, with stand-ins for what is not UTF-8.
+        file: File,
+        /// The first byte that is not.
+        at: usize,
     },
 }
 
-impl ReadError {
-    /// Whether what the file holds is at fault, rather than the path or the system.
-    #[must_use]
-    pub fn blames_content(&self) -> bool {
-        matches!(self, Self::TooLarge { .. } | Self::NotUtf8 { .. })
-    }
-}
+/// What is said of a file that is too large.
+pub const TOO_LARGE: &str = "the file is larger than 1 MiB, the most that a shader or a scene may have";
+const _: () = assert!(MAX_BYTES == 1 << 20);
+/// What is said of a file that is not UTF-8.
+pub const NOT_UTF8: &str = "this is not UTF-8 text; save the file as UTF-8";
 
 /// The shaders that one argument names; a folder gives those below it, in the order of their names.
 #[must_use]
@@ -176,16 +172,10 @@ fn read_from(input: impl Read, name: String) -> Result<File, ReadError> {
     }
     match String::from_utf8(bytes) {
         Ok(text) => Ok(File::new(name, text.strip_prefix('\u{feff}').unwrap_or(&text))),
-        Err(error) => {
-            let valid = error.utf8_error().valid_up_to();
-            let text = String::from_utf8_lossy(&error.as_bytes()[..valid]).into_owned();
-            let at = File::new("", text).position(valid);
-            Err(ReadError::NotUtf8 {
-                name,
-                line: at.line,
-                column: at.column,
-            })
-        }
+        Err(error) => Err(ReadError::NotUtf8 {
+            at: error.utf8_error().valid_up_to(),
+            file: File::new(name, String::from_utf8_lossy(error.as_bytes())),
+        }),
     }
 }
 
@@ -217,8 +207,10 @@ mod tests {
     #[test]
     fn a_byte_that_is_not_utf8_is_named_by_line_and_column() {
         let error = read_from(&b"ok\nab\xffc"[..], "x".to_owned()).unwrap_err();
-        assert_eq!(error.to_string(), "x:2:3: not UTF-8 text; save the file as UTF-8");
-        assert!(error.blames_content());
+        assert_eq!(
+            error.to_string(),
+            "x:2:3: this is not UTF-8 text; save the file as UTF-8"
+        );
     }
 
     #[test]

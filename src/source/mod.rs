@@ -8,5 +8,7 @@ mod find;
 mod span;
 
 pub use file::{File, FileId, Files, Position};
-pub use find::{EXTENSIONS, Found, FoundIn, MAX_BYTES, ReadError, find, read, read_text};
+pub use find::{
+    EXTENSIONS, Found, FoundIn, MAX_BYTES, NOT_UTF8, ReadError, TOO_LARGE, find, read, read_text,
+};
 pub use span::Span;

@@ -23,6 +23,17 @@ struct Hit<T: Real> {
     sphere: usize,
 }
 
+impl<T: Real> Hit<T> {
+    /// A secondary ray.
+    fn leave(&self, direction: T::Vec3, doubt: &impl Doubt<T>) -> Ray<T> {
+        Ray {
+            origin: self.point + self.normal * doubt.offset(),
+            direction,
+            from: Some(self.sphere),
+        }
+    }
+}
+
 #[derive(Debug)]
 struct Surface<T: Real> {
     shape: Shape<T>,
@@ -96,19 +107,11 @@ impl<T: Real> World<T> {
                 Model::Mirror => {
                     throughput = throughput * surface.color;
                     let direction = ray.direction - hit.normal * (T::from_f64(2.0) * facing);
-                    ray = self.leave(&hit, direction, doubt);
+                    ray = hit.leave(direction, doubt);
                 }
             }
         }
         T::Vec3::ZERO
-    }
-
-    fn leave(&self, hit: &Hit<T>, direction: T::Vec3, doubt: &impl Doubt<T>) -> Ray<T> {
-        Ray {
-            origin: hit.point + hit.normal * doubt.offset(),
-            direction,
-            from: Some(hit.sphere),
-        }
     }
 
     fn intersect(&self, sphere: usize, ray: &Ray<T>, doubt: &impl Doubt<T>) -> Option<T> {
@@ -163,7 +166,7 @@ impl<T: Real> World<T> {
     /// Whether anything lies strictly between: the ray's direction is not of length 1 here, so that the
     /// light lies at t = 1.
     fn occluded(&self, hit: &Hit<T>, light: &Light<T>, doubt: &impl Doubt<T>) -> bool {
-        let mut ray = self.leave(hit, T::Vec3::ZERO, doubt);
+        let mut ray = hit.leave(T::Vec3::ZERO, doubt);
         ray.direction = light.position - ray.origin;
         (0..self.surfaces.len())
             .any(|sphere| self.intersect(sphere, &ray, doubt).is_some_and(|t| t < T::one()))

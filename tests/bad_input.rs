@@ -1,0 +1,362 @@
+//! Bad input gets a clear message and the right exit code; it never hangs, and leaves nothing half-written.
+
+mod program;
+
+use std::fs;
+use std::path::Path;
+use std::time::Instant;
+
+use program::{Run, command, has_driver, run, toyproof};
+use tempfile::TempDir;
+
+const MAIN: &str = "void mainImage(out vec4 c, in vec2 p)";
+const SPHERE: &str = "[[sphere]]\ncenter = [0.0, 0.0, -6.0]\nradius = 1.5\nmaterial = { model = \"facing\", color = [1.0, 1.0, 0.0] }\n";
+
+fn folder(files: &[(&str, &str)]) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in files {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    folder
+}
+
+fn check(text: &str, arguments: &[&str]) -> Run {
+    let folder = folder(&[("s.glsl", text)]);
+    toyproof(folder.path(), &[&["check", "s.glsl"], arguments].concat())
+}
+
+#[track_caller]
+fn expect(run: &Run, code: i32, words: &[&str]) {
+    let all = format!("{}{}", run.stdout, run.stderr);
+    assert_eq!(run.code, code, "{all}");
+    for words in words {
+        assert!(all.contains(words), "“{words}” is not in:\n{all}");
+    }
+}
+
+#[test]
+fn a_missing_file() {
+    let run = toyproof(folder(&[]).path(), &["check", "nowhere.glsl"]);
+    expect(&run, 2, &["error        nowhere.glsl", "no such file or folder"]);
+}
+
+#[test]
+fn a_folder_without_shaders() {
+    let run = toyproof(folder(&[("notes.txt", "")]).path(), &["check", "."]);
+    expect(
+        &run,
+        2,
+        &["no shader in this folder", ".glsl .frag .fs .shadertoy"],
+    );
+}
+
+#[test]
+#[cfg(unix)]
+fn a_file_that_cannot_be_read() {
+    // A socket can be opened by nobody, root included.
+    let folder = folder(&[]);
+    let _socket = std::os::unix::net::UnixListener::bind(folder.path().join("s.glsl")).unwrap();
+    expect(
+        &toyproof(folder.path(), &["check", "s.glsl"]),
+        2,
+        &["s.glsl: cannot be read"],
+    );
+}
+
+#[test]
+fn a_missing_file_costs_only_itself() {
+    let folder = folder(&[("empty.glsl", "")]);
+    let run = toyproof(folder.path(), &["check", "nowhere.glsl", "empty.glsl"]);
+    expect(&run, 2, &["error        nowhere.glsl", "invalid      empty.glsl"]);
+}
+
+#[test]
+fn an_empty_file() {
+    expect(
+        &check("", &[]),
+        1,
+        &[
+            "the file is empty",
+            "mainImage(out vec4 fragColor, in vec2 fragCoord)",
+        ],
+    );
+}
+
+#[test]
+fn a_shader_without_main_image() {
+    expect(
+        &check("float f() { return 1.0; }", &[]),
+        1,
+        &["the shader has no function `mainImage`"],
+    );
+}
+
+#[test]
+fn a_brace_that_is_never_closed() {
+    let run = check(
+        &format!("{MAIN} {{\n  if (p.x > 1.0) {{\n  c = vec4(1.0);\n}}\n"),
+        &[],
+    );
+    expect(&run, 1, &["this `{` is never closed", "s.glsl:1:39"]);
+}
+
+#[test]
+fn twenty_megabytes() {
+    expect(
+        &check(&" ".repeat(20_000_000), &[]),
+        1,
+        &["the file is larger than 1 MiB"],
+    );
+}
+
+#[test]
+fn bytes_that_are_not_text() {
+    let folder = folder(&[]);
+    fs::write(folder.path().join("s.glsl"), b"void f();\nfloat \xff;").unwrap();
+    expect(
+        &toyproof(folder.path(), &["check", "s.glsl"]),
+        1,
+        &["not UTF-8 text", "s.glsl:2:7"],
+    );
+}
+
+#[test]
+fn scenes_that_say_what_they_must_not() {
+    let whole = format!("{MAIN} {{ c = vec4(0.0); }}");
+    for (scene, words) in [
+        (
+            "colour = 1\n".to_owned(),
+            ["unknown field `colour`", "s.toml:1:1"],
+        ),
+        (
+            SPHERE.replace("-6.0", "nan"),
+            ["center must be three finite numbers", "s.toml:2:10"],
+        ),
+        (
+            SPHERE.replace("1.5", "0.0"),
+            ["radius must be a finite number above 0, not 0", "s.toml:3:10"],
+        ),
+        (
+            "[film]\nsize = [0, 0]\n".to_owned(),
+            ["nothing to show", "s.toml:2:8"],
+        ),
+        (
+            "[film]\nsize = [100000, 100000]\n".to_owned(),
+            ["too large", "s.toml:2:8"],
+        ),
+    ] {
+        let folder = folder(&[("s.glsl", &whole), ("s.toml", &scene)]);
+        expect(&toyproof(folder.path(), &["check", "s.glsl"]), 2, &words);
+        expect(
+            &toyproof(folder.path(), &["render", "s.toml", "-o", "s.png"]),
+            2,
+            &words,
+        );
+        assert!(!folder.path().join("s.png").exists());
+    }
+}
+
+#[test]
+fn sizes_that_cannot_be() {
+    for (size, words) in [
+        ("0x0", "nothing to show"),
+        ("100000x100000", "too large"),
+        ("wide", "640x360"),
+    ] {
+        expect(&check("", &["--size", size]), 2, &[words]);
+    }
+}
+
+#[test]
+fn an_output_folder_that_cannot_be_written() {
+    if !has_driver() {
+        return;
+    }
+    let folder = folder(&[("s.glsl", &format!("{MAIN} {{ c = vec4(0.5); }}")), ("file", "")]);
+    for arguments in [
+        &["check", "s.glsl", "--out", "file/out"][..],
+        &["run", "s.glsl", "-o", "file/s.png"],
+    ] {
+        expect(&toyproof(folder.path(), arguments), 2, &["cannot write file/"]);
+    }
+    assert_eq!(names(folder.path()), ["file", "s.glsl"]);
+}
+
+#[test]
+fn an_output_that_is_no_picture() {
+    if !has_driver() {
+        return;
+    }
+    let folder = folder(&[("s.glsl", &format!("{MAIN} {{ c = vec4(0.5); }}"))]);
+    expect(
+        &toyproof(folder.path(), &["run", "s.glsl", "-o", "s.gif"]),
+        2,
+        &["s.gif", ".png", ".exr"],
+    );
+    expect(
+        &toyproof(folder.path(), &["convert", "s.glsl", "-o", "s.txt"]),
+        2,
+        &["--to", ".wgsl"],
+    );
+    assert_eq!(names(folder.path()), ["s.glsl"]);
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<_> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn no_vulkan_driver() {
+    let folder = folder(&[("s.glsl", &format!("{MAIN} {{ c = vec4(0.5); }}"))]);
+    for arguments in [
+        &["check", "s.glsl"][..],
+        &["run", "s.glsl", "-o", "s.png"],
+        &["doctor"],
+    ] {
+        let mut command = command(folder.path());
+        command
+            .args(arguments)
+            .env("VK_DRIVER_FILES", "/nowhere.json")
+            .env("VK_ICD_FILENAMES", "/nowhere.json");
+        expect(
+            &run(&mut command),
+            2,
+            &[
+                "no Vulkan driver found",
+                "apt-get install mesa-vulkan-drivers libvulkan1",
+            ],
+        );
+    }
+}
+
+#[test]
+fn an_adapter_that_is_not_there() {
+    if !has_driver() {
+        return;
+    }
+    let run = check(&format!("{MAIN} {{ c = vec4(0.5); }}"), &["--on", "Voodoo"]);
+    expect(
+        &run,
+        2,
+        &["no Vulkan adapter's name holds “Voodoo”", "there are:"],
+    );
+}
+
+#[test]
+fn endless_and_overlong_loops() {
+    if !has_driver() {
+        return;
+    }
+    for body in [
+        "for (;;) { } c = vec4(1.0);",
+        "float x = 0.0; while (x < 1.0) { x *= 0.5; } c = vec4(x);",
+        // So long that a driver without a cap takes longer than the deadline.
+        "float x = p.x; for (int i = 0; i < 2000000000; i++) { x = sin(x) + 0.1; } c = vec4(x);",
+    ] {
+        let run = check(
+            &format!("{MAIN} {{ {body} }}"),
+            &["--timeout", "3s", "--size", "64x36"],
+        );
+        expect(&run, 1, &["timeout      s.glsl"]);
+    }
+}
+
+#[test]
+fn a_long_loop_that_ends_is_no_timeout() {
+    if !has_driver() {
+        return;
+    }
+    let body = "float x = p.x; for (int i = 0; i < 20000; i++) { x += fract(x * 0.3) * 0.001; } c = vec4(x);";
+    let run = check(
+        &format!("{MAIN} {{ {body} }}"),
+        &["--timeout", "60s", "--size", "16x9"],
+    );
+    expect(&run, 0, &["ok           s.glsl"]);
+}
+
+#[test]
+fn twenty_thousand_parentheses() {
+    let nested = format!(
+        "{MAIN} {{ float x = {}1.0{}; c = vec4(x); }}",
+        "(".repeat(20_000),
+        ")".repeat(20_000)
+    );
+    expect(&check(&nested, &[]), 1, &["nested too deep"]);
+}
+
+#[test]
+fn nesting_without_brackets_ends_in_a_verdict() {
+    if !has_driver() {
+        return;
+    }
+    for body in [
+        format!("float x = {}1.0; c = vec4(x);", "- ".repeat(20_000)),
+        format!("{} c = vec4(1.0);", "if (p.x > 1.0) ".repeat(20_000)),
+        format!(
+            "float x = {}1.0; c = vec4(x);",
+            "p.x > 1.0 ? 1.0 : ".repeat(20_000)
+        ),
+    ] {
+        let run = check(&format!("{MAIN} {{ {body} }}"), &["--timeout", "2s"]);
+        assert!((0..=1).contains(&run.code), "{}", run.stdout);
+    }
+}
+
+#[test]
+fn a_shader_that_compiles_for_a_minute() {
+    if !has_driver() {
+        return;
+    }
+    let body = "float a[4096]; for (int i = 0; i < 4096; i++) a[i] = p.x; c = vec4(a[int(p.x)]);";
+    let start = Instant::now();
+    let run = check(&format!("{MAIN} {{ {body} }}"), &["--timeout", "2s"]);
+    expect(
+        &run,
+        1,
+        &["timeout      s.glsl: stopped after 2.0 s, while the driver was compiling the shader"],
+    );
+    assert!(start.elapsed().as_secs() < 30);
+}
+
+#[test]
+fn macros_that_grow_without_end() {
+    let mut bomb = "#define A0 1.0 + 1.0\n".to_owned();
+    for i in 0..40 {
+        bomb += &format!("#define A{} A{i} + A{i}\n", i + 1);
+    }
+    let run = check(
+        &format!("{bomb}{MAIN} {{ c = vec4(A40); }}"),
+        &["--timeout", "2s"],
+    );
+    assert!(
+        run.stdout.starts_with("timeout") || run.stdout.starts_with("invalid"),
+        "{}",
+        run.stdout
+    );
+}
+
+#[test]
+fn after_a_worker_died_the_next_shader_is_checked() {
+    if !has_driver() {
+        return;
+    }
+    let folder = folder(&[
+        (
+            "a.glsl",
+            &format!(
+                "{MAIN} {{ float x = p.x; for (int i = 0; i < 2000000000; i++) x = sin(x); c = vec4(x); }}"
+            ),
+        ),
+        ("b.glsl", &format!("{MAIN} {{ c = vec4(0.5); }}")),
+    ]);
+    let run = toyproof(
+        folder.path(),
+        &["check", ".", "--timeout", "2s", "--size", "64x36"],
+    );
+    expect(&run, 1, &["timeout      ./a.glsl", "ok           ./b.glsl"]);
+}

@@ -1,0 +1,351 @@
+//! Each command does what its help says, and every command of the README works as it stands there.
+
+mod program;
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use program::{command, has_driver, run, toyproof};
+use serde_json::Value;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+#[test]
+fn the_help_of_each_command_shows_an_example() {
+    for name in ["check", "render", "run", "convert", "compare", "scenes", "doctor"] {
+        let help = toyproof(root(), &[name, "--help"]).stdout;
+        assert!(
+            help.contains("Example") && help.contains(&format!("toyproof {name}")),
+            "{help}"
+        );
+    }
+}
+
+#[test]
+fn the_course_is_correct_and_its_json_follows_the_schema() {
+    if !has_driver() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    let run = toyproof(
+        root(),
+        &[
+            "check", "glsl", "--size", "160x90", "--out", out, "--format", "json",
+        ],
+    );
+    assert_eq!(run.code, 0, "{}{}", run.stdout, run.stderr);
+    assert_eq!(
+        fs::read_to_string(folder.path().join("verdict.json")).unwrap(),
+        run.stdout
+    );
+    let json: Value = serde_json::from_str(&run.stdout).unwrap();
+    let schema: Value = serde_json::from_str(toyproof::report::SCHEMA).unwrap();
+    jsonschema::validate(&schema, &json).unwrap();
+    let shaders = json["shaders"].as_array().unwrap();
+    assert_eq!(shaders.len(), 5);
+    for shader in shaders {
+        assert_eq!(shader["verdict"], "correct", "{shader}");
+        let stem = Path::new(shader["shader"].as_str().unwrap())
+            .file_stem()
+            .unwrap()
+            .to_str()
+            .unwrap();
+        for picture in ["reference", "actual", "difference"] {
+            assert!(folder.path().join(format!("{stem}-{picture}.png")).is_file());
+        }
+    }
+}
+
+#[test]
+fn a_shader_without_a_scene_is_ok_and_one_with_the_wrong_scene_is_wrong() {
+    if !has_driver() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    fs::copy(root().join("glsl/02-sphere.glsl"), folder.path().join("s.glsl")).unwrap();
+    assert!(
+        toyproof(folder.path(), &["check", "s.glsl"])
+            .stdout
+            .starts_with("ok  ")
+    );
+    let other = root().join("glsl/03-shading.toml");
+    let run = toyproof(
+        folder.path(),
+        &["check", "s.glsl", "--scene", other.to_str().unwrap()],
+    );
+    assert_eq!(run.code, 1);
+    assert!(run.stdout.starts_with("wrong"), "{}", run.stdout);
+    assert!(run.stdout.contains("worst at x "), "{}", run.stdout);
+}
+
+#[test]
+fn standard_input_is_a_shader() {
+    if !has_driver() {
+        return;
+    }
+    let shader = fs::File::open(root().join("glsl/02-sphere.glsl")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let run = run(command(folder.path())
+        .args(["run", "-", "-o", "s.png"])
+        .stdin(shader));
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    assert!(folder.path().join("s.png").is_file());
+}
+
+#[test]
+fn the_frame_flags_reach_the_shader() {
+    if !has_driver() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let shader = "void mainImage(out vec4 c, in vec2 p) {
+        bool all = iTime == 1.5 && iFrame == 7 && iMouse == vec4(1.0, 2.0, 3.0, -4.0) && iDate == vec4(2026.0, 0.0, 2.0, 3.0);
+        all = all && iResolution == vec3(8.0, 4.0, 1.0) && iFrameRate == 60.0 && iSampleRate == 44100.0;
+        all = all && iChannelTime[2] == 0.0 && iChannelResolution[1].xy == vec2(256.0) && iChannelResolution[0].x == 0.0;
+        bool painted = texture(iChannel0, vec2(0.5)).xyz == vec3(0.0) && texelFetch(iChannel1, ivec2(3), 0).x > 0.0;
+        // The lower left pixel is green, the others are white.
+        vec3 corner = all && painted ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
+        c = vec4(p.x < 1.0 && p.y < 1.0 ? corner : vec3(1.0), 0.0);
+    }";
+    fs::write(folder.path().join("s.glsl"), shader).unwrap();
+    let arguments = "run s.glsl -o s.exr --size 8x4 --time 1.5 --frame 7 --mouse 1,2,3,-4 --date 2026,0,2,3 --channel1 noise";
+    let run = toyproof(folder.path(), &arguments.split(' ').collect::<Vec<_>>());
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let picture = toyproof::image::read(&folder.path().join("s.exr")).unwrap();
+    assert_eq!(
+        picture.get(0, 0),
+        [0.0, 1.0, 0.0, 1.0],
+        "alpha is 1 whatever the shader says"
+    );
+    assert_eq!(picture.get(7, 3), [1.0; 4]);
+}
+
+#[test]
+fn derivatives_grow_upwards() {
+    if !has_driver() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let shader = "void mainImage(out vec4 c, in vec2 p) { c = vec4(dFdx(p.x), dFdy(p.y), 0.0, 1.0); }";
+    fs::write(folder.path().join("s.glsl"), shader).unwrap();
+    assert_eq!(
+        toyproof(folder.path(), &["run", "s.glsl", "-o", "s.exr", "--size", "4x4"]).code,
+        0
+    );
+    let picture = toyproof::image::read(&folder.path().join("s.exr")).unwrap();
+    assert!(
+        picture
+            .pixels()
+            .iter()
+            .all(|pixel| *pixel == [1.0, 1.0, 0.0, 1.0])
+    );
+}
+
+#[test]
+fn rendering_and_comparing_pictures() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = root().join("glsl/02-sphere.toml");
+    let scene = scene.to_str().unwrap();
+    let render = |name: &str, size: &str, more: &[&str]| {
+        let arguments = [&["render", scene, "-o", name, "--size", size], more].concat();
+        let run = toyproof(folder.path(), &arguments);
+        assert_eq!(run.code, 0, "{}", run.stderr);
+    };
+    render("double.exr", "64x36", &[]);
+    render("single.exr", "64x36", &["--precision", "f32"]);
+    render("double.png", "64x36", &[]);
+    let same = toyproof(folder.path(), &["compare", "double.exr", "single.exr"]);
+    assert_eq!(same.code, 0, "{}", same.stdout);
+    assert!(
+        !same.stdout.contains("to 0.0e0"),
+        "two precisions are not one: {}",
+        same.stdout
+    );
+    fs::copy(folder.path().join("double.png"), folder.path().join("copy.png")).unwrap();
+    assert_eq!(
+        toyproof(folder.path(), &["compare", "double.png", "copy.png"]).code,
+        0
+    );
+    let black = root().join("glsl/03-shading.toml");
+    let run = toyproof(
+        folder.path(),
+        &[
+            "render",
+            black.to_str().unwrap(),
+            "-o",
+            "b.png",
+            "--size",
+            "64x36",
+        ],
+    );
+    assert_eq!(run.code, 0);
+    let differ = toyproof(
+        folder.path(),
+        &["compare", "double.png", "b.png", "--diff", "d.png"],
+    );
+    assert_eq!(differ.code, 1);
+    assert!(differ.stdout.contains("worst at x "), "{}", differ.stdout);
+    assert!(folder.path().join("d.png").is_file());
+    render("small.png", "32x18", &[]);
+    let sizes = toyproof(folder.path(), &["compare", "double.png", "small.png"]);
+    assert_eq!(sizes.code, 2);
+    assert!(sizes.stderr.contains("64×36"), "{}", sizes.stderr);
+}
+
+/// Runs a judge of a converted file, where it is installed.
+fn judge(program: &str, arguments: &[&str]) {
+    match Command::new(program).args(arguments).output() {
+        Err(_) => eprintln!("skipped: {program} is not installed here"),
+        Ok(output) => {
+            assert!(
+                output.status.success(),
+                "{program} {arguments:?}: {}",
+                String::from_utf8_lossy(&output.stderr)
+            );
+        }
+    }
+}
+
+#[test]
+fn conversions_are_accepted_by_those_who_take_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    // What the rungs do not use: textures, derivatives, every input.
+    let shader = "void mainImage(out vec4 c, in vec2 p) {
+        if (p.x > 9.0) c = texture(iChannel0, p / iResolution.xy) + dFdx(p.xyxy);
+        c += textureLod(iChannel3, p, 0.0) + vec4(iChannelTime[1]) + vec4(iChannelResolution[2], iSampleRate);
+        c += iDate * iMouse + vec4(iTime, iTimeDelta, float(iFrame), iFrameRate);
+    }";
+    fs::write(folder.path().join("inputs.glsl"), shader).unwrap();
+    let inputs = folder.path().join("inputs.glsl");
+    for to in ["wgsl", "spv", "metal", "hlsl", "glsl", "lowered"] {
+        let run = toyproof(
+            root(),
+            &["convert", "glsl", inputs.to_str().unwrap(), "-o", out, "--to", to],
+        );
+        assert_eq!(run.code, 0, "{to}: {}", run.stderr);
+    }
+    for stem in [
+        "02-sphere",
+        "03-shading",
+        "04-many-objects",
+        "05-complex-scene",
+        "06-reflections",
+        "inputs",
+    ] {
+        let file = |extension: &str| {
+            folder
+                .path()
+                .join(format!("{stem}.{extension}"))
+                .to_str()
+                .unwrap()
+                .to_owned()
+        };
+        judge("naga", &[&file("wgsl")]);
+        judge("tint", &["--format", "wgsl", &file("wgsl")]);
+        judge("spirv-val", &["--target-env", "vulkan1.1", &file("spv")]);
+        judge("glslangValidator", &[&file("frag")]);
+        assert!(
+            fs::read_to_string(file("metal"))
+                .unwrap()
+                .contains("metal_stdlib")
+        );
+        assert!(fs::read_to_string(file("hlsl")).unwrap().contains("SV_Target"));
+        assert!(
+            fs::read_to_string(file("lowered.glsl"))
+                .unwrap()
+                .starts_with("#version 450")
+        );
+    }
+    let wgsl = |stem: &str| fs::read_to_string(folder.path().join(format!("{stem}.wgsl"))).unwrap();
+    assert!(wgsl("inputs").starts_with("diagnostic(off, derivative_uniformity);"));
+    assert!(
+        !wgsl("02-sphere").contains("diagnostic("),
+        "only where it is needed"
+    );
+}
+
+#[test]
+fn several_shaders_need_a_folder() {
+    let run = toyproof(root(), &["convert", "glsl", "-o", "all.wgsl"]);
+    assert_eq!(run.code, 2);
+    assert!(run.stderr.contains("5 shaders need a folder"), "{}", run.stderr);
+}
+
+#[test]
+fn the_scenes_are_written_and_check_as_they_are() {
+    let folder = tempfile::tempdir().unwrap();
+    assert!(toyproof(root(), &["scenes"]).stdout.contains("05-complex-scene"));
+    let run = toyproof(folder.path(), &["scenes", "--write", "course"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    for name in ["02-sphere.glsl", "06-reflections.toml"] {
+        let written = fs::read(folder.path().join("course").join(name)).unwrap();
+        assert_eq!(written, fs::read(root().join("glsl").join(name)).unwrap());
+    }
+}
+
+#[test]
+fn colours_are_for_terminals_and_can_be_forced_or_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let plain = toyproof(folder.path(), &["check", "nowhere.glsl"]);
+    assert!(!plain.stdout.contains('\u{1b}'));
+    let forced = run(command(folder.path())
+        .args(["check", "nowhere.glsl"])
+        .env("CLICOLOR_FORCE", "1"));
+    assert!(forced.stdout.contains('\u{1b}'));
+    let refused = run(command(folder.path())
+        .args(["check", "nowhere.glsl"])
+        .env("NO_COLOR", "1"));
+    assert!(!refused.stdout.contains('\u{1b}'));
+}
+
+/// The README's `$ …` lines, in a folder that holds `glsl/`; those of `make` are only looked up.
+#[test]
+fn every_command_of_the_readme_works() {
+    let driver = has_driver();
+    let readme = fs::read_to_string(root().join("README.md")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let made = toyproof(folder.path(), &["scenes", "--write", "glsl"]);
+    assert_eq!(made.code, 0);
+    let program = Path::new(env!("CARGO_BIN_EXE_toyproof")).parent().unwrap();
+    let path = format!("{}:{}", program.display(), std::env::var("PATH").unwrap());
+    let commands: Vec<_> = readme
+        .lines()
+        .filter_map(|line| line.strip_prefix("$ "))
+        .collect();
+    assert!(commands.len() >= 8, "{commands:?}");
+    for line in commands {
+        if line.starts_with("make ") {
+            let known = Command::new("make")
+                .arg("-n")
+                .args(line.split(' ').skip(1))
+                .current_dir(root())
+                .output()
+                .unwrap();
+            assert!(known.status.success(), "{line}");
+            continue;
+        }
+        let needs_driver = ["check", "run", "doctor"]
+            .iter()
+            .any(|name| line.starts_with(&format!("toyproof {name}")));
+        if needs_driver && !driver {
+            continue;
+        }
+        let ran = Command::new("sh")
+            .arg("-c")
+            .arg(line)
+            .current_dir(folder.path())
+            .env("PATH", &path)
+            .output()
+            .unwrap();
+        assert!(
+            ran.status.success(),
+            "{line}: {}",
+            String::from_utf8_lossy(&ran.stderr)
+        );
+    }
+}

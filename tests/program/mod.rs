@@ -1,0 +1,57 @@
+//! Running the program as a user does.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// What the program did.
+#[derive(Debug)]
+pub(crate) struct Run {
+    pub(crate) code: i32,
+    pub(crate) stdout: String,
+    pub(crate) stderr: String,
+}
+
+/// Runs `toyproof` with these arguments in a folder.
+pub(crate) fn toyproof(folder: &Path, arguments: &[&str]) -> Run {
+    run(command(folder).args(arguments))
+}
+
+/// The program, in a folder, its environment without what would change its words.
+pub(crate) fn command(folder: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_toyproof"));
+    command
+        .current_dir(folder)
+        .env_remove("NO_COLOR")
+        .env_remove("CLICOLOR_FORCE");
+    command
+}
+
+pub(crate) fn run(command: &mut Command) -> Run {
+    let Output {
+        status,
+        stdout,
+        stderr,
+    } = command.output().unwrap();
+    let run = Run {
+        code: status
+            .code()
+            .unwrap_or_else(|| panic!("ended by a signal: {status}")),
+        stdout: String::from_utf8(stdout).unwrap(),
+        stderr: String::from_utf8(stderr).unwrap(),
+    };
+    assert!(!run.stderr.contains("panicked"), "{run:?}");
+    run
+}
+
+/// Whether shaders can run here. On CI they must.
+pub(crate) fn has_driver() -> bool {
+    let found = toyproof(Path::new("."), &["doctor"]).code == 0;
+    assert!(
+        found || std::env::var_os("CI").is_none(),
+        "no Vulkan driver on CI"
+    );
+    if !found {
+        eprintln!("skipped: no Vulkan driver here; `make setup` installs one");
+    }
+    found
+}
