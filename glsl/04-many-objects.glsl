@@ -1,9 +1,9 @@
-// Six spheres: the nearest hit wins, and each may stand in another's light.
+// Seven spheres: the nearest hit wins, and each may stand in another's light.
 
 const float SCREEN_DEPTH = -2.0;
 const float NO_HIT = 1.0e6;
 const int SAMPLES = 4;
-const int SPHERES = 6;
+const int SPHERES = 7;
 const vec3 AMBIENT = vec3(0.08);
 
 struct Ray {
@@ -39,11 +39,13 @@ float random() {
 
 void makeScene() {
     spheres[0] = Sphere(vec3(0.0, -31.0, -8.0), 30.0, vec3(0.5, 0.5, 0.45));
-    spheres[1] = Sphere(vec3(0.0, 0.0, -6.0), 1.0, vec3(0.9, 0.8, 0.1));
-    spheres[2] = Sphere(vec3(-1.5, -0.4, -5.0), 0.6, vec3(0.9, 0.2, 0.15));
-    spheres[3] = Sphere(vec3(1.4, -0.5, -4.8), 0.5, vec3(0.15, 0.3, 0.9));
-    spheres[4] = Sphere(vec3(0.5, -0.7, -4.0), 0.3, vec3(0.2, 0.8, 0.3));
+    spheres[1] = Sphere(vec3(0.5, -0.7, -4.0), 0.3, vec3(0.2, 0.8, 0.3));
+    spheres[2] = Sphere(vec3(0.0, 0.0, -6.0), 1.0, vec3(0.9, 0.8, 0.1));
+    spheres[3] = Sphere(vec3(-1.5, -0.4, -5.0), 0.6, vec3(0.9, 0.2, 0.15));
+    spheres[4] = Sphere(vec3(1.4, -0.5, -4.8), 0.5, vec3(0.15, 0.3, 0.9));
     spheres[5] = Sphere(vec3(-0.6, 1.1, -5.5), 0.35, vec3(0.8, 0.4, 0.8));
+    // Beyond the light, where it shades nothing.
+    spheres[6] = Sphere(vec3(6.8, 10.2, 5.9), 3.0, vec3(0.6, 0.6, 0.6));
     light = Light(vec3(4.0, 6.0, 1.0), vec3(0.9));
 }
 

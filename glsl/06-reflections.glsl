@@ -20,10 +20,10 @@ struct Sphere {
 Sphere spheres[SPHERES];
 
 void makeScene() {
-    spheres[0] = Sphere(vec3(0.0, 0.0, -7.0), 1.2, vec3(0.95, 0.93, 0.88));
-    spheres[1] = Sphere(vec3(-1.3, -0.4, -5.2), 0.6, vec3(0.9, 0.6, 0.6));
-    spheres[2] = Sphere(vec3(1.2, 0.5, -5.0), 0.7, vec3(0.6, 0.7, 0.95));
-    spheres[3] = Sphere(vec3(0.2, -0.6, -3.6), 0.3, vec3(0.7, 0.9, 0.7));
+    spheres[0] = Sphere(vec3(-1.3, -0.4, -5.2), 0.6, vec3(0.9, 0.6, 0.6));
+    spheres[1] = Sphere(vec3(0.0, 0.0, -7.0), 1.2, vec3(0.95, 0.93, 0.88));
+    spheres[2] = Sphere(vec3(0.2, -0.6, -3.6), 0.3, vec3(0.7, 0.9, 0.7));
+    spheres[3] = Sphere(vec3(1.2, 0.5, -5.0), 0.7, vec3(0.6, 0.7, 0.95));
 }
 
 vec3 sky(vec3 direction) {

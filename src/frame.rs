@@ -115,8 +115,14 @@ mod tests {
         let mut frame = Frame::default();
         frame.channels[1] = Some(Image::new(2, 1, vec![[0.0; 4]; 2]));
         let bytes = frame.block();
-        let float = |at: usize| f32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
-        assert_eq!([float(0), float(4), float(8)], [640.0, 360.0, 1.0]);
-        assert_eq!([float(96), float(112), float(116)], [0.0, 2.0, 1.0]);
+        let bits = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
+        assert_eq!(
+            [bits(0), bits(4), bits(8)],
+            [640.0f32, 360.0, 1.0].map(f32::to_bits)
+        );
+        assert_eq!(
+            [bits(96), bits(112), bits(116)],
+            [0.0f32, 2.0, 1.0].map(f32::to_bits)
+        );
     }
 }

@@ -115,3 +115,65 @@ fn instructions(words: &[u32]) -> impl Iterator<Item = (usize, &[u32])> {
         Some((start, words.get(start..at)?))
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::glsl::lower;
+    use crate::source::{File, Files};
+
+    const SHADER: &str = "void mainImage(out vec4 c, in vec2 p) {
+        int i = int(p.x) * 3;
+        mat2 m = mat2(p, p);
+        c = vec4(m * p, dot(p, p) - 0.5, sin(p.x) / float(i));
+    }";
+
+    fn plain() -> Vec<u32> {
+        let mut files = Files::default();
+        let file = files.add(File::new("s", SHADER));
+        words(&ValidModule::parse(&lower(&files, file).unwrap()).unwrap()).unwrap()
+    }
+
+    fn is_no_contraction(instruction: &[u32]) -> bool {
+        instruction.len() == 3
+            && instruction[0] & 0xffff == op::DECORATE
+            && instruction[2] == op::NO_CONTRACTION
+    }
+
+    #[test]
+    fn only_decorations_are_added() {
+        let plain = plain();
+        let strict = strict(&plain);
+        let kept: Vec<u32> = instructions(&strict)
+            .filter(|(_, instruction)| !is_no_contraction(instruction))
+            .flat_map(|(_, instruction)| instruction.to_vec())
+            .collect();
+        assert_eq!(kept, plain[HEADER_WORDS..]);
+        assert_eq!(strict[..HEADER_WORDS], plain[..HEADER_WORDS]);
+    }
+
+    #[test]
+    fn every_float_operation_is_decorated_and_no_integer_one() {
+        const I_MUL: u32 = 132;
+        let strict = strict(&plain());
+        let decorated: HashSet<u32> = instructions(&strict)
+            .filter(|(_, instruction)| is_no_contraction(instruction))
+            .map(|(_, instruction)| instruction[1])
+            .collect();
+        let results = |opcode: u32| -> Vec<u32> {
+            instructions(&strict)
+                .filter(|(_, instruction)| instruction[0] & 0xffff == opcode)
+                .map(|(_, instruction)| instruction[2])
+                .collect()
+        };
+        // m · p, the dot product, the subtraction, sin and the quotient.
+        for opcode in [145, 148, op::F_SUB, op::EXT_INST, op::F_DIV] {
+            let results = results(opcode);
+            assert!(
+                !results.is_empty() && results.iter().all(|id| decorated.contains(id)),
+                "{opcode}"
+            );
+        }
+        assert!(results(I_MUL).iter().all(|id| !decorated.contains(id)) && !results(I_MUL).is_empty());
+    }
+}

@@ -137,6 +137,8 @@ impl Device {
                 .flat_map(|row| row[..16 * width as usize].chunks_exact(16))
                 .map(bytemuck::pod_read_unaligned)
                 .collect();
+            drop(view);
+            scene.readback.unmap();
             Ok(Image::new(width, height, pixels))
         })
     }

@@ -17,6 +17,10 @@ pub(super) trait Doubt<T: Real> {
     fn discriminant(&self, disc: T, f2: T) -> T;
     /// A hit.
     fn point(&self, point: T::Vec3, origin: T::Vec3, depth: u32) -> T::Vec3;
+    /// The unit normal of a hit on a sphere of that radius.
+    fn normal(&self, normal: T::Vec3, point: T::Vec3, radius: T, depth: u32) -> T::Vec3;
+    /// What is taken for d·d of a ray's direction.
+    fn squared_length(&self, length2: T) -> T;
     /// How far along the normal a secondary ray starts off its surface, in scene units.
     fn offset(&self) -> T;
     /// Hits must lie beyond this t; that of camera rays is 0.
@@ -38,6 +42,12 @@ impl<T: Real> Doubt<T> for Exact {
     }
     fn point(&self, point: T::Vec3, _: T::Vec3, _: u32) -> T::Vec3 {
         point
+    }
+    fn normal(&self, normal: T::Vec3, _: T::Vec3, _: T, _: u32) -> T::Vec3 {
+        normal
+    }
+    fn squared_length(&self, length2: T) -> T {
+        length2
     }
     fn offset(&self) -> T {
         T::zero()
@@ -169,6 +179,17 @@ impl Doubt<f64> for Moved {
         let size = origin.abs().max_element().max(point.abs().max_element());
         let signs = [0, 1, 2].map(|axis| self.share(3 + 3 * (depth % 16) + axis));
         point + glam::DVec3::from_array(signs) * (POINT * U * size)
+    }
+
+    /// (P − c)/r is as far from length 1 as P from the sphere. A mirror makes the same of the ray's direction, and a
+    /// shader that takes d·d for 1 goes astray by it, at every bounce by more.
+    fn normal(&self, normal: glam::DVec3, point: glam::DVec3, radius: f64, depth: u32) -> glam::DVec3 {
+        let share = self.share(52 + depth % 8);
+        normal * (1.0 + share * POINT * U * point.abs().max_element() / radius)
+    }
+
+    fn squared_length(&self, length2: f64) -> f64 {
+        if self.scale > 0.0 { 1.0 } else { length2 }
     }
 
     fn offset(&self) -> f64 {

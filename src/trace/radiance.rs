@@ -137,9 +137,10 @@ impl<T: Real> World<T> {
         let sphere = nearest?;
         let Shape { center, radius } = self.surfaces[sphere].shape;
         let point = doubt.point(ray.origin + ray.direction * t_nearest, ray.origin, depth);
+        let normal = doubt.normal((point - center) / radius, point, radius, depth);
         Some(Hit {
             point,
-            normal: (point - center) / radius,
+            normal,
             sphere,
         })
     }
@@ -163,12 +164,13 @@ impl<T: Real> World<T> {
         sum
     }
 
-    /// Whether anything lies strictly between: the ray's direction is not of length 1 here, so that the
-    /// light lies at t = 1.
+    /// Whether anything lies strictly between.
     fn occluded(&self, hit: &Hit<T>, light: &Light<T>, doubt: &impl Doubt<T>) -> bool {
         let mut ray = hit.leave(T::Vec3::ZERO, doubt);
-        ray.direction = light.position - ray.origin;
+        let to_light = light.position - ray.origin;
+        let distance = to_light.dot(to_light).sqrt();
+        ray.direction = to_light / distance;
         (0..self.surfaces.len())
-            .any(|sphere| self.intersect(sphere, &ray, doubt).is_some_and(|t| t < T::one()))
+            .any(|sphere| self.intersect(sphere, &ray, doubt).is_some_and(|t| t < distance))
     }
 }

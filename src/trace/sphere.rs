@@ -19,7 +19,7 @@ impl<T: Real> Shape<T> {
     /// b = −f·d, disc = r² − |f + (b/a) d|², q = b + sign(b) √(a·disc), t₀ = (f·f − r²)/q, t₁ = q/a.
     pub(super) fn intersect(&self, ray: &Ray<T>, doubt: &impl Doubt<T>) -> Option<T> {
         let f = ray.origin - self.center;
-        let a = ray.direction.dot(ray.direction);
+        let a = doubt.squared_length(ray.direction.dot(ray.direction));
         let b = -f.dot(ray.direction);
         let r2 = self.radius * self.radius;
         let closest = f + ray.direction * (b / a);
@@ -40,7 +40,7 @@ impl<T: Real> Shape<T> {
     /// that goes in meets its far side at t = −2 d·(P − c) / a.
     pub(super) fn intersect_own(&self, ray: &Ray<T>, doubt: &impl Doubt<T>) -> Option<T> {
         let outward = ray.direction.dot(ray.origin - self.center);
-        let t = T::from_f64(-2.0) * outward / ray.direction.dot(ray.direction);
+        let t = T::from_f64(-2.0) * outward / doubt.squared_length(ray.direction.dot(ray.direction));
         (t > doubt.t_min(true)).then_some(t)
     }
 }

@@ -1,12 +1,10 @@
 //! Each command does what its help says, and every command of the README works as it stands there.
 
-mod program;
-
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use program::{command, has_driver, run, toyproof};
+use crate::program::{command, has_driver, run, toyproof};
 use serde_json::Value;
 
 fn root() -> &'static Path {

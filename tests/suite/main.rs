@@ -1,0 +1,12 @@
+//! The tests that need the whole program, in one binary: it links once.
+
+#![expect(clippy::print_stderr, reason = "a test's own words")]
+
+mod architecture;
+mod bad_input;
+mod commands;
+mod equivalent_rewrites;
+mod planted_faults;
+mod program;
+mod strict;
+mod support;
