@@ -16,4 +16,4 @@ setup:
 	@./setup.sh
 
 bench:
-	cargo bench
+	XDG_RUNTIME_DIR=$${XDG_RUNTIME_DIR:-/tmp} cargo bench
