@@ -8,9 +8,13 @@
 //! a typed node. So there is one tree, and no tree of mere syntax. Section numbers (§) are those of the GLSL ES 3.00.6
 //! specification; where WebGL 2 (ANGLE) is stricter, so are we, and the place says so.
 
+mod codes;
 mod options;
+mod preprocess;
+mod token;
 pub mod tree;
 
+pub use codes::Code;
 pub use options::Options;
 
 use crate::diagnostic::Diagnostic;

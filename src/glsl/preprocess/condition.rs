@@ -1,0 +1,301 @@
+//! `#if` and its kin: which groups of lines are read, and the integers that decide it.
+
+use super::define::nothing_left;
+use super::{PpToken, Preprocessor};
+use crate::diagnostic::Diagnostic;
+use crate::glsl::codes::Code;
+use crate::glsl::token::{Punctuator, TokenKind};
+use crate::glsl::tree::{BinaryOp, Place, UnaryOp};
+
+/// An `#if` that waits for its `#endif`.
+pub(super) struct Group {
+    /// Whether the lines around it are read.
+    outer: bool,
+    /// Whether its lines are read now.
+    active: bool,
+    /// Whether one of its branches was read already.
+    taken: bool,
+    /// Whether its `#else` came already.
+    last: bool,
+    pub(super) at: Place,
+}
+
+impl Preprocessor<'_> {
+    pub(super) fn is_active(&self) -> bool {
+        self.groups.last().is_none_or(|group| group.active)
+    }
+
+    pub(super) fn on_if(&mut self, line: &[PpToken], at: Place) -> Result<(), Diagnostic> {
+        let outer = self.is_active();
+        let value = if outer { self.evaluate(line, at) } else { Ok(false) };
+        // A condition that cannot be told counts as false: what follows is still balanced.
+        self.open(outer, matches!(value, Ok(true)), at);
+        value.map(|_| ())
+    }
+
+    pub(super) fn on_ifdef(&mut self, line: &[PpToken], at: Place, wanted: bool) -> Result<(), Diagnostic> {
+        let outer = self.is_active();
+        let name = match line {
+            [
+                PpToken {
+                    kind: TokenKind::Word(name),
+                    ..
+                },
+                ..,
+            ] => Some(*name),
+            _ => None,
+        };
+        let active = name.is_some_and(|name| self.macros.contains_key(&name) == wanted);
+        self.open(outer, active, at);
+        match name {
+            _ if !outer => Ok(()),
+            None => Err(Code::MalformedDirective.at(at, "the name of a macro is missing here")),
+            Some(_) => nothing_left(&line[1..]),
+        }
+    }
+
+    pub(super) fn on_elif(&mut self, line: &[PpToken], at: Place) -> Result<(), Diagnostic> {
+        let group = self.branch(at, "#elif")?;
+        let asked = group.outer && !group.taken;
+        // The condition is looked at only if no branch was read before.
+        let value = if asked { self.evaluate(line, at) } else { Ok(false) };
+        if let Some(group) = self.groups.last_mut() {
+            group.active = matches!(value, Ok(true));
+            group.taken |= group.active;
+        }
+        value.map(|_| ())
+    }
+
+    pub(super) fn on_else(&mut self, line: &[PpToken], at: Place) -> Result<(), Diagnostic> {
+        let group = self.branch(at, "#else")?;
+        group.active = group.outer && !group.taken;
+        group.last = true;
+        if group.outer { nothing_left(line) } else { Ok(()) }
+    }
+
+    pub(super) fn on_endif(&mut self, line: &[PpToken], at: Place) -> Result<(), Diagnostic> {
+        match self.groups.pop() {
+            None => Err(Code::UnbalancedCondition.at(at, "this `#endif` has no `#if`")),
+            Some(group) if group.outer => nothing_left(line),
+            Some(_) => Ok(()),
+        }
+    }
+
+    fn open(&mut self, outer: bool, active: bool, at: Place) {
+        let active = outer && active;
+        self.groups.push(Group {
+            outer,
+            active,
+            taken: active,
+            last: false,
+            at,
+        });
+    }
+
+    /// The group whose next branch begins.
+    fn branch(&mut self, at: Place, name: &str) -> Result<&mut Group, Diagnostic> {
+        match self.groups.last_mut() {
+            None => Err(Code::UnbalancedCondition.at(at, format!("this `{name}` has no `#if`"))),
+            Some(group) if group.last => Err(Code::UnbalancedCondition
+                .at(at, format!("this `{name}` follows an `#else`"))
+                .related(group.at.span, "of this")),
+            Some(group) => Ok(group),
+        }
+    }
+
+    fn evaluate(&mut self, line: &[PpToken], at: Place) -> Result<bool, Diagnostic> {
+        // `defined` is answered before macros are expanded (§3.4).
+        let answered = self.answer_defined(line)?;
+        let errors = self.diagnostics.len();
+        let tokens = self.expand_list(answered);
+        if self.diagnostics.len() > errors {
+            return Ok(false);
+        }
+        let (value, rest) = self.constant(&tokens, at)?;
+        match rest {
+            [] => Ok(value != 0),
+            [first, ..] => Err(Code::BadCondition.at(first.at, "an operator is missing here")),
+        }
+    }
+
+    fn answer_defined(&mut self, line: &[PpToken]) -> Result<Vec<PpToken>, Diagnostic> {
+        let mut answered = Vec::with_capacity(line.len());
+        let mut rest = line;
+        while let [token, tail @ ..] = rest {
+            rest = tail;
+            let TokenKind::Word(word) = token.kind else {
+                answered.push(*token);
+                continue;
+            };
+            if self.words.text(word) != "defined" {
+                answered.push(*token);
+                continue;
+            }
+            let paren = |token: &PpToken, wanted| token.kind == TokenKind::Punctuator(wanted);
+            let (name, after) = match rest {
+                [open, name, close, after @ ..]
+                    if paren(open, Punctuator::LeftParen) && paren(close, Punctuator::RightParen) =>
+                {
+                    (name, after)
+                }
+                [name, after @ ..] => (name, after),
+                [] => return Err(Code::BadCondition.at(token.at, "`defined` needs the name of a macro")),
+            };
+            let TokenKind::Word(name) = name.kind else {
+                return Err(Code::BadCondition.at(token.at, "`defined` needs the name of a macro"));
+            };
+            rest = after;
+            let value = self
+                .words
+                .symbol(if self.macros.contains_key(&name) { "1" } else { "0" });
+            answered.push(PpToken {
+                kind: TokenKind::Number(value),
+                ..*token
+            });
+        }
+        Ok(answered)
+    }
+
+    /// The integer constant expression that a list begins with, and what follows it.
+    pub(super) fn constant<'t>(
+        &self,
+        tokens: &'t [PpToken],
+        at: Place,
+    ) -> Result<(i64, &'t [PpToken]), Diagnostic> {
+        let mut reader = Reader {
+            preprocessor: self,
+            rest: tokens,
+            at,
+            depth: 0,
+        };
+        let value = reader.binary(1, true)?;
+        Ok((value, reader.rest))
+    }
+}
+
+/// How deep parentheses and unary operators may nest in a condition.
+const MAX_DEPTH: usize = 256;
+
+/// Reads an expression and computes it on the way.
+struct Reader<'p, 't> {
+    preprocessor: &'p Preprocessor<'p>,
+    rest: &'t [PpToken],
+    at: Place,
+    depth: usize,
+}
+
+impl Reader<'_, '_> {
+    /// A chain of operators that bind at least as tightly as `precedence`. Where `asked` is false the value does not count, and
+    /// nothing is wrong with `1 / 0` or an unknown name (§3.4: `&&` and `||` decide by their left side).
+    fn binary(&mut self, precedence: u8, asked: bool) -> Result<i64, Diagnostic> {
+        let mut left = self.unary(asked)?;
+        while let Some(op) = self.peek_operator().filter(|op| op.precedence() >= precedence) {
+            let at = self.rest.first().map_or(self.at, |token| token.at);
+            self.rest = &self.rest[1..];
+            let right_asked = match op {
+                BinaryOp::And => asked && left != 0,
+                BinaryOp::Or => asked && left == 0,
+                _ => asked,
+            };
+            let right = self.binary(op.precedence() + 1, right_asked)?;
+            left = match compute(op, left, right) {
+                Some(value) => value,
+                None if asked => return Err(Code::BadCondition.at(at, "division by zero")),
+                None => 0,
+            };
+        }
+        Ok(left)
+    }
+
+    fn unary(&mut self, asked: bool) -> Result<i64, Diagnostic> {
+        let Some((&token, rest)) = self.rest.split_first() else {
+            return Err(Code::BadCondition.at(self.at, "the condition ends too early"));
+        };
+        self.rest = rest;
+        let op = match token.kind {
+            TokenKind::Number(number) => return self.number(self.preprocessor.words.text(number), token.at),
+            TokenKind::Word(_) if !asked => return Ok(0),
+            TokenKind::Word(name) => {
+                let message = format!("`{}` is no macro", self.preprocessor.words.text(name));
+                return Err(Code::BadCondition.at(token.at, message));
+            }
+            TokenKind::Punctuator(Punctuator::LeftParen) => None,
+            TokenKind::Punctuator(Punctuator::Plus) => Some(UnaryOp::Plus),
+            TokenKind::Punctuator(Punctuator::Minus) => Some(UnaryOp::Minus),
+            TokenKind::Punctuator(Punctuator::Not) => Some(UnaryOp::Not),
+            TokenKind::Punctuator(Punctuator::Tilde) => Some(UnaryOp::BitNot),
+            _ => return Err(Code::BadCondition.at(token.at, "an integer is missing here")),
+        };
+        if self.depth == MAX_DEPTH {
+            return Err(Code::TooDeep.at(token.at, "this condition is nested too deep"));
+        }
+        self.depth += 1;
+        let value = match op {
+            Some(op) => {
+                let value = self.unary(asked)?;
+                match op {
+                    UnaryOp::Plus => value,
+                    UnaryOp::Minus => value.wrapping_neg(),
+                    UnaryOp::Not => i64::from(value == 0),
+                    UnaryOp::BitNot => !value,
+                }
+            }
+            None => {
+                let value = self.binary(1, asked)?;
+                match self.rest.split_first() {
+                    Some((close, rest)) if close.kind == TokenKind::Punctuator(Punctuator::RightParen) => {
+                        self.rest = rest;
+                    }
+                    _ => return Err(Code::BadCondition.at(token.at, "this `(` has no `)`")),
+                }
+                value
+            }
+        };
+        self.depth -= 1;
+        Ok(value)
+    }
+
+    fn number(&self, text: &str, at: Place) -> Result<i64, Diagnostic> {
+        let digits = text.strip_suffix(['u', 'U']).unwrap_or(text);
+        let value = match digits.strip_prefix("0x").or(digits.strip_prefix("0X")) {
+            Some(hex) => i64::from_str_radix(hex, 16),
+            None if digits.starts_with('0') => i64::from_str_radix(digits, 8),
+            None => digits.parse(),
+        };
+        value.map_err(|_| Code::BadCondition.at(at, format!("`{text}` is no integer")))
+    }
+
+    fn peek_operator(&self) -> Option<BinaryOp> {
+        match self.rest.first()?.kind {
+            TokenKind::Punctuator(punctuator) => {
+                punctuator.binary_operator().filter(|&op| op != BinaryOp::Xor)
+            }
+            _ => None,
+        }
+    }
+}
+
+/// None for a division by zero.
+fn compute(op: BinaryOp, a: i64, b: i64) -> Option<i64> {
+    Some(match op {
+        BinaryOp::Multiply => a.wrapping_mul(b),
+        BinaryOp::Divide => a.checked_div(b)?,
+        BinaryOp::Remainder => a.checked_rem(b)?,
+        BinaryOp::Add => a.wrapping_add(b),
+        BinaryOp::Subtract => a.wrapping_sub(b),
+        BinaryOp::ShiftLeft => a.wrapping_shl(b as u32),
+        BinaryOp::ShiftRight => a.wrapping_shr(b as u32),
+        BinaryOp::Less => i64::from(a < b),
+        BinaryOp::Greater => i64::from(a > b),
+        BinaryOp::LessEqual => i64::from(a <= b),
+        BinaryOp::GreaterEqual => i64::from(a >= b),
+        BinaryOp::Equal => i64::from(a == b),
+        BinaryOp::NotEqual => i64::from(a != b),
+        BinaryOp::BitAnd => a & b,
+        BinaryOp::BitXor => a ^ b,
+        BinaryOp::BitOr => a | b,
+        BinaryOp::And => i64::from(a != 0 && b != 0),
+        BinaryOp::Xor => i64::from((a != 0) != (b != 0)),
+        BinaryOp::Or => i64::from(a != 0 || b != 0),
+    })
+}
