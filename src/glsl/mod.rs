@@ -8,8 +8,11 @@
 //! a typed node. So there is one tree, and no tree of mere syntax. Section numbers (§) are those of the GLSL ES 3.00.6
 //! specification; where WebGL 2 (ANGLE) is stricter, so are we, and the place says so.
 
+mod check;
 mod codes;
+mod constant;
 mod options;
+mod parse;
 mod preprocess;
 mod token;
 pub mod tree;
@@ -17,7 +20,10 @@ pub mod tree;
 pub use codes::Code;
 pub use options::Options;
 
-use crate::diagnostic::Diagnostic;
+use self::check::{Channels, Checker};
+use self::parse::Parser;
+use crate::diagnostic::{Diagnostic, Severity};
+use crate::source::{FileId, Files};
 use tree::{FunctionId, SamplerShape, Tree};
 
 /// How deep statements, parentheses, calls, unary operators and `?:` may nest, all together. More is refused with a diagnostic; this much
@@ -36,3 +42,52 @@ pub struct Checked {
     /// What is legal and worth a word.
     pub warnings: Vec<Diagnostic>,
 }
+
+/// Checks a shader: its tree, or what is wrong with it, in the order of the text.
+///
+/// # Errors
+/// With at least one error if the shader breaks a rule; warnings may stand among them.
+pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, Vec<Diagnostic>> {
+    let mut text = preprocess::preprocess(files, file);
+    let told = std::mem::take(&mut text.diagnostics);
+    if told
+        .iter()
+        .any(|diagnostic| diagnostic.severity == Severity::Error)
+    {
+        return Err(told);
+    }
+    let mut channels = Channels::new(options);
+    // A use may tell the shape of a channel; the shader is then read anew with it, so at most five times in all.
+    loop {
+        channels.changed = false;
+        let mut checker = Parser::new(&text, Checker::new(&text.words, options, channels.clone())).parse();
+        if checker.channels().changed {
+            channels = checker.channels().clone();
+            continue;
+        }
+        let main_image = if checker.errors.is_empty() {
+            checker.finish()
+        } else {
+            None
+        };
+        let mut warnings = told;
+        warnings.append(&mut checker.warnings);
+        return match main_image {
+            Some(main_image) if checker.errors.is_empty() => Ok(Checked {
+                tree: checker.tree,
+                main_image,
+                channels: channels.shapes,
+                warnings,
+            }),
+            _ => {
+                let mut all = warnings;
+                all.append(&mut checker.errors);
+                all.sort_by_key(|diagnostic| diagnostic.span.map(|span| span.start));
+                Err(all)
+            }
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests;

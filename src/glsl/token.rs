@@ -253,6 +253,12 @@ impl Words {
         }
     }
 
+    /// The symbol of a text that was met before.
+    #[must_use]
+    pub(crate) fn find(&self, text: &str) -> Option<Symbol> {
+        self.symbols.get(text).copied()
+    }
+
     /// The text of a symbol.
     #[must_use]
     pub(crate) fn text(&self, symbol: Symbol) -> &str {
