@@ -101,6 +101,11 @@ impl Code {
             diagnostic
         }
     }
+
+    /// The same as the failure of what was tried.
+    pub(crate) fn refuse<T>(self, place: Place, message: impl Into<String>) -> Result<T, Box<Diagnostic>> {
+        Err(Box::new(self.at(place, message)))
+    }
 }
 
 #[cfg(test)]

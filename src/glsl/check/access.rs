@@ -66,19 +66,17 @@ impl Checker<'_> {
                 };
                 self.push(kind, ty, constant, whole)
             }
-            Type::Vector(scalar, size) => match swizzle(text, size) {
-                Some(components) => {
-                    let kind = ExprKind::Swizzle {
-                        vector: base,
-                        components,
-                    };
-                    self.push(kind, Type::vector(scalar, components.size()), constant, whole)
-                }
-                None => {
+            Type::Vector(scalar, size) => {
+                let Some(components) = swizzle(text, size) else {
                     let message = format!("`.{text}` selects no components of {}", self.said(ty));
-                    self.refuse(Code::UnknownMember, at, message)
-                }
-            },
+                    return self.refuse(Code::UnknownMember, at, message);
+                };
+                let kind = ExprKind::Swizzle {
+                    vector: base,
+                    components,
+                };
+                self.push(kind, Type::vector(scalar, components.size()), constant, whole)
+            }
             _ => {
                 let message = format!("{} has no members; this asks for `.{text}`", self.said(ty));
                 self.refuse(Code::UnknownMember, at, message)

@@ -248,7 +248,7 @@ impl Checker<'_> {
             .map(|&(caller, _, at)| (caller, at))
     }
 
-    /// `void mainImage(out vec4, in vec2)`, as the call that ShaderToy makes asks for it.
+    /// `void mainImage(out vec4, in vec2)`, as the call that `ShaderToy` makes asks for it.
     fn main_image(&mut self) -> Option<FunctionId> {
         use crate::glsl::tree::Scalar::Float;
         let wanted = [

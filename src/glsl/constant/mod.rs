@@ -39,7 +39,7 @@ impl Tree {
             let Type::Array(id) = self[array].ty else {
                 return None;
             };
-            return Some(Constant::scalar(Value::Int(self.array(id).size as i32)));
+            return Some(Constant::scalar(Value::Int(self.array(id).size.cast_signed())));
         }
         let operands: Vec<Constant> = operands.into_iter().collect::<Option<_>>()?;
         let scalars: Arc<[Value]> = match (&self[expr].kind, &operands[..]) {

@@ -11,21 +11,31 @@ use crate::glsl::tree::{BinaryOp, Place, UnaryOp};
 pub(super) struct Group {
     /// Whether the lines around it are read.
     outer: bool,
-    /// Whether its lines are read now.
-    active: bool,
-    /// Whether one of its branches was read already.
-    taken: bool,
+    branch: Branch,
     /// Whether its `#else` came already.
     last: bool,
     pub(super) at: Place,
 }
 
+/// What becomes of the lines of a group.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Branch {
+    /// They are read now.
+    Read,
+    /// They are passed over until a branch comes whose condition holds.
+    Waiting,
+    /// They are passed over up to `#endif`: a branch was read already, or the lines around are not read.
+    Over,
+}
+
 impl Preprocessor<'_> {
     pub(super) fn is_active(&self) -> bool {
-        self.groups.last().is_none_or(|group| group.active)
+        self.groups
+            .last()
+            .is_none_or(|group| group.branch == Branch::Read)
     }
 
-    pub(super) fn on_if(&mut self, line: &[PpToken], at: Place) -> Result<(), Diagnostic> {
+    pub(super) fn on_if(&mut self, line: &[PpToken], at: Place) -> Result<(), Box<Diagnostic>> {
         let outer = self.is_active();
         let value = if outer { self.evaluate(line, at) } else { Ok(false) };
         // A condition that cannot be told counts as false: what follows is still balanced.
@@ -33,7 +43,12 @@ impl Preprocessor<'_> {
         value.map(|_| ())
     }
 
-    pub(super) fn on_ifdef(&mut self, line: &[PpToken], at: Place, wanted: bool) -> Result<(), Diagnostic> {
+    pub(super) fn on_ifdef(
+        &mut self,
+        line: &[PpToken],
+        at: Place,
+        wanted: bool,
+    ) -> Result<(), Box<Diagnostic>> {
         let outer = self.is_active();
         let name = match line {
             [
@@ -49,61 +64,74 @@ impl Preprocessor<'_> {
         self.open(outer, active, at);
         match name {
             _ if !outer => Ok(()),
-            None => Err(Code::MalformedDirective.at(at, "the name of a macro is missing here")),
+            None => Code::MalformedDirective.refuse(at, "the name of a macro is missing here"),
             Some(_) => nothing_left(&line[1..]),
         }
     }
 
-    pub(super) fn on_elif(&mut self, line: &[PpToken], at: Place) -> Result<(), Diagnostic> {
+    pub(super) fn on_elif(&mut self, line: &[PpToken], at: Place) -> Result<(), Box<Diagnostic>> {
         let group = self.branch(at, "#elif")?;
-        let asked = group.outer && !group.taken;
+        let asked = group.branch == Branch::Waiting;
+        group.branch = Branch::Over;
         // The condition is looked at only if no branch was read before.
         let value = if asked { self.evaluate(line, at) } else { Ok(false) };
-        if let Some(group) = self.groups.last_mut() {
-            group.active = matches!(value, Ok(true));
-            group.taken |= group.active;
+        if asked && let Some(group) = self.groups.last_mut() {
+            group.branch = if matches!(value, Ok(true)) {
+                Branch::Read
+            } else {
+                Branch::Waiting
+            };
         }
         value.map(|_| ())
     }
 
-    pub(super) fn on_else(&mut self, line: &[PpToken], at: Place) -> Result<(), Diagnostic> {
+    pub(super) fn on_else(&mut self, line: &[PpToken], at: Place) -> Result<(), Box<Diagnostic>> {
         let group = self.branch(at, "#else")?;
-        group.active = group.outer && !group.taken;
+        group.branch = if group.branch == Branch::Waiting {
+            Branch::Read
+        } else {
+            Branch::Over
+        };
         group.last = true;
         if group.outer { nothing_left(line) } else { Ok(()) }
     }
 
-    pub(super) fn on_endif(&mut self, line: &[PpToken], at: Place) -> Result<(), Diagnostic> {
+    pub(super) fn on_endif(&mut self, line: &[PpToken], at: Place) -> Result<(), Box<Diagnostic>> {
         match self.groups.pop() {
-            None => Err(Code::UnbalancedCondition.at(at, "this `#endif` has no `#if`")),
+            None => Code::UnbalancedCondition.refuse(at, "this `#endif` has no `#if`"),
             Some(group) if group.outer => nothing_left(line),
             Some(_) => Ok(()),
         }
     }
 
     fn open(&mut self, outer: bool, active: bool, at: Place) {
-        let active = outer && active;
+        let branch = match (outer, active) {
+            (true, true) => Branch::Read,
+            (true, false) => Branch::Waiting,
+            (false, _) => Branch::Over,
+        };
         self.groups.push(Group {
             outer,
-            active,
-            taken: active,
+            branch,
             last: false,
             at,
         });
     }
 
     /// The group whose next branch begins.
-    fn branch(&mut self, at: Place, name: &str) -> Result<&mut Group, Diagnostic> {
+    fn branch(&mut self, at: Place, name: &str) -> Result<&mut Group, Box<Diagnostic>> {
         match self.groups.last_mut() {
-            None => Err(Code::UnbalancedCondition.at(at, format!("this `{name}` has no `#if`"))),
-            Some(group) if group.last => Err(Code::UnbalancedCondition
-                .at(at, format!("this `{name}` follows an `#else`"))
-                .related(group.at.span, "of this")),
+            None => Code::UnbalancedCondition.refuse(at, format!("this `{name}` has no `#if`")),
+            Some(group) if group.last => Err(Box::new(
+                Code::UnbalancedCondition
+                    .at(at, format!("this `{name}` follows an `#else`"))
+                    .related(group.at.span, "of this"),
+            )),
             Some(group) => Ok(group),
         }
     }
 
-    fn evaluate(&mut self, line: &[PpToken], at: Place) -> Result<bool, Diagnostic> {
+    fn evaluate(&mut self, line: &[PpToken], at: Place) -> Result<bool, Box<Diagnostic>> {
         // `defined` is answered before macros are expanded (§3.4).
         let answered = self.answer_defined(line)?;
         let errors = self.diagnostics.len();
@@ -114,11 +142,11 @@ impl Preprocessor<'_> {
         let (value, rest) = self.constant(&tokens, at)?;
         match rest {
             [] => Ok(value != 0),
-            [first, ..] => Err(Code::BadCondition.at(first.at, "an operator is missing here")),
+            [first, ..] => Code::BadCondition.refuse(first.at, "an operator is missing here"),
         }
     }
 
-    fn answer_defined(&mut self, line: &[PpToken]) -> Result<Vec<PpToken>, Diagnostic> {
+    fn answer_defined(&mut self, line: &[PpToken]) -> Result<Vec<PpToken>, Box<Diagnostic>> {
         let mut answered = Vec::with_capacity(line.len());
         let mut rest = line;
         while let [token, tail @ ..] = rest {
@@ -139,10 +167,10 @@ impl Preprocessor<'_> {
                     (name, after)
                 }
                 [name, after @ ..] => (name, after),
-                [] => return Err(Code::BadCondition.at(token.at, "`defined` needs the name of a macro")),
+                [] => return Code::BadCondition.refuse(token.at, "`defined` needs the name of a macro"),
             };
             let TokenKind::Word(name) = name.kind else {
-                return Err(Code::BadCondition.at(token.at, "`defined` needs the name of a macro"));
+                return Code::BadCondition.refuse(token.at, "`defined` needs the name of a macro");
             };
             rest = after;
             let value = self
@@ -161,7 +189,7 @@ impl Preprocessor<'_> {
         &self,
         tokens: &'t [PpToken],
         at: Place,
-    ) -> Result<(i64, &'t [PpToken]), Diagnostic> {
+    ) -> Result<(i64, &'t [PpToken]), Box<Diagnostic>> {
         let mut reader = Reader {
             preprocessor: self,
             rest: tokens,
@@ -187,7 +215,7 @@ struct Reader<'p, 't> {
 impl Reader<'_, '_> {
     /// A chain of operators that bind at least as tightly as `precedence`. Where `asked` is false the value does not count, and
     /// nothing is wrong with `1 / 0` or an unknown name (§3.4: `&&` and `||` decide by their left side).
-    fn binary(&mut self, precedence: u8, asked: bool) -> Result<i64, Diagnostic> {
+    fn binary(&mut self, precedence: u8, asked: bool) -> Result<i64, Box<Diagnostic>> {
         let mut left = self.unary(asked)?;
         while let Some(op) = self.peek_operator().filter(|op| op.precedence() >= precedence) {
             let at = self.rest.first().map_or(self.at, |token| token.at);
@@ -200,69 +228,56 @@ impl Reader<'_, '_> {
             let right = self.binary(op.precedence() + 1, right_asked)?;
             left = match compute(op, left, right) {
                 Some(value) => value,
-                None if asked => return Err(Code::BadCondition.at(at, "division by zero")),
+                None if asked => return Code::BadCondition.refuse(at, "division by zero"),
                 None => 0,
             };
         }
         Ok(left)
     }
 
-    fn unary(&mut self, asked: bool) -> Result<i64, Diagnostic> {
+    fn unary(&mut self, asked: bool) -> Result<i64, Box<Diagnostic>> {
         let Some((&token, rest)) = self.rest.split_first() else {
-            return Err(Code::BadCondition.at(self.at, "the condition ends too early"));
+            return Code::BadCondition.refuse(self.at, "the condition ends too early");
         };
         self.rest = rest;
         let op = match token.kind {
-            TokenKind::Number(number) => return self.number(self.preprocessor.words.text(number), token.at),
+            TokenKind::Number(number) => return integer(self.preprocessor.words.text(number), token.at),
             TokenKind::Word(_) if !asked => return Ok(0),
             TokenKind::Word(name) => {
                 let message = format!("`{}` is no macro", self.preprocessor.words.text(name));
-                return Err(Code::BadCondition.at(token.at, message));
+                return Code::BadCondition.refuse(token.at, message);
             }
             TokenKind::Punctuator(Punctuator::LeftParen) => None,
             TokenKind::Punctuator(Punctuator::Plus) => Some(UnaryOp::Plus),
             TokenKind::Punctuator(Punctuator::Minus) => Some(UnaryOp::Minus),
             TokenKind::Punctuator(Punctuator::Not) => Some(UnaryOp::Not),
             TokenKind::Punctuator(Punctuator::Tilde) => Some(UnaryOp::BitNot),
-            _ => return Err(Code::BadCondition.at(token.at, "an integer is missing here")),
+            _ => return Code::BadCondition.refuse(token.at, "an integer is missing here"),
         };
         if self.depth == MAX_DEPTH {
-            return Err(Code::TooDeep.at(token.at, "this condition is nested too deep"));
+            return Code::TooDeep.refuse(token.at, "this condition is nested too deep");
         }
         self.depth += 1;
-        let value = match op {
-            Some(op) => {
-                let value = self.unary(asked)?;
-                match op {
-                    UnaryOp::Plus => value,
-                    UnaryOp::Minus => value.wrapping_neg(),
-                    UnaryOp::Not => i64::from(value == 0),
-                    UnaryOp::BitNot => !value,
-                }
+        let value = if let Some(op) = op {
+            let value = self.unary(asked)?;
+            match op {
+                UnaryOp::Plus => value,
+                UnaryOp::Minus => value.wrapping_neg(),
+                UnaryOp::Not => i64::from(value == 0),
+                UnaryOp::BitNot => !value,
             }
-            None => {
-                let value = self.binary(1, asked)?;
-                match self.rest.split_first() {
-                    Some((close, rest)) if close.kind == TokenKind::Punctuator(Punctuator::RightParen) => {
-                        self.rest = rest;
-                    }
-                    _ => return Err(Code::BadCondition.at(token.at, "this `(` has no `)`")),
+        } else {
+            let value = self.binary(1, asked)?;
+            match self.rest.split_first() {
+                Some((close, rest)) if close.kind == TokenKind::Punctuator(Punctuator::RightParen) => {
+                    self.rest = rest;
                 }
-                value
+                _ => return Code::BadCondition.refuse(token.at, "this `(` has no `)`"),
             }
+            value
         };
         self.depth -= 1;
         Ok(value)
-    }
-
-    fn number(&self, text: &str, at: Place) -> Result<i64, Diagnostic> {
-        let digits = text.strip_suffix(['u', 'U']).unwrap_or(text);
-        let value = match digits.strip_prefix("0x").or(digits.strip_prefix("0X")) {
-            Some(hex) => i64::from_str_radix(hex, 16),
-            None if digits.starts_with('0') => i64::from_str_radix(digits, 8),
-            None => digits.parse(),
-        };
-        value.map_err(|_| Code::BadCondition.at(at, format!("`{text}` is no integer")))
     }
 
     fn peek_operator(&self) -> Option<BinaryOp> {
@@ -273,6 +288,16 @@ impl Reader<'_, '_> {
             _ => None,
         }
     }
+}
+
+fn integer(text: &str, at: Place) -> Result<i64, Box<Diagnostic>> {
+    let digits = text.strip_suffix(['u', 'U']).unwrap_or(text);
+    let value = match digits.strip_prefix("0x").or(digits.strip_prefix("0X")) {
+        Some(hex) => i64::from_str_radix(hex, 16),
+        None if digits.starts_with('0') => i64::from_str_radix(digits, 8),
+        None => digits.parse(),
+    };
+    value.or_else(|_| Code::BadCondition.refuse(at, format!("`{text}` is no integer")))
 }
 
 /// None for a division by zero.

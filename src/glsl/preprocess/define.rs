@@ -8,7 +8,7 @@ use crate::glsl::token::{Punctuator, Symbol, TokenKind};
 use crate::glsl::tree::Place;
 
 impl Preprocessor<'_> {
-    pub(super) fn define(&mut self, line: &[PpToken], at: Place) -> Result<(), Diagnostic> {
+    pub(super) fn define(&mut self, line: &[PpToken], at: Place) -> Result<(), Box<Diagnostic>> {
         let (name, name_at, rest) = self.macro_name(line, at)?;
         let (parameters, body) = match rest {
             [first, rest @ ..]
@@ -26,7 +26,7 @@ impl Preprocessor<'_> {
             )
         };
         if let Some(token) = body.iter().find(operator) {
-            return Err(Code::PasteOperator.at(token.at, "GLSL ES has no `#` and no `##` in macros"));
+            return Code::PasteOperator.refuse(token.at, "GLSL ES has no `#` and no `##` in macros");
         }
         let parameter = |token: &PpToken| match (token.kind, &parameters) {
             (TokenKind::Word(word), Some(parameters)) => parameters.iter().position(|&p| p == word),
@@ -43,9 +43,11 @@ impl Preprocessor<'_> {
                 "the macro `{}` is defined already, and differently",
                 self.words.text(name)
             );
-            return Err(Code::BadMacro
-                .at(name_at, message)
-                .related(old.at.span, "first defined here"));
+            return Err(Box::new(
+                Code::BadMacro
+                    .at(name_at, message)
+                    .related(old.at.span, "first defined here"),
+            ));
         }
         // A definition equal to the old one changes nothing, not even while the macro is being expanded.
         self.macros
@@ -54,7 +56,7 @@ impl Preprocessor<'_> {
         Ok(())
     }
 
-    pub(super) fn undef(&mut self, line: &[PpToken], at: Place) -> Result<(), Diagnostic> {
+    pub(super) fn undef(&mut self, line: &[PpToken], at: Place) -> Result<(), Box<Diagnostic>> {
         let (name, _, rest) = self.macro_name(line, at)?;
         self.macros.remove(&name);
         nothing_left(rest)
@@ -65,7 +67,7 @@ impl Preprocessor<'_> {
         &mut self,
         line: &'t [PpToken],
         at: Place,
-    ) -> Result<(Symbol, Place, &'t [PpToken]), Diagnostic> {
+    ) -> Result<(Symbol, Place, &'t [PpToken]), Box<Diagnostic>> {
         let [
             PpToken {
                 kind: TokenKind::Word(name),
@@ -76,13 +78,13 @@ impl Preprocessor<'_> {
         ] = line
         else {
             let at = line.first().map_or(at, |token| token.at);
-            return Err(Code::MalformedDirective.at(at, "the name of a macro is missing here"));
+            return Code::MalformedDirective.refuse(at, "the name of a macro is missing here");
         };
         let text = self.words.text(*name);
         let predefined = self.macros.get(name).is_some_and(|old| old.predefined);
         if predefined || text.starts_with("GL_") || text == "defined" {
             let message = format!("`{text}` belongs to GLSL and cannot be defined or undefined");
-            return Err(Code::BadMacro.at(*at, message));
+            return Code::BadMacro.refuse(*at, message);
         }
         if text.contains("__") {
             let message = format!("names with two underscores such as `{text}` belong to GLSL");
@@ -95,7 +97,7 @@ impl Preprocessor<'_> {
         &self,
         line: &'t [PpToken],
         open: Place,
-    ) -> Result<(Vec<Symbol>, &'t [PpToken]), Diagnostic> {
+    ) -> Result<(Vec<Symbol>, &'t [PpToken]), Box<Diagnostic>> {
         let mut parameters = Vec::new();
         let mut rest = line;
         if let [
@@ -111,31 +113,31 @@ impl Preprocessor<'_> {
         loop {
             let [name, after, tail @ ..] = rest else {
                 let at = rest.first().map_or(open, |token| token.at);
-                return Err(Code::MalformedDirective.at(at, "the parameters of this macro have no `)`"));
+                return Code::MalformedDirective.refuse(at, "the parameters of this macro have no `)`");
             };
             let TokenKind::Word(parameter) = name.kind else {
-                return Err(Code::MalformedDirective.at(name.at, "the name of a parameter is missing here"));
+                return Code::MalformedDirective.refuse(name.at, "the name of a parameter is missing here");
             };
             if parameters.contains(&parameter) {
                 let message = format!("this macro has two parameters `{}`", self.words.text(parameter));
-                return Err(Code::BadMacro.at(name.at, message));
+                return Code::BadMacro.refuse(name.at, message);
             }
             parameters.push(parameter);
             rest = tail;
             match after.kind {
                 TokenKind::Punctuator(Punctuator::RightParen) => return Ok((parameters, rest)),
                 TokenKind::Punctuator(Punctuator::Comma) => {}
-                _ => return Err(Code::MalformedDirective.at(after.at, "`,` or `)` is missing here")),
+                _ => return Code::MalformedDirective.refuse(after.at, "`,` or `)` is missing here"),
             }
         }
     }
 }
 
 /// Whether a directive ends where it should.
-pub(super) fn nothing_left(rest: &[PpToken]) -> Result<(), Diagnostic> {
+pub(super) fn nothing_left(rest: &[PpToken]) -> Result<(), Box<Diagnostic>> {
     match rest {
         [] => Ok(()),
-        [first, ..] => Err(Code::MalformedDirective.at(first.at, "this is too much for the directive")),
+        [first, ..] => Code::MalformedDirective.refuse(first.at, "this is too much for the directive"),
     }
 }
 

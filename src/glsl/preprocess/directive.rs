@@ -38,10 +38,10 @@ impl Preprocessor<'_> {
             "extension" => self.extension(&line, at),
             // §3.4: what is not understood is ignored.
             "pragma" => Ok(()),
-            _ => Err(Code::UnknownDirective.at(at, format!("there is no directive `#{name}`"))),
+            _ => Code::UnknownDirective.refuse(at, format!("there is no directive `#{name}`")),
         };
         if let Err(diagnostic) = done {
-            self.report(diagnostic);
+            self.report(*diagnostic);
         }
     }
 
@@ -68,11 +68,11 @@ impl Preprocessor<'_> {
     }
 
     /// `#line n` or `#line n file`: from the next line on (§3.4). Diagnostics keep counting the author's lines.
-    fn line(&mut self, line: Vec<PpToken>, at: Place) -> Result<(), Diagnostic> {
+    fn line(&mut self, line: Vec<PpToken>, at: Place) -> Result<(), Box<Diagnostic>> {
         let tokens = self.expand_list(line);
         let (number, rest) = self.constant(&tokens, at)?;
-        let here = self.files.position(at.span).line as i64;
-        self.line_offset = number.wrapping_sub(here + 1);
+        let here = self.line_of(at);
+        self.line_offset = number.wrapping_sub(here).wrapping_sub(1);
         if rest.is_empty() {
             return Ok(());
         }
@@ -81,10 +81,14 @@ impl Preprocessor<'_> {
         nothing_left(rest)
     }
 
+    pub(super) fn line_of(&self, at: Place) -> i64 {
+        i64::try_from(self.files.position(at.span).line).unwrap_or(i64::MAX)
+    }
+
     /// `#version 300 es`, first or not at all.
-    fn version(&mut self, line: &[PpToken], at: Place) -> Result<(), Diagnostic> {
+    fn version(&mut self, line: &[PpToken], at: Place) -> Result<(), Box<Diagnostic>> {
         if self.past_first_token {
-            return Err(Code::BadVersion.at(at, "`#version` must come before everything else"));
+            return Code::BadVersion.refuse(at, "`#version` must come before everything else");
         }
         let words: Vec<_> = line.iter().map(|token| self.text(token)).collect();
         if words == ["300", "es"] {
@@ -94,19 +98,19 @@ impl Preprocessor<'_> {
             "`#version {}` is not what `ShaderToy` speaks: `#version 300 es`",
             words.join(" ")
         );
-        Err(Code::BadVersion.at(at, message.replace("`ShaderToy`", "ShaderToy")))
+        Code::BadVersion.refuse(at, message.replace("`ShaderToy`", "ShaderToy"))
     }
 
     /// `#extension name : behaviour` (§3.5). We have none.
-    fn extension(&mut self, line: &[PpToken], at: Place) -> Result<(), Diagnostic> {
+    fn extension(&mut self, line: &[PpToken], at: Place) -> Result<(), Box<Diagnostic>> {
         let words: Vec<_> = line.iter().map(|token| self.text(token)).collect();
         let [name, ":", behaviour @ ("require" | "enable" | "warn" | "disable")] = words[..] else {
             let message = "this is not `#extension name : require`, `enable`, `warn` or `disable`";
-            return Err(Code::MalformedDirective.at(at, message));
+            return Code::MalformedDirective.refuse(at, message);
         };
         let fatal = behaviour == "require" || (name == "all" && behaviour == "enable");
         if fatal {
-            return Err(Code::BadExtension.at(at, format!("the extension `{name}` is not supported")));
+            return Code::BadExtension.refuse(at, format!("the extension `{name}` is not supported"));
         }
         if name != "all" {
             let message = format!("the extension `{name}` is not supported");

@@ -177,7 +177,7 @@ impl Preprocessor<'_> {
         let (tokens, parameter) = match body {
             Body::Tokens { tokens, parameter } => (tokens, parameter),
             Body::Line => {
-                let line = self.files.position(used.span).line as i64 + self.line_offset;
+                let line = self.line_of(used).wrapping_add(self.line_offset);
                 return vec![self.number(line, used)];
             }
             Body::File => return vec![self.number(self.file_number, used)],

@@ -40,7 +40,7 @@ impl<'a> Lexer<'a> {
     pub(super) fn next(&mut self, words: &mut Words, diagnostics: &mut Vec<Diagnostic>) -> PpToken {
         let begin = self.at;
         if let Err(error) = self.skip_blanks() {
-            diagnostics.push(error);
+            diagnostics.push(*error);
         }
         let spaced = self.at > begin;
         let start = self.at;
@@ -112,7 +112,7 @@ impl<'a> Lexer<'a> {
         TokenKind::Unknown(first)
     }
 
-    fn skip_blanks(&mut self) -> Result<(), Diagnostic> {
+    fn skip_blanks(&mut self) -> Result<(), Box<Diagnostic>> {
         loop {
             match self.peek() {
                 Some(' ' | '\t' | '\u{b}' | '\u{c}') => self.bump(),
@@ -127,7 +127,7 @@ impl<'a> Lexer<'a> {
         }
     }
 
-    fn block_comment(&mut self) -> Result<(), Diagnostic> {
+    fn block_comment(&mut self) -> Result<(), Box<Diagnostic>> {
         let open = Span::new(self.file, self.at as u32, self.at as u32 + 2);
         self.bump();
         self.bump();
@@ -137,7 +137,7 @@ impl<'a> Lexer<'a> {
                 return Ok(());
             }
         }
-        Err(Code::UnterminatedComment.at(Place::plain(open), "this comment is never closed"))
+        Code::UnterminatedComment.refuse(Place::plain(open), "this comment is never closed")
     }
 
     /// Reads into `scratch` while `accept(so_far, next)`.

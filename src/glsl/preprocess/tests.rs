@@ -150,16 +150,11 @@ fn conditions() {
 
 #[test]
 fn hostile_macros_end_in_a_diagnostic() {
-    let mut bomb = "#define A0 x x\n".to_owned();
-    for level in 1..60 {
-        bomb += &format!("#define A{level} A{0} A{0}\n", level - 1);
-    }
-    assert_eq!(expand(&(bomb + "A59")), "E0013");
-    let mut squares = "#define F0(x) x x\n".to_owned();
-    for level in 1..60 {
-        squares += &format!("#define F{level}(x) F{0}(F{0}(x))\n", level - 1);
-    }
-    assert_eq!(expand(&(squares + "F59(1)")), "E0013");
+    let levels = |define: fn(usize) -> String| (1..60).map(define).collect::<String>();
+    let bomb = levels(|level| format!("#define A{level} A{0} A{0}\n", level - 1));
+    assert_eq!(expand(&format!("#define A0 x x\n{bomb} A59")), "E0013");
+    let squares = levels(|level| format!("#define F{level}(x) F{0}(F{0}(x))\n", level - 1));
+    assert_eq!(expand(&format!("#define F0(x) x x\n{squares} F59(1)")), "E0013");
     let nested = format!("#define F(x) x\n{}1{}", "F(".repeat(20_000), ")".repeat(20_000));
     assert_eq!(expand(&nested), "E0013");
     let parens = format!("#if {}1{}\n#endif", "(".repeat(20_000), ")".repeat(20_000));
