@@ -57,7 +57,7 @@ pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, 
         return Err(told);
     }
     let mut channels = Channels::new(options);
-    // A use may tell the shape of a channel; the shader is then read anew with it, so at most five times in all.
+    // A use may tell the shape of a channel; the shader is then read anew with it, at most twice for each of the four.
     loop {
         channels.changed = false;
         let mut checker = Parser::new(&text, Checker::new(&text.words, options, channels.clone())).parse();

@@ -54,6 +54,7 @@ fn grammar() {
         "
         ok    { float a = 1., b; ; { } if (a < 1.) b = 2.; else { b = 3.; } }
         ok    { for (;;) { break; } for (int i = 0, j = 1; i < j; i++, j--) continue; while (bool b = false) { } do { } while (false); }
+        ok    struct S { float a; }, s; float , x; void f() { vec2 , v = vec2(s.a, x); }
         ok    { highp float a; const mediump int b = 1; precision highp float; }
         ok    precision mediump float; precision lowp sampler2D;
         ok    const vec2 a = vec2(1), b = a.yx;
@@ -355,7 +356,7 @@ fn main_image() {
 fn channels_take_the_shape_that_their_use_asks_for() {
     let text = format!(
         "vec4 f(samplerCube s) {{ return textureLod(s, vec3(1), 0.); }}
-         void g() {{ texture(iChannel1, vec3(1)); f(iChannel2); texelFetch(iChannel3, ivec3(1), 0); }} {MAIN}"
+         void g() {{ texture(iChannel1, vec3(1)); f(iChannel2); texture(iChannel3, vec3(1)); texelFetch(iChannel3, ivec3(1), 0); }} {MAIN}"
     );
     let checked = check_text(&text, &Options::default()).unwrap();
     let shapes = [

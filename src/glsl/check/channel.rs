@@ -8,7 +8,7 @@ use crate::glsl::tree::{ExprId, ExprKind, Input, Sampler, SamplerShape, Type, Va
 #[derive(Debug, Clone)]
 pub(crate) struct Channels {
     pub(crate) shapes: [SamplerShape; 4],
-    /// Which shapes are told by the options or by a use that no other shape fits.
+    /// Which shapes the options tell.
     certain: [bool; 4],
     /// Whether a use told a shape just now: then the shader must be read once more.
     pub(crate) changed: bool,
@@ -39,11 +39,14 @@ impl Checker<'_> {
                 continue;
             };
             let mut types = self.types(arguments);
-            for shape in [SamplerShape::Cube, SamplerShape::D3] {
+            // Only ever forward through this list, so that the shader is read a few times at most. What takes a cube with a
+            // direction takes a volume, too, but not the other way round.
+            let order = [SamplerShape::D2, SamplerShape::Cube, SamplerShape::D3];
+            let now = self.channels.shapes[channel];
+            for &shape in order.iter().skip_while(|&&shape| shape != now).skip(1) {
                 types[position] = Type::Sampler(Sampler::float(shape));
                 if resolves(self, &types) {
                     self.channels.shapes[channel] = shape;
-                    self.channels.certain[channel] = true;
                     self.channels.changed = true;
                     return true;
                 }

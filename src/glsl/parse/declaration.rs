@@ -36,8 +36,9 @@ impl Parser<'_> {
         if self.eat(Punctuator::Semicolon) {
             return Ok(());
         }
+        let empty_first = self.eat_empty_declarator();
         let (name, at) = self.name()?;
-        if self.is(Punctuator::LeftParen) {
+        if !empty_first && self.is(Punctuator::LeftParen) {
             return self.function(&qualifiers, &specifier, name, at);
         }
         let variables = self.declarators(&qualifiers, &specifier, name, at)?;
@@ -59,6 +60,7 @@ impl Parser<'_> {
         if self.eat(Punctuator::Semicolon) {
             return Ok(Vec::new());
         }
+        self.eat_empty_declarator();
         let (name, at) = self.name()?;
         if self.is(Punctuator::LeftParen) {
             return self.halt(
@@ -251,6 +253,11 @@ impl Parser<'_> {
                 return Ok(());
             }
         }
+    }
+
+    /// `float , a;`: the grammar of §9 lets the first declarator be empty.
+    fn eat_empty_declarator(&mut self) -> bool {
+        self.eat(Punctuator::Comma)
     }
 
     /// The rest of a declaration, from the sizes of its first name to the `;`.
