@@ -16,6 +16,7 @@ mod parse;
 mod preprocess;
 mod token;
 pub mod tree;
+mod words;
 
 pub use codes::Code;
 pub use options::Options;

@@ -43,6 +43,10 @@ impl Checker<'_> {
             // direction takes a volume, too, but not the other way round.
             let order = [SamplerShape::D2, SamplerShape::Cube, SamplerShape::D3];
             let now = self.channels.shapes[channel];
+            if types[position] != Type::Sampler(Sampler::float(now)) {
+                // Told earlier in this reading, which goes on with the old shape until it is done anew.
+                return true;
+            }
             for &shape in order.iter().skip_while(|&&shape| shape != now).skip(1) {
                 types[position] = Type::Sampler(Sampler::float(shape));
                 if resolves(self, &types) {

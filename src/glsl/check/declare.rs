@@ -4,16 +4,28 @@ use super::scope::Entity;
 use super::{Checker, Size, Specifier};
 use crate::glsl::codes::Code;
 use crate::glsl::token::Symbol;
-use crate::glsl::tree::{BuiltIn, ExprId, Place, Type, Variable, VariableId, VariableKind};
+use crate::glsl::tree::{BuiltIn, ExprId, Place, Scalar, Type, Variable, VariableId, VariableKind};
 
 /// What stands before the type of a declaration.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Qualifiers {
     pub(crate) storage: Option<(Storage, Place)>,
-    /// `in`, `out` or `inout` beside `const`, as parameters have it.
+    /// `const`; beside `in` for parameters only.
     pub(crate) is_const: Option<Place>,
     /// What only globals may have: `invariant`, `flat`, `smooth`, `centroid`, `layout`.
     pub(crate) interface: Option<Place>,
+    /// `highp`, `mediump` or `lowp`.
+    pub(crate) precision: Option<Place>,
+}
+
+impl Qualifiers {
+    /// A qualifier that only variables can have.
+    pub(crate) fn other_than_precision(&self) -> Option<Place> {
+        self.storage
+            .map(|(_, at)| at)
+            .or(self.is_const)
+            .or(self.interface)
+    }
 }
 
 /// Where a value comes from or goes to (§4.3).
@@ -207,6 +219,21 @@ impl Checker<'_> {
             && self.tree[variable].kind != VariableKind::Output
         {
             self.error(Code::BadQualifier, at, "only an output can be `invariant`");
+        }
+    }
+
+    /// `highp vec2`: numbers and samplers have a precision, nothing else has (§4.5.3).
+    pub(crate) fn precision_fits(&mut self, qualifiers: &Qualifiers, specifier: &Specifier) {
+        let numeric = matches!(specifier.base, Type::Sampler(_) | Type::Error)
+            || specifier
+                .base
+                .scalar()
+                .is_some_and(|scalar| scalar != Scalar::Bool);
+        if let Some(at) = qualifiers.precision
+            && !numeric
+        {
+            let message = format!("{} has no precision", self.said(specifier.base));
+            self.error(Code::BadQualifier, at, message);
         }
     }
 

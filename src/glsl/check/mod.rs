@@ -27,8 +27,9 @@ use self::function::Context;
 use self::scope::Scopes;
 use super::codes::Code;
 use super::options::Options;
-use super::token::{Symbol, Words};
+use super::token::Symbol;
 use super::tree::{Expr, ExprId, ExprKind, FunctionId, Literal, Place, Scalar, StructId, Tree, Type, Value};
+use super::words::Words;
 use crate::diagnostic::Diagnostic;
 
 /// How many errors of one file are told.

@@ -99,8 +99,9 @@ impl Checker<'_> {
             let message = format!("`?:` chooses between {} and {}", self.said(a), self.said(b));
             return self.refuse(Code::Mismatch, at, message);
         }
-        // WebGL has no `?:` between calls without value, and samplers are no values (§4.1.7).
-        if a == Type::Void || self.holds_sampler(a) {
+        // Samplers are no values (§4.1.7). WebGL has no `?:` between calls without value, arrays or structures.
+        let webgl_has_none = matches!(a, Type::Array(_) | Type::Struct(_)) && !self.lenient;
+        if a == Type::Void || self.holds_sampler(a) || webgl_has_none {
             let message = format!("`?:` cannot choose between values of type {}", self.said(a));
             return self.refuse(Code::BadType, at, message);
         }

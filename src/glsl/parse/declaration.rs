@@ -1,10 +1,11 @@
 //! Declarations: types, variables, structures, functions (§4, §6.1).
 
 use super::{Parsed, Parser};
-use crate::glsl::check::{Declarator, Parameter, Qualifiers, Size, Specifier, Storage};
+use crate::glsl::check::{Declarator, Qualifiers, Size, Specifier};
 use crate::glsl::codes::Code;
-use crate::glsl::token::{Keyword, Punctuator, Symbol, TokenKind, Word};
-use crate::glsl::tree::{Direction, Item, Member, Place, Type, VariableId};
+use crate::glsl::token::{Punctuator, Symbol, TokenKind};
+use crate::glsl::tree::{Item, Member, Place, Type, VariableId};
+use crate::glsl::words::{Keyword, Word};
 
 impl Parser<'_> {
     /// One declaration at global scope, or a function.
@@ -23,7 +24,16 @@ impl Parser<'_> {
             return Ok(());
         }
         let first = self.check.tree.structs.len();
+        if qualifiers.storage.is_some() && self.is_block() {
+            let at = self.token().at;
+            return self.halt(
+                Code::BadQualifier,
+                at,
+                "ShaderToy has nothing to bind to an interface block",
+            );
+        }
         let specifier = self.type_specifier()?;
+        self.check.precision_fits(&qualifiers, &specifier);
         let structs: Vec<_> = self
             .check
             .tree
@@ -57,6 +67,7 @@ impl Parser<'_> {
         }
         let qualifiers = self.qualifiers()?;
         let specifier = self.type_specifier()?;
+        self.check.precision_fits(&qualifiers, &specifier);
         if self.eat(Punctuator::Semicolon) {
             return Ok(Vec::new());
         }
@@ -75,7 +86,8 @@ impl Parser<'_> {
     /// `bool b = f()` as the condition of a loop.
     pub(super) fn condition_declaration(&mut self) -> Parsed<VariableId> {
         let qualifiers = self.qualifiers()?;
-        let specifier = self.type_specifier()?;
+        let specifier = self.named_type()?;
+        self.check.precision_fits(&qualifiers, &specifier);
         let (name, at) = self.name()?;
         if !self.is(Punctuator::Assign) {
             return self.unexpected("`=`");
@@ -105,59 +117,9 @@ impl Parser<'_> {
             if self.words.word(symbol) == Word::Name && self.check.struct_named(symbol).is_none())
     }
 
-    /// What stands before a type, in the order of §4.7: `invariant`, interpolation, layout, storage, precision.
-    fn qualifiers(&mut self) -> Parsed<Qualifiers> {
-        let mut qualifiers = Qualifiers::default();
-        let mut last = 0;
-        loop {
-            let at = self.token().at;
-            let Some(keyword) = self.keyword() else {
-                return Ok(qualifiers);
-            };
-            let rank = match keyword {
-                Keyword::Invariant => 1,
-                Keyword::Flat | Keyword::Smooth => 2,
-                Keyword::Layout => 3,
-                Keyword::Const | Keyword::Centroid => 4,
-                Keyword::In | Keyword::Out | Keyword::InOut | Keyword::Uniform => 5,
-                Keyword::Highp | Keyword::Mediump | Keyword::Lowp => 6,
-                _ => return Ok(qualifiers),
-            };
-            self.next();
-            if rank <= last {
-                let message = format!("`{}` cannot stand after what is before it", keyword.text());
-                self.check.report(Code::BadQualifier.at(at, message));
-            }
-            last = rank;
-            match keyword {
-                Keyword::Const => qualifiers.is_const = Some(at),
-                Keyword::Uniform => qualifiers.storage = Some((Storage::Uniform, at)),
-                Keyword::In => qualifiers.storage = Some((Storage::In, at)),
-                Keyword::Out => qualifiers.storage = Some((Storage::Out, at)),
-                Keyword::InOut => qualifiers.storage = Some((Storage::InOut, at)),
-                Keyword::Highp | Keyword::Mediump | Keyword::Lowp => {}
-                _ => qualifiers.interface = Some(at),
-            }
-            if keyword == Keyword::Layout {
-                self.layout()?;
-            }
-        }
-    }
-
-    /// `(location = 0, …)`: read and not kept; nobody asks for it.
-    fn layout(&mut self) -> Parsed<()> {
-        self.expect(Punctuator::LeftParen)?;
-        loop {
-            self.name()?;
-            if self.eat(Punctuator::Assign) && !matches!(self.next().kind, TokenKind::Number(_)) {
-                self.at -= 1;
-                return self.unexpected("an integer");
-            }
-            if !self.eat(Punctuator::Comma) {
-                self.expect(Punctuator::RightParen)?;
-                return Ok(());
-            }
-        }
+    /// `uniform Name { … }` (§4.3.7), at its name.
+    fn is_block(&self) -> bool {
+        self.word() == Some(Word::Name) && self.peek(1).kind == TokenKind::Punctuator(Punctuator::LeftBrace)
     }
 
     /// A type by name or a structure, and the sizes that follow.
@@ -190,7 +152,7 @@ impl Parser<'_> {
     }
 
     /// `[n][]…`.
-    fn sizes(&mut self) -> Parsed<Vec<Size>> {
+    pub(super) fn sizes(&mut self) -> Parsed<Vec<Size>> {
         let mut sizes = Vec::new();
         while self.is(Punctuator::LeftBracket) {
             let open = self.next().at;
@@ -231,7 +193,7 @@ impl Parser<'_> {
     /// `vec3 a, b[2];`.
     fn members(&mut self, members: &mut Vec<Member>) -> Parsed<()> {
         let qualifiers = self.qualifiers()?;
-        if let Some((_, at)) = qualifiers.storage {
+        if let Some(at) = qualifiers.other_than_precision() {
             self.check
                 .report(Code::BadQualifier.at(at, "a member has no qualifier but its precision"));
         }
@@ -244,6 +206,7 @@ impl Parser<'_> {
             );
         }
         let specifier = self.named_type()?;
+        self.check.precision_fits(&qualifiers, &specifier);
         loop {
             let (name, at) = self.name()?;
             let sizes = self.sizes()?;
@@ -295,98 +258,5 @@ impl Parser<'_> {
             sizes,
             initialiser,
         })
-    }
-
-    /// The rest of a prototype or definition, from its `(`.
-    fn function(
-        &mut self,
-        qualifiers: &Qualifiers,
-        result: &Specifier,
-        name: Symbol,
-        at: Place,
-    ) -> Parsed<()> {
-        let qualifier = qualifiers
-            .storage
-            .map(|(_, at)| at)
-            .or(qualifiers.is_const)
-            .or(qualifiers.interface);
-        if let Some(at) = qualifier {
-            self.check
-                .report(Code::BadQualifier.at(at, "a result has no qualifier but its precision"));
-        }
-        let parameters = self.parameters()?;
-        let function = self.check.declare_function(result, name, at, &parameters);
-        if self.eat(Punctuator::Semicolon) {
-            self.check.prototype(function);
-            return Ok(());
-        }
-        if !self.is(Punctuator::LeftBrace) {
-            return self.unexpected("`{` or `;`");
-        }
-        self.check.open_body(function, at, &parameters);
-        let body = self.block()?;
-        self.check.close_body(function, body);
-        Ok(())
-    }
-
-    /// `(in vec3 p, float t)`, `()` or `(void)`.
-    fn parameters(&mut self) -> Parsed<Vec<Parameter>> {
-        self.expect(Punctuator::LeftParen)?;
-        let void = self.word() == Some(Word::Type(Type::Void));
-        if void && self.peek(1).kind == TokenKind::Punctuator(Punctuator::RightParen) {
-            self.next();
-        }
-        let mut parameters = Vec::new();
-        if self.eat(Punctuator::RightParen) {
-            return Ok(parameters);
-        }
-        loop {
-            parameters.push(self.parameter()?);
-            if !self.eat(Punctuator::Comma) {
-                self.expect(Punctuator::RightParen)?;
-                return Ok(parameters);
-            }
-        }
-    }
-
-    fn parameter(&mut self) -> Parsed<Parameter> {
-        let qualifiers = self.qualifiers()?;
-        let direction = self.direction(&qualifiers);
-        let mut specifier = self.type_specifier()?;
-        let name = match self.kind() {
-            TokenKind::Word(_) => Some(self.name()?),
-            _ => None,
-        };
-        let at = name.map_or(specifier.at, |(_, at)| at);
-        let mut sizes = self.sizes()?;
-        sizes.append(&mut specifier.sizes);
-        specifier.sizes = sizes;
-        Ok(Parameter {
-            name: name.map(|(name, _)| name),
-            ty: self.check.parameter_type(&specifier, direction),
-            direction,
-            at,
-        })
-    }
-
-    fn direction(&mut self, qualifiers: &Qualifiers) -> Direction {
-        let wrong = match (qualifiers.storage, qualifiers.is_const, qualifiers.interface) {
-            (_, _, Some(at)) | (Some((Storage::Uniform, at)), _, _) => {
-                Some((at, "a parameter can be `const`, `in`, `out` or `inout`"))
-            }
-            (Some((Storage::Out | Storage::InOut, at)), Some(_), None) => {
-                Some((at, "a `const` parameter can only be `in`"))
-            }
-            _ => None,
-        };
-        if let Some((at, message)) = wrong {
-            self.check.report(Code::BadQualifier.at(at, message));
-        }
-        match qualifiers.storage {
-            Some((Storage::Out, _)) => Direction::Out,
-            Some((Storage::InOut, _)) => Direction::InOut,
-            _ if qualifiers.is_const.is_some() => Direction::ConstIn,
-            _ => Direction::In,
-        }
     }
 }

@@ -2,8 +2,9 @@
 
 use super::{Parsed, Parser};
 use crate::glsl::check::Specifier;
-use crate::glsl::token::{Keyword, Punctuator, TokenKind, Word};
+use crate::glsl::token::{Punctuator, TokenKind};
 use crate::glsl::tree::{ExprId, Literal, Place, StepOp, Type, UnaryOp, Value};
+use crate::glsl::words::{Keyword, Word};
 
 impl Parser<'_> {
     /// `a, b, c`.

@@ -3,17 +3,21 @@
 //! Each function reads one construct and asks the checker for its node. What does not fit the grammar stops the parser: it has then
 //! told the checker why, and [`Halt`] travels up to who can go on.
 
+mod control;
 mod declaration;
 mod expression;
+mod function;
 mod number;
+mod qualifier;
 mod statement;
 
 use super::MAX_NESTING;
 use super::check::Checker;
 use super::codes::Code;
 use super::preprocess::Preprocessed;
-use super::token::{Keyword, Punctuator, Symbol, Token, TokenKind, Word, Words};
+use super::token::{Punctuator, Symbol, Token, TokenKind};
 use super::tree::Place;
+use super::words::{Keyword, Word, Words};
 
 /// The reason was told; there is no way on from here.
 #[derive(Debug, Clone, Copy)]
@@ -71,6 +75,11 @@ impl<'a> Parser<'a> {
         let token = self.token();
         self.at += 1;
         token
+    }
+
+    /// From there to the token taken last.
+    fn since(&self, start: Place) -> Place {
+        start.to(self.tokens[self.at.saturating_sub(1).min(self.tokens.len() - 1)].at)
     }
 
     fn is(&self, punctuator: Punctuator) -> bool {

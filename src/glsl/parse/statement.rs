@@ -1,8 +1,9 @@
 //! Statements (§6).
 
 use super::{Parsed, Parser};
-use crate::glsl::token::{Keyword, Punctuator, TokenKind, Word};
-use crate::glsl::tree::{Arm, Block, Case, Condition, Place, Statement, StatementKind};
+use crate::glsl::token::{Punctuator, TokenKind};
+use crate::glsl::tree::{Block, Place, Statement, StatementKind};
+use crate::glsl::words::{Keyword, Word};
 
 impl Parser<'_> {
     /// `{ … }` without a scope of its own: the caller has opened one.
@@ -17,7 +18,7 @@ impl Parser<'_> {
     }
 
     /// One statement of the text, appended as the none, one or several that it is in the tree.
-    fn statement(&mut self, block: &mut Block) -> Parsed<()> {
+    pub(super) fn statement(&mut self, block: &mut Block) -> Parsed<()> {
         self.nested(|parser| {
             let at = parser.token().at;
             let kind = match parser.kind() {
@@ -36,6 +37,7 @@ impl Parser<'_> {
                     None => return parser.simple_statement(block),
                 },
             };
+            let at = if kind.is_compound() { at } else { parser.since(at) };
             block.push(Statement { kind, at });
             Ok(())
         })
@@ -88,25 +90,26 @@ impl Parser<'_> {
     }
 
     /// The `;` that ends a statement.
-    fn end(&mut self, kind: StatementKind) -> Parsed<StatementKind> {
+    pub(super) fn end(&mut self, kind: StatementKind) -> Parsed<StatementKind> {
         self.expect(Punctuator::Semicolon)?;
         Ok(kind)
     }
 
     /// A declaration or an expression; only what follows the name of a type tells them apart.
-    fn simple_statement(&mut self, block: &mut Block) -> Parsed<()> {
+    pub(super) fn simple_statement(&mut self, block: &mut Block) -> Parsed<()> {
         if self.is_declaration() {
             return self.declaration_statement(block);
         }
         let at = self.token().at;
         let expr = self.expression()?;
         let kind = self.end(StatementKind::Expression(expr))?;
+        let at = self.since(at);
         block.push(Statement { kind, at });
         Ok(())
     }
 
     /// Whether a declaration begins here: with a qualifier, or with a type that no constructor's `(` follows.
-    fn is_declaration(&self) -> bool {
+    pub(super) fn is_declaration(&self) -> bool {
         let TokenKind::Word(symbol) = self.kind() else {
             return false;
         };
@@ -139,6 +142,7 @@ impl Parser<'_> {
         let at = self.token().at;
         let first = self.check.tree.structs.len();
         let variables = self.local_declaration()?;
+        let at = self.since(at);
         let structs = self
             .check
             .tree
@@ -152,7 +156,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    fn scoped<T>(&mut self, read: impl FnOnce(&mut Self) -> Parsed<T>) -> Parsed<T> {
+    pub(super) fn scoped<T>(&mut self, read: impl FnOnce(&mut Self) -> Parsed<T>) -> Parsed<T> {
         self.check.open_scope();
         let result = read(self);
         self.check.close_scope();
@@ -160,161 +164,12 @@ impl Parser<'_> {
     }
 
     /// What an `if`, `else` or loop guards: a block, or one statement. The caller has opened a scope.
-    fn guarded(&mut self) -> Parsed<Block> {
+    pub(super) fn guarded(&mut self) -> Parsed<Block> {
         if self.is(Punctuator::LeftBrace) {
             return self.nested(Self::block);
         }
         let mut block = Block::new();
         self.statement(&mut block)?;
         Ok(block)
-    }
-
-    /// `if … else if … else …`, the whole chain in one loop.
-    fn if_statement(&mut self) -> Parsed<StatementKind> {
-        let mut arms = Vec::new();
-        loop {
-            self.next();
-            self.expect(Punctuator::LeftParen)?;
-            let condition = self.expression()?;
-            let condition = self.check.condition(condition);
-            self.expect(Punctuator::RightParen)?;
-            let body = self.scoped(Self::guarded)?;
-            arms.push(Arm { condition, body });
-            if !self.eat_keyword(Keyword::Else) {
-                return Ok(StatementKind::If {
-                    arms,
-                    otherwise: None,
-                });
-            }
-            if self.keyword() != Some(Keyword::If) {
-                let otherwise = Some(self.scoped(Self::guarded)?);
-                return Ok(StatementKind::If { arms, otherwise });
-            }
-        }
-    }
-
-    fn switch_statement(&mut self) -> Parsed<StatementKind> {
-        self.next();
-        self.expect(Punctuator::LeftParen)?;
-        let selector = self.expression()?;
-        let mut labels = self.check.selector(selector);
-        self.expect(Punctuator::RightParen)?;
-        self.expect(Punctuator::LeftBrace)?;
-        self.check.enter_switch();
-        let cases = self.scoped(|parser| {
-            let mut cases: Vec<Case> = Vec::new();
-            // Whether no statement came since the last label: a label that comes now stands beside it.
-            let mut bare = false;
-            while !parser.is(Punctuator::RightBrace) {
-                let at = parser.token().at;
-                let label = match parser.keyword() {
-                    Some(Keyword::Case) => {
-                        parser.next();
-                        let expr = parser.expression()?;
-                        parser.check.case(&mut labels, expr)
-                    }
-                    Some(Keyword::Default) => {
-                        parser.next();
-                        parser.check.default(&mut labels, at)
-                    }
-                    _ => {
-                        let Some(case) = cases.last_mut() else {
-                            parser.check.misplaced_label(at, "a `switch` begins with a label");
-                            return Err(super::Halt);
-                        };
-                        parser.statement(&mut case.body)?;
-                        bare = false;
-                        continue;
-                    }
-                };
-                parser.expect(Punctuator::Colon)?;
-                match cases.last_mut() {
-                    Some(case) if bare => case.labels.push(label),
-                    _ => cases.push(Case {
-                        labels: vec![label],
-                        body: Block::new(),
-                        at,
-                    }),
-                }
-                bare = true;
-            }
-            // §6.2: something must follow the last label.
-            if bare {
-                let close = parser.token().at;
-                parser
-                    .check
-                    .misplaced_label(close, "a statement must follow the last label of a `switch`");
-            }
-            Ok(cases)
-        })?;
-        self.check.leave_switch();
-        self.expect(Punctuator::RightBrace)?;
-        Ok(StatementKind::Switch { selector, cases })
-    }
-
-    fn for_statement(&mut self) -> Parsed<StatementKind> {
-        self.next();
-        self.expect(Punctuator::LeftParen)?;
-        let mut init = Block::new();
-        if !self.eat(Punctuator::Semicolon) {
-            self.simple_statement(&mut init)?;
-        }
-        let condition = if self.is(Punctuator::Semicolon) {
-            None
-        } else {
-            Some(self.loop_condition()?)
-        };
-        self.expect(Punctuator::Semicolon)?;
-        let step = if self.is(Punctuator::RightParen) {
-            None
-        } else {
-            Some(self.expression()?)
-        };
-        self.expect(Punctuator::RightParen)?;
-        let body = self.loop_body(Self::guarded)?;
-        Ok(StatementKind::For {
-            init,
-            condition,
-            step,
-            body,
-        })
-    }
-
-    fn while_statement(&mut self) -> Parsed<StatementKind> {
-        self.next();
-        self.expect(Punctuator::LeftParen)?;
-        let condition = self.loop_condition()?;
-        self.expect(Punctuator::RightParen)?;
-        let body = self.loop_body(Self::guarded)?;
-        Ok(StatementKind::While { condition, body })
-    }
-
-    fn do_statement(&mut self) -> Parsed<StatementKind> {
-        self.next();
-        let body = self.loop_body(|parser| parser.scoped(Self::guarded))?;
-        if !self.eat_keyword(Keyword::While) {
-            return self.unexpected("`while`");
-        }
-        self.expect(Punctuator::LeftParen)?;
-        let condition = self.expression()?;
-        let condition = self.check.condition(condition);
-        self.expect(Punctuator::RightParen)?;
-        self.end(StatementKind::DoWhile { body, condition })
-    }
-
-    fn loop_body(&mut self, read: impl FnOnce(&mut Self) -> Parsed<Block>) -> Parsed<Block> {
-        self.check.enter_loop();
-        let body = read(self);
-        self.check.leave_loop();
-        body
-    }
-
-    /// An expression, or a declaration with initialiser.
-    fn loop_condition(&mut self) -> Parsed<Condition> {
-        if self.is_declaration() {
-            return Ok(Condition::Declare(self.condition_declaration()?));
-        }
-        let condition = self.expression()?;
-        Ok(Condition::Expression(self.check.condition(condition)))
     }
 }

@@ -1,6 +1,6 @@
 //! `#define` and `#undef`.
 
-use super::expand::{Body, Macro};
+use super::macros::{Body, Macro};
 use super::{PpToken, Preprocessor};
 use crate::diagnostic::Diagnostic;
 use crate::glsl::codes::Code;

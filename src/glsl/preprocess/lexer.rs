@@ -2,8 +2,9 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::glsl::codes::Code;
-use crate::glsl::token::{Punctuator, TokenKind, Words};
+use crate::glsl::token::{Punctuator, TokenKind};
 use crate::glsl::tree::Place;
+use crate::glsl::words::Words;
 use crate::source::{FileId, Span};
 
 /// A token with what only the preprocessor asks about.

@@ -7,15 +7,19 @@ mod condition;
 mod define;
 mod directive;
 mod expand;
+mod integer;
 mod lexer;
+mod macros;
 
 use std::collections::HashMap;
 
 use self::condition::Group;
-use self::expand::{Macro, Stream};
+use self::expand::Stream;
 use self::lexer::{Lexer, PpToken};
+use self::macros::Macro;
 use super::codes::Code;
-use super::token::{Punctuator, Symbol, Token, TokenKind, Words};
+use super::token::{Punctuator, Symbol, Token, TokenKind};
+use super::words::Words;
 use crate::diagnostic::Diagnostic;
 use crate::source::{FileId, Files};
 

@@ -16,6 +16,7 @@ mod builtin;
 mod constant;
 mod expr;
 mod item;
+mod operator;
 mod place;
 mod statement;
 mod types;
@@ -26,10 +27,11 @@ use std::ops::{Index, IndexMut};
 pub use arena::{Arena, Id};
 pub use builtin::BuiltIn;
 pub use constant::{Constant, Value};
-pub use expr::{BinaryOp, Constructor, Expr, ExprId, ExprKind, Literal, StepOp, Swizzle, UnaryOp};
+pub use expr::{Constructor, Expr, ExprId, ExprKind, Literal, Swizzle};
 pub use item::{
     BuiltInVariable, Direction, Function, FunctionId, Input, Item, Variable, VariableId, VariableKind,
 };
+pub use operator::{BinaryOp, StepOp, UnaryOp};
 pub use place::Place;
 pub use statement::{Arm, Block, Case, Condition, Label, Statement, StatementKind};
 pub use types::{ArrayId, ArrayType, Member, Sampler, SamplerShape, Scalar, Struct, StructId, Type};

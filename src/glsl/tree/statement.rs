@@ -10,7 +10,7 @@ pub type Block = Vec<Statement>;
 pub struct Statement {
     /// What it does.
     pub kind: StatementKind,
-    /// Where it stands; of compound statements, the word they begin with.
+    /// Where it stands, up to its `;`; of statements that hold others, the word or `{` that they begin with.
     pub at: Place,
 }
 
@@ -116,4 +116,20 @@ pub enum Label {
     },
     /// `default:`.
     Default,
+}
+
+impl StatementKind {
+    /// Whether it holds other statements.
+    #[must_use]
+    pub fn is_compound(&self) -> bool {
+        matches!(
+            self,
+            Self::Block(_)
+                | Self::If { .. }
+                | Self::Switch { .. }
+                | Self::For { .. }
+                | Self::While { .. }
+                | Self::DoWhile { .. }
+        )
+    }
 }

@@ -1,5 +1,7 @@
 //! The rules of the specification, each with what keeps it and what breaks it.
 
+mod limits;
+
 use super::*;
 use crate::source::File;
 
@@ -83,6 +85,10 @@ fn grammar() {
         E0403 void f(uniform float a) { }
         E0403 const float f() { return 1.; }
         E0307 precision highp vec2;
+        E0403 { highp bool b; }
+        E0403 struct S { int a; }; void f(lowp S s) { }
+        E0403 uniform Block { float a; };
+        E0100 void f(struct S { int a; } s) { }
         ",
     );
 }
@@ -132,7 +138,7 @@ fn operators() {
         ok    { int a = 7 % 3 & 1 | 2 ^ 4; uvec2 b = uvec2(1) << 2; b >>= 1u; a = ~a; ivec2 c = ivec2(1) % 2; }
         ok    { bool a = 1 < 2 && 1u >= 2u || 1. > 2. ^^ !true; a = vec2(1) == vec2(2); a = mat2(1) != mat2(2); }
         ok    { int a[2]; int b[2]; bool c = a == b; a = b; }
-        ok    struct S { vec2 a; }; S f(bool b, S x, S y) { return x == y ? x : b ? x : y; }
+        ok    struct S { vec2 a; }; bool f(S x, S y) { return x == y ? x != y : true; }
         ok    { float x = (1., 2.); int i; i++; --i; vec2 v; v++; v.x--; }
         E0300 { vec2 a = vec2(1) + vec3(1); }
         E0300/ok { float a = 1. + 1; }
@@ -160,6 +166,10 @@ fn operators() {
         E0301 { float a = true ? 1. : vec2(1).xy; }
         E0301 { float a = 1. ? 1. : 2.; }
         E0307 { true ? test() : test(); }
+        E0307/ok struct S { vec2 a; }; S f(bool b, S x, S y) { return b ? x : y; }
+        E0307/ok { float a[2], b[2]; a = true ? a : b; }
+        E0307 { texture(true ? iChannel0 : iChannel1, vec2(0)); }
+        E0403 struct S { const int a; };
         E0307 void f(void a) { }
         E0307 { void a; }
         E0307 { sampler2D s; }
@@ -394,121 +404,6 @@ fn one_mistake_is_told_once_and_others_beside_it() {
     let errors = check_text(&text, &Options::default()).unwrap_err();
     let told: Vec<_> = errors.iter().map(|error| error.message.as_str()).collect();
     assert_eq!(told, ["`b` is not declared", "`c` is not declared"]);
-}
-
-/// On a stack of 2 MB, as threads have it.
-fn on_a_small_stack<T: Send>(work: impl FnOnce() -> T + Send) -> T {
-    std::thread::scope(|scope| {
-        let builder = std::thread::Builder::new().stack_size(2 << 20);
-        builder.spawn_scoped(scope, work).unwrap().join().unwrap()
-    })
-}
-
-fn each(indices: std::ops::Range<usize>, line: fn(usize) -> String) -> String {
-    indices.map(line).collect()
-}
-
-#[test]
-fn nesting_has_a_limit_that_is_told() {
-    let shapes: [(&str, &str, &str); 9] = [
-        ("(", "1.", ")"),
-        ("sin(", "1.", ")"),
-        ("- ", "1.", ""),
-        ("+(", "1.", ")"),
-        ("true ? 1. : ", "1.", ""),
-        ("true ? ", "1.", " : 1."),
-        ("a = ", "1.", ""),
-        ("b[int(", "1.", ")]"),
-        (
-            "1. + 1. * float(true || true && 1 == 1 << 1 + ivec2(",
-            "1",
-            ").x)",
-        ),
-    ];
-    for (open, middle, close) in shapes {
-        let text = |depth: usize| {
-            let value = format!("{}{middle}{}", open.repeat(depth), close.repeat(depth));
-            format!("void test() {{ float a, b[2]; a = {value}; }} {MAIN}")
-        };
-        for depth in [50_000, 300] {
-            let text = text(depth);
-            let errors = on_a_small_stack(|| check_text(&text, &Options::default()).unwrap_err());
-            assert_eq!(errors[0].code, "E0101", "{open} {depth}");
-        }
-        let shallow = text(20);
-        on_a_small_stack(|| check_text(&shallow, &Options::default())).unwrap();
-    }
-    for (open, depth, accepted) in [
-        ("if (true) ", 240, true),
-        ("if (true) ", 50_000, false),
-        ("{", 50_000, false),
-        ("for (;;) ", 50_000, false),
-    ] {
-        let text = format!("void test() {{ {} ; }} {MAIN}", open.repeat(depth));
-        let result = on_a_small_stack(|| check_text(&text, &Options::default()).map(drop));
-        assert_eq!(result.is_ok(), accepted, "{open} {depth}");
-    }
-    let parens = format!(
-        "void test() {{ float a = {}1.{}; }} {MAIN}",
-        "(".repeat(250),
-        ")".repeat(250)
-    );
-    on_a_small_stack(|| check_text(&parens, &Options::default()).map(drop)).unwrap();
-}
-
-#[test]
-fn long_chains_are_no_nesting() {
-    let sum = "a + ".repeat(20_000);
-    let commas = "a, ".repeat(20_000);
-    let swizzles = ".xy".repeat(20_000);
-    let ifs = "if (a < 1.) a = 2.; else ".repeat(5_000);
-    let text = format!(
-        "const float k = {} 1.; void test(float a) {{ a = {sum} a; a = ({commas} a); vec2 v; v = v{swizzles}; {ifs} ; }} {MAIN}",
-        "1. + ".repeat(20_000)
-    );
-    let checked = on_a_small_stack(|| check_text(&text, &Options::default())).unwrap();
-    let k = checked
-        .tree
-        .variables
-        .iter()
-        .find(|(_, variable)| variable.name == "k")
-        .unwrap()
-        .1;
-    assert_eq!(
-        k.value.as_ref().unwrap().scalars[..],
-        [tree::Value::Float(20_001.0)]
-    );
-    let consts = each(1..5_000, |index| {
-        format!("const float k{index} = k{} * 2.;\n", index - 1)
-    });
-    let text = format!("const float k0 = 1.;\n{consts}{MAIN}");
-    on_a_small_stack(|| check_text(&text, &Options::default())).unwrap();
-}
-
-#[test]
-fn structures_of_structures_cost_nothing() {
-    let levels = each(1..60, |level| {
-        let last = level - 1;
-        format!(
-            "struct S{level} {{ S{last} a, b; }}; const S{level} c{level} = S{level}(c{last}, c{last});\n"
-        )
-    });
-    let text = format!("struct S0 {{ float a, b; }}; const S0 c0 = S0(1., 2.);\n{levels}{MAIN}");
-    assert!(check_text(&text, &Options::default()).is_ok());
-}
-
-#[test]
-fn cut_short_anywhere_a_shader_ends_in_a_diagnostic() {
-    let text = "#define F(x) (x)\nstruct S { vec2 a[2]; };\nvoid mainImage(out vec4 c, in vec2 f) {\n S s; for (int i = 0; \
-                i < 2; i++) { switch (i) { case 0: s.a[i] = F(f); default: c = true ? vec4(1) : vec4(0); } } /* x */ }\n";
-    assert!(check_text(text, &Options::default()).is_ok());
-    for end in 0..text.len() - 1 {
-        assert!(
-            check_text(&text[..end], &Options::default()).is_err(),
-            "{}",
-            &text[..end]
-        );
-    }
 }
 
 #[test]
