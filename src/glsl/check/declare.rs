@@ -119,7 +119,7 @@ impl Checker<'_> {
             _ if kind != VariableKind::Uniform && self.holds_sampler(ty) => {
                 format!("{} can only be a uniform or a parameter", self.said(ty))
             }
-            _ => return ty,
+            _ => return self.bounded(ty, at),
         };
         self.error(Code::BadType, at, problem);
         Type::Error

@@ -43,7 +43,7 @@ impl Checker<'_> {
             let message = format!("a parameter of type {} can only be `in`", self.said(ty));
             self.error(Code::BadType, at, message);
         }
-        ty
+        self.bounded(ty, at)
     }
 
     /// Declares an overload, or finds the one that the header repeats.

@@ -8,6 +8,7 @@ mod call;
 mod channel;
 mod construct;
 mod declare;
+mod extent;
 mod function;
 mod operator;
 mod prelude;
@@ -16,19 +17,18 @@ mod signature;
 mod statement;
 mod types;
 
-use std::collections::HashSet;
-
 pub(crate) use declare::{Declarator, Qualifiers, Storage};
 pub(crate) use function::Parameter;
 pub(crate) use types::{Size, Specifier};
 
 pub(crate) use self::channel::Channels;
+use self::extent::Extent;
 use self::function::Context;
 use self::scope::Scopes;
 use super::codes::Code;
 use super::options::Options;
 use super::token::Symbol;
-use super::tree::{Expr, ExprId, ExprKind, FunctionId, Literal, Place, Scalar, StructId, Tree, Type, Value};
+use super::tree::{Expr, ExprId, ExprKind, FunctionId, Literal, Place, Scalar, Tree, Type, Value};
 use super::words::Words;
 use crate::diagnostic::Diagnostic;
 
@@ -42,8 +42,8 @@ pub(crate) struct Checker<'a> {
     pub(crate) tree: Tree,
     scopes: Scopes,
     channels: Channels,
-    /// The structures with a sampler in them, however deep.
-    sampler_structs: HashSet<StructId>,
+    /// What is known of each structure of the tree, in order.
+    struct_extents: Vec<Extent>,
     /// The function whose body is being read.
     function: Option<Context>,
     /// Who calls whom, and where.
@@ -60,7 +60,7 @@ impl<'a> Checker<'a> {
             tree: Tree::default(),
             scopes: Scopes::default(),
             channels,
-            sampler_structs: HashSet::new(),
+            struct_extents: Vec::new(),
             function: None,
             calls: Vec::new(),
             errors: Vec::new(),

@@ -67,6 +67,9 @@ impl Checker<'_> {
             self.error(Code::BadType, at, "there are no arrays of `void`");
             return Type::Error;
         }
+        if !self.may_have_dimensions(base, sizes.len(), at) {
+            return Type::Error;
+        }
         // What the initialiser has at each dimension.
         let mut inferred = Vec::new();
         let mut rest = given;
@@ -109,15 +112,13 @@ impl Checker<'_> {
         at: Place,
     ) -> StructId {
         let text = name.map_or("", |name| self.text(name));
-        let holds_sampler = members.iter().any(|member| self.holds_sampler(member.ty));
+        let extent = self.struct_extent(&members, at);
         let id = self.tree.structs.push(Struct {
             name: text.to_owned(),
             members,
             at,
         });
-        if holds_sampler {
-            self.sampler_structs.insert(id);
-        }
+        self.struct_extents.push(extent);
         if let Some(name) = name
             && self.may_declare(name, at)
         {
@@ -153,15 +154,5 @@ impl Checker<'_> {
             ty,
             at,
         });
-    }
-
-    /// Whether a type is a sampler or has one in it: such values cannot be compared, chosen or assigned (§4.1.7).
-    pub(super) fn holds_sampler(&self, ty: Type) -> bool {
-        match ty {
-            Type::Sampler(_) => true,
-            Type::Array(id) => self.holds_sampler(self.tree.array(id).element),
-            Type::Struct(id) => self.sampler_structs.contains(&id),
-            _ => false,
-        }
     }
 }

@@ -81,8 +81,18 @@ impl Preprocessor<'_> {
         nothing_left(rest)
     }
 
-    pub(super) fn line_of(&self, at: Place) -> i64 {
-        i64::try_from(self.files.position(at.span).line).unwrap_or(i64::MAX)
+    /// The line that a token stands on, counted from the last one asked for: so all questions together take linear time.
+    pub(super) fn line_of(&mut self, at: Place) -> i64 {
+        let (byte, line) = self.counted;
+        let start = at.span.start as usize;
+        let newlines = |text: &str| text.bytes().map(|byte| i64::from(byte == b'\n')).sum::<i64>();
+        let line = if start >= byte {
+            line + newlines(&self.text[byte..start])
+        } else {
+            line - newlines(&self.text[start..byte])
+        };
+        self.counted = (start, line);
+        line
     }
 
     /// `#version 300 es`, first or not at all.

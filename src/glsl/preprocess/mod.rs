@@ -71,7 +71,7 @@ pub(crate) fn preprocess(files: &Files, file: FileId) -> Preprocessed {
 }
 
 struct Preprocessor<'a> {
-    files: &'a Files,
+    text: &'a str,
     lexer: Lexer<'a>,
     words: Words,
     macros: HashMap<Symbol, Macro>,
@@ -86,6 +86,8 @@ struct Preprocessor<'a> {
     /// What `#line` adds to line numbers, and the number it gives the file: seen by `__LINE__` and `__FILE__` only.
     line_offset: i64,
     file_number: i64,
+    /// A byte and its line, for counting on.
+    counted: (usize, i64),
     /// How many tokens macros may still produce.
     budget: usize,
     /// Whether they produced more, or nested too deep.
@@ -99,9 +101,10 @@ impl<'a> Preprocessor<'a> {
     fn new(files: &'a Files, file: FileId) -> Self {
         let mut words = Words::default();
         let macros = Macro::predefined(file, &mut words);
+        let text = files.get(file).text();
         Self {
-            files,
-            lexer: Lexer::new(file, files.get(file).text()),
+            text,
+            lexer: Lexer::new(file, text),
             words,
             macros,
             stream: Stream::Text(Vec::new()),
@@ -110,6 +113,7 @@ impl<'a> Preprocessor<'a> {
             past_first_token: false,
             line_offset: 0,
             file_number: 0,
+            counted: (0, 1),
             budget: expand::BUDGET,
             gave_up: false,
             depth: 0,

@@ -101,7 +101,33 @@ fn structures_of_structures_cost_nothing() {
         )
     });
     let text = format!("struct S0 {{ float a, b; }}; const S0 c0 = S0(1., 2.);\n{levels}{MAIN}");
-    assert!(check_text(&text, &Options::default()).is_ok());
+    let lenient = Options {
+        lenient: true,
+        ..Options::default()
+    };
+    assert_eq!(check_text(&text, &lenient).unwrap_err()[0].code, "E0305");
+    assert_eq!(
+        check_text(&text, &Options::default()).unwrap_err()[0].code,
+        "E0101"
+    );
+    let deep = |line| format!("struct S0 {{ float a; }};\n{}{MAIN}", each(1..20_000, line));
+    let texts = [
+        deep(|level| format!("struct S{level} {{ S{} a; }};\n", level - 1)),
+        deep(|level| format!("struct S{level} {{ S{} a[2]; }};\n", level - 1)),
+        format!("float a{};\n{MAIN}", "[1]".repeat(20_000)),
+    ];
+    for text in texts {
+        let errors = on_a_small_stack(|| check_text(&text, &lenient).unwrap_err());
+        assert_eq!(errors[0].code, "E0101");
+    }
+}
+
+#[test]
+fn a_variable_has_a_limit() {
+    let text = |size| format!("struct S {{ vec4 a[1024]; }}; S s[{size}]; {MAIN}");
+    assert!(check_text(&text(1024), &Options::default()).is_ok());
+    let errors = check_text(&text(1025), &Options::default()).unwrap_err();
+    assert_eq!(errors[0].code, "E0305");
 }
 
 #[test]

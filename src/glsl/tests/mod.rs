@@ -73,6 +73,8 @@ fn grammar() {
         E0104 { float half = 1.; }
         E0104 { goto end; }
         E0100 { float float = 1.; }
+        ok    struct A { int a; }; struct B { A a; }; struct C { B b; }; struct D { C c; }; D d;
+        E0101/ok struct A { int a; }; struct B { A a; }; struct C { B b; }; struct D { C c; }; struct E { D d; };
         E0100 struct S { };
         E0100 struct S { struct T { int a; } t; };
         E0102 { float a = 1f; }
@@ -232,6 +234,9 @@ fn constants_and_arrays() {
         E0305 { float a[1 / 0]; }
         E0306/ok { float a[2][3]; }
         E0306/ok float[2] a[3];
+        E0306/ok { float a[2][3]; float b[3] = a[1]; float c[2][2] = float[2][2](float[2](1., 2.), float[](3., 4.)); }
+        E0306/E0301 { float a[2][3]; float b[2] = a[1]; }
+        E0306/ok { float[3] a[2]; float b[3] = a[1]; }
         E0301 { float a[2] = float[](1., 2., 3.); }
         E0301/E0301 { float a[2] = float[2](1., true); }
         E0303 { float a[2] = float[2](1.); }
