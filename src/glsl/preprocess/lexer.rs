@@ -101,7 +101,7 @@ impl<'a> Lexer<'a> {
         // Tried in the order of `ALL`: the longest wins.
         for &punctuator in Punctuator::ALL {
             let text = punctuator.text();
-            if text.starts_with(first) {
+            if u8::try_from(first).is_ok_and(|first| text.as_bytes()[0] == first) {
                 let start = self.at;
                 if text.chars().all(|c| self.eat(c)) {
                     return TokenKind::Punctuator(punctuator);
