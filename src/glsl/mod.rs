@@ -46,6 +46,17 @@ pub struct Checked {
 
 /// Checks a shader: its tree, or what is wrong with it, in the order of the text.
 ///
+/// ```
+/// use toyproof::glsl::{Options, check};
+/// use toyproof::source::{File, Files};
+///
+/// let mut files = Files::default();
+/// let text = "void mainImage(out vec4 c, in vec2 f) { c = vec4(f / iResolution.xy, 0, 1); }";
+/// let file = files.add(File::new("gradient.glsl", text));
+/// let checked = check(&files, file, &Options::default()).unwrap();
+/// assert_eq!(checked.tree[checked.main_image].name, "mainImage");
+/// ```
+///
 /// # Errors
 /// With at least one error if the shader breaks a rule; warnings may stand among them.
 pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, Vec<Diagnostic>> {

@@ -45,6 +45,10 @@ impl Checker<'_> {
             return self.broken(at);
         }
         let Some(function) = self.find_overload(overloads, &types) else {
+            // Only `lenient` lets an author overload a built-in function; its other overloads remain.
+            if let Some(built_in) = BuiltIn::named(&self.tree[overloads[0]].name) {
+                return self.call_built_in(built_in, arguments, name_at, at);
+            }
             if self.infer_channel(&arguments, |checker, types| {
                 checker.find_overload(overloads, types).is_some()
             }) {

@@ -185,8 +185,10 @@ impl Checker<'_> {
                 .at(at, format!("`{text}` is declared already"))
                 .related(first.span, "first declared here"),
             Some(None) => Code::Redeclared.at(at, format!("`{text}` is declared already, by ShaderToy")),
-            // Built-in functions, and the `main` of ShaderToy, are of the global scope.
-            None if self.scopes.is_global() && (text == "main" || BuiltIn::named(text).is_some()) => {
+            // Built-in functions, and the `main` of ShaderToy, are of the global scope; desktop GLSL lets them be redefined.
+            None if self.scopes.is_global()
+                && (text == "main" || (!self.lenient && BuiltIn::named(text).is_some())) =>
+            {
                 Code::Redeclared.at(
                     at,
                     format!("`{text}` is declared already: it is a built-in function"),

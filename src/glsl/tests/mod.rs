@@ -117,8 +117,8 @@ fn scopes() {
         E0201 void f(float a, float a) { }
         E0201 { for (int i = 0; i < 1; i++) { int i; } }
         E0201 float iTime;
-        E0201 float sin;
-        E0201 float sin(int x) { return 1.; }
+        E0201/ok float sin;
+        E0201/ok float sin(bool x) { return 1.; } void f() { sin(true); sin(1.); }
         E0201 void main() { }
         E0201 float f; void f() { }
         E0201 struct S { int a; }; float S(int a) { return 1.; }

@@ -7,9 +7,9 @@
 //! Nodes live in arenas ([`Arena`]) and are named by `Copy` ids: `tree[id]` reads any of them, `tree.exprs.push(…)` makes
 //! one, and a pass that rewrites a function takes its body out (`tree[f].body.take()`), works, and puts it back.
 //!
-//! Depth: blocks and operands nest at most [`MAX_NESTING`](super::MAX_NESTING) deep, so that recursion over them is safe, with two
-//! exceptions. The left operands of a chain `a + b + c + …` (also `,`, and postfix `.x`, `[i]`) may be thousands deep: walk them with a
-//! loop, or any expression with [`Tree::postorder`], which needs no stack. `else if` chains are flat.
+//! Depth: blocks nest at most [`MAX_NESTING`](super::MAX_NESTING) deep, and operands a few times as deep, so that recursion over them
+//! is safe, with one exception. The first operand of a chain `a + b + c + …` (also of `,`, and of postfix `.x`, `[i]`) may be thousands
+//! deep: walk it with a loop, or any expression with [`Tree::postorder`], which needs no stack. `else if` chains are flat.
 
 mod arena;
 mod builtin;
