@@ -132,6 +132,11 @@ impl Checker<'_> {
             );
             return self.refuse(Code::BadIndex, self.tree[index].at, message);
         }
+        // §4.1.7: which sampler it is must be known beforehand.
+        if matches!(element, Type::Sampler(_)) && !self.tree[index].constant {
+            let message = "the index of an array of samplers must be a constant expression";
+            return self.refuse(Code::NotConstant, self.tree[index].at, message);
+        }
         let constant = self.tree[base].constant && self.tree[index].constant;
         self.push(ExprKind::Index { base, index }, element, constant, at)
     }

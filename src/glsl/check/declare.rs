@@ -4,7 +4,9 @@ use super::scope::Entity;
 use super::{Checker, Size, Specifier};
 use crate::glsl::codes::Code;
 use crate::glsl::token::Symbol;
-use crate::glsl::tree::{BuiltIn, ExprId, Place, Scalar, Type, Variable, VariableId, VariableKind};
+use crate::glsl::tree::{
+    BuiltIn, BuiltInVariable, ExprId, Place, Scalar, Type, Variable, VariableId, VariableKind,
+};
 
 /// What stands before the type of a declaration.
 #[derive(Debug, Clone, Default)]
@@ -119,10 +121,29 @@ impl Checker<'_> {
             _ if kind != VariableKind::Uniform && self.holds_sampler(ty) => {
                 format!("{} can only be a uniform or a parameter", self.said(ty))
             }
+            _ if !self.passes_stages(ty, kind) => {
+                format!("{} cannot come from another stage or go there", self.said(ty))
+            }
             _ => return self.bounded(ty, at),
         };
         self.error(Code::BadType, at, problem);
         Type::Error
+    }
+
+    /// What may be `in` and `out` of a fragment shader: no `bool`, and nothing but vectors `out` (§4.3.4, §4.3.6).
+    fn passes_stages(&self, ty: Type, kind: VariableKind) -> bool {
+        let element = match ty {
+            Type::Array(id) => self.tree.array(id).element,
+            _ => ty,
+        };
+        match kind {
+            VariableKind::Varying => element.scalar() != Some(Scalar::Bool),
+            VariableKind::Output => {
+                matches!(element, Type::Scalar(scalar) | Type::Vector(scalar, _) if scalar != Scalar::Bool)
+                    || element == Type::Error
+            }
+            _ => true,
+        }
     }
 
     fn initialiser(
@@ -218,7 +239,10 @@ impl Checker<'_> {
     pub(crate) fn invariant(&mut self, name: Symbol, at: Place) {
         let expr = self.name(name, at);
         if let Some(variable) = self.tree.root_variable(expr)
-            && self.tree[variable].kind != VariableKind::Output
+            && !matches!(
+                self.tree[variable].kind,
+                VariableKind::Output | VariableKind::BuiltIn(BuiltInVariable::FragDepth)
+            )
         {
             self.error(Code::BadQualifier, at, "only an output can be `invariant`");
         }

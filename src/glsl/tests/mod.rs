@@ -87,6 +87,9 @@ fn grammar() {
         E0403 void f(uniform float a) { }
         E0403 const float f() { return 1.; }
         E0307 precision highp vec2;
+        ok    invariant gl_FragDepth; out vec4 colours[2]; in mat3 m;
+        E0307 in bool b;
+        E0307 out mat3 m;
         E0403 { highp bool b; }
         E0403 struct S { int a; }; void f(lowp S s) { }
         E0403 uniform Block { float a; };
@@ -195,6 +198,8 @@ fn access() {
         E0203 { float a; a.x; }
         E0203 struct S { float a; }; void f(S s) { s.b; }
         E0203 { vec2 v; v.length(); }
+        ok    uniform sampler2D s[2]; void f() { texture(s[1], vec2(0)); }
+        E0401 uniform sampler2D s[2]; void f(int i) { texture(s[i], vec2(0)); }
         E0304 { float a[2]; a[2]; }
         E0304 { const int n = 3; vec3 v; v[n]; }
         E0304 { vec2 v; v[-1]; }
