@@ -19,15 +19,6 @@ impl Preprocessor<'_> {
             }
             body => (None, body),
         };
-        let operator = |token: &&PpToken| {
-            matches!(
-                token.kind,
-                TokenKind::Punctuator(Punctuator::Hash | Punctuator::Paste)
-            )
-        };
-        if let Some(token) = body.iter().find(operator) {
-            return Code::PasteOperator.refuse(token.at, "GLSL ES has no `#` and no `##` in macros");
-        }
         let parameter = |token: &PpToken| match (token.kind, &parameters) {
             (TokenKind::Word(word), Some(parameters)) => parameters.iter().position(|&p| p == word),
             _ => None,

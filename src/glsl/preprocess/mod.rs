@@ -49,8 +49,13 @@ pub(crate) fn preprocess(files: &Files, file: FileId) -> Preprocessed {
                 continue;
             }
             TokenKind::Punctuator(Punctuator::Hash | Punctuator::Paste) => {
-                preprocessor
-                    .report(Code::PasteOperator.at(token.at, "`#` is not at the beginning of its line"));
+                // A macro with one is harmless until it is used.
+                let message = if token.at.is_expanded() {
+                    "GLSL ES has no `#` and no `##` in macros"
+                } else {
+                    "`#` is not at the beginning of its line"
+                };
+                preprocessor.report(Code::PasteOperator.at(token.at, message));
                 continue;
             }
             _ => {}
