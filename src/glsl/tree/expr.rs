@@ -213,16 +213,16 @@ impl Swizzle {
     }
 }
 
-impl ExprKind {
-    /// Calls `visit` with each operand, in the order of evaluation.
-    pub fn for_each_operand(&self, mut visit: impl FnMut(ExprId)) {
-        match self {
+/// The one list of what is an operand: `$visit` gets a reference to each, in the order of evaluation.
+macro_rules! visit_operands {
+    ($kind:expr, $visit:ident) => {
+        match $kind {
             Self::Literal(_) | Self::Variable(_) => {}
             Self::Unary { operand: only, .. }
             | Self::Step { target: only, .. }
             | Self::Swizzle { vector: only, .. }
             | Self::Member { structure: only, .. }
-            | Self::Length { array: only } => visit(*only),
+            | Self::Length { array: only } => $visit(only),
             Self::Binary {
                 left: a, right: b, ..
             }
@@ -231,17 +231,34 @@ impl ExprKind {
             }
             | Self::Sequence { first: a, second: b }
             | Self::Index { base: a, index: b } => {
-                visit(*a);
-                visit(*b);
+                $visit(a);
+                $visit(b);
             }
             Self::Conditional { condition, yes, no } => {
-                visit(*condition);
-                visit(*yes);
-                visit(*no);
+                $visit(condition);
+                $visit(yes);
+                $visit(no);
             }
             Self::Call { arguments, .. }
             | Self::BuiltIn { arguments, .. }
-            | Self::Construct { arguments, .. } => arguments.iter().copied().for_each(visit),
+            | Self::Construct { arguments, .. } => {
+                for argument in arguments {
+                    $visit(argument);
+                }
+            }
         }
+    };
+}
+
+impl ExprKind {
+    /// Calls `visit` with each operand, in the order of evaluation.
+    pub fn for_each_operand(&self, mut visit: impl FnMut(ExprId)) {
+        let mut visit = |operand: &ExprId| visit(*operand);
+        visit_operands!(self, visit);
+    }
+
+    /// Calls `visit` with each operand, in the order of evaluation, to put another in its place.
+    pub fn for_each_operand_mut(&mut self, mut visit: impl FnMut(&mut ExprId)) {
+        visit_operands!(self, visit);
     }
 }

@@ -201,6 +201,10 @@ mod tests {
             made.extend([right, chain]);
         }
         assert_eq!(tree.postorder(chain), made);
+        // Put the right operand in place of the left one: half of the chain is gone.
+        let right = made[made.len() - 2];
+        tree[chain].kind.for_each_operand_mut(|operand| *operand = right);
+        assert_eq!(tree.postorder(chain), [right, right, chain]);
     }
 
     #[test]
