@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use divan::Bencher;
 use toyproof::frame::Frame;
-use toyproof::glsl::{Lowered, lower};
+use toyproof::glsl::{Lowered, Options, check, lower};
 use toyproof::gpu::{FloatMode, On, Worker};
 use toyproof::module::ValidModule;
 use toyproof::scene::{self, Scene};
@@ -26,7 +26,7 @@ fn lowered(rung: &str) -> Lowered {
     let mut files = Files::default();
     let text = fs::read_to_string(format!("glsl/{rung}.glsl")).expect("the course is here");
     let file = files.add(File::new(rung, text));
-    lower(&files, file).expect("the course is valid")
+    lower(&check(&files, file, &Options::default()).expect("the course is valid"))
 }
 
 fn scene(rung: &str) -> Scene {

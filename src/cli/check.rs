@@ -130,7 +130,7 @@ struct Reference {
 
 impl Checker<'_> {
     fn check(&mut self, input: &Result<Found, ReadError>) -> Record {
-        let shader = Shader::load(input);
+        let shader = Shader::load(input, &self.args.driver.language());
         let spinner = self.terminal.spinner(&shader.name);
         let reference = input.as_ref().ok().and_then(|found| self.reference(found));
         let mut record = Record {
@@ -151,12 +151,7 @@ impl Checker<'_> {
         if let Err(stopped) = stopped {
             record.verdict = stopped.verdict;
             record.reason = stopped.reason;
-            self.terminal.diagnostics(&stopped.diagnostics, &stopped.files);
-            let told = stopped
-                .diagnostics
-                .iter()
-                .map(|d| diagnostic::json(d, &stopped.files));
-            record.diagnostics.extend(told);
+            self.tell(&mut record, &stopped.diagnostics, &stopped.files);
         }
         record
     }
@@ -169,7 +164,13 @@ impl Checker<'_> {
         reference: Option<Reference>,
         found: Option<&Found>,
     ) -> Result<(), Stopped> {
-        let Shader { files, lowered, .. } = shader;
+        let Shader {
+            files,
+            lowered,
+            warnings,
+            ..
+        } = shader;
+        self.tell(record, &warnings, &files);
         let lowered = match lowered {
             Ok(lowered) => lowered,
             Err(unusable) => return Err(Stopped::unusable(unusable, files, Verdict::Invalid)),
@@ -200,14 +201,14 @@ impl Checker<'_> {
         match drawn.cut_short {
             Some(0) => {}
             Some(pixels) => return Err(Stopped::because(Verdict::Timeout, cut_short(pixels))),
-            None => self.warn(
-                record,
-                &Diagnostic::warning(
-                    "W0001",
+            None => {
+                let unknown = Diagnostic::warning(
+                    "W0500",
                     "it could not be told in time whether this driver ended a loop by force",
                 )
-                .note("Mesa before 23 stops at 65,535 iterations; give more time with --timeout"),
-            ),
+                .note("Mesa before 23 stops at 65,535 iterations; give more time with --timeout");
+                self.tell(record, &[unknown], &Files::default());
+            }
         }
         let actual = drawn.image;
         self.device = Some(drawn.device);
@@ -237,10 +238,11 @@ impl Checker<'_> {
         Ok(())
     }
 
-    fn warn(&self, record: &mut Record, warning: &Diagnostic) {
-        let files = Files::default();
-        self.terminal.diagnostics(std::slice::from_ref(warning), &files);
-        record.diagnostics.push(diagnostic::json(warning, &files));
+    fn tell(&self, record: &mut Record, diagnostics: &[Diagnostic], files: &Files) {
+        self.terminal.diagnostics(diagnostics, files);
+        record
+            .diagnostics
+            .extend(diagnostics.iter().map(|told| diagnostic::json(told, files)));
     }
 
     fn keep(&mut self, path: &Path, picture: &Image) {
@@ -389,7 +391,9 @@ impl Stopped {
             _ => Verdict::Error,
         };
         match failure {
-            Failure::Invalid(diagnostics) => Self::invalid(verdict, diagnostics, files),
+            Failure::Invalid(diagnostics) | Failure::Refused(diagnostics) => {
+                Self::invalid(verdict, diagnostics, files)
+            }
             failure => Self::because(verdict, failure.to_string()),
         }
     }

@@ -106,7 +106,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let mut names = Names::default();
     let mut exit = Exit::Good;
     for input in &inputs {
-        let shader = Shader::load(input);
+        let shader = Shader::load(input, &args.driver.language());
         let path = match (one, input) {
             (true, _) | (false, Err(_)) => args.output.clone(),
             (false, Ok(found)) => with_suffix(
@@ -130,6 +130,7 @@ fn translate(
     worker: &mut Worker,
     terminal: &Terminal,
 ) -> Result<Vec<u8>, Exit> {
+    terminal.diagnostics(&shader.warnings, &shader.files);
     let translated = match (shader.lowered, to.target()) {
         (Ok(lowered), None) => Ok(lowered.text().as_bytes().to_vec()),
         (Ok(lowered), Some(target)) => worker.translate(lowered, target, args.driver.float()),
@@ -143,6 +144,10 @@ fn translate(
         Failure::Invalid(diagnostics) => {
             terminal.diagnostics(&diagnostics, &shader.files);
             Exit::Bad
+        }
+        Failure::Refused(diagnostics) => {
+            terminal.diagnostics(&diagnostics, &shader.files);
+            Exit::Trouble
         }
         failure => {
             terminal.error(format_args!("{}: {failure}", shader.name));

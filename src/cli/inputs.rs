@@ -7,6 +7,7 @@ use std::time::Duration;
 use clap::ValueEnum;
 
 use crate::frame::Frame;
+use crate::glsl;
 use crate::gpu::{FloatMode, On, Worker};
 use crate::image::{self, Image, check_size};
 
@@ -74,6 +75,9 @@ impl FrameArgs {
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "The driver")]
 pub(super) struct DriverArgs {
+    /// Take what desktop GLSL allows and WebGL2 refuses: globals set from uniforms, integers where floats belong
+    #[arg(long, help_heading = "The shader")]
+    lenient: bool,
     /// `auto` (lavapipe where it is installed, else the first), `lavapipe`, or words of an adapter's name
     #[arg(long, value_name = "ADAPTER", default_value = "auto", value_parser = on)]
     pub(super) on: On,
@@ -101,6 +105,13 @@ impl From<Float> for FloatMode {
 }
 
 impl DriverArgs {
+    pub(super) fn language(&self) -> glsl::Options {
+        glsl::Options {
+            lenient: self.lenient,
+            ..glsl::Options::default()
+        }
+    }
+
     pub(super) fn float(&self) -> FloatMode {
         self.float.into()
     }

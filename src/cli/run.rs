@@ -41,12 +41,13 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let mut names = Names::default();
     let mut exit = Exit::Good;
     for input in &inputs {
-        let shader = Shader::load(input);
+        let shader = Shader::load(input, &args.driver.language());
         let path = match (one, input) {
             (true, _) | (false, Err(_)) => args.output.clone(),
             (false, Ok(found)) => with_suffix(&args.output.join(names.place(&found.relative)), ".png"),
         };
         let spinner = terminal.spinner(&shader.name);
+        terminal.diagnostics(&shader.warnings, &shader.files);
         let outcome = match shader.lowered {
             Ok(lowered) => worker.draw(lowered, frame.clone(), args.driver.float()),
             Err(Unusable::Invalid(diagnostics)) => Err(Failure::Invalid(diagnostics)),
@@ -73,6 +74,10 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             Err(Failure::Invalid(diagnostics)) => {
                 terminal.diagnostics(&diagnostics, &shader.files);
                 Exit::Bad
+            }
+            Err(Failure::Refused(diagnostics)) => {
+                terminal.diagnostics(&diagnostics, &shader.files);
+                Exit::Trouble
             }
             Err(failure) => {
                 terminal.error(format_args!("{}: {failure}", shader.name));

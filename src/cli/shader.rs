@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use crate::diagnostic::{self, Diagnostic};
-use crate::glsl::{self, Lowered};
+use crate::glsl::{self, Checked, Lowered};
 use crate::gpu::Failure;
 use crate::source::{self, Files, Found, ReadError};
 
@@ -13,6 +13,8 @@ pub(super) struct Shader {
     pub(super) name: String,
     pub(super) files: Files,
     pub(super) lowered: Result<Lowered, Unusable>,
+    /// What is legal and worth a word.
+    pub(super) warnings: Vec<Diagnostic>,
 }
 
 /// Why a shader cannot be used.
@@ -24,26 +26,39 @@ pub(super) enum Unusable {
 }
 
 impl Shader {
-    pub(super) fn load(found: &Result<Found, ReadError>) -> Self {
+    pub(super) fn load(found: &Result<Found, ReadError>, options: &glsl::Options) -> Self {
         let mut files = Files::default();
+        let mut warnings = Vec::new();
         let (name, lowered) = match found {
             Err(error) => (subject(error), Err(Unusable::Trouble(error.to_string()))),
-            Ok(found) => (found.name(), Self::read(found, &mut files)),
-        };
-        Self { name, files, lowered }
-    }
-
-    fn read(found: &Found, files: &mut Files) -> Result<Lowered, Unusable> {
-        match source::read(found) {
-            Ok(text) => {
-                let file = files.add(text);
-                glsl::lower(files, file).map_err(Unusable::Invalid)
+            Ok(found) => {
+                let checked = read(found, &mut files, options);
+                let lowered = checked.map(|mut checked| {
+                    warnings = std::mem::take(&mut checked.warnings);
+                    glsl::lower(&checked)
+                });
+                (found.name(), lowered)
             }
-            Err(error) => Err(match diagnostic::of_content(error, files) {
-                Ok(diagnostic) => Unusable::Invalid(vec![diagnostic]),
-                Err(error) => Unusable::Trouble(error.to_string()),
-            }),
+        };
+        Self {
+            name,
+            files,
+            lowered,
+            warnings,
         }
+    }
+}
+
+fn read(found: &Found, files: &mut Files, options: &glsl::Options) -> Result<Checked, Unusable> {
+    match source::read(found) {
+        Ok(text) => {
+            let file = files.add(text);
+            glsl::check(files, file, options).map_err(Unusable::Invalid)
+        }
+        Err(error) => Err(match diagnostic::of_content(error, files) {
+            Ok(diagnostic) => Unusable::Invalid(vec![diagnostic]),
+            Err(error) => Unusable::Trouble(error.to_string()),
+        }),
     }
 }
 

@@ -14,7 +14,7 @@ pub fn of_content(error: ReadError, files: &mut Files) -> Result<Diagnostic, Rea
         other => return Err(other),
     };
     let id = files.add(file);
-    Ok(Diagnostic::error("E0001", message).at(Span::new(id, bytes.start as u32, bytes.end as u32)))
+    Ok(Diagnostic::error("E0500", message).at(Span::new(id, bytes.start as u32, bytes.end as u32)))
 }
 
 #[cfg(test)]

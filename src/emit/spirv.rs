@@ -119,7 +119,7 @@ fn instructions(words: &[u32]) -> impl Iterator<Item = (usize, &[u32])> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::glsl::lower;
+    use crate::glsl::{Options as Language, check, lower};
     use crate::source::{File, Files};
 
     const SHADER: &str = "void mainImage(out vec4 c, in vec2 p) {
@@ -131,7 +131,8 @@ mod tests {
     fn plain() -> Vec<u32> {
         let mut files = Files::default();
         let file = files.add(File::new("s", SHADER));
-        words(&ValidModule::parse(&lower(&files, file).unwrap()).unwrap()).unwrap()
+        let checked = check(&files, file, &Language::default()).unwrap();
+        words(&ValidModule::parse(&lower(&checked)).unwrap()).unwrap()
     }
 
     fn is_no_contraction(instruction: &[u32]) -> bool {

@@ -1,54 +1,109 @@
-//! From the author's GLSL to the text that naga is fed.
+//! GLSL ES 3.00 as `ShaderToy` runs it: from an author's text to a typed tree.
 //!
-//! [`lower`] is the whole interface: what comes out is a [`Lowered`] text, whose every place can be asked
-//! for the author's own span. Today the author's text is wrapped as it is between a prelude and a `main`.
+//! ```text
+//! text ─► preprocess ─► tokens ─► parse ─(asks)─► check ─► tree
+//! ```
+//!
+//! The parser knows the grammar and nothing else; at each construct it asks the checker, which knows scopes, types and rules, for
+//! a typed node. So there is one tree, and no tree of mere syntax. Section numbers (§) are those of the GLSL ES 3.00.6
+//! specification; where WebGL 2 (ANGLE) is stricter, so are we, and the place says so.
 
-mod outline;
-mod wrap;
+mod check;
+mod codes;
+mod constant;
+pub mod lower;
+mod options;
+mod parse;
+mod preprocess;
+mod print;
+mod token;
+pub mod tree;
+mod words;
 
-use std::ops::Range;
+pub use codes::Code;
+pub use lower::lower;
+pub use options::Options;
+pub use print::Lowered;
 
-use serde::{Deserialize, Serialize};
+use self::check::{Channels, Checker};
+use self::parse::Parser;
+use crate::diagnostic::{Diagnostic, Severity};
+use crate::source::{FileId, Files};
+use tree::{FunctionId, SamplerShape, Tree};
 
-use crate::diagnostic::Diagnostic;
-use crate::source::{FileId, Files, Span};
+/// How deep statements, parentheses, calls, unary operators and `?:` may nest, all together. More is refused with a diagnostic; this much
+/// fits a stack of 2 MB. Chains of operators, of postfix `.x` and `[i]`, of commas and of `else if` do not count.
+pub const MAX_NESTING: usize = 256;
 
-/// The deepest nesting of brackets that is translated.
-pub const MAX_NESTING: usize = outline::MAX_NESTING;
-
-/// GLSL 450 in the subset that naga parses, and the way from it back to the author's text.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Lowered {
-    text: String,
-    /// Where the author's text lies in it.
-    author: Range<usize>,
-    file: FileId,
+/// A shader that keeps every rule.
+#[derive(Debug, Clone)]
+pub struct Checked {
+    /// The shader.
+    pub tree: Tree,
+    /// `void mainImage(out vec4, in vec2)`.
+    pub main_image: FunctionId,
+    /// The shapes of `iChannel0` to `iChannel3`, as asked for or told from use.
+    pub channels: [SamplerShape; 4],
+    /// What is legal and worth a word.
+    pub warnings: Vec<Diagnostic>,
 }
 
-impl Lowered {
-    /// The text that naga is fed.
-    #[must_use]
-    pub fn text(&self) -> &str {
-        &self.text
-    }
-
-    /// The author's span for bytes of [`Self::text`]; none for what the author did not write.
-    #[must_use]
-    pub fn origin(&self, bytes: Range<usize>) -> Option<Span> {
-        if bytes.start < self.author.start || bytes.start >= self.author.end {
-            return None;
-        }
-        let end = bytes.end.clamp(bytes.start, self.author.end);
-        let place = |byte: usize| (byte - self.author.start) as u32;
-        Some(Span::new(self.file, place(bytes.start), place(end)))
-    }
-}
-
-/// Checks a shader's outline and prints what naga is fed.
+/// Checks a shader: its tree, or what is wrong with it, in the order of the text.
+///
+/// ```
+/// use toyproof::glsl::{Options, check};
+/// use toyproof::source::{File, Files};
+///
+/// let mut files = Files::default();
+/// let text = "void mainImage(out vec4 c, in vec2 f) { c = vec4(f / iResolution.xy, 0, 1); }";
+/// let file = files.add(File::new("gradient.glsl", text));
+/// let checked = check(&files, file, &Options::default()).unwrap();
+/// assert_eq!(checked.tree[checked.main_image].name, "mainImage");
+/// ```
 ///
 /// # Errors
-/// What is wrong with the shader, on the author's own lines.
-pub fn lower(files: &Files, file: FileId) -> Result<Lowered, Vec<Diagnostic>> {
-    outline::check(files, file).map_err(|diagnostic| vec![diagnostic])?;
-    Ok(wrap::wrap(files.get(file).text(), file))
+/// With at least one error if the shader breaks a rule; warnings may stand among them.
+pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, Vec<Diagnostic>> {
+    let mut text = preprocess::preprocess(files, file);
+    let told = std::mem::take(&mut text.diagnostics);
+    if told
+        .iter()
+        .any(|diagnostic| diagnostic.severity == Severity::Error)
+    {
+        return Err(told);
+    }
+    let mut channels = Channels::new(options);
+    // A use may tell the shape of a channel; the shader is then read anew with it, at most twice for each of the four.
+    loop {
+        channels.changed = false;
+        let mut checker = Parser::new(&text, Checker::new(&text.words, options, channels.clone())).parse();
+        if checker.channels().changed {
+            channels = checker.channels().clone();
+            continue;
+        }
+        let main_image = if checker.errors.is_empty() {
+            checker.finish()
+        } else {
+            None
+        };
+        let mut warnings = told;
+        warnings.append(&mut checker.warnings);
+        return match main_image {
+            Some(main_image) if checker.errors.is_empty() => Ok(Checked {
+                tree: checker.tree,
+                main_image,
+                channels: channels.shapes,
+                warnings,
+            }),
+            _ => {
+                let mut all = warnings;
+                all.append(&mut checker.errors);
+                all.sort_by_key(|diagnostic| diagnostic.span.map(|span| span.start));
+                Err(all)
+            }
+        };
+    }
 }
+
+#[cfg(test)]
+mod tests;

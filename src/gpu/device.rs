@@ -6,7 +6,6 @@ use std::sync::Mutex;
 use serde::{Deserialize, Serialize};
 use wgpu::{Adapter, Backends, DeviceType, Features, Instance, InstanceDescriptor};
 
-use super::pipeline::Layout;
 use super::{Failure, INSTALL_HINT, On};
 
 /// What is worth knowing of a Vulkan driver.
@@ -43,7 +42,6 @@ pub(super) const PROBED_ITERATIONS: u32 = 70_000;
 pub(super) struct Device {
     pub(super) gpu: wgpu::Device,
     pub(super) queue: wgpu::Queue,
-    pub(super) layout: Layout,
     pub(super) filterable: bool,
     pub(super) lost: Arc<Mutex<Option<String>>>,
     adapter: Adapter,
@@ -169,11 +167,9 @@ impl Device {
             }
         });
         let filterable = !filterable.is_empty();
-        let layout = Layout::new(&device, filterable);
         Ok(Self {
             gpu: device,
             queue,
-            layout,
             filterable,
             lost,
             adapter,

@@ -6,12 +6,12 @@ use serde::{Deserialize, Serialize};
 use wgpu::{BindGroup, Buffer, BufferUsages, PollType, RenderPipeline, Texture, TextureUsages};
 
 use super::device::{Device, LoopCap, PROBED_ITERATIONS};
-use super::pipeline::FORMAT;
+use super::pipeline::{FORMAT, Layout};
 use super::{Failure, FloatMode, On};
 use crate::frame::Frame;
 use crate::glsl::{self, Lowered};
 use crate::image::Image;
-use crate::module::ValidModule;
+use crate::module::{Shape, ValidModule};
 use crate::{emit, source};
 
 /// A picture that a shader painted.
@@ -45,13 +45,31 @@ pub(super) struct Scene {
     bytes_per_row: u32,
 }
 
-/// The words that run.
-pub(super) fn words(module: &ValidModule, float: FloatMode) -> Result<Vec<u32>, Failure> {
-    let words = emit::spirv::words(module).map_err(Failure::Naga)?;
-    Ok(match float {
-        FloatMode::Strict => emit::spirv::strict(&words),
-        FloatMode::Fast => words,
-    })
+/// What runs: words, and the textures that they read.
+#[derive(Debug)]
+pub(super) struct Program {
+    words: Vec<u32>,
+    channels: [Shape; 4],
+}
+
+impl Program {
+    /// naga's words for a module, held to its arithmetic if strict.
+    pub(super) fn new(module: &ValidModule, float: FloatMode) -> Result<Self, Failure> {
+        let words = emit::spirv::words(module).map_err(Failure::Naga)?;
+        let words = match float {
+            FloatMode::Strict => emit::spirv::strict(&words),
+            FloatMode::Fast => words,
+        };
+        Ok(Self {
+            words,
+            channels: module.channels(),
+        })
+    }
+
+    /// As the bytes of a `.spv` file.
+    pub(super) fn bytes(&self) -> Vec<u8> {
+        emit::spirv::bytes(&self.words)
+    }
 }
 
 /// A colour that no shader leaves: the alpha of probes is a whole number, that of shaders 1.
@@ -84,9 +102,10 @@ pub(super) fn cut_short(watched: &Image, discards: bool) -> u64 {
 
 impl Device {
     /// Compiles: a pipeline, and a draw that covers no pixel, since drivers compile when they first draw.
-    pub(super) fn prepare(&self, words: &[u32], frame: &Frame) -> Result<Scene, Failure> {
+    pub(super) fn prepare(&self, program: &Program, frame: &Frame) -> Result<Scene, Failure> {
         let [width, height] = frame.size;
         self.checked(|| {
+            let layout = Layout::new(&self.gpu, self.filterable, program.channels);
             let target = self.gpu.create_texture(&wgpu::TextureDescriptor {
                 label: None,
                 size: wgpu::Extent3d {
@@ -110,8 +129,8 @@ impl Device {
             });
             let scene = Scene {
                 size: frame.size,
-                pipeline: self.layout.pipeline(&self.gpu, words),
-                bindings: self.layout.bind(&self.gpu, &self.queue, frame, self.filterable),
+                pipeline: layout.pipeline(&self.gpu, &program.words),
+                bindings: layout.bind(&self.gpu, &self.queue, frame),
                 target,
                 readback,
                 bytes_per_row,
@@ -234,9 +253,9 @@ impl Painter {
     /// # Errors
     /// Why it cannot be run.
     pub fn new(lowered: &Lowered, frame: &Frame, float: FloatMode, on: &On) -> Result<Self, Failure> {
-        let module = ValidModule::parse(lowered).map_err(Failure::Invalid)?;
+        let module = ValidModule::parse(lowered).map_err(Failure::Refused)?;
         let device = Device::open(on)?;
-        let scene = device.prepare(&words(&module, float)?, frame)?;
+        let scene = device.prepare(&Program::new(&module, float)?, frame)?;
         Ok(Self { device, scene })
     }
 
@@ -260,15 +279,16 @@ const COUNT: &str = "void mainImage(out vec4 c, in vec2 p) {
 pub(super) fn measure_cap(device: &Device) -> Result<LoopCap, Failure> {
     let mut files = source::Files::default();
     let file = files.add(source::File::new("<loop cap>", COUNT));
-    let lowered = glsl::lower(&files, file).map_err(Failure::Invalid)?;
-    let module = ValidModule::parse(&lowered).map_err(Failure::Invalid)?;
-    let words = emit::spirv::words(&module).map_err(Failure::Naga)?;
+    let checked = glsl::check(&files, file, &glsl::Options::default()).map_err(Failure::Invalid)?;
+    let lowered = glsl::lower(&checked);
+    let module = ValidModule::parse(&lowered).map_err(Failure::Refused)?;
+    let program = Program::new(&module, FloatMode::Strict)?;
     let frame = Frame {
         size: [1, 1],
         frame: PROBED_ITERATIONS as i32,
         ..Frame::default()
     };
-    let count = device.paint(&device.prepare(&words, &frame)?)?.get(0, 0)[0] as u32;
+    let count = device.paint(&device.prepare(&program, &frame)?)?.get(0, 0)[0] as u32;
     Ok(if count < PROBED_ITERATIONS {
         LoopCap::After(count)
     } else {

@@ -80,7 +80,10 @@ pub enum Failure {
     /// The shader does not compile.
     #[error("the shader does not compile")]
     Invalid(Vec<Diagnostic>),
-    /// naga gave up on a shader that may well be valid.
+    /// naga refuses what we made of a valid shader.
+    #[error("naga cannot translate this shader")]
+    Refused(Vec<Diagnostic>),
+    /// naga gave up on it.
     #[error("naga cannot translate this shader: {0}")]
     Naga(String),
     /// The deadline passed.

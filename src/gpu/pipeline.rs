@@ -3,12 +3,14 @@
 use std::num::NonZeroU64;
 
 use wgpu::{
-    BindGroup, BindGroupLayout, BindGroupLayoutEntry, BindingType, Buffer, BufferUsages, Device,
-    PipelineLayout, RenderPipeline, ShaderModule, ShaderStages, TextureFormat, TextureUsages,
+    BindGroup, BindGroupLayout, BindGroupLayoutEntry, BindingType, Buffer, BufferUsages, Device, Extent3d,
+    PipelineLayout, RenderPipeline, ShaderModule, ShaderStages, TextureFormat, TextureUsages, TextureView,
+    TextureViewDimension,
 };
 
 use crate::frame::{BLOCK_BYTES, Frame};
 use crate::image::Image;
+use crate::module::Shape;
 
 /// The format of every target and texture: 32-bit floats, so that nothing is rounded on the way.
 pub(super) const FORMAT: TextureFormat = TextureFormat::Rgba32Float;
@@ -22,9 +24,11 @@ const VERTICES: &str = "
     return vec4f(f32(corner & 1u) * 4.0 - 1.0 + outside, f32(corner >> 1u) * 4.0 - 1.0, 0.0, 1.0);
 }";
 
-/// What all pipelines of a device share.
+/// The bindings of a program.
 #[derive(Debug)]
 pub(super) struct Layout {
+    filterable: bool,
+    channels: [Shape; 4],
     bindings: BindGroupLayout,
     pipeline: PipelineLayout,
     vertices: ShaderModule,
@@ -32,15 +36,15 @@ pub(super) struct Layout {
 
 impl Layout {
     /// All nine bindings of the contract; wgpu numbers them anew without gaps, so none may be left out.
-    pub(super) fn new(device: &Device, filterable: bool) -> Self {
+    pub(super) fn new(device: &Device, filterable: bool, channels: [Shape; 4]) -> Self {
         let block = BindingType::Buffer {
             ty: wgpu::BufferBindingType::Uniform,
             has_dynamic_offset: false,
             min_binding_size: NonZeroU64::new(BLOCK_BYTES as u64),
         };
-        let texture = BindingType::Texture {
+        let texture = |shape| BindingType::Texture {
             sample_type: wgpu::TextureSampleType::Float { filterable },
-            view_dimension: wgpu::TextureViewDimension::D2,
+            view_dimension: dimension(shape),
             multisampled: false,
         };
         let filtering = if filterable {
@@ -48,10 +52,9 @@ impl Layout {
         } else {
             wgpu::SamplerBindingType::NonFiltering
         };
-        let pairs = [texture, BindingType::Sampler(filtering)]
+        let pairs = channels
             .into_iter()
-            .cycle()
-            .take(8);
+            .flat_map(|shape| [texture(shape), BindingType::Sampler(filtering)]);
         let entries: Vec<_> = (0..)
             .zip(std::iter::once(block).chain(pairs))
             .map(|(binding, ty)| BindGroupLayoutEntry {
@@ -74,6 +77,8 @@ impl Layout {
             source: wgpu::ShaderSource::Wgsl(VERTICES.into()),
         });
         Self {
+            filterable,
+            channels,
             bindings,
             pipeline,
             vertices,
@@ -107,15 +112,9 @@ impl Layout {
     }
 
     /// The frame's block and channels, bound.
-    pub(super) fn bind(
-        &self,
-        device: &Device,
-        queue: &wgpu::Queue,
-        frame: &Frame,
-        filterable: bool,
-    ) -> BindGroup {
+    pub(super) fn bind(&self, device: &Device, queue: &wgpu::Queue, frame: &Frame) -> BindGroup {
         let block = uniform(device, queue, &frame.block());
-        let filter = if filterable {
+        let filter = if self.filterable {
             wgpu::FilterMode::Linear
         } else {
             wgpu::FilterMode::Nearest
@@ -127,11 +126,16 @@ impl Layout {
             min_filter: filter,
             ..Default::default()
         });
-        let black = Image::new(1, 1, vec![[0.0, 0.0, 0.0, 1.0]]);
-        let views = frame
+        let views: Vec<_> = frame
             .channels
-            .each_ref()
-            .map(|channel| texture(device, queue, channel.as_ref().unwrap_or(&black)));
+            .iter()
+            .zip(self.channels)
+            .map(|(image, shape)| match (image, shape) {
+                (Some(image), Shape::D2) => texture(device, queue, image),
+                // No volumes and cubes can be bound yet: they are black.
+                _ => black(device, queue, shape),
+            })
+            .collect();
         let pairs = views.iter().flat_map(|view| {
             [
                 wgpu::BindingResource::TextureView(view),
@@ -180,33 +184,77 @@ fn uniform(device: &Device, queue: &wgpu::Queue, bytes: &[u8]) -> Buffer {
     buffer
 }
 
+fn dimension(shape: Shape) -> TextureViewDimension {
+    match shape {
+        Shape::D2 => TextureViewDimension::D2,
+        Shape::D3 => TextureViewDimension::D3,
+        Shape::Cube => TextureViewDimension::Cube,
+    }
+}
+
 /// A channel's texture: row 0 is the bottom, as texture coordinates have it.
-fn texture(device: &Device, queue: &wgpu::Queue, image: &Image) -> wgpu::TextureView {
+fn texture(device: &Device, queue: &wgpu::Queue, image: &Image) -> TextureView {
     let [width, height] = image.size();
-    let size = wgpu::Extent3d {
-        width,
-        height,
-        depth_or_array_layers: 1,
+    upload(
+        device,
+        queue,
+        Shape::D2,
+        Extent3d {
+            width,
+            height,
+            depth_or_array_layers: 1,
+        },
+        image.pixels(),
+    )
+}
+
+/// What an unbound channel reads.
+fn black(device: &Device, queue: &wgpu::Queue, shape: Shape) -> TextureView {
+    let depth_or_array_layers = if shape == Shape::Cube { 6 } else { 1 };
+    let size = Extent3d {
+        width: 1,
+        height: 1,
+        depth_or_array_layers,
     };
+    upload(
+        device,
+        queue,
+        shape,
+        size,
+        &[[0.0, 0.0, 0.0, 1.0]; 6][..depth_or_array_layers as usize],
+    )
+}
+
+fn upload(
+    device: &Device,
+    queue: &wgpu::Queue,
+    shape: Shape,
+    size: Extent3d,
+    pixels: &[[f32; 4]],
+) -> TextureView {
     let texture = device.create_texture(&wgpu::TextureDescriptor {
         label: None,
         size,
         mip_level_count: 1,
         sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
+        dimension: dimension(shape).compatible_texture_dimension(),
         format: FORMAT,
         usage: TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
         view_formats: &[],
     });
+    let layout = wgpu::TexelCopyBufferLayout {
+        offset: 0,
+        bytes_per_row: Some(16 * size.width),
+        rows_per_image: Some(size.height),
+    };
     queue.write_texture(
         texture.as_image_copy(),
-        bytemuck::cast_slice(image.pixels()),
-        wgpu::TexelCopyBufferLayout {
-            offset: 0,
-            bytes_per_row: Some(16 * width),
-            rows_per_image: None,
-        },
+        bytemuck::cast_slice(pixels),
+        layout,
         size,
     );
-    texture.create_view(&Default::default())
+    texture.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(dimension(shape)),
+        ..Default::default()
+    })
 }

@@ -7,6 +7,7 @@ use std::thread;
 use std::time::Instant;
 
 use super::device::{self, Device};
+use super::draw::Program;
 use super::protocol::{Job, Output, Reply, Shot, receive, send};
 use super::{Failure, FloatMode, On, Phase, draw};
 use crate::emit::{self, Target};
@@ -94,9 +95,9 @@ impl<W: Write> Server<W> {
     fn translate(&mut self, lowered: Lowered, target: Target, float: FloatMode) -> Result<Output, Failure> {
         self.phase(Phase::Translating)?;
         apart(move || {
-            let module = ValidModule::parse(&lowered).map_err(Failure::Invalid)?;
+            let module = ValidModule::parse(&lowered).map_err(Failure::Refused)?;
             match target {
-                Target::Spirv => Ok(emit::spirv::bytes(&draw::words(&module, float)?)),
+                Target::Spirv => Ok(Program::new(&module, float)?.bytes()),
                 _ => emit::emit(&module, target).map_err(Failure::Naga),
             }
         })
@@ -112,15 +113,15 @@ impl<W: Write> Server<W> {
             float,
             on,
         } = shot;
-        let (words, loops) = apart(move || {
-            let module = ValidModule::parse(&lowered).map_err(Failure::Invalid)?;
-            Ok((draw::words(&module, float)?, module.has_loops()))
+        let (program, loops) = apart(move || {
+            let module = ValidModule::parse(&lowered).map_err(Failure::Refused)?;
+            Ok((Program::new(&module, float)?, module.has_loops()))
         })?;
         let translate = start.elapsed();
         self.open(&on)?;
         self.phase(Phase::Compiling)?;
         let start = Instant::now();
-        let scene = self.device()?.prepare(&words, &frame)?;
+        let scene = self.device()?.prepare(&program, &frame)?;
         let compile = start.elapsed();
         self.phase(Phase::Drawing)?;
         let start = Instant::now();
@@ -146,7 +147,7 @@ impl<W: Write> Server<W> {
             on,
         } = shot;
         let (module, iterations) = apart(move || {
-            let module = ValidModule::parse(&lowered).map_err(Failure::Invalid)?;
+            let module = ValidModule::parse(&lowered).map_err(Failure::Refused)?;
             let iterations = probed(&module, Probe::Iterations, float)?;
             Ok((module, iterations))
         })?;
@@ -185,8 +186,8 @@ impl<W: Write> Server<W> {
     }
 }
 
-fn probed(module: &ValidModule, probe: Probe, float: FloatMode) -> Result<Vec<u32>, Failure> {
-    draw::words(&module.probed(probe).map_err(Failure::Naga)?, float)
+fn probed(module: &ValidModule, probe: Probe, float: FloatMode) -> Result<Program, Failure> {
+    Program::new(&module.probed(probe).map_err(Failure::Naga)?, float)
 }
 
 /// Runs naga on a thread with room for its recursion; its panics become failures.

@@ -11,6 +11,17 @@ use naga::{Module, ShaderStage};
 use crate::diagnostic::Diagnostic;
 use crate::glsl::Lowered;
 
+/// The shape of a texture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shape {
+    /// Flat.
+    D2,
+    /// A volume.
+    D3,
+    /// Six faces.
+    Cube,
+}
+
 /// A module that naga has validated: the only thing that later stages take.
 #[derive(Debug, Clone)]
 pub struct ValidModule {
@@ -58,6 +69,25 @@ impl ValidModule {
     fn validate(module: Module) -> Result<Self, naga::WithSpan<naga::valid::ValidationError>> {
         let info = Validator::new(ValidationFlags::all(), Capabilities::default()).validate(&module)?;
         Ok(Self { module, info })
+    }
+
+    /// The shapes of the textures that channels 0 to 3 read; where one is not read, any will do.
+    #[must_use]
+    pub fn channels(&self) -> [Shape; 4] {
+        let mut shapes = [Shape::D2; 4];
+        for (_, global) in self.module.global_variables.iter() {
+            if let (naga::TypeInner::Image { dim, .. }, Some(binding)) =
+                (&self.module.types[global.ty].inner, global.binding)
+                && let Some(shape) = shapes.get_mut((binding.binding as usize).saturating_sub(1) / 2)
+            {
+                *shape = match dim {
+                    naga::ImageDimension::Cube => Shape::Cube,
+                    naga::ImageDimension::D3 => Shape::D3,
+                    _ => Shape::D2,
+                };
+            }
+        }
+        shapes
     }
 
     /// Whether any function holds a loop.
@@ -112,13 +142,13 @@ fn chain(error: &dyn std::error::Error) -> String {
 mod tests {
     use super::*;
     use crate::diagnostic::short;
-    use crate::glsl::lower;
+    use crate::glsl::{Options as Language, check, lower};
     use crate::source::{File, Files};
 
     fn parse(text: &str) -> Result<ValidModule, Vec<String>> {
         let mut files = Files::default();
         let file = files.add(File::new("s", text));
-        let lowered = lower(&files, file).unwrap();
+        let lowered = lower(&check(&files, file, &Language::default()).unwrap());
         ValidModule::parse(&lowered)
             .map_err(|diagnostics| diagnostics.iter().map(|d| short(d, &files)).collect())
     }
@@ -136,11 +166,13 @@ mod tests {
     }
 
     #[test]
-    fn errors_stand_on_the_authors_line_and_column() {
-        let errors = parse("void mainImage(out vec4 c, in vec2 p) {\n  c = vec4(q, 0, 1);\n}").unwrap_err();
+    fn channels_have_the_shapes_that_they_are_read_as() {
+        let text = "void mainImage(out vec4 c, in vec2 p) {
+            c = texture(iChannel0, vec3(1.0)) + texture(iChannel3, p);
+        }";
         assert_eq!(
-            errors,
-            ["s:2:12: error[E0900]: naga cannot translate this: Unknown variable: q"]
+            parse(text).unwrap().channels(),
+            [Shape::Cube, Shape::D2, Shape::D2, Shape::D2]
         );
     }
 

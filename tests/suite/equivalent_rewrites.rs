@@ -450,16 +450,16 @@ static REWRITES: &[Rewrite] = &[
         "the hierarchy as an array, filled first",
         &[&COMPLEX_SCENE],
         &[
-            ("// Right,", "Sphere all[43];\n\n// Right,"),
+            ("// Right,", "Sphere every[43];\n\n// Right,"),
             (
                 "    Intersection hit = Intersection(NO_HIT, parent);\n…    return hit;",
                 "    Intersection hit = Intersection(NO_HIT, parent);
                 int n = 0;
-                all[n++] = parent;
-                for (int i = 0; i < 6; i++) all[n++] = childOf(parent, i, frame);
+                every[n++] = parent;
+                for (int i = 0; i < 6; i++) every[n++] = childOf(parent, i, frame);
                 for (int i = 0; i < 6; i++)
-                    for (int j = 0; j < 6; j++) all[n++] = childOf(all[1 + i], j, frame);
-                for (int i = 0; i < 43; i++) keepNearest(ray, all[i], hit);
+                    for (int j = 0; j < 6; j++) every[n++] = childOf(every[1 + i], j, frame);
+                for (int i = 0; i < 43; i++) keepNearest(ray, every[i], hit);
                 return hit;",
             ),
         ],

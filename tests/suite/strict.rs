@@ -1,7 +1,7 @@
 //! What runs is what was written: strict shaders compute the same bits as Rust's f32.
 
 use toyproof::frame::Frame;
-use toyproof::glsl::lower;
+use toyproof::glsl::{Options, check, lower};
 use toyproof::gpu::{Drawn, FloatMode, Worker};
 use toyproof::source::{File, Files};
 
@@ -28,7 +28,8 @@ fn draw(worker: &mut Worker, float: FloatMode) -> Drawn {
         size: [64, 36],
         ..Frame::default()
     };
-    worker.draw(lower(&files, file).unwrap(), frame, float).unwrap()
+    let checked = check(&files, file, &Options::default()).unwrap();
+    worker.draw(lower(&checked), frame, float).unwrap()
 }
 
 fn differing_pixels(drawn: &Drawn) -> usize {

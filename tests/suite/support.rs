@@ -116,8 +116,9 @@ pub(crate) fn tracer(scene: &str, size: [u32; 2]) -> Tracer<f64> {
 pub(crate) fn verdict(worker: &mut Worker, shader: &str, scene: &str, size: [u32; 2]) -> Judged {
     let mut files = Files::default();
     let file = files.add(File::new("<shader>", shader));
-    let lowered =
-        glsl::lower(&files, file).unwrap_or_else(|errors| panic!("{}\n{shader}", told(&errors, &files)));
+    let checked = glsl::check(&files, file, &glsl::Options::default())
+        .unwrap_or_else(|errors| panic!("{}\n{shader}", told(&errors, &files)));
+    let lowered = glsl::lower(&checked);
     let frame = Frame {
         size,
         ..Frame::default()

@@ -1,0 +1,159 @@
+//! Names, members, swizzles and indices (§5.5–§5.7).
+
+use super::Checker;
+use super::scope::Entity;
+use crate::glsl::codes::Code;
+use crate::glsl::token::Symbol;
+use crate::glsl::tree::{ExprId, ExprKind, Place, Scalar, StructId, Swizzle, Type, VariableKind};
+
+/// The three sets of names for components; one selection takes all of its names from one (§5.5).
+const COMPONENT_NAMES: [&str; 3] = ["xyzw", "rgba", "stpq"];
+
+impl Checker<'_> {
+    /// A name where a value is needed.
+    pub(crate) fn name(&mut self, name: Symbol, at: Place) -> ExprId {
+        let text = self.text(name);
+        match self.scopes.find(name) {
+            Some(&Entity::Variable(variable)) => {
+                let found = &self.tree[variable];
+                let constant = match found.kind {
+                    VariableKind::BuiltInConstant => true,
+                    VariableKind::Const => found.initialiser.is_some_and(|value| self.tree[value].constant),
+                    _ => false,
+                };
+                let ty = found.ty;
+                self.push(ExprKind::Variable(variable), ty, constant, at)
+            }
+            Some(Entity::Struct(_)) => self.refuse(
+                Code::NotAVariable,
+                at,
+                format!("`{text}` is a type, not a variable"),
+            ),
+            Some(Entity::Functions(_)) => self.refuse(
+                Code::NotAVariable,
+                at,
+                format!("`{text}` is a function, not a variable"),
+            ),
+            None => self.refuse(Code::Undeclared, at, format!("`{text}` is not declared")),
+        }
+    }
+
+    /// The structure that the name means here, if it means one.
+    pub(crate) fn struct_named(&self, name: Symbol) -> Option<StructId> {
+        match self.scopes.find(name)? {
+            Entity::Struct(found) => Some(*found),
+            _ => None,
+        }
+    }
+
+    /// `base.name`: a member or a swizzle.
+    pub(crate) fn field(&mut self, base: ExprId, name: Symbol, at: Place) -> ExprId {
+        let (ty, constant) = (self.ty(base), self.tree[base].constant);
+        let whole = self.tree[base].at.to(at);
+        let text = self.text(name);
+        match ty {
+            Type::Error => self.broken(whole),
+            Type::Struct(id) => {
+                let members = &self.tree[id].members;
+                let Some(member) = members.iter().position(|member| member.name == text) else {
+                    let message = format!("{} has no member `{text}`", self.said(ty));
+                    return self.refuse(Code::UnknownMember, at, message);
+                };
+                let ty = members[member].ty;
+                let kind = ExprKind::Member {
+                    structure: base,
+                    member,
+                };
+                self.push(kind, ty, constant, whole)
+            }
+            Type::Vector(scalar, size) => {
+                let Some(components) = swizzle(text, size) else {
+                    let message = format!("`.{text}` selects no components of {}", self.said(ty));
+                    return self.refuse(Code::UnknownMember, at, message);
+                };
+                let kind = ExprKind::Swizzle {
+                    vector: base,
+                    components,
+                };
+                self.push(kind, Type::vector(scalar, components.size()), constant, whole)
+            }
+            _ => {
+                let message = format!("{} has no members; this asks for `.{text}`", self.said(ty));
+                self.refuse(Code::UnknownMember, at, message)
+            }
+        }
+    }
+
+    /// `array.length()` (§5.7): the only method there is.
+    pub(crate) fn method(&mut self, base: ExprId, name: Symbol, at: Place) -> ExprId {
+        let ty = self.ty(base);
+        let whole = self.tree[base].at.to(at);
+        match ty {
+            Type::Error => self.broken(whole),
+            Type::Array(_) if self.text(name) == "length" => {
+                self.push(ExprKind::Length { array: base }, Type::INT, true, whole)
+            }
+            _ => {
+                let message = format!("{} has no method `{}`", self.said(ty), self.text(name));
+                self.refuse(Code::UnknownMember, at, message)
+            }
+        }
+    }
+
+    /// `base[index]`.
+    pub(crate) fn index(&mut self, base: ExprId, index: ExprId, close: Place) -> ExprId {
+        let at = self.tree[base].at.to(close);
+        let (ty, index_type) = (self.ty(base), self.ty(index));
+        if ty == Type::Error || index_type == Type::Error {
+            return self.broken(at);
+        }
+        let (element, size) = match ty {
+            Type::Vector(scalar, size) => (Type::Scalar(scalar), u32::from(size)),
+            Type::Matrix { columns, rows } => (Type::Vector(Scalar::Float, rows), u32::from(columns)),
+            Type::Array(array) => (self.tree.array(array).element, self.tree.array(array).size),
+            _ => {
+                let message = format!("{} has no elements to index", self.said(ty));
+                return self.refuse(Code::BadIndex, at, message);
+            }
+        };
+        if !matches!(index_type, Type::INT | Type::UINT) {
+            let message = format!(
+                "an index must be `int` or `uint`, and this is {}",
+                self.said(index_type)
+            );
+            return self.refuse(Code::BadIndex, self.tree[index].at, message);
+        }
+        if let Some(value) = self.integer(index)
+            && !(0..i64::from(size)).contains(&value)
+        {
+            let message = format!(
+                "the index {value} is out of range: {} has {size} elements",
+                self.said(ty)
+            );
+            return self.refuse(Code::BadIndex, self.tree[index].at, message);
+        }
+        // §4.1.7: which sampler it is must be known beforehand.
+        if matches!(element, Type::Sampler(_)) && !self.tree[index].constant {
+            let message = "the index of an array of samplers must be a constant expression";
+            return self.refuse(Code::NotConstant, self.tree[index].at, message);
+        }
+        let constant = self.tree[base].constant && self.tree[index].constant;
+        self.push(ExprKind::Index { base, index }, element, constant, at)
+    }
+
+    /// The value of an integral constant expression.
+    pub(super) fn integer(&self, expr: ExprId) -> Option<i64> {
+        self.tree.value(expr)?.integer()
+    }
+}
+
+/// The components that a selection names, all of one set and all within `size`.
+fn swizzle(text: &str, size: u8) -> Option<Swizzle> {
+    COMPONENT_NAMES.iter().find_map(|names| {
+        let components: Option<Vec<u8>> = text
+            .chars()
+            .map(|c| names.find(c).map(|at| at as u8).filter(|&at| at < size))
+            .collect();
+        Swizzle::new(&components?)
+    })
+}

@@ -1,0 +1,296 @@
+//! Functions: declared, overloaded, defined (§6.1).
+
+use super::scope::Entity;
+use super::{Checker, Specifier};
+use crate::diagnostic::Diagnostic;
+use crate::glsl::codes::Code;
+use crate::glsl::token::Symbol;
+use crate::glsl::tree::{
+    Block, BuiltIn, Direction, Function, FunctionId, Item, Place, Type, Variable, VariableId, VariableKind,
+};
+
+/// A parameter as it stands in the text.
+#[derive(Debug)]
+pub(crate) struct Parameter {
+    pub(crate) name: Option<Symbol>,
+    pub(crate) ty: Type,
+    pub(crate) direction: Direction,
+    pub(crate) at: Place,
+}
+
+/// What is known of the function whose body is being read.
+#[derive(Debug)]
+pub(super) struct Context {
+    pub(super) function: FunctionId,
+    pub(super) return_type: Type,
+    /// Whether a `return` with a value came.
+    pub(super) returns: bool,
+    /// How many loops are open.
+    pub(super) loops: usize,
+    /// How many loops and switches are open.
+    pub(super) breakable: usize,
+}
+
+impl Checker<'_> {
+    /// The type of a parameter, if one can have it.
+    pub(crate) fn parameter_type(&mut self, specifier: &Specifier, direction: Direction) -> Type {
+        let ty = self.complete_type(specifier);
+        let at = specifier.at;
+        if ty == Type::Void {
+            self.error(Code::BadType, at, "a parameter cannot be `void`");
+            return Type::Error;
+        }
+        if matches!(direction, Direction::Out | Direction::InOut) && self.holds_sampler(ty) {
+            let message = format!("a parameter of type {} can only be `in`", self.said(ty));
+            self.error(Code::BadType, at, message);
+        }
+        self.bounded(ty, at)
+    }
+
+    /// Declares an overload, or finds the one that the header repeats.
+    pub(crate) fn declare_function(
+        &mut self,
+        result: &Specifier,
+        name: Symbol,
+        at: Place,
+        parameters: &[Parameter],
+    ) -> FunctionId {
+        let return_type = self.complete_type(result);
+        if self.holds_sampler(return_type) {
+            let message = format!("a function cannot return {}", self.said(return_type));
+            self.error(Code::BadType, result.at, message);
+        }
+        let mut overloads = match self.scopes.find_here(name) {
+            Some(Entity::Functions(overloads)) => overloads.clone(),
+            _ => Vec::new(),
+        };
+        for &old in &overloads {
+            if self.takes_exactly(old, parameters) {
+                self.same_header(old, return_type, parameters, at);
+                return old;
+            }
+        }
+        let allowed = if overloads.is_empty() {
+            self.may_declare(name, at)
+        } else {
+            true
+        };
+        let parameters = parameters
+            .iter()
+            .map(|parameter| self.parameter(parameter))
+            .collect();
+        let function = self.tree.functions.push(Function {
+            name: self.text(name).to_owned(),
+            return_type,
+            parameters,
+            body: None,
+            at,
+        });
+        overloads.push(function);
+        if allowed {
+            self.scopes.declare(name, Entity::Functions(overloads));
+        }
+        function
+    }
+
+    fn parameter(&mut self, parameter: &Parameter) -> VariableId {
+        self.tree.variables.push(Variable {
+            name: parameter.name.map_or("", |name| self.words.text(name)).to_owned(),
+            ty: parameter.ty,
+            kind: VariableKind::Parameter(parameter.direction),
+            initialiser: None,
+            value: None,
+            at: Some(parameter.at),
+        })
+    }
+
+    fn takes_exactly(&self, function: FunctionId, parameters: &[Parameter]) -> bool {
+        let old = &self.tree[function].parameters;
+        old.len() == parameters.len()
+            && old
+                .iter()
+                .zip(parameters)
+                .all(|(&old, new)| self.tree[old].ty == new.ty)
+    }
+
+    /// A second header with the same parameter types must be the same in the rest, too.
+    fn same_header(&mut self, old: FunctionId, return_type: Type, parameters: &[Parameter], at: Place) {
+        let function = &self.tree[old];
+        let directions = function.parameters.iter().zip(parameters);
+        let problem = if function.return_type != return_type {
+            "its result"
+        } else if directions
+            .into_iter()
+            .any(|(&old, new)| self.tree[old].kind != VariableKind::Parameter(new.direction))
+        {
+            "the qualifiers of its parameters"
+        } else {
+            return;
+        };
+        let message = format!("`{}` differs from an overload by {problem} only", function.name);
+        let first = function.at.span;
+        self.report(Code::BadOverload.at(at, message).related(first, "the other"));
+    }
+
+    /// A header without body.
+    pub(crate) fn prototype(&mut self, function: FunctionId) {
+        self.tree.items.push(Item::Prototype(function));
+    }
+
+    /// Opens the body of a function: parameters and body share one scope (§4.2.2).
+    pub(crate) fn open_body(&mut self, function: FunctionId, at: Place, parameters: &[Parameter]) {
+        if self.tree[function].body.is_some() {
+            let old = &self.tree[function];
+            let diagnostic = Code::Redeclared
+                .at(at, format!("`{}` has a body already", old.name))
+                .related(old.at.span, "the first");
+            self.report(diagnostic);
+        }
+        self.tree[function].at = at;
+        self.scopes.open();
+        let mut ids = Vec::with_capacity(parameters.len());
+        for parameter in parameters {
+            let id = self.parameter(parameter);
+            ids.push(id);
+            if let Some(name) = parameter.name
+                && self.may_declare(name, parameter.at)
+            {
+                self.scopes.declare(name, Entity::Variable(id));
+            }
+        }
+        self.tree[function].parameters = ids;
+        self.function = Some(Context {
+            function,
+            return_type: self.tree[function].return_type,
+            returns: false,
+            loops: 0,
+            breakable: 0,
+        });
+    }
+
+    pub(crate) fn close_body(&mut self, function: FunctionId, body: Block) {
+        self.scopes.close();
+        let context = self.function.take();
+        let Function { return_type, at, .. } = self.tree[function];
+        // Some paths may miss it, as in WebGL; not all.
+        if return_type != Type::Void && context.is_some_and(|context| !context.returns) {
+            let message = format!("`{}` never returns a value", self.tree[function].name);
+            self.error(Code::BadReturn, at, message);
+        }
+        self.tree[function].body = Some(body);
+        self.tree.items.push(Item::Function(function));
+    }
+
+    /// What can be told once all functions are known: every call has a body, and none comes back (§6.1.2).
+    pub(crate) fn finish(&mut self) -> Option<FunctionId> {
+        let calls = std::mem::take(&mut self.calls);
+        for &(_, callee, at) in &calls {
+            if self.tree[callee].body.is_none() {
+                let message = format!(
+                    "`{}` is declared and called, but has no body",
+                    self.tree[callee].name
+                );
+                self.report(
+                    Code::Undefined
+                        .at(at, message)
+                        .related(self.tree[callee].at.span, "declared here"),
+                );
+            }
+        }
+        if let Some((function, at)) = self.find_recursion(&calls) {
+            let message = format!(
+                "`{}` calls itself, by this call or others",
+                self.tree[function].name
+            );
+            self.error(Code::Recursion, at, message);
+        }
+        self.main_image()
+    }
+
+    /// The first function that is reached from itself, and a call on that way.
+    fn find_recursion(&self, calls: &[(FunctionId, FunctionId, Place)]) -> Option<(FunctionId, Place)> {
+        let mut callees = vec![Vec::new(); self.tree.functions.len()];
+        let mut callers = vec![0_usize; self.tree.functions.len()];
+        for &(caller, callee, _) in calls {
+            callees[caller.index()].push(callee.index());
+            callers[callee.index()] += 1;
+        }
+        // Take away whoever nobody calls, again and again: what is left over is called in circles.
+        let mut free: Vec<_> = (0..callers.len())
+            .filter(|&function| callers[function] == 0)
+            .collect();
+        while let Some(function) = free.pop() {
+            for &callee in &callees[function] {
+                callers[callee] -= 1;
+                if callers[callee] == 0 {
+                    free.push(callee);
+                }
+            }
+        }
+        // Likewise from the other end: those left must also lead back.
+        let left = |function: FunctionId| callers[function.index()] > 0;
+        let circle = |start: FunctionId| {
+            let mut seen = vec![false; callees.len()];
+            let mut pending = callees[start.index()].clone();
+            while let Some(function) = pending.pop() {
+                if function == start.index() {
+                    return true;
+                }
+                if !std::mem::replace(&mut seen[function], true) {
+                    pending.extend(&callees[function]);
+                }
+            }
+            false
+        };
+        calls
+            .iter()
+            .filter(|(caller, callee, _)| left(*caller) && left(*callee))
+            .find(|(caller, _, _)| circle(*caller))
+            .map(|&(caller, _, at)| (caller, at))
+    }
+
+    /// `void mainImage(out vec4, in vec2)`, as the call that `ShaderToy` makes asks for it.
+    fn main_image(&mut self) -> Option<FunctionId> {
+        use crate::glsl::tree::Scalar::Float;
+        let wanted = [
+            (Type::Vector(Float, 4), Direction::Out),
+            (Type::Vector(Float, 2), Direction::In),
+        ];
+        let mut near = None;
+        for (id, function) in self.tree.functions.iter() {
+            if function.name != "mainImage" || function.body.is_none() {
+                continue;
+            }
+            near = Some(function.at);
+            let parameters = function
+                .parameters
+                .iter()
+                .map(|&id| (self.tree[id].ty, self.tree[id].kind));
+            let fits = parameters.eq(wanted.map(|(ty, direction)| (ty, VariableKind::Parameter(direction))));
+            if fits && function.return_type == Type::Void {
+                return Some(id);
+            }
+        }
+        let diagnostic = match near {
+            Some(at) => Code::NoMainImage.at(
+                at,
+                "this `mainImage` does not have the parameters that ShaderToy gives it",
+            ),
+            None => Diagnostic::error(
+                Code::NoMainImage.as_str(),
+                "the shader has no function `mainImage`",
+            ),
+        };
+        let calls = "ShaderToy calls `void mainImage(out vec4 fragColor, in vec2 fragCoord)` for each pixel";
+        self.report(diagnostic.note(calls));
+        None
+    }
+}
+
+impl BuiltIn {
+    /// The built-in function of that name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        super::signature::named(name)
+    }
+}

@@ -1,0 +1,144 @@
+//! Jumps and labels (§6.2, §6.4).
+
+use std::collections::HashSet;
+
+use super::Checker;
+use crate::glsl::codes::Code;
+use crate::glsl::tree::{ExprId, Label, Place, Type};
+
+/// The labels of a `switch` so far.
+#[derive(Debug)]
+pub(crate) struct Labels {
+    selector: Type,
+    values: HashSet<u32>,
+    has_default: bool,
+}
+
+impl Checker<'_> {
+    /// What a `switch` chooses by: an `int` or `uint`.
+    pub(crate) fn selector(&mut self, selector: ExprId) -> Labels {
+        let (ty, at) = (self.ty(selector), self.tree[selector].at);
+        if !matches!(ty, Type::INT | Type::UINT | Type::Error) {
+            let message = format!(
+                "a `switch` needs an `int` or `uint`, and this is {}",
+                self.said(ty)
+            );
+            self.error(Code::BadSwitch, at, message);
+        }
+        Labels {
+            selector: ty,
+            values: HashSet::new(),
+            has_default: false,
+        }
+    }
+
+    /// `case expr:`.
+    pub(crate) fn case(&mut self, labels: &mut Labels, expr: ExprId) -> Label {
+        let at = self.tree[expr].at;
+        let expr = self.expect(expr, labels.selector, "this label");
+        let value = self.integer(expr).filter(|_| self.tree[expr].constant);
+        // An `int` and a `uint` of the same bits never meet in one `switch`.
+        let bits = value.unwrap_or_default() as u32;
+        if self.ty(expr) != Type::Error {
+            if value.is_none() {
+                self.error(
+                    Code::NotConstant,
+                    at,
+                    "a label must be an integral constant expression",
+                );
+            } else if !labels.values.insert(bits) {
+                self.error(Code::BadSwitch, at, "this `switch` has that label already");
+            }
+        }
+        Label::Case { expr, value: bits }
+    }
+
+    /// `default:`.
+    pub(crate) fn default(&mut self, labels: &mut Labels, at: Place) -> Label {
+        if std::mem::replace(&mut labels.has_default, true) {
+            self.error(Code::BadSwitch, at, "this `switch` has a `default` already");
+        }
+        Label::Default
+    }
+
+    pub(crate) fn misplaced_label(&mut self, at: Place, message: &str) {
+        self.error(Code::BadSwitch, at, message);
+    }
+
+    /// Inside of a loop: `break` and `continue` are allowed.
+    pub(crate) fn enter_loop(&mut self) {
+        if let Some(context) = &mut self.function {
+            context.loops += 1;
+            context.breakable += 1;
+        }
+    }
+
+    pub(crate) fn leave_loop(&mut self) {
+        if let Some(context) = &mut self.function {
+            context.loops -= 1;
+            context.breakable -= 1;
+        }
+    }
+
+    /// Inside of a `switch`: `break` is allowed.
+    pub(crate) fn enter_switch(&mut self) {
+        if let Some(context) = &mut self.function {
+            context.breakable += 1;
+        }
+    }
+
+    pub(crate) fn leave_switch(&mut self) {
+        if let Some(context) = &mut self.function {
+            context.breakable -= 1;
+        }
+    }
+
+    pub(crate) fn break_statement(&mut self, at: Place) {
+        if self
+            .function
+            .as_ref()
+            .is_none_or(|context| context.breakable == 0)
+        {
+            self.error(Code::MisplacedJump, at, "`break` outside of a loop or `switch`");
+        }
+    }
+
+    pub(crate) fn continue_statement(&mut self, at: Place) {
+        if self.function.as_ref().is_none_or(|context| context.loops == 0) {
+            self.error(Code::MisplacedJump, at, "`continue` outside of a loop");
+        }
+    }
+
+    pub(crate) fn return_statement(&mut self, value: Option<ExprId>, at: Place) -> Option<ExprId> {
+        let Some(context) = &mut self.function else {
+            return value;
+        };
+        context.returns |= value.is_some();
+        let wanted = context.return_type;
+        match value {
+            None if wanted != Type::Void => {
+                let message = format!("this function returns {}", self.said(wanted));
+                self.error(Code::BadReturn, at, message);
+                None
+            }
+            None => None,
+            Some(_) if wanted == Type::Void => {
+                self.error(Code::BadReturn, at, "a `void` function returns no value");
+                None
+            }
+            Some(value) => {
+                if let Some(fits) = self.convert(value, wanted) {
+                    return Some(fits);
+                }
+                let given = self.ty(value);
+                let message = format!(
+                    "this function returns {}, and this is {}",
+                    self.said(wanted),
+                    self.said(given)
+                );
+                self.error(Code::BadReturn, self.tree[value].at, message);
+                None
+            }
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! The stable codes of the front end's diagnostics.
+
+use super::tree::Place;
+use crate::diagnostic::Diagnostic;
+
+macro_rules! codes {
+    ($($variant:ident $code:literal $doc:literal,)*) => {
+        /// What kind of mistake a diagnostic tells of. The codes are stable: never renumber one.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub enum Code {
+            $(#[doc = concat!($code, ": ", $doc)] $variant,)*
+        }
+
+        impl Code {
+            /// All of them, in the order of their numbers.
+            pub const ALL: &[Self] = &[$(Self::$variant),*];
+
+            /// `E` or `W` and four digits.
+            #[must_use]
+            pub fn as_str(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $code,)*
+                }
+            }
+
+            /// What it is about, in one line.
+            #[must_use]
+            pub fn about(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $doc,)*
+                }
+            }
+        }
+    };
+}
+
+codes! {
+    // The preprocessor, §3.
+    UnknownCharacter "E0001" "A character that GLSL does not know",
+    UnterminatedComment "E0002" "A `/*` without `*/`",
+    UnknownDirective "E0003" "A `#` line that is no directive",
+    MalformedDirective "E0004" "A directive with too little or too much on its line",
+    BadCondition "E0005" "An `#if` or `#elif` that is no integer constant expression",
+    UnbalancedCondition "E0006" "An `#if` without `#endif`, or an `#else`, `#elif` or `#endif` too many",
+    BadMacro "E0007" "A macro that may not be defined, redefined or undefined so",
+    BadMacroCall "E0008" "A macro used with the wrong number of arguments, or without its `)`",
+    PasteOperator "E0009" "`#` or `##` in a macro: GLSL ES has neither",
+    ErrorDirective "E0010" "An `#error` that was reached",
+    BadVersion "E0011" "A `#version` that is not `300 es`, or does not come first",
+    BadExtension "E0012" "An `#extension` that is required and does not exist",
+    TooMuchExpansion "E0013" "Macros that expand to more than can be meant",
+    // The grammar, §3 and §9.
+    Syntax "E0100" "Text that does not fit the grammar",
+    TooDeep "E0101" "Statements or expressions nested too deep",
+    BadNumber "E0102" "A number that is none",
+    NumberRange "E0103" "A number that its type cannot hold",
+    ReservedWord "E0104" "A word that GLSL ES reserves",
+    Unclosed "E0105" "A bracket that is never closed",
+    // Names, §4.2.
+    Undeclared "E0200" "A name that is not declared",
+    Redeclared "E0201" "A name that its scope has already",
+    NotAVariable "E0202" "A type or function where a variable is needed, or the other way round",
+    UnknownMember "E0203" "A member that its structure does not have, or a selection that is no swizzle",
+    // Types, §4 and §5.
+    BadOperands "E0300" "An operator on types that it does not take",
+    Mismatch "E0301" "A value of one type where another is needed",
+    NoOverload "E0302" "A call with arguments that no overload takes",
+    BadConstructor "E0303" "A constructor with arguments that it does not take",
+    BadIndex "E0304" "An index that is no integer, or out of range, or of something that has no elements",
+    BadArraySize "E0305" "An array without a size of at least 1",
+    ArrayOfArrays "E0306" "An array of arrays, which GLSL ES 3.00 does not have",
+    BadType "E0307" "A type that cannot be used here",
+    BadReturn "E0308" "A `return` that does not fit its function",
+    // Rules, §4.3, §5.8 and §6.
+    NotWritable "E0400" "An assignment to what cannot be written",
+    NotConstant "E0401" "A value that must be a constant expression and is none",
+    Uninitialised "E0402" "A `const` without a value",
+    BadQualifier "E0403" "A qualifier that is not allowed here",
+    Recursion "E0404" "A function that calls itself",
+    Undefined "E0405" "A function that is called and never defined",
+    BadOverload "E0406" "A function that differs from another by its result or qualifiers only",
+    BadSwitch "E0407" "A label of a `switch` that is not allowed",
+    MisplacedJump "E0408" "A `break` or `continue` outside of a loop",
+    NoMainImage "E0409" "No `void mainImage(out vec4, in vec2)`",
+    // Warnings.
+    ReservedName "W0001" "A name that begins with what GLSL keeps for itself",
+    UnknownExtension "W0002" "An `#extension` that does not exist",
+}
+
+impl Code {
+    /// An error of this kind, told of that place: where the author used it, and, for what comes out of a macro, where it is spelled.
+    pub fn at(self, place: Place, message: impl Into<String>) -> Diagnostic {
+        let diagnostic = if self.as_str().starts_with('W') {
+            Diagnostic::warning(self.as_str(), message)
+        } else {
+            Diagnostic::error(self.as_str(), message)
+        };
+        let diagnostic = diagnostic.at(place.span);
+        if place.is_expanded() {
+            diagnostic.related(place.spelled, "written in this macro")
+        } else {
+            diagnostic
+        }
+    }
+
+    /// The same as the failure of what was tried.
+    pub(crate) fn refuse<T>(self, place: Place, message: impl Into<String>) -> Result<T, Box<Diagnostic>> {
+        Err(Box::new(self.at(place, message)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_are_in_order_and_never_twice() {
+        let codes: Vec<_> = Code::ALL.iter().map(|code| code.as_str()).collect();
+        assert!(codes.is_sorted_by(|a, b| a < b), "{codes:?}");
+    }
+}

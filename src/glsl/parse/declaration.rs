@@ -1,0 +1,262 @@
+//! Declarations: types, variables, structures, functions (§4, §6.1).
+
+use super::{Parsed, Parser};
+use crate::glsl::check::{Declarator, Qualifiers, Size, Specifier};
+use crate::glsl::codes::Code;
+use crate::glsl::token::{Punctuator, Symbol, TokenKind};
+use crate::glsl::tree::{Item, Member, Place, Type, VariableId};
+use crate::glsl::words::{Keyword, Word};
+
+impl Parser<'_> {
+    /// One declaration at global scope, or a function.
+    pub(super) fn external_declaration(&mut self) -> Parsed<()> {
+        if self.check.takes_stray_semicolons() && self.eat(Punctuator::Semicolon) {
+            return Ok(());
+        }
+        if self.eat_keyword(Keyword::Precision) {
+            return self.precision_statement();
+        }
+        let qualifiers = self.qualifiers()?;
+        if qualifiers.interface.is_some() && self.is_redeclaration() {
+            let (name, at) = self.name()?;
+            self.check.invariant(name, at);
+            self.expect(Punctuator::Semicolon)?;
+            return Ok(());
+        }
+        let first = self.check.tree.structs.len();
+        if qualifiers.storage.is_some() && self.is_block() {
+            let at = self.token().at;
+            return self.halt(
+                Code::BadQualifier,
+                at,
+                "ShaderToy has nothing to bind to an interface block",
+            );
+        }
+        let specifier = self.type_specifier()?;
+        self.check.precision_fits(&qualifiers, &specifier);
+        let structs: Vec<_> = self
+            .check
+            .tree
+            .structs
+            .ids()
+            .skip(first)
+            .map(Item::Struct)
+            .collect();
+        self.check.tree.items.extend(structs);
+        if self.eat(Punctuator::Semicolon) {
+            return Ok(());
+        }
+        let empty_first = self.eat_empty_declarator();
+        let (name, at) = self.name()?;
+        if !empty_first && self.is(Punctuator::LeftParen) {
+            return self.function(&qualifiers, &specifier, name, at);
+        }
+        let variables = self.declarators(&qualifiers, &specifier, name, at)?;
+        self.check
+            .tree
+            .items
+            .extend(variables.into_iter().map(Item::Variable));
+        Ok(())
+    }
+
+    /// A declaration inside of a function, with its `;`.
+    pub(super) fn local_declaration(&mut self) -> Parsed<Vec<VariableId>> {
+        if self.eat_keyword(Keyword::Precision) {
+            self.precision_statement()?;
+            return Ok(Vec::new());
+        }
+        let qualifiers = self.qualifiers()?;
+        let specifier = self.type_specifier()?;
+        self.check.precision_fits(&qualifiers, &specifier);
+        if self.eat(Punctuator::Semicolon) {
+            return Ok(Vec::new());
+        }
+        self.eat_empty_declarator();
+        let (name, at) = self.name()?;
+        if self.is(Punctuator::LeftParen) {
+            return self.halt(
+                Code::Syntax,
+                at,
+                "a function cannot be declared inside of a function",
+            );
+        }
+        self.declarators(&qualifiers, &specifier, name, at)
+    }
+
+    /// `bool b = f()` as the condition of a loop.
+    pub(super) fn condition_declaration(&mut self) -> Parsed<VariableId> {
+        let qualifiers = self.qualifiers()?;
+        let specifier = self.named_type()?;
+        self.check.precision_fits(&qualifiers, &specifier);
+        let (name, at) = self.name()?;
+        if !self.is(Punctuator::Assign) {
+            return self.unexpected("`=`");
+        }
+        let declarator = self.declarator(name, at)?;
+        if let Some(value) = declarator.initialiser {
+            self.check.condition(value);
+        }
+        Ok(self.check.declare_variable(&qualifiers, &specifier, declarator))
+    }
+
+    /// `precision highp float;`: precision has no effect where everything is `highp`.
+    fn precision_statement(&mut self) -> Parsed<()> {
+        match self.keyword() {
+            Some(Keyword::Highp | Keyword::Mediump | Keyword::Lowp) => self.next(),
+            _ => return self.unexpected("`highp`, `mediump` or `lowp`"),
+        };
+        let specifier = self.named_type()?;
+        self.check.precision(specifier.base, specifier.at);
+        self.expect(Punctuator::Semicolon)?;
+        Ok(())
+    }
+
+    /// Whether a name follows that is no type: `invariant x;`.
+    fn is_redeclaration(&self) -> bool {
+        matches!(self.kind(), TokenKind::Word(symbol)
+            if self.words.word(symbol) == Word::Name && self.check.struct_named(symbol).is_none())
+    }
+
+    /// `uniform Name { … }` (§4.3.7), at its name.
+    fn is_block(&self) -> bool {
+        self.word() == Some(Word::Name) && self.peek(1).kind == TokenKind::Punctuator(Punctuator::LeftBrace)
+    }
+
+    /// A type by name or a structure, and the sizes that follow.
+    fn type_specifier(&mut self) -> Parsed<Specifier> {
+        if self.keyword() != Some(Keyword::Struct) {
+            return self.named_type();
+        }
+        let at = self.next().at;
+        let base = self.structure(at)?;
+        let sizes = self.sizes()?;
+        Ok(Specifier { base, sizes, at })
+    }
+
+    pub(super) fn named_type(&mut self) -> Parsed<Specifier> {
+        let at = self.token().at;
+        let base = match self.kind() {
+            TokenKind::Word(symbol) => match self.words.word(symbol) {
+                Word::Type(ty) => Some(ty),
+                Word::Name => self.check.struct_named(symbol).map(Type::Struct),
+                Word::Keyword(_) | Word::Reserved => None,
+            },
+            _ => None,
+        };
+        let Some(base) = base else {
+            return self.unexpected("a type");
+        };
+        self.next();
+        let sizes = self.sizes()?;
+        Ok(Specifier { base, sizes, at })
+    }
+
+    /// `[n][]…`.
+    pub(super) fn sizes(&mut self) -> Parsed<Vec<Size>> {
+        let mut sizes = Vec::new();
+        while self.is(Punctuator::LeftBracket) {
+            let open = self.next().at;
+            if self.is(Punctuator::RightBracket) {
+                let close = self.next().at;
+                sizes.push(Size::Inferred(open.to(close)));
+                continue;
+            }
+            let size = self.nested(Self::conditional)?;
+            sizes.push(self.check.array_size(size));
+            self.expect(Punctuator::RightBracket)?;
+        }
+        Ok(sizes)
+    }
+
+    /// `struct name { members }`, after the word `struct`.
+    fn structure(&mut self, at: Place) -> Parsed<Type> {
+        let name = if self.is(Punctuator::LeftBrace) {
+            None
+        } else {
+            Some(self.name()?)
+        };
+        self.expect(Punctuator::LeftBrace)?;
+        let mut members = Vec::new();
+        loop {
+            self.members(&mut members)?;
+            if self.eat(Punctuator::RightBrace) {
+                break;
+            }
+        }
+        let place = name.map_or(at, |(_, at)| at);
+        let id = self
+            .check
+            .declare_struct(name.map(|(name, _)| name), members, place);
+        Ok(Type::Struct(id))
+    }
+
+    /// `vec3 a, b[2];`.
+    fn members(&mut self, members: &mut Vec<Member>) -> Parsed<()> {
+        let qualifiers = self.qualifiers()?;
+        if let Some(at) = qualifiers.other_than_precision() {
+            self.check
+                .report(Code::BadQualifier.at(at, "a member has no qualifier but its precision"));
+        }
+        if self.keyword() == Some(Keyword::Struct) {
+            let at = self.token().at;
+            return self.halt(
+                Code::Syntax,
+                at,
+                "a structure cannot be declared inside of a structure",
+            );
+        }
+        let specifier = self.named_type()?;
+        self.check.precision_fits(&qualifiers, &specifier);
+        loop {
+            let (name, at) = self.name()?;
+            let sizes = self.sizes()?;
+            self.check.member(members, &specifier, name, &sizes, at);
+            if !self.eat(Punctuator::Comma) {
+                self.expect(Punctuator::Semicolon)?;
+                return Ok(());
+            }
+        }
+    }
+
+    /// `float , a;`: the grammar of §9 lets the first declarator be empty.
+    fn eat_empty_declarator(&mut self) -> bool {
+        self.eat(Punctuator::Comma)
+    }
+
+    /// The rest of a declaration, from the sizes of its first name to the `;`.
+    fn declarators(
+        &mut self,
+        qualifiers: &Qualifiers,
+        specifier: &Specifier,
+        name: Symbol,
+        at: Place,
+    ) -> Parsed<Vec<VariableId>> {
+        let mut variables = Vec::new();
+        let mut declarator = self.declarator(name, at)?;
+        loop {
+            variables.push(self.check.declare_variable(qualifiers, specifier, declarator));
+            if !self.eat(Punctuator::Comma) {
+                self.expect(Punctuator::Semicolon)?;
+                return Ok(variables);
+            }
+            let (name, at) = self.name()?;
+            declarator = self.declarator(name, at)?;
+        }
+    }
+
+    /// `[n] = value`, both optional.
+    fn declarator(&mut self, name: Symbol, at: Place) -> Parsed<Declarator> {
+        let sizes = self.sizes()?;
+        let initialiser = if self.eat(Punctuator::Assign) {
+            Some(self.assignment()?)
+        } else {
+            None
+        };
+        Ok(Declarator {
+            name,
+            at,
+            sizes,
+            initialiser,
+        })
+    }
+}

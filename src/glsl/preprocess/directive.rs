@@ -1,0 +1,139 @@
+//! The lines that begin with `#`.
+
+use super::define::nothing_left;
+use super::{PpToken, Preprocessor};
+use crate::diagnostic::Diagnostic;
+use crate::glsl::codes::Code;
+use crate::glsl::token::TokenKind;
+use crate::glsl::tree::Place;
+
+impl Preprocessor<'_> {
+    /// Obeys the directive whose `#` has been read, up to and including its newline.
+    pub(super) fn directive(&mut self, hash: Place) {
+        let first = self.lex();
+        let TokenKind::Word(name) = first.kind else {
+            self.null_directive(first);
+            return;
+        };
+        let at = hash.to(first.at);
+        let name = self.words.text(name).to_owned();
+        if name == "error" && self.is_active() {
+            let message = self.lexer.rest_of_line();
+            self.report(Code::ErrorDirective.at(at, format!("#error {message}")));
+            return;
+        }
+        let line = self.rest_of_line();
+        let done = match name.as_str() {
+            "if" => self.on_if(&line, at),
+            "ifdef" => self.on_ifdef(&line, at, true),
+            "ifndef" => self.on_ifdef(&line, at, false),
+            "elif" => self.on_elif(&line, at),
+            "else" => self.on_else(&line, at),
+            "endif" => self.on_endif(&line, at),
+            _ if !self.is_active() => Ok(()),
+            "define" => self.define(&line, at),
+            "undef" => self.undef(&line, at),
+            "line" => self.line(line, at),
+            "version" => self.version(&line, at),
+            "extension" => self.extension(&line, at),
+            // §3.4: what is not understood is ignored.
+            "pragma" => Ok(()),
+            _ => Code::UnknownDirective.refuse(at, format!("there is no directive `#{name}`")),
+        };
+        if let Err(diagnostic) = done {
+            self.report(*diagnostic);
+        }
+    }
+
+    /// `#` alone on its line means nothing (§3.4).
+    fn null_directive(&mut self, first: PpToken) {
+        if matches!(first.kind, TokenKind::Newline | TokenKind::End) {
+            return;
+        }
+        if self.is_active() {
+            self.report(Code::UnknownDirective.at(first.at, "the name of a directive is missing here"));
+        }
+        self.rest_of_line();
+    }
+
+    fn rest_of_line(&mut self) -> Vec<PpToken> {
+        let mut line = Vec::new();
+        loop {
+            let token = self.lex();
+            if matches!(token.kind, TokenKind::Newline | TokenKind::End) {
+                return line;
+            }
+            line.push(token);
+        }
+    }
+
+    /// `#line n` or `#line n file`: from the next line on (§3.4). Diagnostics keep counting the author's lines.
+    fn line(&mut self, line: Vec<PpToken>, at: Place) -> Result<(), Box<Diagnostic>> {
+        let tokens = self.expand_list(line);
+        let (number, rest) = self.constant(&tokens, at)?;
+        let here = self.line_of(at);
+        self.line_offset = number.wrapping_sub(here).wrapping_sub(1);
+        if rest.is_empty() {
+            return Ok(());
+        }
+        let (file, rest) = self.constant(rest, at)?;
+        self.file_number = file;
+        nothing_left(rest)
+    }
+
+    /// The line that a token stands on, counted from the last one asked for: so all questions together take linear time.
+    pub(super) fn line_of(&mut self, at: Place) -> i64 {
+        let (byte, line) = self.counted;
+        let start = at.span.start as usize;
+        let newlines = |text: &str| text.bytes().map(|byte| i64::from(byte == b'\n')).sum::<i64>();
+        let line = if start >= byte {
+            line + newlines(&self.text[byte..start])
+        } else {
+            line - newlines(&self.text[start..byte])
+        };
+        self.counted = (start, line);
+        line
+    }
+
+    /// `#version 300 es`, first or not at all.
+    fn version(&mut self, line: &[PpToken], at: Place) -> Result<(), Box<Diagnostic>> {
+        if self.past_first_token {
+            return Code::BadVersion.refuse(at, "`#version` must come before everything else");
+        }
+        let words: Vec<_> = line.iter().map(|token| self.text(token)).collect();
+        if words == ["300", "es"] {
+            return Ok(());
+        }
+        let message = format!(
+            "`#version {}` is not what `ShaderToy` speaks: `#version 300 es`",
+            words.join(" ")
+        );
+        Code::BadVersion.refuse(at, message.replace("`ShaderToy`", "ShaderToy"))
+    }
+
+    /// `#extension name : behaviour` (§3.5). We have none.
+    fn extension(&mut self, line: &[PpToken], at: Place) -> Result<(), Box<Diagnostic>> {
+        let words: Vec<_> = line.iter().map(|token| self.text(token)).collect();
+        let [name, ":", behaviour @ ("require" | "enable" | "warn" | "disable")] = words[..] else {
+            let message = "this is not `#extension name : require`, `enable`, `warn` or `disable`";
+            return Code::MalformedDirective.refuse(at, message);
+        };
+        let fatal = behaviour == "require" || (name == "all" && behaviour == "enable");
+        if fatal {
+            return Code::BadExtension.refuse(at, format!("the extension `{name}` is not supported"));
+        }
+        if name != "all" {
+            let message = format!("the extension `{name}` is not supported");
+            self.report(Code::UnknownExtension.at(at, message));
+        }
+        Ok(())
+    }
+
+    fn text(&self, token: &PpToken) -> &str {
+        match token.kind {
+            TokenKind::Word(symbol) | TokenKind::Number(symbol) => self.words.text(symbol),
+            TokenKind::Punctuator(punctuator) => punctuator.text(),
+            TokenKind::Unknown(_) | TokenKind::Newline | TokenKind::End => "",
+        }
+    }
+}

@@ -1,0 +1,276 @@
+//! Macro expansion, as C++98 §16.3 has it.
+
+use super::macros::Body;
+use super::{PpToken, Preprocessor};
+use crate::glsl::codes::Code;
+use crate::glsl::token::{Punctuator, Symbol, TokenKind};
+use crate::glsl::tree::Place;
+
+/// How many tokens all macros of a file together may produce. Honest shaders stay under 200,000; what doubles with each macro
+/// does not.
+pub(super) const BUDGET: usize = 1 << 20;
+
+/// How deep macro calls may stand in each other's arguments.
+const MAX_DEPTH: usize = 256;
+
+/// A list of tokens being read.
+pub(super) struct Frame {
+    tokens: std::vec::IntoIter<PpToken>,
+    /// The macro whose expansion this is.
+    of: Option<Symbol>,
+}
+
+/// Where tokens come from: frames on top of the running text, or on top of nothing.
+pub(super) enum Stream {
+    Text(Vec<Frame>),
+    List(Vec<Frame>),
+}
+
+impl Stream {
+    fn frames(&mut self) -> &mut Vec<Frame> {
+        match self {
+            Self::Text(frames) | Self::List(frames) => frames,
+        }
+    }
+}
+
+impl Preprocessor<'_> {
+    /// The next token after expansion of macros.
+    pub(super) fn next_expanded(&mut self) -> PpToken {
+        loop {
+            let mut token = self.next_of_stream();
+            let TokenKind::Word(name) = token.kind else {
+                return token;
+            };
+            let Some(found) = self.macros.get(&name) else {
+                return token;
+            };
+            if found.busy > 0 || token.frozen {
+                token.frozen = true;
+                return token;
+            }
+            let function = found.parameters.as_ref().map(Vec::len);
+            let body = found.body.clone();
+            let mut used = token.at;
+            let mut arguments = Vec::new();
+            if let Some(count) = function {
+                let Some(open) = self.open_paren() else {
+                    return token;
+                };
+                match self.arguments(name, token.at, open) {
+                    Some((given, close)) => {
+                        arguments = given;
+                        used = used.to(close);
+                    }
+                    None => return token,
+                }
+                if !self.count_fits(name, used, &mut arguments, count) {
+                    return token;
+                }
+            }
+            let tokens = self.substitute(body, used, arguments);
+            if tokens.len() > self.budget {
+                return self.give_up(token.at);
+            }
+            self.budget -= tokens.len();
+            self.push(tokens, Some(name));
+        }
+    }
+
+    /// All tokens of a list after expansion, as if the list were all there is.
+    pub(super) fn expand_list(&mut self, tokens: Vec<PpToken>) -> Vec<PpToken> {
+        let outer = std::mem::replace(&mut self.stream, Stream::List(Vec::new()));
+        self.push(tokens, None);
+        let mut expanded = Vec::new();
+        loop {
+            let token = self.next_expanded();
+            if token.kind == TokenKind::End {
+                break;
+            }
+            if token.kind != TokenKind::Newline {
+                expanded.push(token);
+            }
+        }
+        self.stream = outer;
+        expanded
+    }
+
+    /// The body with arguments in place of parameters, each expanded for itself first (C++98 §16.3.1).
+    fn substitute(&mut self, body: Body, used: Place, arguments: Vec<Vec<PpToken>>) -> Vec<PpToken> {
+        let (tokens, parameter) = match body {
+            Body::Tokens { tokens, parameter } => (tokens, parameter),
+            Body::Line => {
+                let line = self.line_of(used).wrapping_add(self.line_offset);
+                return vec![self.number(line, used)];
+            }
+            Body::File => return vec![self.number(self.file_number, used)],
+        };
+        let mut arguments: Vec<_> = arguments.into_iter().map(Argument::Raw).collect();
+        let mut result = Vec::with_capacity(tokens.len());
+        for (token, parameter) in tokens.iter().zip(parameter.iter()) {
+            let Some(argument) = parameter.and_then(|index| arguments.get_mut(index)) else {
+                result.push(PpToken {
+                    at: Place {
+                        span: used.span,
+                        spelled: token.at.spelled,
+                    },
+                    ..*token
+                });
+                continue;
+            };
+            if let Argument::Raw(raw) = argument {
+                let raw = std::mem::take(raw);
+                *argument = Argument::Expanded(self.expand_argument(raw, used));
+            }
+            if let Argument::Expanded(expanded) = argument {
+                result.extend_from_slice(expanded);
+            }
+            if result.len() > self.budget {
+                break;
+            }
+        }
+        result
+    }
+
+    fn expand_argument(&mut self, tokens: Vec<PpToken>, used: Place) -> Vec<PpToken> {
+        if self.depth == MAX_DEPTH {
+            self.give_up(used);
+            return Vec::new();
+        }
+        self.depth += 1;
+        let expanded = self.expand_list(tokens);
+        self.depth -= 1;
+        expanded
+    }
+
+    /// The tokens between parentheses, split at the commas that stand in no inner ones; and the place of the `)`.
+    fn arguments(&mut self, name: Symbol, at: Place, open: Place) -> Option<(Vec<Vec<PpToken>>, Place)> {
+        let mut arguments = vec![Vec::new()];
+        let mut nesting = 0;
+        loop {
+            let token = self.next_of_stream();
+            match token.kind {
+                TokenKind::End => {
+                    let message = format!(
+                        "the arguments of the macro `{}` have no `)`",
+                        self.words.text(name)
+                    );
+                    self.report(Code::BadMacroCall.at(at.to(open), message));
+                    return None;
+                }
+                TokenKind::Newline => continue,
+                TokenKind::Punctuator(Punctuator::RightParen) if nesting == 0 => {
+                    return Some((arguments, token.at));
+                }
+                TokenKind::Punctuator(Punctuator::Comma) if nesting == 0 => {
+                    arguments.push(Vec::new());
+                    continue;
+                }
+                TokenKind::Punctuator(Punctuator::LeftParen) => nesting += 1,
+                TokenKind::Punctuator(Punctuator::RightParen) => nesting -= 1,
+                _ => {}
+            }
+            if let Some(last) = arguments.last_mut() {
+                last.push(token);
+            }
+        }
+    }
+
+    fn count_fits(
+        &mut self,
+        name: Symbol,
+        used: Place,
+        arguments: &mut Vec<Vec<PpToken>>,
+        wanted: usize,
+    ) -> bool {
+        // `F()` gives no argument to a macro without parameters, and an empty one to a macro with one.
+        if wanted == 0 && matches!(&arguments[..], [only] if only.is_empty()) {
+            arguments.clear();
+        }
+        if arguments.len() == wanted {
+            return true;
+        }
+        let name = self.words.text(name);
+        let message = format!(
+            "the macro `{name}` takes {wanted} arguments and is given {}",
+            arguments.len()
+        );
+        self.report(Code::BadMacroCall.at(used, message));
+        false
+    }
+
+    /// Whether `(` follows; if so it is taken. The name of a function macro without `(` is a mere name.
+    fn open_paren(&mut self) -> Option<Place> {
+        let mut token = self.next_of_stream();
+        while token.kind == TokenKind::Newline {
+            token = self.next_of_stream();
+        }
+        if token.kind == TokenKind::Punctuator(Punctuator::LeftParen) {
+            return Some(token.at);
+        }
+        self.push(vec![token], None);
+        None
+    }
+
+    fn next_of_stream(&mut self) -> PpToken {
+        while let Some(frame) = self.stream.frames().last_mut() {
+            if let Some(token) = frame.tokens.next() {
+                return token;
+            }
+            if let Some(done) = self.stream.frames().pop().and_then(|frame| frame.of)
+                && let Some(definition) = self.macros.get_mut(&done)
+            {
+                definition.busy -= 1;
+            }
+        }
+        match self.stream {
+            Stream::Text(_) => self.next_of_text(),
+            Stream::List(_) => self.end(),
+        }
+    }
+
+    fn push(&mut self, tokens: Vec<PpToken>, of: Option<Symbol>) {
+        if let Some(definition) = of.and_then(|name| self.macros.get_mut(&name)) {
+            definition.busy += 1;
+        }
+        let tokens = tokens.into_iter();
+        self.stream.frames().push(Frame { tokens, of });
+    }
+
+    /// Ends everything: told once, and no token follows.
+    fn give_up(&mut self, at: Place) -> PpToken {
+        if !self.gave_up {
+            self.report(Code::TooMuchExpansion.at(at, "macros expand to too many tokens here"));
+        }
+        self.gave_up = true;
+        self.budget = 0;
+        self.groups.clear();
+        self.stream.frames().clear();
+        self.lexer.skip_to_end();
+        self.end()
+    }
+
+    fn number(&mut self, value: i64, at: Place) -> PpToken {
+        PpToken {
+            kind: TokenKind::Number(self.words.symbol(&value.to_string())),
+            at,
+            spaced: false,
+            frozen: false,
+        }
+    }
+
+    fn end(&self) -> PpToken {
+        PpToken {
+            kind: TokenKind::End,
+            at: self.lexer.place(),
+            spaced: false,
+            frozen: false,
+        }
+    }
+}
+
+/// An argument of a macro call; expanded at its first use.
+enum Argument {
+    Raw(Vec<PpToken>),
+    Expanded(Vec<PpToken>),
+}

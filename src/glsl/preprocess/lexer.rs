@@ -1,0 +1,200 @@
+//! From characters to tokens (GLSL ES 3.00.6 §3.1–3.4): line continuation, comments, words, numbers, punctuators.
+
+use crate::diagnostic::Diagnostic;
+use crate::glsl::codes::Code;
+use crate::glsl::token::{Punctuator, TokenKind};
+use crate::glsl::tree::Place;
+use crate::glsl::words::Words;
+use crate::source::{FileId, Span};
+
+/// A token with what only the preprocessor asks about.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PpToken {
+    pub(super) kind: TokenKind,
+    pub(super) at: Place,
+    /// Whether blanks or a comment stand before it: `F (x)` defines an object macro, `F(x)` a function macro.
+    pub(super) spaced: bool,
+    /// Whether it names a macro inside of that macro's own expansion: then it is never expanded again.
+    pub(super) frozen: bool,
+}
+
+/// Reads one file, token by token. Newlines are tokens; at the end it gives `End` for ever.
+pub(super) struct Lexer<'a> {
+    file: FileId,
+    text: &'a str,
+    at: usize,
+    /// The text of the word or number being read, without line continuations.
+    scratch: String,
+}
+
+impl<'a> Lexer<'a> {
+    pub(super) fn new(file: FileId, text: &'a str) -> Self {
+        Self {
+            file,
+            text,
+            at: 0,
+            scratch: String::new(),
+        }
+    }
+
+    /// The next token. A comment counts as one blank, however many lines it has (§3.3).
+    pub(super) fn next(&mut self, words: &mut Words, diagnostics: &mut Vec<Diagnostic>) -> PpToken {
+        let begin = self.at;
+        if let Err(error) = self.skip_blanks() {
+            diagnostics.push(*error);
+        }
+        let spaced = self.at > begin;
+        let start = self.at;
+        let kind = match self.peek() {
+            None => TokenKind::End,
+            Some('\n') => {
+                self.bump();
+                TokenKind::Newline
+            }
+            Some(c) if is_word_start(c) => {
+                self.take_while(|_, c| is_word_start(c) || c.is_ascii_digit());
+                TokenKind::Word(words.symbol(&self.scratch))
+            }
+            Some(c)
+                if c.is_ascii_digit()
+                    || (c == '.' && self.peek_second().is_some_and(|c| c.is_ascii_digit())) =>
+            {
+                // As C's pp-number: what runs on from a digit is one token, right or wrong.
+                self.take_while(|so_far, c| {
+                    let exponent = so_far.ends_with(['e', 'E']) && !so_far.starts_with("0x");
+                    is_word_start(c) || c.is_ascii_digit() || c == '.' || (matches!(c, '+' | '-') && exponent)
+                });
+                TokenKind::Number(words.symbol(&self.scratch))
+            }
+            Some(c) => self.punctuator(c),
+        };
+        let span = Span::new(self.file, start as u32, self.at as u32);
+        PpToken {
+            kind,
+            at: Place::plain(span),
+            spaced,
+            frozen: false,
+        }
+    }
+
+    /// The rest of the line, as written and without the blanks around it.
+    pub(super) fn rest_of_line(&mut self) -> String {
+        self.scratch.clear();
+        while let Some(c) = self.peek().filter(|&c| c != '\n') {
+            self.scratch.push(c);
+            self.bump();
+        }
+        self.scratch.trim().to_owned()
+    }
+
+    /// Passes over all that is left.
+    pub(super) fn skip_to_end(&mut self) {
+        self.at = self.text.len();
+    }
+
+    /// Where the next token is looked for.
+    pub(super) fn place(&self) -> Place {
+        Place::plain(Span::new(self.file, self.at as u32, self.at as u32))
+    }
+
+    fn punctuator(&mut self, first: char) -> TokenKind {
+        // Tried in the order of `ALL`: the longest wins.
+        for &punctuator in Punctuator::ALL {
+            let text = punctuator.text();
+            if u8::try_from(first).is_ok_and(|first| text.as_bytes()[0] == first) {
+                let start = self.at;
+                if text.chars().all(|c| self.eat(c)) {
+                    return TokenKind::Punctuator(punctuator);
+                }
+                self.at = start;
+            }
+        }
+        self.bump();
+        TokenKind::Unknown(first)
+    }
+
+    fn skip_blanks(&mut self) -> Result<(), Box<Diagnostic>> {
+        loop {
+            match self.peek() {
+                Some(' ' | '\t' | '\u{b}' | '\u{c}') => self.bump(),
+                Some('/') if self.peek_second() == Some('/') => {
+                    while self.peek().is_some_and(|c| c != '\n') {
+                        self.bump();
+                    }
+                }
+                Some('/') if self.peek_second() == Some('*') => self.block_comment()?,
+                _ => return Ok(()),
+            }
+        }
+    }
+
+    fn block_comment(&mut self) -> Result<(), Box<Diagnostic>> {
+        let open = Span::new(self.file, self.at as u32, self.at as u32 + 2);
+        self.bump();
+        self.bump();
+        while let Some(c) = self.peek() {
+            self.bump();
+            if c == '*' && self.eat('/') {
+                return Ok(());
+            }
+        }
+        Code::UnterminatedComment.refuse(Place::plain(open), "this comment is never closed")
+    }
+
+    /// Reads into `scratch` while `accept(so_far, next)`.
+    fn take_while(&mut self, accept: impl Fn(&str, char) -> bool) {
+        self.scratch.clear();
+        while let Some(c) = self.peek().filter(|&c| accept(&self.scratch, c)) {
+            self.scratch.push(c);
+            self.bump();
+        }
+    }
+
+    fn eat(&mut self, wanted: char) -> bool {
+        let here = self.peek() == Some(wanted);
+        if here {
+            self.bump();
+        }
+        here
+    }
+
+    /// The next character; `\r\n` and `\r` read as `\n`, and line continuations are passed over (§3.2).
+    fn peek(&mut self) -> Option<char> {
+        let bytes = self.text.as_bytes();
+        loop {
+            match bytes.get(self.at)? {
+                b'\\' => match &bytes[self.at + 1..] {
+                    [b'\r', b'\n', ..] => self.at += 3,
+                    [b'\r' | b'\n', ..] => self.at += 2,
+                    _ => return Some('\\'),
+                },
+                b'\r' => return Some('\n'),
+                byte if byte.is_ascii() => return Some(char::from(*byte)),
+                _ => return self.text[self.at..].chars().next(),
+            }
+        }
+    }
+
+    fn peek_second(&mut self) -> Option<char> {
+        let start = self.at;
+        self.peek()?;
+        self.bump();
+        let second = self.peek();
+        self.at = start;
+        second
+    }
+
+    /// Steps over the character that `peek` told of.
+    fn bump(&mut self) {
+        let rest = &self.text[self.at..];
+        self.at += match rest.chars().next() {
+            Some('\r') if rest[1..].starts_with('\n') => 2,
+            Some(c) => c.len_utf8(),
+            None => 0,
+        };
+    }
+}
+
+fn is_word_start(c: char) -> bool {
+    c.is_ascii_alphabetic() || c == '_'
+}

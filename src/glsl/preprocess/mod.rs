@@ -1,0 +1,165 @@
+//! The preprocessor (GLSL ES 3.00.6 §3.4): from an author's text to the tokens that remain.
+//!
+//! Token based, as in C++98: each token keeps the place where its characters stand and, out of a macro, where that macro was used. Time is
+//! linear in what is read and expanded, and expansion has a budget, so that hostile macros end in a diagnostic.
+
+mod condition;
+mod define;
+mod directive;
+mod expand;
+mod integer;
+mod lexer;
+mod macros;
+
+use std::collections::HashMap;
+
+use self::condition::Group;
+use self::expand::Stream;
+use self::lexer::{Lexer, PpToken};
+use self::macros::Macro;
+use super::codes::Code;
+use super::token::{Punctuator, Symbol, Token, TokenKind};
+use super::words::Words;
+use crate::diagnostic::Diagnostic;
+use crate::source::{FileId, Files};
+
+/// What a text is after preprocessing.
+pub(crate) struct Preprocessed {
+    /// The tokens, ending in one [`TokenKind::End`].
+    pub(crate) tokens: Vec<Token>,
+    /// Their texts.
+    pub(crate) words: Words,
+    /// Errors and warnings.
+    pub(crate) diagnostics: Vec<Diagnostic>,
+}
+
+/// Preprocesses one file, to its end whatever is wrong with it.
+#[must_use]
+pub(crate) fn preprocess(files: &Files, file: FileId) -> Preprocessed {
+    let mut preprocessor = Preprocessor::new(files, file);
+    let mut tokens = Vec::new();
+    loop {
+        let token = preprocessor.next_expanded();
+        preprocessor.past_first_token = true;
+        match token.kind {
+            TokenKind::Newline => continue,
+            TokenKind::Unknown(c) => {
+                let message = format!("`{}` is no character of GLSL", c.escape_debug());
+                preprocessor.report(Code::UnknownCharacter.at(token.at, message));
+                continue;
+            }
+            TokenKind::Punctuator(Punctuator::Hash | Punctuator::Paste) => {
+                // A macro with one is harmless until it is used.
+                let message = if token.at.is_expanded() {
+                    "GLSL ES has no `#` and no `##` in macros"
+                } else {
+                    "`#` is not at the beginning of its line"
+                };
+                preprocessor.report(Code::PasteOperator.at(token.at, message));
+                continue;
+            }
+            _ => {}
+        }
+        tokens.push(Token {
+            kind: token.kind,
+            at: token.at,
+        });
+        if token.kind == TokenKind::End {
+            break;
+        }
+    }
+    Preprocessed {
+        tokens,
+        words: preprocessor.words,
+        diagnostics: preprocessor.diagnostics,
+    }
+}
+
+struct Preprocessor<'a> {
+    text: &'a str,
+    lexer: Lexer<'a>,
+    words: Words,
+    macros: HashMap<Symbol, Macro>,
+    /// The macro bodies being read, the innermost last; below them the lexer.
+    stream: Stream,
+    /// The `#if` groups that are open.
+    groups: Vec<Group>,
+    /// Whether the next token begins a line.
+    line_start: bool,
+    /// Whether a token or directive came already: `#version` may not follow.
+    past_first_token: bool,
+    /// What `#line` adds to line numbers, and the number it gives the file: seen by `__LINE__` and `__FILE__` only.
+    line_offset: i64,
+    file_number: i64,
+    /// A byte and its line, for counting on.
+    counted: (usize, i64),
+    /// How many tokens macros may still produce.
+    budget: usize,
+    /// Whether they produced more, or nested too deep.
+    gave_up: bool,
+    /// How deep macro calls stand in arguments of macro calls.
+    depth: usize,
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl<'a> Preprocessor<'a> {
+    fn new(files: &'a Files, file: FileId) -> Self {
+        let mut words = Words::default();
+        let macros = Macro::predefined(file, &mut words);
+        let text = files.get(file).text();
+        Self {
+            text,
+            lexer: Lexer::new(file, text),
+            words,
+            macros,
+            stream: Stream::Text(Vec::new()),
+            groups: Vec::new(),
+            line_start: true,
+            past_first_token: false,
+            line_offset: 0,
+            file_number: 0,
+            counted: (0, 1),
+            budget: expand::BUDGET,
+            gave_up: false,
+            depth: 0,
+            diagnostics: Vec::new(),
+        }
+    }
+
+    fn report(&mut self, diagnostic: Diagnostic) {
+        self.diagnostics.push(diagnostic);
+    }
+
+    fn lex(&mut self) -> PpToken {
+        self.lexer.next(&mut self.words, &mut self.diagnostics)
+    }
+
+    /// The next token of the running text; directives are obeyed and skipped groups passed over on the way.
+    fn next_of_text(&mut self) -> PpToken {
+        loop {
+            let token = self.lex();
+            match token.kind {
+                TokenKind::Newline => self.line_start = true,
+                TokenKind::Punctuator(Punctuator::Hash) if self.line_start => {
+                    self.directive(token.at);
+                    self.past_first_token = true;
+                }
+                TokenKind::End => {
+                    while let Some(group) = self.groups.pop() {
+                        self.report(Code::UnbalancedCondition.at(group.at, "this has no `#endif`"));
+                    }
+                    return token;
+                }
+                _ => {
+                    self.line_start = false;
+                    if self.is_active() {
+                        return token;
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,145 @@
+//! Inputs of any size and depth end in a tree or a diagnostic, soon and on a small stack.
+
+use super::{MAIN, check_text};
+use crate::glsl::{Options, tree};
+
+/// On a stack of 2 MB, as threads have it.
+fn on_a_small_stack<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    std::thread::scope(|scope| {
+        let builder = std::thread::Builder::new().stack_size(2 << 20);
+        builder.spawn_scoped(scope, work).unwrap().join().unwrap()
+    })
+}
+
+fn each(indices: std::ops::Range<usize>, line: fn(usize) -> String) -> String {
+    indices.map(line).collect()
+}
+
+#[test]
+fn nesting_has_a_limit_that_is_told() {
+    let shapes: [(&str, &str, &str); 9] = [
+        ("(", "1.", ")"),
+        ("sin(", "1.", ")"),
+        ("- ", "1.", ""),
+        ("+(", "1.", ")"),
+        ("true ? 1. : ", "1.", ""),
+        ("true ? ", "1.", " : 1."),
+        ("a = ", "1.", ""),
+        ("b[int(", "1.", ")]"),
+        (
+            "1. + 1. * float(true || true && 1 == 1 << 1 + ivec2(",
+            "1",
+            ").x)",
+        ),
+    ];
+    for (open, middle, close) in shapes {
+        let text = |depth: usize| {
+            let value = format!("{}{middle}{}", open.repeat(depth), close.repeat(depth));
+            format!("void test() {{ float a, b[2]; a = {value}; }} {MAIN}")
+        };
+        for depth in [50_000, 300] {
+            let text = text(depth);
+            let errors = on_a_small_stack(|| check_text(&text, &Options::default()).unwrap_err());
+            assert_eq!(errors[0].code, "E0101", "{open} {depth}");
+        }
+        let shallow = text(20);
+        on_a_small_stack(|| check_text(&shallow, &Options::default())).unwrap();
+    }
+    for (open, depth, accepted) in [
+        ("if (true) ", 240, true),
+        ("if (true) ", 50_000, false),
+        ("{", 50_000, false),
+        ("for (;;) ", 50_000, false),
+    ] {
+        let text = format!("void test() {{ {} ; }} {MAIN}", open.repeat(depth));
+        let result = on_a_small_stack(|| check_text(&text, &Options::default()).map(drop));
+        assert_eq!(result.is_ok(), accepted, "{open} {depth}");
+    }
+    let parens = format!(
+        "void test() {{ float a = {}1.{}; }} {MAIN}",
+        "(".repeat(250),
+        ")".repeat(250)
+    );
+    on_a_small_stack(|| check_text(&parens, &Options::default()).map(drop)).unwrap();
+}
+
+#[test]
+fn long_chains_are_no_nesting() {
+    let sum = "a + ".repeat(20_000);
+    let commas = "a, ".repeat(20_000);
+    let swizzles = ".xy".repeat(20_000);
+    let ifs = "if (a < 1.) a = 2.; else ".repeat(5_000);
+    let text = format!(
+        "const float k = {} 1.; void test(float a) {{ a = {sum} a; a = ({commas} a); vec2 v; v = v{swizzles}; {ifs} ; }} {MAIN}",
+        "1. + ".repeat(20_000)
+    );
+    let checked = on_a_small_stack(|| check_text(&text, &Options::default())).unwrap();
+    let k = checked
+        .tree
+        .variables
+        .iter()
+        .find(|(_, variable)| variable.name == "k")
+        .unwrap()
+        .1;
+    assert_eq!(
+        k.value.as_ref().unwrap().scalars[..],
+        [tree::Value::Float(20_001.0)]
+    );
+    let consts = each(1..5_000, |index| {
+        format!("const float k{index} = k{} * 2.;\n", index - 1)
+    });
+    let text = format!("const float k0 = 1.;\n{consts}{MAIN}");
+    on_a_small_stack(|| check_text(&text, &Options::default())).unwrap();
+}
+
+#[test]
+fn structures_of_structures_cost_nothing() {
+    let levels = each(1..60, |level| {
+        let last = level - 1;
+        format!(
+            "struct S{level} {{ S{last} a, b; }}; const S{level} c{level} = S{level}(c{last}, c{last});\n"
+        )
+    });
+    let text = format!("struct S0 {{ float a, b; }}; const S0 c0 = S0(1., 2.);\n{levels}{MAIN}");
+    let lenient = Options {
+        lenient: true,
+        ..Options::default()
+    };
+    assert_eq!(check_text(&text, &lenient).unwrap_err()[0].code, "E0305");
+    assert_eq!(
+        check_text(&text, &Options::default()).unwrap_err()[0].code,
+        "E0101"
+    );
+    let deep = |line| format!("struct S0 {{ float a; }};\n{}{MAIN}", each(1..20_000, line));
+    let texts = [
+        deep(|level| format!("struct S{level} {{ S{} a; }};\n", level - 1)),
+        deep(|level| format!("struct S{level} {{ S{} a[2]; }};\n", level - 1)),
+        format!("float a{};\n{MAIN}", "[1]".repeat(20_000)),
+    ];
+    for text in texts {
+        let errors = on_a_small_stack(|| check_text(&text, &lenient).unwrap_err());
+        assert_eq!(errors[0].code, "E0101");
+    }
+}
+
+#[test]
+fn a_variable_has_a_limit() {
+    let text = |size| format!("struct S {{ vec4 a[1024]; }}; S s[{size}]; {MAIN}");
+    assert!(check_text(&text(1024), &Options::default()).is_ok());
+    let errors = check_text(&text(1025), &Options::default()).unwrap_err();
+    assert_eq!(errors[0].code, "E0305");
+}
+
+#[test]
+fn cut_short_anywhere_a_shader_ends_in_a_diagnostic() {
+    let text = "#define F(x) (x)\nstruct S { vec2 a[2]; };\nvoid mainImage(out vec4 c, in vec2 f) {\n S s; for (int i = 0; \
+                i < 2; i++) { switch (i) { case 0: s.a[i] = F(f); default: c = true ? vec4(1) : vec4(0); } } /* x */ }\n";
+    assert!(check_text(text, &Options::default()).is_ok());
+    for end in 0..text.len() - 1 {
+        assert!(
+            check_text(&text[..end], &Options::default()).is_err(),
+            "{}",
+            &text[..end]
+        );
+    }
+}
