@@ -1,5 +1,6 @@
 //! The rules of the specification, each with what keeps it and what breaks it.
 
+mod invariants;
 mod limits;
 
 use super::*;
