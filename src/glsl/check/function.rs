@@ -5,7 +5,7 @@ use super::{Checker, Specifier};
 use crate::glsl::codes::Code;
 use crate::glsl::token::Symbol;
 use crate::glsl::tree::{
-    Block, BuiltIn, Direction, Function, FunctionId, Item, Place, Type, Variable, VariableId, VariableKind,
+    Block, Direction, Function, FunctionId, Item, Place, Type, Variable, VariableId, VariableKind,
 };
 
 /// A parameter as it stands in the text.
@@ -274,13 +274,5 @@ impl Checker<'_> {
         };
         self.report(diagnostic);
         None
-    }
-}
-
-impl BuiltIn {
-    /// The built-in function of that name.
-    #[must_use]
-    pub fn named(name: &str) -> Option<Self> {
-        super::signature::named(name)
     }
 }
