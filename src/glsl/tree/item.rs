@@ -3,7 +3,7 @@
 use super::{Block, Constant, ExprId, Id, Place, StructId, Type};
 
 /// One declaration at global scope, in the author's order.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Item {
     /// A structure.
     Struct(StructId),
