@@ -11,15 +11,19 @@
 mod check;
 mod codes;
 mod constant;
+pub mod lower;
 mod options;
 mod parse;
 mod preprocess;
+mod print;
 mod token;
 pub mod tree;
 mod words;
 
 pub use codes::Code;
+pub use lower::lower;
 pub use options::Options;
+pub use print::Lowered;
 
 use self::check::{Channels, Checker};
 use self::parse::Parser;

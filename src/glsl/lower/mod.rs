@@ -1,0 +1,62 @@
+//! From a checked tree to one that naga's GLSL front end reads rightly: a pass for each construct that it refuses or gets
+//! wrong, each in a file named for the construct, whose header says what naga does.
+//!
+//! Most passes rewrite single expressions where they stand; what needs several steps becomes a sequence `a, b`, which naga
+//! evaluates in order. The passes after them rewrite statements; [`sequence`] then makes statements of sequences.
+
+mod boolean;
+mod build;
+mod constant;
+mod dead_code;
+mod depth;
+mod do_while;
+mod draft;
+mod equality;
+mod geometric;
+mod global;
+mod helper;
+mod index;
+mod is_nan;
+mod loop_head;
+mod lvalue;
+mod matrix;
+mod member;
+mod missing;
+mod missing_return;
+mod negation;
+mod out_argument;
+mod pass;
+mod remainder;
+mod sampler;
+mod sequence;
+mod short_circuit;
+mod surroundings;
+mod switch;
+mod swizzle;
+mod texel;
+mod uninitialised;
+pub(crate) mod walk;
+mod zero;
+
+pub(crate) use draft::Draft;
+pub use pass::{Pass, Passes};
+
+use super::Checked;
+use super::print::{Lowered, print};
+
+/// Lowers a shader and prints what naga is fed.
+#[must_use]
+pub fn lower(checked: &Checked) -> Lowered {
+    lower_with(checked, Passes::all())
+}
+
+/// The same by some passes only, to see what naga makes of the rest.
+#[must_use]
+pub fn lower_with(checked: &Checked, passes: Passes) -> Lowered {
+    let mut draft = Draft::new(checked.tree.clone(), checked.main_image);
+    passes.run(&mut draft);
+    print(&draft)
+}
+
+#[cfg(test)]
+mod tests;

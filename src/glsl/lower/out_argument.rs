@@ -1,0 +1,98 @@
+//! `out` and `inout` arguments that are components, swizzles, elements or members: `m(p.x)`, `m(a[i])`, `m(s.a)`.
+//!
+//! naga passes a pointer to a component, which its SPIR-V writer panics on, and drops what is written to an element
+//! of a global. GLSL copies in and out (§6.1.1): so do we, with indices evaluated once, before the call. Two
+//! arguments that are the same variable are copied too: WGSL forbids pointers that alias.
+
+use std::collections::HashSet;
+
+use super::super::tree::{Direction, ExprId, ExprKind, Type, VariableId, VariableKind};
+use super::draft::Draft;
+use super::lvalue::{self, Fix};
+use super::walk;
+
+pub(super) fn run(draft: &mut Draft) {
+    let discarded = draft.discarded();
+    draft.each_expression(|draft, id| {
+        if let ExprKind::Call { function, arguments } = &draft.tree[id].kind {
+            let directions = draft.tree[*function]
+                .parameters
+                .iter()
+                .map(|&parameter| direction(draft, parameter));
+            let arguments: Vec<_> = arguments.iter().copied().zip(directions).collect();
+            copy(draft, id, &arguments, discarded.contains(&id));
+        }
+    });
+}
+
+fn direction(draft: &Draft, parameter: VariableId) -> Direction {
+    match draft.tree[parameter].kind {
+        VariableKind::Parameter(direction) => direction,
+        _ => Direction::In,
+    }
+}
+
+fn is_out(direction: Direction) -> bool {
+    matches!(direction, Direction::Out | Direction::InOut)
+}
+
+/// Lets a call work on copies where naga cannot point at the arguments themselves.
+fn copy(draft: &mut Draft, call: ExprId, arguments: &[(ExprId, Direction)], discarded: bool) {
+    let mut pointed_at = HashSet::new();
+    let awkward = |draft: &Draft, (argument, direction): (ExprId, Direction)| match draft.tree[argument].kind
+    {
+        _ if !is_out(direction) => false,
+        ExprKind::Variable(variable) => !pointed_at.insert(variable),
+        _ => true,
+    };
+    let awkward: Vec<_> = {
+        let mut awkward = awkward;
+        arguments
+            .iter()
+            .map(|&argument| awkward(draft, argument))
+            .collect()
+    };
+    if !awkward.contains(&true) {
+        return;
+    }
+    // Once one value is set aside, all are: what stays in the call is evaluated last.
+    let acting = arguments
+        .iter()
+        .any(|&(argument, direction)| !is_out(direction) && walk::acts(&draft.tree, argument));
+    let (mut before, mut after) = (Vec::new(), Vec::new());
+    for (&(argument, direction), awkward) in arguments.iter().zip(awkward) {
+        if awkward {
+            lvalue::fix_indices(draft, argument, Fix::Changing, &mut before);
+            let at = draft.tree[argument].at;
+            let ty = draft.tree[argument].ty;
+            let copy = draft.temporary("argument", ty, at);
+            let mut build = draft.build(at);
+            if direction == Direction::InOut {
+                let read = build.copy(argument);
+                before.push(build.set(copy, read));
+            }
+            let home = build.detach(argument);
+            let value = build.variable(copy);
+            after.push(build.assign(home, value));
+            draft.tree[argument].kind = ExprKind::Variable(copy);
+        } else if acting && !is_out(direction) && !draft.tree[argument].constant {
+            before.push(lvalue::set_aside(draft, argument, "argument"));
+        }
+    }
+    let at = draft.tree[call].at;
+    let ty = draft.tree[call].ty;
+    let mut steps = before;
+    let operation = draft.build(at).detach(call);
+    if discarded || ty == Type::Void {
+        steps.push(operation);
+        steps.extend(after);
+        lvalue::replace(draft, call, steps, None);
+    } else {
+        let result = draft.temporary("result", ty, at);
+        let mut build = draft.build(at);
+        steps.push(build.set(result, operation));
+        let result = build.variable(result);
+        steps.extend(after);
+        lvalue::replace(draft, call, steps, Some(result));
+    }
+}

@@ -1,0 +1,151 @@
+//! Ways through statements. Blocks nest at most `MAX_NESTING` deep, so these recurse.
+
+use super::super::tree::{
+    Block, Condition, ExprId, ExprKind, Label, Statement, StatementKind, Tree, VariableId,
+};
+
+/// The blocks directly inside of a statement, in order; the `init` of a `for` is one.
+pub(crate) fn inner(statement: &Statement) -> Vec<&Block> {
+    match &statement.kind {
+        StatementKind::Block(body)
+        | StatementKind::While { body, .. }
+        | StatementKind::DoWhile { body, .. } => vec![body],
+        StatementKind::If { arms, otherwise } => arms.iter().map(|arm| &arm.body).chain(otherwise).collect(),
+        StatementKind::Switch { cases, .. } => cases.iter().map(|case| &case.body).collect(),
+        StatementKind::For { init, body, .. } => vec![init, body],
+        _ => Vec::new(),
+    }
+}
+
+/// The blocks directly inside of a statement that hold statements of any kind: not the `init` of a `for`.
+pub(crate) fn inner_mut(statement: &mut Statement) -> Vec<&mut Block> {
+    match &mut statement.kind {
+        StatementKind::Block(body)
+        | StatementKind::While { body, .. }
+        | StatementKind::DoWhile { body, .. }
+        | StatementKind::For { body, .. } => vec![body],
+        StatementKind::If { arms, otherwise } => arms
+            .iter_mut()
+            .map(|arm| &mut arm.body)
+            .chain(otherwise)
+            .collect(),
+        StatementKind::Switch { cases, .. } => cases.iter_mut().map(|case| &mut case.body).collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// Calls `visit` with every statement, outer ones before those inside of them.
+pub(crate) fn each<'a>(block: &'a [Statement], visit: &mut dyn FnMut(&'a Statement)) {
+    for statement in block {
+        visit(statement);
+        for body in inner(statement) {
+            each(body, visit);
+        }
+    }
+}
+
+/// Rebuilds a block from the inside out: `change` is given each statement, those inside of it done, and puts what
+/// becomes of it into the new block. The `init` of a `for` stays as it is.
+pub(crate) fn rebuild(block: Block, change: &mut dyn FnMut(Statement, &mut Block)) -> Block {
+    let mut out = Block::with_capacity(block.len());
+    for mut statement in block {
+        for body in inner_mut(&mut statement) {
+            *body = rebuild(std::mem::take(body), change);
+        }
+        change(statement, &mut out);
+    }
+    out
+}
+
+/// The expressions that a statement evaluates itself, in the order of its text.
+pub(crate) fn own_expressions(tree: &Tree, statement: &Statement) -> Vec<ExprId> {
+    let initialiser = |variable: VariableId| tree[variable].initialiser;
+    let tested = |condition: &Condition| match *condition {
+        Condition::Expression(expr) => Some(expr),
+        Condition::Declare(variable) => initialiser(variable),
+    };
+    match &statement.kind {
+        StatementKind::Expression(expr) => vec![*expr],
+        StatementKind::Declare(variable) => initialiser(*variable).into_iter().collect(),
+        StatementKind::If { arms, .. } => arms.iter().map(|arm| arm.condition).collect(),
+        StatementKind::Switch { selector, .. } => vec![*selector],
+        StatementKind::For { condition, step, .. } => {
+            condition.iter().filter_map(tested).chain(*step).collect()
+        }
+        StatementKind::While { condition, .. } => tested(condition).into_iter().collect(),
+        StatementKind::DoWhile { condition, .. } => vec![*condition],
+        StatementKind::Return(value) => value.iter().copied().collect(),
+        StatementKind::Struct(_)
+        | StatementKind::Block(_)
+        | StatementKind::Break
+        | StatementKind::Continue
+        | StatementKind::Discard => Vec::new(),
+    }
+}
+
+/// The variables that a statement declares itself.
+pub(crate) fn declared(statement: &Statement) -> Option<VariableId> {
+    match statement.kind {
+        StatementKind::Declare(variable)
+        | StatementKind::While {
+            condition: Condition::Declare(variable),
+            ..
+        }
+        | StatementKind::For {
+            condition: Some(Condition::Declare(variable)),
+            ..
+        } => Some(variable),
+        _ => None,
+    }
+}
+
+/// Every expression that a block evaluates: whole trees, by their roots.
+pub(crate) fn roots(tree: &Tree, block: &Block) -> Vec<ExprId> {
+    let mut roots = Vec::new();
+    each(block, &mut |statement| {
+        roots.extend(own_expressions(tree, statement));
+    });
+    roots
+}
+
+/// Whether running an expression does more than give a value, or may take long: an assignment or a call of an
+/// author's function stands in it.
+pub(crate) fn acts(tree: &Tree, root: ExprId) -> bool {
+    tree.postorder(root).into_iter().any(|id| match tree[id].kind {
+        ExprKind::Assign { .. } | ExprKind::Step { .. } | ExprKind::Call { .. } => true,
+        ExprKind::BuiltIn { function, .. } => function.out_parameter().is_some(),
+        _ => false,
+    })
+}
+
+/// Whether control can leave a loop's body by a `continue` of that loop.
+pub(crate) fn continues(block: &Block) -> bool {
+    block.iter().any(|statement| match &statement.kind {
+        StatementKind::Continue => true,
+        StatementKind::For { .. } | StatementKind::While { .. } | StatementKind::DoWhile { .. } => false,
+        _ => inner(statement).into_iter().any(continues),
+    })
+}
+
+/// Whether nothing that follows the statement in its block is ever run.
+pub(crate) fn jumps(statement: &Statement) -> bool {
+    matches!(
+        statement.kind,
+        StatementKind::Break | StatementKind::Continue | StatementKind::Return(_) | StatementKind::Discard
+    )
+}
+
+/// The labels of a `case` that are values, with their texts.
+pub(crate) fn values(labels: &[Label]) -> impl Iterator<Item = ExprId> + '_ {
+    labels.iter().filter_map(|label| match label {
+        Label::Case { expr, .. } => Some(*expr),
+        Label::Default => None,
+    })
+}
+
+/// Whether a variable stands in an expression.
+pub(crate) fn mentions(tree: &Tree, root: ExprId, variable: VariableId) -> bool {
+    tree.postorder(root)
+        .into_iter()
+        .any(|id| matches!(tree[id].kind, ExprKind::Variable(v) if v == variable))
+}

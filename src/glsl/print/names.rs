@@ -1,0 +1,187 @@
+//! What everything is called: as the author called it, wherever naga takes that.
+//!
+//! naga knows one scope for types and looks for a type first, whatever the name stands for (`ray ray;`); words that are
+//! free in ES 3.00 are keywords in 450 (`sample`, `buffer`); what lowering moved may meet another of its name.
+
+use std::collections::{HashMap, HashSet};
+
+use super::super::lower::{Draft, walk};
+use super::super::tree::{BuiltInVariable, ExprKind, FunctionId, Item, StructId, VariableId};
+use super::order::Order;
+use super::word;
+
+/// The members of the uniform block, in order, with their types in it.
+pub(super) const BLOCK: [(&str, &str); 10] = [
+    ("vec3", "iResolution"),
+    ("float", "iTime"),
+    ("float", "iTimeDelta"),
+    ("int", "iFrame"),
+    ("float", "iFrameRate"),
+    ("vec4[4]", "iChannelTime"),
+    ("vec3[4]", "iChannelResolution"),
+    ("vec4", "iMouse"),
+    ("vec4", "iDate"),
+    ("float", "iSampleRate"),
+];
+
+/// Whether naga knows that variable under its own name.
+pub(super) fn is_known(variable: BuiltInVariable) -> bool {
+    variable == BuiltInVariable::FragCoord
+}
+
+/// The names of a draft's things.
+#[derive(Default)]
+pub(super) struct Names {
+    pub(super) variables: HashMap<VariableId, String>,
+    pub(super) functions: HashMap<FunctionId, String>,
+    pub(super) structs: HashMap<StructId, String>,
+    pub(super) members: HashMap<(StructId, usize), String>,
+}
+
+impl Names {
+    pub(super) fn of(draft: &Draft, order: &Order) -> Self {
+        let mut names = Self::default();
+        let mut types = HashSet::new();
+        // What stands at global scope, and cannot be called twice.
+        let mut taken: HashSet<String> = BLOCK.iter().map(|&(_, name)| name.to_owned()).collect();
+        for channel in 0..4 {
+            taken.extend([format!("iChannel{channel}"), format!("iChannel{channel}_sampler")]);
+        }
+        for &input in &order.inputs {
+            names.variables.insert(input, draft.tree[input].name.clone());
+        }
+        let tree = &draft.tree;
+        for item in &order.items {
+            if let Item::Struct(id) = *item {
+                let name = if tree[id].name.is_empty() {
+                    "Struct"
+                } else {
+                    &tree[id].name
+                };
+                let name = free(name, |name| word::is_reserved(name) || taken.contains(name));
+                types.insert(name.clone());
+                taken.insert(name.clone());
+                names.structs.insert(id, name);
+                names.name_members(draft, id);
+            }
+        }
+        let authors: HashSet<&str> = tree
+            .variables
+            .iter()
+            .map(|(_, variable)| variable.name.as_str())
+            .collect();
+        for item in &order.items {
+            if let Item::Variable(id) = *item {
+                // What was moved out of a function meets every local that it is used among.
+                let moved = draft.moved.contains(&id);
+                let own = tree[id].name.as_str();
+                let name = free(own, |name| {
+                    word::is_reserved(name)
+                        || word::is_function(name)
+                        || taken.contains(name)
+                        || (moved && name != own && authors.contains(name))
+                        || (moved
+                            && name == own
+                            && tree.variables.iter().filter(|(_, v)| v.name == own).count() > 1)
+                });
+                taken.insert(name.clone());
+                names.variables.insert(id, name);
+            }
+        }
+        names.name_functions(draft, order, &taken);
+        for item in &order.items {
+            if let Item::Function(id) = *item {
+                names.name_locals(draft, id, &types);
+            }
+        }
+        names
+    }
+
+    fn name_members(&mut self, draft: &Draft, id: StructId) {
+        let mut taken = HashSet::new();
+        for (at, member) in draft.tree[id].members.iter().enumerate() {
+            let name = free(&member.name, |name| {
+                word::is_reserved(name) || taken.contains(name)
+            });
+            taken.insert(name.clone());
+            self.members.insert((id, at), name);
+        }
+    }
+
+    /// Overloads keep one name.
+    fn name_functions(&mut self, draft: &Draft, order: &Order, taken: &HashSet<String>) {
+        let mut given: HashMap<&str, String> = HashMap::new();
+        let mut used = taken.clone();
+        for item in &order.items {
+            let Item::Function(id) = *item else {
+                continue;
+            };
+            let own = draft.tree[id].name.as_str();
+            let name = given.entry(own).or_insert_with(|| {
+                free(own, |name| {
+                    word::is_reserved(name) || word::is_function(name) || used.contains(name)
+                })
+            });
+            used.insert(name.clone());
+            self.functions.insert(id, name.clone());
+        }
+    }
+
+    fn name_locals(&mut self, draft: &Draft, function: FunctionId, types: &HashSet<String>) {
+        let tree = &draft.tree;
+        let mut locals = tree[function].parameters.clone();
+        let mut globals = HashSet::new();
+        if let Some(body) = &tree[function].body {
+            walk::each(body, &mut |statement| locals.extend(walk::declared(statement)));
+            for id in walk::roots(tree, body)
+                .into_iter()
+                .flat_map(|root| tree.postorder(root))
+            {
+                if let ExprKind::Variable(variable) = tree[id].kind {
+                    globals.extend(self.variables.get(&variable).cloned());
+                }
+            }
+        }
+        let clashes = |name: &str| word::is_reserved(name) || types.contains(name) || globals.contains(name);
+        let mut taken: HashSet<String> = locals.iter().map(|&id| tree[id].name.clone()).collect();
+        let mut counts: HashMap<&str, usize> = HashMap::new();
+        for &id in &locals {
+            *counts.entry(tree[id].name.as_str()).or_default() += 1;
+        }
+        let mut counters = HashMap::new();
+        for &id in &locals {
+            let own = tree[id].name.as_str();
+            let meets = draft.moved.contains(&id) && counts.get(own).is_some_and(|&count| count > 1);
+            let name = if own.is_empty() || meets || clashes(own) {
+                let stem = if own.is_empty() {
+                    "unused".to_owned()
+                } else {
+                    word::mended(own)
+                };
+                // A counter for each stem: thousands of temporaries share one.
+                let counter: &mut usize = counters.entry(stem.clone()).or_default();
+                loop {
+                    *counter += 1;
+                    let name = format!("{stem}_{counter}");
+                    if !clashes(&name) && !taken.contains(&name) {
+                        break name;
+                    }
+                }
+            } else {
+                own.to_owned()
+            };
+            taken.insert(name.clone());
+            self.variables.insert(id, name);
+        }
+    }
+}
+
+/// The name itself, or the first free one that is made of it.
+fn free(name: &str, is_taken: impl Fn(&str) -> bool) -> String {
+    let name = &word::mended(name);
+    let numbered = (1_usize..).map(|number| format!("{name}_{number}"));
+    std::iter::once(name.to_owned())
+        .chain(numbered)
+        .find(|name| !is_taken(name))
+        .unwrap_or_default()
+}
