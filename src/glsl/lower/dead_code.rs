@@ -2,7 +2,7 @@
 //!
 //! naga drops the statements and keeps what they refer to, which its validator refuses.
 
-use super::super::tree::Block;
+use super::super::tree::{Block, Statement, StatementKind};
 use super::draft::Draft;
 use super::walk;
 
@@ -11,13 +11,21 @@ pub(super) fn run(draft: &mut Draft) {
 }
 
 fn live(mut block: Block) -> Block {
-    if let Some(jump) = block.iter().position(walk::jumps) {
-        block.truncate(jump + 1);
-    }
     for statement in &mut block {
         for body in walk::inner_mut(statement) {
             *body = live(std::mem::take(body));
         }
     }
+    if let Some(jump) = block.iter().position(jumps) {
+        block.truncate(jump + 1);
+    }
     block
+}
+
+/// Whether nothing that follows is run, in a block whose inner blocks end where they jump.
+fn jumps(statement: &Statement) -> bool {
+    match &statement.kind {
+        StatementKind::Block(body) => body.last().is_some_and(jumps),
+        _ => walk::jumps(statement),
+    }
 }

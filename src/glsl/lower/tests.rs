@@ -430,6 +430,7 @@ fn switches() {
         "switch (int(p.x)) { default: o.x = 1.0; case 1: float a = 2.0; if (p.y > 0.0) break; o.y = a; case 2: o.z = 1.0; }",
         "switch (int(p.x)) { case 0: float a = 1.0; o.x = a; break; case 1: a = 2.0; o.y = a; } switch (int(p.y)) { case 0: float a = 3.0; o.z = a; }",
         "for (int i = 0; i < 3; i++) { switch (i) { case 0: continue; case 1: { float a = p.x; o.x = a; break; } default: { { return; } } } }",
+        "switch (int(p.x)) { case 0: { return; } break; case 1: { { break; } } o.x = 1.0; }",
         "switch (uint(p.x)) { case 0u: case 7u: o.x = 1.0; break; default: break; }",
     ] {
         accepted(&checked(&main_image("", body), true));
@@ -514,6 +515,7 @@ fn what_never_leaves_the_printer_is_still_wrong_with_naga() {
         ("", "float sample = 1.0; o.x = sample;"),
         ("float f(float) { return 1.0; }", "o.x = f(2.0);"),
         ("uniform float x;", "o.x = x;"),
+        ("", "for (int i = 0; float(i) < 2.0; i++) o.x += 1.0;"),
     ] {
         let text = around(before, body);
         assert!(naga(&text).is_err(), "naga is mended:\n{text}");
@@ -533,7 +535,8 @@ float g(float x);
 float f(const in float a, float) { return a + g(a); }
 float g(float x) { return x; }
 float buffer(float shared) { return shared; }";
-    let body = "float a[] = float[](1.0, 2.0); float b[N], c; ray ray; ray.x = f(1.0, 2.0); c = ray.x; b[0] = c;
+    let body = "for (int i = 0; float(i) < 2.0; i++) o.x += 1.0;
+float a[] = float[](1.0, 2.0); float b[N], c; ray ray; ray.x = f(1.0, 2.0); c = ray.x; b[0] = c;
 float d[2][3]; d[1][2] = 1.0; float buffer = buffer(d[1][2]); lowp float e = - -buffer; o = vec4(a[1], b[0], e, d[int(p.x)][int(p.y)]);";
     let lowered = accepted(&checked(&main_image(before, body), true));
     assert!(lowered.contains("float[3][2] d;"), "{lowered}");

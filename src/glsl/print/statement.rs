@@ -1,8 +1,8 @@
 //! Statements and declarations, one to a line.
 
 use super::super::tree::{
-    Arm, Block, Case, Condition, Direction, ExprId, FunctionId, Item, Label, Place, Statement, StatementKind,
-    StructId, VariableId, VariableKind,
+    Arm, Block, Case, Condition, Direction, ExprId, ExprKind, FunctionId, Item, Label, Place, Statement,
+    StatementKind, StructId, UnaryOp, VariableId, VariableKind,
 };
 use super::printer::Printer;
 
@@ -127,7 +127,7 @@ impl Printer<'_> {
                 self.plain(";");
                 if let Some(Condition::Expression(condition)) = condition {
                     self.plain(" ");
-                    self.expression(*condition);
+                    self.condition(*condition);
                 }
                 self.plain(";");
                 if let Some(step) = step {
@@ -161,6 +161,39 @@ impl Printer<'_> {
                 self.expression(*value);
                 self.plain(";");
             }
+        }
+    }
+
+    /// The condition of a `for`: naga takes one that begins with a type for a declaration.
+    fn condition(&mut self, condition: ExprId) {
+        let mut first = condition;
+        while let Some(operand) = self.leftmost(first) {
+            first = operand;
+        }
+        if matches!(self.draft.tree[first].kind, ExprKind::Construct { .. }) {
+            self.plain("(");
+            self.expression(condition);
+            self.plain(")");
+        } else {
+            self.expression(condition);
+        }
+    }
+
+    /// The operand that an expression begins with.
+    fn leftmost(&self, id: ExprId) -> Option<ExprId> {
+        match self.draft.tree[id].kind {
+            ExprKind::Binary { left: first, .. }
+            | ExprKind::Conditional { condition: first, .. }
+            | ExprKind::Sequence { first, .. }
+            | ExprKind::Assign { target: first, .. }
+            | ExprKind::Index { base: first, .. }
+            | ExprKind::Swizzle { vector: first, .. }
+            | ExprKind::Member { structure: first, .. }
+            | ExprKind::Unary {
+                op: UnaryOp::Plus,
+                operand: first,
+            } => Some(first),
+            _ => None,
         }
     }
 
