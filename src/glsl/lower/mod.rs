@@ -18,6 +18,7 @@ mod helper;
 mod index;
 mod is_nan;
 mod loop_head;
+mod loop_void;
 mod lvalue;
 mod matrix;
 mod member;

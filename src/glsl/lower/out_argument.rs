@@ -1,7 +1,6 @@
 //! `out` and `inout` arguments that are components, swizzles, elements or members: `m(p.x)`, `m(a[i])`, `m(s.a)`.
 //!
-//! naga passes a pointer to a component, which its SPIR-V writer panics on, and drops what is written to an element
-//! of a global. GLSL copies in and out (§6.1.1): so do we, with indices evaluated once, before the call. Two
+//! naga passes a pointer to a component, which its SPIR-V writer panics on. GLSL copies in and out (§6.1.1): so do we, with indices evaluated once, before the call. Two
 //! arguments that are the same variable are copied too: WGSL forbids pointers that alias.
 
 use std::collections::HashSet;

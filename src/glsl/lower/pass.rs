@@ -68,6 +68,8 @@ passes! {
     LoopHeads = super::loop_head::run,
     /// `continue` in `do … while`.
     DoWhile = super::do_while::run,
+    /// Calls of `void` functions in the heads of loops.
+    LoopVoids = super::loop_void::run,
     /// Statements that nothing runs.
     DeadCode = super::dead_code::run,
     /// Fall-through in `switch`.

@@ -3,7 +3,7 @@
 //! The specification leaves negative operands undefined; glslang, Mesa and `SwiftShader` floor, as a browser's picture then
 //! does, and naga truncates. naga also refuses `v % s`, which it makes for every other operator.
 
-use super::super::tree::{BinaryOp, Constructor, ExprId, ExprKind, Scalar, Type};
+use super::super::tree::{BinaryOp, Constructor, ExprId, ExprKind, Scalar, Tree, Type, Value};
 use super::draft::Draft;
 use super::helper::Helper;
 
@@ -20,7 +20,12 @@ pub(super) fn run(draft: &mut Draft) {
         };
         let ty = draft.tree[id].ty;
         let [left, right] = [left, right].map(|operand| widen(draft, operand, ty));
-        draft.tree[id].kind = if ty.scalar() == Some(Scalar::Int) {
+        let signed = ty.scalar() == Some(Scalar::Int);
+        draft.tree[id].kind = if signed
+            && ![left, right]
+                .iter()
+                .all(|&operand| is_natural(&draft.tree, operand))
+        {
             let at = draft.tree[id].at;
             let function = draft.helper(Helper::Remainder, (ty, ty), at);
             ExprKind::Call {
@@ -55,6 +60,13 @@ fn spell_out(draft: &mut Draft, id: ExprId) {
             value,
         };
     }
+}
+
+/// Whether an operand is a constant that is not negative.
+fn is_natural(tree: &Tree, operand: ExprId) -> bool {
+    let natural = |value: &Value| matches!(value, Value::Int(value) if *value >= 0);
+    tree.value(operand)
+        .is_some_and(|value| value.scalars.iter().all(natural))
 }
 
 fn widen(draft: &mut Draft, operand: ExprId, ty: Type) -> ExprId {

@@ -377,6 +377,21 @@ fn loop_heads() {
         Pass::LoopHeads,
         &main_image("", "int i = 0; while (bool b = i < 3) { i++; o.x += float(b); }"),
     );
+    let f = "void f(inout float x) { x += 1.0; }";
+    mends(
+        Pass::LoopVoids,
+        &main_image(
+            f,
+            "vec2 q = p; int i = 0; while (f(q.x), i < 3) { i++; if (i == 2) continue; o.x += q.x; }",
+        ),
+    );
+    mends(
+        Pass::LoopVoids,
+        &main_image(
+            f,
+            "vec2 q = p; int i; for (i = 0; i < 3; f(q.x), i++) { float i = 2.0; if (q.x > i) continue; o.x += q.x; }",
+        ),
+    );
     let body = "int i; float x; for (i = 0, x = 1.0; i < 3; i++) o.x += x;";
     assert_eq!(
         lines("", body),
