@@ -16,7 +16,7 @@ pub(super) fn run(draft: &mut Draft) {
     for (_, expr) in draft.tree.exprs.iter() {
         inner.extend(first(&expr.kind));
     }
-    draft.each_expression(|draft, id| {
+    draft.operands_first(|draft, id| {
         if !inner.contains(&id) {
             cut(draft, id);
         }

@@ -131,12 +131,20 @@ impl Draft {
         });
     }
 
-    /// Lets `change` rewrite every expression that stands in the tree now, operands before what uses them.
+    /// Lets `change` rewrite every expression that stands in the tree now, in any order.
     pub(super) fn each_expression(&mut self, mut change: impl FnMut(&mut Self, ExprId)) {
+        for id in self.tree.exprs.ids() {
+            change(self, id);
+        }
+    }
+
+    /// The same, operands before what uses them: for changes that move operands elsewhere.
+    pub(super) fn operands_first(&mut self, mut change: impl FnMut(&mut Self, ExprId)) {
         let mut order = Vec::with_capacity(self.tree.exprs.len());
         let mut seen = vec![false; self.tree.exprs.len()];
+        let mut pending = Vec::new();
         for root in self.tree.exprs.ids() {
-            let mut pending = vec![(root, false)];
+            pending.push((root, false));
             while let Some((id, operands_done)) = pending.pop() {
                 if operands_done {
                     order.push(id);

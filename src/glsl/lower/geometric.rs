@@ -15,13 +15,13 @@ pub(super) fn run(draft: &mut Draft) {
         else {
             return;
         };
-        let arguments = arguments.clone();
         let (Some(&first), at) = (arguments.first(), draft.tree[id].at) else {
             return;
         };
         if draft.tree[first].ty != Type::FLOAT {
             return;
         }
+        let arguments = arguments.clone();
         let float = (Type::FLOAT, Type::Void);
         let second = arguments.get(1).copied().unwrap_or(first);
         draft.tree[id].kind = match function {

@@ -9,7 +9,7 @@ use super::lvalue::{self, Fix};
 use super::walk;
 
 pub(super) fn run(draft: &mut Draft) {
-    draft.each_expression(|draft, id| {
+    draft.operands_first(|draft, id| {
         let (target, read_too) = match draft.tree[id].kind {
             ExprKind::Assign { op, target, .. } => (target, op.is_some()),
             ExprKind::Step { target, .. } => (target, false),
@@ -29,7 +29,7 @@ pub(super) fn run(draft: &mut Draft) {
             lvalue::replace(draft, id, steps, Some(operation));
         }
     });
-    draft.each_expression(|draft, id| {
+    draft.operands_first(|draft, id| {
         if let ExprKind::Index { base, index } = draft.tree[id].kind
             && walk::acts(&draft.tree, index)
             && walk::acts(&draft.tree, base)

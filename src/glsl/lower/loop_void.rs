@@ -7,6 +7,7 @@ use super::super::tree::{
     Arm, Block, Condition, ExprId, ExprKind, Place, Statement, StatementKind, Tree, Type, UnaryOp, Value,
 };
 use super::draft::Draft;
+use super::walk;
 
 pub(super) fn run(draft: &mut Draft) {
     draft.each_statement(|draft, statement, out| {
@@ -53,7 +54,7 @@ fn tested(condition: Option<Condition>) -> Option<ExprId> {
 /// Whether a sequence calls a `void` function on its way.
 fn has_void(tree: &Tree, root: ExprId) -> bool {
     let is_void = |id: ExprId| tree[id].ty == Type::Void;
-    tree.postorder(root).into_iter().any(|id| match tree[id].kind {
+    walk::any(tree, root, |kind| match *kind {
         ExprKind::Sequence { first, second } => is_void(first) || is_void(second),
         _ => false,
     })

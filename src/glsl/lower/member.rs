@@ -20,7 +20,7 @@ pub(super) fn run(draft: &mut Draft) {
     draft.each_expression(spell_out);
     let discarded = draft.discarded();
     let (elements, targets) = element_accesses(&draft.tree);
-    draft.each_expression(|draft, id| match draft.tree[id].kind {
+    draft.operands_first(|draft, id| match draft.tree[id].kind {
         ExprKind::Member { .. } if !elements.contains(&id) && !targets.contains(&id) => read(draft, id),
         ExprKind::Assign {
             op: None,

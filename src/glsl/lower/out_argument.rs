@@ -12,7 +12,7 @@ use super::walk;
 
 pub(super) fn run(draft: &mut Draft) {
     let discarded = draft.discarded();
-    draft.each_expression(|draft, id| {
+    draft.operands_first(|draft, id| {
         if let ExprKind::Call { function, arguments } = &draft.tree[id].kind {
             let directions = draft.tree[*function]
                 .parameters

@@ -24,10 +24,10 @@ macro_rules! passes {
 }
 
 passes! {
-    /// Built-in variables and uniforms that are not there.
-    Surroundings = super::surroundings::run,
     /// Sampler parameters.
     Samplers = super::sampler::run,
+    /// Built-in variables and uniforms that are not there.
+    Surroundings = super::surroundings::run,
     /// `&&` and `||` with an effect on the right.
     ShortCircuit = super::short_circuit::run,
     /// `modf`, `matrixCompMult`, `outerProduct`, `inverse`.

@@ -5,7 +5,9 @@
 
 use std::collections::HashSet;
 
-use super::super::tree::{Arm, Block, ExprId, ExprKind, Place, Statement, StatementKind, Tree, VariableId};
+use super::super::tree::{
+    Arm, Block, ExprId, ExprKind, Place, Statement, StatementKind, Tree, VariableId, VariableKind,
+};
 use super::draft::Draft;
 use super::walk;
 
@@ -127,7 +129,6 @@ fn strict(tree: &Tree, root: ExprId) -> Vec<ExprId> {
 fn minds(tree: &Tree, id: ExprId, effect: ExprId) -> bool {
     match tree[id].kind {
         ExprKind::Variable(variable) => {
-            use super::super::tree::VariableKind;
             let foreign = !matches!(
                 tree[variable].kind,
                 VariableKind::Local | VariableKind::Parameter(_)
@@ -136,12 +137,21 @@ fn minds(tree: &Tree, id: ExprId, effect: ExprId) -> bool {
             !fixed && (foreign || walk::mentions(tree, effect, variable))
         }
         ExprKind::Assign { .. } | ExprKind::Step { .. } | ExprKind::Call { .. } => true,
+        ExprKind::Conditional { yes, no, .. } => {
+            let branches = [yes, no].into_iter().flat_map(|branch| tree.postorder(branch));
+            let leaves = branches.filter(|&id| !matches!(tree[id].kind, ExprKind::Conditional { .. }));
+            leaves.into_iter().any(|id| minds(tree, id, effect))
+        }
         _ => false,
     }
 }
 
 /// Declares the temporaries of those statements, in the block that they stand in.
 fn declare(draft: &mut Draft, statements: Block, declared: &mut HashSet<VariableId>, out: &mut Block) {
+    if draft.temporaries.is_empty() {
+        out.extend(statements);
+        return;
+    }
     let mut rest = Block::new();
     let mut late = HashSet::new();
     for mut statement in statements {

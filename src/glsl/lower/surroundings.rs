@@ -11,30 +11,30 @@ use super::{constant, draft::Draft, zero};
 
 pub(super) fn run(draft: &mut Draft) {
     let padded = channel_time(draft);
-    draft.each_expression(|draft, id| {
-        let kind = draft.tree[id].kind.clone();
-        match kind {
-            ExprKind::Index { base, index } if is_channel_time(draft, base, padded) => {
-                let mut build = draft.build_at(id);
-                let array = build.variable(padded);
-                let vector = build.index(array, index);
-                if let Some(components) = Swizzle::new(&[0]) {
-                    build.tree[id].kind = ExprKind::Swizzle { vector, components };
-                }
+    draft.each_expression(|draft, id| match draft.tree[id].kind {
+        ExprKind::Index { base, index } if is_channel_time(draft, base, padded) => {
+            let mut build = draft.build_at(id);
+            let array = build.variable(padded);
+            let vector = build.index(array, index);
+            if let Some(components) = Swizzle::new(&[0]) {
+                build.tree[id].kind = ExprKind::Swizzle { vector, components };
             }
-            ExprKind::Variable(variable) => self::variable(draft, id, variable),
-            ExprKind::BuiltIn { function, arguments } if function.is_texture() => {
-                let unfed = |id: ExprId| match draft.tree[id].kind {
-                    ExprKind::Variable(variable) => draft.tree[variable].kind == VariableKind::Uniform,
-                    _ => false,
-                };
-                if arguments.first().is_some_and(|&sampler| unfed(sampler)) {
-                    let node = black(draft, id, function);
-                    draft.tree[id] = draft.tree[node].clone();
-                }
-            }
-            _ => {}
         }
+        ExprKind::Variable(variable) => self::variable(draft, id, variable),
+        ExprKind::BuiltIn {
+            function,
+            ref arguments,
+        } if function.is_texture() => {
+            let unfed = |id: ExprId| match draft.tree[id].kind {
+                ExprKind::Variable(variable) => draft.tree[variable].kind == VariableKind::Uniform,
+                _ => false,
+            };
+            if arguments.first().is_some_and(|&sampler| unfed(sampler)) {
+                let node = black(draft, id, function);
+                draft.tree[id] = draft.tree[node].clone();
+            }
+        }
+        _ => {}
     });
     // Whole, it is an array of floats again; one element of it was told above.
     draft.each_expression(|draft, id| {

@@ -15,7 +15,7 @@ pub(super) fn run(draft: &mut Draft) {
     draft.each_expression(join);
     draft.each_expression(index_column);
     let discarded = draft.discarded();
-    draft.each_expression(|draft, id| work_on_copy(draft, id, &discarded));
+    draft.operands_first(|draft, id| work_on_copy(draft, id, &discarded));
 }
 
 /// `v.zyx.xy` is `v.zy`, and `v.zyx[0]` is `v.z`.

@@ -602,3 +602,35 @@ fn long_chains() {
     );
     accepted(&checked(&text, false));
 }
+
+#[test]
+fn a_sequence_stays_where_something_before_it_minds() {
+    let f = "float f(inout float x) { x += 1.0; return x; }";
+    assert_eq!(
+        lines(
+            f,
+            "vec2 q = p; float g = 1.0; o.x = (p.x > 0.0 ? q.x : g) + f(q.x);"
+        ),
+        "vec2 q = p;\nfloat g = 1.0;\nfloat toyproof_argument;\nfloat toyproof_result;\n\
+         o.x = (p.x > 0.0 ? q.x : g) + (toyproof_argument = q.x, toyproof_result = f(toyproof_argument), \
+         q.x = toyproof_argument, toyproof_result);"
+    );
+}
+
+#[test]
+fn words_of_the_lowered_text_lead_back_to_the_author() {
+    let text = main_image(
+        "float twice(float x) { return 2.0 * x; }",
+        "o.x = p.x > 0.5 && twice(p.y) > 0.25 ? 1.0 : 0.0;",
+    );
+    let mut files = Files::default();
+    let file = files.add(File::new("shader", text));
+    let checked = check(&files, file, &super::super::Options::default()).expect("valid");
+    let lowered = super::lower(&checked);
+    for words in ["twice(p.y)", "0.25", "2.0 * x"] {
+        let at = position(lowered.text(), words);
+        let span = lowered.origin(at..at + words.len()).expect("the author's");
+        assert_eq!(files.text(span), words);
+    }
+    assert_eq!(lowered.origin(0..10), None);
+}

@@ -111,11 +111,23 @@ pub(crate) fn roots(tree: &Tree, block: &Block) -> Vec<ExprId> {
 /// Whether running an expression does more than give a value, or may take long: an assignment or a call of an
 /// author's function stands in it.
 pub(crate) fn acts(tree: &Tree, root: ExprId) -> bool {
-    tree.postorder(root).into_iter().any(|id| match tree[id].kind {
+    any(tree, root, |kind| match kind {
         ExprKind::Assign { .. } | ExprKind::Step { .. } | ExprKind::Call { .. } => true,
         ExprKind::BuiltIn { function, .. } => function.out_parameter().is_some(),
         _ => false,
     })
+}
+
+/// Whether one is found at or below an expression.
+pub(crate) fn any(tree: &Tree, root: ExprId, mut is_one: impl FnMut(&ExprKind) -> bool) -> bool {
+    let mut pending = vec![root];
+    while let Some(id) = pending.pop() {
+        if is_one(&tree[id].kind) {
+            return true;
+        }
+        tree[id].kind.for_each_operand(|operand| pending.push(operand));
+    }
+    false
 }
 
 /// Whether control can leave a loop's body by a `continue` of that loop.
@@ -145,7 +157,9 @@ pub(crate) fn values(labels: &[Label]) -> impl Iterator<Item = ExprId> + '_ {
 
 /// Whether a variable stands in an expression.
 pub(crate) fn mentions(tree: &Tree, root: ExprId, variable: VariableId) -> bool {
-    tree.postorder(root)
-        .into_iter()
-        .any(|id| matches!(tree[id].kind, ExprKind::Variable(v) if v == variable))
+    any(
+        tree,
+        root,
+        |kind| matches!(kind, ExprKind::Variable(v) if *v == variable),
+    )
 }

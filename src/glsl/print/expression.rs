@@ -1,6 +1,8 @@
 //! Expressions: as few parentheses as keep their meaning. A stack of what is left to print keeps chains of any length
 //! off the machine's stack.
 
+use std::borrow::Cow;
+
 use super::super::tree::{
     BinaryOp, ExprId, ExprKind, Literal, Place, Type, UnaryOp, Value, VariableId, VariableKind,
 };
@@ -17,13 +19,13 @@ mod level {
     pub(super) const POSTFIX: u8 = 15;
 }
 
-enum Todo {
+enum Todo<'a> {
     /// An expression that must hold together as tightly as that.
     Print(ExprId, u8),
-    Word(String, Place),
+    Word(Cow<'a, str>, Place),
 }
 
-impl Printer<'_> {
+impl<'a> Printer<'a> {
     /// An expression that stands alone.
     pub(super) fn expression(&mut self, id: ExprId) {
         self.operand(id, level::SEQUENCE);
@@ -45,7 +47,7 @@ impl Printer<'_> {
                     let level = self.parts(id, &mut parts);
                     if level < at_least {
                         self.word("(", at);
-                        parts.push(Todo::Word(")".to_owned(), at));
+                        parts.push(Todo::Word(")".into(), at));
                     }
                     todo.extend(parts.into_iter().rev());
                 }
@@ -54,10 +56,10 @@ impl Printer<'_> {
     }
 
     /// What an expression is made of, from left to right, and how tightly it holds together.
-    fn parts(&self, id: ExprId, parts: &mut Vec<Todo>) -> u8 {
+    fn parts(&self, id: ExprId, parts: &mut Vec<Todo<'a>>) -> u8 {
         let tree = &self.draft.tree;
         let at = tree[id].at;
-        let word = |text: &str| Todo::Word(text.to_owned(), at);
+        let word = |text: &'a str| Todo::Word(text.into(), at);
         match tree[id].kind {
             ExprKind::Unary {
                 op: UnaryOp::Plus,
@@ -73,12 +75,12 @@ impl Printer<'_> {
             }
             ExprKind::Binary { op, left, right } => {
                 let level = op.precedence() + level::BINARY;
-                let symbol = word(&format!(" {} ", op.symbol()));
+                let symbol = Todo::Word(format!(" {} ", op.symbol()).into(), at);
                 parts.extend([Todo::Print(left, level), symbol, Todo::Print(right, level + 1)]);
                 level
             }
             ExprKind::Assign { op, target, value } => {
-                let symbol = word(&format!(" {}= ", op.map_or("", BinaryOp::symbol)));
+                let symbol = Todo::Word(format!(" {}= ", op.map_or("", BinaryOp::symbol)).into(), at);
                 parts.extend([
                     Todo::Print(target, level::UNARY),
                     symbol,
@@ -119,23 +121,27 @@ impl Printer<'_> {
     }
 
     /// The same of an expression that no operator on its left takes apart.
-    fn postfix_parts(&self, id: ExprId, parts: &mut Vec<Todo>) {
+    fn postfix_parts(&self, id: ExprId, parts: &mut Vec<Todo<'a>>) {
         let tree = &self.draft.tree;
         let at = tree[id].at;
-        let word = |text: &str| Todo::Word(text.to_owned(), at);
+        let word = |text: &'a str| Todo::Word(text.into(), at);
         match &tree[id].kind {
-            ExprKind::Literal(literal) => parts.push(word(&spell(literal))),
-            ExprKind::Variable(variable) => parts.push(word(&self.lookup(*variable))),
-            ExprKind::Call { function, arguments } => call(&self.function(*function), arguments, at, parts),
-            ExprKind::BuiltIn { function, arguments } => call(function.name(), arguments, at, parts),
-            ExprKind::Construct { arguments, .. } => call(&self.type_name(tree[id].ty), arguments, at, parts),
+            ExprKind::Literal(literal) => parts.push(Todo::Word(spell(literal), at)),
+            ExprKind::Variable(variable) => parts.push(Todo::Word(self.lookup(*variable), at)),
+            ExprKind::Call { function, arguments } => {
+                call(self.function(*function).into(), arguments, at, parts);
+            }
+            ExprKind::BuiltIn { function, arguments } => call(function.name().into(), arguments, at, parts),
+            ExprKind::Construct { arguments, .. } => {
+                call(self.type_name(tree[id].ty).into(), arguments, at, parts);
+            }
             &ExprKind::Step { op, target, .. } => {
                 parts.extend([Todo::Print(target, level::POSTFIX), word(op.symbol())]);
             }
             &ExprKind::Swizzle { vector, components } => {
                 parts.extend([
                     Todo::Print(vector, level::POSTFIX),
-                    word(&format!(".{}", components.name())),
+                    Todo::Word(format!(".{}", components.name()).into(), at),
                 ]);
             }
             &ExprKind::Member { structure, member } => {
@@ -143,7 +149,7 @@ impl Printer<'_> {
                     Type::Struct(id) => self.names.members.get(&(id, member)).map_or("", String::as_str),
                     _ => "",
                 };
-                parts.extend([Todo::Print(structure, level::POSTFIX), word(&format!(".{name}"))]);
+                parts.extend([Todo::Print(structure, level::POSTFIX), word("."), word(name)]);
             }
             &ExprKind::Index { base, index } => {
                 let base = Todo::Print(base, level::POSTFIX);
@@ -154,7 +160,7 @@ impl Printer<'_> {
                     Type::Array(array) => tree.array(array).size,
                     _ => 0,
                 };
-                parts.push(word(&size.to_string()));
+                parts.push(Todo::Word(size.to_string().into(), at));
             }
             // The operators are told apart before.
             _ => {}
@@ -162,35 +168,35 @@ impl Printer<'_> {
     }
 
     /// A variable where it is read; a channel is a texture with its sampler.
-    fn lookup(&self, id: VariableId) -> String {
+    fn lookup(&self, id: VariableId) -> Cow<'a, str> {
         let name = self.variable(id);
         match (self.draft.tree[id].ty, self.draft.tree[id].kind) {
             (Type::Sampler(sampler), VariableKind::Input(_)) => {
-                format!("{}({name}, {name}_sampler)", sampler.name())
+                format!("{}({name}, {name}_sampler)", sampler.name()).into()
             }
-            _ => name,
+            _ => name.into(),
         }
     }
 }
 
 /// A literal as written, if naga reads it so; else its value.
-fn spell(literal: &Literal) -> String {
+fn spell(literal: &Literal) -> Cow<'_, str> {
     match literal.value {
         // naga reads integers of 64 bits and keeps 32.
-        Value::Int(value) if literal.text.len() > 11 => value.to_string(),
-        Value::Uint(value) if literal.text.len() > 12 => format!("{value}u"),
-        _ => literal.text.to_string(),
+        Value::Int(value) if literal.text.len() > 11 => value.to_string().into(),
+        Value::Uint(value) if literal.text.len() > 12 => format!("{value}u").into(),
+        _ => (&*literal.text).into(),
     }
 }
 
 /// `name(a, b)`
-fn call(name: &str, arguments: &[ExprId], at: Place, parts: &mut Vec<Todo>) {
-    parts.push(Todo::Word(format!("{name}("), at));
+fn call<'a>(name: Cow<'a, str>, arguments: &[ExprId], at: Place, parts: &mut Vec<Todo<'a>>) {
+    parts.extend([Todo::Word(name, at), Todo::Word("(".into(), at)]);
     for (position, &argument) in arguments.iter().enumerate() {
         if position > 0 {
-            parts.push(Todo::Word(", ".to_owned(), at));
+            parts.push(Todo::Word(", ".into(), at));
         }
         parts.push(Todo::Print(argument, level::ASSIGN));
     }
-    parts.push(Todo::Word(")".to_owned(), at));
+    parts.push(Todo::Word(")".into(), at));
 }

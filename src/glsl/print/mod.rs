@@ -20,7 +20,7 @@ use super::lower::Draft;
 pub(super) fn print(draft: &Draft) -> Lowered {
     let order = order::Order::of(draft);
     let names = names::Names::of(draft, &order);
-    let mut printer = printer::Printer::new(draft, names);
+    let mut printer = printer::Printer::new(draft, &names);
     printer.prelude(&order);
     for &item in &order.items {
         printer.item(item);

@@ -6,7 +6,7 @@
 use std::collections::{HashMap, HashSet};
 
 use super::super::lower::{Draft, walk};
-use super::super::tree::{BuiltInVariable, ExprKind, FunctionId, Item, StructId, VariableId};
+use super::super::tree::{BuiltInVariable, ExprKind, FunctionId, Item, StructId, Type, VariableId};
 use super::order::Order;
 use super::word;
 
@@ -108,22 +108,26 @@ impl Names {
         }
     }
 
-    /// Overloads keep one name.
+    /// Overloads keep one name, unless lowering took away what told them apart.
     fn name_functions(&mut self, draft: &Draft, order: &Order, taken: &HashSet<String>) {
-        let mut given: HashMap<&str, String> = HashMap::new();
-        let mut used = taken.clone();
+        let mut defined: HashSet<(String, Vec<Type>)> = HashSet::new();
         for item in &order.items {
             let Item::Function(id) = *item else {
                 continue;
             };
-            let own = draft.tree[id].name.as_str();
-            let name = given.entry(own).or_insert_with(|| {
-                free(own, |name| {
-                    word::is_reserved(name) || word::is_function(name) || used.contains(name)
-                })
+            let types: Vec<Type> = draft.tree[id]
+                .parameters
+                .iter()
+                .map(|&id| draft.tree[id].ty)
+                .collect();
+            let name = free(&draft.tree[id].name, |name| {
+                word::is_reserved(name)
+                    || word::is_function(name)
+                    || taken.contains(name)
+                    || defined.contains(&(name.to_owned(), types.clone()))
             });
-            used.insert(name.clone());
-            self.functions.insert(id, name.clone());
+            defined.insert((name.clone(), types));
+            self.functions.insert(id, name);
         }
     }
 

@@ -9,13 +9,13 @@ use crate::source::Span;
 /// Prints a draft.
 pub(super) struct Printer<'a> {
     pub(super) draft: &'a Draft,
-    pub(super) names: Names,
+    pub(super) names: &'a Names,
     pub(super) out: Lowered,
     indent: usize,
 }
 
 impl<'a> Printer<'a> {
-    pub(super) fn new(draft: &'a Draft, names: Names) -> Self {
+    pub(super) fn new(draft: &'a Draft, names: &'a Names) -> Self {
         Self {
             draft,
             names,
@@ -58,20 +58,12 @@ impl<'a> Printer<'a> {
         self.indent -= 1;
     }
 
-    pub(super) fn variable(&self, id: VariableId) -> String {
-        self.names
-            .variables
-            .get(&id)
-            .cloned()
-            .unwrap_or_else(|| self.draft.tree[id].name.clone())
+    pub(super) fn variable(&self, id: VariableId) -> &'a str {
+        self.names.variables.get(&id).unwrap_or(&self.draft.tree[id].name)
     }
 
-    pub(super) fn function(&self, id: FunctionId) -> String {
-        self.names
-            .functions
-            .get(&id)
-            .cloned()
-            .unwrap_or_else(|| self.draft.tree[id].name.clone())
+    pub(super) fn function(&self, id: FunctionId) -> &'a str {
+        self.names.functions.get(&id).unwrap_or(&self.draft.tree[id].name)
     }
 
     /// The type as naga reads it: `float[3][2]` for two arrays of three, since naga applies sizes from left to right.

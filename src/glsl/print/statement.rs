@@ -205,7 +205,7 @@ impl Printer<'_> {
                 StatementKind::Declare(variable) => {
                     let name = self.variable(variable);
                     self.plain(", ");
-                    self.spanned(&name, self.draft.tree[variable].at.map(|at| at.span));
+                    self.spanned(name, self.draft.tree[variable].at.map(|at| at.span));
                     if let Some(value) = self.draft.tree[variable].initialiser {
                         self.plain(" = ");
                         self.argument(value);
