@@ -146,6 +146,30 @@ fn functions_that_naga_lacks() {
 }
 
 #[test]
+fn inverse_for_every_target() {
+    let checked = checked(
+        &main_image("", "mat4 m = inverse(mat4(p, p, p, p, p, p, p, p)); o = m[0];"),
+        false,
+    );
+    let metal = |passes| {
+        let lowered = lower_with(&checked, passes);
+        let options = Options::from(naga::ShaderStage::Fragment);
+        let module = Frontend::default()
+            .parse(&options, lowered.text())
+            .expect("naga parses it");
+        let info = Validator::new(ValidationFlags::all(), Capabilities::default())
+            .validate(&module)
+            .expect("valid");
+        let (options, pipeline) = (
+            naga::back::msl::Options::default(),
+            naga::back::msl::PipelineOptions::default(),
+        );
+        naga::back::msl::write_string(&module, &info, &options, &pipeline).is_ok()
+    };
+    assert!(!metal(Passes::all().without(Pass::Missing)) && metal(Passes::all()));
+}
+
+#[test]
 fn geometric_functions_of_floats() {
     for call in [
         "dot(p.x, p.y)",
@@ -550,7 +574,7 @@ float g(float x);
 float f(const in float a, float) { return a + g(a); }
 float g(float x) { return x; }
 float buffer(float shared) { return shared; }";
-    let body = "for (int i = 0; float(i) < 2.0; i++) o.x += 1.0;
+    let body = "struct Local { float x; } local; o.y = local.x; for (int i = 0; float(i) < 2.0; i++) o.x += 1.0;
 float a[] = float[](1.0, 2.0); float b[N], c; ray ray; ray.x = f(1.0, 2.0); c = ray.x; b[0] = c;
 float d[2][3]; d[1][2] = 1.0; float buffer = buffer(d[1][2]); lowp float e = - -buffer; o = vec4(a[1], b[0], e, d[int(p.x)][int(p.y)]);";
     let lowered = accepted(&checked(&main_image(before, body), true));
