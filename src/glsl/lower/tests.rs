@@ -617,6 +617,24 @@ fn members_of_structures() {
 }
 
 #[test]
+fn chains_of_else_if() {
+    let chain: Vec<_> = (0..200)
+        .map(|i| format!("if (p.x < {i}.0) {{ o.x = f({i}); }}"))
+        .collect();
+    let text = main_image(
+        "float f(int i) { return float(i); }",
+        &(chain.join(" else ") + " else o.y = 1.0;"),
+    );
+    let deepest = |wgsl: &str| {
+        wgsl.lines()
+            .map(|line| line.len() - line.trim_start().len())
+            .max()
+    };
+    let lowered = corrects(Pass::ElseIfs, &text, |wgsl| deepest(wgsl) > Some(4 * 127));
+    assert_eq!(lowered.matches("if (toyproof_open)").count(), 7);
+}
+
+#[test]
 fn long_chains() {
     let sum = "p.x + ".repeat(5_000);
     let both = "f(p.x) && ".repeat(2_000);
