@@ -87,6 +87,17 @@ codes! {
     UnknownExtension "W0002" "An `#extension` that does not exist",
 }
 
+/// How many errors of one file are told, and how many warnings; more would help nobody.
+pub(crate) const MAX_TOLD: usize = 50;
+
+/// Adds a diagnostic unless enough of its severity were told.
+pub(crate) fn tell(told: &mut Vec<Diagnostic>, diagnostic: Diagnostic) {
+    let alike = told.iter().filter(|other| other.severity == diagnostic.severity);
+    if alike.count() < MAX_TOLD {
+        told.push(diagnostic);
+    }
+}
+
 impl Code {
     /// An error of this kind, told of that place: where the author used it, and, for what comes out of a macro, where it is spelled.
     pub fn at(self, place: Place, message: impl Into<String>) -> Diagnostic {

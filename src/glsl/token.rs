@@ -28,7 +28,7 @@ pub(crate) enum TokenKind {
     End,
 }
 
-/// Names a text that [`Words`] holds.
+/// Names a text that [`Words`](super::words::Words) holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct Symbol(pub(super) u32);
 

@@ -67,7 +67,11 @@ impl ValidModule {
     }
 
     fn validate(module: Module) -> Result<Self, naga::WithSpan<naga::valid::ValidationError>> {
-        let info = Validator::new(ValidationFlags::all(), Capabilities::default()).validate(&module)?;
+        let info = Validator::new(
+            ValidationFlags::all(),
+            Capabilities::default() | Capabilities::SHADER_FLOAT16_IN_FLOAT32,
+        )
+        .validate(&module)?;
         Ok(Self { module, info })
     }
 

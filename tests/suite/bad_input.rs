@@ -262,7 +262,7 @@ fn endless_and_overlong_loops() {
     ] {
         let run = check(
             &format!("{MAIN} {{ {body} }}"),
-            &["--timeout", "3s", "--size", "64x36"],
+            &["--timeout", "8s", "--size", "64x36"],
         );
         expect(&run, 1, &["timeout      s.glsl"]);
     }

@@ -23,14 +23,8 @@ impl Checker<'_> {
             Type::Error => self.broken(at),
             ty => match self.numeric_constructor(ty, &arguments) {
                 Ok(constructor) => self.constructed(constructor, ty, arguments, at),
-                Err(message) => {
-                    let told = self.types(&arguments).contains(&Type::Error);
-                    if told {
-                        self.broken(at)
-                    } else {
-                        self.refuse(Code::BadConstructor, at, message)
-                    }
-                }
+                Err(_) if self.types(&arguments).contains(&Type::Error) => self.broken(at),
+                Err(message) => self.refuse(Code::BadConstructor, at, message),
             },
         }
     }

@@ -2,7 +2,7 @@
 
 use super::scope::Entity;
 use super::{Checker, Size, Specifier};
-use crate::glsl::codes::Code;
+use crate::glsl::codes::{Code, tell};
 use crate::glsl::token::Symbol;
 use crate::glsl::tree::{
     BuiltIn, BuiltInVariable, ExprId, Place, Scalar, Type, Variable, VariableId, VariableKind,
@@ -231,7 +231,7 @@ impl Checker<'_> {
             );
         } else if text.contains("__") {
             let message = format!("names with two underscores such as `{text}` belong to GLSL");
-            self.warnings.push(Code::ReservedName.at(at, message));
+            tell(&mut self.warnings, Code::ReservedName.at(at, message));
         }
     }
 

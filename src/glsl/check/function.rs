@@ -6,7 +6,7 @@ use crate::diagnostic::Diagnostic;
 use crate::glsl::codes::Code;
 use crate::glsl::token::Symbol;
 use crate::glsl::tree::{
-    Block, BuiltIn, Direction, Function, FunctionId, Item, Place, Type, Variable, VariableId, VariableKind,
+    Block, Direction, Function, FunctionId, Item, Place, Type, Variable, VariableId, VariableKind,
 };
 
 /// A parameter as it stands in the text.
@@ -207,16 +207,17 @@ impl Checker<'_> {
         self.main_image()
     }
 
-    /// The first function that is reached from itself, and a call on that way.
+    /// A function that is reached from itself, and the last call on that way.
     fn find_recursion(&self, calls: &[(FunctionId, FunctionId, Place)]) -> Option<(FunctionId, Place)> {
-        let mut callees = vec![Vec::new(); self.tree.functions.len()];
-        let mut callers = vec![0_usize; self.tree.functions.len()];
+        let functions = self.tree.functions.len();
+        let mut callees = vec![Vec::new(); functions];
+        let mut callers = vec![0_usize; functions];
         for &(caller, callee, _) in calls {
             callees[caller.index()].push(callee.index());
             callers[callee.index()] += 1;
         }
-        // Take away whoever nobody calls, again and again: what is left over is called in circles.
-        let mut free: Vec<_> = (0..callers.len())
+        // Take away whoever nobody calls, again and again. Each that is left has a caller that is left.
+        let mut free: Vec<_> = (0..functions)
             .filter(|&function| callers[function] == 0)
             .collect();
         while let Some(function) = free.pop() {
@@ -227,26 +228,22 @@ impl Checker<'_> {
                 }
             }
         }
-        // Likewise from the other end: those left must also lead back.
-        let left = |function: FunctionId| callers[function.index()] > 0;
-        let circle = |start: FunctionId| {
-            let mut seen = vec![false; callees.len()];
-            let mut pending = callees[start.index()].clone();
-            while let Some(function) = pending.pop() {
-                if function == start.index() {
-                    return true;
-                }
-                if !std::mem::replace(&mut seen[function], true) {
-                    pending.extend(&callees[function]);
-                }
+        // So going from caller to caller leads into a circle: whoever is met twice is in it.
+        let mut call_of = vec![None; functions];
+        for &(caller, callee, at) in calls {
+            if callers[caller.index()] > 0 {
+                call_of[callee.index()] = Some((caller, at));
             }
-            false
-        };
-        calls
-            .iter()
-            .filter(|(caller, callee, _)| left(*caller) && left(*callee))
-            .find(|(caller, _, _)| circle(*caller))
-            .map(|&(caller, _, at)| (caller, at))
+        }
+        let mut met = vec![false; functions];
+        let mut function = self.tree.functions.ids().find(|id| callers[id.index()] > 0)?;
+        loop {
+            let (caller, at) = call_of[function.index()]?;
+            if std::mem::replace(&mut met[function.index()], true) {
+                return Some((function, at));
+            }
+            function = caller;
+        }
     }
 
     /// `void mainImage(out vec4, in vec2)`, as the call that `ShaderToy` makes asks for it.
@@ -284,13 +281,5 @@ impl Checker<'_> {
         let calls = "ShaderToy calls `void mainImage(out vec4 fragColor, in vec2 fragCoord)` for each pixel";
         self.report(diagnostic.note(calls));
         None
-    }
-}
-
-impl BuiltIn {
-    /// The built-in function of that name.
-    #[must_use]
-    pub fn named(name: &str) -> Option<Self> {
-        super::signature::named(name)
     }
 }

@@ -25,15 +25,12 @@ pub(crate) use self::channel::Channels;
 use self::extent::Extent;
 use self::function::Context;
 use self::scope::Scopes;
-use super::codes::Code;
+use super::codes::{Code, MAX_TOLD, tell};
 use super::options::Options;
 use super::token::Symbol;
 use super::tree::{Expr, ExprId, ExprKind, FunctionId, Literal, Place, Scalar, Tree, Type, Value};
 use super::words::Words;
 use crate::diagnostic::Diagnostic;
-
-/// How many errors of one file are told.
-const MAX_ERRORS: usize = 50;
 
 /// Builds the tree and keeps the rules.
 pub(crate) struct Checker<'a> {
@@ -72,13 +69,11 @@ impl<'a> Checker<'a> {
 
     /// Whether so many errors were told that more would help nobody.
     pub(crate) fn is_full(&self) -> bool {
-        self.errors.len() >= MAX_ERRORS
+        self.errors.len() >= MAX_TOLD
     }
 
     pub(crate) fn report(&mut self, diagnostic: Diagnostic) {
-        if !self.is_full() {
-            self.errors.push(diagnostic);
-        }
+        tell(&mut self.errors, diagnostic);
     }
 
     fn error(&mut self, code: Code, at: Place, message: impl Into<String>) {

@@ -1,7 +1,8 @@
 //! Built-in functions that naga's GLSL front end lacks, or that some of its targets do: `modf`, `matrixCompMult`,
 //! `outerProduct`, `inverse`.
 //!
-//! `modf` and `matrixCompMult` are unknown to it (gfx-rs/wgpu #4379); WGSL has no `outerProduct`, HLSL and Metal no `inverse`.
+//! `modf` (gfx-rs/naga #2526) and `matrixCompMult` are unknown to it; naga has no WGSL for `outerProduct`, and no HLSL or
+//! Metal for it and for `inverse`.
 
 use super::super::tree::{BuiltIn, ExprKind, Type};
 use super::draft::Draft;

@@ -11,6 +11,7 @@ mod dead_code;
 mod depth;
 mod do_while;
 mod draft;
+mod else_if;
 mod equality;
 mod geometric;
 mod global;

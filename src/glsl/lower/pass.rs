@@ -70,6 +70,8 @@ passes! {
     DoWhile = super::do_while::run,
     /// Calls of `void` functions in the heads of loops.
     LoopVoids = super::loop_void::run,
+    /// Chains of hundreds of `else if`.
+    ElseIfs = super::else_if::run,
     /// Statements that nothing runs.
     DeadCode = super::dead_code::run,
     /// Fall-through in `switch`.

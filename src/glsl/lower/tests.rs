@@ -146,6 +146,30 @@ fn functions_that_naga_lacks() {
 }
 
 #[test]
+fn inverse_for_every_target() {
+    let checked = checked(
+        &main_image("", "mat4 m = inverse(mat4(p, p, p, p, p, p, p, p)); o = m[0];"),
+        false,
+    );
+    let metal = |passes| {
+        let lowered = lower_with(&checked, passes);
+        let options = Options::from(naga::ShaderStage::Fragment);
+        let module = Frontend::default()
+            .parse(&options, lowered.text())
+            .expect("naga parses it");
+        let info = Validator::new(ValidationFlags::all(), Capabilities::default())
+            .validate(&module)
+            .expect("valid");
+        let (options, pipeline) = (
+            naga::back::msl::Options::default(),
+            naga::back::msl::PipelineOptions::default(),
+        );
+        naga::back::msl::write_string(&module, &info, &options, &pipeline).is_ok()
+    };
+    assert!(!metal(Passes::all().without(Pass::Missing)) && metal(Passes::all()));
+}
+
+#[test]
 fn geometric_functions_of_floats() {
     for call in [
         "dot(p.x, p.y)",
@@ -550,7 +574,7 @@ float g(float x);
 float f(const in float a, float) { return a + g(a); }
 float g(float x) { return x; }
 float buffer(float shared) { return shared; }";
-    let body = "for (int i = 0; float(i) < 2.0; i++) o.x += 1.0;
+    let body = "struct Local { float x; } local; o.y = local.x; for (int i = 0; float(i) < 2.0; i++) o.x += 1.0;
 float a[] = float[](1.0, 2.0); float b[N], c; ray ray; ray.x = f(1.0, 2.0); c = ray.x; b[0] = c;
 float d[2][3]; d[1][2] = 1.0; float buffer = buffer(d[1][2]); lowp float e = - -buffer; o = vec4(a[1], b[0], e, d[int(p.x)][int(p.y)]);";
     let lowered = accepted(&checked(&main_image(before, body), true));
@@ -590,6 +614,24 @@ fn members_of_structures() {
         &main_image(arrays, "for (int i = 0; i < 2; i++) { S s; o.x += s.a[i]; }"),
         false,
     ));
+}
+
+#[test]
+fn chains_of_else_if() {
+    let chain: Vec<_> = (0..200)
+        .map(|i| format!("if (p.x < {i}.0) {{ o.x = f({i}); }}"))
+        .collect();
+    let text = main_image(
+        "float f(int i) { return float(i); }",
+        &(chain.join(" else ") + " else o.y = 1.0;"),
+    );
+    let deepest = |wgsl: &str| {
+        wgsl.lines()
+            .map(|line| line.len() - line.trim_start().len())
+            .max()
+    };
+    let lowered = corrects(Pass::ElseIfs, &text, |wgsl| deepest(wgsl) > Some(4 * 127));
+    assert_eq!(lowered.matches("if (toyproof_open)").count(), 7);
 }
 
 #[test]
@@ -633,4 +675,51 @@ fn words_of_the_lowered_text_lead_back_to_the_author() {
         assert_eq!(files.text(span), words);
     }
     assert_eq!(lowered.origin(0..10), None);
+}
+
+/// Most of what passes rewrite, at once and within each other.
+const EVERYTHING: &str = "
+struct In { mat2 m; float t[2]; };
+struct S { In i; vec3 v; };
+float f(inout float x, out float y, vec2 z) { y = x; x += z.x; return y; }
+float g(sampler2D s, vec2 p, inout S a) { a.i.t[int(p.x)] += 1.0 > p.y ? 1.0 : 2.0; return texture(s, p).x; }
+void test(S a, S b, int i, float x[3]) {
+    float y, z = 1. / 0.;
+    mat3 m = mat3(1.);
+    m[i++].zy[i] = f(x[i++], a.v.x, vec2(1.)) + f(a.i.t[i], x[i--], vec2(f(y, z, vec2(i))));
+    if (a == b && f(y, x[0], vec2(z)) > 0. || any(isnan(a.v))) a.i.m *= mat2(vec4(y));
+    else if (f(m[1].x, y, vec2(1.)) < g(iChannel1, vec2(i, y), b)) b.i = In(mat2(1.), float[](y, y++));
+    for (int k = 0, n = i; f(y, y, vec2(1.)) < 3.; k++, f(x[k], z, vec2(1.))) { S c; if (k > 3) continue; b = c; }
+    switch (i++) { case 1: float q = y; case 2: q = z; default: { i = -i % 3; break; } case 4: return; }
+    do { if (modf(y, x[i]) > 0.) continue; } while ((y -= 1., f(y, z, vec2(1.))) > 0.);
+}
+";
+
+#[test]
+fn every_lowered_expression_has_one_parent() {
+    use super::super::tree::{ExprKind, Type};
+    let body = "S a, b; float x[3]; test(a, b, int(p.x), x); o.x = g(iChannel0, p, a) + g(iChannel1, p, b);";
+    let checked = checked(&main_image(EVERYTHING, body), false);
+    accepted(&checked);
+    let mut draft = super::Draft::new(checked.tree, checked.main_image);
+    Passes::all().run(&mut draft);
+    let mut seen = std::collections::HashSet::new();
+    for (_, function) in draft.tree.functions.iter() {
+        let roots = function
+            .body
+            .iter()
+            .flat_map(|body| super::walk::roots(&draft.tree, body));
+        for id in roots.flat_map(|root| draft.tree.postorder(root)) {
+            assert!(seen.insert(id), "{:?} twice", draft.tree[id]);
+            assert_ne!(draft.tree[id].ty, Type::Error);
+            if let ExprKind::Assign {
+                op: None,
+                target,
+                value,
+            } = draft.tree[id].kind
+            {
+                assert_eq!(draft.tree[target].ty, draft.tree[value].ty);
+            }
+        }
+    }
 }

@@ -79,7 +79,7 @@ impl Preprocessor<'_> {
         }
         if text.contains("__") {
             let message = format!("names with two underscores such as `{text}` belong to GLSL");
-            self.diagnostics.push(Code::ReservedName.at(*at, message));
+            self.report(Code::ReservedName.at(*at, message));
         }
         Ok((*name, *at, rest))
     }

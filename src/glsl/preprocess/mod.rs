@@ -17,7 +17,7 @@ use self::condition::Group;
 use self::expand::Stream;
 use self::lexer::{Lexer, PpToken};
 use self::macros::Macro;
-use super::codes::Code;
+use super::codes::{Code, tell};
 use super::token::{Punctuator, Symbol, Token, TokenKind};
 use super::words::Words;
 use crate::diagnostic::Diagnostic;
@@ -127,7 +127,7 @@ impl<'a> Preprocessor<'a> {
     }
 
     fn report(&mut self, diagnostic: Diagnostic) {
-        self.diagnostics.push(diagnostic);
+        tell(&mut self.diagnostics, diagnostic);
     }
 
     fn lex(&mut self) -> PpToken {

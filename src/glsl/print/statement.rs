@@ -89,7 +89,11 @@ impl Printer<'_> {
     }
 
     fn statements(&mut self, block: &Block) {
-        for statement in block {
+        // Structures stand at global scope.
+        for statement in block
+            .iter()
+            .filter(|statement| !matches!(statement.kind, StatementKind::Struct(_)))
+        {
             self.line();
             self.statement(statement);
             self.plain("\n");
@@ -111,7 +115,6 @@ impl Printer<'_> {
                 self.declaration(*variable);
                 self.plain(";");
             }
-            // Structures stand at global scope.
             StatementKind::Struct(_) => {}
             StatementKind::Block(body) => self.block(body),
             StatementKind::If { arms, otherwise } => self.branches(arms, otherwise.as_ref(), at),

@@ -131,6 +131,19 @@ fn a_variable_has_a_limit() {
 }
 
 #[test]
+fn no_more_is_told_than_helps() {
+    for line in ["@\n", "#if 1\n", "#define a__b 1\n#undef a__b\n@\n", "x y;\n"] {
+        let text = format!("{}{MAIN}", line.repeat(10_000));
+        let told = check_text(&text, &Options::default()).unwrap_err();
+        assert!(told.len() <= 100, "{line}");
+        assert!(
+            told.iter().any(|diagnostic| diagnostic.code.starts_with('E')),
+            "{line}"
+        );
+    }
+}
+
+#[test]
 fn cut_short_anywhere_a_shader_ends_in_a_diagnostic() {
     let text = "#define F(x) (x)\nstruct S { vec2 a[2]; };\nvoid mainImage(out vec4 c, in vec2 f) {\n S s; for (int i = 0; \
                 i < 2; i++) { switch (i) { case 0: s.a[i] = F(f); default: c = true ? vec4(1) : vec4(0); } } /* x */ }\n";

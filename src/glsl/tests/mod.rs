@@ -1,5 +1,6 @@
 //! The rules of the specification, each with what keeps it and what breaks it.
 
+mod invariants;
 mod limits;
 
 use super::*;
@@ -324,6 +325,8 @@ fn functions() {
         E0201 float f() { return 1.; } float f() { return 1.; }
         E0404 void f() { f(); }
         E0404 void g(); void f() { g(); } void g() { f(); }
+        E0404 void a(); void b() { a(); } void c() { b(); } void a() { c(); } void d() { a(); c(); }
+        ok    void a() { } void b() { a(); a(); } void c() { a(); b(); }
         E0405 void f(); void g() { f(); }
         E0406 float f(); int f() { return 1; }
         E0406 void f(in float a); void f(out float a) { }

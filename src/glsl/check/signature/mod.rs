@@ -16,9 +16,12 @@ pub(super) struct Match {
     pub(super) constant: Option<usize>,
 }
 
-/// The built-in function of that name.
-pub(super) fn named(name: &str) -> Option<BuiltIn> {
-    NAMES.get(name).copied()
+impl BuiltIn {
+    /// The built-in function of that name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        NAMES.get(name).copied()
+    }
 }
 
 /// The first signature of a function whose parameters `fit(given, parameter)` the arguments.
@@ -160,7 +163,7 @@ impl Signature {
             let word = optional.or(constant).unwrap_or(parameter);
             signature.parameters.push(Pattern::parse(word, words)?);
         }
-        Some((named(name)?, signature))
+        Some((BuiltIn::named(name)?, signature))
     }
 }
 
