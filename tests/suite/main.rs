@@ -6,6 +6,7 @@ mod architecture;
 mod bad_input;
 mod commands;
 mod equivalent_rewrites;
+mod miscompiles;
 mod planted_faults;
 mod program;
 mod strict;

@@ -1,0 +1,121 @@
+//! What naga takes and gets wrong: on the GPU the picture is wrong without the pass that mends it, and right with it.
+
+use toyproof::frame::Frame;
+use toyproof::glsl::lower::{Pass, Passes, lower_with};
+use toyproof::glsl::{Options, check};
+use toyproof::gpu::{FloatMode, Worker};
+use toyproof::image::Image;
+use toyproof::source::{File, Files};
+
+/// A miscompilation: the pass that mends it, what stands before `mainImage` and in it, and what `o.x` must be.
+type Case = (Pass, &'static str, &'static str, f32);
+
+/// `p` is (0.5, 0.5); `iTime` is 2; texel (1, 2) of `iChannel0` is 0.75, the others are 0.
+static CASES: &[Case] = &[
+    (
+        Pass::ShortCircuit,
+        "bool hit(inout float t) { t = 9.0; return true; }",
+        "float t = 1.0; if (p.x > 9.0 && hit(t)) t += 1.0; o.x = t;",
+        1.0,
+    ),
+    (
+        Pass::ShortCircuit,
+        "bool hit(inout float t) { t = 9.0; return true; }",
+        "float t = 1.0; if (p.x < 9.0 || hit(t)) t += 1.0; o.x = t;",
+        2.0,
+    ),
+    (
+        Pass::Texels,
+        "",
+        "o.x = texelFetchOffset(iChannel0, ivec2(0), 0, ivec2(1, 2)).x;",
+        0.75,
+    ),
+    (
+        Pass::Indices,
+        "",
+        "float a[3]; a[0] = 1.0; a[1] = 2.0; a[2] = 4.0; int i = int(p.x); a[i++] += 8.0; o.x = a[0] + 16.0 * float(i);",
+        25.0,
+    ),
+    (
+        Pass::Remainders,
+        "",
+        "int i = int(p.x) - 7; o.x = float(i % 3);",
+        2.0,
+    ),
+    (Pass::Globals, "float twice = iTime * 2.0;", "o.x = twice;", 4.0),
+    (
+        Pass::Uninitialised,
+        "",
+        "for (int i = 0; i < 3; i++) { float a; a += 1.0; o.x += a; }",
+        3.0,
+    ),
+    (
+        Pass::Uninitialised,
+        "void f(out float x) { if (iTime > 5.0) x = 2.0; }",
+        "float x = 1.0; f(x); o.x = x;",
+        0.0,
+    ),
+    (
+        Pass::DoWhile,
+        "",
+        "int i = 0; do { i++; if (i < 9) continue; } while (i < 3); o.x = float(i);",
+        3.0,
+    ),
+];
+
+fn paint(worker: &mut Worker, (pass, before, body, _): &Case, passes: Passes) -> f32 {
+    let mut files = Files::default();
+    let text = format!("{before}\nvoid mainImage(out vec4 o, in vec2 p) {{ o = vec4(0.0); {body} }}");
+    let file = files.add(File::new("s", text));
+    let checked = check(
+        &files,
+        file,
+        &Options {
+            lenient: true,
+            ..Options::default()
+        },
+    )
+    .unwrap();
+    let mut texels = vec![[0.0; 4]; 16];
+    texels[2 * 4 + 1] = [0.75; 4];
+    let mut frame = Frame {
+        size: [1, 1],
+        time: 2.0,
+        ..Frame::default()
+    };
+    frame.channels[0] = Some(Image::new(4, 4, texels));
+    worker
+        .draw(lower_with(&checked, passes), frame, FloatMode::Strict)
+        .unwrap_or_else(|failure| panic!("{pass:?}: {failure}"))
+        .image
+        .get(0, 0)[0]
+}
+
+#[test]
+fn each_is_wrong_without_its_pass_and_right_with_it() {
+    let Some(mut worker) = crate::support::worker() else {
+        return;
+    };
+    for case in CASES {
+        let (pass, _, body, expected) = case;
+        let with = paint(&mut worker, case, Passes::all());
+        assert_eq!(with, *expected, "{pass:?}: {body}");
+        let without = paint(&mut worker, case, Passes::all().without(*pass));
+        assert_ne!(
+            without, *expected,
+            "naga or the driver is mended, {pass:?} can go: {body}"
+        );
+    }
+}
+
+/// naga swaps the dimensions of `float a[2][3]`; the printer writes them swapped.
+#[test]
+fn arrays_of_arrays_keep_their_dimensions() {
+    let Some(mut worker) = crate::support::worker() else {
+        return;
+    };
+    let body = "float a[2][3]; for (int i = 0; i < 2; i++) for (int j = 0; j < 3; j++) a[i][j] = float(10 * i + j); \
+                o.x = a[int(p.x) + 1][2] + 100.0 * float(a.length()) + 1000.0 * float(a[0].length());";
+    let case = (Pass::DeadCode, "", body, 3212.0);
+    assert_eq!(paint(&mut worker, &case, Passes::all()), 3212.0);
+}
