@@ -56,6 +56,12 @@ static CASES: &[Case] = &[
         0.0,
     ),
     (
+        Pass::Inequality,
+        "",
+        "float zero = p.x - p.y, nan = zero / zero; o.x = float(nan != nan) + 2.0 * float(notEqual(vec2(nan), p).x);",
+        3.0,
+    ),
+    (
         Pass::DoWhile,
         "",
         "int i = 0; do { i++; if (i < 9) continue; } while (i < 3); o.x = float(i);",

@@ -17,6 +17,7 @@ mod geometric;
 mod global;
 mod helper;
 mod index;
+mod inequality;
 mod is_nan;
 mod loop_head;
 mod loop_void;

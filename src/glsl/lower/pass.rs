@@ -54,6 +54,8 @@ passes! {
     OutArguments = super::out_argument::run,
     /// `==` of structures and arrays.
     Equality = super::equality::run,
+    /// `!=` of floats.
+    Inequality = super::inequality::run,
     /// Members of structures that naga lays out in its own way.
     Members = super::member::run,
     /// Infinities and other constants that naga cannot evaluate.

@@ -274,6 +274,20 @@ fn indices_that_act() {
 }
 
 #[test]
+fn inequality_of_floats() {
+    let text = main_image(
+        "",
+        "o.x = float(p.x != p.y); o.y = float(notEqual(p, p.yx).x); o.z = float(p != p.yx);",
+    );
+    let lowered = corrects(Pass::Inequality, &text, |wgsl| wgsl.contains("!="));
+    assert!(
+        lowered.contains("!(p.x == p.y)") && lowered.contains("not(equal(p, p.yx))"),
+        "{lowered}"
+    );
+    assert!(lines("", "o.x = float(int(p.x) != 1);").contains("int(p.x) != 1"));
+}
+
+#[test]
 fn negation_of_unsigned_integers() {
     mends(
         Pass::Negations,
