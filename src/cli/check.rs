@@ -110,6 +110,10 @@ pub(super) fn cut_short(pixels: u64) -> String {
     )
 }
 
+/// Why a picture that is not the reference's cannot be held against its shader.
+const UNTOLD: &str = "it could not be told in time whether this driver ended a loop by force, as Mesa before 23 does \
+                      after 65,535 iterations; give more time with --timeout";
+
 struct Checker<'a> {
     args: &'a Args,
     terminal: &'a Terminal,
@@ -221,10 +225,7 @@ impl Checker<'_> {
         }
         if drawn.cut_short.is_none() && record.verdict != Verdict::Correct {
             record.verdict = Verdict::Inconclusive;
-            record.reason =
-                "it could not be told in time whether this driver ended a loop by force, as Mesa before \
-                             23 does after 65,535 iterations; give more time with --timeout"
-                    .to_owned();
+            UNTOLD.clone_into(&mut record.reason);
         }
         pictures.push(("-actual.png", actual));
         if let (Some(out), Some(found)) = (&self.args.out, found) {
