@@ -94,6 +94,7 @@ fn stop_on_interrupt() -> Arc<AtomicBool> {
     let flag = Arc::clone(&interrupted);
     // Where no handler can be set, an interrupt ends the program as it always did.
     let _ = ctrlc::set_handler(move || {
+        Terminal::interrupted();
         if flag.swap(true, Ordering::Relaxed) {
             #[expect(clippy::exit, reason = "the user asked twice")]
             std::process::exit(130);
@@ -205,6 +206,14 @@ impl Checker<'_> {
         if let Some(pixels @ 1..) = drawn.cut_short {
             return Err(Stopped::because(Verdict::Timeout, cut_short(pixels)));
         }
+        self.terminal.detail(&format!(
+            "{}: translated in {:.4} s, compiled in {:.3} s, painted in {:.3} s on {}",
+            record.shader,
+            drawn.translate.as_secs_f64(),
+            drawn.compile.as_secs_f64(),
+            drawn.draw.as_secs_f64(),
+            drawn.device
+        ));
         let actual = drawn.image;
         self.device = Some(drawn.device);
         let mut pictures = vec![];

@@ -89,13 +89,12 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     };
     if several && (standard || of_extension.is_some()) {
         terminal.error(format_args!(
-            "{} shaders need a folder to go to, not {}",
-            inputs.len(),
+            "several shaders need a folder to go to, not {}",
             args.output.display()
         ));
         return Exit::Trouble;
     }
-    let one = !several && !args.output.is_dir();
+    let one = standard || (!several && !args.output.is_dir());
     let mut worker = match args.driver.worker() {
         Ok(worker) => worker,
         Err(error) => {

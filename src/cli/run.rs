@@ -37,7 +37,16 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         }
     };
     let inputs = find(&args.shaders);
-    let one = inputs.len() == 1 && !args.output.is_dir() && args.shaders.iter().all(|path| !path.is_dir());
+    let several = inputs.len() > 1 || args.shaders.iter().any(|path| path.is_dir());
+    let standard = args.output == Path::new("-");
+    if several && (standard || args.output.extension().is_some()) {
+        terminal.error(format_args!(
+            "several shaders need a folder to go to, not {}",
+            args.output.display()
+        ));
+        return Exit::Trouble;
+    }
+    let one = standard || (!several && !args.output.is_dir());
     let mut names = Names::default();
     let mut exit = Exit::Good;
     for input in &inputs {
@@ -68,7 +77,12 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
                 Exit::Bad
             }
             Ok(drawn) => {
-                terminal.detail(&format!("{} on {}", shader.name, drawn.device));
+                terminal.detail(&format!(
+                    "{}: painted in {:.3} s on {}",
+                    shader.name,
+                    drawn.draw.as_secs_f64(),
+                    drawn.device
+                ));
                 keep(&drawn.image, &path, terminal)
             }
             Err(Failure::Invalid(diagnostics)) => {

@@ -1,5 +1,6 @@
 //! `toyproof scenes`
 
+use std::fs;
 use std::path::PathBuf;
 
 use super::{Exit, Terminal, course};
@@ -25,6 +26,17 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         terminal.say("`toyproof scenes --write DIR` writes their shaders (.glsl) and scenes (.toml)");
         return Exit::Good;
     };
+    let differs = |name: &str, text: &str| {
+        let path = folder.join(name);
+        path.exists() && fs::read(&path).ok().as_deref() != Some(text.as_bytes())
+    };
+    if let Some((name, _)) = course::files().find(|(name, text)| differs(name, text)) {
+        terminal.error(format_args!(
+            "{} is there already and is not the course's; nothing was written, name another folder",
+            folder.join(name).display()
+        ));
+        return Exit::Trouble;
+    }
     for (name, text) in course::files() {
         if !terminal.write(&folder.join(name), text.as_bytes()) {
             return Exit::Trouble;

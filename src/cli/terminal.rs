@@ -61,6 +61,14 @@ impl Terminal {
         let _ = writeln!(anstream::stderr().lock(), "{style}error{style:#}: {text}");
     }
 
+    /// What an interrupt means, said at once.
+    pub(super) fn interrupted() {
+        let _ = writeln!(
+            anstream::stderr().lock(),
+            "finishing the shader in hand; interrupt again to stop at once"
+        );
+    }
+
     /// Diagnostics with their source lines, on standard error; with `--quiet` a line each.
     pub(super) fn diagnostics(&self, diagnostics: &[Diagnostic], files: &Files) {
         let mut stderr = anstream::stderr().lock();

@@ -83,13 +83,21 @@ const UNPAINTED: wgpu::Color = wgpu::Color {
 /// llvmpipe runs this many pixels together, on the widest processors, and counts their iterations as one.
 const LANES: f32 = 16.0;
 
-/// Whether a driver that stops after `cap` iterations can have stopped any pixel of a picture that tells the
-/// iterations of each.
+/// Whether a driver that stops after `cap` iterations can have stopped any pixel of a picture that tells one more
+/// than the iterations of each; so it can where the picture tells what no count can be.
 pub(super) fn may_reach(iterations: &Image, cap: u32) -> bool {
+    let counts = 1.0..cap as f32 / LANES;
+    let tells = |alpha: f32| !counts.contains(&alpha) || alpha.fract() != 0.0;
+    iterations.pixels().iter().any(|pixel| tells(pixel[3]))
+}
+
+/// How many pixels of such a picture ran all the iterations that the driver grants.
+pub(super) fn reached(iterations: &Image, cap: u32) -> u64 {
     iterations
         .pixels()
         .iter()
-        .any(|pixel| pixel[3] >= cap as f32 / LANES)
+        .filter(|pixel| pixel[3] > cap as f32)
+        .count() as u64
 }
 
 /// How many pixels of a picture with watched loops tell of one that was ended by force. A pixel that nothing

@@ -159,8 +159,9 @@ impl<W: Write> Server<W> {
         // What follows an endless loop may say anything, also that there were few iterations.
         if !module.has_endless_loop() {
             let iterations = device.paint(&device.prepare(&iterations, &frame)?)?;
-            if !draw::may_reach(&iterations, cap) {
-                return Ok(Output::CutShort(0));
+            let reached = draw::reached(&iterations, cap);
+            if reached > 0 || !draw::may_reach(&iterations, cap) {
+                return Ok(Output::CutShort(reached));
             }
         }
         let discards = module.discards();

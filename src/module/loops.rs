@@ -13,7 +13,8 @@ use naga::{
 /// What the alpha of a probed shader tells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Probe {
-    /// How many iterations the pixel's loops ran in total. It costs little.
+    /// One more than the iterations that the pixel's loops ran in total. It costs little. Where a driver sees that a
+    /// loop never ends, it takes what follows for unreachable, and alpha may be anything: most often 0.
     Iterations,
     /// 1 where every loop was left by its own means, 0 where one was not. A counter goes up before each loop
     /// and down on each way out that the shader itself takes.
@@ -347,11 +348,18 @@ fn report(entry: &mut Function, probe: Probe, counter: Counter) {
     let none = append(Expression::Literal(Literal::U32(0)));
     let pointer = append(Expression::AccessIndex { base, index: 3 });
     let value = match probe {
-        Probe::Iterations => append(Expression::As {
-            expr: count,
-            kind: ScalarKind::Float,
-            convert: Some(4),
-        }),
+        Probe::Iterations => {
+            let left = append(Expression::As {
+                expr: count,
+                kind: ScalarKind::Float,
+                convert: Some(4),
+            });
+            append(Expression::Binary {
+                op: BinaryOperator::Add,
+                left,
+                right: whole,
+            })
+        }
         Probe::OpenLoops => {
             let condition = append(Expression::Binary {
                 op: BinaryOperator::Equal,

@@ -256,6 +256,9 @@ fn endless_and_overlong_loops() {
     }
     for body in [
         "for (;;) { } c = vec4(1.0);",
+        "float x = 0.0; while (true) { x += 1.0; } c = vec4(x);",
+        "float x = 0.0; for (int i = 0; i < 10;) { x += 0.1; } c = vec4(x);",
+        "int i = 0; float x = 0.0; while (i < 10) { x += 0.1; if (p.x < 0.0) i++; } c = vec4(x);",
         "float x = 0.0; while (x < 1.0) { x *= 0.5; } c = vec4(x);",
         // So long that a driver without a cap takes longer than the deadline.
         "float x = p.x; for (int i = 0; i < 2000000000; i++) { x = sin(x) + 0.1; } c = vec4(x);",

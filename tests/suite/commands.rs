@@ -271,7 +271,28 @@ fn conversions_are_accepted_by_those_who_take_them() {
 fn several_shaders_need_a_folder() {
     let run = toyproof(root(), &["convert", "glsl", "-o", "all.wgsl"]);
     assert_eq!(run.code, 2);
-    assert!(run.stderr.contains("5 shaders need a folder"), "{}", run.stderr);
+    assert!(
+        run.stderr
+            .contains("several shaders need a folder to go to, not all.wgsl"),
+        "{}",
+        run.stderr
+    );
+}
+
+#[test]
+fn pictures_of_several_shaders_need_a_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let glsl = root().join("glsl");
+    for output in ["-", "all.png"] {
+        let run = toyproof(folder.path(), &["run", glsl.to_str().unwrap(), "-o", output]);
+        assert_eq!(run.code, 2);
+        assert!(
+            run.stderr.contains("several shaders need a folder"),
+            "{}",
+            run.stderr
+        );
+    }
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 
 #[test]
@@ -284,6 +305,13 @@ fn the_scenes_are_written_and_check_as_they_are() {
         let written = fs::read(folder.path().join("course").join(name)).unwrap();
         assert_eq!(written, fs::read(root().join("glsl").join(name)).unwrap());
     }
+    // What somebody changed since is not lost.
+    let changed = folder.path().join("course/02-sphere.glsl");
+    fs::write(&changed, "mine").unwrap();
+    let run = toyproof(folder.path(), &["scenes", "--write", "course"]);
+    assert_eq!(run.code, 2);
+    assert!(run.stderr.contains("02-sphere.glsl"), "{}", run.stderr);
+    assert_eq!(fs::read_to_string(&changed).unwrap(), "mine");
 }
 
 #[test]

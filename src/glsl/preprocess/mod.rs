@@ -44,7 +44,8 @@ pub(crate) fn preprocess(files: &Files, file: FileId) -> Preprocessed {
         match token.kind {
             TokenKind::Newline => continue,
             TokenKind::Unknown(c) => {
-                let message = format!("`{}` is no character of GLSL", c.escape_debug());
+                let shown = if c.is_control() { c.escape_default().to_string() } else { c.to_string() };
+                let message = format!("`{shown}` is no character of GLSL");
                 preprocessor.report(Code::UnknownCharacter.at(token.at, message));
                 continue;
             }
