@@ -205,11 +205,14 @@ impl Checker<'_> {
             Some(Some(first)) => Code::Redeclared
                 .at(at, format!("`{text}` is declared already"))
                 .related(first.span, "first declared here"),
-            Some(None) => Code::Redeclared.at(at, format!("`{text}` is declared already, by ShaderToy")),
-            // Built-in functions, and the `main` of ShaderToy, are of the global scope; desktop GLSL lets them be redefined.
-            None if self.scopes.is_global()
-                && (text == "main" || (!self.lenient && BuiltIn::named(text).is_some())) =>
-            {
+            Some(None) => Code::Redeclared
+                .at(at, format!("`{text}` is declared already, by ShaderToy"))
+                .note("leave this declaration out: ShaderToy declares its inputs itself"),
+            None if self.scopes.is_global() && text == "main" => Code::Redeclared
+                .at(at, "`main` is ShaderToy's own")
+                .note("it calls `void mainImage(out vec4 fragColor, in vec2 fragCoord)` for each pixel: write that one"),
+            // Built-in functions are of the global scope; desktop GLSL lets them be redefined.
+            None if self.scopes.is_global() && !self.lenient && BuiltIn::named(text).is_some() => {
                 Code::Redeclared.at(
                     at,
                     format!("`{text}` is declared already: it is a built-in function"),

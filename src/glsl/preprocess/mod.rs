@@ -44,7 +44,11 @@ pub(crate) fn preprocess(files: &Files, file: FileId) -> Preprocessed {
         match token.kind {
             TokenKind::Newline => continue,
             TokenKind::Unknown(c) => {
-                let shown = if c.is_control() { c.escape_default().to_string() } else { c.to_string() };
+                let shown = if c.is_control() {
+                    c.escape_default().to_string()
+                } else {
+                    c.to_string()
+                };
                 let message = format!("`{shown}` is no character of GLSL");
                 preprocessor.report(Code::UnknownCharacter.at(token.at, message));
                 continue;
