@@ -2,7 +2,7 @@
 //! wrong, each in a file named for the construct, whose header says what naga does.
 //!
 //! Most passes rewrite single expressions where they stand; what needs several steps becomes a sequence `a, b`, which naga
-//! evaluates in order. The passes after them rewrite statements; [`sequence`] then makes statements of sequences.
+//! evaluates in order. The passes after them rewrite statements; `sequence` then makes statements of sequences.
 
 mod boolean;
 mod build;
