@@ -37,6 +37,12 @@ static CASES: &[Case] = &[
         25.0,
     ),
     (
+        Pass::Compounds,
+        "float g; float next() { g += 1.0; return g; }",
+        "g = 2.0; g += next(); vec2 u = vec2(1.0); u += vec2(dot(u *= 2.0, vec2(1.0))); o.x = g + 10.0 * u.x;",
+        66.0,
+    ),
+    (
         Pass::Remainders,
         "",
         "int i = int(p.x) - 7; o.x = float(i % 3);",

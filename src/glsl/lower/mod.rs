@@ -6,6 +6,7 @@
 
 mod boolean;
 mod build;
+mod compound;
 mod constant;
 mod dead_code;
 mod depth;

@@ -46,6 +46,8 @@ passes! {
     Swizzles = super::swizzle::run,
     /// Indices that do something, evaluated once.
     Indices = super::index::run,
+    /// Compound assignments whose right side changes their target.
+    Compounds = super::compound::run,
     /// `-x` of unsigned integers.
     Negations = super::negation::run,
     /// `%`.

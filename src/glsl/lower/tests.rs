@@ -274,6 +274,17 @@ fn indices_that_act() {
 }
 
 #[test]
+fn compound_assignments() {
+    assert_eq!(
+        lines(
+            "float g; float next() { return g += 1.0; }",
+            "g = 2.0; g += next(); float x = 1.0; x += next(); o.x = x;"
+        ),
+        "g = 2.0;\nfloat toyproof_value = next();\ng += toyproof_value;\nfloat x = 1.0;\nx += next();\no.x = x;"
+    );
+}
+
+#[test]
 fn inequality_of_floats() {
     let text = main_image(
         "",
