@@ -3,6 +3,7 @@
 pub mod cli;
 pub mod compare;
 pub mod diagnostic;
+pub mod elementary;
 pub mod emit;
 pub mod frame;
 pub mod glsl;

@@ -1,0 +1,24 @@
+//! The functions of GLSL whose last bits drivers choose, in operations that every conforming driver computes to the bit:
+//! one source with several readings.
+//!
+//! `+ − × ÷` and `sqrt` round as IEEE 754 asks on the drivers that count, once nothing may be contracted; `floor`, comparisons,
+//! selections and integers are exact everywhere. What is composed of them in a fixed order gives the same bits on
+//! all drivers and on the CPU. A reading says what an operation does: computes (`f32`, `f64`), notes an
+//! instruction, or writes GLSL.
+//!
+//! **Orders that are chosen here**, where the specification (GLSL ES 3.00.6 §8) leaves them open: sums run from left to
+//! right; `normalize(v)` is `v / length(v)`; `mix(a, b, t)` is `a·(1 − t) + b·t`; the product of a matrix and a vector sums over the
+//! columns; an inverse is the adjugate over the determinant.
+
+mod common;
+mod geometric;
+mod matrix;
+mod number;
+
+pub use common::{clamp, degrees, fract, inverse_sqrt, mix, modulo, radians, sign, smoothstep, step};
+pub use geometric::{cross, distance, dot, faceforward, length, normalize, reflect, refract};
+pub use matrix::{Matrix, determinant, inverse, outer_product};
+pub use number::Number;
+
+#[cfg(test)]
+mod tests;
