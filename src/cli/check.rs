@@ -10,7 +10,7 @@ use clap::ValueEnum;
 
 use super::inputs::{DriverArgs, FrameArgs};
 use super::shader::{Names, Shader, Unusable, find, is_invalid, with_suffix};
-use super::{Exit, Terminal};
+use super::{Exit, Terminal, explain};
 use crate::compare::{TOLERANCE, Verdict, compare, judge};
 use crate::diagnostic::{self, Diagnostic};
 use crate::frame::Frame;
@@ -31,8 +31,11 @@ use crate::trace::Tracer;
                         Exit code: 0 if every shader is correct or ok, 1 if one is not, 2 if there was other trouble.")]
 pub(super) struct Args {
     /// Shaders: files, folders, or - for standard input
-    #[arg(required = true)]
+    #[arg(required_unless_present = "explain")]
     shaders: Vec<PathBuf>,
+    /// Say what a code such as E0301 means, with examples, and do nothing else
+    #[arg(long, value_name = "CODE", exclusive = true)]
+    explain: Option<String>,
     /// The scene of all these shaders
     #[arg(long, value_name = "SCENE.toml")]
     scene: Option<PathBuf>,
@@ -55,6 +58,9 @@ enum Format {
 }
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
+    if let Some(code) = &args.explain {
+        return explain::run(code, terminal);
+    }
     let (worker, frame) = match (args.driver.worker(), args.frame.frame()) {
         (Ok(worker), Ok(frame)) => (worker, frame),
         (Err(error), _) | (_, Err(error)) => {

@@ -6,6 +6,7 @@ mod compare;
 mod convert;
 mod course;
 mod doctor;
+mod explain;
 mod inputs;
 mod render;
 mod run;

@@ -1,14 +1,18 @@
-//! What is wrong, where, and the way out: one value, three renderings.
+//! What is wrong, where, and the way out: one value, three renderings, and a page on each code.
 
 mod content;
+mod explain;
 mod render;
+mod suggest;
 
 use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
 pub use content::of_content;
+pub use explain::{Explanation, explain, explanations};
 pub use render::{Json, human, json, short};
+pub use suggest::nearest;
 
 use crate::source::Span;
 

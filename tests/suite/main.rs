@@ -5,6 +5,7 @@
 mod architecture;
 mod bad_input;
 mod commands;
+mod diagnostics;
 mod equivalent_rewrites;
 mod miscompiles;
 mod planted_faults;

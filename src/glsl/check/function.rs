@@ -1,5 +1,7 @@
 //! Functions: declared, overloaded, defined (§6.1).
 
+use std::collections::HashSet;
+
 use super::scope::Entity;
 use super::{Checker, Specifier};
 use crate::diagnostic::Diagnostic;
@@ -64,17 +66,20 @@ impl Checker<'_> {
             Some(Entity::Functions(overloads)) => overloads.clone(),
             _ => Vec::new(),
         };
+        // What cannot be called has a body all the same, which is checked as it stands.
+        let mut allowed = true;
         for &old in &overloads {
             if self.takes_exactly(old, parameters) {
-                self.same_header(old, return_type, parameters, at);
-                return old;
+                if self.same_header(old, return_type, parameters, at) {
+                    return old;
+                }
+                allowed = false;
+                break;
             }
         }
-        let allowed = if overloads.is_empty() {
-            self.may_declare(name, at)
-        } else {
-            true
-        };
+        if overloads.is_empty() {
+            allowed = self.may_declare(name, at);
+        }
         let parameters = parameters
             .iter()
             .map(|parameter| self.parameter(parameter))
@@ -114,7 +119,13 @@ impl Checker<'_> {
     }
 
     /// A second header with the same parameter types must be the same in the rest, too.
-    fn same_header(&mut self, old: FunctionId, return_type: Type, parameters: &[Parameter], at: Place) {
+    fn same_header(
+        &mut self,
+        old: FunctionId,
+        return_type: Type,
+        parameters: &[Parameter],
+        at: Place,
+    ) -> bool {
         let function = &self.tree[old];
         let directions = function.parameters.iter().zip(parameters);
         let problem = if function.return_type != return_type {
@@ -125,11 +136,12 @@ impl Checker<'_> {
         {
             "the qualifiers of its parameters"
         } else {
-            return;
+            return true;
         };
         let message = format!("`{}` differs from an overload by {problem} only", function.name);
         let first = function.at.span;
         self.report(Code::BadOverload.at(at, message).related(first, "the other"));
+        false
     }
 
     /// A header without body.
@@ -184,8 +196,9 @@ impl Checker<'_> {
     /// What can be told once all functions are known: every call has a body, and none comes back (§6.1.2).
     pub(crate) fn finish(&mut self) -> Option<FunctionId> {
         let calls = std::mem::take(&mut self.calls);
+        let mut told = HashSet::new();
         for &(_, callee, at) in &calls {
-            if self.tree[callee].body.is_none() {
+            if self.tree[callee].body.is_none() && told.insert(callee) {
                 let message = format!(
                     "`{}` is declared and called, but has no body",
                     self.tree[callee].name

@@ -1,0 +1,161 @@
+//! `docs/diagnostics.md` tells of every code, and its examples give what it says they give.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+use crate::architecture::sources;
+use crate::program::toyproof;
+use toyproof::diagnostic::{self, Diagnostic, Explanation, explanations};
+use toyproof::glsl::{self, Code};
+use toyproof::scene;
+use toyproof::source::{File, Files};
+
+/// Codes that no text of an example can give: bytes that are no text, and what toyproof itself gets wrong.
+const WITHOUT_EXAMPLE: [&str; 3] = ["E0500", "E0900", "E0901"];
+
+/// What is left out of examples where it does not matter.
+const MAIN_IMAGE: &str =
+    "\nvoid mainImage(out vec4 c, in vec2 p) { c = vec4(p / iResolution.xy, 0.0, 1.0); }\n";
+
+/// An example of the page.
+struct Example {
+    wrong: bool,
+    language: &'static str,
+    text: &'static str,
+}
+
+fn examples(explanation: &Explanation) -> Vec<Example> {
+    let mut examples = Vec::new();
+    for (mark, wrong) in [("Wrong:\n\n```", true), ("Right:\n\n```", false)] {
+        examples.extend(explanation.text.split(mark).skip(1).map(|rest| {
+            let (language, rest) = rest.split_once('\n').unwrap();
+            let (text, _) = rest.split_once("```").unwrap();
+            Example {
+                wrong,
+                language,
+                text,
+            }
+        }));
+    }
+    examples
+}
+
+/// Everything that is said of an example.
+fn told(example: &Example) -> (Vec<Diagnostic>, Files) {
+    let mut files = Files::default();
+    match example.language {
+        "glsl" => {
+            let rest = if example.text.contains("mainImage") {
+                ""
+            } else {
+                MAIN_IMAGE
+            };
+            let file = files.add(File::new("example.glsl", format!("{}{rest}", example.text)));
+            let checked = glsl::check(&files, file, &glsl::Options::default());
+            (
+                checked.map_or_else(|told| told, |checked| checked.warnings),
+                files,
+            )
+        }
+        "toml" => {
+            let file = files.add(File::new("example.toml", example.text));
+            (scene::parse(&files, file).err().unwrap_or_default(), files)
+        }
+        other => panic!("what is ```{other}?"),
+    }
+}
+
+#[test]
+fn every_code_has_its_section_and_every_section_its_code() {
+    // Codes are spelled out wherever a diagnostic is made.
+    let mut spelled = BTreeSet::new();
+    for path in sources(Path::new("src")) {
+        let text = fs::read_to_string(&path).unwrap();
+        spelled.extend(
+            text.split('"')
+                .filter(|word| {
+                    word.len() == 5
+                        && word.starts_with(['E', 'W'])
+                        && word[1..].bytes().all(|byte| byte.is_ascii_digit())
+                })
+                .map(str::to_owned),
+        );
+    }
+    let explained: BTreeSet<_> = explanations()
+        .map(|explanation| explanation.code.to_owned())
+        .collect();
+    assert_eq!(spelled, explained);
+    for &code in Code::ALL {
+        let title = diagnostic::explain(code.as_str()).unwrap().title;
+        assert_eq!(title, code.about(), "{}", code.as_str());
+    }
+}
+
+#[test]
+fn wrong_examples_give_their_code_alone_and_right_ones_nothing() {
+    let mut mistakes = Vec::new();
+    for explanation in explanations() {
+        let examples = examples(&explanation);
+        let fences = explanation.text.matches("```").count() / 2;
+        assert_eq!(
+            examples.len(),
+            fences,
+            "{}: an example is not marked",
+            explanation.code
+        );
+        let has = |wrong| examples.iter().any(|example| example.wrong == wrong);
+        assert_eq!(
+            has(true) && has(false),
+            !WITHOUT_EXAMPLE.contains(&explanation.code),
+            "{}",
+            explanation.code
+        );
+        for example in &examples {
+            let (told, files) = told(example);
+            let codes: Vec<_> = told.iter().map(|diagnostic| &*diagnostic.code).collect();
+            let wanted = if example.wrong {
+                vec![explanation.code]
+            } else {
+                Vec::new()
+            };
+            if codes != wanted {
+                let lines: Vec<_> = told
+                    .iter()
+                    .map(|told| diagnostic::human(told, &files, false))
+                    .collect();
+                mistakes.push(format!(
+                    "{} {}\n{}",
+                    explanation.code,
+                    example.text,
+                    lines.join("\n")
+                ));
+            }
+        }
+    }
+    assert!(mistakes.is_empty(), "{}", mistakes.join("\n\n"));
+}
+
+#[test]
+fn a_code_is_explained_on_the_command_line() {
+    let run = toyproof(Path::new("."), &["check", "--explain", "e0402"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    assert!(
+        run.stdout.starts_with("E0402: A `const` without a value\n\n"),
+        "{}",
+        run.stdout
+    );
+    assert!(
+        run.stdout.contains("\nWrong:\n\n    const float PI;\n"),
+        "{}",
+        run.stdout
+    );
+    for (code, words) in [
+        ("E0420", "error: there is no code E0420; did you mean E0"),
+        ("nonsense", "codes are E or W and four digits"),
+    ] {
+        let run = toyproof(Path::new("."), &["check", "--explain", code]);
+        assert_eq!(run.code, 2);
+        assert!(run.stderr.contains(words), "{}", run.stderr);
+    }
+}
