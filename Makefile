@@ -1,6 +1,6 @@
 # What a newcomer types: `make demo`, then `make test`.
 
-.PHONY: demo test setup bench
+.PHONY: demo test setup bench fuzz
 .DEFAULT_GOAL := demo
 
 # Builds, checks the course's shaders and says where the pictures are.
@@ -17,3 +17,9 @@ setup:
 
 bench:
 	XDG_RUNTIME_DIR=$${XDG_RUNTIME_DIR:-/tmp} cargo bench
+
+# Until it finds something or is stopped; needs a nightly compiler and cargo-fuzz. The code is safe Rust: no sanitiser.
+fuzz:
+	mkdir -p fuzz/corpus/front_end
+	cargo +nightly fuzz run -s none front_end fuzz/corpus/front_end fuzz/seeds fuzz/regressions glsl -- \
+		-dict=fuzz/glsl.dict -max_len=4096 -timeout=60

@@ -7,6 +7,8 @@ mod bad_input;
 mod commands;
 mod diagnostics;
 mod equivalent_rewrites;
+#[cfg(unix)]
+mod fuzzed;
 mod miscompiles;
 mod planted_faults;
 mod program;

@@ -1,0 +1,11 @@
+//! Any bytes as a shader. A panic, an overflow of the stack and a time out of proportion are findings; what naga makes of it is told.
+
+#![no_main]
+
+mod common;
+
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(init: common::spare_naga(), |text: &str| {
+    common::run(text);
+});

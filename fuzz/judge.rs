@@ -1,0 +1,98 @@
+//! One text through the whole front end, as `toyproof` takes it: preprocess, parse, check, lower, print; then naga's gate.
+//!
+//! Shared by the fuzz targets and by the test that reads `regressions`.
+
+use std::panic::resume_unwind;
+use std::thread::{self, ScopedJoinHandle};
+use std::time::Duration;
+
+use rustix::time::{ClockId, clock_gettime};
+use toyproof::glsl::{Lowered, Options, check, lower};
+use toyproof::module::ValidModule;
+use toyproof::source::{File, Files};
+
+/// The name of the thread on which naga runs: its panics are not ours.
+pub(crate) const NAGA: &str = "naga";
+
+/// What came of a text.
+#[derive(Debug)]
+pub(crate) enum Outcome {
+    /// It breaks a rule of the language.
+    Refused,
+    /// naga takes what we made of it.
+    Valid,
+    /// naga refuses what we made of it or panics, with these words.
+    Naga(String),
+}
+
+/// The stack of a thread of Rust's own.
+const STACK: usize = 2 << 20;
+/// As the worker gives it.
+const NAGA_STACK: usize = 256 << 20;
+
+/// What the front end may take of a processor: a constant and a share of the size. Macros may make up to 2^20 tokens of a
+/// line, so where there are any the constant is larger.
+fn allowance(text: &str) -> Duration {
+    let constant = if text.contains("define") { 4000 } else { 100 };
+    Duration::from_millis(constant) + Duration::from_micros(20) * text.len() as u32
+}
+
+/// Judges a text, and what WebGL 2 refuses once more as desktop GLSL.
+///
+/// # Panics
+/// If the front end does, takes longer than is proportionate, or needs more than a small stack.
+pub(crate) fn judge(text: &str) -> Outcome {
+    let judged = judge_as(text, false);
+    match judged {
+        Outcome::Refused => judge_as(text, true),
+        _ => judged,
+    }
+}
+
+fn judge_as(text: &str, lenient: bool) -> Outcome {
+    let options = Options {
+        lenient,
+        ..Options::default()
+    };
+    let (lowered, took) = on_a_thread("front end", STACK, || {
+        let start = clock_gettime(ClockId::ThreadCPUTime);
+        let lowered = lowered(text, &options);
+        let took = clock_gettime(ClockId::ThreadCPUTime) - start;
+        (lowered, Duration::try_from(took).unwrap_or_default())
+    })
+    .unwrap_or_else(|payload| resume_unwind(payload));
+    let allowed = allowance(text);
+    assert!(
+        took <= allowed,
+        "{took:?} for {} bytes, more than {allowed:?}",
+        text.len()
+    );
+    let Some(lowered) = lowered else {
+        return Outcome::Refused;
+    };
+    match on_a_thread(NAGA, NAGA_STACK, || ValidModule::parse(&lowered).map(drop)) {
+        Ok(Ok(())) => Outcome::Valid,
+        Ok(Err(errors)) => Outcome::Naga(format!("refused: {}", errors[0].message)),
+        Err(payload) => {
+            let words = payload.downcast_ref::<String>().map(String::as_str);
+            let words = words.or_else(|| payload.downcast_ref::<&str>().copied());
+            Outcome::Naga(format!("panicked: {}", words.unwrap_or_default()))
+        }
+    }
+}
+
+fn lowered(text: &str, options: &Options) -> Option<Lowered> {
+    let mut files = Files::default();
+    let file = files.add(File::new("input", text));
+    Some(lower(&check(&files, file, options).ok()?))
+}
+
+fn on_a_thread<T: Send>(name: &str, stack: usize, work: impl FnOnce() -> T + Send) -> thread::Result<T> {
+    thread::scope(|scope| {
+        let builder = thread::Builder::new().name(name.to_owned()).stack_size(stack);
+        builder
+            .spawn_scoped(scope, work)
+            .map(ScopedJoinHandle::join)
+            .expect("a thread can be had")
+    })
+}
