@@ -1,5 +1,5 @@
 //! Constant expressions that naga cannot evaluate: infinities and NaNs (`1./0.`, `log(0.)`), shifts that overflow (`1 << 31`),
-//! integer division by zero, `clamp` with crossed bounds, `smoothstep` with equal ones.
+//! shifts by more bits than there are, integer division by zero, `clamp` with crossed bounds, `smoothstep` with equal ones.
 //!
 //! naga evaluates every expression of literals and refuses these results; so do WGSL compilers. An operand that goes
 //! through a function of our own, which gives it back as it is, is evaluated when the shader runs.
@@ -65,6 +65,9 @@ fn remedy(tree: &Tree, id: ExprId) -> Option<Remedy> {
             value => is_beyond(value).then_some(Remedy::Infinity),
         },
         &ExprKind::Binary { op, left, right } => match op {
+            BinaryOp::ShiftLeft | BinaryOp::ShiftRight if shifts_too_far(tree, right) => {
+                Some(Remedy::Postpone(right))
+            }
             BinaryOp::ShiftLeft if tree[id].constant => tree.value(id).map(Remedy::Spell),
             BinaryOp::Divide | BinaryOp::Remainder if divides_by_zero(tree, right) => {
                 Some(Remedy::Postpone(right))
@@ -72,6 +75,11 @@ fn remedy(tree: &Tree, id: ExprId) -> Option<Remedy> {
             BinaryOp::Divide => overflows(tree, id).then_some(Remedy::Postpone(right)),
             _ => overflows(tree, id).then_some(Remedy::Postpone(left)),
         },
+        ExprKind::Assign {
+            op: Some(BinaryOp::ShiftLeft | BinaryOp::ShiftRight),
+            value,
+            ..
+        } if shifts_too_far(tree, *value) => Some(Remedy::Postpone(*value)),
         ExprKind::BuiltIn { function, arguments } => {
             let &first = arguments.first()?;
             let crossed = match (function, arguments.as_slice()) {
@@ -112,13 +120,23 @@ fn is_beyond(value: Value) -> bool {
 
 fn divides_by_zero(tree: &Tree, divisor: ExprId) -> bool {
     matches!(tree[divisor].ty.scalar(), Some(Scalar::Int | Scalar::Uint))
-        && tree[divisor].constant
-        && tree.value(divisor).is_some_and(|value| {
-            value
-                .scalars
-                .iter()
-                .any(|scalar| matches!(scalar, Value::Int(0) | Value::Uint(0)))
+        && any_scalar(tree, divisor, |value| {
+            matches!(value, Value::Int(0) | Value::Uint(0))
         })
+}
+
+fn shifts_too_far(tree: &Tree, amount: ExprId) -> bool {
+    any_scalar(tree, amount, |value| {
+        !matches!(value, Value::Int(0..32) | Value::Uint(0..32))
+    })
+}
+
+/// Whether an expression is constant and such a scalar is in it.
+fn any_scalar(tree: &Tree, id: ExprId, is_such: impl Fn(Value) -> bool) -> bool {
+    tree[id].constant
+        && tree
+            .value(id)
+            .is_some_and(|value| value.scalars.iter().copied().any(is_such))
 }
 
 fn crosses(tree: &Tree, low: ExprId, high: ExprId, crossed: impl Fn(f64, f64) -> bool) -> bool {
