@@ -12,5 +12,6 @@ mod fuzzed;
 mod miscompiles;
 mod planted_faults;
 mod program;
+mod rules;
 mod strict;
 mod support;

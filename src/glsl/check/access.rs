@@ -4,7 +4,7 @@ use super::Checker;
 use super::scope::Entity;
 use crate::glsl::codes::Code;
 use crate::glsl::token::Symbol;
-use crate::glsl::tree::{ExprId, ExprKind, Place, Scalar, StructId, Swizzle, Type, VariableKind};
+use crate::glsl::tree::{BuiltIn, ExprId, ExprKind, Place, Scalar, StructId, Swizzle, Type, VariableKind};
 
 /// The three sets of names for components; one selection takes all of its names from one (§5.5).
 const COMPONENT_NAMES: [&str; 3] = ["xyzw", "rgba", "stpq"];
@@ -30,6 +30,11 @@ impl Checker<'_> {
                 format!("`{text}` is a type, not a variable"),
             ),
             Some(Entity::Functions(_)) => self.refuse(
+                Code::NotAVariable,
+                at,
+                format!("`{text}` is a function, not a variable"),
+            ),
+            None if BuiltIn::named(text).is_some() => self.refuse(
                 Code::NotAVariable,
                 at,
                 format!("`{text}` is a function, not a variable"),

@@ -4,9 +4,8 @@ use super::scope::Entity;
 use super::{Checker, Size, Specifier};
 use crate::glsl::codes::{Code, tell};
 use crate::glsl::token::Symbol;
-use crate::glsl::tree::{
-    BuiltIn, BuiltInVariable, ExprId, Place, Scalar, Type, Variable, VariableId, VariableKind,
-};
+use crate::glsl::tree::{BuiltInVariable, ExprId, Place, Scalar, Type, Variable, VariableId, VariableKind};
+use crate::glsl::words::Keyword;
 
 /// What stands before the type of a declaration.
 #[derive(Debug, Clone, Default)]
@@ -14,8 +13,8 @@ pub(crate) struct Qualifiers {
     pub(crate) storage: Option<(Storage, Place)>,
     /// `const`; beside `in` for parameters only.
     pub(crate) is_const: Option<Place>,
-    /// What only globals may have: `invariant`, `flat`, `smooth`, `centroid`, `layout`.
-    pub(crate) interface: Option<Place>,
+    /// What only inputs and outputs may have: `invariant`, `flat`, `smooth`, `centroid`, `layout`.
+    pub(crate) interface: Vec<(Keyword, Place)>,
     /// `highp`, `mediump` or `lowp`.
     pub(crate) precision: Option<Place>,
 }
@@ -26,7 +25,15 @@ impl Qualifiers {
         self.storage
             .map(|(_, at)| at)
             .or(self.is_const)
-            .or(self.interface)
+            .or(self.interface.first().map(|&(_, at)| at))
+    }
+
+    /// Whether that keyword is all there is.
+    pub(crate) fn is_only(&self, keyword: Keyword) -> bool {
+        matches!(&self.interface[..], &[(only, _)] if only == keyword)
+            && self.storage.is_none()
+            && self.is_const.is_none()
+            && self.precision.is_none()
     }
 }
 
@@ -67,6 +74,7 @@ impl Checker<'_> {
         let given = initialiser.map(|expr| self.ty(expr));
         let ty = self.array_type(specifier.base, &sizes, given, at);
         let ty = self.variable_type(ty, kind, at);
+        self.flat_fits(qualifiers, ty, kind, at);
         let initialiser = self.initialiser(initialiser, ty, kind, name, at);
         let value = initialiser
             .filter(|_| kind == VariableKind::Const)
@@ -88,9 +96,7 @@ impl Checker<'_> {
 
     fn variable_kind(&mut self, qualifiers: &Qualifiers) -> VariableKind {
         let global = self.scopes.is_global();
-        if !global && let Some(at) = qualifiers.interface {
-            self.error(Code::BadQualifier, at, "this qualifier is for globals only");
-        }
+        self.interface_fits(qualifiers);
         if let (Some((_, at)), Some(_)) = (qualifiers.storage, qualifiers.is_const) {
             self.error(Code::BadQualifier, at, "only a parameter can be `const` and `in`");
         }
@@ -114,6 +120,55 @@ impl Checker<'_> {
         }
     }
 
+    /// What goes with `in`, and what with `out`, in a fragment shader (§4.3.8, §4.3.9, §4.6.1).
+    fn interface_fits(&mut self, qualifiers: &Qualifiers) {
+        let global = self.scopes.is_global();
+        for &(keyword, at) in &qualifiers.interface {
+            let (wanted, whose) = match keyword {
+                Keyword::Invariant | Keyword::Layout => (Storage::Out, "outputs"),
+                _ => (Storage::In, "inputs"),
+            };
+            let message = if !global {
+                "this qualifier is for globals only".to_owned()
+            } else if qualifiers.storage.is_none_or(|(storage, _)| storage != wanted) {
+                format!("`{}` is for {whose} only", keyword.text())
+            } else {
+                continue;
+            };
+            self.error(Code::BadQualifier, at, message);
+        }
+    }
+
+    /// Between corners, integers have no middle: such an input is `flat` (§4.3.4).
+    fn flat_fits(&mut self, qualifiers: &Qualifiers, ty: Type, kind: VariableKind, at: Place) {
+        let flat = qualifiers
+            .interface
+            .iter()
+            .any(|&(keyword, _)| keyword == Keyword::Flat);
+        let integral = matches!(self.element(ty).scalar(), Some(Scalar::Int | Scalar::Uint));
+        if kind == VariableKind::Varying && integral && !flat {
+            let message = format!("an input of type {} must be `flat`", self.said(ty));
+            self.error(Code::BadQualifier, at, message);
+        }
+    }
+
+    /// What an array holds; of anything else, itself.
+    fn element(&self, ty: Type) -> Type {
+        match ty {
+            Type::Array(id) => self.tree.array(id).element,
+            _ => ty,
+        }
+    }
+
+    /// `layout(name = …)`: what an output of a fragment shader can say (§4.3.8.2).
+    pub(crate) fn layout(&mut self, name: Symbol, at: Place) {
+        let text = self.text(name);
+        if text != "location" {
+            let message = format!("a fragment shader has no layout `{text}`");
+            self.error(Code::BadQualifier, at, message);
+        }
+    }
+
     /// The type, if a variable of that kind can have it.
     fn variable_type(&mut self, ty: Type, kind: VariableKind, at: Place) -> Type {
         let problem = match ty {
@@ -132,10 +187,7 @@ impl Checker<'_> {
 
     /// What may be `in` and `out` of a fragment shader: no `bool`, and nothing but vectors `out` (§4.3.4, §4.3.6).
     fn passes_stages(&self, ty: Type, kind: VariableKind) -> bool {
-        let element = match ty {
-            Type::Array(id) => self.tree.array(id).element,
-            _ => ty,
-        };
+        let element = self.element(ty);
         match kind {
             VariableKind::Varying => element.scalar() != Some(Scalar::Bool),
             VariableKind::Output => {
@@ -211,13 +263,6 @@ impl Checker<'_> {
             None if self.scopes.is_global() && text == "main" => Code::Redeclared
                 .at(at, "`main` is ShaderToy's own")
                 .note("it calls `void mainImage(out vec4 fragColor, in vec2 fragCoord)` for each pixel: write that one"),
-            // Built-in functions are of the global scope; desktop GLSL lets them be redefined.
-            None if self.scopes.is_global() && !self.lenient && BuiltIn::named(text).is_some() => {
-                Code::Redeclared.at(
-                    at,
-                    format!("`{text}` is declared already: it is a built-in function"),
-                )
-            }
             None => return true,
         };
         self.report(diagnostic);
@@ -267,8 +312,11 @@ impl Checker<'_> {
     }
 
     /// `precision highp t;`: of `float`, `int` and samplers (§4.5.4).
-    pub(crate) fn precision(&mut self, ty: Type, at: Place) {
-        if !matches!(ty, Type::FLOAT | Type::INT | Type::Sampler(_)) {
+    pub(crate) fn precision(&mut self, specifier: &Specifier) {
+        let (ty, at) = (specifier.base, specifier.at);
+        if !specifier.sizes.is_empty() {
+            self.error(Code::BadType, at, "an array has no default precision");
+        } else if !matches!(ty, Type::FLOAT | Type::INT | Type::Sampler(_)) {
             let message = format!(
                 "only `int`, `float` and samplers have a precision, not {}",
                 self.said(ty)

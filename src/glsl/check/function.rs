@@ -8,7 +8,7 @@ use crate::diagnostic::Diagnostic;
 use crate::glsl::codes::Code;
 use crate::glsl::token::Symbol;
 use crate::glsl::tree::{
-    Block, Direction, Function, FunctionId, Item, Place, Type, Variable, VariableId, VariableKind,
+    Block, BuiltIn, Direction, Function, FunctionId, Item, Place, Type, Variable, VariableId, VariableKind,
 };
 
 /// A parameter as it stands in the text.
@@ -78,7 +78,7 @@ impl Checker<'_> {
             }
         }
         if overloads.is_empty() {
-            allowed = self.may_declare(name, at);
+            allowed = self.may_declare(name, at) && self.may_be_own_function(name, at);
         }
         let parameters = parameters
             .iter()
@@ -96,6 +96,17 @@ impl Checker<'_> {
             self.scopes.declare(name, Entity::Functions(overloads));
         }
         function
+    }
+
+    /// §6.1: no function is named as a built-in one; variables and structures may be, and hide it. Desktop GLSL lets functions, too.
+    fn may_be_own_function(&mut self, name: Symbol, at: Place) -> bool {
+        let text = self.text(name);
+        let allowed = self.lenient || BuiltIn::named(text).is_none();
+        if !allowed {
+            let message = format!("`{text}` is declared already: it is a built-in function");
+            self.error(Code::Redeclared, at, message);
+        }
+        allowed
     }
 
     fn parameter(&mut self, parameter: &Parameter) -> VariableId {

@@ -137,6 +137,7 @@ impl Checker<'_> {
         at: Place,
     ) {
         let text = self.text(name);
+        self.may_name(text, at);
         let all: Vec<_> = sizes.iter().chain(&specifier.sizes).copied().collect();
         let ty = self.array_type(specifier.base, &all, None, at);
         if ty == Type::Void {

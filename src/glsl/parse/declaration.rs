@@ -17,7 +17,7 @@ impl Parser<'_> {
             return self.precision_statement();
         }
         let qualifiers = self.qualifiers()?;
-        if qualifiers.interface.is_some() && self.is_redeclaration() {
+        if qualifiers.is_only(Keyword::Invariant) && self.is_redeclaration() {
             let (name, at) = self.name()?;
             self.check.invariant(name, at);
             self.expect(Punctuator::Semicolon)?;
@@ -106,7 +106,7 @@ impl Parser<'_> {
             _ => return self.unexpected("`highp`, `mediump` or `lowp`"),
         };
         let specifier = self.named_type()?;
-        self.check.precision(specifier.base, specifier.at);
+        self.check.precision(&specifier);
         self.expect(Punctuator::Semicolon)?;
         Ok(())
     }

@@ -77,7 +77,8 @@ impl Parser<'_> {
     }
 
     fn direction(&mut self, qualifiers: &Qualifiers) -> Direction {
-        let wrong = match (qualifiers.storage, qualifiers.is_const, qualifiers.interface) {
+        let interface = qualifiers.interface.first().map(|&(_, at)| at);
+        let wrong = match (qualifiers.storage, qualifiers.is_const, interface) {
             (_, _, Some(at)) | (Some((Storage::Uniform, at)), _, _) => {
                 Some((at, "a parameter can be `const`, `in`, `out` or `inout`"))
             }

@@ -38,7 +38,7 @@ impl Parser<'_> {
                 Keyword::Out => qualifiers.storage = Some((Storage::Out, at)),
                 Keyword::InOut => qualifiers.storage = Some((Storage::InOut, at)),
                 Keyword::Highp | Keyword::Mediump | Keyword::Lowp => qualifiers.precision = Some(at),
-                _ => qualifiers.interface = Some(at),
+                _ => qualifiers.interface.push((keyword, at)),
             }
             if keyword == Keyword::Layout {
                 self.layout()?;
@@ -50,7 +50,8 @@ impl Parser<'_> {
     fn layout(&mut self) -> Parsed<()> {
         self.expect(Punctuator::LeftParen)?;
         loop {
-            self.name()?;
+            let (name, at) = self.name()?;
+            self.check.layout(name, at);
             if self.eat(Punctuator::Assign) && !matches!(self.next().kind, TokenKind::Number(_)) {
                 self.at -= 1;
                 return self.unexpected("an integer");

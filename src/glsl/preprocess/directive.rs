@@ -1,7 +1,7 @@
 //! The lines that begin with `#`.
 
 use super::define::nothing_left;
-use super::{PpToken, Preprocessor};
+use super::{Past, PpToken, Preprocessor};
 use crate::diagnostic::Diagnostic;
 use crate::glsl::codes::Code;
 use crate::glsl::token::TokenKind;
@@ -97,7 +97,7 @@ impl Preprocessor<'_> {
 
     /// `#version 300 es`, first or not at all.
     fn version(&mut self, line: &[PpToken], at: Place) -> Result<(), Box<Diagnostic>> {
-        if self.past_first_token {
+        if self.past > Past::Nothing {
             return Code::BadVersion.refuse(at, "`#version` must come before everything else");
         }
         let words: Vec<_> = line.iter().map(|token| self.text(token)).collect();
@@ -118,6 +118,9 @@ impl Preprocessor<'_> {
             let message = "this is not `#extension name : require`, `enable`, `warn` or `disable`";
             return Code::MalformedDirective.refuse(at, message);
         };
+        if self.past == Past::Text {
+            return Code::BadExtension.refuse(at, "`#extension` must come before all declarations");
+        }
         let fatal = behaviour == "require" || (name == "all" && behaviour == "enable");
         if fatal {
             return Code::BadExtension.refuse(at, format!("the extension `{name}` is not supported"));

@@ -23,6 +23,9 @@ use super::words::Words;
 use crate::diagnostic::Diagnostic;
 use crate::source::{FileId, Files};
 
+/// How long a name may be (WebGL 2, §4.3.1).
+const MAX_NAME: usize = 1024;
+
 /// What a text is after preprocessing.
 pub(crate) struct Preprocessed {
     /// The tokens, ending in one [`TokenKind::End`].
@@ -40,7 +43,7 @@ pub(crate) fn preprocess(files: &Files, file: FileId) -> Preprocessed {
     let mut tokens = Vec::new();
     loop {
         let token = preprocessor.next_expanded();
-        preprocessor.past_first_token = true;
+        preprocessor.past = Past::Text;
         match token.kind {
             TokenKind::Newline => continue,
             TokenKind::Unknown(c) => {
@@ -65,6 +68,12 @@ pub(crate) fn preprocess(files: &Files, file: FileId) -> Preprocessed {
             }
             _ => {}
         }
+        if let TokenKind::Word(word) = token.kind
+            && preprocessor.words.text(word).len() > MAX_NAME
+        {
+            let message = format!("WebGL takes no name of more than {MAX_NAME} characters");
+            preprocessor.report(Code::Syntax.at(token.at, message));
+        }
         tokens.push(Token {
             kind: token.kind,
             at: token.at,
@@ -80,6 +89,16 @@ pub(crate) fn preprocess(files: &Files, file: FileId) -> Preprocessed {
     }
 }
 
+/// What came already.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Past {
+    Nothing,
+    /// `#version` may not follow.
+    Directive,
+    /// A token that is no directive's: `#extension` may not follow (§3.5).
+    Text,
+}
+
 struct Preprocessor<'a> {
     text: &'a str,
     lexer: Lexer<'a>,
@@ -91,8 +110,7 @@ struct Preprocessor<'a> {
     groups: Vec<Group>,
     /// Whether the next token begins a line.
     line_start: bool,
-    /// Whether a token or directive came already: `#version` may not follow.
-    past_first_token: bool,
+    past: Past,
     /// What `#line` adds to line numbers, and the number it gives the file: seen by `__LINE__` and `__FILE__` only.
     line_offset: i64,
     file_number: i64,
@@ -120,7 +138,7 @@ impl<'a> Preprocessor<'a> {
             stream: Stream::Text(Vec::new()),
             groups: Vec::new(),
             line_start: true,
-            past_first_token: false,
+            past: Past::Nothing,
             line_offset: 0,
             file_number: 0,
             counted: (0, 1),
@@ -147,7 +165,7 @@ impl<'a> Preprocessor<'a> {
                 TokenKind::Newline => self.line_start = true,
                 TokenKind::Punctuator(Punctuator::Hash) if self.line_start => {
                     self.directive(token.at);
-                    self.past_first_token = true;
+                    self.past = self.past.max(Past::Directive);
                 }
                 TokenKind::End => {
                     while let Some(group) = self.groups.pop() {

@@ -121,7 +121,8 @@ fn scopes() {
         E0201 void f(float a, float a) { }
         E0201 { for (int i = 0; i < 1; i++) { int i; } }
         E0201 float iTime;
-        E0201/ok float sin;
+        ok    float sin; struct cos { int a; };
+        E0202 float sin; float f() { return sin(1.); }
         E0201/ok float sin(bool x) { return 1.; } void f() { sin(true); sin(1.); }
         E0201 void main() { }
         E0201 float f; void f() { }

@@ -1,0 +1,76 @@
+//! Who keeps a rule is accepted, and paints what the rule says.
+
+use toyproof::diagnostic::{Diagnostic, short};
+use toyproof::glsl::{Lowered, Options, check, lower};
+use toyproof::gpu::{FloatMode, Worker};
+use toyproof::module::ValidModule;
+use toyproof::source::{File, Files};
+
+use super::{Expectation, Program, frame, programs};
+
+fn lowered(program: &Program, options: &Options) -> Result<Lowered, String> {
+    let mut files = Files::default();
+    let file = files.add(File::new("s", program.text.as_str()));
+    let told = |errors: Vec<Diagnostic>| {
+        let lines: Vec<_> = errors.iter().map(|error| short(error, &files)).collect();
+        lines.join("\n    ")
+    };
+    let checked = check(&files, file, options).map_err(told)?;
+    let lowered = lower(&checked);
+    ValidModule::parse(&lowered)
+        .map_err(|errors| format!("naga: {}\n{}", told(errors), lowered.text()))
+        .map(|_| lowered)
+}
+
+fn paint(worker: &mut Worker, program: &Program) -> Result<(), String> {
+    let lowered = lowered(program, &Options::default())?;
+    let text = lowered.text().to_owned();
+    let drawn = worker
+        .draw(lowered, frame(), FloatMode::Strict)
+        .map_err(|failure| format!("{failure:?}\n{text}"))?;
+    let red = drawn.image.get(0, 0)[0];
+    if red == 1.0 {
+        Ok(())
+    } else {
+        Err(format!("paints {red}\n{text}"))
+    }
+}
+
+/// All that hold and fail at it.
+fn failures(mut attempt: impl FnMut(&Program) -> Result<(), String>) -> String {
+    let failures: Vec<_> = programs()
+        .iter()
+        .filter(|program| program.expectation == Expectation::Holds)
+        .filter_map(|program| {
+            let why = attempt(program).err()?;
+            Some(format!("{}\n    {why}\n", program.name))
+        })
+        .collect();
+    failures.concat()
+}
+
+#[test]
+fn each_passes_naga_alone() {
+    let failures = failures(|program| lowered(program, &Options::default()).map(drop));
+    assert!(failures.is_empty(), "\n{failures}");
+}
+
+/// `--lenient` takes liberties and takes none away.
+#[test]
+fn each_is_accepted_leniently() {
+    let lenient = Options {
+        lenient: true,
+        ..Options::default()
+    };
+    let failures = failures(|program| lowered(program, &lenient).map(drop));
+    assert!(failures.is_empty(), "\n{failures}");
+}
+
+#[test]
+fn each_holds_on_the_gpu() {
+    let Some(mut worker) = crate::support::worker() else {
+        return;
+    };
+    let failures = failures(|program| paint(&mut worker, program));
+    assert!(failures.is_empty(), "\n{failures}");
+}

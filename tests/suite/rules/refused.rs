@@ -1,0 +1,49 @@
+//! Who breaks a rule is told on the line where it is broken, and nowhere else.
+
+use toyproof::diagnostic::{Severity, short};
+use toyproof::glsl::{Options, check};
+use toyproof::source::{File, Files};
+
+use super::{Expectation, Program, programs};
+
+/// What is not as expected.
+fn wrong(program: &Program, code: Option<&str>, lines: &[usize]) -> Option<String> {
+    let mut files = Files::default();
+    let file = files.add(File::new("s", program.text.as_str()));
+    let Err(mut told) = check(&files, file, &Options::default()) else {
+        return Some("is accepted".to_owned());
+    };
+    told.retain(|diagnostic| diagnostic.severity == Severity::Error);
+    let mut found: Vec<_> = told
+        .iter()
+        .filter_map(|error| error.span)
+        .map(|span| files.position(span).line)
+        .collect();
+    found.dedup();
+    let placed = found == lines && (!lines.is_empty() || told.len() == 1);
+    let coded = code.is_none_or(|code| told.iter().all(|error| error.code == code));
+    let said: Vec<_> = told.iter().map(|error| short(error, &files)).collect();
+    (!placed || !coded).then(|| said.join("\n    "))
+}
+
+#[test]
+fn each_is_refused_on_its_line() {
+    let mut failures = Vec::new();
+    for program in programs() {
+        if let Expectation::Refused { code, lines } = &program.expectation
+            && let Some(why) = wrong(&program, code.as_deref(), lines)
+        {
+            failures.push(format!(
+                "{}\n    expected {} on {lines:?}\n    {why}",
+                program.name,
+                code.as_deref().unwrap_or("an error")
+            ));
+        }
+    }
+    assert!(
+        failures.is_empty(),
+        "{} are not refused as they should be:\n{}",
+        failures.len(),
+        failures.join("\n")
+    );
+}
