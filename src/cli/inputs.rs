@@ -78,6 +78,9 @@ pub(super) struct DriverArgs {
     /// Take what desktop GLSL allows and WebGL2 refuses: globals set from uniforms, integers where floats belong
     #[arg(long, help_heading = "The shader")]
     lenient: bool,
+    /// Take warnings for errors: `warnings` for all, or a code (W0005); `// toyproof: allow(W0005)` in the shader goes before it
+    #[arg(long, value_name = "warnings|CODE", value_parser = deny, help_heading = "The shader")]
+    deny: Vec<Deny>,
     /// `auto` (lavapipe where it is installed, else the first), `lavapipe`, or words of an adapter's name
     #[arg(long, value_name = "ADAPTER", default_value = "auto", value_parser = on)]
     pub(super) on: On,
@@ -87,6 +90,24 @@ pub(super) struct DriverArgs {
     /// Stop a shader after this long (10s, 500ms, 2m)
     #[arg(long, value_name = "TIME", default_value = "10s", value_parser = humantime::parse_duration)]
     timeout: Duration,
+}
+
+/// Which warnings count as errors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Deny {
+    /// All.
+    Warnings,
+    /// Those of that code.
+    Code(glsl::Code),
+}
+
+impl Deny {
+    pub(super) fn includes(self, code: &str) -> bool {
+        match self {
+            Self::Warnings => true,
+            Self::Code(denied) => denied.as_str() == code,
+        }
+    }
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -110,6 +131,10 @@ impl DriverArgs {
             lenient: self.lenient,
             ..glsl::Options::default()
         }
+    }
+
+    pub(super) fn denied(&self) -> &[Deny] {
+        &self.deny
     }
 
     pub(super) fn float(&self) -> FloatMode {
@@ -148,6 +173,17 @@ pub(super) fn on(text: &str) -> Result<On, String> {
     })
 }
 
+fn deny(text: &str) -> Result<Deny, String> {
+    if text == "warnings" {
+        return Ok(Deny::Warnings);
+    }
+    let code = glsl::Code::ALL
+        .iter()
+        .find(|code| code.as_str().starts_with('W') && code.as_str().eq_ignore_ascii_case(text));
+    code.map(|&code| Deny::Code(code))
+        .ok_or_else(|| "say `warnings`, or a warning's code such as W0005".to_owned())
+}
+
 fn numbers(text: &str) -> Result<Vec<f32>, String> {
     text.split(',')
         .map(|part| f32::from_str(part.trim()).map_err(|_| format!("“{part}” is no number")))
@@ -177,6 +213,9 @@ mod tests {
         assert_eq!(size("640x360"), Ok([640, 360]));
         assert_eq!(mouse("1,-2.5"), Ok([1.0, -2.5, 0.0, 0.0]));
         assert_eq!(on("llvm"), Ok(On::Named("llvm".to_owned())));
+        assert_eq!(deny("warnings"), Ok(Deny::Warnings));
+        assert_eq!(deny("w0005"), Ok(Deny::Code(glsl::Code::SineHash)));
+        assert!(deny("E0001").is_err() && deny("errors").is_err());
         for bad in ["640", "0x0", "ax3", "100000x100000", "1x-1"] {
             assert!(size(bad).is_err(), "{bad}");
         }

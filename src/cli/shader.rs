@@ -3,7 +3,8 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use crate::diagnostic::{self, Diagnostic};
+use super::inputs::{Deny, DriverArgs};
+use crate::diagnostic::{self, Diagnostic, Severity};
 use crate::glsl::{self, Checked, Lowered};
 use crate::gpu::Failure;
 use crate::source::{self, Files, Found, ReadError};
@@ -26,16 +27,21 @@ pub(super) enum Unusable {
 }
 
 impl Shader {
-    pub(super) fn load(found: &Result<Found, ReadError>, options: &glsl::Options) -> Self {
+    pub(super) fn load(found: &Result<Found, ReadError>, driver: &DriverArgs) -> Self {
         let mut files = Files::default();
         let mut warnings = Vec::new();
         let (name, lowered) = match found {
             Err(error) => (subject(error), Err(Unusable::Trouble(error.to_string()))),
             Ok(found) => {
-                let checked = read(found, &mut files, options);
-                let lowered = checked.map(|mut checked| {
+                let checked = read(found, &mut files, &driver.language());
+                let lowered = checked.and_then(|mut checked| {
                     warnings = std::mem::take(&mut checked.warnings);
-                    glsl::lower(&checked)
+                    let denied = denied(&mut warnings, driver.denied());
+                    if denied.is_empty() {
+                        Ok(glsl::lower(&checked))
+                    } else {
+                        Err(Unusable::Invalid(denied))
+                    }
                 });
                 (found.name(), lowered)
             }
@@ -47,6 +53,18 @@ impl Shader {
             warnings,
         }
     }
+}
+
+/// Takes out the warnings that count as errors.
+fn denied(warnings: &mut Vec<Diagnostic>, denied: &[Deny]) -> Vec<Diagnostic> {
+    let (mut errors, rest): (Vec<_>, Vec<_>) = std::mem::take(warnings)
+        .into_iter()
+        .partition(|warning| denied.iter().any(|denied| denied.includes(&warning.code)));
+    *warnings = rest;
+    for error in &mut errors {
+        error.severity = Severity::Error;
+    }
+    errors
 }
 
 fn read(found: &Found, files: &mut Files, options: &glsl::Options) -> Result<Checked, Unusable> {

@@ -1,5 +1,6 @@
 //! The one place that prints.
 
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::Path;
 use std::time::Duration;
@@ -7,9 +8,12 @@ use std::time::Duration;
 use anstyle::{AnsiColor, Style};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use crate::diagnostic::{self, Diagnostic};
+use crate::diagnostic::{self, Diagnostic, Severity};
 use crate::output;
 use crate::source::Files;
+
+/// How many warnings of one code a terminal is shown for one shader.
+const WARNINGS_SHOWN: usize = 3;
 
 /// What a command says, and to whom. Colours are stripped where they are not wanted: in files, in pipes, and
 /// where `NO_COLOR` is set.
@@ -69,15 +73,32 @@ impl Terminal {
         );
     }
 
-    /// Diagnostics with their source lines, on standard error; with `--quiet` a line each.
+    /// Diagnostics with their source lines, on standard error; with `--quiet` a line each. Of warnings with one code the first few
+    /// are shown and the others counted.
     pub(super) fn diagnostics(&self, diagnostics: &[Diagnostic], files: &Files) {
         let mut stderr = anstream::stderr().lock();
+        let mut warnings: BTreeMap<&str, usize> = BTreeMap::new();
         for diagnostic in diagnostics {
+            if diagnostic.severity == Severity::Warning && !self.verbose {
+                let shown = warnings.entry(&diagnostic.code).or_default();
+                *shown += 1;
+                if *shown > WARNINGS_SHOWN {
+                    continue;
+                }
+            }
             let _ = if self.quiet {
                 writeln!(stderr, "{}", diagnostic::short(diagnostic, files))
             } else {
                 write!(stderr, "{}", diagnostic::human(diagnostic, files, true))
             };
+        }
+        for (code, count) in warnings {
+            if let more @ 1.. = count.saturating_sub(WARNINGS_SHOWN) {
+                let _ = writeln!(
+                    stderr,
+                    "{more} more of {code}: --verbose shows them, `toyproof check --explain {code}` tells of it"
+                );
+            }
         }
     }
 

@@ -85,6 +85,12 @@ codes! {
     // Warnings.
     ReservedName "W0001" "A name that begins with what GLSL keeps for itself",
     UnknownExtension "W0002" "An `#extension` that does not exist",
+    // What `warn` finds in a shader that keeps every rule.
+    SineHash "W0005" "Randomness from `fract(sin(x) * 43758.5453)`, which differs from GPU to GPU",
+    UnusedResult "W0010" "A value that is computed and dropped",
+    FloatEquality "W0011" "`==` or `!=` of floats that were computed",
+    BadAllow "W0014" "An `allow` that is not understood",
+    UnusedAllow "W0015" "An `allow` that nothing needs",
 }
 
 /// How many errors of one file are told, and how many warnings; more would help nobody.
@@ -98,7 +104,15 @@ pub(crate) fn tell(told: &mut Vec<Diagnostic>, diagnostic: Diagnostic) {
     }
 }
 
+/// What is said of the place where the characters stand that come out of a macro.
+pub(crate) const IN_MACRO: &str = "written in this macro";
+
 impl Code {
+    /// Whether `// toyproof: allow(…)` may silence it.
+    pub(crate) fn can_be_allowed(self) -> bool {
+        self.as_str().starts_with('W') && !matches!(self, Self::BadAllow | Self::UnusedAllow)
+    }
+
     /// An error of this kind, told of that place: where the author used it, and, for what comes out of a macro, where it is spelled.
     pub fn at(self, place: Place, message: impl Into<String>) -> Diagnostic {
         let diagnostic = if self.as_str().starts_with('W') {
@@ -108,7 +122,7 @@ impl Code {
         };
         let diagnostic = diagnostic.at(place.span);
         if place.is_expanded() {
-            diagnostic.related(place.spelled, "written in this macro")
+            diagnostic.related(place.spelled, IN_MACRO)
         } else {
             diagnostic
         }

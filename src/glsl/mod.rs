@@ -18,6 +18,7 @@ mod preprocess;
 mod print;
 mod token;
 pub mod tree;
+mod warn;
 mod words;
 
 pub use codes::Code;
@@ -44,7 +45,7 @@ pub struct Checked {
     pub main_image: FunctionId,
     /// The shapes of `iChannel0` to `iChannel3`, as asked for or told from use.
     pub channels: [SamplerShape; 4],
-    /// What is legal and worth a word.
+    /// What is legal and worth a word, and not allowed by the author.
     pub warnings: Vec<Diagnostic>,
 }
 
@@ -89,12 +90,16 @@ pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, 
         let mut warnings = told;
         warnings.append(&mut checker.warnings);
         return match main_image {
-            Some(main_image) if checker.errors.is_empty() => Ok(Checked {
-                tree: checker.tree,
-                main_image,
-                channels: channels.shapes,
-                warnings,
-            }),
+            Some(main_image) if checker.errors.is_empty() => {
+                let tree = checker.tree;
+                let warnings = warn::warn(files, &tree, main_image, &text.remarks, warnings);
+                Ok(Checked {
+                    tree,
+                    main_image,
+                    channels: channels.shapes,
+                    warnings,
+                })
+            }
             _ => {
                 let mut all = warnings;
                 all.append(&mut checker.errors);

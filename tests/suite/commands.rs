@@ -59,6 +59,70 @@ fn the_course_is_correct_and_its_json_follows_the_schema() {
 }
 
 #[test]
+fn denied_warnings_are_errors() {
+    let folder = tempfile::tempdir().unwrap();
+    let noise = |words| {
+        format!(
+            "void mainImage(out vec4 c, in vec2 f) {{\n  c = vec4(fract(sin(f.x) * 43758.5453)); {words}\n}}\n"
+        )
+    };
+    fs::write(folder.path().join("noise.glsl"), noise("")).unwrap();
+    fs::write(
+        folder.path().join("known.glsl"),
+        noise("// toyproof: allow(W0005)"),
+    )
+    .unwrap();
+    let convert = |arguments: &[&str]| {
+        let all = [&["convert", "--to", "lowered", "-o", "-"], arguments].concat();
+        toyproof(folder.path(), &all)
+    };
+    let told = convert(&["noise.glsl"]);
+    assert_eq!(told.code, 0);
+    assert!(told.stderr.contains("warning[W0005]"), "{}", told.stderr);
+    for deny in ["warnings", "W0005"] {
+        let denied = convert(&["noise.glsl", "--deny", deny]);
+        assert_eq!((denied.code, &*denied.stdout), (1, ""));
+        assert!(denied.stderr.contains("error[W0005]"), "{}", denied.stderr);
+        let known = convert(&["known.glsl", "--deny", deny]);
+        assert_eq!((known.code, &*known.stderr), (0, ""));
+    }
+    assert_eq!(convert(&["noise.glsl", "--deny", "W0010"]).code, 0);
+    assert_eq!(convert(&["noise.glsl", "--deny", "nonsense"]).code, 2);
+    let run = toyproof(
+        folder.path(),
+        &["check", "noise.glsl", "--deny", "warnings", "--format", "json"],
+    );
+    assert_eq!(run.code, 1, "{}", run.stderr);
+    let json: Value = serde_json::from_str(&run.stdout).unwrap();
+    let shader = &json["shaders"][0];
+    assert_eq!(shader["verdict"], "invalid");
+    assert_eq!(shader["diagnostics"][0]["severity"], "error");
+    assert!(
+        shader["reason"]
+            .as_str()
+            .unwrap()
+            .ends_with("(line 2, column 12)"),
+        "{shader}"
+    );
+}
+
+#[test]
+fn a_terminal_is_shown_a_few_warnings_of_one_kind() {
+    let folder = tempfile::tempdir().unwrap();
+    let lines = "  c += fract(sin(f.x) * 43758.5453);\n".repeat(9);
+    let text = format!("void mainImage(out vec4 c, in vec2 f) {{\n  c = vec4(0);\n{lines}}}\n");
+    fs::write(folder.path().join("noise.glsl"), text).unwrap();
+    let convert = |more: &[&str]| {
+        let all = [&["convert", "noise.glsl", "--to", "lowered", "-o", "-"], more].concat();
+        toyproof(folder.path(), &all).stderr
+    };
+    let told = convert(&[]);
+    assert_eq!(told.matches("warning[W0005]").count(), 3, "{told}");
+    assert!(told.contains("6 more of W0005"), "{told}");
+    assert_eq!(convert(&["--verbose"]).matches("warning[W0005]").count(), 9);
+}
+
+#[test]
 fn a_shader_without_a_scene_is_ok_and_one_with_the_wrong_scene_is_wrong() {
     if !has_driver() {
         return;

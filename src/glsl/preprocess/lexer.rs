@@ -18,6 +18,17 @@ pub(super) struct PpToken {
     pub(super) frozen: bool,
 }
 
+/// A comment `// toyproof: …`.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Remark {
+    /// Where it stands, from its `//` to the end of its line.
+    pub(crate) at: Span,
+    /// Whether nothing but comments stands before it in the file.
+    pub(crate) first: bool,
+    /// Whether nothing else stands on its line.
+    pub(crate) alone: bool,
+}
+
 /// Reads one file, token by token. Newlines are tokens; at the end it gives `End` for ever.
 pub(super) struct Lexer<'a> {
     file: FileId,
@@ -25,6 +36,10 @@ pub(super) struct Lexer<'a> {
     at: usize,
     /// The text of the word or number being read, without line continuations.
     scratch: String,
+    /// Whether a token was read that is no newline.
+    begun: bool,
+    /// What the comments so far say to us.
+    pub(super) remarks: Vec<Remark>,
 }
 
 impl<'a> Lexer<'a> {
@@ -34,6 +49,8 @@ impl<'a> Lexer<'a> {
             text,
             at: 0,
             scratch: String::new(),
+            begun: false,
+            remarks: Vec::new(),
         }
     }
 
@@ -68,6 +85,7 @@ impl<'a> Lexer<'a> {
             }
             Some(c) => self.punctuator(c),
         };
+        self.begun |= kind != TokenKind::Newline;
         let span = Span::new(self.file, start as u32, self.at as u32);
         PpToken {
             kind,
@@ -118,13 +136,29 @@ impl<'a> Lexer<'a> {
             match self.peek() {
                 Some(' ' | '\t' | '\u{b}' | '\u{c}') => self.bump(),
                 Some('/') if self.peek_second() == Some('/') => {
-                    while self.peek().is_some_and(|c| c != '\n') {
-                        self.bump();
-                    }
+                    self.line_comment();
                 }
                 Some('/') if self.peek_second() == Some('*') => self.block_comment()?,
                 _ => return Ok(()),
             }
+        }
+    }
+
+    fn line_comment(&mut self) {
+        let start = self.at;
+        while self.peek().is_some_and(|c| c != '\n') {
+            self.bump();
+        }
+        if self.text[start + 2..self.at]
+            .trim_start()
+            .starts_with("toyproof:")
+        {
+            let before = self.text[..start].trim_end_matches([' ', '\t']);
+            self.remarks.push(Remark {
+                at: Span::new(self.file, start as u32, self.at as u32),
+                first: !self.begun,
+                alone: before.is_empty() || before.ends_with(['\n', '\r']),
+            });
         }
     }
 

@@ -15,6 +15,7 @@ use std::collections::HashMap;
 
 use self::condition::Group;
 use self::expand::Stream;
+pub(crate) use self::lexer::Remark;
 use self::lexer::{Lexer, PpToken};
 use self::macros::Macro;
 use super::codes::{Code, tell};
@@ -32,6 +33,8 @@ pub(crate) struct Preprocessed {
     pub(crate) tokens: Vec<Token>,
     /// Their texts.
     pub(crate) words: Words,
+    /// What its comments say to us.
+    pub(crate) remarks: Vec<Remark>,
     /// Errors and warnings.
     pub(crate) diagnostics: Vec<Diagnostic>,
 }
@@ -85,6 +88,7 @@ pub(crate) fn preprocess(files: &Files, file: FileId) -> Preprocessed {
     Preprocessed {
         tokens,
         words: preprocessor.words,
+        remarks: preprocessor.lexer.remarks,
         diagnostics: preprocessor.diagnostics,
     }
 }
@@ -160,7 +164,11 @@ impl<'a> Preprocessor<'a> {
     /// The next token of the running text; directives are obeyed and skipped groups passed over on the way.
     fn next_of_text(&mut self) -> PpToken {
         loop {
+            let remarks = self.lexer.remarks.len();
             let token = self.lex();
+            if !self.is_active() {
+                self.lexer.remarks.truncate(remarks);
+            }
             match token.kind {
                 TokenKind::Newline => self.line_start = true,
                 TokenKind::Punctuator(Punctuator::Hash) if self.line_start => {

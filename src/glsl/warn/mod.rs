@@ -1,0 +1,98 @@
+//! What is legal GLSL and will not do what its author meant, or not everywhere: one file for each warning.
+//!
+//! A warning that is wrong teaches people to read none, so each analysis speaks where it is sure, and is silent where it
+//! is not. Only what `mainImage` reaches is looked at. Time is linear in the size of the shader; blocks are walked by
+//! recursion, as their nesting is bounded, and all else with loops.
+
+mod allow;
+mod equality;
+mod program;
+mod randomness;
+mod shape;
+mod unused;
+
+use std::collections::HashSet;
+
+use self::allow::Allows;
+use self::program::Program;
+use super::codes::{Code, MAX_TOLD};
+use super::preprocess::Remark;
+use super::tree::{FunctionId, Place, Tree};
+use crate::diagnostic::Diagnostic;
+use crate::source::Files;
+
+/// The warnings about a shader that keeps every rule, `told` before among them: in the order of the text, without those that its author
+/// allows, and what they allow.
+pub(super) fn warn(
+    files: &Files,
+    tree: &Tree,
+    main: FunctionId,
+    remarks: &[Remark],
+    told: Vec<Diagnostic>,
+) -> Vec<Diagnostic> {
+    let program = Program::new(tree, main);
+    let mut found = Found::default();
+    equality::run(&program, &mut found);
+    randomness::run(&program, &mut found);
+    unused::run(&program, &mut found);
+    let mut all = told;
+    all.append(&mut found.all);
+    let mut of_remarks = Vec::new();
+    let allows = Allows::read(files, remarks, tree, &mut of_remarks);
+    let mut left = allows.sift(all);
+    left.append(&mut of_remarks);
+    left.sort_by_key(|diagnostic| diagnostic.span.map(|span| span.start));
+    left.truncate(MAX_TOLD);
+    left
+}
+
+/// What the analyses found so far.
+#[derive(Default)]
+struct Found {
+    all: Vec<Diagnostic>,
+    /// A macro used a hundred times is told once.
+    spelled: HashSet<(Code, Place)>,
+}
+
+impl Found {
+    /// Adds a warning, unless the same characters were warned of before.
+    fn tell(
+        &mut self,
+        code: Code,
+        at: Place,
+        message: impl Into<String>,
+        finish: impl FnOnce(Diagnostic) -> Diagnostic,
+    ) {
+        if self.spelled.insert((code, Place::plain(at.spelled))) {
+            self.all.push(finish(code.at(at, message)));
+        }
+    }
+}
+
+/// A number as people write it, with at most six digits that count.
+fn number(value: f64) -> String {
+    let size = value.abs();
+    if value == 0.0 || (1e-3..1e6).contains(&size) {
+        let digits = if value == 0.0 {
+            0
+        } else {
+            (5 - size.log10().floor() as i32).max(0) as usize
+        };
+        let text = format!("{value:.digits$}");
+        if text.contains('.') {
+            return text.trim_end_matches('0').trim_end_matches('.').to_owned();
+        }
+        return text;
+    }
+    let text = format!("{value:.2e}");
+    match text.split_once('e') {
+        Some((digits, exponent)) => format!(
+            "{}e{exponent}",
+            digits.trim_end_matches('0').trim_end_matches('.')
+        ),
+        None => text,
+    }
+}
+
+#[cfg(test)]
+mod tests;
