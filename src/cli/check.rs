@@ -17,7 +17,7 @@ use crate::frame::Frame;
 use crate::gpu::{Drawn, Failure, FloatMode, INSTALL_HINT, Worker};
 use crate::image::{self, Image, Legend};
 use crate::report::{self, Record, Report, Seconds};
-use crate::scene::{self, Scene};
+use crate::scene::{self, Moment, Scene};
 use crate::source::{self, Files, Found, FoundIn, ReadError};
 use crate::trace::Tracer;
 
@@ -201,7 +201,11 @@ impl Checker<'_> {
             }) => {
                 frame.size = self.args.frame.size.unwrap_or(scene.film.size);
                 scene.film.size = frame.size;
-                Some(Tracer::<f64>::new(&scene))
+                let moment = Moment {
+                    frame: frame.frame,
+                    time: f64::from(frame.time),
+                };
+                Some(Tracer::<f64>::at(&scene, moment))
             }
         };
         let float = self.args.driver.float();

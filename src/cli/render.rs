@@ -7,7 +7,7 @@ use clap::ValueEnum;
 
 use super::{Exit, Terminal, inputs};
 use crate::image::{self, Image};
-use crate::scene::{self, Scene};
+use crate::scene::{self, Moment, Requirements, Sampler, Scene};
 use crate::source::{self, Files};
 use crate::trace::{Real, Tracer};
 
@@ -15,7 +15,8 @@ use crate::trace::{Real, Tracer};
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "Examples:\n  toyproof render glsl/02-sphere.toml -o reference.png\n  \
-                        toyproof render scene.toml -o reference.exr --size 1920x1080 --samples 64"
+                        toyproof render scene.toml -o reference.exr --size 1920x1080 --samples 64\n  \
+                        toyproof render scene.toml -o reference.png --sampler sobol --max-error 0.002"
 )]
 pub(super) struct Args {
     /// The scene, in TOML
@@ -29,9 +30,50 @@ pub(super) struct Args {
     /// Samples in each pixel [default: the scene's]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65_536))]
     samples: Option<u32>,
+    /// Where samples lie in a pixel, and what lights and surfaces draw [default: the scene's]
+    #[arg(long, value_enum, value_name = "NAME")]
+    sampler: Option<SamplerName>,
+    /// Take samples until the estimated error of every tile of 16x16 pixels is below this, in [0, 1], and say how
+    /// many it took; needs a sampler that draws
+    #[arg(long, value_name = "ERROR", value_parser = max_error, conflicts_with = "samples")]
+    max_error: Option<f64>,
     /// Width and height in pixels [default: the scene's]
     #[arg(long, value_name = "WxH", value_parser = inputs::size)]
     size: Option<[u32; 2]>,
+    /// The time in seconds, where anything moves by it
+    #[arg(long, value_name = "S", default_value_t = 0.0, allow_negative_numbers = true)]
+    time: f64,
+    /// The number of the frame, where anything moves by it
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(i32).range(0..))]
+    frame: i32,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum SamplerName {
+    Center,
+    SineHash,
+    Independent,
+    Stratified,
+    Sobol,
+}
+
+impl From<SamplerName> for Sampler {
+    fn from(name: SamplerName) -> Self {
+        match name {
+            SamplerName::Center => Self::Center,
+            SamplerName::SineHash => Self::SineHash,
+            SamplerName::Independent => Self::Independent,
+            SamplerName::Stratified => Self::Stratified,
+            SamplerName::Sobol => Self::Sobol,
+        }
+    }
+}
+
+fn max_error(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(error) if error > 0.0 && error <= 1.0 => Ok(error),
+        _ => Err("expected a number above 0 and at most 1".to_owned()),
+    }
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -46,10 +88,19 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     };
     scene.film.size = args.size.unwrap_or(scene.film.size);
     scene.film.samples = args.samples.unwrap_or(scene.film.samples);
+    scene.film.sampler = args.sampler.map_or(scene.film.sampler, Sampler::from);
+    let requirements = Requirements::of(&scene);
+    if !scene.film.sampler.draws()
+        && (requirements.soft_shadows || requirements.path_tracing || args.max_error.is_some())
+    {
+        terminal.error("this needs a sampler that draws: --sampler independent, stratified or sobol");
+        return Exit::Trouble;
+    }
+    terminal.detail(&format!("the scene requires {requirements}"));
     let start = Instant::now();
     let picture = match args.precision {
-        Precision::F32 => trace::<f32>(&scene, terminal),
-        Precision::F64 => trace::<f64>(&scene, terminal),
+        Precision::F32 => trace::<f32>(&scene, args, terminal),
+        Precision::F64 => trace::<f64>(&scene, args, terminal),
     };
     terminal.detail(&format!("traced in {:.3} s", start.elapsed().as_secs_f64()));
     match image::encode(&picture, &args.output) {
@@ -78,9 +129,24 @@ fn load(path: &Path, terminal: &Terminal) -> Option<Scene> {
 }
 
 /// The picture, with a bar that shows its rows.
-fn trace<T: Real>(scene: &Scene, terminal: &Terminal) -> Image {
+fn trace<T: Real>(scene: &Scene, args: &Args, terminal: &Terminal) -> Image {
+    let moment = Moment {
+        frame: args.frame,
+        time: args.time,
+    };
+    let tracer = Tracer::<T>::at(scene, moment);
     let bar = terminal.bar(u64::from(scene.film.size[1]), "tracing");
-    let picture = Tracer::<T>::new(scene).picture(|| bar.inc(1));
+    let Some(max_error) = args.max_error else {
+        let picture = tracer.picture(|| bar.inc(1));
+        bar.finish_and_clear();
+        return picture;
+    };
+    let (picture, spent) = tracer.picture_within(max_error, || bar.inc(1));
     bar.finish_and_clear();
+    let [most, fewest] = spent.per_pixel;
+    terminal.say(&format!(
+        "{} samples, {fewest} to {most} in a pixel; the largest estimated error of a tile is {:.1e}",
+        spent.samples, spent.error
+    ));
     picture
 }

@@ -10,6 +10,7 @@ mod noise;
 pub use file::{ImageError, encode, read};
 pub use legend::{Legend, Mark, difference};
 pub use noise::noise;
+pub(crate) use noise::pcg;
 
 use serde::{Deserialize, Serialize};
 

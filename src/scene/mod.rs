@@ -2,9 +2,27 @@
 //!
 //! Lengths are in scene units, colours linear RGB. The camera looks along −z, y is up.
 
+mod camera;
+mod figure;
 mod file;
+mod film;
+mod light;
+mod material;
+mod motion;
+mod requirements;
+mod scatter;
+mod shape;
 
+pub use camera::{Camera, Projection};
+pub use figure::{Figure, Outline};
 pub use file::parse;
+pub use film::{Film, Integrator, Sampler, ToneMap};
+pub use light::{Background, Light};
+pub use material::{Checker, Disney, Fresnel, Material, Model};
+pub use motion::{Moment, Motion, Period};
+pub use requirements::Requirements;
+pub use scatter::{Scatter, unit};
+pub use shape::{Quadric, QuadricKind, Shape};
 
 /// A colour, linear RGB; each component ≥ 0, nominally in [0, 1].
 pub type Color = [f64; 3];
@@ -16,103 +34,52 @@ pub type Point = [f64; 3];
 pub struct Scene {
     /// What people call it; may be empty.
     pub title: String,
-    /// Added to the light on every lambert surface.
+    /// Light from everywhere, added to that of the lights on every surface that has a BRDF.
     pub ambient: Color,
-    /// How it is sampled.
+    /// How it is sampled and developed.
     pub film: Film,
     /// Where it is seen from.
     pub camera: Camera,
     /// What a ray sees that meets nothing.
     pub background: Background,
+    /// What is painted on the screen itself, the last on top.
+    pub figures: Vec<Figure>,
     /// The lights.
     pub lights: Vec<Light>,
-    /// The spheres.
-    pub spheres: Vec<Sphere>,
+    /// The surfaces.
+    pub objects: Vec<Object>,
+    /// How lights and surfaces move, each within an earlier one or none.
+    pub motions: Vec<Motion>,
 }
 
-/// How the picture is sampled.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Film {
-    /// Width and height in pixels.
-    pub size: [u32; 2],
-    /// Samples in each pixel, averaged; ≥ 1.
-    pub samples: u32,
-    /// Where in the pixel they lie.
-    pub sampler: Sampler,
-    /// Path segments: 1 is camera rays only.
-    pub max_depth: u32,
-}
-
-/// Where in a pixel its samples lie.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Sampler {
-    /// All at its centre.
-    Center,
-    /// Where the course's `fract(sin(seed++) * 43758.5453123)` puts them, the seed 0 at each pixel.
-    SineHash,
-}
-
-/// A pinhole and the screen before it: x ∈ [−1, 1], y ∈ [−1, 1] / aspect.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Camera {
-    /// The pinhole.
-    pub eye: Point,
-    /// The screen plane lies at z = eye.z − this; > 0.
-    pub screen_distance: f64,
-}
-
-/// What a ray sees that meets nothing.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Background {
-    /// One colour.
-    Uniform(Color),
-    /// `mix(bottom, top, 0.5 · (1 + d.y))`, d the ray's unit direction.
-    Gradient {
-        /// Straight below.
-        bottom: Color,
-        /// Straight above.
-        top: Color,
-    },
-}
-
-/// A point light without falloff.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Light {
-    /// Where it is.
-    pub position: Point,
-    /// Its colour.
-    pub color: Color,
-    /// Whether what lies strictly between it and a surface shades the surface.
-    pub shadow: bool,
-}
-
-/// A sphere.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sphere {
-    /// Its centre.
-    pub center: Point,
-    /// Its radius, > 0.
-    pub radius: f64,
+/// A surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Object {
+    /// Its shape, where it is when nothing has moved.
+    pub shape: Shape,
     /// What it is made of.
     pub material: Material,
+    /// Which of the scene's motions moves it.
+    pub motion: Option<usize>,
 }
 
-/// What a surface does with light.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Material {
-    /// How it answers.
-    pub model: Model,
-    /// Its colour.
-    pub color: Color,
-}
-
-/// How a surface answers light. D is the ray's direction, N the outward normal, L the direction to a light.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Model {
-    /// `color · |D·N|`
-    Facing,
-    /// `color · (ambient + Σ light · max(N·L, 0) · visibility)`
-    Lambert,
-    /// `color ·` the radiance along the reflected ray; black beyond the last path segment.
-    Mirror,
+impl Scene {
+    /// The scene at that moment: all that moves is where it is then, and nothing moves any more.
+    #[must_use]
+    pub fn at(&self, moment: Moment) -> Self {
+        let mut scene = self.clone();
+        let places = motion::places(&self.motions, moment);
+        for light in &mut scene.lights {
+            if let Some(motion) = light.motion.take() {
+                light.position = places[motion].point(light.position);
+            }
+        }
+        for object in &mut scene.objects {
+            if let Some(motion) = object.motion.take() {
+                object.shape = object.shape.moved(&places[motion]);
+            }
+        }
+        scene.motions.clear();
+        scene
+    }
 }

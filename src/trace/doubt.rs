@@ -5,7 +5,8 @@
 //! mirror enlarges them. [`Tracer::hull`] asks the tracer again with everything moved by a stated bound.
 
 use super::real::{Real, Vector};
-use super::{Tracer, sampler};
+use super::sampler::{self, Sample};
+use super::{Tracer, film};
 
 /// What is moved, and how far. [`Exact`] moves nothing and costs nothing.
 pub(super) trait Doubt<T: Real> {
@@ -240,11 +241,18 @@ impl Tracer<f64> {
             low: [0.0; 3],
             high: [0.0; 3],
         };
-        for sample in 0..self.film.samples {
+        let count = self.film.samples;
+        for index in 0..count {
             let mut low = [f64::INFINITY; 3];
             let mut high = [f64::NEG_INFINITY; 3];
             for moved in variants() {
-                let color = self.sample(x, y, sample, &moved).to_array();
+                let sample = Sample {
+                    pixel: [x, y],
+                    index,
+                    count,
+                    set: 0,
+                };
+                let color = self.sample(sample, &moved).to_array();
                 for i in 0..3 {
                     low[i] = low[i].min(color[i]);
                     high[i] = high[i].max(color[i]);
@@ -255,7 +263,7 @@ impl Tracer<f64> {
                 sum.high[i] += high[i];
             }
         }
-        let mean = |total: f64| total / f64::from(self.film.samples);
+        let mean = |total: f64| film::develop(&self.film, total / f64::from(count));
         Hull {
             low: sum.low.map(mean),
             high: sum.high.map(mean),

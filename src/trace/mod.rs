@@ -1,43 +1,79 @@
 //! The reference tracer: what a scene looks like, in f32 or f64.
 //!
-//! It is written for correctness: the recentred discriminant with stable roots, no epsilons, secondary rays
-//! that leave a sphere skip it. [`Tracer::hull`] tells how far a pixel's colour may move for reasons that are
-//! not a mistake: legal styles of offset, and rounding in float32.
+//! It is written for correctness: recentred discriminants with stable roots, no epsilons, secondary rays
+//! do not meet the point that they start from. [`Tracer::hull`] tells how far a pixel's colour may move for reasons
+//! that are not a mistake: legal styles of offset, and rounding in float32.
 
+mod adaptive;
 mod camera;
 mod doubt;
-mod radiance;
+mod figure;
+mod film;
+mod light;
+mod material;
+mod ray;
 mod real;
 mod sampler;
-mod sphere;
+mod shape;
+#[cfg(test)]
+mod tests;
+mod world;
 
 use rayon::prelude::*;
 
+pub use adaptive::Spent;
 pub use doubt::Hull;
 pub use real::{Real, Vector};
 
 use self::camera::Camera;
 use self::doubt::{Doubt, Exact};
-use self::radiance::World;
+use self::figure::Figure;
+use self::sampler::{Draws, Sample};
+use self::shape::{Shape, Sphere};
+use self::world::World;
 use crate::image::Image;
-use crate::scene::{Film, Scene};
+use crate::scene::{self, Film, Moment, Requirements, Scene};
 
 /// A scene in the number type that it is traced in.
 #[derive(Debug)]
 pub struct Tracer<T: Real> {
     film: Film,
     camera: Camera<T>,
-    world: World<T>,
+    figures: Vec<Figure<T>>,
+    kernel: Kernel<T>,
+}
+
+/// What a scene requires of the loops over its surfaces.
+#[derive(Debug)]
+enum Kernel<T: Real> {
+    Spheres(World<T, Sphere<T>>),
+    Shapes(World<T, Shape<T>>),
 }
 
 impl<T: Real> Tracer<T> {
-    /// A tracer of `scene`; its numbers are rounded to `T` once, here.
+    /// A tracer of `scene` before anything has moved; its numbers are rounded to `T` once, here.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
+        Self::at(scene, Moment::default())
+    }
+
+    /// A tracer of `scene` at that moment.
+    #[must_use]
+    pub fn at(scene: &Scene, moment: Moment) -> Self {
+        let requirements = Requirements::of(scene);
+        let scene = &scene.at(moment);
         Self {
             film: scene.film,
             camera: Camera::new(scene),
-            world: World::new(scene),
+            figures: scene.figures.iter().map(Figure::new).collect(),
+            kernel: if requirements.shapes {
+                Kernel::Shapes(World::new(scene, |object| Shape::new(&object.shape)))
+            } else {
+                Kernel::Spheres(World::new(scene, |object| match object.shape {
+                    scene::Shape::Sphere { center, radius } => Sphere::new(center, radius),
+                    _ => unreachable!("a scene that requires other shapes has the other kernel"),
+                }))
+            },
         }
     }
 
@@ -60,176 +96,42 @@ impl<T: Real> Tracer<T> {
         Image::new(width, height, pixels)
     }
 
-    /// The colour of the pixel at (x, y), y upwards: the mean of its samples.
+    /// The colour of the pixel at (x, y), y upwards: the mean of its samples, developed.
     #[must_use]
     pub fn pixel(&self, x: u32, y: u32) -> [T; 3] {
         let mut sum = T::Vec3::ZERO;
-        for sample in 0..self.film.samples {
-            sum = sum + self.sample(x, y, sample, &Exact);
+        let count = self.film.samples;
+        for index in 0..count {
+            let sample = Sample {
+                pixel: [x, y],
+                index,
+                count,
+                set: 0,
+            };
+            sum = sum + self.sample(sample, &Exact);
         }
-        (sum / T::from_f64(f64::from(self.film.samples))).to_array()
+        let mean = sum / T::from_f64(f64::from(count));
+        mean.to_array().map(|c| film::develop(&self.film, c))
     }
 
-    fn sample(&self, x: u32, y: u32, sample: u32, doubt: &impl Doubt<T>) -> T::Vec3 {
-        let [jx, jy] = sampler::jitter(self.film.sampler, sample, doubt);
+    fn sample(&self, sample: Sample, doubt: &impl Doubt<T>) -> T::Vec3 {
+        let mut draws = Draws::new(self.film.sampler, sample);
+        let [jx, jy] = draws.jitter(doubt);
         let half = T::from_f64(0.5);
-        let [width, height] = self.film.size;
+        let ([x, y], [width, height]) = (sample.pixel, self.film.size);
         let place = |pixel: u32, jitter: T, side: u32, axis: u32| {
             doubt.place(T::from_f64(f64::from(pixel)) + half + jitter, side, axis)
         };
-        let ray = self.camera.ray(place(x, jx, width, 0), place(y, jy, height, 1));
-        self.world.radiance(ray, self.film.max_depth, doubt)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::scene;
-    use crate::source::{File, Files};
-
-    fn scene(text: &str) -> Scene {
-        let mut files = Files::default();
-        let file = files.add(File::new("s", text));
-        scene::parse(&files, file).unwrap()
-    }
-
-    fn pixel(text: &str, x: u32, y: u32) -> [f64; 3] {
-        Tracer::<f64>::new(&scene(text)).pixel(x, y)
-    }
-
-    fn near(actual: [f64; 3], expected: [f64; 3]) {
-        for (a, e) in actual.iter().zip(expected) {
-            assert!((a - e).abs() < 1e-12, "{actual:?} is not {expected:?}");
+        let screen = self
+            .camera
+            .screen(place(x, jx, width, 0), place(y, jy, height, 1));
+        if let Some(color) = figure::color(&self.figures, screen[0], screen[1]) {
+            return color;
         }
-    }
-
-    /// One pixel that looks straight along −z.
-    const ONE: &str = "[film]\nsize = [1, 1]\n";
-
-    fn ball(center: &str, radius: &str, material: &str) -> String {
-        format!("[[sphere]]\ncenter = {center}\nradius = {radius}\nmaterial = {material}\n")
-    }
-
-    #[test]
-    fn a_sphere_straight_ahead_faces_the_eye() {
-        let text = ONE.to_owned() + &ball("[0, 0, -6]", "1.5", "{ model = \"facing\", color = [1, 0.5, 0] }");
-        near(pixel(&text, 0, 0), [1.0, 0.5, 0.0]);
-    }
-
-    #[test]
-    fn the_aspect_stretches_y_and_the_picture_stands_upright() {
-        let film = "[film]\nsize = [4, 2]\n[background]\nbottom = [0, 0, 0]\ntop = [1, 1, 1]\n";
-        // Pixel (3, 1): x = 0.75, y = 0.5 / 2, screen at −2.
-        let y = 0.25 / (0.75f64.powi(2) + 0.25f64.powi(2) + 4.0).sqrt();
-        near(pixel(film, 3, 1), [0.5 * (1.0 + y); 3]);
-        near(pixel(film, 0, 0), [0.5 * (1.0 - y); 3]);
-    }
-
-    #[test]
-    fn what_lies_behind_the_eye_is_not_seen_and_from_inside_the_far_side_is() {
-        let facing = "{ model = \"facing\", color = [1, 1, 1] }";
-        near(
-            pixel(&(ONE.to_owned() + &ball("[0, 0, 6]", "1.5", facing)), 0, 0),
-            [0.0; 3],
-        );
-        near(
-            pixel(&(ONE.to_owned() + &ball("[0, 0, 1]", "3", facing)), 0, 0),
-            [1.0; 3],
-        );
-    }
-
-    #[test]
-    fn lambert_adds_ambient_and_each_light_by_its_cosine() {
-        let text = format!(
-            "ambient = [0.1, 0.1, 0.1]\n{ONE}[[light]]\nposition = [0, 5, 0]\ncolor = [0.5, 1, 1]\n{}",
-            ball("[0, 0, -6]", "1", "{ model = \"lambert\", color = [1, 0.5, 1] }")
-        );
-        // The hit is (0, 0, −5), N = +z, L = (0, 5, 5) / √50.
-        let cosine = 0.5f64.sqrt();
-        near(
-            pixel(&text, 0, 0),
-            [0.1 + 0.5 * cosine, 0.5 * (0.1 + cosine), 0.1 + cosine],
-        );
-    }
-
-    #[test]
-    fn only_what_lies_between_surface_and_light_shades_it() {
-        let lit = |blocker: &str, shadow: &str| {
-            let text = format!(
-                "{ONE}[[light]]\nposition = [0, 0, 0]\nshadow = {shadow}\n{}{blocker}",
-                ball("[0, 0, -6]", "1", "{ model = \"lambert\", color = [1, 1, 1] }")
-            );
-            // Straight from the side: the eye's own ray passes below the blocker.
-            pixel(
-                &text.replace("position = [0, 0, 0]", "position = [0, 3, -2]"),
-                0,
-                0,
-            )[0]
-        };
-        let matte = "{ model = \"lambert\", color = [1, 1, 1] }";
-        let between = ball("[0, 1.5, -3.5]", "0.5", matte);
-        let beyond = ball("[0, 4.5, -0.5]", "0.5", matte);
-        let cosine = 0.5f64.sqrt();
-        assert_eq!(lit(&between, "true"), 0.0);
-        assert!((lit(&between, "false") - cosine).abs() < 1e-12);
-        assert!((lit(&beyond, "true") - cosine).abs() < 1e-12);
-    }
-
-    #[test]
-    fn a_mirror_shows_what_it_reflects_until_the_depth_is_spent() {
-        let mirrors = ball("[0, 0, -6]", "1", "{ model = \"mirror\", color = [0.5, 1, 1] }")
-            + &ball("[0, 0, 6]", "1", "{ model = \"mirror\", color = [1, 0.5, 1] }");
-        let text = |depth: u32| {
-            format!("[film]\nsize = [1, 1]\nmax_depth = {depth}\n[background]\ncolor = [1, 1, 1]\n{mirrors}")
-        };
-        // Face to face, the ray never leaves.
-        near(pixel(&text(7), 0, 0), [0.0; 3]);
-        let one = ball("[0, 0, -6]", "1", "{ model = \"mirror\", color = [0.5, 1, 1] }");
-        let open = |depth: u32| {
-            format!(
-                "[film]\nsize = [1, 1]\nmax_depth = {depth}\n[background]\nbottom = [1, 1, 1]\ntop = [0.2, 1, 1]\n{one}"
-            )
-        };
-        near(pixel(&open(1), 0, 0), [0.0; 3]);
-        near(pixel(&open(2), 0, 0), [0.3, 1.0, 1.0]);
-    }
-
-    #[test]
-    fn inside_a_mirror_the_ray_goes_from_far_side_to_far_side() {
-        // From the centre straight ahead and back again: never out, and never stuck at its own start.
-        let text = "[film]\nsize = [1, 1]\nmax_depth = 4\n[background]\ncolor = [1, 1, 1]\n".to_owned()
-            + &ball("[0, 0, 0]", "2", "{ model = \"mirror\", color = [1, 1, 1] }")
-            + &ball("[0, 0, 1.5]", "0.25", "{ model = \"facing\", color = [0, 0, 1] }");
-        near(pixel(&text, 0, 0), [0.0, 0.0, 1.0]);
-    }
-
-    #[test]
-    fn the_sine_hash_draws_x_first_from_a_seed_of_zero() {
-        let text = "[film]\nsize = [1, 1]\nsampler = \"sine-hash\"\n[background]\nbottom = [0, 0, 0]\ntop = [1, 1, 1]\n";
-        let draw = (1f64.sin() * 43_758.545_312_3).fract();
-        let (x, y) = (-1.0, draw * 2.0 - 1.0);
-        let expected = 0.5 * (1.0 + y / (x * x + y * y + 4.0f64).sqrt());
-        near(pixel(text, 0, 0), [expected; 3]);
-    }
-
-    #[test]
-    fn both_precisions_agree_to_float32() {
-        let text = format!(
-            "[film]\nsize = [32, 18]\nmax_depth = 5\n[background]\nbottom = [0.1, 0.1, 0.3]\ntop = [0.7, 0.8, 0.9]\n{}{}",
-            ball(
-                "[0, 0, -6]",
-                "1.5",
-                "{ model = \"mirror\", color = [1, 0.9, 0.8] }"
-            ),
-            ball("[-1, 1, -4]", "0.7", "{ model = \"facing\", color = [1, 0, 0] }")
-        );
-        let single = Tracer::<f32>::new(&scene(&text)).picture(|| ());
-        let double = Tracer::<f64>::new(&scene(&text)).picture(|| ());
-        for (a, b) in single.pixels().iter().zip(double.pixels()) {
-            for (a, b) in a.iter().zip(b) {
-                assert!((a - b).abs() < 2e-5, "{a} {b}");
-            }
+        let ray = self.camera.ray(screen);
+        match &self.kernel {
+            Kernel::Spheres(world) => world.radiance(ray, &mut draws, doubt),
+            Kernel::Shapes(world) => world.radiance(ray, &mut draws, doubt),
         }
     }
 }

@@ -17,9 +17,21 @@ pub trait Real: Float + Debug + Send + Sync + 'static {
     /// The same value; exact.
     fn to_f64(self) -> f64;
 
-    /// sin by libm: the same bits on every platform, unlike the system's.
+    /// sin and cos by libm: the same bits on every platform, unlike the system's.
     #[must_use]
-    fn sine(self) -> Self;
+    fn sine_and_cosine(self) -> (Self, Self);
+
+    /// pow by libm.
+    #[must_use]
+    fn power(self, exponent: Self) -> Self;
+
+    /// ln by libm.
+    #[must_use]
+    fn logarithm(self) -> Self;
+
+    /// The largest power of two that is not above this, which is positive, normal and finite.
+    #[must_use]
+    fn power_of_two(self) -> Self;
 }
 
 /// Three components.
@@ -50,13 +62,33 @@ pub trait Vector<T>:
     /// The scalar product.
     fn dot(self, other: Self) -> T;
 
-    /// Of length 1, in the same direction.
+    /// The vector product.
+    #[must_use]
+    fn cross(self, other: Self) -> Self;
+
+    /// The largest absolute value of a component.
+    fn size(self) -> T;
+
+    /// Of length 1, in the same direction, for any length that is not 0: it is scaled by a power of two first,
+    /// so that no square overflows.
     #[must_use]
     fn normalize(self) -> Self;
+
+    /// The length, likewise.
+    fn length(self) -> T;
+}
+
+/// The power of two that brings a vector of that size near 1; 1 for what has no size.
+fn scale<T: Real>(size: T) -> T {
+    if size.is_normal() {
+        size.power_of_two()
+    } else {
+        T::one()
+    }
 }
 
 macro_rules! real {
-    ($scalar:ty, $vector:ty, $sine:path) => {
+    ($scalar:ty, $vector:ty, $sine_and_cosine:path, $power:path, $logarithm:path) => {
         impl Real for $scalar {
             type Vec3 = $vector;
 
@@ -68,8 +100,20 @@ macro_rules! real {
                 f64::from(self)
             }
 
-            fn sine(self) -> Self {
-                $sine(self)
+            fn sine_and_cosine(self) -> (Self, Self) {
+                $sine_and_cosine(self)
+            }
+
+            fn power(self, exponent: Self) -> Self {
+                $power(self, exponent)
+            }
+
+            fn logarithm(self) -> Self {
+                $logarithm(self)
+            }
+
+            fn power_of_two(self) -> Self {
+                Self::from_bits(self.to_bits() & Self::INFINITY.to_bits())
             }
         }
 
@@ -92,12 +136,26 @@ macro_rules! real {
                 Self::dot(self, other)
             }
 
+            fn cross(self, other: Self) -> Self {
+                Self::cross(self, other)
+            }
+
+            fn size(self) -> $scalar {
+                self.abs().max_element()
+            }
+
             fn normalize(self) -> Self {
-                self / Self::length(self)
+                let scaled = self / scale(self.size());
+                scaled / Self::length(scaled)
+            }
+
+            fn length(self) -> $scalar {
+                let scale = scale(self.size());
+                Self::length(self / scale) * scale
             }
         }
     };
 }
 
-real!(f32, Vec3, libm::sinf);
-real!(f64, DVec3, libm::sin);
+real!(f32, Vec3, libm::sincosf, libm::powf, libm::logf);
+real!(f64, DVec3, libm::sincos, libm::pow, libm::log);

@@ -1,0 +1,53 @@
+// Two-dimensional figures given by implicit functions, inside where f < 0; several samples smooth their edges.
+
+const int SAMPLES = 10;
+
+float seed;
+
+float random() {
+    return fract(sin(seed++) * 43758.5453123);
+}
+
+float disk(vec2 p, vec2 center, float radius) {
+    vec2 d = p - center;
+    return dot(d, d) - radius * radius;
+}
+
+// Below a sine wave.
+float wave(vec2 p, float height, float amplitude, float frequency) {
+    return p.y - height - amplitude * sin(frequency * p.x);
+}
+
+float heart(vec2 p, vec2 center, float size) {
+    vec2 q = (p - center) / size;
+    float ring = dot(q, q) - 1.0;
+    return ring * ring * ring - q.x * q.x * q.y * q.y * q.y;
+}
+
+// What is tested first lies on top.
+vec3 figures(vec2 p) {
+    if (heart(p, vec2(0.35, 0.08), 0.25) < 0.0) {
+        return vec3(0.85, 0.1, 0.2);
+    }
+    if (disk(p, vec2(-0.45, 0.15), 0.28) < 0.0) {
+        return vec3(1.0, 0.8, 0.2);
+    }
+    if (wave(p, -0.2, 0.1, 9.0) < 0.0) {
+        return vec3(0.1, 0.35, 0.6);
+    }
+    return vec3(0.75, 0.85, 0.95);
+}
+
+void mainImage(out vec4 fragColor, in vec2 fragCoord) {
+    seed = 0.0;
+    float aspect = iResolution.x / iResolution.y;
+    vec3 color = vec3(0.0);
+    for (int i = 0; i < SAMPLES; i++) {
+        float fx = fragCoord.x + random() - 0.5;
+        float fy = fragCoord.y + random() - 0.5;
+        float x = fx / iResolution.x * 2.0 - 1.0;
+        float y = (fy / iResolution.y * 2.0 - 1.0) / aspect;
+        color += figures(vec2(x, y));
+    }
+    fragColor = vec4(color / float(SAMPLES), 1.0);
+}

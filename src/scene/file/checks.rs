@@ -1,0 +1,170 @@
+//! Takes values that are in range and notes those that are not.
+
+use std::ops::Range;
+
+use glam::DVec3;
+use toml::Spanned;
+
+use super::super::{Color, Point, Scene};
+use crate::diagnostic::Diagnostic;
+use crate::image::check_size;
+use crate::source::{FileId, Span};
+
+pub(super) type Pair = Spanned<[f64; 2]>;
+pub(super) type Triple = Spanned<[f64; 3]>;
+
+pub(super) fn span(file: FileId, bytes: Range<usize>) -> Span {
+    Span::new(file, bytes.start as u32, bytes.end.max(bytes.start) as u32)
+}
+
+pub(super) struct Checks {
+    file: FileId,
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl Checks {
+    pub(super) fn new(file: FileId) -> Self {
+        Self {
+            file,
+            diagnostics: Vec::new(),
+        }
+    }
+
+    /// The scene, if nothing was refused.
+    pub(super) fn finish(self, scene: Scene) -> Result<Scene, Vec<Diagnostic>> {
+        if self.diagnostics.is_empty() {
+            Ok(scene)
+        } else {
+            Err(self.diagnostics)
+        }
+    }
+
+    pub(super) fn refuse(&mut self, bytes: Range<usize>, message: String) {
+        self.diagnostics
+            .push(Diagnostic::error("E0502", message).at(span(self.file, bytes)));
+    }
+
+    /// A key that is there only for another kind of the thing.
+    pub(super) fn foreign<T>(&mut self, key: &str, value: Option<&Spanned<T>>, owner: &str, actual: &str) {
+        if let Some(value) = value {
+            self.refuse(
+                value.span(),
+                format!("{key} belongs to \"{owner}\", not to \"{actual}\""),
+            );
+        }
+    }
+
+    /// The value of a key that this kind of the thing cannot do without; `place` is where the kind is named.
+    pub(super) fn needed<T>(&mut self, key: &str, value: Option<T>, place: &Range<usize>) -> Option<T> {
+        if value.is_none() {
+            self.refuse(place.clone(), format!("{key} is missing"));
+        }
+        value
+    }
+
+    pub(super) fn finite(&mut self, what: &str, value: &Spanned<f64>) -> f64 {
+        let number = *value.get_ref();
+        if !number.is_finite() {
+            self.refuse(
+                value.span(),
+                format!("{what} must be a finite number, not {number}"),
+            );
+        }
+        number
+    }
+
+    pub(super) fn pair(&mut self, what: &str, value: &Pair) -> [f64; 2] {
+        if !value.get_ref().iter().all(|x| x.is_finite()) {
+            self.refuse(value.span(), format!("{what} must be two finite numbers"));
+        }
+        *value.get_ref()
+    }
+
+    pub(super) fn point(&mut self, what: &str, value: Option<Triple>, default: Point) -> Point {
+        let Some(value) = value else {
+            return default;
+        };
+        if !value.get_ref().iter().all(|x| x.is_finite()) {
+            self.refuse(value.span(), format!("{what} must be three finite numbers"));
+        }
+        value.into_inner()
+    }
+
+    /// A direction of any length but 0; of length 1 as it comes out.
+    pub(super) fn direction(&mut self, what: &str, value: Option<Triple>, default: Point) -> Point {
+        let Some(value) = value else {
+            return default;
+        };
+        let vector = DVec3::from_array(*value.get_ref());
+        let largest = vector.abs().max_element();
+        if !(vector.is_finite() && largest > 0.0) {
+            self.refuse(
+                value.span(),
+                format!("{what} must be three finite numbers, not all of them 0"),
+            );
+            return default;
+        }
+        (vector / largest).normalize().to_array()
+    }
+
+    pub(super) fn color(&mut self, what: &str, value: Option<Triple>, default: Color) -> Color {
+        let Some(value) = value else {
+            return default;
+        };
+        if !value.get_ref().iter().all(|x| x.is_finite() && *x >= 0.0) {
+            self.refuse(
+                value.span(),
+                format!("{what} must be three finite numbers, none below 0"),
+            );
+        }
+        value.into_inner()
+    }
+
+    pub(super) fn positive(&mut self, what: &str, value: &Spanned<f64>) -> f64 {
+        let number = *value.get_ref();
+        if !(number.is_finite() && number > 0.0) {
+            self.refuse(
+                value.span(),
+                format!("{what} must be a finite number above 0, not {number}"),
+            );
+        }
+        number
+    }
+
+    /// A number from 0 to 1.
+    pub(super) fn share(&mut self, what: &str, value: &Spanned<f64>) -> f64 {
+        let number = *value.get_ref();
+        if !(0.0..=1.0).contains(&number) {
+            self.refuse(
+                value.span(),
+                format!("{what} must be a number from 0 to 1, not {number}"),
+            );
+        }
+        number
+    }
+
+    pub(super) fn count(&mut self, what: &str, value: Option<Spanned<i64>>, max: i64) -> u32 {
+        let Some(value) = value else {
+            return 1;
+        };
+        let number = *value.get_ref();
+        if !(1..=max).contains(&number) {
+            self.refuse(
+                value.span(),
+                format!("{what} must be a whole number from 1 to {max}, not {number}"),
+            );
+        }
+        number as u32
+    }
+
+    pub(super) fn size(&mut self, value: Option<Spanned<[i64; 2]>>) -> [u32; 2] {
+        let Some(value) = value else {
+            return [640, 360];
+        };
+        let [width, height] = value.get_ref().map(|side| side.max(0) as u64);
+        check_size(width, height).unwrap_or_else(|message| {
+            self.refuse(value.span(), message);
+            [1, 1]
+        })
+    }
+}

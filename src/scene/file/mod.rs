@@ -1,0 +1,269 @@
+//! The scene file: TOML, with every mistake told by line and column.
+
+mod checks;
+mod figure;
+mod film;
+mod material;
+mod motion;
+mod shape;
+#[cfg(test)]
+mod tests;
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::{Background, Integrator, Light, Model, Object, Scene, Shape};
+use crate::diagnostic::Diagnostic;
+use crate::source::{FileId, Files, Span};
+
+use self::checks::{Checks, Triple, span};
+use self::motion::Names;
+
+/// Reads a scene.
+///
+/// # Errors
+/// What the file should have said, for the first thing that TOML or its schema refuses, or for every value
+/// that is out of range.
+pub fn parse(files: &Files, file: FileId) -> Result<Scene, Vec<Diagnostic>> {
+    let text = files.get(file).text();
+    let document: Document = toml::from_str(text).map_err(|error| {
+        let diagnostic = Diagnostic::error("E0501", one_sentence(error.message()));
+        vec![match error.span() {
+            Some(bytes) => diagnostic.at(span(file, bytes)),
+            None => diagnostic.at(Span::new(file, 0, 0)),
+        }]
+    })?;
+    let mut checks = Checks::new(file);
+    let scene = document.check(&mut checks);
+    checks.finish(scene)
+}
+
+fn one_sentence(message: &str) -> String {
+    message.lines().map(str::trim).collect::<Vec<_>>().join("; ")
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Document {
+    #[serde(default)]
+    title: String,
+    ambient: Option<Triple>,
+    #[serde(default)]
+    film: film::Table,
+    #[serde(default)]
+    camera: film::CameraTable,
+    background: Option<Spanned<BackgroundTable>>,
+    #[serde(default)]
+    figure: Vec<figure::Table>,
+    #[serde(default)]
+    motion: Vec<motion::Table>,
+    #[serde(default)]
+    light: Vec<LightTable>,
+    #[serde(default)]
+    sphere: Vec<shape::SphereTable>,
+    #[serde(default)]
+    plane: Vec<shape::PlaneTable>,
+    #[serde(default)]
+    ellipsoid: Vec<shape::EllipsoidTable>,
+    #[serde(default)]
+    cylinder: Vec<shape::CylinderTable>,
+    #[serde(default)]
+    cone: Vec<shape::ConeTable>,
+    #[serde(default)]
+    paraboloid: Vec<shape::ParaboloidTable>,
+    #[serde(default)]
+    hyperboloid: Vec<shape::HyperboloidTable>,
+    #[serde(default)]
+    scatter: Vec<shape::ScatterTable>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct BackgroundTable {
+    color: Option<Triple>,
+    bottom: Option<Triple>,
+    top: Option<Triple>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LightTable {
+    position: Spanned<[f64; 3]>,
+    color: Option<Triple>,
+    shadow: Option<bool>,
+    radius: Option<Spanned<f64>>,
+    motion: Option<Spanned<String>>,
+}
+
+impl Document {
+    fn check(self, checks: &mut Checks) -> Scene {
+        let ambient = self.ambient.as_ref().map(Spanned::span);
+        let max_depth = self.film.max_depth.as_ref().map(Spanned::span);
+        let scene_ambient = checks.color("ambient", self.ambient, [0.0; 3]);
+        let film = self.film.check(checks);
+        let (motions, names) = motion::check(self.motion, checks);
+        let mut lights = Vec::new();
+        for light in self.light {
+            let drawn = light.radius.as_ref().map(Spanned::span);
+            if film.integrator == Integrator::Path {
+                let words =
+                    "a path-traced scene is lit by surfaces whose model is \"emitter\", not by lights";
+                checks.refuse(light.position.span(), words.to_owned());
+            } else if let Some(drawn) = drawn
+                && !film.sampler.draws()
+            {
+                checks.refuse(drawn, needs_a_sampler("a light with a radius"));
+            }
+            lights.push(light.check(&names, checks));
+        }
+        let mut surfaces = Surfaces {
+            names: &names,
+            checks,
+            objects: Vec::new(),
+            film,
+        };
+        surfaces.take(self.sphere);
+        surfaces.take(self.plane);
+        surfaces.take(self.ellipsoid);
+        surfaces.take(self.cylinder);
+        surfaces.take(self.cone);
+        surfaces.take(self.paraboloid);
+        surfaces.take(self.hyperboloid);
+        surfaces.take(self.scatter);
+        let objects = surfaces.objects;
+        if film.integrator == Integrator::Path
+            && let Some(ambient) = ambient
+        {
+            let words = "a path-traced scene has no ambient light; its background is all around it";
+            checks.refuse(ambient, words.to_owned());
+        }
+        let glass = |object: &Object| matches!(object.material.model, Model::Glass { .. });
+        if film.max_depth > MAX_BRANCHES
+            && let Some(max_depth) = max_depth
+            && objects.iter().any(glass)
+        {
+            let words = format!(
+                "max_depth must be at most {MAX_BRANCHES} where there is glass, which parts each ray in two"
+            );
+            checks.refuse(max_depth, words);
+        }
+        Scene {
+            title: self.title,
+            ambient: scene_ambient,
+            film,
+            camera: self.camera.check(checks),
+            background: background(self.background, checks),
+            figures: self
+                .figure
+                .into_iter()
+                .map(|figure| figure.check(checks))
+                .collect(),
+            lights,
+            objects,
+            motions,
+        }
+    }
+}
+
+/// The most path segments of a scene with glass.
+const MAX_BRANCHES: u32 = 16;
+
+fn needs_a_sampler(what: &str) -> String {
+    format!("{what} needs a film whose sampler draws: \"independent\", \"stratified\" or \"sobol\"")
+}
+
+/// A table that describes surfaces.
+trait Surface {
+    /// The surfaces, each with the place in the file where its model is named.
+    fn check(self, names: &Names, checks: &mut Checks) -> (Vec<Object>, std::ops::Range<usize>);
+}
+
+/// Gathers surfaces and checks what hangs together.
+struct Surfaces<'a> {
+    names: &'a Names,
+    checks: &'a mut Checks,
+    objects: Vec<Object>,
+    film: super::Film,
+}
+
+impl Surfaces<'_> {
+    fn take<S: Surface>(&mut self, tables: Vec<S>) {
+        for table in tables {
+            let (objects, place) = table.check(self.names, self.checks);
+            if let Some(object) = objects.first() {
+                self.suits(object, place);
+            }
+            self.objects.extend(objects);
+        }
+    }
+
+    /// Whether shape, model and integrator go together.
+    fn suits(&mut self, object: &Object, place: std::ops::Range<usize>) {
+        let Object { shape, material, .. } = object;
+        if matches!(material.model, Model::Glass { .. }) && !shape.is_closed() {
+            let words = "glass needs an inside, and so a sphere or an ellipsoid";
+            return self.checks.refuse(place, words.to_owned());
+        }
+        if self.film.integrator == Integrator::Whitted {
+            return;
+        }
+        if !self.film.sampler.draws() {
+            self.checks
+                .refuse(place, needs_a_sampler("the integrator \"path\""));
+            return;
+        }
+        match material.model {
+            Model::Diffuse | Model::Glossy { .. } | Model::Mirror => {}
+            Model::Emitter if matches!(shape, Shape::Sphere { .. }) => {}
+            Model::Emitter => self.checks.refuse(place, "an emitter is a sphere".to_owned()),
+            _ => {
+                let words = "the integrator \"path\" knows the models \"diffuse\", \"glossy\", \"mirror\" and \"emitter\"";
+                self.checks.refuse(place, words.to_owned());
+            }
+        }
+    }
+}
+
+impl LightTable {
+    fn check(self, names: &Names, checks: &mut Checks) -> Light {
+        Light {
+            position: checks.point("position", Some(self.position), [0.0; 3]),
+            color: checks.color("color", self.color, [1.0; 3]),
+            shadow: self.shadow.unwrap_or(true),
+            radius: self
+                .radius
+                .map_or(0.0, |radius| checks.positive("radius", &radius)),
+            motion: names.find(self.motion, checks),
+        }
+    }
+}
+
+fn background(table: Option<Spanned<BackgroundTable>>, checks: &mut Checks) -> Background {
+    let black = [0.0; 3];
+    let Some(table) = table else {
+        return Background::Uniform(black);
+    };
+    let bytes = table.span();
+    match table.into_inner() {
+        BackgroundTable {
+            color,
+            bottom: None,
+            top: None,
+        } => Background::Uniform(checks.color("color", color, black)),
+        BackgroundTable {
+            color: None,
+            bottom: Some(bottom),
+            top: Some(top),
+        } => Background::Gradient {
+            bottom: checks.color("bottom", Some(bottom), black),
+            top: checks.color("top", Some(top), black),
+        },
+        _ => {
+            checks.refuse(
+                bytes,
+                "a background has either a color, or a bottom and a top".to_owned(),
+            );
+            Background::Uniform(black)
+        }
+    }
+}

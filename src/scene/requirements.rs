@@ -1,0 +1,91 @@
+//! What a scene uses, and so what its kernel must know.
+
+use std::fmt;
+
+use super::{Integrator, Model, Sampler, Scene, Shape, ToneMap};
+
+/// What a scene uses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "a scene uses a thing or does not")]
+pub struct Requirements {
+    /// Figures on the screen.
+    pub figures: bool,
+    /// Surfaces of any kind.
+    pub surfaces: bool,
+    /// Surfaces that are no spheres.
+    pub shapes: bool,
+    /// Rays that go on from a surface: mirrors, glass, drawn directions.
+    pub secondary_rays: bool,
+    /// Rays that part in two: glass.
+    pub branches: bool,
+    /// Lights that can be hidden.
+    pub shadows: bool,
+    /// Lights with a radius.
+    pub soft_shadows: bool,
+    /// Directions are drawn from surfaces: [`Integrator::Path`].
+    pub path_tracing: bool,
+    /// More than the pixel's centre is looked at.
+    pub samples: bool,
+    /// A tone map or a gamma.
+    pub transfer: bool,
+    /// Anything moves.
+    pub motion: bool,
+}
+
+impl Requirements {
+    /// What that scene uses.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Self {
+        let surface =
+            |uses: fn(&Model) -> bool| scene.objects.iter().any(|object| uses(&object.material.model));
+        let path_tracing = scene.film.integrator == Integrator::Path;
+        let branches = surface(|model| matches!(model, Model::Glass { .. }));
+        let moves = |motion: Option<usize>| motion.is_some();
+        Self {
+            figures: !scene.figures.is_empty(),
+            surfaces: !scene.objects.is_empty(),
+            shapes: scene
+                .objects
+                .iter()
+                .any(|object| !matches!(object.shape, Shape::Sphere { .. })),
+            secondary_rays: scene.film.max_depth > 1
+                && (path_tracing || branches || surface(|model| *model == Model::Mirror)),
+            branches,
+            shadows: path_tracing || scene.lights.iter().any(|light| light.shadow),
+            soft_shadows: scene.lights.iter().any(|light| light.radius > 0.0),
+            path_tracing,
+            samples: scene.film.samples > 1 || scene.film.sampler != Sampler::Center,
+            transfer: scene.film.tone_map != ToneMap::None || scene.film.gamma != 1.0,
+            motion: scene.lights.iter().any(|light| moves(light.motion))
+                || scene.objects.iter().any(|object| moves(object.motion)),
+        }
+    }
+}
+
+impl fmt::Display for Requirements {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let words = [
+            (self.figures, "figures"),
+            (self.surfaces && !self.shapes, "spheres alone"),
+            (self.shapes, "shapes of several kinds"),
+            (self.secondary_rays, "secondary rays"),
+            (self.branches, "rays that part"),
+            (self.shadows, "shadows"),
+            (self.soft_shadows, "soft shadows"),
+            (self.path_tracing, "path tracing"),
+            (self.samples, "samples"),
+            (self.transfer, "a transfer curve"),
+            (self.motion, "motion"),
+        ];
+        let used: Vec<_> = words
+            .iter()
+            .filter(|(uses, _)| *uses)
+            .map(|(_, word)| *word)
+            .collect();
+        if used.is_empty() {
+            f.write_str("a background alone")
+        } else {
+            f.write_str(&used.join(", "))
+        }
+    }
+}

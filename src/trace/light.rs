@@ -1,0 +1,104 @@
+//! Where light comes from.
+
+use super::ray::around;
+use super::real::{Real, Vector};
+use crate::scene;
+
+#[derive(Debug)]
+pub(super) struct Light<T: Real> {
+    pub(super) position: T::Vec3,
+    pub(super) color: T::Vec3,
+    pub(super) shadow: bool,
+    /// 0 for a point.
+    pub(super) radius: T,
+}
+
+impl<T: Real> Light<T> {
+    pub(super) fn new(light: &scene::Light) -> Self {
+        Self {
+            position: T::Vec3::from_f64(light.position),
+            color: T::Vec3::from_f64(light.color),
+            shadow: light.shadow,
+            radius: T::from_f64(light.radius),
+        }
+    }
+}
+
+#[derive(Debug)]
+pub(super) struct Background<T: Real> {
+    bottom: T::Vec3,
+    top: T::Vec3,
+}
+
+impl<T: Real> Background<T> {
+    pub(super) fn new(background: &scene::Background) -> Self {
+        let (bottom, top) = match *background {
+            scene::Background::Uniform(color) => (color, color),
+            scene::Background::Gradient { bottom, top } => (bottom, top),
+        };
+        Self {
+            bottom: T::Vec3::from_f64(bottom),
+            top: T::Vec3::from_f64(top),
+        }
+    }
+
+    pub(super) fn color(&self, direction: T::Vec3) -> T::Vec3 {
+        let [_, y, _] = direction.to_array();
+        let up = T::from_f64(0.5) * (T::one() + y);
+        self.bottom * (T::one() - up) + self.top * up
+    }
+}
+
+/// The cone of directions in which a sphere is seen from a point.
+#[derive(Debug)]
+pub(super) struct Cone<T: Real> {
+    axis: T::Vec3,
+    /// To the sphere's centre.
+    distance: T,
+    /// (radius/distance)², the sine of the half angle squared; ≥ 1 from within, where the cone is all directions.
+    sine2: T,
+    /// 1 − cos of the half angle.
+    depth: T,
+}
+
+impl<T: Real> Cone<T> {
+    pub(super) fn new(center: T::Vec3, radius: T, from: T::Vec3) -> Self {
+        let to_center = center - from;
+        let distance = to_center.length();
+        let ratio = radius / distance;
+        let sine2 = ratio * ratio;
+        let depth = if sine2 < T::one() {
+            // 1 − √(1 − s²) without its cancellation.
+            sine2 / (T::one() + (T::one() - sine2).sqrt())
+        } else {
+            T::from_f64(2.0)
+        };
+        Self {
+            axis: to_center / distance,
+            distance,
+            sine2,
+            depth,
+        }
+    }
+
+    /// A direction drawn uniformly over the solid angle, and how far the sphere is along it: the cosine to the axis is
+    /// 1 − u·depth, and v turns it.
+    pub(super) fn draw(&self, [u, v]: [T; 2]) -> (T::Vec3, T) {
+        let short = u * self.depth;
+        let cosine = T::one() - short;
+        let sine2 = short * (T::one() + cosine);
+        let direction = around::<T>(self.axis, cosine, sine2.max(T::zero()).sqrt(), v);
+        let half_chord = (self.sine2 - sine2).max(T::zero()).sqrt();
+        let near = if self.sine2 < T::one() {
+            cosine - half_chord
+        } else {
+            cosine + half_chord
+        };
+        (direction, self.distance * near)
+    }
+
+    /// The density of [`Cone::draw`] over the solid angle.
+    pub(super) fn density(&self) -> T {
+        (T::from_f64(std::f64::consts::TAU) * self.depth).recip()
+    }
+}

@@ -1,0 +1,83 @@
+//! Where rays meet surfaces.
+
+mod plane;
+mod quadric;
+mod sphere;
+#[cfg(test)]
+mod tests;
+
+use std::fmt::Debug;
+
+use super::doubt::Doubt;
+use super::ray::Ray;
+use super::real::Real;
+use crate::scene;
+
+pub(super) use plane::Plane;
+pub(super) use quadric::Quadric;
+pub(super) use sphere::Sphere;
+
+/// What a ray can meet.
+pub(super) trait Primitive<T: Real>: Debug + Send + Sync {
+    /// The smallest t > `t_min` at which the ray, which starts elsewhere, meets it.
+    fn intersect(&self, ray: &Ray<T>, doubt: &impl Doubt<T>) -> Option<T>;
+
+    /// The same for a ray that starts on it: that start is no hit.
+    fn intersect_own(&self, ray: &Ray<T>, doubt: &impl Doubt<T>) -> Option<T>;
+
+    /// The point at t, and the normal there.
+    fn surface(&self, ray: &Ray<T>, t: T, depth: u32, doubt: &impl Doubt<T>) -> [T::Vec3; 2];
+}
+
+/// Any shape, where a scene has several kinds.
+#[derive(Debug)]
+pub(super) enum Shape<T: Real> {
+    Sphere(Sphere<T>),
+    Quadric(Quadric<T>),
+    Plane(Plane<T>),
+}
+
+impl<T: Real> Shape<T> {
+    pub(super) fn new(shape: &scene::Shape) -> Self {
+        match shape {
+            scene::Shape::Sphere { center, radius } => Self::Sphere(Sphere::new(*center, *radius)),
+            scene::Shape::Quadric(quadric) => Self::Quadric(Quadric::new(quadric)),
+            scene::Shape::Plane { point, normal } => Self::Plane(Plane::new(*point, *normal)),
+        }
+    }
+}
+
+impl<T: Real> Primitive<T> for Shape<T> {
+    fn intersect(&self, ray: &Ray<T>, doubt: &impl Doubt<T>) -> Option<T> {
+        match self {
+            Self::Sphere(sphere) => sphere.intersect(ray, doubt),
+            Self::Quadric(quadric) => quadric.intersect(ray, doubt),
+            Self::Plane(plane) => plane.intersect(ray, doubt),
+        }
+    }
+
+    fn intersect_own(&self, ray: &Ray<T>, doubt: &impl Doubt<T>) -> Option<T> {
+        match self {
+            Self::Sphere(sphere) => sphere.intersect_own(ray, doubt),
+            Self::Quadric(quadric) => quadric.intersect_own(ray, doubt),
+            Self::Plane(plane) => plane.intersect_own(ray, doubt),
+        }
+    }
+
+    fn surface(&self, ray: &Ray<T>, t: T, depth: u32, doubt: &impl Doubt<T>) -> [T::Vec3; 2] {
+        match self {
+            Self::Sphere(sphere) => sphere.surface(ray, t, depth, doubt),
+            Self::Quadric(quadric) => quadric.surface(ray, t, depth, doubt),
+            Self::Plane(plane) => plane.surface(ray, t, depth, doubt),
+        }
+    }
+}
+
+/// The roots of a t² − 2 b t + c = 0, the smaller first; `disc` = b² − a c ≥ 0. The one of larger size comes from
+/// q = b + sign(b) √disc, which does not cancel, the other from c/q. For a → 0 one root goes to infinity and the other,
+/// c/q, stays; for a = b = 0 there is none, and both are infinite or NaN.
+fn roots<T: Real>(a: T, b: T, c: T, disc: T) -> [T; 2] {
+    let q = b + disc.sqrt().copysign(b);
+    let (one, other) = (c / q, q / a);
+    if one < other { [one, other] } else { [other, one] }
+}

@@ -1,0 +1,166 @@
+//! Intersection of rays with surfaces of second degree.
+
+use super::super::doubt::Doubt;
+use super::super::ray::Ray;
+use super::super::real::{Real, Vector};
+use super::{Primitive, roots};
+use crate::scene::{self, QuadricKind};
+
+/// A quadric q·p² + 2 g z + k = 0 in coordinates p = (x, y, z) of its own, whose unit is a power of two near its size;
+/// the square is taken component by component.
+#[derive(Debug, Clone, Copy)]
+pub(in super::super) struct Quadric<T: Real> {
+    origin: T::Vec3,
+    /// The directions of its own axes.
+    axes: [T::Vec3; 3],
+    /// Its own unit of length, in scene units, and one over it.
+    unit: T,
+    per_unit: T,
+    q: T::Vec3,
+    g: T,
+    k: T,
+    /// What z lies between; a closed surface has no ends.
+    ends: Option<[T; 2]>,
+}
+
+impl<T: Real> Quadric<T> {
+    pub(super) fn new(quadric: &scene::Quadric) -> Self {
+        let size = match quadric.kind {
+            QuadricKind::Ellipsoid { radii } => radii.into_iter().fold(0.0, f64::max),
+            QuadricKind::Cylinder { radius, .. }
+            | QuadricKind::Cone { radius, .. }
+            | QuadricKind::Paraboloid { radius, .. }
+            | QuadricKind::Hyperboloid { radius, .. } => radius,
+        };
+        let unit = if size.is_normal() {
+            size.power_of_two()
+        } else {
+            1.0
+        };
+        let [q, [g, k, _], ends] = coefficients(&quadric.kind, unit);
+        let closed = matches!(quadric.kind, QuadricKind::Ellipsoid { .. });
+        Self {
+            origin: T::Vec3::from_f64(quadric.origin),
+            axes: quadric.axes.map(T::Vec3::from_f64),
+            unit: T::from_f64(unit),
+            per_unit: T::from_f64(unit.recip()),
+            q: T::Vec3::from_f64(q),
+            g: T::from_f64(g),
+            k: T::from_f64(k),
+            ends: (!closed).then(|| [ends[0], ends[1]].map(T::from_f64)),
+        }
+    }
+
+    /// In its own coordinates.
+    fn inward(&self, v: T::Vec3) -> T::Vec3 {
+        let [x, y, z] = self.axes.map(|axis| axis.dot(v));
+        T::Vec3::new(x, y, z)
+    }
+
+    /// In the scene's.
+    fn outward(&self, v: T::Vec3) -> T::Vec3 {
+        let [x, y, z] = v.to_array();
+        self.axes[0] * x + self.axes[1] * y + self.axes[2] * z
+    }
+
+    /// Origin and direction in its own coordinates and unit.
+    fn localise(&self, ray: &Ray<T>) -> [T::Vec3; 2] {
+        [
+            self.inward((ray.origin - self.origin) * self.per_unit),
+            self.inward(ray.direction),
+        ]
+    }
+
+    /// a, b and c of a t² − 2 b t + c = 0 for o + t·d.
+    fn equation(&self, o: T::Vec3, d: T::Vec3) -> [T; 3] {
+        let z = |v: T::Vec3| v.to_array()[2];
+        let two = T::one() + T::one();
+        [
+            (self.q * d).dot(d),
+            -((self.q * d).dot(o) + self.g * z(d)),
+            (self.q * o).dot(o) + two * self.g * z(o) + self.k,
+        ]
+    }
+
+    fn is_within_ends(&self, point: T::Vec3) -> bool {
+        let [_, _, z] = point.to_array();
+        self.ends.is_none_or(|[low, high]| z >= low && z <= high)
+    }
+}
+
+/// q, then g and k, then the ends, of a kind in that unit.
+fn coefficients(kind: &QuadricKind, unit: f64) -> [[f64; 3]; 3] {
+    let round = |q: f64| [1.0, 1.0, q];
+    match *kind {
+        QuadricKind::Ellipsoid { radii } => {
+            // Relative to the largest, so that no square overflows.
+            let q = radii.map(|radius| (unit / radius) * (unit / radius));
+            [q, [0.0, -1.0, 0.0], [0.0; 3]]
+        }
+        QuadricKind::Cylinder { radius, height } => {
+            let r = radius / unit;
+            [round(0.0), [0.0, -r * r, 0.0], [0.0, height / unit, 0.0]]
+        }
+        QuadricKind::Cone { radius, height } => {
+            let slope = radius / height;
+            [round(-slope * slope), [0.0; 3], [0.0, height / unit, 0.0]]
+        }
+        QuadricKind::Paraboloid { radius, height } => {
+            let g = -0.5 * (radius / unit) * (radius / height);
+            [round(0.0), [g, 0.0, 0.0], [0.0, height / unit, 0.0]]
+        }
+        QuadricKind::Hyperboloid {
+            waist,
+            radius,
+            height,
+        } => {
+            let half = 0.5 * height;
+            let slope2 = (radius - waist) / half * ((radius + waist) / half);
+            let w = waist / unit;
+            let end = half / unit;
+            [round(-slope2), [0.0, -w * w, 0.0], [-end, end, 0.0]]
+        }
+    }
+}
+
+impl<T: Real> Primitive<T> for Quadric<T> {
+    /// The ray's origin is first moved to where it comes closest to the quadric's own, so that what is squared and
+    /// subtracted is no larger than it must be.
+    fn intersect(&self, ray: &Ray<T>, doubt: &impl Doubt<T>) -> Option<T> {
+        let [far, d] = self.localise(ray);
+        let ahead = -far.dot(d) / d.dot(d);
+        let o = far + d * ahead;
+        let [a, b, c] = self.equation(o, d);
+        let disc = b * b - a * c;
+        let size = self.q.size() * far.dot(far) + self.g.abs() * far.size() + self.k.abs();
+        let disc = doubt.discriminant(disc, a.abs().max(T::one()) * size);
+        if disc.is_nan() || disc < T::zero() {
+            return None;
+        }
+        let t_min = doubt.t_min(ray.from.is_some());
+        roots(a, b, c, disc).into_iter().find_map(|t| {
+            let local = doubt.point(o + d * t, far, 0);
+            let t = (ahead + t) * self.unit;
+            (t > t_min && t.is_finite() && self.is_within_ends(local)).then_some(t)
+        })
+    }
+
+    /// One root is 0, so that the other is −2 b/a.
+    fn intersect_own(&self, ray: &Ray<T>, doubt: &impl Doubt<T>) -> Option<T> {
+        let [o, d] = self.localise(ray);
+        let [a, b, _] = self.equation(o, d);
+        let own = (b + b) / a;
+        let t = own * self.unit;
+        (t > doubt.t_min(true) && t.is_finite() && self.is_within_ends(o + d * own)).then_some(t)
+    }
+
+    fn surface(&self, ray: &Ray<T>, t: T, depth: u32, doubt: &impl Doubt<T>) -> [T::Vec3; 2] {
+        let point = doubt.point(ray.origin + ray.direction * t, ray.origin, depth);
+        let local = self.inward((point - self.origin) * self.per_unit);
+        let gradient = self.q * local + T::Vec3::new(T::zero(), T::zero(), self.g);
+        let normal = self.outward(gradient).normalize();
+        let open = self.ends.is_some();
+        let away = open && normal.dot(ray.direction) > T::zero();
+        [point, if away { -normal } else { normal }]
+    }
+}

@@ -1,0 +1,151 @@
+//! Pictures whose pixels are known.
+
+use super::*;
+use crate::scene;
+use crate::source::{File, Files};
+
+fn scene(text: &str) -> Scene {
+    let mut files = Files::default();
+    let file = files.add(File::new("s", text));
+    scene::parse(&files, file).unwrap()
+}
+
+fn pixel(text: &str, x: u32, y: u32) -> [f64; 3] {
+    Tracer::<f64>::new(&scene(text)).pixel(x, y)
+}
+
+fn near(actual: [f64; 3], expected: [f64; 3]) {
+    for (a, e) in actual.iter().zip(expected) {
+        assert!((a - e).abs() < 1e-12, "{actual:?} is not {expected:?}");
+    }
+}
+
+/// One pixel that looks straight along −z.
+const ONE: &str = "[film]\nsize = [1, 1]\n";
+
+fn ball(center: &str, radius: &str, material: &str) -> String {
+    format!("[[sphere]]\ncenter = {center}\nradius = {radius}\nmaterial = {material}\n")
+}
+
+#[test]
+fn a_sphere_straight_ahead_faces_the_eye() {
+    let text = ONE.to_owned() + &ball("[0, 0, -6]", "1.5", "{ model = \"facing\", color = [1, 0.5, 0] }");
+    near(pixel(&text, 0, 0), [1.0, 0.5, 0.0]);
+}
+
+#[test]
+fn the_aspect_stretches_y_and_the_picture_stands_upright() {
+    let film = "[film]\nsize = [4, 2]\n[background]\nbottom = [0, 0, 0]\ntop = [1, 1, 1]\n";
+    // Pixel (3, 1): x = 0.75, y = 0.5 / 2, screen at −2.
+    let y = 0.25 / (0.75f64.powi(2) + 0.25f64.powi(2) + 4.0).sqrt();
+    near(pixel(film, 3, 1), [0.5 * (1.0 + y); 3]);
+    near(pixel(film, 0, 0), [0.5 * (1.0 - y); 3]);
+}
+
+#[test]
+fn what_lies_behind_the_eye_is_not_seen_and_from_inside_the_far_side_is() {
+    let facing = "{ model = \"facing\", color = [1, 1, 1] }";
+    near(
+        pixel(&(ONE.to_owned() + &ball("[0, 0, 6]", "1.5", facing)), 0, 0),
+        [0.0; 3],
+    );
+    near(
+        pixel(&(ONE.to_owned() + &ball("[0, 0, 1]", "3", facing)), 0, 0),
+        [1.0; 3],
+    );
+}
+
+#[test]
+fn lambert_adds_ambient_and_each_light_by_its_cosine() {
+    let text = format!(
+        "ambient = [0.1, 0.1, 0.1]\n{ONE}[[light]]\nposition = [0, 5, 0]\ncolor = [0.5, 1, 1]\n{}",
+        ball("[0, 0, -6]", "1", "{ model = \"lambert\", color = [1, 0.5, 1] }")
+    );
+    // The hit is (0, 0, −5), N = +z, L = (0, 5, 5) / √50.
+    let cosine = 0.5f64.sqrt();
+    near(
+        pixel(&text, 0, 0),
+        [0.1 + 0.5 * cosine, 0.5 * (0.1 + cosine), 0.1 + cosine],
+    );
+}
+
+#[test]
+fn only_what_lies_between_surface_and_light_shades_it() {
+    let lit = |blocker: &str, shadow: &str| {
+        let text = format!(
+            "{ONE}[[light]]\nposition = [0, 0, 0]\nshadow = {shadow}\n{}{blocker}",
+            ball("[0, 0, -6]", "1", "{ model = \"lambert\", color = [1, 1, 1] }")
+        );
+        // Straight from the side: the eye's own ray passes below the blocker.
+        pixel(
+            &text.replace("position = [0, 0, 0]", "position = [0, 3, -2]"),
+            0,
+            0,
+        )[0]
+    };
+    let matte = "{ model = \"lambert\", color = [1, 1, 1] }";
+    let between = ball("[0, 1.5, -3.5]", "0.5", matte);
+    let beyond = ball("[0, 4.5, -0.5]", "0.5", matte);
+    let cosine = 0.5f64.sqrt();
+    assert_eq!(lit(&between, "true"), 0.0);
+    assert!((lit(&between, "false") - cosine).abs() < 1e-12);
+    assert!((lit(&beyond, "true") - cosine).abs() < 1e-12);
+}
+
+#[test]
+fn a_mirror_shows_what_it_reflects_until_the_depth_is_spent() {
+    let mirrors = ball("[0, 0, -6]", "1", "{ model = \"mirror\", color = [0.5, 1, 1] }")
+        + &ball("[0, 0, 6]", "1", "{ model = \"mirror\", color = [1, 0.5, 1] }");
+    let text = |depth: u32| {
+        format!("[film]\nsize = [1, 1]\nmax_depth = {depth}\n[background]\ncolor = [1, 1, 1]\n{mirrors}")
+    };
+    // Face to face, the ray never leaves.
+    near(pixel(&text(7), 0, 0), [0.0; 3]);
+    let one = ball("[0, 0, -6]", "1", "{ model = \"mirror\", color = [0.5, 1, 1] }");
+    let open = |depth: u32| {
+        format!(
+            "[film]\nsize = [1, 1]\nmax_depth = {depth}\n[background]\nbottom = [1, 1, 1]\ntop = [0.2, 1, 1]\n{one}"
+        )
+    };
+    near(pixel(&open(1), 0, 0), [0.0; 3]);
+    near(pixel(&open(2), 0, 0), [0.3, 1.0, 1.0]);
+}
+
+#[test]
+fn inside_a_mirror_the_ray_goes_from_far_side_to_far_side() {
+    // From the centre straight ahead and back again: never out, and never stuck at its own start.
+    let text = "[film]\nsize = [1, 1]\nmax_depth = 4\n[background]\ncolor = [1, 1, 1]\n".to_owned()
+        + &ball("[0, 0, 0]", "2", "{ model = \"mirror\", color = [1, 1, 1] }")
+        + &ball("[0, 0, 1.5]", "0.25", "{ model = \"facing\", color = [0, 0, 1] }");
+    near(pixel(&text, 0, 0), [0.0, 0.0, 1.0]);
+}
+
+#[test]
+fn the_sine_hash_draws_x_first_from_a_seed_of_zero() {
+    let text =
+        "[film]\nsize = [1, 1]\nsampler = \"sine-hash\"\n[background]\nbottom = [0, 0, 0]\ntop = [1, 1, 1]\n";
+    let draw = (1f64.sin() * 43_758.545_312_3).fract();
+    let (x, y) = (-1.0, draw * 2.0 - 1.0);
+    let expected = 0.5 * (1.0 + y / (x * x + y * y + 4.0f64).sqrt());
+    near(pixel(text, 0, 0), [expected; 3]);
+}
+
+#[test]
+fn both_precisions_agree_to_float32() {
+    let text = format!(
+        "[film]\nsize = [32, 18]\nmax_depth = 5\n[background]\nbottom = [0.1, 0.1, 0.3]\ntop = [0.7, 0.8, 0.9]\n{}{}",
+        ball(
+            "[0, 0, -6]",
+            "1.5",
+            "{ model = \"mirror\", color = [1, 0.9, 0.8] }"
+        ),
+        ball("[-1, 1, -4]", "0.7", "{ model = \"facing\", color = [1, 0, 0] }")
+    );
+    let single = Tracer::<f32>::new(&scene(&text)).picture(|| ());
+    let double = Tracer::<f64>::new(&scene(&text)).picture(|| ());
+    for (a, b) in single.pixels().iter().zip(double.pixels()) {
+        for (a, b) in a.iter().zip(b) {
+            assert!((a - b).abs() < 2e-5, "{a} {b}");
+        }
+    }
+}
