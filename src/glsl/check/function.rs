@@ -25,7 +25,7 @@ pub(crate) struct Parameter {
 pub(super) struct Context {
     pub(super) function: FunctionId,
     pub(super) return_type: Type,
-    /// Whether a `return` with a value came.
+    /// Whether a `return` came.
     pub(super) returns: bool,
     /// How many loops are open.
     pub(super) loops: usize,

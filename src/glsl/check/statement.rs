@@ -113,7 +113,7 @@ impl Checker<'_> {
         let Some(context) = &mut self.function else {
             return value;
         };
-        context.returns |= value.is_some();
+        context.returns = true;
         let wanted = context.return_type;
         match value {
             None if wanted != Type::Void => {

@@ -108,8 +108,9 @@ impl Names {
         }
     }
 
-    /// Overloads keep one name, unless lowering took away what told them apart.
+    /// Overloads keep one name, unless lowering took away what told them apart, or naga does not see it.
     fn name_functions(&mut self, draft: &Draft, order: &Order, taken: &HashSet<String>) {
+        let alike = self.structs_alike(draft, order);
         let mut defined: HashSet<(String, Vec<Type>)> = HashSet::new();
         for item in &order.items {
             let Item::Function(id) = *item else {
@@ -118,7 +119,10 @@ impl Names {
             let types: Vec<Type> = draft.tree[id]
                 .parameters
                 .iter()
-                .map(|&id| draft.tree[id].ty)
+                .map(|&id| match draft.tree[id].ty {
+                    Type::Struct(id) => Type::Struct(alike[&id]),
+                    ty => ty,
+                })
                 .collect();
             let name = free(&draft.tree[id].name, |name| {
                 word::is_reserved(name)
@@ -129,6 +133,25 @@ impl Names {
             defined.insert((name.clone(), types));
             self.functions.insert(id, name);
         }
+    }
+
+    /// For each structure the first with the same members: naga cannot tell overloads by their names.
+    fn structs_alike(&self, draft: &Draft, order: &Order) -> HashMap<StructId, StructId> {
+        let mut firsts = HashMap::new();
+        let mut alike = HashMap::new();
+        for item in &order.items {
+            let Item::Struct(id) = *item else {
+                continue;
+            };
+            let members: Vec<(&str, Type)> = draft.tree[id]
+                .members
+                .iter()
+                .enumerate()
+                .map(|(at, member)| (self.members[&(id, at)].as_str(), member.ty))
+                .collect();
+            alike.insert(id, *firsts.entry(members).or_insert(id));
+        }
+        alike
     }
 
     fn name_locals(&mut self, draft: &Draft, function: FunctionId, types: &HashSet<String>) {
