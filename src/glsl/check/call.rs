@@ -1,11 +1,12 @@
 //! Calls: which overload is meant (§6.1).
 
 use super::Checker;
+use super::prelude::TEXEL_OFFSETS;
 use super::scope::Entity;
 use super::signature::{self, Match};
 use crate::glsl::codes::Code;
 use crate::glsl::token::Symbol;
-use crate::glsl::tree::{BuiltIn, Direction, ExprId, ExprKind, FunctionId, Place, Type, VariableKind};
+use crate::glsl::tree::{BuiltIn, Direction, ExprId, ExprKind, FunctionId, Place, Type, Value, VariableKind};
 
 impl Checker<'_> {
     /// `name(arguments)`: a call of a function or built-in function, or a structure's constructor.
@@ -124,14 +125,8 @@ impl Checker<'_> {
         if let Some(written) = function.out_parameter().and_then(|index| arguments.get(index)) {
             self.writable(*written, "passed to an `out` parameter");
         }
-        if let Some(&offset) = found.constant.and_then(|index| arguments.get(index))
-            && !self.tree[offset].constant
-        {
-            let message = format!(
-                "the offset of `{}` must be a constant expression",
-                function.name()
-            );
-            self.error(Code::NotConstant, self.tree[offset].at, message);
+        if let Some(&offset) = found.constant.and_then(|index| arguments.get(index)) {
+            self.offset_fits(function, offset);
         }
         let arguments: Vec<_> = arguments
             .into_iter()
@@ -147,6 +142,32 @@ impl Checker<'_> {
             constant,
             at,
         )
+    }
+
+    /// §8.8: the offset of a texture lookup is known beforehand, and small.
+    fn offset_fits(&mut self, function: BuiltIn, offset: ExprId) {
+        let at = self.tree[offset].at;
+        if !self.tree[offset].constant {
+            let message = format!(
+                "the offset of `{}` must be a constant expression",
+                function.name()
+            );
+            self.error(Code::NotConstant, at, message);
+            return;
+        }
+        let value = self.tree.value(offset);
+        let too_far = value.iter().flat_map(|value| &*value.scalars).find_map(|part| {
+            let Value::Int(part) = *part else { return None };
+            (!TEXEL_OFFSETS.contains(&part)).then_some(part)
+        });
+        if let Some(part) = too_far {
+            let message = format!(
+                "the offset {part} is out of range: {} to {}",
+                TEXEL_OFFSETS.start(),
+                TEXEL_OFFSETS.end()
+            );
+            self.error(Code::BadIndex, at, message);
+        }
     }
 
     fn find_signature(&self, function: BuiltIn, types: &[Type]) -> Option<Match> {

@@ -231,7 +231,7 @@ impl Checker<'_> {
         let expr = self.expect(expr, ty, "the value of this variable");
         // §4.3.3; desktop GLSL asks it of constants that sizes depend on only.
         let must_be_constant = matches!(kind, VariableKind::Const | VariableKind::Global);
-        if must_be_constant && !self.lenient && !self.tree[expr].constant {
+        if must_be_constant && ty != Type::Error && !self.lenient && !self.tree[expr].constant {
             let what = if kind == VariableKind::Const {
                 "constant"
             } else {

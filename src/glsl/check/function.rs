@@ -273,10 +273,6 @@ impl Checker<'_> {
     /// `void mainImage(out vec4, in vec2)`, as the call that `ShaderToy` makes asks for it.
     fn main_image(&mut self) -> Option<FunctionId> {
         use crate::glsl::tree::Scalar::Float;
-        let wanted = [
-            (Type::Vector(Float, 4), Direction::Out),
-            (Type::Vector(Float, 2), Direction::In),
-        ];
         let mut near = None;
         for (id, function) in self.tree.functions.iter() {
             if function.name != "mainImage" || function.body.is_none() {
@@ -287,7 +283,19 @@ impl Checker<'_> {
                 .parameters
                 .iter()
                 .map(|&id| (self.tree[id].ty, self.tree[id].kind));
-            let fits = parameters.eq(wanted.map(|(ty, direction)| (ty, VariableKind::Parameter(direction))));
+            let fits = matches!(
+                parameters.collect::<Vec<_>>()[..],
+                [
+                    (
+                        Type::Vector(Float, 4),
+                        VariableKind::Parameter(Direction::Out | Direction::InOut)
+                    ),
+                    (
+                        Type::Vector(Float, 2),
+                        VariableKind::Parameter(Direction::In | Direction::ConstIn)
+                    ),
+                ]
+            );
             if fits && function.return_type == Type::Void {
                 return Some(id);
             }

@@ -1,5 +1,7 @@
 //! What is declared before the author's first line: `ShaderToy`'s inputs, and the variables and constants of §7.
 
+use std::ops::RangeInclusive;
+
 use super::Checker;
 use super::scope::Entity;
 use crate::glsl::tree::{
@@ -18,6 +20,9 @@ const LIMITS: [(&str, i32); 9] = [
     ("gl_MaxFragmentUniformVectors", 224),
     ("gl_MaxDrawBuffers", 4),
 ];
+
+/// How far a texture lookup can be offset on every machine.
+pub(super) const TEXEL_OFFSETS: RangeInclusive<i32> = -8..=7;
 
 impl Checker<'_> {
     pub(super) fn declare_prelude(&mut self) {
@@ -53,7 +58,10 @@ impl Checker<'_> {
         for (name, ty, variable) in variables {
             self.built_in(name, ty, VariableKind::BuiltIn(variable), None);
         }
-        let offsets = [("gl_MinProgramTexelOffset", -8), ("gl_MaxProgramTexelOffset", 7)];
+        let offsets = [
+            ("gl_MinProgramTexelOffset", *TEXEL_OFFSETS.start()),
+            ("gl_MaxProgramTexelOffset", *TEXEL_OFFSETS.end()),
+        ];
         for (name, value) in LIMITS.into_iter().chain(offsets) {
             self.built_in(name, Type::INT, VariableKind::BuiltInConstant, Some(value));
         }

@@ -367,7 +367,9 @@ fn main_image() {
         "
         ok    void mainImage(out vec4 c, in vec2 f) { }
         ok    void mainImage(out vec4 c, vec2 f) { } void mainImage(float a) { }
-        E0409 void mainImage(inout vec4 c, in vec2 f) { }
+        ok    void mainImage(inout vec4 c, const in vec2 f) { }
+        E0409 void mainImage(out vec4 c, inout vec2 f) { }
+        E0409 void mainImage(vec4 c, vec2 f) { }
         E0409 void mainImage(out vec3 c, in vec2 f) { }
         E0409 void mainImage(out vec4 c, in vec2 f);
         E0409 float f() { return 1.; } // mainImage

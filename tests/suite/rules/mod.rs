@@ -142,9 +142,9 @@ fn the_collection_is_complete() {
         .iter()
         .filter(|program| program.expectation == Expectation::Holds)
         .count();
-    assert!(holds >= 150, "{holds} programs hold");
+    assert!(holds >= 300, "{holds} programs hold");
     assert!(
-        programs.len() - holds >= 150,
+        programs.len() - holds >= 300,
         "{} are refused",
         programs.len() - holds
     );
