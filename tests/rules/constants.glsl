@@ -102,6 +102,18 @@ bool holds() { return x.length() == 1; }
 const float d = determinant(mat2(2.0, 0.0, 0.0, 3.0)), t = transpose(mat2(1.0, 2.0, 3.0, 4.0))[0][1];
 bool holds() { return d + t == 9.0; }
 
+//# 4.3.3 holds sizes may come out of matrices
+// glslang does not fold matrix functions.
+const mat2 m = matrixCompMult(mat2(1.0, 2.0, 3.0, 4.0), outerProduct(vec2(1.0, 2.0), vec2(1.0, 0.5)));
+float a[int(transpose(m)[0][1]) + int(determinant(mat3(2.0)) + inverse(mat2(0.25))[1][1])];
+bool holds() { return a.length() == 13; }
+
+//# 4.3.3 holds products of constant matrices are constant
+const vec2 v = mat2(1.0, 2.0, 3.0, 4.0) * vec2(1.0, 2.0);
+const mat2 m = mat2(0.0, 1.0, 1.0, 0.0) * mat2(v, v);
+float a[int(v.x) + int(m[1].x)];
+bool holds() { return a.length() == 17; }
+
 //# 4.3.3 holds vector relations of constants are constant
 const bool b = all(lessThan(vec2(1.0), vec2(2.0))) && any(bvec2(false, true)) && !not(bvec2(true)).x;
 float x[b ? 2 : 1];

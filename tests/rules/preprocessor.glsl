@@ -526,3 +526,31 @@ bool holds() { return true; }
 float f() {
     return A8;  //!
 }
+
+//# 3.4 E0300 a mistake in a macro stands where the macro is used
+#define HALF(x) x / 2
+float f(float a) {
+    return HALF(a);  //!
+}
+
+//# 3.4 E0200 a mistake in an argument stands where it is written
+// ANGLE names the last line of the use.
+#define SUM(a, b) (a + b)
+float f() {
+    return SUM(
+        1.0,
+        oops  //!
+    );
+}
+
+//# 3.4 E0200 a mistake in a macro that is never used harms nobody, used twice it stands twice
+#define OOPS (oops + 1.0)
+float f() {
+    float a = OOPS;  //!
+    return a
+        + OOPS;  //!
+}
+
+//# 3.4 holds a mistake in a macro that is never used harms nobody
+#define OOPS (oops + $ 0x)
+bool holds() { return true; }

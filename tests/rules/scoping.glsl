@@ -250,6 +250,7 @@ vec2 sin(int x) { return vec2(x); }  //!
 float sin(float x);  //!
 
 //# 4.2.2 holds a global variable may be called as a built-in function, and hides it
+// glslang does not let it.
 float distance = 1.0;
 bool holds() { return distance + length(vec2(3.0, 4.0)) == 6.0; }
 
@@ -260,6 +261,7 @@ float f() {
 }
 
 //# 4.2.2 holds a structure may be called as a built-in function, and hides it
+// glslang does not let it.
 struct reflect { float a; };
 bool holds() { reflect r = reflect(2.0); return r.a == iTime; }
 

@@ -1,4 +1,5 @@
-// ShaderToy's surroundings: mainImage and the inputs.
+// ShaderToy's surroundings: mainImage and the inputs. On the site, a main below the author's text calls mainImage, and that is where
+// compilers find the mistakes of mainImage's header; we name the header.
 
 //# - holds mainImage paints
 void mainImage(out vec4 c, in vec2 p) { c = vec4(1.0, 0.5, 0.25, 1.0); }

@@ -248,6 +248,7 @@ vec4 f(ivec2 p) {
 bool holds() { return texelFetchOffset(iChannel0, ivec2(8, -7), 0, ivec2(-8, 7)) == vec4(0.0, 0.0, 0.5, 1.0); }
 
 //# 8.8 E0302 the channels have one shape each
+// ANGLE is told the shape; we tell it from the text.
 vec4 f(vec2 p) {
     return texture(iChannel0, p)  //!
         + texture(iChannel0, vec3(p, 1.0));

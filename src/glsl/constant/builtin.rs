@@ -1,11 +1,12 @@
 //! Built-in functions of constants (§8).
 
 use super::arithmetic::order;
+use crate::elementary::{Matrix, determinant, inverse, outer_product};
 use crate::glsl::tree::{BuiltIn, Constant, Type, Value};
 
 /// The scalars of the result; none where they are undefined or not worth computing.
 pub(super) fn call(function: BuiltIn, ty: Type, arguments: &[Constant]) -> Option<Vec<Value>> {
-    if let Some(value) = geometric(function, arguments) {
+    if let Some(value) = geometric(function, arguments).or_else(|| of_matrices(function, arguments)) {
         return Some(value);
     }
     if let Some(value) = truths(function, arguments) {
@@ -138,18 +139,41 @@ fn truths(function: BuiltIn, arguments: &[Constant]) -> Option<bool> {
     }
 }
 
+/// The components of each argument, if all are floats.
+fn floats(arguments: &[Constant]) -> Option<Vec<Vec<f64>>> {
+    let float = |value: &Value| match value {
+        Value::Float(value) => Some(*value),
+        _ => None,
+    };
+    arguments
+        .iter()
+        .map(|argument| argument.scalars.iter().map(float).collect())
+        .collect()
+}
+
+/// §8.6.
+fn of_matrices(function: BuiltIn, arguments: &[Constant]) -> Option<Vec<Value>> {
+    let (columns, rows) = match arguments.first()?.ty {
+        Type::Matrix { columns, rows } => (usize::from(columns), usize::from(rows)),
+        // Of `outerProduct`.
+        _ => (1, 1),
+    };
+    let result = match (function, &floats(arguments)?[..]) {
+        (BuiltIn::MatrixCompMult, [a, b]) => a.iter().zip(b).map(|(a, b)| a * b).collect(),
+        (BuiltIn::OuterProduct, [column, row]) => outer_product(column, row).components(),
+        (BuiltIn::Transpose, [m]) => (0..rows)
+            .flat_map(|row| (0..columns).map(move |column| m[column * rows + row]))
+            .collect(),
+        (BuiltIn::Determinant, [m]) => vec![determinant(&Matrix::new(m, rows))],
+        (BuiltIn::Inverse, [m]) => inverse(&Matrix::new(m, rows)).components(),
+        _ => return None,
+    };
+    Some(result.into_iter().map(Value::Float).collect())
+}
+
 /// §8.5.
 fn geometric(function: BuiltIn, arguments: &[Constant]) -> Option<Vec<Value>> {
-    let vectors: Vec<Vec<f64>> = arguments
-        .iter()
-        .map(|argument| {
-            let float = |value: &Value| match value {
-                Value::Float(value) => Some(*value),
-                _ => None,
-            };
-            argument.scalars.iter().map(float).collect::<Option<_>>()
-        })
-        .collect::<Option<_>>()?;
+    let vectors = floats(arguments)?;
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let along = |a: &[f64], s: f64, b: &[f64]| a.iter().zip(b).map(|(a, b)| a + s * b).collect::<Vec<_>>();
     let result = match (function, &vectors[..]) {
