@@ -141,7 +141,7 @@ struct Reference {
 
 impl Checker<'_> {
     fn check(&mut self, input: &Result<Found, ReadError>) -> Record {
-        let shader = Shader::load(input, &self.args.driver);
+        let shader = Shader::load(input, &self.args.driver, self.args.driver.float());
         let spinner = self.terminal.spinner(&shader.name);
         let reference = input.as_ref().ok().and_then(|found| self.reference(found));
         let mut record = Record {

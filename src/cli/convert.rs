@@ -8,7 +8,7 @@ use super::inputs::DriverArgs;
 use super::shader::{Names, Shader, Unusable, find, is_invalid, with_suffix};
 use super::{Exit, Terminal};
 use crate::emit::Target;
-use crate::gpu::{Failure, Worker};
+use crate::gpu::{Failure, FloatMode, Worker};
 
 const HOSTS: &str = "\
 Examples:
@@ -105,7 +105,9 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let mut names = Names::default();
     let mut exit = Exit::Good;
     for input in &inputs {
-        let shader = Shader::load(input, &args.driver);
+        // People read what is converted: it keeps the author's functions unless told otherwise.
+        let float = args.driver.asked_float().unwrap_or(FloatMode::Fast);
+        let shader = Shader::load(input, &args.driver, float);
         let path = match (one, input) {
             (true, _) | (false, Err(_)) => args.output.clone(),
             (false, Ok(found)) => with_suffix(

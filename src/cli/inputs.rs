@@ -84,9 +84,11 @@ pub(super) struct DriverArgs {
     /// `auto` (lavapipe where it is installed, else the first), `lavapipe`, or words of an adapter's name
     #[arg(long, value_name = "ADAPTER", default_value = "auto", value_parser = on)]
     pub(super) on: On,
-    /// `strict` holds the driver to the arithmetic as written, `fast` lets it rearrange
-    #[arg(long, value_enum, default_value_t = Float::Strict)]
-    float: Float,
+    /// `strict` (unless you say otherwise) holds the driver to the arithmetic as written and spells `sin` and the like in
+    /// operations that have the same bits everywhere; `fast` lets it rearrange, with functions of its own. What `convert`
+    /// writes is spelled only if you ask for `strict`
+    #[arg(long, value_enum)]
+    float: Option<Float>,
     /// Stop a shader after this long (10s, 500ms, 2m)
     #[arg(long, value_name = "TIME", default_value = "10s", value_parser = humantime::parse_duration)]
     timeout: Duration,
@@ -138,7 +140,12 @@ impl DriverArgs {
     }
 
     pub(super) fn float(&self) -> FloatMode {
-        self.float.into()
+        self.float.unwrap_or(Float::Strict).into()
+    }
+
+    /// What `--float` asks for in so many words.
+    pub(super) fn asked_float(&self) -> Option<FloatMode> {
+        self.float.map(FloatMode::from)
     }
 
     pub(super) fn worker(&self) -> Result<Worker, String> {

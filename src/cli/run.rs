@@ -50,7 +50,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let mut names = Names::default();
     let mut exit = Exit::Good;
     for input in &inputs {
-        let shader = Shader::load(input, &args.driver);
+        let shader = Shader::load(input, &args.driver, args.driver.float());
         let path = match (one, input) {
             (true, _) | (false, Err(_)) => args.output.clone(),
             (false, Ok(found)) => with_suffix(&args.output.join(names.place(&found.relative)), ".png"),

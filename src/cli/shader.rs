@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::inputs::{Deny, DriverArgs};
 use crate::diagnostic::{self, Diagnostic, Severity};
 use crate::glsl::{self, Checked, Lowered};
-use crate::gpu::Failure;
+use crate::gpu::{Failure, FloatMode};
 use crate::source::{self, Files, Found, ReadError};
 
 /// A shader's text and what naga is fed, or why there is none.
@@ -27,7 +27,8 @@ pub(super) enum Unusable {
 }
 
 impl Shader {
-    pub(super) fn load(found: &Result<Found, ReadError>, driver: &DriverArgs) -> Self {
+    /// Reads and lowers; `float` tells whether what drivers differ in is spelled out.
+    pub(super) fn load(found: &Result<Found, ReadError>, driver: &DriverArgs, float: FloatMode) -> Self {
         let mut files = Files::default();
         let mut warnings = Vec::new();
         let (name, lowered) = match found {
@@ -38,7 +39,10 @@ impl Shader {
                     warnings = std::mem::take(&mut checked.warnings);
                     let denied = denied(&mut warnings, driver.denied());
                     if denied.is_empty() {
-                        Ok(glsl::lower(&checked))
+                        Ok(match float {
+                            FloatMode::Strict => glsl::lower_strict(&checked),
+                            FloatMode::Fast => glsl::lower(&checked),
+                        })
                     } else {
                         Err(Unusable::Invalid(denied))
                     }

@@ -11,14 +11,31 @@
 //! columns; an inverse is the adjugate over the determinant.
 
 mod common;
+mod exponential;
+mod float;
 mod geometric;
+mod hyperbolic;
+mod inverse_trigonometric;
+mod kernel;
+mod logarithmic;
 mod matrix;
+pub mod native;
 mod number;
+mod program;
+mod trigonometric;
+mod two_float;
 
 pub use common::{clamp, degrees, fract, inverse_sqrt, mix, modulo, radians, sign, smoothstep, step};
+pub use exponential::{exp, exp2};
+pub use float::{Bits, Float, Word};
 pub use geometric::{cross, distance, dot, faceforward, length, normalize, reflect, refract};
+pub use hyperbolic::{acosh, asinh, atanh, cosh, sinh, tanh};
+pub use inverse_trigonometric::{acos, asin, atan, atan2};
+pub use logarithmic::{log, log2, pow};
 pub use matrix::{Matrix, determinant, inverse, outer_product};
 pub use number::Number;
+pub use program::{Binary, FloatTerm, Kind, Program, Step, StepId, Unary};
+pub use trigonometric::{cos, sin, tan};
 
 #[cfg(test)]
 mod tests;

@@ -22,7 +22,7 @@ mod warn;
 mod words;
 
 pub use codes::Code;
-pub use lower::lower;
+pub use lower::{lower, lower_strict};
 pub use options::Options;
 pub use print::Lowered;
 

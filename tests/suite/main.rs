@@ -6,6 +6,7 @@ mod architecture;
 mod bad_input;
 mod commands;
 mod diagnostics;
+mod elementary;
 mod equivalent_rewrites;
 #[cfg(unix)]
 mod fuzzed;

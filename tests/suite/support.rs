@@ -118,7 +118,7 @@ pub(crate) fn verdict(worker: &mut Worker, shader: &str, scene: &str, size: [u32
     let file = files.add(File::new("<shader>", shader));
     let checked = glsl::check(&files, file, &glsl::Options::default())
         .unwrap_or_else(|errors| panic!("{}\n{shader}", told(&errors, &files)));
-    let lowered = glsl::lower(&checked);
+    let lowered = glsl::lower_strict(&checked);
     let frame = Frame {
         size,
         ..Frame::default()

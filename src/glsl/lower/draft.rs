@@ -7,6 +7,7 @@ use super::super::tree::{
     VariableId, VariableKind,
 };
 use super::build::Builder;
+use super::elementary::Spelled;
 use super::helper::Helper;
 use super::walk;
 
@@ -25,6 +26,8 @@ pub(crate) struct Draft {
     /// The bodies of functions of our own that are written as text.
     pub(crate) helpers: HashMap<FunctionId, String>,
     helper_ids: HashMap<(Helper, Type, Type), FunctionId>,
+    /// The functions of our own that stand for built-in ones, by the types of their arguments.
+    pub(super) spelled: HashMap<(Spelled, Vec<Type>), FunctionId>,
 }
 
 impl Draft {
@@ -38,6 +41,7 @@ impl Draft {
             moved: HashSet::new(),
             helpers: HashMap::new(),
             helper_ids: HashMap::new(),
+            spelled: HashMap::new(),
         }
     }
 

@@ -12,6 +12,7 @@ mod dead_code;
 mod depth;
 mod do_while;
 mod draft;
+mod elementary;
 mod else_if;
 mod equality;
 mod geometric;
@@ -34,6 +35,7 @@ mod remainder;
 mod sampler;
 mod sequence;
 mod short_circuit;
+mod spelled;
 mod surroundings;
 mod switch;
 mod swizzle;
@@ -52,6 +54,13 @@ use super::print::{Lowered, print};
 #[must_use]
 pub fn lower(checked: &Checked) -> Lowered {
     lower_with(checked, Passes::all())
+}
+
+/// The same for a shader whose every operation is to have the same bits on every driver: what drivers differ in is spelled
+/// in operations that they agree on ([`crate::elementary`]).
+#[must_use]
+pub fn lower_strict(checked: &Checked) -> Lowered {
+    lower_with(checked, Passes::strict())
 }
 
 /// The same by some passes only, to see what naga makes of the rest.

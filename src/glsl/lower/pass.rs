@@ -30,6 +30,8 @@ passes! {
     Surroundings = super::surroundings::run,
     /// `&&` and `||` with an effect on the right.
     ShortCircuit = super::short_circuit::run,
+    /// Built-in functions whose last bits drivers choose; for strict shaders only.
+    Elementary = super::elementary::run,
     /// `modf`, `matrixCompMult`, `outerProduct`, `inverse`.
     Missing = super::missing::run,
     /// `dot` and the like of floats.
@@ -48,6 +50,8 @@ passes! {
     Indices = super::index::run,
     /// Compound assignments whose right side changes their target.
     Compounds = super::compound::run,
+    /// Products of matrices, whose sums drivers order as they like; for strict shaders only.
+    Products = super::elementary::products,
     /// `-x` of unsigned integers.
     Negations = super::negation::run,
     /// `%`.
@@ -91,9 +95,15 @@ passes! {
 pub struct Passes(u32);
 
 impl Passes {
-    /// Every pass.
+    /// Every pass that naga needs.
     #[must_use]
     pub fn all() -> Self {
+        Self::strict().without(Pass::Elementary).without(Pass::Products)
+    }
+
+    /// These, and those that make a shader's bits the same everywhere.
+    #[must_use]
+    pub fn strict() -> Self {
         Self(u32::MAX)
     }
 

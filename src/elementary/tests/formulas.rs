@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 
-use super::{
+use super::super::{
     Matrix, cross, determinant, distance, dot, faceforward, inverse, length, mix, modulo, normalize,
     outer_product, reflect, refract, smoothstep,
 };
