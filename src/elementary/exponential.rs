@@ -9,7 +9,7 @@ use super::kernel::{infinity, is_nan, polynomial};
 use super::two_float::TwoFloat;
 
 /// `eˣ`
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn exp<F: Float>(x: F) -> F {
     let (value, n) = exp_parts(x);
@@ -20,7 +20,7 @@ pub fn exp<F: Float>(x: F) -> F {
 }
 
 /// `2ˣ`
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn exp2<F: Float>(x: F) -> F {
     let value = exp2_of(TwoFloat::of(x));
@@ -28,7 +28,7 @@ pub fn exp2<F: Float>(x: F) -> F {
 }
 
 /// 2 to a power that is given to more than 24 bits; garbage of NaN.
-#[inline]
+#[inline(always)]
 pub(super) fn exp2_of<F: Float>(x: TwoFloat<F>) -> F {
     let (whole, n) = nearest(x.hi);
     let fraction = TwoFloat::ordered_sum(x.hi - whole, x.lo);
@@ -44,7 +44,7 @@ pub(super) fn exp2_of<F: Float>(x: TwoFloat<F>) -> F {
 }
 
 /// eˣ as v·2ⁿ with v in [0.7, 1.5]; |x| at most 100.
-#[inline]
+#[inline(always)]
 pub(super) fn exp_parts<F: Float>(x: F) -> (TwoFloat<F>, F::Bits) {
     /// ln 2 to 16 bits, so that multiples by 8 bits are exact; and the rest of it.
     const LN_2_SPLIT: [f32; 2] = [0.693_145_75, 1.428_606_8e-6];
@@ -55,7 +55,7 @@ pub(super) fn exp_parts<F: Float>(x: F) -> (TwoFloat<F>, F::Bits) {
 }
 
 /// The nearest integer, as a float and as the low bits of an integer; |x| at most 2²².
-#[inline]
+#[inline(always)]
 fn nearest<F: Float>(x: F) -> (F, F::Bits) {
     // Around 1.5·2²³ floats are integers.
     const SHIFT: f32 = 12_582_912.0;
@@ -64,7 +64,7 @@ fn nearest<F: Float>(x: F) -> (F, F::Bits) {
 }
 
 /// eʳ of |r| ≤ ln 2 / 2: 1 + r + r²·P(r), within 2⁻²⁸.
-#[inline]
+#[inline(always)]
 fn kernel<F: Float>(r: TwoFloat<F>) -> TwoFloat<F> {
     const P: [f32; 5] = [
         0.499_999_94,
@@ -78,7 +78,7 @@ fn kernel<F: Float>(r: TwoFloat<F>) -> TwoFloat<F> {
 }
 
 /// `x·2ⁿ` of x in [0.7, 1.5]; 0 where that is a denormal.
-#[inline]
+#[inline(always)]
 fn scaled<F: Float>(x: F, n: F::Bits) -> F {
     let bits = x.to_bits() + (n << 23);
     let zero = bits.literal(0);
@@ -86,7 +86,7 @@ fn scaled<F: Float>(x: F, n: F::Bits) -> F {
 }
 
 /// 2ⁿ of n in −126 to 127.
-#[inline]
+#[inline(always)]
 pub(super) fn power_of_two<F: Float>(n: F::Bits) -> F {
     F::from_bits((n + 127) << 23)
 }

@@ -12,7 +12,7 @@ const LARGE: f32 = 16_384.0;
 const SMALL: f32 = 1.0 / 4096.0;
 
 /// `(eˣ − e⁻ˣ)/2`
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn sinh<F: Float>(x: F) -> F {
     /// (sinh(x) − x)/x³ as a polynomial of x², |x| ≤ 1, within 2⁻³¹ of sinh(x).
@@ -28,7 +28,7 @@ pub fn sinh<F: Float>(x: F) -> F {
 }
 
 /// `(eˣ + e⁻ˣ)/2`
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn cosh<F: Float>(x: F) -> F {
     let (up, down) = quarters(x);
@@ -37,7 +37,7 @@ pub fn cosh<F: Float>(x: F) -> F {
 }
 
 /// `sinh(x)/cosh(x)`
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn tanh<F: Float>(x: F) -> F {
     /// (tanh(x) − x)/x³ as a polynomial of x², |x| ≤ 0.36, within 2⁻³⁰ of tanh(x).
@@ -59,7 +59,7 @@ pub fn tanh<F: Float>(x: F) -> F {
 }
 
 /// e^|x|/4 and e^−|x|/4: halves of it can be too large.
-#[inline]
+#[inline(always)]
 fn quarters<F: Float>(x: F) -> (TwoFloat<F>, F) {
     let a = x.abs();
     // From there on both functions are infinite.
@@ -73,7 +73,7 @@ fn quarters<F: Float>(x: F) -> (TwoFloat<F>, F) {
 }
 
 /// `ln(x + √(x² + 1))`
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn asinh<F: Float>(x: F) -> F {
     let a = x.abs();
@@ -85,7 +85,7 @@ pub fn asinh<F: Float>(x: F) -> F {
 }
 
 /// `ln(x + √(x² − 1))`; NaN where x < 1.
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn acosh<F: Float>(x: F) -> F {
     let one = x.literal(1.0);
@@ -101,7 +101,7 @@ pub fn acosh<F: Float>(x: F) -> F {
 }
 
 /// `ln((1 + x)/(1 − x))/2`; NaN where |x| > 1.
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn atanh<F: Float>(x: F) -> F {
     let a = x.abs();
@@ -116,7 +116,7 @@ pub fn atanh<F: Float>(x: F) -> F {
 }
 
 /// `ln(1 + t)`, or `ln(2·large)` where `large` is.
-#[inline]
+#[inline(always)]
 fn ln_beyond_one<F: Float>(t: TwoFloat<F>, large: F) -> F {
     let one = large.literal(1.0);
     let is_large = !is_below(large, LARGE);

@@ -10,7 +10,7 @@ use super::kernel::{is_nan, negate_if, polynomial};
 use super::two_float::TwoFloat;
 
 /// `asin(x)`; NaN where |x| > 1.
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn asin<F: Float>(x: F) -> F {
     let Arcsine { outer, root, series } = arcsine(x);
@@ -21,7 +21,7 @@ pub fn asin<F: Float>(x: F) -> F {
 }
 
 /// `acos(x)`; NaN where |x| > 1.
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn acos<F: Float>(x: F) -> F {
     let Arcsine { outer, root, series } = arcsine(x);
@@ -33,7 +33,7 @@ pub fn acos<F: Float>(x: F) -> F {
 }
 
 /// `atan(x)`
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn atan<F: Float>(x: F) -> F {
     let a = x.abs();
@@ -46,7 +46,7 @@ pub fn atan<F: Float>(x: F) -> F {
 }
 
 /// `atan(y, x)`: the angle of (x, y) in [−π, π]; of zeros and infinities as in C.
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn atan2<F: Float>(y: F, x: F) -> F {
     let (ax, ay) = (x.abs(), y.abs());
@@ -74,7 +74,7 @@ pub fn atan2<F: Float>(y: F, x: F) -> F {
 }
 
 /// The angle `whole − (hi + lo)`, where hi is not larger.
-#[inline]
+#[inline(always)]
 fn minus<F: Float>(whole: f64, hi: F, lo: F) -> F {
     let whole = TwoFloat::constant(hi, whole);
     let sum = TwoFloat::ordered_sum(whole.hi, -hi);
@@ -91,7 +91,7 @@ struct Arcsine<F: Float> {
     series: F,
 }
 
-#[inline]
+#[inline(always)]
 fn arcsine<F: Float>(x: F) -> Arcsine<F> {
     /// (asin(t) − t)/t³ as a polynomial of t², t ≤ ½, within 2⁻²⁷ of asin(t).
     const P: [f32; 5] = [
@@ -112,7 +112,7 @@ fn arcsine<F: Float>(x: F) -> Arcsine<F> {
 }
 
 /// atan(t) − t of t in [0, 1], within 2⁻²⁶ of atan(t).
-#[inline]
+#[inline(always)]
 fn arctangent<F: Float>(t: F) -> F {
     const P: [f32; 9] = [
         -0.333_333_02,

@@ -11,7 +11,7 @@ use super::kernel::{infinity, is_nan, is_zero, magnitude, nan, polynomial};
 use super::two_float::TwoFloat;
 
 /// `ln x`; −∞ of zero, NaN below.
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn log<F: Float>(x: F) -> F {
     let value = ln_of(TwoFloat::of(x), x.literal(0.0));
@@ -19,7 +19,7 @@ pub fn log<F: Float>(x: F) -> F {
 }
 
 /// The binary logarithm of x; −∞ of zero, NaN below.
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn log2<F: Float>(x: F) -> F {
     let value = log2_of(x).value();
@@ -27,7 +27,7 @@ pub fn log2<F: Float>(x: F) -> F {
 }
 
 /// `x` to the power of `y`. Of x < 0 NaN; of 0 and infinities, and where y is 0, as in C.
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn pow<F: Float>(x: F, y: F) -> F {
     let regular = is_regular(x);
@@ -52,21 +52,21 @@ pub fn pow<F: Float>(x: F, y: F) -> F {
 }
 
 /// Whether it is positive, finite and no denormal.
-#[inline]
+#[inline(always)]
 fn is_regular<F: Float>(x: F) -> F::Truth {
     let bits = x.to_bits() - 0x0080_0000;
     bits.less(bits.literal(0x7F00_0000))
 }
 
 /// The logarithms of what is not regular.
-#[inline]
+#[inline(always)]
 fn of_irregular<F: Float>(x: F) -> F {
     // The square root is the same there: NaN below zero and of NaN, infinite of infinity.
     F::select(is_zero(x), -infinity(x), x.sqrt())
 }
 
 /// x = 2ᵏ·(1 + f): k, and 1 + f in [√½, √2].
-#[inline]
+#[inline(always)]
 fn split<F: Float>(x: F) -> (F, F) {
     const ROOT_HALF: u32 = 0x3F35_04F3;
     let bits = x.to_bits() + (0x3F80_0000 - ROOT_HALF);
@@ -76,7 +76,7 @@ fn split<F: Float>(x: F) -> (F, F) {
 }
 
 /// `ln x + octaves·ln 2` of a sum; for regular numbers. No more than the last bit is wrong.
-#[inline]
+#[inline(always)]
 pub(super) fn ln_of<F: Float>(x: TwoFloat<F>, octaves: F) -> F {
     /// ln 2 to 16 bits, so that multiples by 8 bits are exact; and the rest of it.
     const LN_2_SPLIT: [f32; 2] = [0.693_145_75, 1.428_606_8e-6];
@@ -93,7 +93,7 @@ pub(super) fn ln_of<F: Float>(x: TwoFloat<F>, octaves: F) -> F {
 }
 
 /// The binary logarithm of a regular number, to some 2⁻³⁵ of it.
-#[inline]
+#[inline(always)]
 fn log2_of<F: Float>(x: F) -> TwoFloat<F> {
     /// atanh(s) = s + s·z·(1/3 + z·P(z)) with z = s², within 2⁻³⁶.
     const P: [f32; 3] = [0.200_000_76, 0.142_735_42, 0.117_099_5];

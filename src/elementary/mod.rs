@@ -10,6 +10,11 @@
 //! right; `normalize(v)` is `v / length(v)`; `mix(a, b, t)` is `a·(1 − t) + b·t`; the product of a matrix and a vector sums over the
 //! columns; an inverse is the adjugate over the determinant.
 
+#![expect(
+    clippy::inline_always,
+    reason = "a call would keep loops over arrays from becoming SIMD"
+)]
+
 mod common;
 mod exponential;
 mod float;

@@ -12,7 +12,7 @@ use super::kernel::{flushed, is_below, is_finite, magnitude, nan, negate_if, pol
 use super::two_float::TwoFloat;
 
 /// `sin(x)`, x in radians; NaN of infinities.
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn sin<F: Float>(x: F) -> F {
     let (r, quadrant) = reduce(x);
@@ -22,7 +22,7 @@ pub fn sin<F: Float>(x: F) -> F {
 }
 
 /// `cos(x)`, x in radians; NaN of infinities.
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn cos<F: Float>(x: F) -> F {
     let (r, quadrant) = reduce(x);
@@ -32,7 +32,7 @@ pub fn cos<F: Float>(x: F) -> F {
 }
 
 /// `tan(x)`, x in radians; NaN of infinities.
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn tan<F: Float>(x: F) -> F {
     let (r, quadrant) = reduce(x);
@@ -47,7 +47,7 @@ pub fn tan<F: Float>(x: F) -> F {
     F::select(is_finite(x), value, nan(x))
 }
 
-#[inline]
+#[inline(always)]
 fn is_odd<F: Float>(quadrant: F::Bits) -> F::Truth {
     let even = quadrant & 1;
     even.literal(0).less(even)
@@ -65,7 +65,7 @@ const TWO_OVER_PI: [u32; 7] = [
 ];
 
 /// |x| = r + n·π/2 with |r| ≤ π/4 (and a little): r, and n mod 4 in the lowest bits.
-#[inline]
+#[inline(always)]
 fn reduce<F: Float>(x: F) -> (TwoFloat<F>, F::Bits) {
     let magnitude = magnitude(x);
     let significand = (magnitude & 0x007F_FFFF) + 0x0080_0000;
@@ -89,7 +89,7 @@ fn reduce<F: Float>(x: F) -> (TwoFloat<F>, F::Bits) {
 }
 
 /// 96 bits of 2/π from that position on.
-#[inline]
+#[inline(always)]
 fn window<F: Float>(position: F::Bits) -> [F::Bits; 3] {
     let (word, bit) = (position >> 5, position & 31);
     let at = |offset: usize| {
@@ -106,7 +106,7 @@ fn window<F: Float>(position: F::Bits) -> [F::Bits; 3] {
 }
 
 /// `a·b` as two words; b has 24 bits at most.
-#[inline]
+#[inline(always)]
 fn wide_product<F: Float>(a: F::Bits, b: F::Bits) -> (F::Bits, F::Bits) {
     let (a_high, a_low) = (a >> 16, a & 0xFFFF);
     let (b_high, b_low) = (b >> 16, b & 0xFFFF);
@@ -119,7 +119,7 @@ fn wide_product<F: Float>(a: F::Bits, b: F::Bits) -> (F::Bits, F::Bits) {
 }
 
 /// `high·2⁻³⁰ + low·2⁻⁶²`, `high` in two's complement.
-#[inline]
+#[inline(always)]
 fn fraction<F: Float>(high: F::Bits, low: F::Bits) -> TwoFloat<F> {
     const SCALE: [f32; 3] = [
         1.0 / (1_u64 << 30) as f32,
@@ -134,7 +134,7 @@ fn fraction<F: Float>(high: F::Bits, low: F::Bits) -> TwoFloat<F> {
 }
 
 /// sin of |r| ≤ π/4: r + r³·P(r²), P within 2⁻²⁸.
-#[inline]
+#[inline(always)]
 fn sine<F: Float>(r: TwoFloat<F>) -> TwoFloat<F> {
     const P: [f32; 3] = [-0.166_666_55, 0.008_332_188, -0.000_195_180_94];
     let z = r.hi * r.hi;
@@ -146,7 +146,7 @@ fn sine<F: Float>(r: TwoFloat<F>) -> TwoFloat<F> {
 }
 
 /// cos of |r| ≤ π/4: 1 − r²/2 + r⁴·Q(r²), Q within 2⁻³³.
-#[inline]
+#[inline(always)]
 fn cosine<F: Float>(r: TwoFloat<F>) -> TwoFloat<F> {
     const Q: [f32; 3] = [0.041_666_646, -0.001_388_731, 2.443_232_7e-5];
     let z = r.hi * r.hi;

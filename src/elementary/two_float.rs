@@ -14,7 +14,7 @@ pub(super) struct TwoFloat<F> {
 
 impl<F: Float> TwoFloat<F> {
     /// `a + b`, exactly.
-    #[inline]
+    #[inline(always)]
     pub(super) fn sum(a: F, b: F) -> Self {
         let hi = a + b;
         let of_b = hi - a;
@@ -23,14 +23,14 @@ impl<F: Float> TwoFloat<F> {
     }
 
     /// `a + b`, exactly if a is not smaller than b, or has no bits below b's lowest.
-    #[inline]
+    #[inline(always)]
     pub(super) fn ordered_sum(a: F, b: F) -> Self {
         let hi = a + b;
         Self { hi, lo: b - (hi - a) }
     }
 
     /// `a·b`, exactly.
-    #[inline]
+    #[inline(always)]
     pub(super) fn product(a: F, b: F) -> Self {
         let hi = a * b;
         let (a_head, b_head) = (head(a), head(b));
@@ -40,13 +40,13 @@ impl<F: Float> TwoFloat<F> {
     }
 
     /// The same sum with a small low part; of a high part that is not the smaller.
-    #[inline]
+    #[inline(always)]
     pub(super) fn normalised(self) -> Self {
         Self::ordered_sum(self.hi, self.lo)
     }
 
     /// `self·other`, to some 2⁻⁴⁵ of it.
-    #[inline]
+    #[inline(always)]
     pub(super) fn times(self, other: Self) -> Self {
         let product = Self::product(self.hi, other.hi);
         let cross = self.hi * other.lo + self.lo * other.hi;
@@ -54,7 +54,7 @@ impl<F: Float> TwoFloat<F> {
     }
 
     /// `self / other`, to some 2⁻⁴⁴ of it.
-    #[inline]
+    #[inline(always)]
     pub(super) fn over(self, other: Self) -> Self {
         let quotient = self.hi / other.hi;
         let back = Self::product(quotient, other.hi);
@@ -63,7 +63,7 @@ impl<F: Float> TwoFloat<F> {
     }
 
     /// The square root, to some 2⁻⁴⁴ of it; of 0 too.
-    #[inline]
+    #[inline(always)]
     pub(super) fn sqrt(self) -> Self {
         let root = self.hi.sqrt();
         let back = Self::product(root, root);
@@ -73,21 +73,21 @@ impl<F: Float> TwoFloat<F> {
     }
 
     /// `a + self`, where a is 0 or not smaller.
-    #[inline]
+    #[inline(always)]
     pub(super) fn below(self, a: F) -> Self {
         let sum = Self::ordered_sum(a, self.hi);
         Self::ordered_sum(sum.hi, sum.lo + self.lo)
     }
 
     /// `a + self`, whichever is larger.
-    #[inline]
+    #[inline(always)]
     pub(super) fn below_or_above(self, a: F) -> Self {
         let sum = Self::sum(a, self.hi);
         Self::ordered_sum(sum.hi, sum.lo + self.lo)
     }
 
     /// `yes` where `truth` holds, `no` elsewhere.
-    #[inline]
+    #[inline(always)]
     pub(super) fn select(truth: F::Truth, yes: Self, no: Self) -> Self {
         Self {
             hi: F::select(truth, yes.hi, no.hi),
@@ -96,7 +96,7 @@ impl<F: Float> TwoFloat<F> {
     }
 
     /// The same with more added to the low part.
-    #[inline]
+    #[inline(always)]
     pub(super) fn plus(self, little: F) -> Self {
         Self {
             hi: self.hi,
@@ -105,7 +105,7 @@ impl<F: Float> TwoFloat<F> {
     }
 
     /// A constant.
-    #[inline]
+    #[inline(always)]
     pub(super) fn constant(beside: F, value: f64) -> Self {
         let hi = value as f32;
         Self {
@@ -115,7 +115,7 @@ impl<F: Float> TwoFloat<F> {
     }
 
     /// A float.
-    #[inline]
+    #[inline(always)]
     pub(super) fn of(hi: F) -> Self {
         Self {
             hi,
@@ -124,14 +124,14 @@ impl<F: Float> TwoFloat<F> {
     }
 
     /// The nearest float, or its neighbour where `lo` is not normalised.
-    #[inline]
+    #[inline(always)]
     pub(super) fn value(self) -> F {
         self.hi + self.lo
     }
 }
 
 /// The upper 12 bits of the significand: products of two heads are exact, and so are those with tails.
-#[inline]
+#[inline(always)]
 pub(super) fn head<F: Float>(x: F) -> F {
     F::from_bits(x.to_bits() & 0xFFFF_F000)
 }

@@ -2,10 +2,10 @@
 
 use std::fmt::Write as _;
 
-use toyproof::elementary::native;
+use toyproof::elementary::{self as e, Matrix, native};
 use toyproof::frame::Frame;
 use toyproof::glsl::{Options, check, lower_strict};
-use toyproof::gpu::{FloatMode, Worker};
+use toyproof::gpu::{Drawn, FloatMode, Worker};
 use toyproof::source::{File, Files};
 
 /// Width and height of a picture of arguments.
@@ -54,6 +54,9 @@ float argument(uint n) {
     uint h = hash(n);
     uint usual = ((h >> 8u & 0x87FFFFFFu) % 0x0A000000u) + 0x3A000000u | h & 0x80000000u;
     return uintBitsToFloat((n & 4u) == 0u ? h : usual);
+}
+float usual(uint n) {
+    return argument(8u * n + 4u);
 }";
 
 fn hash(mut n: u32) -> u32 {
@@ -77,6 +80,8 @@ fn shader(call: &str, first: u32) -> String {
         "\nvoid mainImage(out vec4 c, in vec2 p) {{
             uint n = (uint(p.x) + uint(p.y) * {SIZE}u) * 2u + {first}u;
             float x = argument(n), y = argument(n + 1u);
+            vec3 a = vec3(usual(n), usual(n + 1u), usual(n + 2u));
+            vec3 b = vec3(usual(n + 3u), usual(n + 4u), usual(n + 5u));
             uint bits = floatBitsToUint({call});
             c = vec4(float(bits >> 16u), float(bits & 0xFFFFu), 0, 1);
         }}"
@@ -84,35 +89,37 @@ fn shader(call: &str, first: u32) -> String {
     text
 }
 
-/// How many results differ, and the first that does.
-fn differing(worker: &mut Worker, case: &Case, first: u32) -> (usize, String) {
+fn draw(worker: &mut Worker, text: &str, size: u32) -> Drawn {
     let mut files = Files::default();
-    let file = files.add(File::new(case.call, shader(case.call, first)));
+    let file = files.add(File::new("s", text));
     let frame = Frame {
-        size: [SIZE, SIZE],
+        size: [size, size],
         ..Frame::default()
     };
-    let checked = check(&files, file, &Options::default()).unwrap();
-    let drawn = worker
+    let checked =
+        check(&files, file, &Options::default()).unwrap_or_else(|errors| panic!("{errors:?}\n{text}"));
+    worker
         .draw(lower_strict(&checked), frame, FloatMode::Strict)
-        .unwrap();
-    let mut count = 0;
-    let mut told = String::new();
+        .unwrap()
+}
+
+/// Paints `call` for pixels that begin at argument `first`, two for each.
+///
+/// # Panics
+/// If a result is another than ours.
+fn compare(worker: &mut Worker, call: &str, ours: impl Fn(u32) -> f32, first: u32) {
+    let drawn = draw(worker, &shader(call, first), SIZE);
     for (pixel, n) in drawn.image.pixels().iter().zip((first..).step_by(2)) {
         let theirs = f32::from_bits((pixel[0] as u32) << 16 | pixel[1] as u32);
-        let (x, y) = (argument(n), argument(n + 1));
-        let ours = (case.ours)(x, y);
-        if theirs.to_bits() != ours.to_bits() && !(theirs.is_nan() && ours.is_nan()) {
-            if count == 0 {
-                told = format!(
-                    "{} of {x:e}, {y:e} is {theirs:e} on {}, not {ours:e}",
-                    case.call, drawn.device
-                );
-            }
-            count += 1;
-        }
+        let ours = ours(n);
+        assert!(
+            theirs.to_bits() == ours.to_bits() || theirs.is_nan() && ours.is_nan(),
+            "{call} of {:e}, {:e} is {theirs:e} on {}, not {ours:e}",
+            argument(n),
+            argument(n + 1),
+            drawn.device
+        );
     }
-    (count, told)
 }
 
 #[test]
@@ -124,8 +131,117 @@ fn the_driver_and_we_compute_the_same_bits() {
     let pictures = std::env::var("TOYPROOF_PICTURES").map_or(1, |count| count.parse().unwrap());
     for case in &cases() {
         for picture in 0..pictures {
-            let (count, told) = differing(&mut worker, case, picture * SIZE * SIZE * 2);
-            assert_eq!(count, 0, "{told}");
+            let ours = |n| (case.ours)(argument(n), argument(n + 1));
+            compare(&mut worker, case.call, ours, picture * SIZE * SIZE * 2);
+        }
+    }
+}
+
+/// Three components each of two vectors, and ours of them.
+type OfVectors = (&'static str, fn([f32; 3], [f32; 3]) -> f32);
+
+fn rotated([x, y, z]: [f32; 3]) -> [f32; 3] {
+    [z, x, y]
+}
+
+/// `mat3(a, b, a.zxy)`
+fn three(a: [f32; 3], b: [f32; 3]) -> Matrix<f32> {
+    Matrix::new(&[a, b, rotated(a)].concat(), 3)
+}
+
+/// `mat4(a, 1.0, b, 2.0, b.zxy, 3.0, a.zxy, 4.0)`
+fn four(a: [f32; 3], b: [f32; 3]) -> Matrix<f32> {
+    let columns = [(a, 1.0), (b, 2.0), (rotated(b), 3.0), (rotated(a), 4.0)];
+    Matrix::new(&columns.map(|([x, y, z], w)| [x, y, z, w]).concat(), 4)
+}
+
+const OF_VECTORS: [OfVectors; 26] = [
+    ("length(a)", |a, _| e::length(&a)),
+    ("distance(a, b)", |a, b| e::distance(&a, &b)),
+    ("dot(a, b)", |a, b| e::dot(&a, &b)),
+    ("cross(a, b).y", |a, b| e::cross(a, b)[1]),
+    ("normalize(a).z", |a, _| e::normalize(&a)[2]),
+    ("reflect(a, b).x", |a, b| e::reflect(&a, &b)[0]),
+    ("refract(a, normalize(b), 0.8).y", |a, b| {
+        e::refract(&a, &e::normalize(&b), 0.8)[1]
+    }),
+    ("faceforward(a, b, a).x", |a, b| e::faceforward(&a, &b, &a)[0]),
+    ("normalize(a.x)", |a, _| e::normalize(&a[..1])[0]),
+    ("reflect(a.x, b.y)", |a, b| e::reflect(&a[..1], &b[1..2])[0]),
+    ("mix(a, b, 0.3).y", |a, b| e::mix(a[1], b[1], 0.3)),
+    ("mix(a, b, b.zxy).y", |a, b| e::mix(a[1], b[1], rotated(b)[1])),
+    ("smoothstep(a, b, b.zxy).z", |a, b| {
+        e::smoothstep(a[2], b[2], rotated(b)[2])
+    }),
+    ("smoothstep(-1.0, 1.0, b).z", |_, b| {
+        e::smoothstep(-1.0, 1.0, b[2])
+    }),
+    ("mod(a, b).x", |a, b| e::modulo(a[0], b[0])),
+    ("mod(a, 0.7).z", |a, _| e::modulo(a[2], 0.7)),
+    ("fract(a).x", |a, _| e::fract(a[0])),
+    ("radians(a).x + degrees(b).x", |a, b| {
+        e::radians(a[0]) + e::degrees(b[0])
+    }),
+    ("inversesqrt(a * a).z", |a, _| e::inverse_sqrt(a[2] * a[2])),
+    ("step(a, b).y", |a, b| e::step(a[1], b[1])),
+    ("(mat3(a, b, a.zxy) * b).y", |a, b| {
+        three(a, b).times_vector(&b)[1]
+    }),
+    ("(b * mat3(a, b, a.zxy)).z", |a, b| {
+        three(a, b).vector_times(&b)[2]
+    }),
+    ("(mat3(a, b, a.zxy) * mat3(b, a, b.zxy))[1].z", |a, b| {
+        three(a, b).times(&three(b, a)).components()[5]
+    }),
+    ("inverse(mat3(a, b, a.zxy))[2].y", |a, b| {
+        e::inverse(&three(a, b)).components()[7]
+    }),
+    ("inverse(mat4(a, 1, b, 2, b.zxy, 3, a.zxy, 4))[1].z", |a, b| {
+        e::inverse(&four(a, b)).components()[6]
+    }),
+    ("float(floatBitsToUint(a.x))", |a, _| a[0].to_bits() as f32),
+];
+
+#[test]
+fn so_they_do_of_vectors_and_matrices() {
+    let Some(mut worker) = crate::support::worker() else {
+        return;
+    };
+    for (call, ours) in OF_VECTORS {
+        let ours = |n| {
+            let at = |n: u32| [0, 1, 2].map(|i| argument(8 * (n + i) + 4));
+            ours(at(n), at(n + 3))
+        };
+        compare(&mut worker, call, ours, 0);
+    }
+}
+
+#[test]
+fn constants_have_the_same_bits() {
+    let Some(mut worker) = crate::support::worker() else {
+        return;
+    };
+    for case in &cases() {
+        // Those above 1 are outside of some domains.
+        for (x, y) in [(0.7, 1.3), (2.5, -0.6)] {
+            let ours = (case.ours)(x, y);
+            if ours.is_nan() {
+                continue;
+            }
+            let call = case
+                .call
+                .replace("(x", &format!("({x:?}"))
+                .replace(", y", &format!(", {y:?}"));
+            let bits = ours.to_bits();
+            let text = format!(
+                "const float G = {call}; const vec2 V = vec2({call});
+                void mainImage(out vec4 c, in vec2 p) {{
+                    const float L = {call};
+                    c = vec4(floatBitsToUint(G) == {bits}u, floatBitsToUint(L) == {bits}u,
+                        floatBitsToUint({call}) == {bits}u && floatBitsToUint(V.y) == {bits}u, 1);
+                }}"
+            );
+            assert_eq!(draw(&mut worker, &text, 1).image.pixels()[0], [1.0; 4], "{text}");
         }
     }
 }

@@ -34,25 +34,26 @@ macro_rules! cases {
     };
 }
 
-/// The errors were found by trying all floats.
+/// The largest errors among every 97th float where the function is neither constant nor its argument; all floats may
+/// have slightly larger ones, and the limits leave a few hundredths for them.
 fn cases() -> [Case; 16] {
     cases! {
-        sin = libm::sin, 0.7581, 0x791E_D4D8;
-        cos = libm::cos, 0.7620, 0x5305_77E3;
-        tan = libm::tan, 0.9872, 0x659E_652C;
-        asin = libm::asin, 0.6558, 0x3F04_A87F;
-        acos = libm::acos, 0.6282, 0x3F0D_4A01;
-        atan = libm::atan, 1.1601, 0x3F84_7CA0;
-        sinh = libm::sinh, 0.7173, 0x3F5A_503E;
-        cosh = libm::cosh, 0.7844, 0x3E4F_F003;
-        tanh = libm::tanh, 0.5840, 0x3EFE_5538;
-        asinh = libm::asinh, 1.1406, 0x3F92_ADFC;
-        acosh = acosh, 0.7480, 0x3F8D_99C5;
-        atanh = libm::atanh, 0.7890, 0x3E2A_8417;
-        exp = libm::exp, 0.6594, 0x4179_8CD1;
-        exp2 = libm::exp2, 0.7669, 0xBEE1_EA8F;
-        log = libm::log, 0.7498, 0x3FCB_BB2D;
-        log2 = libm::log2, 0.5002, 0x00F3_299F;
+        sin = libm::sin, 0.82, 0x73C3_51C2;
+        cos = libm::cos, 0.83, 0x5D2A_15B6;
+        tan = libm::tan, 1.02, 0x659E_652C;
+        asin = libm::asin, 0.76, 0x3F06_CAB0;
+        acos = libm::acos, 0.69, 0x3F0B_54A0;
+        atan = libm::atan, 1.26, 0x3F83_1B16;
+        sinh = libm::sinh, 0.79, 0x3F5A_2B84;
+        cosh = libm::cosh, 0.88, 0x3D57_6DFD;
+        tanh = libm::tanh, 0.64, 0x3EFC_8F0A;
+        asinh = libm::asinh, 1.21, 0x3F05_1C29;
+        acosh = acosh, 0.84, 0x3F87_A5A0;
+        atanh = libm::atanh, 0.85, 0x3E2D_7A44;
+        exp = libm::exp, 0.72, 0x41DB_5663;
+        exp2 = libm::exp2, 0.82, 0xBFB9_39F4;
+        log = libm::log, 0.84, 0x3F33_58AB;
+        log2 = libm::log2, 0.54, 0x3F38_EA1D;
     }
 }
 
@@ -117,7 +118,7 @@ fn no_error_is_larger_than_its_limit_and_no_limit_than_its_error() {
         let at_worst = case.error(f32::from_bits(case.worst));
         let Case { name, limit, .. } = case;
         assert!(
-            at_worst > limit - 1e-3,
+            at_worst > limit - 0.05,
             "{name}: {limit} is more than {at_worst}, the error where it is largest"
         );
         let (error, x) = case.largest_error(stride);

@@ -92,7 +92,7 @@ passes! {
 
 /// A set of passes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Passes(u32);
+pub struct Passes(u64);
 
 impl Passes {
     /// Every pass that naga needs.
@@ -104,7 +104,7 @@ impl Passes {
     /// These, and those that make a shader's bits the same everywhere.
     #[must_use]
     pub fn strict() -> Self {
-        Self(u32::MAX)
+        Self(u64::MAX)
     }
 
     /// These without that one.
