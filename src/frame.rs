@@ -37,9 +37,9 @@ impl Default for Frame {
 }
 
 /// `iFrameRate`, in frames a second; `iTimeDelta` is one of them.
-const FRAME_RATE: f32 = 60.0;
+pub(crate) const FRAME_RATE: f32 = 60.0;
 /// `iSampleRate`, in samples a second.
-const SAMPLE_RATE: f32 = 44_100.0;
+pub(crate) const SAMPLE_RATE: f32 = 44_100.0;
 
 /// The std140 block at set 0, binding 0. The offsets are part of the contract with other hosts.
 #[repr(C)]

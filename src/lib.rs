@@ -5,6 +5,7 @@ pub mod compare;
 pub mod diagnostic;
 pub mod elementary;
 pub mod emit;
+pub mod eval;
 pub mod frame;
 pub mod glsl;
 pub mod gpu;

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The stages in the order of the flow.
-const STAGES: [&str; 15] = [
+const STAGES: [&str; 16] = [
     "source",
     "diagnostic",
     "output",
@@ -12,6 +12,7 @@ const STAGES: [&str; 15] = [
     "frame",
     "elementary",
     "glsl",
+    "eval",
     "module",
     "emit",
     "gpu",

@@ -8,6 +8,8 @@ mod commands;
 mod diagnostics;
 mod elementary;
 mod equivalent_rewrites;
+mod evaluator;
+mod evaluator_programs;
 #[cfg(unix)]
 mod fuzzed;
 mod miscompiles;

@@ -1,0 +1,143 @@
+//! Calls of the author's functions, inlined (§6.1).
+
+use super::place::{Home, Target};
+use super::{Builder, Frame, Result};
+use crate::eval::flow::{Cells, Node, Value};
+use crate::glsl::tree::{Direction, ExprId, ExprKind, FunctionId, Type, VariableId, VariableKind};
+
+/// What an argument gives to its parameter, and takes back.
+struct Passed {
+    values: Vec<Value>,
+    back: Option<Target>,
+}
+
+impl Builder<'_> {
+    pub(super) fn call(&mut self, function: FunctionId, arguments: &[ExprId]) -> Result<Vec<Value>> {
+        let tree = self.tree;
+        let parameters = &tree[function].parameters;
+        let mut passed = Vec::with_capacity(arguments.len());
+        for (&argument, &parameter) in arguments.iter().zip(parameters) {
+            passed.push(self.pass(argument, parameter)?);
+        }
+        for ((passed, &argument), &parameter) in passed.iter_mut().zip(arguments).zip(parameters) {
+            let whole = matches!(tree[argument].kind, ExprKind::Variable(_));
+            if let Some(back) = &passed.back
+                && whole
+                && direction(tree[parameter].kind) == Direction::InOut
+            {
+                // A variable as such is handed over when the call begins, after all arguments.
+                passed.values = self.read(back);
+            }
+        }
+        let mut taken = Vec::new();
+        for (passed, &parameter) in passed.into_iter().zip(parameters) {
+            if matches!(tree[parameter].ty, Type::Sampler(_)) {
+                continue;
+            }
+            let cells = self.allocate_type(tree[parameter].ty)?;
+            self.store_all(cells, &passed.values);
+            self.homes.insert(parameter, Home::Cells(cells));
+            taken.extend(passed.back.map(|back| (cells, back)));
+        }
+        let result = self.inline(function)?;
+        let value = self.load_all(result);
+        for (cells, back) in taken {
+            let values = self.load_all(cells);
+            self.write(&back, &values);
+        }
+        Ok(value)
+    }
+
+    /// Evaluates an argument, or the indices of one that is written.
+    fn pass(&mut self, argument: ExprId, parameter: VariableId) -> Result<Passed> {
+        let ty = self.tree[parameter].ty;
+        if matches!(ty, Type::Sampler(_)) {
+            let channel = self.channel(argument);
+            self.homes.insert(parameter, Home::Channel(channel));
+            return Ok(Passed {
+                values: Vec::new(),
+                back: None,
+            });
+        }
+        let direction = direction(self.tree[parameter].kind);
+        if matches!(direction, Direction::In | Direction::ConstIn) {
+            let values = self.expression(argument)?;
+            return Ok(Passed { values, back: None });
+        }
+        let back = self.target(argument)?;
+        let values = match &back {
+            Some(target) if direction == Direction::InOut => self.read(target),
+            _ => self.zeros(ty),
+        };
+        Ok(Passed { values, back })
+    }
+
+    /// The channel that a sampler is; none for one that nobody feeds.
+    pub(super) fn channel(&mut self, sampler: ExprId) -> Option<u8> {
+        let ExprKind::Variable(variable) = self.tree[sampler].kind else {
+            return None;
+        };
+        match self.home(variable) {
+            Home::Channel(channel) => channel,
+            _ => None,
+        }
+    }
+
+    /// The body of a function whose parameters have homes; its result, in cells.
+    fn inline(&mut self, function: FunctionId) -> Result<Cells> {
+        let tree = self.tree;
+        let ty = tree[function].return_type;
+        let result = self.allocate_type(ty)?;
+        // As where a function ends without `return`.
+        let zeros = self.zeros(ty);
+        self.store_all(result, &zeros);
+        let scope = self.scope();
+        let body = self.inner(|builder| {
+            builder.frames.push(Frame { scope, result });
+            let (breaks, continues) = (
+                std::mem::take(&mut builder.breaks),
+                std::mem::take(&mut builder.continues),
+            );
+            if let Some(body) = &tree[function].body {
+                builder.block(body)?;
+            }
+            builder.breaks = breaks;
+            builder.continues = continues;
+            builder.frames.pop();
+            Ok(())
+        })?;
+        self.push_scope(scope, body);
+        Ok(result)
+    }
+
+    /// `mainImage`, which paints into `colour`.
+    pub(super) fn main_image(&mut self, function: FunctionId, colour: Cells) -> Result<()> {
+        let tree = self.tree;
+        let coordinates = self.frag_coord();
+        if let &[out, position] = tree[function].parameters.as_slice() {
+            // The colour begins black and opaque, where other `out` parameters begin with zeros.
+            self.homes.insert(out, Home::Cells(colour));
+            let cells = self.allocate_type(tree[position].ty)?;
+            self.store_all(cells, &coordinates);
+            self.homes.insert(position, Home::Cells(cells));
+        }
+        self.inline(function).map(drop)
+    }
+
+    /// A scope, or its body alone where nothing leaves it.
+    pub(super) fn push_scope(&self, scope: crate::eval::flow::Scope, mut body: Vec<Node>) {
+        super::tail::shorten(&mut body, scope);
+        if super::tail::leaves(&body, scope) {
+            self.push(Node::Scope { scope, body });
+        } else {
+            self.draft.borrow_mut().block.extend(body);
+        }
+    }
+}
+
+fn direction(kind: VariableKind) -> Direction {
+    match kind {
+        VariableKind::Parameter(direction) => direction,
+        _ => Direction::In,
+    }
+}

@@ -1,0 +1,413 @@
+//! Structured code as steps in a row with jumps and masks.
+//!
+//! A mask says which pixels are here. Mask 0 has all of them; a branch that only some pixels take, and a scope that some
+//! leave before others, has its own, numbered by depth. Who leaves is taken out of every mask up to that of the scope; where a mask has become
+//! empty, control jumps to the end of what it belongs to.
+
+use super::flow::{Block, Cell, Cells, Flow, LoopId, Node, Origin, Scope, Value};
+use super::observe::{Predicate, SiteId};
+use super::uniform::Varying;
+
+/// Names a mask.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Mask(pub(super) u16);
+
+/// Where to go on: the position of a step, once all are there.
+pub(super) type Target = u32;
+
+/// A step.
+#[derive(Debug, Clone)]
+pub(super) enum Step {
+    Compute(Value),
+    Store {
+        cell: Cell,
+        value: Value,
+    },
+    StoreAt {
+        cells: Cells,
+        offset: u32,
+        index: Value,
+        value: Value,
+    },
+    /// Divides the pixels that are here by a varying condition. Jumps if none is for the first branch.
+    Split {
+        condition: Value,
+        yes: Mask,
+        no: Mask,
+        when: bool,
+        empty: Target,
+    },
+    /// All pixels that are here, in another mask.
+    Copy {
+        to: Mask,
+    },
+    /// Takes those pixels that are here out of some masks, the innermost first, for which a condition is `when`; jumps if none
+    /// is left.
+    Remove {
+        condition: Option<(Value, bool)>,
+        masks: (Mask, Mask),
+        empty: Target,
+    },
+    JumpIfEmpty(Target),
+    Jump(Target),
+    /// Jumps if a uniform condition is `when`.
+    JumpIf {
+        condition: Value,
+        when: bool,
+        to: Target,
+    },
+    /// One more round of a loop.
+    Iterate(LoopId),
+    Check {
+        predicate: Predicate,
+        values: [Value; 2],
+        site: SiteId,
+    },
+}
+
+/// A program in a row.
+#[derive(Debug)]
+pub(super) struct Flat {
+    /// Each with the mask of the pixels that are there.
+    pub(super) steps: Vec<(Step, Mask)>,
+    /// How many masks there are.
+    pub(super) masks: u16,
+    /// First and last step of each loop, inner ones before outer ones.
+    pub(super) loops: Vec<(u32, u32)>,
+    /// What is computed once for a frame.
+    pub(super) constants: Vec<Value>,
+}
+
+/// Lays a program out.
+pub(super) fn flatten(flow: &Flow, varying: &Varying) -> Flat {
+    let mut pass = Flatten {
+        flow,
+        varying,
+        steps: Vec::new(),
+        labels: vec![u32::MAX],
+        owners: vec![Owner {
+            mask: Mask(0),
+            end: 0,
+        }],
+        scopes: vec![(0, 0); flow.scopes as usize],
+        masks: 1,
+        loops: Vec::new(),
+        constants: Vec::new(),
+    };
+    pass.block(&flow.body);
+    pass.place(0);
+    pass.finish()
+}
+
+/// What a mask belongs to.
+#[derive(Debug, Clone, Copy)]
+struct Owner {
+    mask: Mask,
+    /// The label of its end.
+    end: Target,
+}
+
+struct Flatten<'a> {
+    flow: &'a Flow,
+    varying: &'a Varying,
+    steps: Vec<(Step, Mask)>,
+    /// The position of each label.
+    labels: Vec<u32>,
+    owners: Vec<Owner>,
+    /// Of each open scope, how many owners are around its inside, and its end.
+    scopes: Vec<(usize, Target)>,
+    masks: u16,
+    loops: Vec<(u32, u32)>,
+    constants: Vec<Value>,
+}
+
+impl Flatten<'_> {
+    fn here(&self) -> Owner {
+        self.owners[self.owners.len() - 1]
+    }
+
+    fn push(&mut self, step: Step) {
+        let mask = self.here().mask;
+        self.steps.push((step, mask));
+    }
+
+    fn label(&mut self) -> Target {
+        self.labels.push(u32::MAX);
+        self.labels.len() as u32 - 1
+    }
+
+    fn place(&mut self, label: Target) {
+        self.labels[label as usize] = self.steps.len() as u32;
+    }
+
+    fn next_mask(&mut self) -> Mask {
+        let mask = Mask(self.here().mask.0 + 1);
+        self.masks = self.masks.max(mask.0 + 1);
+        mask
+    }
+
+    fn block(&mut self, block: &Block) {
+        for node in block {
+            self.node(node);
+        }
+    }
+
+    fn compute(&mut self, value: Value) {
+        if matches!(
+            self.flow.origin(value),
+            Origin::Float(_) | Origin::Word(_) | Origin::Input(..) | Origin::FragCoord(_)
+        ) {
+            return;
+        }
+        if self.varying.is_constant(value) {
+            self.constants.push(value);
+        } else {
+            self.push(Step::Compute(value));
+        }
+    }
+
+    fn node(&mut self, node: &Node) {
+        match *node {
+            Node::Let(value) => self.compute(value),
+            Node::Store { cell, value } => self.push(Step::Store { cell, value }),
+            Node::StoreAt {
+                cells,
+                offset,
+                index,
+                value,
+            } => self.push(Step::StoreAt {
+                cells,
+                offset,
+                index,
+                value,
+            }),
+            Node::If {
+                condition,
+                ref yes,
+                ref no,
+            } => {
+                if self.varying.value(condition) {
+                    self.divide(condition, yes, no);
+                } else {
+                    self.choose(condition, yes, no);
+                }
+            }
+            Node::Scope { scope, ref body } => self.scope(scope, body),
+            Node::Loop { id, ref body } => {
+                let head = self.label();
+                self.place(head);
+                let first = self.steps.len() as u32;
+                self.push(Step::Iterate(id));
+                self.block(body);
+                self.push(Step::Jump(head));
+                self.loops.push((first, self.steps.len() as u32 - 1));
+            }
+            Node::Leave(scope) => self.leave(scope, None),
+            Node::LeaveIf {
+                scope,
+                condition,
+                when,
+            } => {
+                if self.varying.value(condition) {
+                    self.leave(scope, Some((condition, when)));
+                } else if self.is_plain(scope) {
+                    let to = self.scopes[scope.0 as usize].1;
+                    self.push(Step::JumpIf { condition, when, to });
+                } else {
+                    let on = self.label();
+                    self.push(Step::JumpIf {
+                        condition,
+                        when: !when,
+                        to: on,
+                    });
+                    self.leave(scope, None);
+                    self.place(on);
+                }
+            }
+            Node::Check {
+                predicate,
+                values,
+                site,
+            } => self.push(Step::Check {
+                predicate,
+                values,
+                site,
+            }),
+        }
+    }
+
+    /// Whether all pixels of a scope are here together, if they are.
+    fn is_plain(&self, scope: Scope) -> bool {
+        self.scopes[scope.0 as usize].0 == self.owners.len()
+    }
+
+    fn leave(&mut self, scope: Scope, condition: Option<(Value, bool)>) {
+        let (owners, end) = self.scopes[scope.0 as usize];
+        if condition.is_none() && owners == self.owners.len() {
+            self.push(Step::Jump(end));
+            return;
+        }
+        let (inner, outer) = (self.here(), self.owners[owners - 1]);
+        self.push(Step::Remove {
+            condition,
+            masks: (inner.mask, outer.mask),
+            empty: inner.end,
+        });
+    }
+
+    /// An `if` that all pixels decide in the same way.
+    fn choose(&mut self, condition: Value, yes: &Block, no: &Block) {
+        let (otherwise, end) = (self.label(), self.label());
+        if yes.is_empty() {
+            self.push(Step::JumpIf {
+                condition,
+                when: true,
+                to: end,
+            });
+            self.place(otherwise);
+        } else {
+            self.push(Step::JumpIf {
+                condition,
+                when: false,
+                to: otherwise,
+            });
+            self.block(yes);
+            if !no.is_empty() {
+                self.push(Step::Jump(end));
+            }
+            self.place(otherwise);
+        }
+        self.block(no);
+        self.place(end);
+    }
+
+    fn divide(&mut self, condition: Value, yes: &Block, no: &Block) {
+        // The branch that there is comes first.
+        let (when, first, second) = if yes.is_empty() {
+            (false, no, yes)
+        } else {
+            (true, yes, no)
+        };
+        let (otherwise, end) = (self.label(), self.label());
+        let mask = self.next_mask();
+        // Both live beside each other while the first branch runs; without a second one, one mask is enough.
+        let other = if second.is_empty() { mask } else { Mask(mask.0 + 1) };
+        self.masks = self.masks.max(other.0 + 1);
+        self.push(Step::Split {
+            condition,
+            yes: mask.max(other),
+            no: mask.min(other),
+            when,
+            empty: otherwise,
+        });
+        self.owners.push(Owner {
+            mask: mask.max(other),
+            end: otherwise,
+        });
+        self.block(first);
+        self.owners.pop();
+        self.place(otherwise);
+        if !second.is_empty() {
+            self.owners.push(Owner {
+                mask: mask.min(other),
+                end,
+            });
+            self.push(Step::JumpIfEmpty(end));
+            self.block(second);
+            self.owners.pop();
+        }
+        self.place(end);
+        if leaves(first) || leaves(second) {
+            let end = self.here().end;
+            self.push(Step::JumpIfEmpty(end));
+        }
+    }
+
+    fn scope(&mut self, scope: Scope, body: &Block) {
+        let end = self.label();
+        let own = self.varying.scope(scope);
+        if own {
+            let mask = self.next_mask();
+            self.push(Step::Copy { to: mask });
+            self.owners.push(Owner { mask, end });
+        }
+        self.scopes[scope.0 as usize] = (self.owners.len(), end);
+        self.block(body);
+        if own {
+            self.owners.pop();
+        }
+        self.place(end);
+        if own && leaves_beyond(body, scope) {
+            let end = self.here().end;
+            self.push(Step::JumpIfEmpty(end));
+        }
+    }
+
+    fn finish(self) -> Flat {
+        let Self {
+            mut steps,
+            labels,
+            masks,
+            loops,
+            constants,
+            ..
+        } = self;
+        for (step, _) in &mut steps {
+            match step {
+                Step::Split { empty: to, .. }
+                | Step::Remove { empty: to, .. }
+                | Step::JumpIfEmpty(to)
+                | Step::Jump(to)
+                | Step::JumpIf { to, .. } => *to = labels[*to as usize],
+                _ => {}
+            }
+        }
+        Flat {
+            steps,
+            masks,
+            loops,
+            constants,
+        }
+    }
+}
+
+impl Mask {
+    fn max(self, other: Self) -> Self {
+        Self(self.0.max(other.0))
+    }
+
+    fn min(self, other: Self) -> Self {
+        Self(self.0.min(other.0))
+    }
+}
+
+fn leaves(block: &Block) -> bool {
+    block.iter().any(|node| match node {
+        Node::Leave(_) | Node::LeaveIf { .. } => true,
+        Node::If { yes, no, .. } => leaves(yes) || leaves(no),
+        Node::Scope { scope, body } => leaves_beyond(body, *scope),
+        Node::Loop { body, .. } => leaves(body),
+        _ => false,
+    })
+}
+
+/// Whether something in the body of a scope leaves one around it.
+fn leaves_beyond(body: &Block, scope: Scope) -> bool {
+    let mut inside = vec![scope];
+    beyond(body, &mut inside)
+}
+
+fn beyond(block: &Block, inside: &mut Vec<Scope>) -> bool {
+    block.iter().any(|node| match node {
+        Node::Leave(left) | Node::LeaveIf { scope: left, .. } => !inside.contains(left),
+        Node::If { yes, no, .. } => beyond(yes, inside) || beyond(no, inside),
+        Node::Scope { scope, body } => {
+            inside.push(*scope);
+            let found = beyond(body, inside);
+            inside.pop();
+            found
+        }
+        Node::Loop { body, .. } => beyond(body, inside),
+        _ => false,
+    })
+}

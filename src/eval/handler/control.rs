@@ -1,0 +1,230 @@
+//! Masks and jumps.
+
+use std::marker::PhantomData;
+
+use super::{Handler, Instruction, Level, Run, for_each_chunk, handler};
+use crate::eval::batch::{Batch, FUEL, Here, LANES, Stop};
+use crate::eval::number::Number;
+
+/// Divides the pixels that are here by a word: those whose bits are all set go to one mask, the others to another, unless it is the
+/// same. Operands: the word, the two masks.
+struct Split<const WHEN: bool>;
+
+impl<N: Number, const WHEN: bool> Run<N> for Split<WHEN> {
+    #[inline(always)]
+    fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
+        let [word, yes, no] = instruction.operands;
+        let condition = batch.word_row(word);
+        let from = batch.mask_row(instruction.mask);
+        let (yes_row, no_row) = (batch.mask_row(yes), batch.mask_row(no));
+        let (mut yes_here, mut no_here) = (Here::default(), Here::default());
+        (yes_here.all, no_here.all) = (true, true);
+        for chunk in 0..batch.width {
+            let (condition, from) = (condition[chunk].get(), from[chunk].get());
+            let (mut chosen, mut others) = ([0; LANES], [0; LANES]);
+            let (mut any_chosen, mut any_other, mut all_chosen, mut all_others) = (0, 0, u32::MAX, u32::MAX);
+            for lane in 0..LANES {
+                let condition = if WHEN { condition[lane] } else { !condition[lane] };
+                chosen[lane] = from[lane] & condition;
+                others[lane] = from[lane] & !condition;
+                any_chosen |= chosen[lane];
+                all_chosen &= chosen[lane];
+                any_other |= others[lane];
+                all_others &= others[lane];
+            }
+            yes_here.chunks |= u32::from(any_chosen != 0) << chunk;
+            yes_here.all &= all_chosen == u32::MAX;
+            no_here.chunks |= u32::from(any_other != 0) << chunk;
+            no_here.all &= all_others == u32::MAX;
+            no_row[chunk].set(others);
+            yes_row[chunk].set(chosen);
+        }
+        batch.here[no as usize].set(no_here);
+        batch.here[yes as usize].set(yes_here);
+        if yes_here.chunks == 0 {
+            instruction.to as usize
+        } else {
+            at + 1
+        }
+    }
+}
+
+/// The handler that divides; `when` is the condition of the first mask.
+pub(crate) fn split<N: Number>(level: Level, when: bool) -> Handler<N> {
+    if when {
+        handler::<N, Split<true>>(level)
+    } else {
+        handler::<N, Split<false>>(level)
+    }
+}
+
+/// The pixels that are here, in another mask: operand 0.
+struct CopyMask;
+
+impl<N: Number> Run<N> for CopyMask {
+    #[inline(always)]
+    fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
+        let to = instruction.operands[0];
+        let (from_row, to_row) = (batch.mask_row(instruction.mask), batch.mask_row(to));
+        for (from, to) in from_row.iter().zip(to_row) {
+            to.set(from.get());
+        }
+        batch.here[to as usize].set(batch.here[instruction.mask as usize].get());
+        at + 1
+    }
+}
+
+pub(crate) fn copy_mask<N: Number>(level: Level) -> Handler<N> {
+    handler::<N, CopyMask>(level)
+}
+
+/// Takes pixels that are here out of this mask and those before it, down to operand 1: all, or those for which the word of
+/// operand 0 is all bits (1) or none (0).
+struct Remove<const WHICH: u8>;
+
+const ALL: u8 = 2;
+
+impl<N: Number, const WHICH: u8> Run<N> for Remove<WHICH> {
+    #[inline(always)]
+    fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
+        let [word, outer, _] = instruction.operands;
+        let condition = (WHICH != ALL).then(|| batch.word_row(word));
+        let inner = batch.mask_row(instruction.mask);
+        for chunk in 0..batch.width {
+            let mut gone = inner[chunk].get();
+            if let Some(condition) = condition {
+                let condition = condition[chunk].get();
+                for lane in 0..LANES {
+                    gone[lane] &= if WHICH == 1 {
+                        condition[lane]
+                    } else {
+                        !condition[lane]
+                    };
+                }
+            }
+            for mask in outer..=instruction.mask {
+                let row = batch.mask_row(mask);
+                let mut lanes = row[chunk].get();
+                for lane in 0..LANES {
+                    lanes[lane] &= !gone[lane];
+                }
+                row[chunk].set(lanes);
+            }
+        }
+        for mask in outer..=instruction.mask {
+            batch.note_here(mask);
+        }
+        if batch.here[instruction.mask as usize].get().chunks == 0 {
+            instruction.to as usize
+        } else {
+            at + 1
+        }
+    }
+}
+
+/// The handler that takes pixels out of masks.
+pub(crate) fn remove<N: Number>(level: Level, when: Option<bool>) -> Handler<N> {
+    match when {
+        None => handler::<N, Remove<ALL>>(level),
+        Some(true) => handler::<N, Remove<1>>(level),
+        Some(false) => handler::<N, Remove<0>>(level),
+    }
+}
+
+struct JumpIfEmpty;
+
+impl<N: Number> Run<N> for JumpIfEmpty {
+    #[inline(always)]
+    fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
+        if batch.here[instruction.mask as usize].get().chunks == 0 {
+            instruction.to as usize
+        } else {
+            at + 1
+        }
+    }
+}
+
+pub(crate) fn jump_if_empty<N: Number>() -> Handler<N> {
+    handler::<N, JumpIfEmpty>(Level::Base)
+}
+
+struct Jump;
+
+impl<N: Number> Run<N> for Jump {
+    #[inline(always)]
+    fn run(_: &Batch<'_, N>, instruction: &Instruction<N>, _: usize) -> usize {
+        instruction.to as usize
+    }
+}
+
+pub(crate) fn jump<N: Number>() -> Handler<N> {
+    handler::<N, Jump>(Level::Base)
+}
+
+/// Jumps if a scalar word is all bits, or none.
+struct JumpIf<const WHEN: bool>(PhantomData<()>);
+
+impl<N: Number, const WHEN: bool> Run<N> for JumpIf<WHEN> {
+    #[inline(always)]
+    fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
+        let condition = batch.word_scalars[instruction.operands[0] as usize].get();
+        if (condition != 0) == WHEN {
+            instruction.to as usize
+        } else {
+            at + 1
+        }
+    }
+}
+
+pub(crate) fn jump_if<N: Number>(when: bool) -> Handler<N> {
+    if when {
+        handler::<N, JumpIf<true>>(Level::Base)
+    } else {
+        handler::<N, JumpIf<false>>(Level::Base)
+    }
+}
+
+/// One more round of the loop of operand 0, for the pixels that are here; goes to the end of all when somebody stops the run.
+struct Iterate;
+
+impl<N: Number> Run<N> for Iterate {
+    #[inline(always)]
+    fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
+        if batch.here[instruction.mask as usize].get().all {
+            batch.rounds.set(batch.rounds.get() + 1);
+        } else {
+            let mask = batch.mask_row(instruction.mask);
+            for_each_chunk!(batch, instruction.mask, chunk => {
+                let (mask, mut rounds) = (mask[chunk].get(), batch.own_rounds[chunk].get());
+                for lane in 0..LANES {
+                    rounds[lane] = rounds[lane].wrapping_sub(mask[lane]);
+                }
+                batch.own_rounds[chunk].set(rounds);
+            });
+        }
+        let fuel = batch.fuel.get();
+        if fuel > 0 {
+            batch.fuel.set(fuel - 1);
+            return at + 1;
+        }
+        refuel(batch, instruction, at)
+    }
+}
+
+#[cold]
+fn refuel<N: Number>(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
+    batch.fuel.set(FUEL);
+    let too_often = batch.most_rounds() > batch.limit;
+    if !too_often && !batch.watch.is_over() {
+        return at + 1;
+    }
+    batch.stopped.set(Some(Stop {
+        id: instruction.operands[0],
+        too_often,
+    }));
+    usize::MAX
+}
+
+pub(crate) fn iterate<N: Number>(level: Level) -> Handler<N> {
+    handler::<N, Iterate>(level)
+}

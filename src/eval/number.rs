@@ -1,0 +1,375 @@
+//! The number types that a shader is evaluated in.
+
+use std::fmt::Debug;
+
+use super::program::Backend;
+use crate::elementary::native::{self, flush};
+
+macro_rules! functions {
+    ($($method:ident: $double:path, $single:path;)*) => {
+        /// A number type: f32 with denormals flushed and the spelled functions of [`elementary`](crate::elementary), as strict
+        /// shaders run; f64 with libm's functions; or f64 perturbed. What rounding needs to know beside the operands, `Noise`
+        /// tells.
+        pub trait Number: Backend + Copy + Debug + Default + PartialOrd + Send + Sync + 'static {
+            /// What an operation may need beside its operands.
+            type Noise: Copy + Debug + Default + Send + Sync;
+
+            /// The nearest number of this type.
+            #[must_use]
+            fn from_f64(value: f64) -> Self;
+            /// The same number, or the nearest.
+            fn to_f64(self) -> f64;
+            /// The nearest f32.
+            fn to_f32(self) -> f32;
+            /// Whether it is NaN.
+            fn is_nan(self) -> bool;
+
+            /// `self + other`
+            #[must_use]
+            fn add(self, other: Self, noise: Self::Noise) -> Self;
+            /// `self − other`
+            #[must_use]
+            fn sub(self, other: Self, noise: Self::Noise) -> Self;
+            /// `self · other`
+            #[must_use]
+            fn mul(self, other: Self, noise: Self::Noise) -> Self;
+            /// `self / other`
+            #[must_use]
+            fn div(self, other: Self, noise: Self::Noise) -> Self;
+            /// √self
+            #[must_use]
+            fn sqrt(self, noise: Self::Noise) -> Self;
+            /// `self` without its sign.
+            #[must_use]
+            fn abs(self) -> Self;
+            /// `−self`
+            #[must_use]
+            fn neg(self) -> Self;
+            /// The largest integer that is not larger.
+            #[must_use]
+            fn floor(self) -> Self;
+            /// The smallest integer that is not smaller.
+            #[must_use]
+            fn ceil(self) -> Self;
+            /// The integer before the point.
+            #[must_use]
+            fn trunc(self) -> Self;
+            /// The nearest integer, the even one of two.
+            #[must_use]
+            fn round_even(self) -> Self;
+            $(
+                #[doc = concat!("`", stringify!($method), "`")]
+                #[must_use]
+                fn $method(self, noise: Self::Noise) -> Self;
+            )*
+            /// The angle of the point (other, self).
+            #[must_use]
+            fn atan2(self, other: Self, noise: Self::Noise) -> Self;
+            /// `self` to the power of `other`; NaN of a negative base.
+            #[must_use]
+            fn pow(self, other: Self, noise: Self::Noise) -> Self;
+        }
+
+        impl Number for f32 {
+            type Noise = ();
+
+            #[inline(always)]
+            fn from_f64(value: f64) -> Self {
+                value as f32
+            }
+            #[inline(always)]
+            fn to_f64(self) -> f64 {
+                f64::from(self)
+            }
+            #[inline(always)]
+            fn to_f32(self) -> f32 {
+                self
+            }
+            #[inline(always)]
+            fn add(self, other: Self, (): ()) -> Self {
+                flush(self + other)
+            }
+            #[inline(always)]
+            fn sub(self, other: Self, (): ()) -> Self {
+                flush(self - other)
+            }
+            #[inline(always)]
+            fn mul(self, other: Self, (): ()) -> Self {
+                flush(self * other)
+            }
+            #[inline(always)]
+            fn div(self, other: Self, (): ()) -> Self {
+                flush(self / other)
+            }
+            // What is no denormal has a root that is none.
+            #[inline(always)]
+            fn sqrt(self, (): ()) -> Self {
+                f32::sqrt(self)
+            }
+            exact!(f32);
+            $(
+                #[inline(always)]
+                fn $method(self, (): ()) -> Self {
+                    $single(self)
+                }
+            )*
+            #[inline(always)]
+            fn atan2(self, other: Self, (): ()) -> Self {
+                native::atan2(self, other)
+            }
+            #[inline(always)]
+            fn pow(self, other: Self, (): ()) -> Self {
+                native::pow(self, other)
+            }
+        }
+
+        impl Number for f64 {
+            type Noise = ();
+
+            #[inline(always)]
+            fn from_f64(value: f64) -> Self {
+                value
+            }
+            #[inline(always)]
+            fn to_f64(self) -> f64 {
+                self
+            }
+            #[inline(always)]
+            fn to_f32(self) -> f32 {
+                self as f32
+            }
+            #[inline(always)]
+            fn add(self, other: Self, (): ()) -> Self {
+                self + other
+            }
+            #[inline(always)]
+            fn sub(self, other: Self, (): ()) -> Self {
+                self - other
+            }
+            #[inline(always)]
+            fn mul(self, other: Self, (): ()) -> Self {
+                self * other
+            }
+            #[inline(always)]
+            fn div(self, other: Self, (): ()) -> Self {
+                self / other
+            }
+            #[inline(always)]
+            fn sqrt(self, (): ()) -> Self {
+                f64::sqrt(self)
+            }
+            exact!(f64);
+            $(
+                #[inline(always)]
+                fn $method(self, (): ()) -> Self {
+                    $double(self)
+                }
+            )*
+            #[inline(always)]
+            fn atan2(self, other: Self, (): ()) -> Self {
+                libm::atan2(self, other)
+            }
+            #[inline(always)]
+            fn pow(self, other: Self, (): ()) -> Self {
+                if self < 0.0 { f64::NAN } else { libm::pow(self, other) }
+            }
+        }
+
+        impl Number for Jittered {
+            type Noise = Seed;
+
+            #[inline(always)]
+            fn from_f64(value: f64) -> Self {
+                Self(value)
+            }
+            #[inline(always)]
+            fn to_f64(self) -> f64 {
+                self.0
+            }
+            #[inline(always)]
+            fn to_f32(self) -> f32 {
+                self.0 as f32
+            }
+            #[inline(always)]
+            fn is_nan(self) -> bool {
+                self.0.is_nan()
+            }
+            #[inline(always)]
+            fn add(self, other: Self, seed: Seed) -> Self {
+                let sum = self.0 + other.0;
+                // Knuth's sum with its error.
+                let part = sum - self.0;
+                let error = (self.0 - (sum - part)) + (other.0 - part);
+                seed.jitter_unless(sum, error == 0.0)
+            }
+            #[inline(always)]
+            fn sub(self, other: Self, seed: Seed) -> Self {
+                self.add(other.neg(), seed)
+            }
+            #[inline(always)]
+            fn mul(self, other: Self, seed: Seed) -> Self {
+                let product = self.0 * other.0;
+                seed.jitter_unless(product, self.0.mul_add(other.0, -product) == 0.0)
+            }
+            #[inline(always)]
+            fn div(self, other: Self, seed: Seed) -> Self {
+                let quotient = self.0 / other.0;
+                seed.jitter_unless(quotient, quotient.mul_add(other.0, -self.0) == 0.0)
+            }
+            #[inline(always)]
+            fn sqrt(self, seed: Seed) -> Self {
+                let root = self.0.sqrt();
+                seed.jitter_unless(root, root.mul_add(root, -self.0) == 0.0)
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                Self(self.0.abs())
+            }
+            #[inline(always)]
+            fn neg(self) -> Self {
+                Self(-self.0)
+            }
+            #[inline(always)]
+            fn floor(self) -> Self {
+                Self(self.0.floor())
+            }
+            #[inline(always)]
+            fn ceil(self) -> Self {
+                Self(self.0.ceil())
+            }
+            #[inline(always)]
+            fn trunc(self) -> Self {
+                Self(self.0.trunc())
+            }
+            #[inline(always)]
+            fn round_even(self) -> Self {
+                Self(self.0.round_ties_even())
+            }
+            $(
+                #[inline(always)]
+                fn $method(self, seed: Seed) -> Self {
+                    let value = $double(self.0);
+                    seed.jitter_unless(value, value.fract() == 0.0)
+                }
+            )*
+            #[inline(always)]
+            fn atan2(self, other: Self, seed: Seed) -> Self {
+                let value = libm::atan2(self.0, other.0);
+                seed.jitter_unless(value, value == 0.0)
+            }
+            #[inline(always)]
+            fn pow(self, other: Self, seed: Seed) -> Self {
+                let value = Number::pow(self.0, other.0, ());
+                seed.jitter_unless(value, value.fract() == 0.0)
+            }
+        }
+    };
+}
+
+macro_rules! exact {
+    ($float:ident) => {
+        #[inline(always)]
+        fn is_nan(self) -> bool {
+            $float::is_nan(self)
+        }
+        #[inline(always)]
+        fn abs(self) -> Self {
+            $float::abs(self)
+        }
+        #[inline(always)]
+        fn neg(self) -> Self {
+            -self
+        }
+        #[inline(always)]
+        fn floor(self) -> Self {
+            $float::floor(self)
+        }
+        #[inline(always)]
+        fn ceil(self) -> Self {
+            $float::ceil(self)
+        }
+        #[inline(always)]
+        fn trunc(self) -> Self {
+            $float::trunc(self)
+        }
+        #[inline(always)]
+        fn round_even(self) -> Self {
+            $float::round_ties_even(self)
+        }
+    };
+}
+
+functions! {
+    sin: libm::sin, native::sin;
+    cos: libm::cos, native::cos;
+    tan: libm::tan, native::tan;
+    asin: libm::asin, native::asin;
+    acos: libm::acos, native::acos;
+    atan: libm::atan, native::atan;
+    sinh: libm::sinh, native::sinh;
+    cosh: libm::cosh, native::cosh;
+    tanh: libm::tanh, native::tanh;
+    asinh: libm::asinh, native::asinh;
+    acosh: libm::acosh, native::acosh;
+    atanh: libm::atanh, native::atanh;
+    exp: libm::exp, native::exp;
+    exp2: libm::exp2, native::exp2;
+    log: libm::log, native::log;
+    log2: libm::log2, native::log2;
+}
+
+/// An f64 whose every inexact result is moved by −1, 0 or +1 units in the last place.
+///
+/// That is the random rounding of CADNA (Vignes, “Discrete Stochastic Arithmetic”, Numerical Algorithms 37, 2004) and Verrou. What is
+/// exact stays so, or loops that count in floats would miscount.
+#[derive(Debug, Clone, Copy, Default, PartialEq, PartialOrd)]
+pub struct Jittered(pub f64);
+
+/// Which of many perturbations: the same seed gives the same picture.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Seed(pub u64);
+
+impl Seed {
+    #[inline(always)]
+    fn jitter_unless(self, value: f64, exact: bool) -> Jittered {
+        let bits = value.to_bits();
+        // Two rounds of multiplying and folding (after Steele, Lea and Flood's SplitMix): the low bits decide.
+        let mut hash = (bits ^ self.0).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        hash = (hash ^ (hash >> 32)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let draw = (hash >> 32) & 0xffff;
+        // −1, 0 and +1 with the same chance: 65,535 is three times 21,845.
+        let step = i64::from(draw > 21_845) + i64::from(draw > 43_690) - 1;
+        let moved = f64::from_bits(bits.wrapping_add_signed(step));
+        let kept = exact || !moved.is_normal() || !value.is_normal();
+        Jittered(if kept { value } else { moved })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn denormals_become_zeros_of_their_sign() {
+        let half = f32::MIN_POSITIVE;
+        assert_eq!(Number::mul(half, 0.5, ()).to_bits(), 0);
+        assert_eq!(Number::mul(-half, 0.5, ()).to_bits(), 0x8000_0000);
+        assert_eq!(Number::add(half, 0.0, ()), half);
+        assert!(Number::add(f32::NAN, 0.0, ()).is_nan());
+    }
+
+    #[test]
+    fn jitter_moves_what_is_inexact_by_at_most_one_unit_and_nothing_else() {
+        let [third, three] = [1.0 / 3.0, 3.0].map(Jittered);
+        let mut seen = [0; 3];
+        for seed in 0..3_000 {
+            let moved = Number::add(third, Jittered(0.7), Seed(seed)).0;
+            let step = moved.to_bits() as i64 - (1.0f64 / 3.0 + 0.7).to_bits() as i64;
+            seen[(step + 1) as usize] += 1;
+            assert_eq!(Number::add(three, three, Seed(seed)).0, 6.0);
+            assert_eq!(Number::div(Jittered(6.0), three, Seed(seed)).0, 2.0);
+            assert_eq!(Number::sqrt(Jittered(9.0), Seed(seed)).0, 3.0);
+        }
+        assert!(seen.iter().all(|&count| count > 800), "{seen:?}");
+    }
+}

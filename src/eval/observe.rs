@@ -1,0 +1,190 @@
+//! What a run notes beside the picture: operations that GLSL leaves undefined, each with its place, its pixels and the first of them.
+
+use std::collections::BTreeMap;
+
+use super::batch::{LANES, Lanes};
+use crate::glsl::tree::Place;
+
+/// Names a place where something may be noted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(super) struct SiteId(pub(super) u32);
+
+/// What can be wrong with an operation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Fault {
+    /// An index that names no element; the last one is taken.
+    IndexOutOfBounds,
+    /// An integer divided by zero: the value is the dividend, as naga guards it.
+    DivisionByZero,
+    /// The remainder by zero: the value is zero.
+    RemainderByZero,
+    /// A shift by 32 or more, or by less than zero: the lowest five bits count.
+    ShiftTooFar,
+    /// A float that its `int` or `uint` cannot hold: the nearest that it can is taken.
+    IntegerOverflow,
+    /// `smoothstep` between equal edges.
+    EqualEdges,
+    /// `smoothstep` from the higher to the lower edge: everybody computes the formula.
+    ReversedEdges,
+    /// `pow` of a negative base, or of zero to zero or less.
+    PowDomain,
+    /// `min`, `max` or `clamp` of NaN.
+    NotANumber,
+    /// `clamp` with its least above its greatest.
+    ReversedClamp,
+    /// `sqrt` of less than zero, `inversesqrt` of zero or less.
+    RootDomain,
+    /// `log` or `log2` of zero or less.
+    LogDomain,
+    /// `asin` or `acos` beyond ±1, `acosh` below 1, `atanh` from ±1 on.
+    ArcDomain,
+    /// `atan(0, 0)`.
+    ArcOfNothing,
+    /// A derivative where a neighbour in the quad does not run the same.
+    LonelyDerivative,
+}
+
+impl Fault {
+    /// Whether implementations differ in what comes of it, so that the pixel is left out of comparisons. Of roots, logarithms and
+    /// arcs beyond their domain NaN comes everywhere, and of reversed edges the formula.
+    #[must_use]
+    pub fn is_undefined(self) -> bool {
+        !matches!(
+            self,
+            Self::ReversedEdges | Self::RootDomain | Self::LogDomain | Self::ArcDomain | Self::ArcOfNothing
+        )
+    }
+
+    /// What it is, for messages: `an index out of bounds`.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::IndexOutOfBounds => "an index out of bounds",
+            Self::DivisionByZero => "an integer divided by zero",
+            Self::RemainderByZero => "the remainder of an integer divided by zero",
+            Self::ShiftTooFar => "a shift by more bits than there are",
+            Self::IntegerOverflow => "a float too large for its integer",
+            Self::EqualEdges => "`smoothstep` between equal edges",
+            Self::ReversedEdges => "`smoothstep` from a higher to a lower edge",
+            Self::PowDomain => "`pow` of a negative base, or of zero to zero or less",
+            Self::NotANumber => "`min`, `max` or `clamp` of NaN",
+            Self::ReversedClamp => "`clamp` with its least above its greatest",
+            Self::RootDomain => "the square root of a negative number, or one over that of zero",
+            Self::LogDomain => "the logarithm of zero or less",
+            Self::ArcDomain => "an inverse function beyond its domain",
+            Self::ArcOfNothing => "`atan(0, 0)`",
+            Self::LonelyDerivative => "a derivative where a neighbouring pixel runs something else",
+        }
+    }
+}
+
+/// A place where something may be wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Site {
+    /// What.
+    pub fault: Fault,
+    /// Where.
+    pub at: Place,
+}
+
+/// When it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Predicate {
+    /// The index is this or more, or negative.
+    From(u32),
+    /// The word is zero.
+    Zero,
+    /// The float is no `int`.
+    NoInt,
+    /// The float is no `uint`.
+    NoUint,
+    /// One of the two is NaN.
+    Unordered,
+    /// The floats are equal.
+    Equal,
+    /// The first is the greater.
+    Greater,
+    /// Less than zero.
+    Negative,
+    /// Zero or less.
+    NotPositive,
+    /// Beyond ±1.
+    BeyondOne,
+    /// ±1 or beyond.
+    FromOne,
+    /// Less than one.
+    BelowOne,
+    /// Both are zero.
+    BothZero,
+    /// `pow` has no value.
+    NoPower,
+    /// The pixel runs this and one of its quad does not.
+    Lonely,
+}
+
+/// What a batch noted: of each site, a bit for each pixel.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Notes {
+    pub(super) sites: BTreeMap<SiteId, Vec<u16>>,
+}
+
+impl Notes {
+    /// Adds the pixels of a chunk whose bits are set.
+    #[cold]
+    pub(super) fn add(&mut self, site: SiteId, chunk: usize, hit: &Lanes<u32>) {
+        let chunks = self.sites.entry(site).or_default();
+        if chunks.len() <= chunk {
+            chunks.resize(chunk + 1, 0);
+        }
+        for (lane, &hit) in hit.iter().enumerate().take(LANES) {
+            chunks[chunk] |= u16::from(hit != 0) << lane;
+        }
+    }
+}
+
+/// What was wrong at a site.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Observed {
+    /// What and where in the text.
+    pub site: Site,
+    /// In how many pixels.
+    pub pixels: u64,
+    /// The first of them, row by row from the bottom.
+    pub first: [u32; 2],
+}
+
+/// What a run noted.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Observations {
+    /// What was wrong, in the order of the sites.
+    pub faults: Vec<Observed>,
+    /// The most rounds that a pixel ran in all loops together.
+    pub most_rounds: u32,
+    /// In how many pixels they were more than the 65,535 after which Mesa before 23 ends all loops of a pixel.
+    pub beyond_cap: u64,
+}
+
+/// After so many rounds older versions of Mesa end all loops of a pixel.
+pub const MESA_CAP: u32 = 65_535;
+
+impl Observations {
+    /// Adds what another part of the picture noted.
+    pub(super) fn merge(&mut self, other: Self) {
+        self.most_rounds = self.most_rounds.max(other.most_rounds);
+        self.beyond_cap += other.beyond_cap;
+        for new in other.faults {
+            match self.faults.iter_mut().find(|old| old.site == new.site) {
+                None => self.faults.push(new),
+                Some(old) => {
+                    old.pixels += new.pixels;
+                    old.first = earlier(old.first, new.first);
+                }
+            }
+        }
+    }
+}
+
+/// The pixel that comes first, row by row from the bottom.
+pub(super) fn earlier(a: [u32; 2], b: [u32; 2]) -> [u32; 2] {
+    if (b[1], b[0]) < (a[1], a[0]) { b } else { a }
+}

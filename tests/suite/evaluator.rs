@@ -1,0 +1,155 @@
+//! The evaluator in f32 and the strict GPU run: the same bits.
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use toyproof::eval::{Painted, Program, Settings};
+use toyproof::frame::Frame;
+use toyproof::glsl::{Checked, Options, check, lower_strict};
+use toyproof::gpu::{FloatMode, Worker};
+use toyproof::image::Image;
+use toyproof::source::{File, Files};
+
+use crate::support::{self, RUNGS};
+
+fn checked(text: &str) -> Checked {
+    let mut files = Files::default();
+    let file = files.add(File::new("shader.glsl", text));
+    check(&files, file, &Options::default()).unwrap_or_else(|errors| panic!("{errors:?}\n{text}"))
+}
+
+/// Differences between two pictures: how many pixels, and the first with both colours.
+fn differences(a: &Image, b: &Image, ignore: impl Fn(u32, u32) -> bool) -> (usize, String) {
+    let [width, height] = a.size();
+    let same = |a: f32, b: f32| a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan());
+    let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    let differing: Vec<_> = pixels
+        .filter(|&(x, y)| !ignore(x, y))
+        .filter(|&(x, y)| (0..3).any(|at| !same(a.get(x, y)[at], b.get(x, y)[at])))
+        .collect();
+    let first = differing.first().map_or(String::new(), |&(x, y)| {
+        format!("first at ({x}, {y}): {:?} and {:?}", a.get(x, y), b.get(x, y))
+    });
+    (differing.len(), first)
+}
+
+fn both(worker: &mut Worker, checked: &Checked, frame: &Frame) -> (Painted<f32>, Image) {
+    let painted = Program::new(checked)
+        .unwrap()
+        .paint::<f32>(frame, &Settings::default())
+        .unwrap();
+    let drawn = worker
+        .draw(lower_strict(checked), frame.clone(), FloatMode::Strict)
+        .unwrap();
+    (painted, drawn.image)
+}
+
+#[test]
+fn the_course_has_the_same_bits_on_the_cpu() {
+    let Some(mut worker) = support::worker() else {
+        return;
+    };
+    let frame = Frame {
+        size: [131, 75],
+        frame: 7,
+        time: 0.7,
+        ..Frame::default()
+    };
+    for rung in RUNGS {
+        let (painted, drawn) = both(&mut worker, &checked(rung.shader), &frame);
+        let (count, first) = differences(&painted.painting.image(), &drawn, |_, _| false);
+        assert_eq!(count, 0, "{}: {first}", rung.name);
+        assert_eq!(
+            painted.painting.undefined(),
+            0,
+            "{}: {:?}",
+            rung.name,
+            painted.observations
+        );
+    }
+}
+
+/// `TOYPROOF_CORPUS=DIR cargo test --release --test suite -- --ignored corpus --nocapture`: every shader below a folder that reads no
+/// channel, at two times; `TOYPROOF_CORPUS_LIMIT` takes so many of them.
+#[test]
+#[ignore = "needs a folder of shaders"]
+fn the_corpus_has_the_same_bits_on_the_cpu() {
+    let folder = std::env::var_os("TOYPROOF_CORPUS").expect("TOYPROOF_CORPUS names a folder");
+    let limit = std::env::var("TOYPROOF_CORPUS_LIMIT").map_or(usize::MAX, |limit| limit.parse().unwrap());
+    let mut worker = support::worker().expect("a Vulkan driver");
+    let mut paths: Vec<PathBuf> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
+    paths.sort();
+    let (mut shaders, mut same, mut pixels, mut undefined, mut differing) = (0, 0, 0, 0, 0);
+    for path in paths {
+        if shaders == limit {
+            break;
+        }
+        let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+        let text = std::fs::read_to_string(&path).unwrap();
+        let mut files = Files::default();
+        let file = files.add(File::new(&name, text.as_str()));
+        let Ok(checked) = check(&files, file, &Options::default()) else {
+            continue;
+        };
+        if text.contains("iChannel") {
+            continue;
+        }
+        let program = match Program::new(&checked) {
+            Ok(program) => program,
+            Err(refusal) => {
+                eprintln!("{name}: {refusal}");
+                continue;
+            }
+        };
+        let mut bad = String::new();
+        let mut done = 0;
+        for time in [0.7, 10.3] {
+            let frame = Frame {
+                size: [64, 36],
+                time,
+                frame: (time * 60.0) as i32,
+                ..Frame::default()
+            };
+            let settings = Settings {
+                deadline: Some(Instant::now() + Duration::from_secs(20)),
+                ..Settings::default()
+            };
+            let painted = match program.paint::<f32>(&frame, &settings) {
+                Ok(painted) => painted,
+                Err(failure) => {
+                    eprintln!("{name}: cpu: {failure}");
+                    continue;
+                }
+            };
+            let drawn = match worker.draw(lower_strict(&checked), frame.clone(), FloatMode::Strict) {
+                Ok(drawn) => drawn.image,
+                Err(failure) => {
+                    eprintln!("{name}: gpu: {failure}");
+                    continue;
+                }
+            };
+            done += 1;
+            let painting = &painted.painting;
+            pixels += 64 * 36;
+            undefined += painting.undefined();
+            let (count, first) = differences(&painting.image(), &drawn, |x, y| painting.is_undefined(x, y));
+            if count > 0 {
+                differing += count;
+                bad = format!("{bad} {count} differ at {time} s, {first}");
+            }
+        }
+        if done == 2 {
+            shaders += 1;
+            same += usize::from(bad.is_empty());
+            if !bad.is_empty() {
+                eprintln!("{name}:{bad}");
+            }
+        }
+    }
+    eprintln!(
+        "{shaders} shaders, {same} the same in every defined bit; of {pixels} pixels {undefined} undefined, {differing} differ"
+    );
+}

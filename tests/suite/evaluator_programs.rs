@@ -1,0 +1,474 @@
+//! Small programs with what they must paint: what GLSL says, told of the evaluator in f32 and f64, and of the GPU.
+
+use toyproof::eval::{Fault, Jittered, Number, Program, Settings};
+use toyproof::frame::Frame;
+use toyproof::glsl::{Checked, Options, check, lower_strict};
+use toyproof::gpu::FloatMode;
+use toyproof::image::Image;
+use toyproof::source::{File, Files};
+
+/// What stands before `mainImage`, what stands in it, and what `o.x` is then. `p` is (0.5, 0.5); `iTime` is 2; texel (1, 2) of
+/// `iChannel0` is 0.75, the others are 0.
+static PROGRAMS: &[(&str, &str, f64)] = &[
+    // Control.
+    (
+        "",
+        "for (int i = 0; i < 5; i++) { if (i == 1) continue; if (i == 4) break; o.x += float(i); }",
+        5.0,
+    ),
+    (
+        "",
+        "int i = 0; while (i < 3) { i++; if (float(i) < p.x + 1.0) continue; o.x += float(i); }",
+        5.0,
+    ),
+    (
+        "",
+        "int i = 0; do { i++; if (i < 9) continue; } while (i < 3); o.x = float(i);",
+        3.0,
+    ),
+    ("", "for (;;) { o.x += 1.0; if (o.x > 3.5 + p.x) break; }", 5.0),
+    ("", "while (bool b = o.x < 3.0) { o.x += 1.0; }", 3.0),
+    (
+        "float f(int i) { switch (i) { case 0: return 1.0; case 1: case 2: return 2.0; default: break; } return 9.0; }",
+        "int k = int(p.x); o.x = f(k) + 10.0 * f(k + 1) + 100.0 * f(k + 2) + 1000.0 * f(k + 3);",
+        9221.0,
+    ),
+    (
+        "",
+        "for (int i = int(p.x); i < 4; i++) switch (i) { case 3: o.x += 1000.0; break; default: o.x += 100.0; case 0: o.x += 10.0; \
+         if (i == 1) break; o.x += 1.0; break; case 7: o.x = 0.0; }",
+        1232.0,
+    ),
+    (
+        "",
+        "switch (int(p.x)) { case 0: int a = 3; case 1: a += 1; o.x = float(a); }",
+        4.0,
+    ),
+    (
+        "float f(float x) { if (x > 0.0) { if (x > 1.0) return 2.0; } else return 3.0; return 4.0; }",
+        "o.x = f(p.x) + 10.0 * f(p.x + 1.0) + 100.0 * f(p.x - 1.0);",
+        324.0,
+    ),
+    (
+        "float f(float n) { for (int i = 0; i < 9; i++) { if (float(i) > n) return float(i); } return -1.0; }",
+        "o.x = f(p.x + 3.0) + 10.0 * f(99.0);",
+        -6.0,
+    ),
+    ("", "o.x = 7.0; if (p.x < 9.0) return; o.x = 1.0;", 7.0),
+    // Evaluation: once, from left to right, and only what is needed.
+    (
+        "float t = 1.0; bool hit() { t = 9.0; return true; }",
+        "if (p.x > 9.0 && hit()) t += 1.0; o.x = t; if (p.x < 9.0 || hit()) o.x += t;",
+        2.0,
+    ),
+    (
+        "float g; float next() { g += 1.0; return g; }",
+        "g = 2.0; g += next(); vec2 u = vec2(1.0); u += vec2(dot(u *= 2.0, vec2(1.0))); o.x = g + 10.0 * u.x;",
+        66.0,
+    ),
+    (
+        "float g; float next() { g += 1.0; return g; }",
+        "o.x = next() - next() * 10.0; o.x += g == 2.0 ? next() : -next();",
+        -16.0,
+    ),
+    (
+        "",
+        "float a[3]; a[0] = 1.0; a[1] = 2.0; a[2] = 4.0; int i = int(p.x); a[i++] += 8.0; \
+      o.x = a[0] + 16.0 * float(i);",
+        25.0,
+    ),
+    (
+        "",
+        "int i = 3; int j = i++ + ++i; o.x = float(j * 10 + i); float f = 1.0; f = f-- - --f; o.x += f;",
+        87.0,
+    ),
+    ("", "float a, b; a = b = p.x + 1.0; o.x = a + b;", 3.0),
+    ("", "o.x = (o.y = 2.0, o.y * 3.0);", 6.0),
+    // Functions: copied in, copied out.
+    (
+        "void f(in float a, out float b, inout float c) { a += 1.0; c += a; b = a; }",
+        "float x = 1.0, y = 5.0, z = 10.0; f(x, y, z); o.x = x + 10.0 * y + 100.0 * z;",
+        1221.0,
+    ),
+    (
+        "void swap(inout float a, inout float b) { float t = a; a = b; b = t; }",
+        "vec2 v = vec2(1.0, 2.0); swap(v.x, v.y); float a[2]; a[0] = 3.0; a[1] = 4.0; int i = int(p.x); swap(a[i], a[i + 1]); \
+      o.x = v.x + 10.0 * v.y + 100.0 * a[0] + 1000.0 * a[1];",
+        3412.0,
+    ),
+    (
+        "void f(out float x) { if (iTime > 5.0) x = 2.0; }",
+        "float x = 1.0; f(x); o.x = x;",
+        0.0,
+    ),
+    (
+        "struct S { float a; vec2 b[2]; }; S make(float x) { S s; s.a = x; s.b[1] = vec2(x, 2.0 * x); return s; }",
+        "S s = make(3.0); S t = s; t.b[1].y += 1.0; o.x = s.a + s.b[1].x * 10.0 + t.b[1].y * 100.0 + (s == t ? 1e4 : 0.0) + (s != t ? 1e5 : 0.0);",
+        100_733.0,
+    ),
+    (
+        "float twice = 4.0; const float a[3] = float[](1.0, 2.0, 4.0);",
+        "twice *= 2.0; o.x = twice + a[int(p.x) + 2];",
+        12.0,
+    ),
+    (
+        "",
+        "for (int i = 0; i < 3; i++) { float a; a += 1.0; o.x += a; }",
+        3.0,
+    ),
+    // Values: swizzles, matrices, arrays, conversions.
+    (
+        "",
+        "vec4 v = vec4(1.0, 2.0, 3.0, 4.0); v.zx = v.xy; v.wy += vec2(10.0); o.x = dot(v, vec4(1.0, 10.0, 100.0, 1000.0));",
+        14_222.0,
+    ),
+    (
+        "",
+        "mat3 m = mat3(1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0); m[1].xz *= 2.0; int i = int(p.x); m[i + 2][i + 1] = 0.0; \
+      o.x = dot(m * vec3(1.0, 10.0, 100.0), vec3(1.0, 2.0, 3.0)) + (vec3(1.0, 0.0, 0.0) * m).y;",
+        3962.0,
+    ),
+    (
+        "",
+        "mat2x3 a = mat2x3(1.0, 2.0, 3.0, 4.0, 5.0, 6.0); mat3x2 b = transpose(a); mat2 c = b * a; \
+      o.x = c[0][0] + c[1][0] * 10.0 + c[1][1] * 100.0 + determinant(c);",
+        8088.0,
+    ),
+    (
+        "",
+        "mat2 m = mat2(4.0, 2.0, 1.0, 1.0); mat2 n = inverse(m) * m; o.x = n[0][0] + n[1][1] + mat3(m)[2][2] + mat2(3.0)[1][1];",
+        6.0,
+    ),
+    (
+        "",
+        "vec3 v = vec3(ivec2(3.7, -3.7), true); o.x = v.x - v.y + v.z + float(uint(7.9)) + float(bool(0.1));",
+        15.0,
+    ),
+    (
+        "",
+        "vec4 v = vec4(1.0, 2.0, 3.0, 4.0); int i = int(p.x) + 2; v[i] = 9.0; v.wzyx[i - 1] += 1.0; o.x = v.z * 10.0 + v[i - 2] + v.zyx[i];",
+        102.0,
+    ),
+    (
+        "",
+        "float a[2][3]; for (int i = 0; i < 2; i++) for (int j = 0; j < 3; j++) a[i][j] = float(10 * i + j); \
+      o.x = a[int(p.x) + 1][2] + 100.0 * float(a.length()) + 1000.0 * float(a[0].length());",
+        3212.0,
+    ),
+    (
+        "",
+        "float[3] a = float[3](1.0, 2.0, 3.0), b = a; b[int(p.x)] = 5.0; o.x = a[0] + 10.0 * b[0] + (a == b ? 100.0 : 0.0);",
+        51.0,
+    ),
+    // Integers.
+    (
+        "",
+        "int i = int(p.x) - 7; o.x = float(i % 3) + 10.0 * float(i / 3) + float((i >> 1) & 15) * 100.0;",
+        1182.0,
+    ),
+    (
+        "",
+        "uint u = uint(p.x); u -= 1u; o.x = float(u >> 24u) + (u == ~0u ? 1000.0 : 0.0) + float((u ^ 0xF0u) & 0xFFu) * 1e4;",
+        151_255.0,
+    ),
+    (
+        "",
+        "int i = 2147483647 + int(p.x + 1.0); o.x = (i < 0 ? 1.0 : 0.0) + float(abs(-5)) + float(sign(-5)) + float(clamp(9, 1, 3));",
+        8.0,
+    ),
+    (
+        "",
+        "uvec3 v = uvec3(1u, 2u, 3u) * 1664525u + 1013904223u; o.x = float((v.x ^ v.y ^ v.z) & 1023u);",
+        915.0,
+    ),
+    // Built-in functions.
+    (
+        "",
+        "o.x = mod(-1.5, 1.0) + 10.0 * fract(2.25) + 100.0 * floor(-0.5) + sign(-3.0) + step(0.5, p.x) + trunc(-1.5);",
+        -98.0,
+    ),
+    (
+        "",
+        "float w; float f = modf(-3.25, w); o.x = f + 10.0 * w + roundEven(2.5) + 100.0 * ceil(0.25);",
+        71.75 - 0.0,
+    ),
+    (
+        "",
+        "o.x = length(vec3(2.0, 3.0, 6.0)) + dot(cross(vec3(1, 2, 3), vec3(4, 5, 6)), vec3(1.0, 10.0, 100.0)) + distance(1.0, -2.5);",
+        -232.5,
+    ),
+    (
+        "",
+        "vec3 r = reflect(vec3(1.0, -1.0, 0.0), vec3(0.0, 1.0, 0.0)); vec3 f = faceforward(vec3(1.0), vec3(1.0), vec3(1.0)); \
+      o.x = r.x + 10.0 * r.y + 100.0 * f.x;",
+        -89.0,
+    ),
+    (
+        "",
+        "o.x = clamp(2.0, 0.0, 1.0) + min(1.0, 2.0) + max(vec2(1.0, 5.0), 3.0).y + mix(1.0, 3.0, 0.5) + mix(1.0, 8.0, true) + smoothstep(0.0, 2.0, 1.0);",
+        17.5,
+    ),
+    (
+        "",
+        "bvec2 b = lessThan(vec2(1.0, 2.0), vec2(2.0, 1.0)); o.x = (any(b) ? 1.0 : 0.0) + (all(b) ? 10.0 : 0.0) + (not(b).y ? 100.0 : 0.0);",
+        101.0,
+    ),
+    (
+        "",
+        "float zero = p.x - p.y, nan = zero / zero; o.x = float(nan != nan) + 2.0 * float(isnan(nan)) + 4.0 * float(isinf(1.0 / zero)) \
+      + 8.0 * float(nan == nan) + 16.0 * float(nan < 1.0);",
+        7.0,
+    ),
+    (
+        "",
+        "o.x = uintBitsToFloat(floatBitsToUint(p.x) + (1u << 23)) + float(floatBitsToInt(1.0) >> 23);",
+        128.0,
+    ),
+    (
+        "",
+        "uint n = packUnorm2x16(vec2(1.0, 0.0)); o.x = float(n) + unpackSnorm2x16(packSnorm2x16(vec2(-1.0, 1.0))).x;",
+        65_534.0,
+    ),
+    (
+        "",
+        "mat3 m = outerProduct(vec3(1, 2, 3), vec3(4, 5, 6)); o.x = m[1][2] + matrixCompMult(m, m)[0][0];",
+        31.0,
+    ),
+    // Inputs and textures.
+    (
+        "",
+        "o.x = iResolution.x + iTime + iResolution.z + iChannelResolution[0].y + iChannelResolution[1].x;",
+        9.0,
+    ),
+    (
+        "",
+        "o.x = texelFetch(iChannel0, ivec2(1, 2), 0).x + texelFetchOffset(iChannel0, ivec2(0), 0, ivec2(1, 2)).y;",
+        1.5,
+    ),
+    (
+        "",
+        "o.x = texture(iChannel0, vec2(1.5, 2.5) / 4.0).x + texture(iChannel0, vec2(1.0, 2.5) / 4.0).x + textureLod(iChannel1, p, 0.0).w \
+      + texture(iChannel0, vec2(5.5, -1.5) / 4.0).x;",
+        2.875,
+    ),
+    (
+        "vec4 f(sampler2D s, vec2 at) { return texture(s, at); }",
+        "o.x = f(iChannel0, vec2(1.5, 2.5) / 4.0).x + f(iChannel2, p).w + float(textureSize(iChannel0, 0).x);",
+        5.75,
+    ),
+    // What GLSL leaves undefined, as the GPU path has it.
+    (
+        "",
+        "float a[3]; a[2] = 5.0; int i = int(p.x) + 7; o.x = a[i] + 10.0 * a[-i];",
+        55.0,
+    ),
+    (
+        "",
+        "int z = int(p.x), s = 7; o.x = float(s / z) + 10.0 * float(s % z);",
+        7.0,
+    ),
+];
+
+fn checked(before: &str, body: &str) -> Option<Checked> {
+    let mut files = Files::default();
+    let text = format!("{before}\nvoid mainImage(out vec4 o, in vec2 p) {{ o = vec4(0.0); {body} }}");
+    let file = files.add(File::new("s", text));
+    let lenient = Options {
+        lenient: true,
+        ..Options::default()
+    };
+    check(&files, file, &lenient).ok()
+}
+
+fn frame() -> Frame {
+    let mut texels = vec![[0.0; 4]; 16];
+    texels[2 * 4 + 1] = [0.75; 4];
+    let mut frame = Frame {
+        size: [2, 2],
+        time: 2.0,
+        ..Frame::default()
+    };
+    frame.channels[0] = Some(Image::new(4, 4, texels));
+    frame
+}
+
+fn evaluated<N: Number>(checked: &Checked) -> f64 {
+    let program = Program::new(checked).unwrap();
+    let painted = [true, false].map(|observe| {
+        let settings = Settings::<N> {
+            observe,
+            ..Settings::default()
+        };
+        program.paint(&frame(), &settings).unwrap().painting.get(0, 0)[0].to_f64()
+    });
+    assert_eq!(
+        painted[0].to_bits(),
+        painted[1].to_bits(),
+        "to observe changes nothing"
+    );
+    painted[0]
+}
+
+#[test]
+fn small_programs_paint_what_they_say() {
+    let mut wrong = Vec::new();
+    for &(before, body, expected) in PROGRAMS {
+        let checked = checked(before, body).unwrap_or_else(|| panic!("{before} {body}"));
+        let (single, double) = (evaluated::<f32>(&checked), evaluated::<f64>(&checked));
+        let jittered = evaluated::<Jittered>(&checked);
+        if single != expected || double != expected || (jittered - expected).abs() > 1e-6 {
+            wrong.push(format!(
+                "{before} {body}: {expected}: {single} {double} {jittered}"
+            ));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn small_programs_paint_the_same_on_the_gpu() {
+    let Some(mut worker) = crate::support::worker() else {
+        return;
+    };
+    let mut wrong = Vec::new();
+    for &(before, body, expected) in PROGRAMS {
+        let checked = checked(before, body).unwrap();
+        match worker.draw(lower_strict(&checked), frame(), FloatMode::Strict) {
+            Ok(drawn) if f64::from(drawn.image.get(0, 0)[0]) == expected => {}
+            Ok(drawn) => wrong.push(format!(
+                "{before} {body}: {expected}: {}",
+                drawn.image.get(0, 0)[0]
+            )),
+            Err(failure) => wrong.push(format!("{before} {body}: {failure}")),
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// What stands in `mainImage`, and the faults that its pixels meet.
+static FAULTS: &[(&str, &[Fault])] = &[
+    ("float a[3]; o.x = a[int(p.x) + 7];", &[Fault::IndexOutOfBounds]),
+    (
+        "float a[3]; int i = int(p.x) + 7; if (i < 3 && a[i] > 0.0) o.x = 1.0;",
+        &[],
+    ),
+    ("o.x = float(7 / int(p.x));", &[Fault::DivisionByZero]),
+    ("o.x = float(7u % uint(p.x));", &[Fault::RemainderByZero]),
+    ("o.x = float(1 << (int(p.x) + 32));", &[Fault::ShiftTooFar]),
+    ("o.x = float(1 << (int(p.x) - 1));", &[Fault::ShiftTooFar]),
+    ("o.x = float(int(p.x * 1e20));", &[Fault::IntegerOverflow]),
+    ("o.x = float(uint(p.x - 2.0));", &[Fault::IntegerOverflow]),
+    ("o.x = float(uint(p.x - 1.0)) + float(int(p.x - 2.0));", &[]),
+    ("o.x = smoothstep(p.x, p.y, 1.0);", &[Fault::EqualEdges]),
+    ("o.x = smoothstep(p.x, 0.0, 1.0);", &[Fault::ReversedEdges]),
+    ("o.x = pow(p.x - 1.0, 2.0);", &[Fault::PowDomain]),
+    (
+        "o.x = max(p.x, sqrt(p.x - 1.0));",
+        &[Fault::NotANumber, Fault::RootDomain],
+    ),
+    ("o.x = clamp(1.0, p.x, 0.0);", &[Fault::ReversedClamp]),
+    ("o.x = log(p.x - p.y);", &[Fault::LogDomain]),
+    ("o.x = acos(p.x + 1.0);", &[Fault::ArcDomain]),
+    ("o.x = p.x > 0.0 ? sqrt(p.x) : sqrt(-p.x);", &[]),
+    ("if (p.x > 1.0) o.x = 1.0; o.x = dFdx(p.x);", &[]),
+];
+
+#[test]
+fn undefined_operations_are_noted_where_they_happen_and_only_there() {
+    let mut wrong = Vec::new();
+    for (body, faults) in FAULTS {
+        let program = Program::new(&checked("", body).unwrap()).unwrap();
+        let frame = Frame {
+            size: [1, 1],
+            ..Frame::default()
+        };
+        let painted = program.paint::<f32>(&frame, &Settings::default()).unwrap();
+        let mut noted: Vec<Fault> = painted
+            .observations
+            .faults
+            .iter()
+            .map(|noted| noted.site.fault)
+            .collect();
+        noted.sort();
+        let mut expected = faults.to_vec();
+        expected.sort();
+        let undefined = faults.iter().any(|fault| fault.is_undefined());
+        if noted != expected || painted.painting.is_undefined(0, 0) != undefined {
+            wrong.push(format!("{body}: {noted:?}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Pixels of one quad that run different things: loops of different lengths, returns and discards.
+#[test]
+fn divergent_pixels_paint_the_same_bits_as_on_the_gpu() {
+    let Some(mut worker) = crate::support::worker() else {
+        return;
+    };
+    let bodies = [
+        (
+            "",
+            "for (int i = 0; i < int(p.x); i++) { if (i % 3 == int(p.y) % 3) continue; if (o.x > 9.0) break; o.x += sqrt(float(i) + p.y); }",
+        ),
+        (
+            "float f(vec2 p) { if (p.x > 9.0) return 1.0; for (int i = 0; i < 9; i++) { if (float(i) > p.y) return float(i); } return 3.0; }",
+            "o.xy = vec2(f(p), f(p.yx)); o.z = f(p * 2.0 - 9.0);",
+        ),
+        (
+            "",
+            "int n = 0; for (int i = 0; i < 5; i++) for (int j = 0; j < int(p.x); j++) { n += j; if (n > int(p.y) * 4) break; } o.x = float(n);",
+        ),
+        (
+            "",
+            "float a[8]; for (int i = 0; i < 8; i++) a[i] = p.x * float(i); a[int(p.y) % 8] = -1.0; o.x = a[int(p.x) % 8] + a[(int(p.x) + 3) % 8];",
+        ),
+        (
+            "",
+            "o.xyz = vec3(dFdx(p.x * p.y), dFdy(p.x * p.y), fwidth(p.x * p.x));",
+        ),
+        (
+            "float g; void add(float x) { if (x > 4.0) { g += x; return; } g -= 1.0; }",
+            "for (int i = 0; i < 6; i++) add(mod(p.x * float(i), 9.0)); o.x = g;",
+        ),
+        (
+            "",
+            "int x = 0; for (int i = 0; i < 3; i++) { if (int(p.x + p.y) % 3 == i) { x += 1; o.x += float(x); } }",
+        ),
+        (
+            "",
+            "switch (int(p.x) % 5) { case 0: o.x = 1.0; break; case 1: o.x = 2.0; case 2: o.y = 3.0; if (p.y > 5.0) break; default: o.z = 4.0; }",
+        ),
+        ("", "if (p.x > 6.0 && p.y > 3.0) discard; o.x = p.x;"),
+        (
+            "bool f(inout float x) { x += 1.0; return x > 4.0; }",
+            "float x = p.x; bool b = p.y > 3.0 && f(x) || p.x > 5.0 && !f(x); o.xy = vec2(x, b);",
+        ),
+    ];
+    let frame = Frame {
+        size: [37, 11],
+        ..Frame::default()
+    };
+    let mut wrong = Vec::new();
+    for (before, body) in bodies {
+        let checked = checked(before, body).unwrap_or_else(|| panic!("{body}"));
+        let painted = Program::new(&checked)
+            .unwrap()
+            .paint::<f32>(&frame, &Settings::default())
+            .unwrap();
+        let drawn = worker
+            .draw(lower_strict(&checked), frame.clone(), FloatMode::Strict)
+            .unwrap();
+        let image = painted.painting.image();
+        let places = (0..11).flat_map(|y| (0..37).map(move |x| (x, y)));
+        let bits = |image: &Image, (x, y)| image.get(x, y).map(f32::to_bits);
+        if let Some((x, y)) = places
+            .into_iter()
+            .find(|&at| bits(&image, at) != bits(&drawn.image, at))
+        {
+            let (ours, theirs) = (image.get(x, y), drawn.image.get(x, y));
+            wrong.push(format!("({x}, {y}) of {body}: {ours:?} and {theirs:?}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
