@@ -12,7 +12,7 @@ use super::inputs::{DriverArgs, FrameArgs};
 use super::shader::{Names, Shader, Unusable, find, is_invalid, with_suffix};
 use super::{Exit, Terminal, explain};
 use crate::compare::{TOLERANCE, Verdict, compare, judge};
-use crate::diagnostic::{self, Diagnostic};
+use crate::diagnostic::{self, Diagnostic, Severity};
 use crate::frame::Frame;
 use crate::gpu::{Drawn, Failure, FloatMode, INSTALL_HINT, Worker};
 use crate::image::{self, Image, Legend};
@@ -387,7 +387,8 @@ impl Stopped {
     }
 
     fn invalid(verdict: Verdict, diagnostics: Vec<Diagnostic>, files: Files) -> Self {
-        let reason = diagnostics.first().map_or_else(
+        let error = diagnostics.iter().find(|told| told.severity == Severity::Error);
+        let reason = error.map_or_else(
             || "it does not compile".to_owned(),
             |first| match first.span.map(|span| files.position(span)) {
                 Some(at) => format!("{} (line {}, column {})", first.message, at.line, at.column),

@@ -115,6 +115,13 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
 
 /// A scene from its file; says what is wrong with it.
 fn load(path: &Path, terminal: &Terminal) -> Option<Scene> {
+    if source::is_shader(path) {
+        let path = path.display();
+        terminal.error(format_args!(
+            "{path} is a shader, and `render` takes a scene; paint the shader with `toyproof run {path} -o PICTURE`"
+        ));
+        return None;
+    }
     let mut files = Files::default();
     let file = match source::read_text(path) {
         Ok(text) => files.add(text),

@@ -86,7 +86,9 @@ fn read(found: &Found, files: &mut Files, options: &glsl::Options) -> Result<Che
 
 fn subject(error: &ReadError) -> String {
     match error {
-        ReadError::Missing(path) | ReadError::NoShader(path) => path.display().to_string(),
+        ReadError::Missing(path) | ReadError::NoShader(path) | ReadError::Scene(path) => {
+            path.display().to_string()
+        }
         ReadError::Unreadable { name, .. } | ReadError::TooLarge { name } => name.clone(),
         ReadError::NotUtf8 { file, .. } => file.name().to_owned(),
     }

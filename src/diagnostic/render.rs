@@ -91,6 +91,14 @@ pub struct Json {
     notes: Vec<String>,
 }
 
+impl Json {
+    /// The line and column of an error; none of the two for one about no place.
+    #[must_use]
+    pub fn error_place(&self) -> Option<Option<(usize, usize)>> {
+        (self.severity == Severity::Error).then(|| self.line.zip(self.column))
+    }
+}
+
 /// The one JSON form of a diagnostic: place resolved, notes kept.
 #[must_use]
 pub fn json(diagnostic: &Diagnostic, files: &Files) -> Json {

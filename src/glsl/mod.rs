@@ -11,6 +11,7 @@
 mod check;
 mod codes;
 mod constant;
+mod foreign;
 pub mod lower;
 mod options;
 mod parse;
@@ -66,33 +67,30 @@ pub struct Checked {
 /// With at least one error if the shader breaks a rule; warnings may stand among them.
 pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, Vec<Diagnostic>> {
     let mut text = preprocess::preprocess(files, file);
-    let told = std::mem::take(&mut text.diagnostics);
-    if told
-        .iter()
-        .any(|diagnostic| diagnostic.severity == Severity::Error)
-    {
-        return Err(told);
+    if text.incomplete {
+        return Err(text.diagnostics);
     }
+    let source = files.get(file);
+    parse::balance(&mut text, source);
+    let told = std::mem::take(&mut text.diagnostics);
     let mut channels = Channels::new(options);
     // A use may tell the shape of a channel; the shader is then read anew with it, at most twice for each of the four.
     loop {
         channels.changed = false;
-        let mut checker = Parser::new(&text, Checker::new(&text.words, options, channels.clone())).parse();
+        let mut checker = Parser::new(&text, source, Checker::new(&text, options, channels.clone())).parse();
         if checker.channels().changed {
             channels = checker.channels().clone();
             continue;
         }
-        let main_image = if checker.errors.is_empty() {
-            checker.finish()
-        } else {
-            None
-        };
-        let mut warnings = told;
-        warnings.append(&mut checker.warnings);
+        let main_image = checker.finish();
+        let mut all = told;
+        all.append(&mut checker.warnings);
+        all.append(&mut checker.errors);
+        let is_error = |diagnostic: &Diagnostic| diagnostic.severity == Severity::Error;
         return match main_image {
-            Some(main_image) if checker.errors.is_empty() => {
+            Some(main_image) if !all.iter().any(is_error) => {
                 let tree = checker.tree;
-                let warnings = warn::warn(files, &tree, main_image, &text.remarks, warnings);
+                let warnings = warn::warn(files, &tree, main_image, &text.remarks, all);
                 Ok(Checked {
                     tree,
                     main_image,
@@ -101,10 +99,12 @@ pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, 
                 })
             }
             _ => {
-                let mut all = warnings;
-                all.append(&mut checker.errors);
-                all.sort_by_key(|diagnostic| diagnostic.span.map(|span| span.start));
-                Err(all)
+                all.sort_by_key(|diagnostic| diagnostic.span.map_or(u32::MAX, |span| span.start));
+                let mut told = Vec::new();
+                for diagnostic in all {
+                    codes::tell(&mut told, diagnostic);
+                }
+                Err(told)
             }
         };
     }

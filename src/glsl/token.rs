@@ -9,6 +9,8 @@ pub(crate) struct Token {
     pub(crate) kind: TokenKind,
     /// Where it stands.
     pub(crate) at: Place,
+    /// Whether it stands for something whose mistake has been told: what is wrong around it may come from that.
+    pub(crate) told: bool,
 }
 
 /// What a token is.
@@ -22,6 +24,8 @@ pub(crate) enum TokenKind {
     Punctuator(Punctuator),
     /// A character that GLSL does not know; the parser never sees it.
     Unknown(char),
+    /// What does not belong there and has been told.
+    Stray,
     /// The end of a line; the parser never sees it.
     Newline,
     /// The end of the text.

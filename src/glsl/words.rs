@@ -119,6 +119,14 @@ impl Words {
         self.texts[symbol.0 as usize].1
     }
 
+    /// The names of the built-in types.
+    pub(crate) fn types(&self) -> impl Iterator<Item = &str> {
+        self.texts.iter().filter_map(|entry| match entry {
+            (text, Word::Type(_)) => Some(&**text),
+            _ => None,
+        })
+    }
+
     fn add(&mut self, text: &str, word: Word) -> Symbol {
         let symbol = Symbol(self.texts.len() as u32);
         self.texts.push((text.into(), word));

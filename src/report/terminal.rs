@@ -4,6 +4,7 @@ use anstyle::{AnsiColor, Style};
 
 use super::Record;
 use crate::compare::{Comparison, Pixel, Verdict};
+use crate::diagnostic::Json;
 
 /// One shader: verdict, name, reason, and the pixels to look at.
 #[must_use]
@@ -11,7 +12,9 @@ pub fn line(record: &Record) -> String {
     let style = style(record.verdict);
     let mut lines = vec![format!(
         "{style}{:<12}{style:#} {}: {}",
-        record.verdict, record.shader, record.reason
+        record.verdict,
+        record.shader,
+        errors(record).unwrap_or_else(|| record.reason.clone())
     )];
     if let Some(picture) = &record.picture {
         lines.push(numbers(picture));
@@ -24,6 +27,21 @@ pub fn line(record: &Record) -> String {
         }
     }
     lines.join(&format!("\n{:13}", ""))
+}
+
+/// How many errors there are and where, instead of the first: they are all told in full beside this line.
+fn errors(record: &Record) -> Option<String> {
+    let places: Vec<_> = record.diagnostics.iter().filter_map(Json::error_place).collect();
+    let first = places.iter().flatten().next();
+    let count = match places.len() {
+        0 => return None,
+        1 => "1 error".to_owned(),
+        count => format!("{count} errors"),
+    };
+    Some(match first {
+        Some((line, column)) => format!("{count}, the first in line {line}, column {column}"),
+        None => count,
+    })
 }
 
 /// How many shaders have each verdict, best first.

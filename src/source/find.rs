@@ -51,6 +51,12 @@ pub enum ReadError {
     /// There is nothing of that name.
     #[error("{0}: no such file or folder")]
     Missing(PathBuf),
+    /// A scene where a shader is needed.
+    #[error(
+        "{0}: this is a scene, not a shader; `toyproof check SHADER --scene {0}` compares a shader with it, and \
+         `toyproof render {0} -o PICTURE` traces it"
+    )]
+    Scene(PathBuf),
     /// A folder without any shader.
     #[error(
         "{0}: no shader in this folder (looked for .glsl .frag .fs .shadertoy, also in the folders below)"
@@ -97,14 +103,18 @@ pub fn find(argument: &Path) -> Vec<Result<Found, ReadError>> {
     }
     if !argument.is_dir() {
         let name = argument.file_name().unwrap_or(argument.as_os_str());
-        return vec![if argument.exists() {
-            Ok(Found {
-                place: FoundIn::File(argument.to_owned()),
-                relative: PathBuf::from(name),
-            })
-        } else {
-            Err(ReadError::Missing(argument.to_owned()))
-        }];
+        return vec![
+            if argument.extension() == Some(OsStr::new("toml")) && argument.exists() {
+                Err(ReadError::Scene(argument.to_owned()))
+            } else if argument.exists() {
+                Ok(Found {
+                    place: FoundIn::File(argument.to_owned()),
+                    relative: PathBuf::from(name),
+                })
+            } else {
+                Err(ReadError::Missing(argument.to_owned()))
+            },
+        ];
     }
     let found: Vec<_> = WalkDir::new(argument)
         .follow_links(true)
@@ -132,7 +142,9 @@ pub fn find(argument: &Path) -> Vec<Result<Found, ReadError>> {
     found
 }
 
-fn is_shader(path: &Path) -> bool {
+/// Whether a file is a shader by its name.
+#[must_use]
+pub fn is_shader(path: &Path) -> bool {
     path.extension()
         .and_then(OsStr::to_str)
         .is_some_and(|extension| EXTENSIONS.contains(&extension))

@@ -9,6 +9,6 @@ mod span;
 
 pub use file::{File, FileId, Files, Position};
 pub use find::{
-    EXTENSIONS, Found, FoundIn, MAX_BYTES, NOT_UTF8, ReadError, TOO_LARGE, find, read, read_text,
+    EXTENSIONS, Found, FoundIn, MAX_BYTES, NOT_UTF8, ReadError, TOO_LARGE, find, is_shader, read, read_text,
 };
 pub use span::Span;

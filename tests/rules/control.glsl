@@ -323,8 +323,8 @@ void f() {
 
 //# 6.3 E0100 a do ends with a semicolon
 void f(int n) {
-    do { n++; } while (n < 2)
-}  //!
+    do { n++; } while (n < 2)  //!
+}
 
 //# 6.3 E0100 what a condition declares has a value
 void f() {
@@ -392,14 +392,14 @@ void f() {
 
 //# 6.4 E0100 a statement ends with a semicolon
 void f() {
-    float a = 1.0
-    a = 2.0;  //!
+    float a = 1.0  //!
+    a = 2.0;
 }
 
 //# 6.4 E0100 return ends with a semicolon
 float f() {
-    return 1.0
-}  //!
+    return 1.0  //!
+}
 
 //# 6.4 E0100 a statement does not stand outside of functions
 float a;
@@ -408,7 +408,7 @@ a = 1.0;  //!
 //# 6.4 E0100 a loop does not stand outside of functions
 for (int i = 0; i < 2; i++) { }  //!
 
-//# 6.4 E0100 a brace too many ends nothing
+//# 6.4 E0105 a brace too many ends nothing
 void f() { }
 }  //!
 

@@ -462,7 +462,8 @@ void main() { }  //!
 void mainImage(out vec4 c, in vec2 p) {  //!
     c = vec4(1.0);
 
-//# 6.1 error a body ends before the next function
-float f() {
+//# 6.1 E0105 a body ends before the next function
+// glslang names the next function.
+float f() {  //!
     return 1.0;
-void mainImage(out vec4 c, in vec2 p) { c = vec4(f()); }  //!
+void mainImage(out vec4 c, in vec2 p) { c = vec4(f()); }

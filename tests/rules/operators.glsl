@@ -518,7 +518,7 @@ float f(float a) {
     return a *;  //!
 }
 
-//# 5.1 E0100 parentheses close
+//# 5.1 E0105 parentheses close
 float f(float a) {
     return (a * 2.0;  //!
 }

@@ -543,12 +543,12 @@ float f() {
     );
 }
 
-//# 3.4 E0200 a mistake in a macro that is never used harms nobody, used twice it stands twice
+//# 3.4 E0200 a mistake in a macro that is never used harms nobody, used twice it is told once
 #define OOPS (oops + 1.0)
 float f() {
     float a = OOPS;  //!
     return a
-        + OOPS;  //!
+        + OOPS;
 }
 
 //# 3.4 holds a mistake in a macro that is never used harms nobody

@@ -299,8 +299,8 @@ precision float;  //!
 precision highp;  //!
 
 //# 4.5.4 E0100 a default precision ends with a semicolon
-precision highp float
-float x;  //!
+precision highp float  //!
+float x;
 
 //# 4.6.1 holds the depth may be invariant
 invariant gl_FragDepth;

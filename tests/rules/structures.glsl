@@ -232,20 +232,20 @@ struct S {
     struct T { float a; } t;  //!
 };
 
-//# 4.1.8 E0100 a structure does not hold itself
+//# 4.1.8 E0200 a structure does not hold itself
 struct S {
     float a;
     S s;  //!
 };
 
 //# 4.1.8 E0100 a structure ends with a semicolon
-struct S { float a; }
-float x;  //!
+struct S { float a; }  //!
+float x;
 
 //# 4.1.8 E0100 a member ends with a semicolon
 struct S {
-    float a
-};  //!
+    float a  //!
+};
 
 //# 4.1.8 E0100 a member has no value
 struct S {
@@ -314,8 +314,8 @@ flaot a;  //!
 float int a;  //!
 
 //# 4.1.8 E0100 a declaration ends with a semicolon
-float a
-float b;  //!
+float a  //!
+float b;
 
 //# 4.1.8 E0100 there are no pointers
 float *a;  //!

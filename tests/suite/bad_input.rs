@@ -43,6 +43,43 @@ fn a_missing_file() {
 }
 
 #[test]
+fn a_scene_where_a_shader_is_needed_and_the_other_way_round() {
+    let folder = folder(&[("s.glsl", ""), ("s.toml", SPHERE)]);
+    for arguments in [
+        &["check", "s.toml"][..],
+        &["convert", "s.toml", "-o", "s.wgsl"],
+        &["run", "s.toml", "-o", "s.png"],
+    ] {
+        let run = toyproof(folder.path(), arguments);
+        expect(
+            &run,
+            2,
+            &["s.toml: this is a scene, not a shader", "toyproof render s.toml"],
+        );
+    }
+    expect(
+        &toyproof(folder.path(), &["render", "s.glsl", "-o", "s.png"]),
+        2,
+        &["s.glsl is a shader", "toyproof run s.glsl"],
+    );
+}
+
+#[test]
+fn a_mistake_is_told_once() {
+    let run = check(
+        &format!("{MAIN} {{ c = vec4(1.0) }}\nfloat f() {{ return x; }}"),
+        &[],
+    );
+    expect(
+        &run,
+        1,
+        &["invalid      s.glsl: 2 errors, the first in line 1, column 54"],
+    );
+    assert_eq!(run.stdout.lines().count(), 1, "{}", run.stdout);
+    assert_eq!(run.stderr.matches("`;` is missing").count(), 1, "{}", run.stderr);
+}
+
+#[test]
 fn a_folder_without_shaders() {
     let run = toyproof(folder(&[("notes.txt", "")]).path(), &["check", "."]);
     expect(
@@ -99,7 +136,7 @@ fn a_brace_that_is_never_closed() {
         &format!("{MAIN} {{\n  if (p.x > 1.0) {{\n  c = vec4(1.0);\n}}\n"),
         &[],
     );
-    expect(&run, 1, &["this `{` is never closed", "s.glsl:1:39"]);
+    expect(&run, 1, &["this `{` is never closed", "s.glsl:2:18"]);
 }
 
 #[test]

@@ -13,6 +13,7 @@ mod evaluator_programs;
 #[cfg(unix)]
 mod fuzzed;
 mod miscompiles;
+mod mistakes;
 mod planted_faults;
 mod program;
 mod rules;

@@ -2,6 +2,7 @@
 
 use super::Checker;
 use super::scope::Entity;
+use crate::diagnostic::nearest;
 use crate::glsl::codes::Code;
 use crate::glsl::token::Symbol;
 use crate::glsl::tree::{BuiltIn, ExprId, ExprKind, Place, Scalar, StructId, Swizzle, Type, VariableKind};
@@ -39,8 +40,13 @@ impl Checker<'_> {
                 at,
                 format!("`{text}` is a function, not a variable"),
             ),
-            None => self.refuse(Code::Undeclared, at, format!("`{text}` is not declared")),
+            None => self.undeclared(name, at),
         }
+    }
+
+    /// Whether the name means anything here.
+    pub(crate) fn is_declared(&self, name: Symbol) -> bool {
+        self.scopes.find(name).is_some() || BuiltIn::named(self.text(name)).is_some()
     }
 
     /// The structure that the name means here, if it means one.
@@ -61,8 +67,24 @@ impl Checker<'_> {
             Type::Struct(id) => {
                 let members = &self.tree[id].members;
                 let Some(member) = members.iter().position(|member| member.name == text) else {
-                    let message = format!("{} has no member `{text}`", self.said(ty));
-                    return self.refuse(Code::UnknownMember, at, message);
+                    if self.incomplete.contains(&id) {
+                        return self.broken(whole);
+                    }
+                    let near = nearest(text, members.iter().map(|member| &*member.name));
+                    let message = match near {
+                        Some(near) => {
+                            format!("{} has no member `{text}`; did you mean `{near}`?", self.said(ty))
+                        }
+                        None => format!("{} has no member `{text}`", self.said(ty)),
+                    };
+                    let names: Vec<_> = members
+                        .iter()
+                        .map(|member| format!("`{}`", member.name))
+                        .collect();
+                    let diagnostic = Code::UnknownMember
+                        .at(at, message)
+                        .note(format!("its members are {}", names.join(", ")));
+                    return self.refuse_with(diagnostic, at);
                 };
                 let ty = members[member].ty;
                 let kind = ExprKind::Member {
@@ -74,7 +96,9 @@ impl Checker<'_> {
             Type::Vector(scalar, size) => {
                 let Some(components) = swizzle(text, size) else {
                     let message = format!("`.{text}` selects no components of {}", self.said(ty));
-                    return self.refuse(Code::UnknownMember, at, message);
+                    let label = format!("it has `.{}`", &"xyzw"[..usize::from(size)]);
+                    let diagnostic = Code::UnknownMember.at(at, message).label(label);
+                    return self.refuse_with(diagnostic, at);
                 };
                 let kind = ExprKind::Swizzle {
                     vector: base,
@@ -135,7 +159,9 @@ impl Checker<'_> {
                 "the index {value} is out of range: {} has {size} elements",
                 self.said(ty)
             );
-            return self.refuse(Code::BadIndex, self.tree[index].at, message);
+            let at = self.tree[index].at;
+            let label = format!("the last one is {}", size.saturating_sub(1));
+            return self.refuse_with(Code::BadIndex.at(at, message).label(label), at);
         }
         // §4.1.7: which sampler it is must be known beforehand.
         if matches!(element, Type::Sampler(_)) && !self.tree[index].constant {

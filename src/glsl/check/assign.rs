@@ -3,7 +3,7 @@
 use super::Checker;
 use crate::glsl::codes::Code;
 use crate::glsl::tree::{
-    BinaryOp, BuiltInVariable, Direction, ExprId, ExprKind, Place, Scalar, StepOp, Type, VariableKind,
+    BinaryOp, BuiltInVariable, Direction, ExprId, ExprKind, Input, Place, Scalar, StepOp, Type, VariableKind,
 };
 
 impl Checker<'_> {
@@ -14,7 +14,7 @@ impl Checker<'_> {
         }
         let ty = self.ty(target);
         let value = match op {
-            None => self.expect(value, ty, "what is assigned"),
+            None => self.expect(value, ty, "the value assigned here"),
             Some(op) => self.assigned_operand(op, target, value),
         };
         if ty == Type::Error || self.ty(value) == Type::Error {
@@ -41,7 +41,9 @@ impl Checker<'_> {
             self.said(a),
             self.said(b)
         );
-        self.refuse(Code::BadOperands, at, message)
+        let diagnostic = Code::BadOperands.at(at, message);
+        let diagnostic = self.mended_operands(diagnostic, op, target, value);
+        self.refuse_with(diagnostic, at)
     }
 
     pub(crate) fn step(&mut self, op: StepOp, postfix: bool, target: ExprId, at: Place) -> ExprId {
@@ -82,24 +84,41 @@ impl Checker<'_> {
                     self.error(
                         Code::NotWritable,
                         at,
-                        format!("this is no variable and cannot be {verb}"),
+                        format!("this is not a variable, so it cannot be {verb}"),
                     );
                     return false;
                 }
             };
         };
         let variable = &self.tree[variable];
-        let what = match variable.kind {
-            VariableKind::Const | VariableKind::BuiltInConstant => "a constant",
-            VariableKind::Parameter(Direction::ConstIn) => "a `const` parameter",
-            VariableKind::Input(_) | VariableKind::Uniform => "a uniform",
-            VariableKind::Varying => "an input",
-            VariableKind::BuiltIn(built_in) if built_in != BuiltInVariable::FragDepth => "an input",
-            _ if self.holds_sampler(self.ty(expr)) => "a sampler",
+        let ty = self.tree.type_name(variable.ty);
+        let copy = format!(
+            "give a variable of your own its value and change that: `{ty} mine = {};`",
+            variable.name
+        );
+        let constant = "leave `const` out of its declaration if it is to change";
+        let (what, note) = match variable.kind {
+            VariableKind::BuiltInConstant => ("a constant", None),
+            VariableKind::Const => ("a constant", Some(constant.to_owned())),
+            VariableKind::Parameter(Direction::ConstIn) => ("a `const` parameter", Some(constant.to_owned())),
+            VariableKind::Input(Input::Channel(_)) => ("a sampler", None),
+            VariableKind::Input(_) | VariableKind::Uniform => ("a uniform", Some(copy)),
+            VariableKind::Varying => ("an input", Some(copy)),
+            VariableKind::BuiltIn(built_in) if built_in != BuiltInVariable::FragDepth => {
+                ("an input", Some(copy))
+            }
+            _ if self.holds_sampler(self.ty(expr)) => ("a sampler", None),
             _ => return true,
         };
         let message = format!("`{}` is {what} and cannot be {verb}", variable.name);
-        self.error(Code::NotWritable, at, message);
+        let mut diagnostic = Code::NotWritable.at(at, message);
+        if let (Some(declared), VariableKind::Const | VariableKind::Parameter(_)) =
+            (variable.at, variable.kind)
+        {
+            diagnostic = diagnostic.related(declared.span, "declared here");
+        }
+        diagnostic.notes.extend(note);
+        self.report(diagnostic);
         false
     }
 }

@@ -25,11 +25,7 @@ impl Checker<'_> {
             ),
             None => match BuiltIn::named(text) {
                 Some(function) => self.call_built_in(function, arguments, name_at, at),
-                None => self.refuse(
-                    Code::Undeclared,
-                    name_at,
-                    format!("there is no function `{text}`"),
-                ),
+                None => self.undeclared_function(name, name_at),
             },
         }
     }
@@ -50,12 +46,11 @@ impl Checker<'_> {
             if let Some(built_in) = BuiltIn::named(&self.tree[overloads[0]].name) {
                 return self.call_built_in(built_in, arguments, name_at, at);
             }
-            if self.infer_channel(&arguments, |checker, types| {
-                checker.find_overload(overloads, types).is_some()
-            }) {
+            let resolves = |checker: &Self, types: &[Type]| checker.find_overload(overloads, types).is_some();
+            if self.infer_channel(&arguments, resolves) || self.is_unread(overloads) {
                 return self.broken(at);
             }
-            return self.no_overload(&self.tree[overloads[0]].name.clone(), &types, name_at);
+            return self.no_overload(overloads, &arguments, name_at, at);
         };
         if let Some(context) = &self.function {
             self.calls.push((context.function, function, name_at));
@@ -103,6 +98,16 @@ impl Checker<'_> {
         }
     }
 
+    /// Whether the parameters of an overload could not all be read.
+    fn is_unread(&self, overloads: &[FunctionId]) -> bool {
+        let parameters = overloads
+            .iter()
+            .flat_map(|&function| &self.tree[function].parameters);
+        parameters
+            .into_iter()
+            .any(|&parameter| self.tree[parameter].ty == Type::Error)
+    }
+
     fn call_built_in(
         &mut self,
         function: BuiltIn,
@@ -120,7 +125,7 @@ impl Checker<'_> {
             }) {
                 return self.broken(at);
             }
-            return self.no_overload(function.name(), &types, name_at);
+            return self.no_signature(function, &arguments, name_at, at);
         };
         if let Some(written) = function.out_parameter().and_then(|index| arguments.get(index)) {
             self.writable(*written, "passed to an `out` parameter");
@@ -176,12 +181,6 @@ impl Checker<'_> {
                 given == wanted || self.converts(given, wanted)
             })
         })
-    }
-
-    fn no_overload(&mut self, name: &str, types: &[Type], at: Place) -> ExprId {
-        let types: Vec<_> = types.iter().map(|&ty| self.tree.type_name(ty)).collect();
-        let message = format!("no function `{name}({})`", types.join(", "));
-        self.refuse(Code::NoOverload, at, message)
     }
 
     pub(super) fn types(&self, exprs: &[ExprId]) -> Vec<Type> {

@@ -24,13 +24,27 @@ impl Checker<'_> {
             ty => match self.numeric_constructor(ty, &arguments) {
                 Ok(constructor) => self.constructed(constructor, ty, arguments, at),
                 Err(_) if self.types(&arguments).contains(&Type::Error) => self.broken(at),
-                Err(message) => self.refuse(Code::BadConstructor, at, message),
+                Err(message) => {
+                    let diagnostic = Code::BadConstructor.at(at, message);
+                    let mend = match arguments[..] {
+                        [only] if matches!(ty, Type::Vector(..)) => self.mend(only, ty),
+                        _ => None,
+                    };
+                    let diagnostic = match mend {
+                        Some(mend) => diagnostic.label(mend),
+                        None => diagnostic,
+                    };
+                    self.refuse_with(diagnostic, at)
+                }
             },
         }
     }
 
     pub(super) fn construct_struct(&mut self, id: StructId, arguments: Vec<ExprId>, at: Place) -> ExprId {
         let types: Vec<_> = self.tree[id].members.iter().map(|member| member.ty).collect();
+        if self.incomplete.contains(&id) {
+            return self.broken(at);
+        }
         if types.len() != arguments.len() {
             let name = self.said(Type::Struct(id));
             let message = format!(

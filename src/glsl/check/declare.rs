@@ -1,7 +1,7 @@
 //! Variables and constants (§4.2, §4.3).
 
 use super::scope::Entity;
-use super::{Checker, Size, Specifier};
+use super::{Checker, Size, Specifier, liberal_conversion};
 use crate::glsl::codes::{Code, tell};
 use crate::glsl::token::Symbol;
 use crate::glsl::tree::{BuiltInVariable, ExprId, Place, Scalar, Type, Variable, VariableId, VariableKind};
@@ -76,6 +76,12 @@ impl Checker<'_> {
         let ty = self.variable_type(ty, kind, at);
         self.flat_fits(qualifiers, ty, kind, at);
         let initialiser = self.initialiser(initialiser, ty, kind, name, at);
+        // Where value and type contradict each other, either may be meant; but what only lacks a conversion has the type that is written.
+        let contradicted = match (initialiser.map(|expr| self.ty(expr)), given) {
+            (Some(Type::Error), Some(given)) if given != Type::Error => !liberal_conversion(given, ty),
+            _ => false,
+        };
+        let ty = if contradicted { Type::Error } else { ty };
         let value = initialiser
             .filter(|_| kind == VariableKind::Const)
             .and_then(|expr| self.tree.value(expr));
@@ -92,6 +98,21 @@ impl Checker<'_> {
             self.scopes.declare(name, Entity::Variable(variable));
         }
         variable
+    }
+
+    /// Declares a name whose declaration cannot be read: it may be anything.
+    pub(crate) fn declare_unread(&mut self, name: Symbol, at: Place) {
+        if self.scopes.find_here(name).is_none() {
+            let variable = self.tree.variables.push(Variable {
+                name: self.text(name).to_owned(),
+                ty: Type::Error,
+                kind: VariableKind::Local,
+                initialiser: None,
+                value: None,
+                at: Some(at),
+            });
+            self.scopes.declare(name, Entity::Variable(variable));
+        }
     }
 
     fn variable_kind(&mut self, qualifiers: &Qualifiers) -> VariableKind {
@@ -228,7 +249,7 @@ impl Checker<'_> {
             );
             return None;
         }
-        let expr = self.expect(expr, ty, "the value of this variable");
+        let expr = self.expect(expr, ty, &format!("the value of `{text}`"));
         // §4.3.3; desktop GLSL asks it of constants that sizes depend on only.
         let must_be_constant = matches!(kind, VariableKind::Const | VariableKind::Global);
         if must_be_constant && ty != Type::Error && !self.lenient && !self.tree[expr].constant {
@@ -237,8 +258,14 @@ impl Checker<'_> {
             } else {
                 "global"
             };
-            let message = format!("the value of the {what} `{text}` is no constant expression");
-            self.error(Code::NotConstant, self.tree[expr].at, message);
+            let message = format!("the value of the {what} `{text}` is not a constant expression");
+            let note = if kind == VariableKind::Const {
+                "leave `const` out if it is to be computed while the shader runs"
+            } else {
+                "globals are set before the shader runs: set this one in `mainImage`, or use --lenient"
+            };
+            let diagnostic = Code::NotConstant.at(self.tree[expr].at, message);
+            self.report(diagnostic.note(note));
         }
         Some(expr)
     }

@@ -27,6 +27,10 @@ pub(super) struct Context {
     pub(super) return_type: Type,
     /// Whether a `return` came.
     pub(super) returns: bool,
+    /// Whether a `return` gave something else than the header says: either may be meant.
+    pub(super) contradicted: bool,
+    /// The undeclared names that were told of.
+    pub(super) undeclared: HashSet<Symbol>,
     /// How many loops are open.
     pub(super) loops: usize,
     /// How many loops and switches are open.
@@ -186,6 +190,8 @@ impl Checker<'_> {
             function,
             return_type: self.tree[function].return_type,
             returns: false,
+            contradicted: false,
+            undeclared: HashSet::new(),
             loops: 0,
             breakable: 0,
         });
@@ -196,9 +202,17 @@ impl Checker<'_> {
         let context = self.function.take();
         let Function { return_type, at, .. } = self.tree[function];
         // Some paths may miss it, as in WebGL; not all.
-        if return_type != Type::Void && context.is_some_and(|context| !context.returns) {
+        if context.as_ref().is_some_and(|context| context.contradicted) {
+            self.tree[function].return_type = Type::Error;
+        }
+        if !matches!(return_type, Type::Void | Type::Error) && context.is_some_and(|context| !context.returns)
+        {
             let message = format!("`{}` never returns a value", self.tree[function].name);
-            self.error(Code::BadReturn, at, message);
+            let note = format!(
+                "end it with `return …;` and a {}, or make it `void`",
+                self.said(return_type)
+            );
+            self.report(Code::BadReturn.at(at, message).note(note));
         }
         self.tree[function].body = Some(body);
         self.tree.items.push(Item::Function(function));
@@ -206,10 +220,13 @@ impl Checker<'_> {
 
     /// What can be told once all functions are known: every call has a body, and none comes back (§6.1.2).
     pub(crate) fn finish(&mut self) -> Option<FunctionId> {
+        self.find_late_declarations();
+        // Of what could not be read, nothing is said to be missing.
+        let complete = self.errors.is_empty() && !self.lacks_names;
         let calls = std::mem::take(&mut self.calls);
         let mut told = HashSet::new();
         for &(_, callee, at) in &calls {
-            if self.tree[callee].body.is_none() && told.insert(callee) {
+            if complete && self.tree[callee].body.is_none() && told.insert(callee) {
                 let message = format!(
                     "`{}` is declared and called, but has no body",
                     self.tree[callee].name
@@ -223,12 +240,25 @@ impl Checker<'_> {
         }
         if let Some((function, at)) = self.find_recursion(&calls) {
             let message = format!(
-                "`{}` calls itself, by this call or others",
+                "by this call, `{}` comes to call itself",
                 self.tree[function].name
             );
-            self.error(Code::Recursion, at, message);
+            let note = "GLSL has no stack, so no function may call itself: use a loop";
+            self.report(Code::Recursion.at(at, message).note(note));
         }
-        self.main_image()
+        // A `main` was told to be no `mainImage`.
+        if self
+            .tree
+            .functions
+            .iter()
+            .any(|(_, function)| function.name == "main")
+        {
+            return None;
+        }
+        if complete || (!self.lacks_names && self.words.find("mainImage").is_none()) {
+            return self.main_image();
+        }
+        None
     }
 
     /// A function that is reached from itself, and the last call on that way.

@@ -10,25 +10,32 @@ mod construct;
 mod declare;
 mod extent;
 mod function;
+mod mend;
 mod operator;
+mod overload;
 mod prelude;
 mod scope;
 mod signature;
 mod statement;
 mod types;
+mod unknown;
 
 pub(crate) use declare::{Declarator, Qualifiers, Storage};
 pub(crate) use function::Parameter;
+pub(crate) use statement::Labels;
 pub(crate) use types::{Size, Specifier};
 
 pub(crate) use self::channel::Channels;
+use std::collections::HashSet;
+
 use self::extent::Extent;
 use self::function::Context;
 use self::scope::Scopes;
-use super::codes::{Code, MAX_TOLD, tell};
+use super::codes::{Code, IN_MACRO, MAX_TOLD, tell};
 use super::options::Options;
+use super::preprocess::Preprocessed;
 use super::token::Symbol;
-use super::tree::{Expr, ExprId, ExprKind, FunctionId, Literal, Place, Scalar, Tree, Type, Value};
+use super::tree::{Expr, ExprId, ExprKind, FunctionId, Literal, Place, Scalar, StructId, Tree, Type, Value};
 use super::words::Words;
 use crate::diagnostic::Diagnostic;
 
@@ -45,14 +52,26 @@ pub(crate) struct Checker<'a> {
     function: Option<Context>,
     /// Who calls whom, and where.
     calls: Vec<(FunctionId, FunctionId, Place)>,
+    /// The names that were told not to be declared, and where.
+    unknown: Vec<(Symbol, Place)>,
+    /// Structures whose members could not all be read.
+    incomplete: Vec<StructId>,
+    /// Names that may be declared in what could not be read.
+    doubtful: HashSet<Symbol>,
+    /// Whether any name may be.
+    lacks_names: bool,
     pub(crate) errors: Vec<Diagnostic>,
     pub(crate) warnings: Vec<Diagnostic>,
 }
 
 impl<'a> Checker<'a> {
-    pub(crate) fn new(words: &'a Words, options: &Options, channels: Channels) -> Self {
+    pub(crate) fn new(text: &'a Preprocessed, options: &Options, channels: Channels) -> Self {
         let mut checker = Self {
-            words,
+            words: &text.words,
+            unknown: Vec::new(),
+            incomplete: Vec::new(),
+            doubtful: HashSet::new(),
+            lacks_names: text.lacks_names,
             lenient: options.lenient,
             tree: Tree::default(),
             scopes: Scopes::default(),
@@ -72,8 +91,24 @@ impl<'a> Checker<'a> {
         self.errors.len() >= MAX_TOLD
     }
 
+    /// Tells an error; one in the body of a macro is told at its first use only.
     pub(crate) fn report(&mut self, diagnostic: Diagnostic) {
-        tell(&mut self.errors, diagnostic);
+        let in_macro = diagnostic.related.iter().any(|(_, words)| words == IN_MACRO);
+        let again =
+            |other: &Diagnostic| other.message == diagnostic.message && other.related == diagnostic.related;
+        if !in_macro || !self.errors.iter().any(again) {
+            tell(&mut self.errors, diagnostic);
+        }
+    }
+
+    /// From now on, that this name is not declared is not told.
+    pub(crate) fn doubt(&mut self, name: Symbol) {
+        self.doubtful.insert(name);
+    }
+
+    /// Whether an undeclared name may be declared in what could not be read.
+    fn is_doubtful(&self, name: Symbol) -> bool {
+        self.lacks_names || self.doubtful.contains(&name)
     }
 
     fn error(&mut self, code: Code, at: Place, message: impl Into<String>) {
@@ -104,7 +139,7 @@ impl<'a> Checker<'a> {
     }
 
     /// What stands for an expression whose mistake has been told.
-    fn broken(&mut self, at: Place) -> ExprId {
+    pub(crate) fn broken(&mut self, at: Place) -> ExprId {
         let nothing = Literal {
             text: "".into(),
             value: Value::Bool(false),
@@ -113,8 +148,14 @@ impl<'a> Checker<'a> {
     }
 
     /// Tells a mistake in an expression and stands in for it.
-    fn refuse(&mut self, code: Code, at: Place, message: impl Into<String>) -> ExprId {
+    pub(crate) fn refuse(&mut self, code: Code, at: Place, message: impl Into<String>) -> ExprId {
         self.error(code, at, message);
+        self.broken(at)
+    }
+
+    /// The same with all that there is to say.
+    fn refuse_with(&mut self, diagnostic: Diagnostic, at: Place) -> ExprId {
+        self.report(diagnostic);
         self.broken(at)
     }
 
@@ -142,16 +183,7 @@ impl<'a> Checker<'a> {
 
     /// Whether desktop GLSL converts so without being asked (GLSL 4.60 §4.1.10), and we may.
     fn converts(&self, from: Type, to: Type) -> bool {
-        let rank = |ty: Type| match ty.scalar() {
-            Some(Scalar::Int) => 1,
-            Some(Scalar::Uint) => 2,
-            Some(Scalar::Float) => 3,
-            Some(Scalar::Bool) | None => 0,
-        };
-        self.lenient
-            && rank(from) > 0
-            && rank(from) < rank(to)
-            && to.scalar().and_then(|scalar| from.with_scalar(scalar)) == Some(to)
+        self.lenient && liberal_conversion(from, to)
     }
 
     /// The expression as a value of that type, or an error that names what for.
@@ -165,11 +197,25 @@ impl<'a> Checker<'a> {
             self.said(to),
             self.said(from)
         );
-        self.refuse(Code::Mismatch, at, message)
+        let diagnostic = self.mended(Code::Mismatch.at(at, message), expr, to);
+        self.refuse_with(diagnostic, at)
     }
 
     /// A condition: a `bool` (§6.2).
     pub(crate) fn condition(&mut self, expr: ExprId) -> ExprId {
         self.expect(expr, Type::BOOL, "a condition")
     }
+}
+
+/// Whether desktop GLSL converts so without being asked (GLSL 4.60 §4.1.10).
+fn liberal_conversion(from: Type, to: Type) -> bool {
+    let rank = |ty: Type| match ty.scalar() {
+        Some(Scalar::Int) => 1,
+        Some(Scalar::Uint) => 2,
+        Some(Scalar::Float) => 3,
+        Some(Scalar::Bool) | None => 0,
+    };
+    rank(from) > 0
+        && rank(from) < rank(to)
+        && to.scalar().and_then(|scalar| from.with_scalar(scalar)) == Some(to)
 }

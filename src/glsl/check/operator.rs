@@ -1,6 +1,6 @@
 //! Operators without side effects (§5.9), `?:` and `,`.
 
-use super::Checker;
+use super::{Checker, liberal_conversion};
 use crate::glsl::codes::Code;
 use crate::glsl::tree::{BinaryOp, ExprId, ExprKind, Place, Scalar, Type, UnaryOp};
 
@@ -15,7 +15,12 @@ impl Checker<'_> {
         };
         if !fits && ty != Type::Error {
             let message = format!("`{}` does not take {}", op.symbol(), self.said(ty));
-            return self.refuse(Code::BadOperands, at, message);
+            let mut diagnostic = Code::BadOperands.at(at, message);
+            if op == UnaryOp::Not && matches!(ty, Type::Scalar(_)) {
+                diagnostic = diagnostic
+                    .note("`!` turns a `bool` round; to ask whether a number is 0, compare it with `==`");
+            }
+            return self.refuse_with(diagnostic, at);
         }
         let constant = self.tree[operand].constant;
         self.push(ExprKind::Unary { op, operand }, ty, constant, at)
@@ -35,7 +40,9 @@ impl Checker<'_> {
                 self.said(a),
                 self.said(b)
             );
-            return self.refuse(Code::BadOperands, at, message);
+            let diagnostic = Code::BadOperands.at(at, message);
+            let diagnostic = self.mended_operands(diagnostic, op, left, right);
+            return self.refuse_with(diagnostic, at);
         };
         let constant = self.tree[left].constant && self.tree[right].constant;
         self.push(ExprKind::Binary { op, left, right }, ty, constant, at)
@@ -96,8 +103,18 @@ impl Checker<'_> {
         }
         let (a, b) = (self.ty(yes), self.ty(no));
         if a != b && a != Type::Error && b != Type::Error {
-            let message = format!("`?:` chooses between {} and {}", self.said(a), self.said(b));
-            return self.refuse(Code::Mismatch, at, message);
+            let message = format!(
+                "`?:` chooses between values of one type, and these are {} and {}",
+                self.said(a),
+                self.said(b)
+            );
+            let diagnostic = Code::Mismatch.at(at, message);
+            let diagnostic = if liberal_conversion(a, b) {
+                self.related_mend(diagnostic, yes, b)
+            } else {
+                self.related_mend(diagnostic, no, a)
+            };
+            return self.refuse_with(diagnostic, at);
         }
         // Samplers are no values (§4.1.7). WebGL has no `?:` between calls without value, arrays or structures.
         let webgl_has_none = matches!(a, Type::Array(_) | Type::Struct(_)) && !self.lenient;

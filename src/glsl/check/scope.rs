@@ -54,6 +54,13 @@ impl Scopes {
         self.meanings.get(&name)?.last().map(|(_, entity)| entity)
     }
 
+    /// Every name that means something here, in no order.
+    pub(super) fn names(&self) -> impl Iterator<Item = (Symbol, &Entity)> {
+        self.meanings
+            .iter()
+            .filter_map(|(&name, meanings)| Some((name, &meanings.last()?.1)))
+    }
+
     /// What the innermost scope itself says of the name.
     pub(super) fn find_here(&self, name: Symbol) -> Option<&Entity> {
         let (depth, entity) = self.meanings.get(&name)?.last()?;

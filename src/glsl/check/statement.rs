@@ -109,21 +109,42 @@ impl Checker<'_> {
         }
     }
 
+    /// A `return` may be in what cannot be read.
+    pub(crate) fn may_return(&mut self) {
+        if let Some(context) = &mut self.function {
+            context.returns = true;
+        }
+    }
+
     pub(crate) fn return_statement(&mut self, value: Option<ExprId>, at: Place) -> Option<ExprId> {
         let Some(context) = &mut self.function else {
             return value;
         };
         context.returns = true;
         let wanted = context.return_type;
+        let name = self.tree[context.function].name.clone();
         match value {
-            None if wanted != Type::Void => {
-                let message = format!("this function returns {}", self.said(wanted));
+            None if !matches!(wanted, Type::Void | Type::Error) => {
+                let message = format!(
+                    "`{name}` returns {}, and this `return` has no value",
+                    self.said(wanted)
+                );
                 self.error(Code::BadReturn, at, message);
                 None
             }
             None => None,
             Some(_) if wanted == Type::Void => {
-                self.error(Code::BadReturn, at, "a `void` function returns no value");
+                let given = value.map_or(Type::Error, |value| self.ty(value));
+                let message = format!("`{name}` is `void` and returns no value");
+                let mut diagnostic = Code::BadReturn.at(at, message);
+                if given != Type::Error {
+                    let note = format!(
+                        "write `return;`, or {} before its name instead of `void`",
+                        self.said(given)
+                    );
+                    diagnostic = diagnostic.note(note);
+                }
+                self.report(diagnostic);
                 None
             }
             Some(value) => {
@@ -132,11 +153,16 @@ impl Checker<'_> {
                 }
                 let given = self.ty(value);
                 let message = format!(
-                    "this function returns {}, and this is {}",
+                    "`{name}` returns {}, and this is {}",
                     self.said(wanted),
                     self.said(given)
                 );
-                self.error(Code::BadReturn, self.tree[value].at, message);
+                let diagnostic = Code::BadReturn.at(self.tree[value].at, message);
+                let diagnostic = self.mended(diagnostic, value, wanted);
+                self.report(diagnostic);
+                if let Some(context) = &mut self.function {
+                    context.contradicted = true;
+                }
                 None
             }
         }

@@ -4,7 +4,7 @@ use super::Checker;
 use super::scope::Entity;
 use crate::glsl::codes::Code;
 use crate::glsl::token::Symbol;
-use crate::glsl::tree::{ExprId, Member, Place, Struct, StructId, Type};
+use crate::glsl::tree::{ExprId, ExprKind, Member, Place, Struct, StructId, Type, VariableKind};
 
 /// The largest array that WebGL takes.
 const MAX_ARRAY_SIZE: i64 = 65_536;
@@ -53,7 +53,17 @@ impl Checker<'_> {
                 None => "the size of this array cannot be told".to_owned(),
             }
         };
-        self.error(Code::BadArraySize, at, problem);
+        let mut diagnostic = Code::BadArraySize.at(at, problem);
+        if let ExprKind::Variable(variable) = self.tree[expr].kind
+            && matches!(
+                self.tree[variable].kind,
+                VariableKind::Local | VariableKind::Global
+            )
+        {
+            let (ty, name) = (self.tree.type_name(ty), &self.tree[variable].name);
+            diagnostic = diagnostic.note(format!("`const {ty} {name} = …;` makes it one"));
+        }
+        self.report(diagnostic);
         Size::Broken
     }
 
@@ -125,6 +135,11 @@ impl Checker<'_> {
             self.scopes.declare(name, Entity::Struct(id));
         }
         id
+    }
+
+    /// Some members of this structure could not be read.
+    pub(crate) fn lacks_members(&mut self, id: StructId) {
+        self.incomplete.push(id);
     }
 
     /// One declarator of a member list.

@@ -1,23 +1,294 @@
-//! Brackets that the author forgot to close.
+//! Round and square brackets that do not pair: told, and put right, so that the rest can be read.
 
+use super::brace;
+use super::layout::Layout;
+use crate::diagnostic::Diagnostic;
+use crate::glsl::codes::{Code, tell};
+use crate::glsl::preprocess::Preprocessed;
 use crate::glsl::token::{Punctuator, Token, TokenKind};
+use crate::glsl::tree::Place;
+use crate::glsl::words::{Keyword, Word, Words};
+use crate::source::{File, Span};
 
-/// The innermost bracket that is still open at the end of the tokens, and how it is closed.
-pub(super) fn unclosed(tokens: &[Token]) -> Option<(Token, Punctuator)> {
-    let mut open: Vec<(Token, Punctuator)> = Vec::new();
-    for &token in tokens {
-        let TokenKind::Punctuator(punctuator) = token.kind else {
-            continue;
-        };
-        match punctuator {
-            Punctuator::LeftParen => open.push((token, Punctuator::RightParen)),
-            Punctuator::LeftBracket => open.push((token, Punctuator::RightBracket)),
-            Punctuator::LeftBrace => open.push((token, Punctuator::RightBrace)),
-            _ if open.last().is_some_and(|&(_, closing)| closing == punctuator) => {
-                open.pop();
-            }
-            _ => {}
+/// Pairs the brackets of a text. What stands too much becomes [`TokenKind::Stray`], what is missing is put in; both are told. After that, every
+/// bracket has its partner.
+pub(crate) fn balance(text: &mut Preprocessed, file: &File) {
+    let (tokens, mut told) = pair(&text.tokens, &text.words);
+    let tokens = brace::pair(tokens, &text.words, Layout::new(file), &mut told);
+    if !told.is_empty() {
+        text.tokens = tokens;
+        for diagnostic in told {
+            tell(&mut text.diagnostics, diagnostic);
         }
     }
-    open.pop()
+}
+
+/// A token that nobody wrote, right before `next`.
+pub(super) fn missing(punctuator: Punctuator, next: Token) -> Token {
+    let span = next.at.span;
+    Token {
+        kind: TokenKind::Punctuator(punctuator),
+        at: Place::plain(Span::new(span.file, span.start, span.start)),
+        told: true,
+    }
+}
+
+/// Makes a token one that does not belong there.
+pub(super) fn stray(token: &mut Token) {
+    token.kind = TokenKind::Stray;
+    token.told = true;
+}
+
+/// The bracket that closes this one.
+pub(super) fn closing(open: Punctuator) -> Option<Punctuator> {
+    match open {
+        Punctuator::LeftParen => Some(Punctuator::RightParen),
+        Punctuator::LeftBracket => Some(Punctuator::RightBracket),
+        Punctuator::LeftBrace => Some(Punctuator::RightBrace),
+        _ => None,
+    }
+}
+
+/// A bracket that waits for its partner.
+struct Open {
+    token: Token,
+    bracket: Punctuator,
+    /// How many `;` may stand in it: two in the head of a `for`.
+    semicolons: usize,
+}
+
+/// Pairs `()` and `[]`; both end before the `;`, `{` or `}` that cannot stand in them.
+fn pair(tokens: &[Token], words: &Words) -> (Vec<Token>, Vec<Diagnostic>) {
+    let mut pairing = Pairing {
+        done: Vec::with_capacity(tokens.len()),
+        open: Vec::new(),
+        told: Vec::new(),
+    };
+    let keyword = |token: &Token| match token.kind {
+        TokenKind::Word(word) => match words.word(word) {
+            Word::Keyword(keyword) => Some(keyword),
+            _ => None,
+        },
+        _ => None,
+    };
+    for (index, &token) in tokens.iter().enumerate() {
+        let before = |count: usize| keyword(&tokens[index.checked_sub(count)?]);
+        let opener = match (before(2), before(1)) {
+            (_, Some(Keyword::For)) => Opener::For,
+            (Some(Keyword::Struct), _) | (_, Some(Keyword::Struct)) => Opener::Struct,
+            _ => Opener::Other,
+        };
+        pairing.take(token, opener, &tokens[index + 1..]);
+    }
+    (pairing.done, pairing.told)
+}
+
+/// What a bracket follows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Opener {
+    For,
+    /// `struct` or `struct name`: its `{` is out of place in parentheses, but does not end them.
+    Struct,
+    Other,
+}
+
+struct Pairing {
+    done: Vec<Token>,
+    open: Vec<Open>,
+    told: Vec<Diagnostic>,
+}
+
+impl Pairing {
+    fn take(&mut self, token: Token, opener: Opener, rest: &[Token]) {
+        let TokenKind::Punctuator(punctuator) = token.kind else {
+            if token.kind == TokenKind::End {
+                self.close_round(token);
+            }
+            self.done.push(token);
+            return;
+        };
+        match punctuator {
+            Punctuator::LeftParen | Punctuator::LeftBracket => self.open.push(Open {
+                token,
+                bracket: punctuator,
+                semicolons: if opener == Opener::For { 2 } else { 0 },
+            }),
+            Punctuator::LeftBrace if opener != Opener::Struct && self.goes_on(rest) => {
+                return self.out_of_place(token, punctuator);
+            }
+            Punctuator::LeftBrace => {
+                if opener != Opener::Struct {
+                    self.close_round(token);
+                }
+                self.open.push(Open {
+                    token,
+                    bracket: punctuator,
+                    semicolons: usize::MAX,
+                });
+            }
+            Punctuator::RightBrace => {
+                self.close_round(token);
+                self.open.pop();
+            }
+            Punctuator::Semicolon
+                if self.open.last().is_some_and(|open| open.semicolons == 0) && self.goes_on(rest) =>
+            {
+                return self.out_of_place(token, punctuator);
+            }
+            Punctuator::Semicolon => {
+                while self.open.last().is_some_and(|open| open.semicolons == 0) {
+                    self.close_last(token);
+                }
+                if let Some(open) = self.open.last_mut() {
+                    open.semicolons -= 1;
+                }
+            }
+            Punctuator::RightParen | Punctuator::RightBracket => return self.close(token, punctuator, rest),
+            _ => {}
+        }
+        self.done.push(token);
+    }
+
+    /// Takes a `)` or `]`.
+    fn close(&mut self, token: Token, punctuator: Punctuator, rest: &[Token]) {
+        let closes = |open: &Open| closing(open.bracket) == Some(punctuator);
+        match &self.open[..] {
+            [.., last] if closes(last) => {
+                self.open.pop();
+                self.done.push(token);
+            }
+            // `f(a[i)`: the inner one is not closed.
+            [.., outer, inner] if closes(outer) && inner.bracket != Punctuator::LeftBrace => {
+                self.close_last(token);
+                self.open.pop();
+                self.done.push(token);
+            }
+            // `f(x];`: the wrong one, unless the right one follows.
+            [.., last] if last.bracket != Punctuator::LeftBrace && !self.goes_on(rest) => {
+                self.wrong_partner(token, punctuator);
+            }
+            _ => {
+                let opening = if punctuator == Punctuator::RightParen {
+                    "("
+                } else {
+                    "["
+                };
+                let message = format!("this `{}` has no `{opening}`", punctuator.text());
+                let note = format!("remove it, or put the `{opening}` where it belongs");
+                self.told.push(Code::Unclosed.at(token.at, message).note(note));
+                self.push_stray(token);
+            }
+        }
+    }
+
+    /// Tells of a `(` that meets a `]`, or the other way round, and closes it.
+    fn wrong_partner(&mut self, token: Token, punctuator: Punctuator) {
+        let Some(Open {
+            token: open, bracket, ..
+        }) = self.open.pop()
+        else {
+            return;
+        };
+        let Some(right) = closing(bracket) else {
+            return;
+        };
+        let (open_text, right_text) = (bracket.text(), right.text());
+        let message = format!("`{}` does not close `{open_text}`", punctuator.text());
+        self.told.push(
+            Code::Unclosed
+                .at(token.at, message)
+                .label(format!("write `{right_text}` here"))
+                .related(open.at.span, "opened here"),
+        );
+        self.done.push(Token {
+            kind: TokenKind::Punctuator(right),
+            told: true,
+            ..token
+        });
+    }
+
+    fn push_stray(&mut self, mut token: Token) {
+        stray(&mut token);
+        self.done.push(token);
+    }
+
+    /// Whether all brackets that are open since the last `{` are closed by what follows up to the next `;` or brace: then what stands here
+    /// does not end them.
+    fn goes_on(&self, rest: &[Token]) -> bool {
+        let mut wanted = self
+            .open
+            .iter()
+            .rev()
+            .take_while(|open| open.bracket != Punctuator::LeftBrace)
+            .count();
+        if wanted == 0 {
+            return false;
+        }
+        let mut depth = 0_usize;
+        for token in rest {
+            match token.kind {
+                TokenKind::Punctuator(Punctuator::LeftParen | Punctuator::LeftBracket) => depth += 1,
+                TokenKind::Punctuator(Punctuator::RightParen | Punctuator::RightBracket) if depth > 0 => {
+                    depth -= 1;
+                }
+                TokenKind::Punctuator(Punctuator::RightParen | Punctuator::RightBracket) => wanted -= 1,
+                TokenKind::Punctuator(
+                    Punctuator::Semicolon | Punctuator::LeftBrace | Punctuator::RightBrace,
+                )
+                | TokenKind::End => return false,
+                _ => {}
+            }
+            if wanted == 0 {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Tells of a `;` or `{` in parentheses.
+    fn out_of_place(&mut self, token: Token, punctuator: Punctuator) {
+        let diagnostic = Code::Syntax.at(
+            token.at,
+            format!("`{}` cannot stand in parentheses", punctuator.text()),
+        );
+        let diagnostic = match (punctuator, self.open.last()) {
+            (Punctuator::Semicolon, Some(open)) => diagnostic
+                .related(open.token.at.span, "opened here")
+                .note("arguments are separated by `,`"),
+            (_, Some(open)) => diagnostic.related(open.token.at.span, "opened here"),
+            _ => diagnostic,
+        };
+        self.told.push(diagnostic);
+        self.push_stray(token);
+    }
+
+    /// Closes every `(` and `[` since the last `{`.
+    fn close_round(&mut self, next: Token) {
+        while self
+            .open
+            .last()
+            .is_some_and(|open| open.bracket != Punctuator::LeftBrace)
+        {
+            self.close_last(next);
+        }
+    }
+
+    /// Closes the innermost bracket before `next`.
+    fn close_last(&mut self, next: Token) {
+        let Some(Open { token, bracket, .. }) = self.open.pop() else {
+            return;
+        };
+        let Some(closing) = closing(bracket) else {
+            return;
+        };
+        let message = format!("this `{}` is never closed", bracket.text());
+        let diagnostic = Code::Unclosed.at(token.at, message);
+        self.told.push(if next.kind == TokenKind::End {
+            diagnostic.note(format!("the text ends before its `{}`", closing.text()))
+        } else {
+            let words = format!("its `{}` is missing before this", closing.text());
+            diagnostic.related(next.at.span, words)
+        });
+        self.done.push(missing(closing, next));
+    }
 }

@@ -1,8 +1,9 @@
 //! `if`, `switch` and loops (§6.2, §6.3).
 
-use super::{Halt, Parsed, Parser};
-use crate::glsl::token::Punctuator;
-use crate::glsl::tree::{Arm, Block, Case, Condition, StatementKind};
+use super::{Parsed, Parser};
+use crate::glsl::check::Labels;
+use crate::glsl::token::{Punctuator, Token};
+use crate::glsl::tree::{Arm, Block, Case, Condition, Label, StatementKind};
 use crate::glsl::words::Keyword;
 
 impl Parser<'_> {
@@ -11,10 +12,12 @@ impl Parser<'_> {
         let mut arms = Vec::new();
         loop {
             self.next();
-            self.expect(Punctuator::LeftParen)?;
-            let condition = self.expression()?;
-            let condition = self.check.condition(condition);
-            self.expect(Punctuator::RightParen)?;
+            let at = self.token().at;
+            let condition = self.parenthesised(|parser| {
+                let condition = parser.expression()?;
+                Ok(parser.check.condition(condition))
+            })?;
+            let condition = condition.unwrap_or_else(|| self.check.broken(at));
             let body = self.scoped(Self::guarded)?;
             arms.push(Arm { condition, body });
             if !self.eat_keyword(Keyword::Else) {
@@ -32,82 +35,101 @@ impl Parser<'_> {
 
     pub(super) fn switch_statement(&mut self) -> Parsed<StatementKind> {
         self.next();
-        self.expect(Punctuator::LeftParen)?;
-        let selector = self.expression()?;
+        let at = self.token().at;
+        let selector = self.parenthesised(Self::expression)?;
+        let selector = selector.unwrap_or_else(|| self.check.broken(at));
         let mut labels = self.check.selector(selector);
-        self.expect(Punctuator::RightParen)?;
         self.expect(Punctuator::LeftBrace)?;
         self.check.enter_switch();
-        let cases = self.scoped(|parser| {
-            let mut cases: Vec<Case> = Vec::new();
-            // Whether no statement came since the last label: a label that comes now stands beside it.
-            let mut bare = false;
-            while !parser.is(Punctuator::RightBrace) {
-                let at = parser.token().at;
-                let label = match parser.keyword() {
-                    Some(Keyword::Case) => {
-                        parser.next();
-                        let expr = parser.expression()?;
-                        parser.check.case(&mut labels, expr)
-                    }
-                    Some(Keyword::Default) => {
-                        parser.next();
-                        parser.check.default(&mut labels, at)
-                    }
-                    _ => {
-                        let Some(case) = cases.last_mut() else {
-                            parser.check.misplaced_label(at, "a `switch` begins with a label");
-                            return Err(Halt);
-                        };
-                        parser.statement(&mut case.body)?;
-                        bare = false;
-                        continue;
-                    }
-                };
-                parser.expect(Punctuator::Colon)?;
-                match cases.last_mut() {
-                    Some(case) if bare => case.labels.push(label),
-                    _ => cases.push(Case {
-                        labels: vec![label],
+        let cases = self.scoped(|parser| parser.cases(&mut labels));
+        self.check.leave_switch();
+        Ok(StatementKind::Switch {
+            selector,
+            cases: cases?,
+        })
+    }
+
+    /// The labels of a `switch` with what follows them, and the `}`.
+    fn cases(&mut self, labels: &mut Labels) -> Parsed<Vec<Case>> {
+        let mut cases: Vec<Case> = Vec::new();
+        // Whether no statement came since the last label: a label that comes now stands beside it.
+        let mut bare = false;
+        while !self.eat(Punctuator::RightBrace) {
+            if self.is_at_end() {
+                return self.unexpected("`}`");
+            }
+            let at = self.token().at;
+            if !matches!(self.keyword(), Some(Keyword::Case | Keyword::Default)) {
+                if cases.is_empty() {
+                    self.check.misplaced_label(at, "a `switch` begins with a label");
+                    cases.push(Case {
+                        labels: Vec::new(),
                         body: Block::new(),
                         at,
-                    }),
+                    });
                 }
-                bare = true;
+                if let Some(case) = cases.last_mut() {
+                    self.recovering(|parser| parser.statement(&mut case.body));
+                }
+                bare = false;
+                continue;
             }
-            // §6.2: something must follow the last label.
-            if bare {
-                let close = parser.token().at;
-                parser
-                    .check
-                    .misplaced_label(close, "a statement must follow the last label of a `switch`");
+            let label = self.recovering(|parser| parser.label(labels));
+            match (cases.last_mut(), label) {
+                (Some(case), Some(label)) if bare => case.labels.push(label),
+                (_, label) => cases.push(Case {
+                    labels: label.into_iter().collect(),
+                    body: Block::new(),
+                    at,
+                }),
             }
-            Ok(cases)
-        })?;
-        self.check.leave_switch();
-        self.expect(Punctuator::RightBrace)?;
-        Ok(StatementKind::Switch { selector, cases })
+            bare = label.is_some();
+        }
+        // §6.2: something must follow the last label.
+        if bare {
+            let close = self.tokens[self.at - 1].at;
+            self.check
+                .misplaced_label(close, "a statement must follow the last label of a `switch`");
+        }
+        Ok(cases)
+    }
+
+    /// `case 1:` or `default:`.
+    fn label(&mut self, labels: &mut Labels) -> Parsed<Label> {
+        let Token { at, .. } = self.token();
+        let is_case = self.keyword() == Some(Keyword::Case);
+        self.next();
+        let label = if is_case {
+            let expr = self.expression()?;
+            self.check.case(labels, expr)
+        } else {
+            self.check.default(labels, at)
+        };
+        self.expect(Punctuator::Colon)?;
+        Ok(label)
     }
 
     pub(super) fn for_statement(&mut self) -> Parsed<StatementKind> {
         self.next();
-        self.expect(Punctuator::LeftParen)?;
-        let mut init = Block::new();
-        if !self.eat(Punctuator::Semicolon) {
-            self.simple_statement(&mut init)?;
-        }
-        let condition = if self.is(Punctuator::Semicolon) {
-            None
-        } else {
-            Some(self.loop_condition()?)
-        };
-        self.expect(Punctuator::Semicolon)?;
-        let step = if self.is(Punctuator::RightParen) {
-            None
-        } else {
-            Some(self.expression()?)
-        };
-        self.expect(Punctuator::RightParen)?;
+        let head = self.parenthesised(|parser| {
+            let mut init = Block::new();
+            if !parser.eat(Punctuator::Semicolon) {
+                parser.simple_statement(&mut init)?;
+            }
+            let condition = if parser.is(Punctuator::Semicolon) {
+                None
+            } else {
+                Some(parser.loop_condition()?)
+            };
+            parser.expect(Punctuator::Semicolon)?;
+            let step = if parser.is(Punctuator::RightParen) {
+                None
+            } else {
+                Some(parser.expression()?)
+            };
+            Ok((init, condition, step))
+        })?;
+        let (init, condition, step) = head.unwrap_or_default();
         let body = self.loop_body(Self::guarded)?;
         Ok(StatementKind::For {
             init,
@@ -119,9 +141,9 @@ impl Parser<'_> {
 
     pub(super) fn while_statement(&mut self) -> Parsed<StatementKind> {
         self.next();
-        self.expect(Punctuator::LeftParen)?;
-        let condition = self.loop_condition()?;
-        self.expect(Punctuator::RightParen)?;
+        let at = self.token().at;
+        let condition = self.parenthesised(Self::loop_condition)?;
+        let condition = condition.unwrap_or_else(|| Condition::Expression(self.check.broken(at)));
         let body = self.loop_body(Self::guarded)?;
         Ok(StatementKind::While { condition, body })
     }
@@ -132,10 +154,12 @@ impl Parser<'_> {
         if !self.eat_keyword(Keyword::While) {
             return self.unexpected("`while`");
         }
-        self.expect(Punctuator::LeftParen)?;
-        let condition = self.expression()?;
-        let condition = self.check.condition(condition);
-        self.expect(Punctuator::RightParen)?;
+        let at = self.token().at;
+        let condition = self.parenthesised(|parser| {
+            let condition = parser.expression()?;
+            Ok(parser.check.condition(condition))
+        })?;
+        let condition = condition.unwrap_or_else(|| self.check.broken(at));
         self.end(StatementKind::DoWhile { body, condition })
     }
 

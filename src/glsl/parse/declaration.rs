@@ -1,6 +1,6 @@
 //! Declarations: types, variables, structures, functions (§4, §6.1).
 
-use super::{Parsed, Parser};
+use super::{Halt, Parsed, Parser};
 use crate::glsl::check::{Declarator, Qualifiers, Size, Specifier};
 use crate::glsl::codes::Code;
 use crate::glsl::token::{Punctuator, Symbol, TokenKind};
@@ -20,8 +20,7 @@ impl Parser<'_> {
         if qualifiers.is_only(Keyword::Invariant) && self.is_redeclaration() {
             let (name, at) = self.name()?;
             self.check.invariant(name, at);
-            self.expect(Punctuator::Semicolon)?;
-            return Ok(());
+            return self.semicolon("`;`");
         }
         let first = self.check.tree.structs.len();
         if qualifiers.storage.is_some() && self.is_block() {
@@ -45,6 +44,9 @@ impl Parser<'_> {
         self.check.tree.items.extend(structs);
         if self.eat(Punctuator::Semicolon) {
             return Ok(());
+        }
+        if self.ends_without_name() {
+            return self.semicolon("`;`");
         }
         let empty_first = self.eat_empty_declarator();
         let (name, at) = self.name()?;
@@ -71,14 +73,17 @@ impl Parser<'_> {
         if self.eat(Punctuator::Semicolon) {
             return Ok(Vec::new());
         }
+        if self.ends_without_name() {
+            self.semicolon("`;`")?;
+            return Ok(Vec::new());
+        }
         self.eat_empty_declarator();
         let (name, at) = self.name()?;
         if self.is(Punctuator::LeftParen) {
-            return self.halt(
-                Code::Syntax,
-                at,
-                "a function cannot be declared inside of a function",
-            );
+            let diagnostic = Code::Syntax.at(at, "a function cannot be declared inside of a function");
+            let (ty, name) = (self.check.tree.type_name(specifier.base), self.words.text(name));
+            let note = format!("a variable gets its value by `{ty} {name} = {ty}(…);`");
+            return self.halt_with(diagnostic.note(note));
         }
         self.declarators(&qualifiers, &specifier, name, at)
     }
@@ -107,8 +112,7 @@ impl Parser<'_> {
         };
         let specifier = self.named_type()?;
         self.check.precision(&specifier);
-        self.expect(Punctuator::Semicolon)?;
-        Ok(())
+        self.semicolon("`;`")
     }
 
     /// Whether a name follows that is no type: `invariant x;`.
@@ -143,12 +147,29 @@ impl Parser<'_> {
             },
             _ => None,
         };
-        let Some(base) = base else {
+        let Some(base) = base.or_else(|| self.unknown_type()) else {
             return self.unexpected("a type");
         };
         self.next();
         let sizes = self.sizes()?;
         Ok(Specifier { base, sizes, at })
+    }
+
+    /// What a name stands for that is no type and stands where one must, a name after it: told, and taken for what it may mean.
+    fn unknown_type(&mut self) -> Option<Type> {
+        let TokenKind::Word(symbol) = self.kind() else {
+            return None;
+        };
+        let begins_declaration = match (self.word(), self.peek(1).kind) {
+            (Some(Word::Name), TokenKind::Word(_)) => true,
+            // Not `static float x` nor `class A {`.
+            (Some(Word::Reserved), TokenKind::Word(name)) => {
+                self.words.word(name) == Word::Name
+                    && self.peek(2).kind != TokenKind::Punctuator(Punctuator::LeftBrace)
+            }
+            _ => false,
+        };
+        begins_declaration.then(|| self.check.unknown_type(symbol, self.token().at))
     }
 
     /// `[n][]…`.
@@ -176,10 +197,15 @@ impl Parser<'_> {
             Some(self.name()?)
         };
         self.expect(Punctuator::LeftBrace)?;
+        if self.is(Punctuator::RightBrace) {
+            let at = self.token().at;
+            return self.halt(Code::Syntax, at, "a structure has at least one member");
+        }
         let mut members = Vec::new();
+        let mut complete = true;
         loop {
-            self.members(&mut members)?;
-            if self.eat(Punctuator::RightBrace) {
+            complete &= self.recovering(|parser| parser.members(&mut members)).is_some();
+            if self.eat(Punctuator::RightBrace) || self.is_at_end() {
                 break;
             }
         }
@@ -187,6 +213,9 @@ impl Parser<'_> {
         let id = self
             .check
             .declare_struct(name.map(|(name, _)| name), members, place);
+        if !complete {
+            self.check.lacks_members(id);
+        }
         Ok(Type::Struct(id))
     }
 
@@ -212,10 +241,17 @@ impl Parser<'_> {
             let sizes = self.sizes()?;
             self.check.member(members, &specifier, name, &sizes, at);
             if !self.eat(Punctuator::Comma) {
-                self.expect(Punctuator::Semicolon)?;
-                return Ok(());
+                return self.semicolon("`;`, `,` or `[`");
             }
         }
+    }
+
+    /// Whether a structure has just been read and a new line begins something else: then only its `;` is missing.
+    fn ends_without_name(&self) -> bool {
+        let previous = self.tokens[self.at - 1];
+        previous.kind == TokenKind::Punctuator(Punctuator::RightBrace)
+            && self.word() != Some(Word::Name)
+            && self.layout.line_between(previous, self.token())
     }
 
     /// `float , a;`: the grammar of §9 lets the first declarator be empty.
@@ -232,15 +268,23 @@ impl Parser<'_> {
         at: Place,
     ) -> Parsed<Vec<VariableId>> {
         let mut variables = Vec::new();
-        let mut declarator = self.declarator(name, at)?;
+        let (mut name, mut at) = (name, at);
         loop {
+            let Ok(declarator) = self.declarator(name, at) else {
+                self.check.declare_unread(name, at);
+                return Err(Halt);
+            };
+            let wanted = if declarator.initialiser.is_some() {
+                "`;`, `,` or an operator"
+            } else {
+                "`=`, `;`, `,` or `[`"
+            };
             variables.push(self.check.declare_variable(qualifiers, specifier, declarator));
             if !self.eat(Punctuator::Comma) {
-                self.expect(Punctuator::Semicolon)?;
+                self.semicolon(wanted)?;
                 return Ok(variables);
             }
-            let (name, at) = self.name()?;
-            declarator = self.declarator(name, at)?;
+            (name, at) = self.name()?;
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::{Parsed, Parser};
 use crate::glsl::check::Specifier;
+use crate::glsl::codes::Code;
 use crate::glsl::token::{Punctuator, TokenKind};
 use crate::glsl::tree::{ExprId, Literal, Place, StepOp, Type, UnaryOp, Value};
 use crate::glsl::words::{Keyword, Word};
@@ -132,7 +133,7 @@ impl Parser<'_> {
                 self.next();
                 match super::number::literal(self.words.text(text)) {
                     Ok(literal) => Ok(self.check.literal(literal, token.at)),
-                    Err((code, message)) => self.halt(code, token.at, message),
+                    Err((code, message)) => Ok(self.check.refuse(code, token.at, message)),
                 }
             }
             TokenKind::Punctuator(Punctuator::LeftParen) => {
@@ -153,7 +154,8 @@ impl Parser<'_> {
                 }
                 Word::Type(_) => self.constructor(),
                 Word::Name if self.check.struct_named(symbol).is_some() => self.constructor(),
-                Word::Name => {
+                Word::Reserved if !self.check.is_declared(symbol) => self.unexpected("an expression"),
+                Word::Name | Word::Reserved => {
                     self.next();
                     if !self.is(Punctuator::LeftParen) {
                         return Ok(self.check.name(symbol, token.at));
@@ -161,7 +163,7 @@ impl Parser<'_> {
                     let (arguments, close) = self.arguments()?;
                     Ok(self.check.call(symbol, token.at, arguments, token.at.to(close)))
                 }
-                Word::Keyword(_) | Word::Reserved => self.unexpected("an expression"),
+                Word::Keyword(_) => self.unexpected("an expression"),
             },
             _ => self.unexpected("an expression"),
         }
@@ -171,7 +173,12 @@ impl Parser<'_> {
     fn constructor(&mut self) -> Parsed<ExprId> {
         let specifier: Specifier = self.named_type()?;
         if !self.is(Punctuator::LeftParen) {
-            return self.unexpected("`(`: a type is no value");
+            let name = self.check.tree.type_name(specifier.base);
+            if self.is(Punctuator::RightParen) && !self.is_told() {
+                let message = format!("GLSL has no casts: write `{name}(…)` around the value");
+                return self.halt(Code::Syntax, specifier.at, message);
+            }
+            return self.unexpected(&format!("`(`, for `{name}` is a type"));
         }
         let (arguments, close) = self.arguments()?;
         let at = specifier.at.to(close);

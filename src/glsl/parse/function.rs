@@ -30,8 +30,8 @@ impl Parser<'_> {
             return self.unexpected("`{` or `;`");
         }
         self.check.open_body(function, at, &parameters);
-        let body = self.block()?;
-        self.check.close_body(function, body);
+        let body = self.block();
+        self.check.close_body(function, body?);
         Ok(())
     }
 
@@ -47,7 +47,11 @@ impl Parser<'_> {
             return Ok(parameters);
         }
         loop {
-            parameters.push(self.parameter()?);
+            let start = self.at;
+            match self.recovering_item(Self::parameter) {
+                Some(parameter) => parameters.push(parameter),
+                None => parameters.push(self.unread_parameter(start)),
+            }
             if !self.eat(Punctuator::Comma) {
                 self.expect(Punctuator::RightParen)?;
                 return Ok(parameters);
@@ -68,12 +72,31 @@ impl Parser<'_> {
         let mut sizes = self.sizes()?;
         sizes.append(&mut specifier.sizes);
         specifier.sizes = sizes;
-        Ok(Parameter {
+        let parameter = Parameter {
             name: name.map(|(name, _)| name),
             ty: self.check.parameter_type(&specifier, direction),
             direction,
             at,
-        })
+        };
+        if !self.is(Punctuator::Comma) && !self.is(Punctuator::RightParen) {
+            return self.unexpected("`,` or `)`");
+        }
+        Ok(parameter)
+    }
+
+    /// What stands for a parameter that cannot be read: anything, by the name that comes last.
+    fn unread_parameter(&self, start: usize) -> Parameter {
+        let tokens = &self.tokens[start..self.at.min(self.tokens.len())];
+        let name = tokens.iter().rev().find_map(|token| match token.kind {
+            TokenKind::Word(word) if self.words.word(word) == Word::Name => Some((word, token.at)),
+            _ => None,
+        });
+        Parameter {
+            name: name.map(|(name, _)| name),
+            ty: Type::Error,
+            direction: Direction::In,
+            at: name.map_or(self.tokens[start].at, |(_, at)| at),
+        }
     }
 
     fn direction(&mut self, qualifiers: &Qualifiers) -> Direction {

@@ -1,26 +1,35 @@
 //! The grammar (GLSL ES 3.00.6 §9), by recursive descent.
 //!
-//! Each function reads one construct and asks the checker for its node. What does not fit the grammar stops the parser: it has then
-//! told the checker why, and [`Halt`] travels up to who can go on.
+//! Each function reads one construct and asks the checker for its node. What does not fit the grammar cannot be read: it has then
+//! been told why, and [`Halt`] travels up to who can go on, which is the list of statements, parameters or declarations around it.
 
+mod brace;
 mod bracket;
 mod control;
 mod declaration;
 mod expression;
 mod function;
+mod layout;
 mod number;
 mod qualifier;
+mod recover;
 mod statement;
+
+pub(super) use bracket::balance;
 
 use super::MAX_NESTING;
 use super::check::Checker;
 use super::codes::Code;
+use super::foreign::Foreign;
 use super::preprocess::Preprocessed;
 use super::token::{Punctuator, Symbol, Token, TokenKind};
 use super::tree::Place;
 use super::words::{Keyword, Word, Words};
+use crate::diagnostic::Diagnostic;
+use crate::source::{File, Span};
+use layout::Layout;
 
-/// The reason was told; there is no way on from here.
+/// The reason was told; this construct cannot be read.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Halt;
 
@@ -30,29 +39,36 @@ type Parsed<T> = Result<T, Halt>;
 pub(crate) struct Parser<'a> {
     tokens: &'a [Token],
     words: &'a Words,
+    layout: Layout<'a>,
     at: usize,
     /// How many constructs are open that count for [`MAX_NESTING`].
     depth: usize,
+    /// Where the piece begins that is being read: a statement without those inside of it.
+    piece: usize,
+    /// How many errors were told before it.
+    told_before: usize,
     check: Checker<'a>,
 }
 
 impl<'a> Parser<'a> {
-    pub(crate) fn new(text: &'a Preprocessed, check: Checker<'a>) -> Self {
+    /// The brackets of the text are [balanced](balance).
+    pub(crate) fn new(text: &'a Preprocessed, file: &'a File, check: Checker<'a>) -> Self {
         Self {
             tokens: &text.tokens,
             words: &text.words,
+            layout: Layout::new(file),
             at: 0,
             depth: 0,
+            piece: 0,
+            told_before: 0,
             check,
         }
     }
 
-    /// Reads everything, as far as it can be read.
+    /// Reads everything, up to what can be read.
     pub(crate) fn parse(mut self) -> Checker<'a> {
-        while self.kind() != TokenKind::End && !self.check.is_full() {
-            if self.external_declaration().is_err() {
-                break;
-            }
+        while !self.is_at_end() {
+            self.recovering(Self::external_declaration);
         }
         self.check
     }
@@ -65,6 +81,11 @@ impl<'a> Parser<'a> {
     fn peek(&self, ahead: usize) -> Token {
         let last = self.tokens.len() - 1;
         self.tokens[(self.at + ahead).min(last)]
+    }
+
+    /// Whether there is nothing left to read, or nothing left to tell.
+    fn is_at_end(&self) -> bool {
+        self.kind() == TokenKind::End || self.check.is_full()
     }
 
     fn kind(&self) -> TokenKind {
@@ -101,6 +122,45 @@ impl<'a> Parser<'a> {
         self.unexpected(&format!("`{}`", punctuator.text()))
     }
 
+    /// The `;` that ends a statement or declaration. Where it is missing and the next token begins something new, all goes on as if it stood
+    /// there.
+    fn semicolon(&mut self, wanted: &str) -> Parsed<()> {
+        if self.eat(Punctuator::Semicolon) {
+            return Ok(());
+        }
+        let previous = self.tokens[(self.at - 1).min(self.tokens.len() - 1)];
+        let next = self.token();
+        let begins_anew = match next.kind {
+            TokenKind::Word(_) | TokenKind::Number(_) => {
+                self.layout.line_between(previous, next) || self.keyword().is_some()
+            }
+            TokenKind::Punctuator(Punctuator::LeftBrace) => self.layout.line_between(previous, next),
+            TokenKind::Punctuator(Punctuator::RightBrace) | TokenKind::End => true,
+            _ => false,
+        };
+        if !begins_anew {
+            return self.unexpected(wanted);
+        }
+        let end = previous.at.span.end;
+        let at = Place::plain(Span::new(previous.at.span.file, end, end));
+        let message = match self.spelling(previous) {
+            Some(text) => format!("`;` is missing after `{text}`"),
+            None => "`;` is missing".to_owned(),
+        };
+        self.check
+            .report(Code::Syntax.at(at, message).label("put a `;` here"));
+        Ok(())
+    }
+
+    /// What the author wrote for a token.
+    fn spelling(&self, token: Token) -> Option<&'a str> {
+        match token.kind {
+            TokenKind::Word(symbol) | TokenKind::Number(symbol) => Some(self.words.text(symbol)),
+            TokenKind::Punctuator(punctuator) => Some(punctuator.text()),
+            TokenKind::Unknown(_) | TokenKind::Stray | TokenKind::Newline | TokenKind::End => None,
+        }
+    }
+
     fn word(&self) -> Option<Word> {
         match self.kind() {
             TokenKind::Word(symbol) => Some(self.words.word(symbol)),
@@ -127,8 +187,13 @@ impl<'a> Parser<'a> {
             Token {
                 kind: TokenKind::Word(symbol),
                 at,
-            } if self.words.word(symbol) == Word::Name => {
+                ..
+            } if matches!(self.words.word(symbol), Word::Name | Word::Reserved) => {
                 self.at += 1;
+                // One that is reserved is told of where it is declared, and then read as a name.
+                if self.words.word(symbol) == Word::Reserved {
+                    self.check.report(self.reserved(symbol, at));
+                }
                 Ok((symbol, at))
             }
             _ => self.unexpected("a name"),
@@ -137,38 +202,67 @@ impl<'a> Parser<'a> {
 
     /// Tells that the next token is not what the grammar has here.
     fn unexpected<T>(&mut self, wanted: &str) -> Parsed<T> {
-        let Token { kind, at } = self.token();
+        let Token { kind, at, .. } = self.token();
         let found = match kind {
             TokenKind::Word(symbol) if self.words.word(symbol) == Word::Reserved => {
-                let message = format!("`{}` is reserved for future use", self.words.text(symbol));
-                return self.halt(Code::ReservedWord, at, message);
+                return self.halt_with(self.reserved(symbol, at));
             }
-            TokenKind::Word(symbol) | TokenKind::Number(symbol) => format!("`{}`", self.words.text(symbol)),
-            TokenKind::Punctuator(punctuator) => format!("`{}`", punctuator.text()),
-            TokenKind::Unknown(c) => format!("`{c}`"),
-            TokenKind::Newline | TokenKind::End => match bracket::unclosed(self.tokens) {
-                Some((open, closing)) => return self.never_closed(open, closing),
+            _ => match self.spelling(self.token()) {
+                Some(text) => format!("`{text}`"),
                 None => "the end of the text".to_owned(),
             },
         };
-        self.halt(Code::Syntax, at, format!("expected {wanted}, found {found}"))
+        let diagnostic = Code::Syntax.at(at, format!("expected {wanted}, found {found}"));
+        self.halt_with(self.with_habit(diagnostic))
     }
 
-    /// Tells that the text ends before a bracket's partner.
-    fn never_closed<T>(&mut self, open: Token, closing: Punctuator) -> Parsed<T> {
-        let opening = match closing {
-            Punctuator::RightParen => Punctuator::LeftParen,
-            Punctuator::RightBracket => Punctuator::LeftBracket,
-            _ => Punctuator::LeftBrace,
-        };
-        let message = format!("this `{}` is never closed", opening.text());
-        let note = format!("the text ends before its `{}`", closing.text());
-        self.check.report(Code::Unclosed.at(open.at, message).note(note));
+    /// The diagnostic about the next token with what to write, where a habit from another language is at work.
+    fn with_habit(&self, diagnostic: Diagnostic) -> Diagnostic {
+        use Punctuator::{Assign, Greater, LeftBrace, Less};
+        let previous = self.at.checked_sub(1).and_then(|at| self.tokens.get(at));
+        match (previous.map(|token| token.kind), self.kind()) {
+            (_, TokenKind::Word(symbol)) if let Some(foreign) = Foreign::named(self.words.text(symbol)) => {
+                diagnostic.label(format!("write {}", foreign.instead()))
+            }
+            (_, TokenKind::Punctuator(LeftBrace)) => diagnostic.note(
+                "GLSL ES has no lists in braces: write `vec3(…)` for a vector, `float[](…)` for an array",
+            ),
+            (Some(TokenKind::Punctuator(Assign)), TokenKind::Punctuator(comparison @ (Less | Greater))) => {
+                diagnostic.label(format!("write `{}=`", comparison.text()))
+            }
+            _ => diagnostic,
+        }
+    }
+
+    /// What is said of a word that may not be used.
+    fn reserved(&self, word: Symbol, at: Place) -> Diagnostic {
+        let text = self.words.text(word);
+        let diagnostic = Code::ReservedWord.at(at, format!("`{text}` is a word that GLSL reserves"));
+        match Foreign::named(text) {
+            Some(foreign) => diagnostic
+                .label(format!("write {}", foreign.instead()))
+                .note(foreign.note()),
+            None => diagnostic.label("choose another name"),
+        }
+    }
+
+    /// Gives the piece up that is being read, and tells why. What else is wrong with it may come from that and is not told.
+    fn halt<T>(&mut self, code: Code, at: Place, message: impl Into<String>) -> Parsed<T> {
+        self.halt_with(code.at(at, message))
+    }
+
+    fn halt_with<T>(&mut self, diagnostic: Diagnostic) -> Parsed<T> {
+        if self.is_told() {
+            return self.halt_silently();
+        }
+        self.check.errors.truncate(self.told_before);
+        self.check.report(diagnostic);
         Err(Halt)
     }
 
-    fn halt<T>(&mut self, code: Code, at: Place, message: impl Into<String>) -> Parsed<T> {
-        self.check.report(code.at(at, message));
+    /// The same where the reason has been told.
+    fn halt_silently<T>(&mut self) -> Parsed<T> {
+        self.check.errors.truncate(self.told_before);
         Err(Halt)
     }
 

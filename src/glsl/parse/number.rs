@@ -45,7 +45,11 @@ fn integer(text: &str) -> Result<Value, (Code, String)> {
             .strip_suffix(['f', 'F'])
             .is_some_and(|rest| rest.parse::<u64>().is_ok())
         {
-            format!("`{text}` needs a point to be a `float`")
+            let number = text.trim_end_matches(['f', 'F']);
+            format!("`{text}` needs a point to be a `float`: write `{number}.0`")
+        } else if radix == 8 && digits.chars().all(|c| c.is_ascii_digit()) {
+            let number = text.trim_start_matches('0');
+            format!("`{text}` begins with 0, which makes it octal: write `{number}`")
         } else {
             format!("`{text}` is no number")
         };

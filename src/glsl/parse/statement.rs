@@ -1,6 +1,7 @@
 //! Statements (§6).
 
 use super::{Parsed, Parser};
+use crate::glsl::codes::Code;
 use crate::glsl::token::{Punctuator, TokenKind};
 use crate::glsl::tree::{Block, Place, Statement, StatementKind};
 use crate::glsl::words::{Keyword, Word};
@@ -10,10 +11,13 @@ impl Parser<'_> {
     pub(super) fn block(&mut self) -> Parsed<Block> {
         self.expect(Punctuator::LeftBrace)?;
         let mut block = Block::new();
-        while !self.is(Punctuator::RightBrace) {
-            self.statement(&mut block)?;
+        while !self.eat(Punctuator::RightBrace) {
+            if self.is_at_end() {
+                return self.unexpected("`}`");
+            }
+            self.recovering(|parser| parser.statement(&mut block));
         }
-        self.next();
+        self.end_piece();
         Ok(block)
     }
 
@@ -84,14 +88,18 @@ impl Parser<'_> {
                     .misplaced_label(at, "a label stands directly in a `switch` or nowhere");
                 return Err(super::Halt);
             }
-            Keyword::Else => return self.unexpected("a statement: this `else` has no `if`"),
+            Keyword::Else => {
+                let diagnostic = Code::Syntax.at(at, "this `else` has no `if`");
+                let note = "between `if (…)` and `else` stands one statement, or a block in `{ }`";
+                return self.halt_with(diagnostic.note(note));
+            }
             _ => return Ok(None),
         }))
     }
 
     /// The `;` that ends a statement.
     pub(super) fn end(&mut self, kind: StatementKind) -> Parsed<StatementKind> {
-        self.expect(Punctuator::Semicolon)?;
+        self.semicolon("`;` or an operator")?;
         Ok(kind)
     }
 
@@ -116,8 +124,12 @@ impl Parser<'_> {
         let is_type = match self.words.word(symbol) {
             Word::Keyword(keyword) => return !matches!(keyword, Keyword::True | Keyword::False),
             Word::Type(_) => true,
-            Word::Name => self.check.struct_named(symbol).is_some(),
-            Word::Reserved => false,
+            Word::Name if self.check.struct_named(symbol).is_some() => true,
+            // A type that does not exist; what has a meaning is rather followed by a mistake.
+            Word::Name if self.check.is_declared(symbol) => false,
+            Word::Name | Word::Reserved => {
+                return self.names_variable(1) && !self.layout.line_between(self.token(), self.peek(1));
+            }
         };
         if !is_type {
             return false;
@@ -136,6 +148,18 @@ impl Parser<'_> {
             }
             ahead += 1;
         }
+    }
+
+    /// Whether the token that many after the next is a name that is being declared.
+    fn names_variable(&self, ahead: usize) -> bool {
+        use Punctuator::{Assign, Comma, LeftBracket, LeftParen, Semicolon};
+        let is_name =
+            matches!(self.peek(ahead).kind, TokenKind::Word(symbol) if self.words.word(symbol) == Word::Name);
+        is_name
+            && matches!(
+                self.peek(ahead + 1).kind,
+                TokenKind::Punctuator(Assign | Comma | LeftBracket | LeftParen | Semicolon)
+            )
     }
 
     fn declaration_statement(&mut self, block: &mut Block) -> Parsed<()> {

@@ -136,7 +136,7 @@ impl Preprocessor<'_> {
         match token.kind {
             TokenKind::Word(symbol) | TokenKind::Number(symbol) => self.words.text(symbol),
             TokenKind::Punctuator(punctuator) => punctuator.text(),
-            TokenKind::Unknown(_) | TokenKind::Newline | TokenKind::End => "",
+            TokenKind::Unknown(_) | TokenKind::Stray | TokenKind::Newline | TokenKind::End => "",
         }
     }
 }

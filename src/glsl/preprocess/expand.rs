@@ -156,6 +156,7 @@ impl Preprocessor<'_> {
                         self.words.text(name)
                     );
                     self.report(Code::BadMacroCall.at(at.to(open), message));
+                    self.gave_up = true;
                     return None;
                 }
                 TokenKind::Newline => continue,

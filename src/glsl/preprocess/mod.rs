@@ -37,7 +37,27 @@ pub(crate) struct Preprocessed {
     pub(crate) remarks: Vec<Remark>,
     /// Errors and warnings.
     pub(crate) diagnostics: Vec<Diagnostic>,
+    /// Whether so much of the text is lost to errors that the rest means nothing.
+    pub(crate) incomplete: bool,
+    /// Whether names may be lost to errors: of macros, and of what an `#include` was to declare.
+    pub(crate) lacks_names: bool,
 }
+
+/// Errors after which nothing is known of the text: what is commented out, which branch of an `#if` is read.
+const LOSES_TEXT: [Code; 3] = [
+    Code::UnterminatedComment,
+    Code::BadCondition,
+    Code::UnbalancedCondition,
+];
+
+/// Errors after which names may lack their meaning.
+const LOSES_NAMES: [Code; 5] = [
+    Code::UnknownDirective,
+    Code::MalformedDirective,
+    Code::BadMacro,
+    Code::BadMacroCall,
+    Code::PasteOperator,
+];
 
 /// Preprocesses one file, to its end whatever is wrong with it.
 #[must_use]
@@ -45,7 +65,7 @@ pub(crate) fn preprocess(files: &Files, file: FileId) -> Preprocessed {
     let mut preprocessor = Preprocessor::new(files, file);
     let mut tokens = Vec::new();
     loop {
-        let token = preprocessor.next_expanded();
+        let mut token = preprocessor.next_expanded();
         preprocessor.past = Past::Text;
         match token.kind {
             TokenKind::Newline => continue,
@@ -56,8 +76,12 @@ pub(crate) fn preprocess(files: &Files, file: FileId) -> Preprocessed {
                     c.to_string()
                 };
                 let message = format!("`{shown}` is no character of GLSL");
-                preprocessor.report(Code::UnknownCharacter.at(token.at, message));
-                continue;
+                let diagnostic = Code::UnknownCharacter.at(token.at, message);
+                preprocessor.report(match lookalike(c) {
+                    Some(meant) => diagnostic.label(format!("write `{meant}`")),
+                    None => diagnostic,
+                });
+                token.kind = TokenKind::Stray;
             }
             TokenKind::Punctuator(Punctuator::Hash | Punctuator::Paste) => {
                 // A macro with one is harmless until it is used.
@@ -67,7 +91,7 @@ pub(crate) fn preprocess(files: &Files, file: FileId) -> Preprocessed {
                     "`#` is not at the beginning of its line"
                 };
                 preprocessor.report(Code::PasteOperator.at(token.at, message));
-                continue;
+                token.kind = TokenKind::Stray;
             }
             _ => {}
         }
@@ -80,16 +104,28 @@ pub(crate) fn preprocess(files: &Files, file: FileId) -> Preprocessed {
         tokens.push(Token {
             kind: token.kind,
             at: token.at,
+            told: token.kind == TokenKind::Stray,
         });
         if token.kind == TokenKind::End {
             break;
         }
     }
+    let diagnostics = preprocessor.diagnostics;
+    let any_of = |codes: &[Code]| {
+        let told = |code: &Code| {
+            diagnostics
+                .iter()
+                .any(|diagnostic| diagnostic.code == code.as_str())
+        };
+        codes.iter().any(told)
+    };
     Preprocessed {
         tokens,
         words: preprocessor.words,
         remarks: preprocessor.lexer.remarks,
-        diagnostics: preprocessor.diagnostics,
+        incomplete: preprocessor.gave_up || any_of(&LOSES_TEXT),
+        lacks_names: any_of(&LOSES_NAMES),
+        diagnostics,
     }
 }
 
@@ -101,6 +137,24 @@ enum Past {
     Directive,
     /// A token that is no directive's: `#extension` may not follow (§3.5).
     Text,
+}
+
+/// The character of GLSL that one from elsewhere looks like.
+fn lookalike(c: char) -> Option<&'static str> {
+    Some(match c {
+        '–' | '—' | '−' | '‐' => "-",
+        '×' | '·' | '⋅' | '∗' => "*",
+        '÷' | '∕' => "/",
+        '≤' => "<=",
+        '≥' => ">=",
+        '≠' => "!=",
+        '，' => ",",
+        '；' | '\u{37e}' => ";",
+        '（' => "(",
+        '）' => ")",
+        '\u{a0}' | '\u{3000}' => " ",
+        _ => return None,
+    })
 }
 
 struct Preprocessor<'a> {
@@ -122,7 +176,7 @@ struct Preprocessor<'a> {
     counted: (usize, i64),
     /// How many tokens macros may still produce.
     budget: usize,
-    /// Whether they produced more, or nested too deep.
+    /// Whether they took all that followed: produced more, nested too deep, or had no `)`.
     gave_up: bool,
     /// How deep macro calls stand in arguments of macro calls.
     depth: usize,

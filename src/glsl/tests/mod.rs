@@ -2,6 +2,7 @@
 
 mod invariants;
 mod limits;
+mod recovery;
 
 use super::*;
 use crate::source::File;
@@ -67,8 +68,8 @@ fn grammar() {
         ok    flat in int i; centroid in vec2 v; uniform float u; invariant out vec4 w;
         E0100 { float a = 1. }
         E0100 { if (true) else ; }
-        E0100 { (1.; }
-        E0100 void f( { }
+        E0105 { (1.; }
+        E0105 void f( { }
         E0100 { float g(); }
         E0100/ok ;
         E0104 { float half = 1.; }

@@ -48,6 +48,30 @@ pub(super) fn find(function: BuiltIn, types: &[Type], fit: impl Fn(Type, Type) -
     })
 }
 
+/// The parameters of every signature of as many arguments, as far as the arguments tell what generic types stand for.
+pub(super) fn candidates(function: BuiltIn, types: &[Type]) -> Vec<Vec<Type>> {
+    let signatures = SIGNATURES.get(&function).into_iter().flatten();
+    let fitting = signatures
+        .filter(|signature| (signature.required..=signature.parameters.len()).contains(&types.len()));
+    fitting
+        .filter_map(|signature| {
+            let mut same = Same::default();
+            let parameters = signature.parameters.iter().zip(types);
+            parameters
+                .map(|(parameter, &given)| parameter.for_argument(given, &mut same))
+                .collect()
+        })
+        .collect()
+}
+
+/// The numbers of arguments that a function takes.
+pub(super) fn counts(function: BuiltIn) -> Vec<usize> {
+    let signatures = SIGNATURES.get(&function).into_iter().flatten();
+    signatures
+        .flat_map(|signature| signature.required..=signature.parameters.len())
+        .collect()
+}
+
 #[derive(Debug)]
 struct Signature {
     result: Pattern,

@@ -1,0 +1,197 @@
+//! Names of other languages, and of GLSL's other versions, that people write from memory.
+
+/// `LANGUAGE: NAME = what to write`, one a line. A plain word after `=` is GLSL's own name.
+const TABLE: &str = "
+    HLSL: half = float
+    HLSL: half2 = vec2
+    HLSL: half3 = vec3
+    HLSL: half4 = vec4
+    HLSL: fixed = float
+    HLSL: fixed2 = vec2
+    HLSL: fixed3 = vec3
+    HLSL: fixed4 = vec4
+    HLSL: float1 = float
+    HLSL: float2 = vec2
+    HLSL: float3 = vec3
+    HLSL: float4 = vec4
+    HLSL: int2 = ivec2
+    HLSL: int3 = ivec3
+    HLSL: int4 = ivec4
+    HLSL: uint2 = uvec2
+    HLSL: uint3 = uvec3
+    HLSL: uint4 = uvec4
+    HLSL: bool2 = bvec2
+    HLSL: bool3 = bvec3
+    HLSL: bool4 = bvec4
+    HLSL: float2x2 = mat2
+    HLSL: float3x3 = mat3
+    HLSL: float4x4 = mat4
+    HLSL: Texture2D = sampler2D
+    HLSL: lerp = mix
+    HLSL: frac = fract
+    HLSL: rsqrt = inversesqrt
+    HLSL: ddx = dFdx
+    HLSL: ddy = dFdy
+    HLSL: tex2D = texture
+    HLSL: tex2Dlod = textureLod
+    HLSL: tex2Dgrad = textureGrad
+    HLSL: texCUBE = texture
+    HLSL: asint = floatBitsToInt
+    HLSL: asuint = floatBitsToUint
+    HLSL: asfloat = intBitsToFloat
+    HLSL: saturate = `clamp(x, 0.0, 1.0)`
+    HLSL: atan2 = `atan(y, x)`
+    HLSL: fmod = `mod(x, y)`, whose result has the sign of `y`
+    HLSL: mul = `a * b`
+    HLSL: mad = `a * b + c`
+    HLSL: rcp = `1.0 / x`
+    HLSL: log10 = `log(x) / log(10.0)`
+    HLSL: clip = `if (x < 0.0) discard;`
+    HLSL: sincos = `sin(x)` and `cos(x)`
+    GLSL ES 1.00: texture2D = texture
+    GLSL ES 1.00: texture2DLod = textureLod
+    GLSL ES 1.00: texture2DLodEXT = textureLod
+    GLSL ES 1.00: texture2DGradEXT = textureGrad
+    GLSL ES 1.00: texture2DProj = textureProj
+    GLSL ES 1.00: textureCube = texture
+    GLSL ES 1.00: textureCubeLod = textureLod
+    GLSL ES 1.00: textureCubeLodEXT = textureLod
+    GLSL ES 1.00: gl_FragColor = `fragColor`, or as you call the first parameter of `mainImage`
+    GLSL ES 1.00: gl_FragData = `fragColor`, or as you call the first parameter of `mainImage`
+    GLSL ES 1.00: varying = `in`; but ShaderToy has no inputs except its own
+    GLSL ES 1.00: attribute = `in`, in vertex shaders, which ShaderToy does not have
+    desktop GLSL: double = float
+    desktop GLSL: dvec2 = vec2
+    desktop GLSL: dvec3 = vec3
+    desktop GLSL: dvec4 = vec4
+    desktop GLSL: dmat3 = mat3
+    desktop GLSL: dmat4 = mat4
+    desktop GLSL: sampler1D = sampler2D
+    desktop GLSL: texture1D = texture
+    desktop GLSL: texture3D = texture
+    desktop GLSL: dFdxFine = dFdx
+    desktop GLSL: dFdyFine = dFdy
+    desktop GLSL: dFdxCoarse = dFdx
+    desktop GLSL: dFdyCoarse = dFdy
+    desktop GLSL: fma = `a * b + c`
+    C: fabs = abs
+    C: fabsf = abs
+    C: fmin = min
+    C: fmax = max
+    C: sqrtf = sqrt
+    C: powf = pow
+    C: sinf = sin
+    C: cosf = cos
+    C: tanf = tan
+    C: floorf = floor
+    C: ceilf = ceil
+    C: expf = exp
+    C: logf = log
+    C: fmodf = `mod(x, y)`, whose result has the sign of `y`
+    C: atan2f = `atan(y, x)`
+    C: cbrt = `pow(x, 1.0 / 3.0)`, for `x` of at least 0
+    C: unsigned = uint
+    C: long = int
+    C: short = int
+    C: boolean = bool
+    C: M_PI = `3.14159265`
+    early ShaderToy: iGlobalTime = iTime
+    other hosts: time = iTime
+    other hosts: u_time = iTime
+    other hosts: resolution = iResolution
+    other hosts: u_resolution = iResolution
+    other hosts: mouse = iMouse
+    other hosts: u_mouse = iMouse
+    other hosts: frame = iFrame
+    other languages: and = `&&`
+    other languages: or = `||`
+    other languages: elif = `else if`
+    other languages: elseif = `else if`
+    other languages: elsif = `else if`
+    other languages: then = nothing: `if (condition) { … }`
+    other languages: var = a type, such as `float` or `vec3`
+    other languages: let = a type, such as `float` or `vec3`
+    other languages: auto = a type, such as `float` or `vec3`
+    other languages: random = a hash of your own: GLSL has no random numbers
+    other languages: rand = a hash of your own: GLSL has no random numbers
+    other languages: Vector2 = vec2
+    other languages: Vector3 = vec3
+    other languages: Vector4 = vec4
+    other languages: vec2f = vec2
+    other languages: vec3f = vec3
+    other languages: vec4f = vec4
+    other languages: f32 = float
+    other languages: i32 = int
+    other languages: u32 = uint
+";
+
+/// A name that some other language has.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Foreign {
+    language: &'static str,
+    name: &'static str,
+    /// What to write, with its backquotes, or GLSL's name alone.
+    instead: &'static str,
+}
+
+impl Foreign {
+    /// The other language's name, if it is one.
+    pub(crate) fn named(name: &str) -> Option<Self> {
+        rows().find(|row| row.name == name)
+    }
+
+    /// GLSL's name for the same thing, if it has one.
+    pub(crate) fn twin(self) -> Option<&'static str> {
+        let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+        self.instead.chars().all(is_word).then_some(self.instead)
+    }
+
+    /// What to write, quoted.
+    pub(crate) fn instead(self) -> String {
+        match self.twin() {
+            Some(name) => format!("`{name}`"),
+            None => self.instead.to_owned(),
+        }
+    }
+
+    /// Where the name comes from.
+    pub(crate) fn note(self) -> String {
+        format!("`{}` belongs to {}", self.name, self.language)
+    }
+}
+
+fn rows() -> impl Iterator<Item = Foreign> {
+    TABLE.lines().filter_map(|line| {
+        let (language, rest) = line.trim().split_once(": ")?;
+        let (name, instead) = rest.split_once(" = ")?;
+        Some(Foreign {
+            language,
+            name,
+            instead,
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::glsl::tree::BuiltIn;
+    use crate::glsl::words::{Word, Words};
+
+    #[test]
+    fn every_line_is_read_and_no_name_is_our_own() {
+        let words = Words::default();
+        let is_ours = |name: &str| {
+            let word = words.find(name).map(|symbol| words.word(symbol));
+            matches!(word, Some(Word::Type(_) | Word::Keyword(_))) || BuiltIn::named(name).is_some()
+        };
+        let lines = TABLE.lines().filter(|line| !line.trim().is_empty());
+        assert_eq!(rows().count(), lines.count());
+        for row in rows() {
+            assert!(!is_ours(row.name), "{}", row.name);
+            if let Some(twin) = row.twin() {
+                assert!(is_ours(twin) || twin.starts_with('i'), "{twin}");
+            }
+        }
+    }
+}

@@ -1,0 +1,227 @@
+//! Braces that do not pair. Which one is at fault, no grammar can tell; how the author indented the lines often can.
+
+use super::bracket::{missing, stray};
+use super::layout::Layout;
+use crate::diagnostic::Diagnostic;
+use crate::glsl::codes::Code;
+use crate::glsl::token::{Punctuator, Token, TokenKind};
+use crate::glsl::words::{Keyword, Word, Words};
+
+/// How many faults are put right one by one.
+const MAX_REPAIRS: usize = 16;
+
+/// How far a function's header is looked through for its end.
+const MAX_HEADER: usize = 1000;
+
+/// What is wrong with the braces; places are indices of tokens.
+enum Fault {
+    /// `open` has no partner, which belongs before `before`.
+    NeverClosed { open: usize, before: usize },
+    /// A `{` is missing after `after`, for the `}` at `close`.
+    NeverOpened { after: usize, close: usize },
+    /// This `}` has no partner.
+    Stray { close: usize },
+}
+
+/// Pairs the braces of a text whose other brackets are paired.
+pub(super) fn pair(
+    mut tokens: Vec<Token>,
+    words: &Words,
+    layout: Layout,
+    told: &mut Vec<Diagnostic>,
+) -> Vec<Token> {
+    for _ in 0..MAX_REPAIRS {
+        let Some(fault) = (Search {
+            tokens: &tokens,
+            words,
+            layout,
+        })
+        .fault() else {
+            break;
+        };
+        told.push(tell(&fault, &tokens));
+        match fault {
+            Fault::NeverClosed { before, .. } => {
+                tokens.insert(before, missing(Punctuator::RightBrace, tokens[before]));
+            }
+            Fault::NeverOpened { after, .. } => {
+                tokens.insert(after + 1, missing(Punctuator::LeftBrace, tokens[after + 1]));
+            }
+            Fault::Stray { close } => stray(&mut tokens[close]),
+        }
+    }
+    tokens
+}
+
+fn tell(fault: &Fault, tokens: &[Token]) -> Diagnostic {
+    match *fault {
+        Fault::NeverClosed { open, before } => {
+            let diagnostic = Code::Unclosed.at(tokens[open].at, "this `{` is never closed");
+            match tokens[before].kind {
+                TokenKind::End => diagnostic.note("the text ends before its `}`"),
+                _ => diagnostic.related(tokens[before].at.span, "its `}` is missing before this"),
+            }
+        }
+        Fault::NeverOpened { after, close } => Code::Unclosed
+            .at(tokens[close].at, "this `}` has no `{`")
+            .related(tokens[after].at.span, "is the `{` missing after this?"),
+        Fault::Stray { close } => Code::Unclosed
+            .at(tokens[close].at, "this `}` has no `{`")
+            .note("remove it, or put the `{` where it belongs"),
+    }
+}
+
+struct Search<'a> {
+    tokens: &'a [Token],
+    words: &'a Words,
+    layout: Layout<'a>,
+}
+
+impl Search<'_> {
+    /// Whether every brace has its partner, wherever it may stand.
+    fn is_paired(&self) -> bool {
+        let mut depth = 0_usize;
+        for token in self.tokens {
+            match token.kind {
+                TokenKind::Punctuator(Punctuator::LeftBrace) => depth += 1,
+                TokenKind::Punctuator(Punctuator::RightBrace) if depth == 0 => return false,
+                TokenKind::Punctuator(Punctuator::RightBrace) => depth -= 1,
+                _ => {}
+            }
+        }
+        depth == 0
+    }
+
+    /// The first fault, if the braces do not pair.
+    fn fault(&self) -> Option<Fault> {
+        if self.is_paired() {
+            return None;
+        }
+        let mut open = Vec::new();
+        // The pairs of the function that is being read, in the order of their `}`.
+        let mut pairs = Vec::new();
+        // The end of a header that no `{` follows.
+        let mut bare = None;
+        for (index, token) in self.tokens.iter().enumerate() {
+            match token.kind {
+                TokenKind::Punctuator(Punctuator::LeftBrace) => open.push(index),
+                TokenKind::Punctuator(Punctuator::RightBrace) => match open.pop() {
+                    Some(partner) => pairs.push((partner, index)),
+                    None => return Some(self.too_many(&pairs, bare, index)),
+                },
+                TokenKind::Word(_) => {
+                    let Some(end) = self.header(index) else {
+                        continue;
+                    };
+                    let has_body = self.is(end + 1, Punctuator::LeftBrace);
+                    match open.last() {
+                        Some(&last) if has_body => return Some(self.too_few(&pairs, last, index)),
+                        Some(_) => {}
+                        None => {
+                            pairs.clear();
+                            bare = (!has_body && !self.is(end + 1, Punctuator::Semicolon)).then_some(end);
+                        }
+                    }
+                }
+                _ => {}
+            }
+        }
+        let last = *open.last()?;
+        Some(self.too_few(&pairs, last, self.tokens.len() - 1))
+    }
+
+    /// Why blocks are open at `here`, where none should be: the first one whose `}` stands less deep than it is to blame, else the last.
+    fn too_few(&self, pairs: &[(usize, usize)], last: usize, here: usize) -> Fault {
+        let indent = |index: usize| self.layout.indent(self.tokens[index]);
+        let dedents = |&&(open, close): &&(usize, usize)| {
+            self.layout.begins_line(self.tokens[close]) && indent(close) < indent(open)
+        };
+        let Some(&(open, close)) = pairs.iter().filter(dedents).min() else {
+            return Fault::NeverClosed {
+                open: last,
+                before: here,
+            };
+        };
+        let wanted = indent(open);
+        let before = (open + 1..close).find(|&index| {
+            self.layout
+                .line_between(self.tokens[index - 1], self.tokens[index])
+                && indent(index) <= wanted
+        });
+        Fault::NeverClosed {
+            open,
+            before: before.unwrap_or(close),
+        }
+    }
+
+    /// Why the `}` at `here` has no partner: an earlier one that stands deeper than its own may have taken it.
+    fn too_many(&self, pairs: &[(usize, usize)], bare: Option<usize>, here: usize) -> Fault {
+        if let Some(after) = bare {
+            return Fault::NeverOpened { after, close: here };
+        }
+        let indent = |index: usize| self.layout.indent(self.tokens[index]);
+        let deeper = |&&(open, close): &&(usize, usize)| {
+            self.layout.begins_line(self.tokens[close]) && indent(close) > indent(open)
+        };
+        let Some(&(open, close)) = pairs.iter().find(deeper) else {
+            return Fault::Stray { close: here };
+        };
+        // The last line as deep as the `}` that ends in the head of a block.
+        let wanted = indent(close);
+        let head = (open + 1..close - 1).rev().find(|&index| {
+            let ends_line = self
+                .layout
+                .line_between(self.tokens[index], self.tokens[index + 1]);
+            ends_line && self.is_end_of_head(index) && indent(index) == wanted
+        });
+        match head {
+            Some(after) => Fault::NeverOpened { after, close },
+            None => Fault::Stray { close },
+        }
+    }
+
+    fn is_end_of_head(&self, index: usize) -> bool {
+        match self.tokens[index].kind {
+            TokenKind::Punctuator(punctuator) => punctuator == Punctuator::RightParen,
+            TokenKind::Word(word) => {
+                matches!(self.words.word(word), Word::Keyword(Keyword::Else | Keyword::Do))
+            }
+            _ => false,
+        }
+    }
+
+    /// The `)` of a function's header, `type name(…)`, that begins here.
+    fn header(&self, start: usize) -> Option<usize> {
+        let word = |index: usize| match self.tokens.get(index)?.kind {
+            TokenKind::Word(word) => Some(self.words.word(word)),
+            _ => None,
+        };
+        let is_header = matches!(word(start)?, Word::Type(_) | Word::Name)
+            && word(start + 1)? == Word::Name
+            && self.is(start + 2, Punctuator::LeftParen);
+        if !is_header {
+            return None;
+        }
+        let mut depth = 0;
+        for index in (start + 2..self.tokens.len()).take(MAX_HEADER) {
+            match self.tokens[index].kind {
+                TokenKind::Punctuator(Punctuator::LeftParen) => depth += 1,
+                TokenKind::Punctuator(Punctuator::RightParen) => depth -= 1,
+                TokenKind::Punctuator(
+                    Punctuator::Semicolon | Punctuator::LeftBrace | Punctuator::RightBrace,
+                ) => return None,
+                _ => {}
+            }
+            if depth == 0 {
+                return Some(index);
+            }
+        }
+        None
+    }
+
+    fn is(&self, index: usize, punctuator: Punctuator) -> bool {
+        self.tokens
+            .get(index)
+            .is_some_and(|token| token.kind == TokenKind::Punctuator(punctuator))
+    }
+}
