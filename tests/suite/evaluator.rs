@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use toyproof::eval::{Painted, Program, Settings};
 use toyproof::frame::Frame;
 use toyproof::glsl::{Checked, Options, check, lower_strict};
-use toyproof::gpu::{FloatMode, Worker};
+use toyproof::gpu::{FloatMode, On, Worker};
 use toyproof::image::Image;
 use toyproof::source::{File, Files};
 
@@ -76,12 +76,20 @@ fn the_course_has_the_same_bits_on_the_cpu() {
 fn the_corpus_has_the_same_bits_on_the_cpu() {
     let folder = std::env::var_os("TOYPROOF_CORPUS").expect("TOYPROOF_CORPUS names a folder");
     let limit = std::env::var("TOYPROOF_CORPUS_LIMIT").map_or(usize::MAX, |limit| limit.parse().unwrap());
-    let mut worker = support::worker().expect("a Vulkan driver");
+    let program = PathBuf::from(env!("CARGO_BIN_EXE_toyproof"));
+    let patience = Duration::from_secs(10);
+    let mut worker = Worker::new(program, vec!["worker".into()], On::Auto, patience);
     let mut paths: Vec<PathBuf> = std::fs::read_dir(folder)
         .unwrap()
         .map(|entry| entry.unwrap().path())
         .collect();
-    paths.sort();
+    // In an order that has nothing to do with their names.
+    paths.sort_by_key(|path| {
+        let name = path.as_os_str().as_encoded_bytes();
+        name.iter().fold(0u32, |hash, &byte| {
+            (hash ^ u32::from(byte)).wrapping_mul(16_777_619)
+        })
+    });
     let (mut shaders, mut same, mut pixels, mut undefined, mut differing) = (0, 0, 0, 0, 0);
     for path in paths {
         if shaders == limit {
@@ -114,7 +122,7 @@ fn the_corpus_has_the_same_bits_on_the_cpu() {
                 ..Frame::default()
             };
             let settings = Settings {
-                deadline: Some(Instant::now() + Duration::from_secs(20)),
+                deadline: Some(Instant::now() + patience),
                 ..Settings::default()
             };
             let painted = match program.paint::<f32>(&frame, &settings) {

@@ -30,8 +30,17 @@ impl Builder<'_> {
             }
         }
         let mut taken = Vec::new();
-        for (passed, &parameter) in passed.into_iter().zip(parameters) {
+        for (at, (passed, &parameter)) in passed.into_iter().zip(parameters).enumerate() {
             if matches!(tree[parameter].ty, Type::Sampler(_)) {
+                continue;
+            }
+            if let Some(back) = &passed.back
+                && let Some(cells) = self.shared_cells(back, arguments, at)
+            {
+                if direction(tree[parameter].kind) == Direction::Out {
+                    self.store_all(cells, &passed.values);
+                }
+                self.homes.insert(parameter, Home::Cells(cells));
                 continue;
             }
             let cells = self.allocate_type(tree[parameter].ty)?;
@@ -46,6 +55,18 @@ impl Builder<'_> {
             self.write(&back, &values);
         }
         Ok(value)
+    }
+
+    /// The cells of an argument that a function may work on as they are: nobody else can name them while it runs, and they lie in a row.
+    fn shared_cells(&self, target: &Target, arguments: &[ExprId], at: usize) -> Option<Cells> {
+        let root = self.tree.root_variable(arguments[at])?;
+        let own = matches!(
+            self.tree[root].kind,
+            VariableKind::Local | VariableKind::Parameter(_)
+        );
+        let mut others = arguments.iter().enumerate().filter(|&(other, _)| other != at);
+        let alone = others.all(|(_, &other)| self.tree.root_variable(other) != Some(root));
+        (own && alone).then(|| self.row_of(target)).flatten()
     }
 
     /// Evaluates an argument, or the indices of one that is written.

@@ -195,6 +195,14 @@ impl Builder<'_> {
         Ok(self.binary(Operation::MinUint, index, last))
     }
 
+    /// The cells of a part, if they follow each other and no index leads to them.
+    pub(super) fn row_of(&self, target: &Target) -> Option<Cells> {
+        (target.swizzle.is_none() && target.index.is_none()).then(|| Cells {
+            first: target.first,
+            count: layout::size(self.tree, target.ty) as u32,
+        })
+    }
+
     /// The cells of a part, before an index is added.
     fn cells_of(&self, target: &Target) -> Vec<u32> {
         match &target.swizzle {

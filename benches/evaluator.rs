@@ -1,0 +1,110 @@
+//! The evaluator beside lavapipe's strict frame, in turns so that both meet the same noise. `cargo bench --bench evaluator`
+
+#![expect(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a benchmark's own words"
+)]
+
+use std::fs;
+use std::time::Instant;
+
+use toyproof::eval::{Jittered, Number, Program, Seed, Settings};
+use toyproof::frame::Frame;
+use toyproof::glsl::{Checked, Options, check, lower_strict};
+use toyproof::gpu::{FloatMode, On, Painter};
+use toyproof::source::{File, Files};
+
+const RUNGS: [&str; 4] = [
+    "02-sphere",
+    "04-many-objects",
+    "05-complex-scene",
+    "06-reflections",
+];
+const ROUNDS: usize = 15;
+
+fn checked(rung: &str) -> Checked {
+    let mut files = Files::default();
+    let text = fs::read_to_string(format!("glsl/{rung}.glsl")).expect("the course is here");
+    let file = files.add(File::new(rung, text));
+    check(&files, file, &Options::default()).expect("the course is valid")
+}
+
+/// Milliseconds.
+fn time(work: impl FnOnce()) -> f64 {
+    let start = Instant::now();
+    work();
+    start.elapsed().as_secs_f64() * 1e3
+}
+
+fn median(mut times: Vec<f64>) -> f64 {
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
+}
+
+fn paint<N: Number>(program: &Program, observe: bool, noise: N::Noise) {
+    let settings = Settings::<N> {
+        observe,
+        noise,
+        ..Settings::default()
+    };
+    program
+        .paint(&Frame::default(), &settings)
+        .expect("the course paints");
+}
+
+fn main() {
+    println!("milliseconds at 640×360, medians of {ROUNDS} rounds in turns");
+    println!(
+        "rung               compile  lavapipe  f32     f32 observing  f64     f64 observing  f64 perturbed"
+    );
+    for rung in RUNGS {
+        let checked = checked(rung);
+        let lowered = lower_strict(&checked);
+        let mut painter = match Painter::new(&lowered, &Frame::default(), FloatMode::Strict, &On::Lavapipe) {
+            Ok(painter) => Some(painter),
+            Err(failure) => {
+                eprintln!("without lavapipe: {failure}");
+                None
+            }
+        };
+        let program = Program::new(&checked).expect("the course is small");
+        let mut times: [Vec<f64>; 7] = Default::default();
+        for round in 0..=ROUNDS {
+            let compile = time(|| drop(Program::new(&checked)));
+            let gpu = time(|| {
+                if let Some(painter) = &mut painter {
+                    painter.paint().expect("it painted before");
+                }
+            });
+            let taken = [
+                compile,
+                gpu,
+                time(|| paint::<f32>(&program, false, ())),
+                time(|| paint::<f32>(&program, true, ())),
+                time(|| paint::<f64>(&program, false, ())),
+                time(|| paint::<f64>(&program, true, ())),
+                time(|| paint::<Jittered>(&program, false, Seed(1))),
+            ];
+            // The first round warms up.
+            if round > 0 {
+                for (times, taken) in times.iter_mut().zip(taken) {
+                    times.push(taken);
+                }
+            }
+        }
+        let [
+            compile,
+            gpu,
+            single,
+            single_observing,
+            double,
+            double_observing,
+            perturbed,
+        ] = times.map(median);
+        println!(
+            "{rung:18} {compile:<8.2} {gpu:<9.2} {single:<7.2} {single_observing:<14.2} {double:<7.2} \
+             {double_observing:<14.2} {perturbed:.2}"
+        );
+    }
+}
