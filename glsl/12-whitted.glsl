@@ -89,7 +89,7 @@ Intersection nearestHit(Ray ray) {
             hit = Intersection(t, point, normal, spheres[i].model, spheres[i].color);
         }
     }
-    float t = (-1.0 - ray.origin.y) / ray.direction.y;
+    float t = (-1.02 - ray.origin.y) / ray.direction.y;
     if (t > EPSILON && t < hit.t) {
         vec3 point = ray.origin + t * ray.direction;
         hit = Intersection(t, point, vec3(0.0, 1.0, 0.0), MATTE, checker(point));

@@ -16,3 +16,4 @@ pub mod report;
 pub mod scene;
 pub mod source;
 pub mod trace;
+pub mod verify;

@@ -38,7 +38,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         ));
         return Exit::Trouble;
     }
-    let (comparison, marks) = compare(&a, &b, None);
+    let (comparison, marks) = compare(&a, &b);
     if let Some(path) = &args.diff {
         let picture = image::difference(
             a.size(),

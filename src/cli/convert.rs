@@ -95,7 +95,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         return Exit::Trouble;
     }
     let one = standard || (!several && !args.output.is_dir());
-    let mut worker = match args.driver.worker() {
+    let mut worker = match args.driver.translator() {
         Ok(worker) => worker,
         Err(error) => {
             terminal.error(error);
@@ -107,7 +107,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     for input in &inputs {
         // People read what is converted: it keeps the author's functions unless told otherwise.
         let float = args.driver.asked_float().unwrap_or(FloatMode::Fast);
-        let shader = Shader::load(input, &args.driver, float);
+        let shader = Shader::load(input, &args.driver);
         let path = match (one, input) {
             (true, _) | (false, Err(_)) => args.output.clone(),
             (false, Ok(found)) => with_suffix(
@@ -115,7 +115,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
                 &format!(".{}", to.extension()),
             ),
         };
-        exit = exit.max(match translate(shader, to, args, &mut worker, terminal) {
+        exit = exit.max(match translate(shader, (to, float), &mut worker, terminal) {
             Ok(bytes) if terminal.write(&path, &bytes) => Exit::Good,
             Ok(_) => Exit::Trouble,
             Err(exit) => exit,
@@ -126,15 +126,14 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
 
 fn translate(
     shader: Shader,
-    to: To,
-    args: &Args,
+    (to, float): (To, FloatMode),
     worker: &mut Worker,
     terminal: &Terminal,
 ) -> Result<Vec<u8>, Exit> {
     terminal.diagnostics(&shader.warnings, &shader.files);
-    let translated = match (shader.lowered, to.target()) {
+    let translated = match (shader.checked.map(|checked| float.lower(&checked)), to.target()) {
         (Ok(lowered), None) => Ok(lowered.text().as_bytes().to_vec()),
-        (Ok(lowered), Some(target)) => worker.translate(lowered, target, args.driver.float()),
+        (Ok(lowered), Some(target)) => worker.translate(lowered, target, float),
         (Err(Unusable::Invalid(diagnostics)), _) => Err(Failure::Invalid(diagnostics)),
         (Err(Unusable::Trouble(error)), _) => {
             terminal.error(error);

@@ -81,9 +81,10 @@ pub(super) struct DriverArgs {
     /// Take warnings for errors: `warnings` for all, or a code (W0005); `// toyproof: allow(W0005)` in the shader goes before it
     #[arg(long, value_name = "warnings|CODE", value_parser = deny, help_heading = "The shader")]
     deny: Vec<Deny>,
-    /// `auto` (lavapipe where it is installed, else the first), `lavapipe`, or words of an adapter's name
-    #[arg(long, value_name = "ADAPTER", default_value = "auto", value_parser = on)]
-    pub(super) on: On,
+    /// `auto` (lavapipe where it is installed, else the first driver, else the CPU), `lavapipe`, `cpu` for toyproof's own
+    /// evaluator, or words of an adapter's name
+    #[arg(long, value_name = "ADAPTER", default_value = "auto", value_parser = place)]
+    on: Place,
     /// `strict` (unless you say otherwise) holds the driver to the arithmetic as written and spells `sin` and the like in
     /// operations that have the same bits everywhere; `fast` lets it rearrange, with functions of its own. What `convert`
     /// writes is spelled only if you ask for `strict`
@@ -92,6 +93,15 @@ pub(super) struct DriverArgs {
     /// Stop a shader after this long (10s, 500ms, 2m)
     #[arg(long, value_name = "TIME", default_value = "10s", value_parser = humantime::parse_duration)]
     timeout: Duration,
+}
+
+/// What runs a shader.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Place {
+    /// The evaluator, in this process.
+    Cpu,
+    /// A Vulkan driver, in a worker.
+    Gpu(On),
 }
 
 /// Which warnings count as errors.
@@ -148,8 +158,26 @@ impl DriverArgs {
         self.float.map(FloatMode::from)
     }
 
-    pub(super) fn worker(&self) -> Result<Worker, String> {
-        worker(self.on.clone(), self.timeout)
+    pub(super) fn timeout(&self) -> Duration {
+        self.timeout
+    }
+
+    /// What runs shaders on a GPU; none if the evaluator is asked for.
+    pub(super) fn worker(&self) -> Result<Option<Worker>, String> {
+        match &self.on {
+            Place::Cpu => Ok(None),
+            Place::Gpu(on) => worker(on.clone(), self.timeout).map(Some),
+        }
+    }
+
+    /// What translates shaders, for which no driver is needed.
+    pub(super) fn translator(&self) -> Result<Worker, String> {
+        worker(On::Auto, self.timeout)
+    }
+
+    /// Whether the evaluator may take the place of a driver that is not there.
+    pub(super) fn may_fall_back(&self) -> bool {
+        self.on == Place::Gpu(On::Auto)
     }
 }
 
@@ -169,6 +197,13 @@ pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
             .map_err(|_| format!("“{side}” is no number of pixels"))
     };
     check_size(side(width)?, side(height)?)
+}
+
+fn place(text: &str) -> Result<Place, String> {
+    match text {
+        "cpu" => Ok(Place::Cpu),
+        text => on(text).map(Place::Gpu),
+    }
 }
 
 pub(super) fn on(text: &str) -> Result<On, String> {
@@ -220,6 +255,8 @@ mod tests {
         assert_eq!(size("640x360"), Ok([640, 360]));
         assert_eq!(mouse("1,-2.5"), Ok([1.0, -2.5, 0.0, 0.0]));
         assert_eq!(on("llvm"), Ok(On::Named("llvm".to_owned())));
+        assert_eq!(place("cpu"), Ok(Place::Cpu));
+        assert_eq!(place("auto"), Ok(Place::Gpu(On::Auto)));
         assert_eq!(deny("warnings"), Ok(Deny::Warnings));
         assert_eq!(deny("w0005"), Ok(Deny::Code(glsl::Code::SineHash)));
         assert!(deny("E0001").is_err() && deny("errors").is_err());

@@ -1,19 +1,27 @@
 //! `toyproof run`
 
 use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::ValueEnum;
 
 use super::check::cut_short;
 use super::inputs::{DriverArgs, FrameArgs};
 use super::shader::{Names, Shader, Unusable, find, is_invalid, with_suffix};
 use super::{Exit, Terminal};
-use crate::gpu::{Drawn, Failure};
-use crate::image;
+use crate::eval::{self, Number, Program, Settings};
+use crate::frame::Frame;
+use crate::glsl::Checked;
+use crate::gpu::{Drawn, Failure, Worker};
+use crate::image::{self, Image};
+use crate::source::Files;
 
 /// Run shaders and keep the pictures that they paint
 #[derive(Debug, clap::Args)]
 #[command(
     after_help = "Examples:\n  toyproof run glsl/02-sphere.glsl -o sphere.png --time 1.5\n  \
-                        toyproof run glsl -o pictures"
+                        toyproof run glsl -o pictures\n  \
+                        toyproof run glsl/02-sphere.glsl -o sphere.exr --on cpu --precision f64"
 )]
 pub(super) struct Args {
     /// Shaders: files, folders, or - for standard input
@@ -22,14 +30,23 @@ pub(super) struct Args {
     /// A picture (.png, .exr, or - for PNG on standard output), or a folder for several
     #[arg(short, long, value_name = "PICTURE|DIR")]
     output: PathBuf,
+    /// The number type of every float; f64 runs on the CPU: the shader's mathematics without its rounding
+    #[arg(long, value_enum, default_value_t = Precision::F32)]
+    precision: Precision,
     #[command(flatten)]
     frame: FrameArgs,
     #[command(flatten)]
     driver: DriverArgs,
 }
 
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Precision {
+    F32,
+    F64,
+}
+
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
-    let (mut worker, frame) = match (args.driver.worker(), args.frame.frame()) {
+    let (worker, frame) = match (args.driver.worker(), args.frame.frame()) {
         (Ok(worker), Ok(frame)) => (worker, frame),
         (Err(error), _) | (_, Err(error)) => {
             terminal.error(error);
@@ -49,61 +66,142 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let one = standard || (!several && !args.output.is_dir());
     let mut names = Names::default();
     let mut exit = Exit::Good;
+    let mut runner = Runner {
+        args,
+        terminal,
+        worker: worker.filter(|_| args.precision == Precision::F32),
+        frame,
+    };
     for input in &inputs {
-        let shader = Shader::load(input, &args.driver, args.driver.float());
+        let shader = Shader::load(input, &args.driver);
         let path = match (one, input) {
             (true, _) | (false, Err(_)) => args.output.clone(),
             (false, Ok(found)) => with_suffix(&args.output.join(names.place(&found.relative)), ".png"),
         };
         let spinner = terminal.spinner(&shader.name);
         terminal.diagnostics(&shader.warnings, &shader.files);
-        let outcome = match shader.lowered {
-            Ok(lowered) => worker.draw(lowered, frame.clone(), args.driver.float()),
-            Err(Unusable::Invalid(diagnostics)) => Err(Failure::Invalid(diagnostics)),
-            Err(Unusable::Trouble(error)) => {
-                spinner.finish_and_clear();
-                terminal.error(error);
-                exit = exit.max(Exit::Trouble);
-                continue;
-            }
-        };
+        let painted = runner.paint(&shader);
         spinner.finish_and_clear();
-        exit = exit.max(match outcome {
-            Ok(Drawn {
-                cut_short: Some(pixels @ 1..),
-                ..
-            }) => {
-                terminal.error(format_args!("{}: {}", shader.name, cut_short(pixels)));
-                Exit::Bad
-            }
-            Ok(drawn) => {
-                terminal.detail(&format!(
-                    "{}: painted in {:.3} s on {}",
-                    shader.name,
-                    drawn.draw.as_secs_f64(),
-                    drawn.device
-                ));
-                keep(&drawn.image, &path, terminal)
-            }
-            Err(Failure::Invalid(diagnostics)) => {
-                terminal.diagnostics(&diagnostics, &shader.files);
-                Exit::Bad
-            }
-            Err(Failure::Refused(diagnostics)) => {
-                terminal.diagnostics(&diagnostics, &shader.files);
-                Exit::Trouble
-            }
-            Err(failure) => {
-                terminal.error(format_args!("{}: {failure}", shader.name));
-                let shaders_fault = is_invalid(&failure) || matches!(failure, Failure::Timeout { .. });
-                if shaders_fault { Exit::Bad } else { Exit::Trouble }
-            }
+        exit = exit.max(match painted {
+            Ok(picture) => keep(&picture, &path, terminal),
+            Err(exit) => exit,
         });
     }
     exit
 }
 
-fn keep(picture: &image::Image, path: &Path, terminal: &Terminal) -> Exit {
+struct Runner<'a> {
+    args: &'a Args,
+    terminal: &'a Terminal,
+    /// None where the evaluator paints.
+    worker: Option<Worker>,
+    frame: Frame,
+}
+
+impl Runner<'_> {
+    /// The shader's picture; says why there is none.
+    fn paint(&mut self, shader: &Shader) -> Result<Image, Exit> {
+        let checked = match &shader.checked {
+            Ok(checked) => checked,
+            Err(Unusable::Invalid(diagnostics)) => {
+                self.terminal.diagnostics(diagnostics, &shader.files);
+                return Err(Exit::Bad);
+            }
+            Err(Unusable::Trouble(error)) => {
+                self.terminal.error(error);
+                return Err(Exit::Trouble);
+            }
+        };
+        if let Some(worker) = &mut self.worker {
+            let float = self.args.driver.float();
+            match worker.draw(float.lower(checked), self.frame.clone(), float) {
+                Err(Failure::NoDriver(why)) if self.args.driver.may_fall_back() => {
+                    self.terminal.warn(format_args!("{why}; shaders run on the CPU"));
+                    self.worker = None;
+                }
+                drawn => return self.drawn(drawn, shader),
+            }
+        }
+        match self.args.precision {
+            Precision::F32 => self.evaluate::<f32>(checked, shader),
+            Precision::F64 => self.evaluate::<f64>(checked, shader),
+        }
+    }
+
+    fn drawn(&self, drawn: Result<Drawn, Failure>, shader: &Shader) -> Result<Image, Exit> {
+        match drawn {
+            Ok(Drawn {
+                cut_short: Some(pixels @ 1..),
+                ..
+            }) => {
+                self.terminal
+                    .error(format_args!("{}: {}", shader.name, cut_short(pixels)));
+                Err(Exit::Bad)
+            }
+            Ok(drawn) => {
+                self.painted(&shader.name, drawn.draw.as_secs_f64(), &drawn.device);
+                Ok(drawn.image)
+            }
+            Err(Failure::Invalid(diagnostics)) => {
+                self.terminal.diagnostics(&diagnostics, &shader.files);
+                Err(Exit::Bad)
+            }
+            Err(Failure::Refused(diagnostics)) => {
+                self.terminal.diagnostics(&diagnostics, &shader.files);
+                Err(Exit::Trouble)
+            }
+            Err(failure) => {
+                self.terminal.error(format_args!("{}: {failure}", shader.name));
+                let shaders_fault = is_invalid(&failure) || matches!(failure, Failure::Timeout { .. });
+                Err(if shaders_fault { Exit::Bad } else { Exit::Trouble })
+            }
+        }
+    }
+
+    fn evaluate<N: Number>(&self, checked: &Checked, shader: &Shader) -> Result<Image, Exit> {
+        let start = Instant::now();
+        let settings = Settings::<N> {
+            observe: false,
+            deadline: Some(start + self.args.driver.timeout()),
+            ..Settings::default()
+        };
+        let painted = Program::new(checked)
+            .map_err(eval::Failure::from)
+            .and_then(|program| program.paint(&self.frame, &settings));
+        match painted {
+            Ok(painted) => {
+                let device = format!("the CPU, in {}", std::any::type_name::<N>());
+                self.painted(&shader.name, start.elapsed().as_secs_f64(), &device);
+                Ok(painted.painting.image())
+            }
+            Err(failure) => {
+                let place = place(&failure, &shader.files);
+                self.terminal
+                    .error(format_args!("{}: {failure}{place}", shader.name));
+                let ours = matches!(failure, eval::Failure::Refused(_));
+                Err(if ours { Exit::Trouble } else { Exit::Bad })
+            }
+        }
+    }
+
+    fn painted(&self, name: &str, seconds: f64, device: &str) {
+        self.terminal
+            .detail(&format!("{name}: painted in {seconds:.3} s on {device}"));
+    }
+}
+
+/// Where the evaluator stopped, to stand behind its message.
+pub(super) fn place(failure: &eval::Failure, files: &Files) -> String {
+    match failure {
+        eval::Failure::TooOften { at, .. } | eval::Failure::Timeout { at } => {
+            let at = files.position(at.span);
+            format!(" (line {}, column {})", at.line, at.column)
+        }
+        _ => String::new(),
+    }
+}
+
+fn keep(picture: &Image, path: &Path, terminal: &Terminal) -> Exit {
     let format = if path == Path::new("-") {
         Path::new("-.png")
     } else {

@@ -5,15 +5,15 @@ use std::path::{Path, PathBuf};
 
 use super::inputs::{Deny, DriverArgs};
 use crate::diagnostic::{self, Diagnostic, Severity};
-use crate::glsl::{self, Checked, Lowered};
-use crate::gpu::{Failure, FloatMode};
+use crate::glsl::{self, Checked};
+use crate::gpu::Failure;
 use crate::source::{self, Files, Found, ReadError};
 
-/// A shader's text and what naga is fed, or why there is none.
+/// A shader's text and its tree, or why there is none.
 pub(super) struct Shader {
     pub(super) name: String,
     pub(super) files: Files,
-    pub(super) lowered: Result<Lowered, Unusable>,
+    pub(super) checked: Result<Checked, Unusable>,
     /// What is legal and worth a word.
     pub(super) warnings: Vec<Diagnostic>,
 }
@@ -27,33 +27,29 @@ pub(super) enum Unusable {
 }
 
 impl Shader {
-    /// Reads and lowers; `float` tells whether what drivers differ in is spelled out.
-    pub(super) fn load(found: &Result<Found, ReadError>, driver: &DriverArgs, float: FloatMode) -> Self {
+    pub(super) fn load(found: &Result<Found, ReadError>, driver: &DriverArgs) -> Self {
         let mut files = Files::default();
         let mut warnings = Vec::new();
-        let (name, lowered) = match found {
+        let (name, checked) = match found {
             Err(error) => (subject(error), Err(Unusable::Trouble(error.to_string()))),
             Ok(found) => {
                 let checked = read(found, &mut files, &driver.language());
-                let lowered = checked.and_then(|mut checked| {
+                let checked = checked.and_then(|mut checked| {
                     warnings = std::mem::take(&mut checked.warnings);
                     let denied = denied(&mut warnings, driver.denied());
                     if denied.is_empty() {
-                        Ok(match float {
-                            FloatMode::Strict => glsl::lower_strict(&checked),
-                            FloatMode::Fast => glsl::lower(&checked),
-                        })
+                        Ok(checked)
                     } else {
                         Err(Unusable::Invalid(denied))
                     }
                 });
-                (found.name(), lowered)
+                (found.name(), checked)
             }
         };
         Self {
             name,
             files,
-            lowered,
+            checked,
             warnings,
         }
     }

@@ -59,6 +59,12 @@ impl Terminal {
         }
     }
 
+    /// What may not be what the user meant, on standard error.
+    pub(super) fn warn(&self, text: impl std::fmt::Display) {
+        let style = Style::new().fg_color(Some(AnsiColor::Yellow.into())).bold();
+        let _ = writeln!(anstream::stderr().lock(), "{style}warning{style:#}: {text}");
+    }
+
     /// What went wrong, on standard error.
     pub(super) fn error(&self, text: impl std::fmt::Display) {
         let style = Style::new().fg_color(Some(AnsiColor::Red.into())).bold();

@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-use super::Comparison;
+use super::{Answer, SEEN};
 
 /// What is said of a shader, in the order of precedence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -16,9 +16,11 @@ pub enum Verdict {
     Timeout,
     /// naga, the driver or toyproof failed.
     Error,
-    /// Its picture is not the reference's.
+    /// Its mathematics is not the scene's.
     Wrong,
-    /// Too much of the picture hangs by a hair to tell.
+    /// Its mathematics is the scene's, but float32 is not enough for it.
+    Unstable,
+    /// It cannot be told.
     Inconclusive,
     /// Its picture is the reference's.
     Correct,
@@ -41,6 +43,7 @@ impl fmt::Display for Verdict {
             Self::Timeout => "timeout",
             Self::Error => "error",
             Self::Wrong => "wrong",
+            Self::Unstable => "unstable",
             Self::Inconclusive => "inconclusive",
             Self::Correct => "correct",
             Self::Ok => "ok",
@@ -48,75 +51,187 @@ impl fmt::Display for Verdict {
     }
 }
 
-/// A shader is wrong if more than this share of its pixels differs. A whole silhouette of the course's first
-/// sphere is 0.4 % of its picture, its shading far more: a mistake that is smaller cannot be told here.
+/// A shader is wrong if more than this share of its pixels differs in f64, where only legal styles of secondary rays
+/// move an answer: a ray that grazes an edge between two of these styles may see neither's colour.
 pub const MAX_DIFFERING: f64 = 0.001;
 
-/// No verdict is given if more than this share of the pixels is excused: a checker that excuses everything
-/// checks nothing. The course's rungs excuse less than a tenth of it.
-pub const MAX_UNDECIDED: f64 = 0.05;
+/// A shader is unstable if more than this share of its pixels is seen to change with the number type, or hangs by a
+/// hair in f64. Silhouettes of a well-written shader in float32 make less than a tenth of it.
+pub const MAX_UNSTABLE: f64 = 0.003;
 
-/// The rule on the picture: what differs and is decided counts; the reason is one sentence.
+/// No verdict is given if more than this share of the pixels is left out as undefined: a checker that excuses
+/// everything checks nothing.
+pub const MAX_UNDEFINED: f64 = 0.05;
+
+/// The answers to the three questions; one that was not asked is none.
+#[derive(Debug, Clone, Copy)]
+pub struct Answers<'a> {
+    /// The shader in f64 against the tracer in f64.
+    pub maths: Option<&'a Answer>,
+    /// The picture in f32 against the shader in f64.
+    pub rounding: Option<&'a Answer>,
+    /// The GPU in f32 against the CPU in f32, in bits.
+    pub toolchain: Option<&'a Answer>,
+}
+
+/// The verdict and its reason, one sentence.
 #[must_use]
-pub fn judge(comparison: &Comparison) -> (Verdict, String) {
-    let share = |count: u64| count as f64 / comparison.pixels.max(1) as f64;
-    let percent = |count: u64| 100.0 * share(count);
-    let Comparison {
-        pixels,
-        differing,
-        undecided,
-        ..
-    } = *comparison;
-    if share(differing) > MAX_DIFFERING {
+pub fn judge(answers: Answers) -> (Verdict, String) {
+    let Answers {
+        maths,
+        rounding,
+        toolchain,
+    } = answers;
+    if let Some(answer) = toolchain
+        && answer.max_abs > SEEN
+        && answer.share(answer.differing) > MAX_DIFFERING
+    {
         let reason = format!(
-            "{differing} of {pixels} pixels ({:.2} %) differ from the reference by more than float32 explains",
-            percent(differing)
+            "{} are not what the shader says: naga, the driver or toyproof broke it, and it is not the shader's fault",
+            count(answer, answer.differing)
+        );
+        return (Verdict::Error, reason);
+    }
+    let Some(maths) = maths else {
+        return (
+            Verdict::Ok,
+            "the shader paints; there is no scene to compare it with".to_owned(),
+        );
+    };
+    if maths.share(maths.differing) > MAX_DIFFERING {
+        let reason = format!(
+            "{} differ from the scene even in exact arithmetic: it is the mathematics",
+            count(maths, maths.differing)
         );
         return (Verdict::Wrong, reason);
     }
-    if share(undecided) > MAX_UNDECIDED {
+    if maths.share(maths.undefined) > MAX_UNDEFINED {
         let reason = format!(
-            "{undecided} of {pixels} pixels ({:.2} %) differ, but float32 cannot decide them in this scene",
-            percent(undecided)
+            "in {} the shader does what GLSL leaves undefined, so they cannot be compared",
+            count(maths, maths.undefined)
         );
         return (Verdict::Inconclusive, reason);
     }
-    let reason = match (differing, undecided) {
-        (0, 0) => format!("all {pixels} pixels agree with the reference"),
-        (0, _) => format!("all pixels agree with the reference but {undecided} that float32 cannot decide"),
-        _ => format!(
-            "{differing} of {pixels} pixels differ from the reference, fewer than the {} that are allowed",
-            (pixels as f64 * MAX_DIFFERING).floor()
+    if maths.share(maths.undecided) > MAX_UNSTABLE {
+        let reason = format!(
+            "the mathematics may be right, but {} hang by a hair even in double precision: a rounding error decides them",
+            count(maths, maths.undecided)
+        );
+        return (Verdict::Unstable, reason);
+    }
+    if let Some(rounding) = rounding
+        && rounding.share(rounding.differing) > MAX_UNSTABLE
+    {
+        let reason = format!(
+            "the mathematics is right, but float32 is not enough for it here: {} are visibly another colour than in \
+             double precision",
+            count(rounding, rounding.differing)
+        );
+        return (Verdict::Unstable, reason);
+    }
+    let reason = match (maths.differing, maths.undecided + maths.undefined) {
+        (0, 0) => format!("all {} pixels agree with the scene", grouped(maths.pixels)),
+        (0, left) => format!("all pixels agree with the scene but {left} that cannot be decided"),
+        (differing, _) => format!(
+            "{differing} of {} pixels differ from the scene, fewer than the {} that are allowed",
+            grouped(maths.pixels),
+            (maths.pixels as f64 * MAX_DIFFERING).floor() + 1.0
         ),
     };
     (Verdict::Correct, reason)
+}
+
+fn count(answer: &Answer, count: u64) -> String {
+    format!(
+        "{} of {} pixels ({:.2} %)",
+        grouped(count),
+        grouped(answer.pixels),
+        100.0 * answer.share(count)
+    )
+}
+
+/// A count with its thousands apart: 230,400.
+#[must_use]
+pub fn grouped(count: u64) -> String {
+    let digits = count.to_string();
+    let mut text = String::with_capacity(digits.len() + digits.len() / 3);
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn verdict(differing: u64, undecided: u64) -> Verdict {
-        let comparison = Comparison {
+    /// Of 10,000 pixels.
+    fn answer([differing, undecided, undefined]: [u64; 3], max_abs: f64) -> Answer {
+        Answer {
             pixels: 10_000,
             differing,
             undecided,
-            differing_8bit: 0,
-            max_8bit: 0,
-            max_abs: 0.0,
-            mean_abs: 0.0,
+            undefined,
+            max_abs,
             first: None,
             worst: None,
+        }
+    }
+
+    fn verdict(maths: [u64; 3], rounding: u64, toolchain: (u64, f64)) -> Verdict {
+        let maths = answer(maths, 1.0);
+        let rounding = answer([rounding, 0, 0], 1.0);
+        let toolchain = answer([toolchain.0, 0, 0], toolchain.1);
+        let answers = Answers {
+            maths: Some(&maths),
+            rounding: Some(&rounding),
+            toolchain: Some(&toolchain),
         };
-        judge(&comparison).0
+        judge(answers).0
     }
 
     #[test]
     fn the_verdict_turns_at_its_thresholds() {
-        assert_eq!(verdict(0, 0), Verdict::Correct);
-        assert_eq!(verdict(10, 500), Verdict::Correct);
-        assert_eq!(verdict(11, 0), Verdict::Wrong);
-        assert_eq!(verdict(0, 501), Verdict::Inconclusive);
-        assert_eq!(verdict(11, 501), Verdict::Wrong, "what is decided counts first");
+        const SAME: (u64, f64) = (0, 0.0);
+        assert_eq!(verdict([0; 3], 0, SAME), Verdict::Correct);
+        assert_eq!(verdict([10, 30, 500], 30, SAME), Verdict::Correct);
+        assert_eq!(verdict([11, 0, 0], 0, SAME), Verdict::Wrong);
+        assert_eq!(verdict([0, 31, 0], 0, SAME), Verdict::Unstable);
+        assert_eq!(verdict([0, 0, 0], 31, SAME), Verdict::Unstable);
+        assert_eq!(verdict([0, 0, 501], 0, SAME), Verdict::Inconclusive);
+    }
+
+    #[test]
+    fn a_wrong_shader_is_wrong_however_unstable_it_is() {
+        assert_eq!(verdict([11, 5_000, 501], 5_000, (0, 0.0)), Verdict::Wrong);
+    }
+
+    #[test]
+    fn a_broken_toolchain_is_no_shaders_fault_and_lost_bits_are_no_broken_toolchain() {
+        assert_eq!(verdict([5_000, 0, 0], 0, (11, 0.1)), Verdict::Error);
+        assert_eq!(verdict([0; 3], 0, (10_000, 1e-6)), Verdict::Correct);
+        assert_eq!(verdict([0; 3], 0, (10, 1.0)), Verdict::Correct);
+    }
+
+    #[test]
+    fn without_a_scene_a_shader_is_ok() {
+        let rounding = answer([5_000, 0, 0], 1.0);
+        let answers = Answers {
+            maths: None,
+            rounding: Some(&rounding),
+            toolchain: None,
+        };
+        assert_eq!(judge(answers).0, Verdict::Ok);
+    }
+
+    #[test]
+    fn thousands_stand_apart() {
+        assert_eq!(
+            [0, 999, 1000, 230_400, 1_234_567].map(grouped),
+            ["0", "999", "1,000", "230,400", "1,234,567"]
+        );
     }
 }

@@ -25,6 +25,7 @@ pub use serve::{MEMORY_BYTES, serve};
 pub use worker::Worker;
 
 use crate::diagnostic::Diagnostic;
+use crate::glsl::{self, Checked, Lowered};
 
 /// Which adapter runs the shader.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -40,11 +41,22 @@ pub enum On {
 /// How far the driver may rearrange arithmetic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum FloatMode {
-    /// As written: every operation carries `NoContraction`.
+    /// As written: every operation carries `NoContraction`, and `sin` and the like are spelled out.
     #[default]
     Strict,
     /// As the driver likes.
     Fast,
+}
+
+impl FloatMode {
+    /// What naga is fed of a shader: in strict mode with all spelled out that drivers differ in.
+    #[must_use]
+    pub fn lower(self, checked: &Checked) -> Lowered {
+        match self {
+            Self::Strict => glsl::lower_strict(checked),
+            Self::Fast => glsl::lower(checked),
+        }
+    }
 }
 
 /// What the worker was doing.

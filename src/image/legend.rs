@@ -13,8 +13,10 @@ const COOL: [[f32; 3]; 4] = [
 ];
 /// Colours above it, up to 1: differences that are seen, in warm colours.
 const WARM: [[f32; 3]; 3] = [[0.75, 0.55, 0.1], [0.95, 0.35, 0.1], [1.0, 0.1, 0.1]];
-/// A pixel that differs but cannot be decided in float32.
+/// A pixel that differs, and might not if its operations were rounded another way.
 const UNDECIDED: [f32; 3] = [0.8, 0.35, 1.0];
+/// A pixel that is left out, because the shader does there what GLSL leaves undefined.
+const UNDEFINED: [f32; 3] = [0.3, 0.3, 0.3];
 const INK: [f32; 3] = [0.85, 0.85, 0.85];
 const GLYPH: u32 = 8;
 
@@ -23,8 +25,10 @@ const GLYPH: u32 = 8;
 pub enum Mark {
     /// By the size of its difference, ≥ 0; NaN counts as 1.
     By(f32),
-    /// As one that differs but is not counted.
+    /// As one that differs, but hangs by a hair.
     Undecided,
+    /// As one that is left out.
+    Undefined,
 }
 
 /// What the legend tells.
@@ -70,6 +74,7 @@ impl Legend {
     fn colour(self, mark: Mark) -> [f32; 3] {
         match mark {
             Mark::Undecided => UNDECIDED,
+            Mark::Undefined => UNDEFINED,
             Mark::By(difference) => {
                 let difference = if difference.is_nan() { 1.0 } else { difference };
                 self.bands()
@@ -101,6 +106,7 @@ impl Legend {
             .map(|(from, colour)| (format!("> {from:.0e}"), colour))
             .collect();
         entries.push(("undecided".to_owned(), UNDECIDED));
+        entries.push(("undefined".to_owned(), UNDEFINED));
         entries
     }
 }

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::compare::{Comparison, Verdict};
+use crate::compare::{Answer, Comparison, Verdict};
 use crate::diagnostic;
 
 /// The JSON Schema of a [`Report`].
@@ -55,12 +55,12 @@ pub struct Record {
     pub verdict: Verdict,
     /// Why, in one sentence.
     pub reason: String,
-    /// Not asked: it needs an evaluator in f64.
-    pub maths: (),
-    /// Not asked: it needs an evaluator in f64.
-    pub rounding: (),
-    /// Not asked: it needs an evaluator in f32.
-    pub toolchain: (),
+    /// The shader in f64 against the scene; null without a scene.
+    pub maths: Option<Answer>,
+    /// The picture in f32 against the shader in f64.
+    pub rounding: Option<Answer>,
+    /// The GPU's picture against the CPU's, in bits; null where no GPU painted, or it was free to do algebra.
+    pub toolchain: Option<Answer>,
     /// The picture beside the reference's; null without a scene or a picture.
     pub picture: Option<Comparison>,
     /// No mistakes are recognised yet.
@@ -78,8 +78,8 @@ pub struct Seconds {
     pub translate: Option<f64>,
     /// The driver: compile, paint, read back.
     pub gpu: Option<f64>,
-    /// Not done.
-    pub eval: (),
+    /// The evaluator: preparing, and every picture in f32 and f64.
+    pub eval: Option<f64>,
     /// The reference tracer.
     pub trace: Option<f64>,
 }
@@ -94,9 +94,9 @@ mod tests {
             scene: None,
             verdict: Verdict::Ok,
             reason: "it paints".to_owned(),
-            maths: (),
-            rounding: (),
-            toolchain: (),
+            maths: None,
+            rounding: None,
+            toolchain: None,
             picture,
             mistake: (),
             diagnostics: Vec::new(),
@@ -110,8 +110,15 @@ mod tests {
         let validator = jsonschema::validator_for(&schema).unwrap();
         let black = crate::image::Image::new(1, 1, vec![[0.0; 4]]);
         let white = crate::image::Image::new(1, 1, vec![[1.0; 4]]);
-        let (comparison, _) = crate::compare::compare(&black, &white, None);
-        let report = Report::new(Some("x".to_owned()), vec![record(None), record(Some(comparison))]);
+        let (comparison, _) = crate::compare::compare(&black, &white);
+        let answer = Answer::new(&black, &white, &[crate::compare::Standing::Differs]);
+        let asked = Record {
+            maths: Some(answer.clone()),
+            rounding: Some(answer.clone()),
+            toolchain: Some(answer),
+            ..record(Some(comparison))
+        };
+        let report = Report::new(Some("x".to_owned()), vec![record(None), asked]);
         let mut json: serde_json::Value = serde_json::from_str(&report.json()).unwrap();
         assert!(
             validator.is_valid(&json),

@@ -3,10 +3,10 @@
 use anstyle::{AnsiColor, Style};
 
 use super::Record;
-use crate::compare::{Comparison, Pixel, Verdict};
+use crate::compare::{Answer, Comparison, Pixel, Verdict, grouped};
 use crate::diagnostic::Json;
 
-/// One shader: verdict, name, reason, and the pixels to look at.
+/// One shader: verdict, name, reason, and a line for each question whose answer is worth reading.
 #[must_use]
 pub fn line(record: &Record) -> String {
     let style = style(record.verdict);
@@ -16,15 +16,27 @@ pub fn line(record: &Record) -> String {
         record.shader,
         errors(record).unwrap_or_else(|| record.reason.clone())
     )];
-    if let Some(picture) = &record.picture {
-        lines.push(numbers(picture));
-        if record.verdict == Verdict::Wrong {
-            let pixels = [("first", picture.first), ("worst", picture.worst)];
-            let places = pixels
-                .into_iter()
-                .filter_map(|(name, pixel)| Some(format!("{name} {}", place(&pixel?))));
-            lines.extend(places);
+    let questions = [
+        ("maths", &record.maths, maths as fn(&Answer) -> String),
+        ("rounding", &record.rounding, rounding),
+        ("toolchain", &record.toolchain, toolchain),
+    ];
+    let asked = questions
+        .iter()
+        .filter_map(|(name, answer, says)| Some((*name, answer.as_ref()?, says)));
+    let mut same = Vec::new();
+    for (name, answer, says) in asked {
+        if answer.is_same() && answer.undefined == 0 {
+            same.push(name);
+        } else {
+            lines.push(format!("{name}: {}", says(answer)));
         }
+    }
+    if !same.is_empty() {
+        lines.push(format!("{}: no difference", list(&same)));
+    }
+    if let Some(picture) = &record.picture {
+        lines.push(format!("picture: {}", numbers(picture)));
     }
     lines.join(&format!("\n{:13}", ""))
 }
@@ -63,17 +75,74 @@ pub fn summary(records: &[Record]) -> String {
 fn style(verdict: Verdict) -> Style {
     let colour = match verdict {
         Verdict::Correct | Verdict::Ok => AnsiColor::Green,
-        Verdict::Inconclusive => AnsiColor::Yellow,
+        Verdict::Unstable | Verdict::Inconclusive => AnsiColor::Yellow,
         _ => AnsiColor::Red,
     };
     Style::new().fg_color(Some(colour.into())).bold()
 }
 
+fn maths(answer: &Answer) -> String {
+    question(
+        answer,
+        "differ from the scene",
+        "hang by a hair, so that a rounding error decides them",
+    )
+}
+
+fn rounding(answer: &Answer) -> String {
+    question(
+        answer,
+        "are visibly another colour in float32 than in double precision",
+        "cannot be told",
+    )
+}
+
+fn toolchain(answer: &Answer) -> String {
+    let says = format!(
+        "are not to the bit what the shader says (by at most {:.1e})",
+        answer.max_abs
+    );
+    question(answer, &says, "cannot be told")
+}
+
+/// How many pixels differ or hang by a hair, with the first of them, and how many were left out.
+fn question(answer: &Answer, differ: &str, hang: &str) -> String {
+    let mut parts = Vec::new();
+    let counts = [(answer.differing, differ), (answer.undecided, hang)];
+    for (count, says) in counts.into_iter().filter(|(count, _)| *count > 0) {
+        parts.push(format!(
+            "{} of {} pixels {says}",
+            grouped(count),
+            grouped(answer.pixels)
+        ));
+    }
+    if let (Some(told), Some(pixel)) = (parts.first_mut(), &answer.first) {
+        told.push_str(", first ");
+        told.push_str(&place(pixel));
+    }
+    if answer.undefined > 0 {
+        parts.push(format!(
+            "{} left out, where the shader does what GLSL leaves undefined",
+            grouped(answer.undefined)
+        ));
+    }
+    parts.join("; ")
+}
+
+fn list(names: &[&str]) -> String {
+    match names {
+        [] => String::new(),
+        [one] => (*one).to_owned(),
+        [rest @ .., last] => format!("{} and {last}", rest.join(", ")),
+    }
+}
+
 fn numbers(picture: &Comparison) -> String {
     let levels = match picture.differing_8bit {
-        0 => "equal in 8 bits".to_owned(),
+        0 => "equal to the reference in 8 bits".to_owned(),
         count => format!(
-            "{count} {} in 8 bits, by at most {} {}",
+            "{} {} from the reference in 8 bits, by at most {} {}",
+            grouped(count),
             plural(count, "pixel differs", "pixels differ"),
             picture.max_8bit,
             plural(u64::from(picture.max_8bit), "level", "levels"),
@@ -90,7 +159,7 @@ fn numbers(picture: &Comparison) -> String {
 pub fn place(pixel: &Pixel) -> String {
     let colour = |[r, g, b]: [f32; 3]| format!("({r:.4}, {g:.4}, {b:.4})");
     format!(
-        "at x {}, y {}: expected {}, found {}",
+        "at ({}, {}): expected {}, got {}",
         pixel.x,
         pixel.y,
         colour(pixel.expected),

@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 
-use super::doubt::Exact;
 use super::real::{Real, Vector};
 use super::sampler::Sample;
+use super::style::Exact;
 use super::{Tracer, film};
 use crate::image::Image;
 

@@ -1,12 +1,11 @@
 //! The reference tracer: what a scene looks like, in f32 or f64.
 //!
 //! It is written for correctness: recentred discriminants with stable roots, no epsilons, secondary rays
-//! do not meet the point that they start from. [`Tracer::hull`] tells how far a pixel's colour may move for reasons
-//! that are not a mistake: legal styles of offset, and rounding in float32.
+//! do not meet the point that they start from. [`Tracer::hull`] tells which colours a pixel has in
+//! the styles that shaders may start secondary rays in.
 
 mod adaptive;
 mod camera;
-mod doubt;
 mod figure;
 mod film;
 mod light;
@@ -15,6 +14,7 @@ mod ray;
 mod real;
 mod sampler;
 mod shape;
+mod style;
 #[cfg(test)]
 mod tests;
 mod world;
@@ -22,14 +22,14 @@ mod world;
 use rayon::prelude::*;
 
 pub use adaptive::Spent;
-pub use doubt::Hull;
 pub use real::{Real, Vector};
+pub use style::Hull;
 
 use self::camera::Camera;
-use self::doubt::{Doubt, Exact};
 use self::figure::Figure;
 use self::sampler::{Draws, Sample};
 use self::shape::{Shape, Sphere};
+use self::style::{Exact, Style};
 use self::world::World;
 use crate::image::Image;
 use crate::scene::{self, Film, Moment, Requirements, Scene};
@@ -114,24 +114,20 @@ impl<T: Real> Tracer<T> {
         mean.to_array().map(|c| film::develop(&self.film, c))
     }
 
-    fn sample(&self, sample: Sample, doubt: &impl Doubt<T>) -> T::Vec3 {
+    fn sample(&self, sample: Sample, style: &impl Style<T>) -> T::Vec3 {
         let mut draws = Draws::new(self.film.sampler, sample);
-        let [jx, jy] = draws.jitter(doubt);
+        let [jx, jy] = draws.jitter();
         let half = T::from_f64(0.5);
-        let ([x, y], [width, height]) = (sample.pixel, self.film.size);
-        let place = |pixel: u32, jitter: T, side: u32, axis: u32| {
-            doubt.place(T::from_f64(f64::from(pixel)) + half + jitter, side, axis)
-        };
-        let screen = self
-            .camera
-            .screen(place(x, jx, width, 0), place(y, jy, height, 1));
+        let [x, y] = sample.pixel;
+        let place = |pixel: u32, jitter: T| T::from_f64(f64::from(pixel)) + half + jitter;
+        let screen = self.camera.screen(place(x, jx), place(y, jy));
         if let Some(color) = figure::color(&self.figures, screen[0], screen[1]) {
             return color;
         }
         let ray = self.camera.ray(screen);
         match &self.kernel {
-            Kernel::Spheres(world) => world.radiance(ray, &mut draws, doubt),
-            Kernel::Shapes(world) => world.radiance(ray, &mut draws, doubt),
+            Kernel::Spheres(world) => world.radiance(ray, &mut draws, style),
+            Kernel::Shapes(world) => world.radiance(ray, &mut draws, style),
         }
     }
 }

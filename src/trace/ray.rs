@@ -1,7 +1,7 @@
 //! Rays and the points where they meet surfaces.
 
-use super::doubt::Doubt;
 use super::real::{Real, Vector};
+use super::style::Style;
 
 /// A ray o + t·d, t > 0.
 #[derive(Debug, Clone, Copy)]
@@ -24,8 +24,8 @@ pub(super) struct Hit<T: Real> {
 
 impl<T: Real> Hit<T> {
     /// A secondary ray, to either side of the surface.
-    pub(super) fn leave(&self, direction: T::Vec3, doubt: &impl Doubt<T>) -> Ray<T> {
-        let offset = doubt.offset();
+    pub(super) fn leave(&self, direction: T::Vec3, style: &impl Style<T>) -> Ray<T> {
+        let offset = style.offset();
         let offset = if direction.dot(self.normal) < T::zero() {
             -offset
         } else {

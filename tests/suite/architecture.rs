@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The stages in the order of the flow.
-const STAGES: [&str; 16] = [
+const STAGES: [&str; 17] = [
     "source",
     "diagnostic",
     "output",
@@ -19,6 +19,7 @@ const STAGES: [&str; 16] = [
     "scene",
     "trace",
     "compare",
+    "verify",
     "report",
     "cli",
 ];

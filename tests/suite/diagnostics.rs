@@ -3,13 +3,17 @@
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
+use std::time::Duration;
 
 use crate::architecture::sources;
 use crate::program::toyproof;
 use toyproof::diagnostic::{self, Diagnostic, Explanation, explanations};
-use toyproof::glsl::{self, Code};
+use toyproof::frame::Frame;
+use toyproof::glsl::{self, Checked, Code};
+use toyproof::gpu::FloatMode;
 use toyproof::scene;
 use toyproof::source::{File, Files};
+use toyproof::verify::{Case, verify};
 
 /// Codes that no text of an example can give: bytes that are no text, and what toyproof itself gets wrong.
 const WITHOUT_EXAMPLE: [&str; 3] = ["E0500", "E0900", "E0901"];
@@ -53,10 +57,7 @@ fn told(example: &Example) -> (Vec<Diagnostic>, Files) {
             };
             let file = files.add(File::new("example.glsl", format!("{}{rest}", example.text)));
             let checked = glsl::check(&files, file, &glsl::Options::default());
-            (
-                checked.map_or_else(|told| told, |checked| checked.warnings),
-                files,
-            )
+            (checked.map_or_else(|told| told, |checked| seen(&checked)), files)
         }
         "toml" => {
             let file = files.add(File::new("example.toml", example.text));
@@ -64,6 +65,24 @@ fn told(example: &Example) -> (Vec<Diagnostic>, Files) {
         }
         other => panic!("what is ```{other}?"),
     }
+}
+
+/// The warnings about a shader, and those about its run.
+fn seen(checked: &Checked) -> Vec<Diagnostic> {
+    let frame = Frame {
+        size: [16, 9],
+        ..Frame::default()
+    };
+    let case = Case {
+        checked,
+        scene: None,
+        frame: &frame,
+        float: FloatMode::Strict,
+        timeout: Duration::from_secs(60),
+    };
+    let mut all = checked.warnings.clone();
+    all.extend(verify(None, &case).unwrap().notes);
+    all
 }
 
 #[test]

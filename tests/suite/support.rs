@@ -4,15 +4,14 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use toyproof::compare::{Comparison, Verdict, compare, judge};
+use toyproof::compare::Answer;
 use toyproof::diagnostic::{self, Diagnostic};
 use toyproof::frame::Frame;
 use toyproof::glsl;
 use toyproof::gpu::{Failure, FloatMode, On, Worker};
-use toyproof::image::Image;
-use toyproof::scene;
+use toyproof::scene::{self, Scene};
 use toyproof::source::{File, Files};
-use toyproof::trace::Tracer;
+use toyproof::verify::{Case, Findings, verify};
 
 /// A shader of the course and the scene that it paints.
 #[derive(Debug)]
@@ -51,36 +50,31 @@ pub(crate) type Edit = (&'static str, &'static str);
 /// differ, 0.1 %, is more than a dozen of them.
 pub(crate) const SIZE: [u32; 2] = [160, 90];
 
-/// What came of one shader.
-#[derive(Debug)]
-pub(crate) struct Judged {
-    pub(crate) verdict: Verdict,
-    pub(crate) comparison: Comparison,
-    pub(crate) expected: Image,
-    pub(crate) actual: Image,
+/// The maths question's answer: every test here has a scene.
+pub(crate) fn maths(findings: &Findings) -> &Answer {
+    &findings.maths.as_ref().expect("there is a scene").answer
 }
 
-impl Judged {
-    /// The share of the pixels that `count` is.
-    pub(crate) fn share(&self, count: u64) -> f64 {
-        count as f64 / self.comparison.pixels as f64
-    }
-
-    /// The numbers behind the verdict, for people.
-    pub(crate) fn numbers(&self) -> String {
-        let Comparison {
-            differing,
-            undecided,
-            max_abs,
-            ..
-        } = self.comparison;
-        format!(
-            "{}: {:.2} % differ, {:.2} % undecided, by at most {max_abs:.1e}",
-            self.verdict,
-            100.0 * self.share(differing),
-            100.0 * self.share(undecided),
-        )
-    }
+/// The numbers behind a verdict, for people.
+pub(crate) fn numbers(findings: &Findings) -> String {
+    let questions = [
+        ("maths", &findings.maths),
+        ("rounding", &findings.rounding),
+        ("toolchain", &findings.toolchain),
+    ];
+    let told = questions.into_iter().filter_map(|(name, asked)| {
+        let answer = &asked.as_ref()?.answer;
+        let percent = |count| 100.0 * answer.share(count);
+        Some(format!(
+            "{name} {:.2} % differ, {:.2} % undecided, {:.2} % undefined, by at most {:.1e}",
+            percent(answer.differing),
+            percent(answer.undecided),
+            percent(answer.undefined),
+            answer.max_abs
+        ))
+    });
+    let told: Vec<_> = told.collect();
+    format!("{}: {}", findings.verdict, told.join("; "))
 }
 
 /// The one worker of a test, or none where there is no Vulkan driver and the test is to be skipped.
@@ -100,45 +94,37 @@ pub(crate) fn worker() -> Option<Worker> {
     }
 }
 
-/// The tracer of a scene at `size`.
-pub(crate) fn tracer(scene: &str, size: [u32; 2]) -> Tracer<f64> {
+/// A scene at `size`.
+pub(crate) fn scene(text: &str, size: [u32; 2]) -> Scene {
     let mut files = Files::default();
-    let file = files.add(File::new("<scene>", scene));
-    let mut scene = scene::parse(&files, file).unwrap_or_else(|errors| panic!("{}", told(&errors, &files)));
+    let file = files.add(File::new("<scene>", text));
+    let mut scene =
+        scene::parse(&files, file).unwrap_or_else(|errors| panic!("{}\n{text}", told(&errors, &files)));
     scene.film.size = size;
-    Tracer::new(&scene)
+    scene
 }
 
-/// Paints and traces at `size`, compares and judges.
+/// What `toyproof check` finds of a shader at `size`.
 ///
 /// # Panics
 /// If anything goes wrong that is not the picture.
-pub(crate) fn verdict(worker: &mut Worker, shader: &str, scene: &str, size: [u32; 2]) -> Judged {
+pub(crate) fn judged(worker: &mut Worker, shader: &str, scene_text: &str, size: [u32; 2]) -> Findings {
     let mut files = Files::default();
     let file = files.add(File::new("<shader>", shader));
     let checked = glsl::check(&files, file, &glsl::Options::default())
         .unwrap_or_else(|errors| panic!("{}\n{shader}", told(&errors, &files)));
-    let lowered = glsl::lower_strict(&checked);
     let frame = Frame {
         size,
         ..Frame::default()
     };
-    let drawn = match worker.draw(lowered, frame, FloatMode::Strict) {
-        Ok(drawn) => drawn,
-        Err(Failure::Invalid(errors)) => panic!("{}\n{shader}", told(&errors, &files)),
-        Err(failure) => panic!("{failure}\n{shader}"),
+    let case = Case {
+        checked: &checked,
+        scene: Some(&scene(scene_text, size)),
+        frame: &frame,
+        float: FloatMode::Strict,
+        timeout: Duration::from_secs(60),
     };
-    assert_eq!(drawn.cut_short, Some(0), "loops were cut short\n{shader}");
-    let tracer = tracer(scene, size);
-    let expected = tracer.picture(|| ());
-    let hull = |x, y| tracer.hull(x, y);
-    let (comparison, _) = compare(&expected, &drawn.image, Some(&hull));
-    Judged {
-        verdict: judge(&comparison).0,
-        comparison,
-        expected,
-        actual: drawn.image,
-    }
+    verify(Some(worker), &case).unwrap_or_else(|failure| panic!("{failure}\n{shader}"))
 }
 
 fn told(errors: &[Diagnostic], files: &Files) -> String {

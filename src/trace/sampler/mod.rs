@@ -3,10 +3,7 @@
 mod sine_hash;
 mod stratified;
 
-pub(super) use sine_hash::draw_bound;
-
 use self::stratified::Strata;
-use super::doubt::Doubt;
 use super::real::Real;
 use crate::image::pcg;
 use crate::scene::{Sampler, unit};
@@ -70,10 +67,10 @@ impl Draws {
     }
 
     /// The sample's offset from the pixel's centre, in pixels, in [−½, ½).
-    pub(super) fn jitter<T: Real>(&mut self, doubt: &impl Doubt<T>) -> [T; 2] {
+    pub(super) fn jitter<T: Real>(&mut self) -> [T; 2] {
         match self {
             Self::Center => [T::zero(); 2],
-            Self::SineHash(sample) => sine_hash::jitter(*sample, doubt),
+            Self::SineHash(sample) => sine_hash::jitter(*sample),
             _ => self.pair().map(|draw: T| draw - T::from_f64(0.5)),
         }
     }

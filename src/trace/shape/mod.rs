@@ -8,9 +8,9 @@ mod tests;
 
 use std::fmt::Debug;
 
-use super::doubt::Doubt;
 use super::ray::Ray;
 use super::real::Real;
+use super::style::Style;
 use crate::scene;
 
 pub(super) use plane::Plane;
@@ -20,13 +20,13 @@ pub(super) use sphere::Sphere;
 /// What a ray can meet.
 pub(super) trait Primitive<T: Real>: Debug + Send + Sync {
     /// The smallest t > `t_min` at which the ray, which starts elsewhere, meets it.
-    fn intersect(&self, ray: &Ray<T>, doubt: &impl Doubt<T>) -> Option<T>;
+    fn intersect(&self, ray: &Ray<T>, style: &impl Style<T>) -> Option<T>;
 
     /// The same for a ray that starts on it: that start is no hit.
-    fn intersect_own(&self, ray: &Ray<T>, doubt: &impl Doubt<T>) -> Option<T>;
+    fn intersect_own(&self, ray: &Ray<T>, style: &impl Style<T>) -> Option<T>;
 
     /// The point at t, and the normal there.
-    fn surface(&self, ray: &Ray<T>, t: T, depth: u32, doubt: &impl Doubt<T>) -> [T::Vec3; 2];
+    fn surface(&self, ray: &Ray<T>, t: T) -> [T::Vec3; 2];
 }
 
 /// Any shape, where a scene has several kinds.
@@ -48,27 +48,27 @@ impl<T: Real> Shape<T> {
 }
 
 impl<T: Real> Primitive<T> for Shape<T> {
-    fn intersect(&self, ray: &Ray<T>, doubt: &impl Doubt<T>) -> Option<T> {
+    fn intersect(&self, ray: &Ray<T>, style: &impl Style<T>) -> Option<T> {
         match self {
-            Self::Sphere(sphere) => sphere.intersect(ray, doubt),
-            Self::Quadric(quadric) => quadric.intersect(ray, doubt),
-            Self::Plane(plane) => plane.intersect(ray, doubt),
+            Self::Sphere(sphere) => sphere.intersect(ray, style),
+            Self::Quadric(quadric) => quadric.intersect(ray, style),
+            Self::Plane(plane) => plane.intersect(ray, style),
         }
     }
 
-    fn intersect_own(&self, ray: &Ray<T>, doubt: &impl Doubt<T>) -> Option<T> {
+    fn intersect_own(&self, ray: &Ray<T>, style: &impl Style<T>) -> Option<T> {
         match self {
-            Self::Sphere(sphere) => sphere.intersect_own(ray, doubt),
-            Self::Quadric(quadric) => quadric.intersect_own(ray, doubt),
-            Self::Plane(plane) => plane.intersect_own(ray, doubt),
+            Self::Sphere(sphere) => sphere.intersect_own(ray, style),
+            Self::Quadric(quadric) => quadric.intersect_own(ray, style),
+            Self::Plane(plane) => plane.intersect_own(ray, style),
         }
     }
 
-    fn surface(&self, ray: &Ray<T>, t: T, depth: u32, doubt: &impl Doubt<T>) -> [T::Vec3; 2] {
+    fn surface(&self, ray: &Ray<T>, t: T) -> [T::Vec3; 2] {
         match self {
-            Self::Sphere(sphere) => sphere.surface(ray, t, depth, doubt),
-            Self::Quadric(quadric) => quadric.surface(ray, t, depth, doubt),
-            Self::Plane(plane) => plane.surface(ray, t, depth, doubt),
+            Self::Sphere(sphere) => sphere.surface(ray, t),
+            Self::Quadric(quadric) => quadric.surface(ray, t),
+            Self::Plane(plane) => plane.surface(ray, t),
         }
     }
 }

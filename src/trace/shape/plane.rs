@@ -1,8 +1,8 @@
 //! Ray–plane intersection.
 
-use super::super::doubt::Doubt;
 use super::super::ray::Ray;
 use super::super::real::{Real, Vector};
+use super::super::style::Style;
 use super::Primitive;
 
 /// An endless plane.
@@ -23,18 +23,18 @@ impl<T: Real> Plane<T> {
 }
 
 impl<T: Real> Primitive<T> for Plane<T> {
-    fn intersect(&self, ray: &Ray<T>, doubt: &impl Doubt<T>) -> Option<T> {
+    fn intersect(&self, ray: &Ray<T>, style: &impl Style<T>) -> Option<T> {
         let t = self.normal.dot(self.point - ray.origin) / self.normal.dot(ray.direction);
         // A ray along the plane divides by 0: t is infinite or NaN.
-        (t > doubt.t_min(ray.from.is_some()) && t.is_finite()).then_some(t)
+        (t > style.t_min(ray.from.is_some()) && t.is_finite()).then_some(t)
     }
 
-    fn intersect_own(&self, _: &Ray<T>, _: &impl Doubt<T>) -> Option<T> {
+    fn intersect_own(&self, _: &Ray<T>, _: &impl Style<T>) -> Option<T> {
         None
     }
 
-    fn surface(&self, ray: &Ray<T>, t: T, depth: u32, doubt: &impl Doubt<T>) -> [T::Vec3; 2] {
-        let point = doubt.point(ray.origin + ray.direction * t, ray.origin, depth);
+    fn surface(&self, ray: &Ray<T>, t: T) -> [T::Vec3; 2] {
+        let point = ray.origin + ray.direction * t;
         let facing = self.normal.dot(ray.direction) < T::zero();
         [point, if facing { self.normal } else { -self.normal }]
     }

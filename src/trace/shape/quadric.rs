@@ -1,8 +1,8 @@
 //! Intersection of rays with surfaces of second degree.
 
-use super::super::doubt::Doubt;
 use super::super::ray::Ray;
 use super::super::real::{Real, Vector};
+use super::super::style::Style;
 use super::{Primitive, roots};
 use crate::scene::{self, QuadricKind};
 
@@ -126,36 +126,34 @@ fn coefficients(kind: &QuadricKind, unit: f64) -> [[f64; 3]; 3] {
 impl<T: Real> Primitive<T> for Quadric<T> {
     /// The ray's origin is first moved to where it comes closest to the quadric's own, so that what is squared and
     /// subtracted is no larger than it must be.
-    fn intersect(&self, ray: &Ray<T>, doubt: &impl Doubt<T>) -> Option<T> {
+    fn intersect(&self, ray: &Ray<T>, style: &impl Style<T>) -> Option<T> {
         let [far, d] = self.localise(ray);
         let ahead = -far.dot(d) / d.dot(d);
         let o = far + d * ahead;
         let [a, b, c] = self.equation(o, d);
         let disc = b * b - a * c;
-        let size = self.q.size() * far.dot(far) + self.g.abs() * far.size() + self.k.abs();
-        let disc = doubt.discriminant(disc, a.abs().max(T::one()) * size);
         if disc.is_nan() || disc < T::zero() {
             return None;
         }
-        let t_min = doubt.t_min(ray.from.is_some());
+        let t_min = style.t_min(ray.from.is_some());
         roots(a, b, c, disc).into_iter().find_map(|t| {
-            let local = doubt.point(o + d * t, far, 0);
+            let local = o + d * t;
             let t = (ahead + t) * self.unit;
             (t > t_min && t.is_finite() && self.is_within_ends(local)).then_some(t)
         })
     }
 
     /// One root is 0, so that the other is −2 b/a.
-    fn intersect_own(&self, ray: &Ray<T>, doubt: &impl Doubt<T>) -> Option<T> {
+    fn intersect_own(&self, ray: &Ray<T>, style: &impl Style<T>) -> Option<T> {
         let [o, d] = self.localise(ray);
         let [a, b, _] = self.equation(o, d);
         let own = (b + b) / a;
         let t = own * self.unit;
-        (t > doubt.t_min(true) && t.is_finite() && self.is_within_ends(o + d * own)).then_some(t)
+        (t > style.t_min(true) && t.is_finite() && self.is_within_ends(o + d * own)).then_some(t)
     }
 
-    fn surface(&self, ray: &Ray<T>, t: T, depth: u32, doubt: &impl Doubt<T>) -> [T::Vec3; 2] {
-        let point = doubt.point(ray.origin + ray.direction * t, ray.origin, depth);
+    fn surface(&self, ray: &Ray<T>, t: T) -> [T::Vec3; 2] {
+        let point = ray.origin + ray.direction * t;
         let local = self.inward((point - self.origin) * self.per_unit);
         let gradient = self.q * local + T::Vec3::new(T::zero(), T::zero(), self.g);
         let normal = self.outward(gradient).normalize();

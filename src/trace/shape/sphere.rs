@@ -1,15 +1,14 @@
 //! Ray–sphere intersection.
 
-use super::super::doubt::Doubt;
 use super::super::ray::Ray;
 use super::super::real::{Real, Vector};
+use super::super::style::Style;
 use super::{Primitive, roots};
 
 /// A sphere.
 #[derive(Debug, Clone, Copy)]
 pub(in super::super) struct Sphere<T: Real> {
     pub(in super::super) center: T::Vec3,
-    pub(in super::super) radius: T,
     /// The power of two at or below the radius. Lengths are divided by it before they are squared, which is exact, so
     /// that spheres of any size have the accuracy of one near 1.
     unit: T,
@@ -30,7 +29,6 @@ impl<T: Real> Sphere<T> {
         let scaled = radius / unit;
         Self {
             center: T::Vec3::from_f64(center),
-            radius,
             unit,
             per_unit: unit.recip(),
             radius2: scaled * scaled,
@@ -42,18 +40,18 @@ impl<T: Real> Primitive<T> for Sphere<T> {
     /// The recentred discriminant and the stable roots of Haines, Günther and Akenine-Möller, “Precision
     /// Improvements for Ray/Sphere Intersection”, Ray Tracing Gems (2019), chapter 7: with f = o − c and
     /// b = −f·d, disc = r² − |f + (b/a) d|², q = b + sign(b) √(a·disc), t₀ = (f·f − r²)/q, t₁ = q/a.
-    fn intersect(&self, ray: &Ray<T>, doubt: &impl Doubt<T>) -> Option<T> {
+    fn intersect(&self, ray: &Ray<T>, style: &impl Style<T>) -> Option<T> {
         let f = (ray.origin - self.center) * self.per_unit;
-        let a = doubt.squared_length(ray.direction.dot(ray.direction));
+        let a = ray.direction.dot(ray.direction);
         let b = -f.dot(ray.direction);
         let closest = f + ray.direction * (b / a);
         let f2 = f.dot(f);
-        let disc = doubt.discriminant(self.radius2 - closest.dot(closest), f2);
+        let disc = self.radius2 - closest.dot(closest);
         // NaN: too far away to tell, and no hit.
         if disc.is_nan() || disc < T::zero() {
             return None;
         }
-        let t_min = doubt.t_min(ray.from.is_some());
+        let t_min = style.t_min(ray.from.is_some());
         roots(a, b, f2 - self.radius2, a * disc)
             .map(|t| t * self.unit)
             .into_iter()
@@ -62,17 +60,17 @@ impl<T: Real> Primitive<T> for Sphere<T> {
 
     /// A ray that leaves the sphere (d·N > 0) meets it no more, one that goes in meets its far side at
     /// t = −2 d·(P − c) / a.
-    fn intersect_own(&self, ray: &Ray<T>, doubt: &impl Doubt<T>) -> Option<T> {
+    fn intersect_own(&self, ray: &Ray<T>, style: &impl Style<T>) -> Option<T> {
         let f = (ray.origin - self.center) * self.per_unit;
         let outward = ray.direction.dot(f);
-        let a = doubt.squared_length(ray.direction.dot(ray.direction));
+        let a = ray.direction.dot(ray.direction);
         let t = T::from_f64(-2.0) * outward / a * self.unit;
-        (t > doubt.t_min(true)).then_some(t)
+        (t > style.t_min(true)).then_some(t)
     }
 
-    fn surface(&self, ray: &Ray<T>, t: T, depth: u32, doubt: &impl Doubt<T>) -> [T::Vec3; 2] {
-        let point = doubt.point(ray.origin + ray.direction * t, ray.origin, depth);
+    fn surface(&self, ray: &Ray<T>, t: T) -> [T::Vec3; 2] {
+        let point = ray.origin + ray.direction * t;
         let normal = (point - self.center).normalize();
-        [point, doubt.normal(normal, point, self.radius, depth)]
+        [point, normal]
     }
 }

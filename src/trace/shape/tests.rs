@@ -4,9 +4,9 @@ use dashu_ratio::RBig;
 use glam::{DQuat, DVec3};
 use proptest::prelude::*;
 
-use super::super::doubt::Exact;
 use super::super::ray::{Hit, Ray};
 use super::super::real::{Real, Vector};
+use super::super::style::Exact;
 use super::{Plane, Primitive, Quadric, Shape, Sphere};
 use crate::image::pcg;
 use crate::scene::{self, QuadricKind, unit};
@@ -111,7 +111,7 @@ fn self_hits<T: Real>(seeds: u32, sizes: [f64; 2], offsets: [f64; 2]) -> (u32, u
         let Some(t) = shape.intersect(&ray, &Exact) else {
             continue;
         };
-        let [point, normal] = shape.surface(&ray, t, 0, &Exact);
+        let [point, normal] = shape.surface(&ray, t);
         let hit = Hit {
             point,
             normal,
@@ -159,7 +159,7 @@ fn no_neighbour_is_lost_beyond_the_rounding_of_its_own_place() {
         let Some(t) = own.intersect(&ray, &Exact) else {
             continue;
         };
-        let [point, normal] = own.surface(&ray, t, 0, &Exact);
+        let [point, normal] = own.surface(&ray, t);
         let hit = Hit {
             point,
             normal,
@@ -187,7 +187,7 @@ fn residuals<T: Real>(seeds: u32, sizes: [f64; 2], room: f64) -> u32 {
             continue;
         };
         met += 1;
-        let [point, normal] = shape.surface(&ray, t, 0, &Exact);
+        let [point, normal] = shape.surface(&ray, t);
         // Off the surface, in units of the size, to first order: f / |∇f|.
         let off = distance(&described, double::<T>(point)) / size;
         assert!(off < room, "seed {seed}: {described:?} is missed by {off:.1e}");

@@ -3,13 +3,13 @@
 mod path;
 mod whitted;
 
-use super::doubt::Doubt;
 use super::light::{Background, Light};
 use super::material::{Material, Model};
 use super::ray::{Hit, Ray};
 use super::real::{Real, Vector};
 use super::sampler::Draws;
 use super::shape::Primitive;
+use super::style::Style;
 use crate::scene::{Integrator, Object, Scene, Shape};
 
 /// Surfaces and lights. `P` is the one shape that a scene requires, so that the loops over it know it.
@@ -66,27 +66,27 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
     }
 
     /// The radiance along a camera ray.
-    pub(super) fn radiance(&self, ray: Ray<T>, draws: &mut Draws, doubt: &impl Doubt<T>) -> T::Vec3 {
+    pub(super) fn radiance(&self, ray: Ray<T>, draws: &mut Draws, style: &impl Style<T>) -> T::Vec3 {
         match self.integrator {
-            Integrator::Whitted => self.whitted(ray, 0, draws, doubt),
-            Integrator::Path => self.path(ray, draws, doubt),
+            Integrator::Whitted => self.whitted(ray, 0, draws, style),
+            Integrator::Path => self.path(ray, draws, style),
         }
     }
 
-    fn intersect(&self, surface: usize, ray: &Ray<T>, doubt: &impl Doubt<T>) -> Option<T> {
+    fn intersect(&self, surface: usize, ray: &Ray<T>, style: &impl Style<T>) -> Option<T> {
         let shape = &self.shapes[surface];
         if ray.from == Some(surface) {
-            shape.intersect_own(ray, doubt)
+            shape.intersect_own(ray, style)
         } else {
-            shape.intersect(ray, doubt)
+            shape.intersect(ray, style)
         }
     }
 
-    fn nearest(&self, ray: &Ray<T>, depth: u32, doubt: &impl Doubt<T>) -> Option<Hit<T>> {
+    fn nearest(&self, ray: &Ray<T>, style: &impl Style<T>) -> Option<Hit<T>> {
         let mut nearest = None;
         let mut t_nearest = T::infinity();
         for surface in 0..self.shapes.len() {
-            if let Some(t) = self.intersect(surface, ray, doubt)
+            if let Some(t) = self.intersect(surface, ray, style)
                 && t < t_nearest
             {
                 t_nearest = t;
@@ -94,7 +94,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
             }
         }
         let surface = nearest?;
-        let [point, normal] = self.shapes[surface].surface(ray, t_nearest, depth, doubt);
+        let [point, normal] = self.shapes[surface].surface(ray, t_nearest);
         Some(Hit {
             point,
             normal,
@@ -103,9 +103,9 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
     }
 
     /// Whether anything but the surface `light` lies strictly between the ray's origin and `distance`.
-    fn occluded(&self, ray: &Ray<T>, distance: T, light: Option<usize>, doubt: &impl Doubt<T>) -> bool {
+    fn occluded(&self, ray: &Ray<T>, distance: T, light: Option<usize>, style: &impl Style<T>) -> bool {
         (0..self.shapes.len()).any(|surface| {
-            light != Some(surface) && self.intersect(surface, ray, doubt).is_some_and(|t| t < distance)
+            light != Some(surface) && self.intersect(surface, ray, style).is_some_and(|t| t < distance)
         })
     }
 }

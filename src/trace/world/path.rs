@@ -2,13 +2,13 @@
 //! emitter and by one drawn for the BRDF, weighted by the power heuristic of E. Veach and L. Guibas, “Optimally
 //! Combining Sampling Techniques for Monte Carlo Rendering”, SIGGRAPH 1995.
 
-use super::super::doubt::Doubt;
 use super::super::light::Cone;
 use super::super::material::{Brdf, Frame, Model};
 use super::super::ray::{Hit, Ray};
 use super::super::real::{Real, Vector};
 use super::super::sampler::Draws;
 use super::super::shape::Primitive;
+use super::super::style::Style;
 use super::World;
 
 /// The last direction that was drawn for a BRDF: its density, and the point that it was drawn at.
@@ -17,13 +17,13 @@ type Drawn<T> = (T, <T as Real>::Vec3);
 impl<T: Real, P: Primitive<T>> World<T, P> {
     /// Draws, at each point with a BRDF: which emitter (one number), a direction in its cone (a pair), a direction for
     /// the BRDF (a pair). The first are left out where nothing shines.
-    pub(super) fn path(&self, mut ray: Ray<T>, draws: &mut Draws, doubt: &impl Doubt<T>) -> T::Vec3 {
+    pub(super) fn path(&self, mut ray: Ray<T>, draws: &mut Draws, style: &impl Style<T>) -> T::Vec3 {
         let mut sum = T::Vec3::ZERO;
         let mut throughput = T::Vec3::from_f64([1.0; 3]);
         // None where no emitter could have been drawn: at the camera and at mirrors.
         let mut drawn: Option<Drawn<T>> = None;
-        for depth in 0..self.max_depth {
-            let Some(hit) = self.nearest(&ray, depth, doubt) else {
+        for _ in 0..self.max_depth {
+            let Some(hit) = self.nearest(&ray, style) else {
                 return sum + throughput * self.background.color(ray.direction);
             };
             let material = &self.materials[hit.surface];
@@ -34,14 +34,14 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
                     let facing = ray.direction.dot(hit.normal);
                     throughput = throughput * color;
                     drawn = None;
-                    ray = hit.leave(ray.direction - hit.normal * (T::from_f64(2.0) * facing), doubt);
+                    ray = hit.leave(ray.direction - hit.normal * (T::from_f64(2.0) * facing), style);
                 }
                 Model::Reflective(brdf) => {
                     let frame = Frame {
                         normal: hit.normal,
                         view: -ray.direction,
                     };
-                    sum = sum + throughput * self.emitted(&hit, (brdf, color), &frame, draws, doubt);
+                    sum = sum + throughput * self.emitted(&hit, (brdf, color), &frame, draws, style);
                     let direction = brdf.draw(&frame, draws.pair());
                     let cosine = hit.normal.dot(direction);
                     if cosine <= T::zero() {
@@ -50,7 +50,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
                     let density = brdf.density(&frame, direction);
                     throughput = throughput * brdf.value(color, &frame, direction) * (cosine / density);
                     drawn = Some((density, hit.point));
-                    ray = hit.leave(direction, doubt);
+                    ray = hit.leave(direction, style);
                 }
                 // Refused when the scene is read.
                 Model::Facing | Model::Glass(_) => return sum,
@@ -66,7 +66,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         (brdf, color): (&Brdf<T>, T::Vec3),
         frame: &Frame<T>,
         draws: &mut Draws,
-        doubt: &impl Doubt<T>,
+        style: &impl Style<T>,
     ) -> T::Vec3 {
         let number = T::from_f64(self.emitters.len() as f64);
         if self.emitters.is_empty() {
@@ -78,8 +78,8 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         let cone = Cone::new(emitter.center, emitter.radius, hit.point);
         let (direction, distance) = cone.draw(draws.pair());
         let cosine = hit.normal.dot(direction);
-        let ray = hit.leave(direction, doubt);
-        if cosine <= T::zero() || self.occluded(&ray, distance, Some(emitter.surface), doubt) {
+        let ray = hit.leave(direction, style);
+        if cosine <= T::zero() || self.occluded(&ray, distance, Some(emitter.surface), style) {
             return T::Vec3::ZERO;
         }
         let density = cone.density() / number;

@@ -1,13 +1,13 @@
 //! Light from the lights, by way of mirrors and glass: T. Whitted, “An Improved Illumination Model for Shaded
 //! Display”, CACM 23(6), 1980.
 
-use super::super::doubt::Doubt;
 use super::super::light::{Cone, Light};
 use super::super::material::{Brdf, Frame, Model};
 use super::super::ray::{Hit, Ray};
 use super::super::real::{Real, Vector};
 use super::super::sampler::Draws;
 use super::super::shape::Primitive;
+use super::super::style::Style;
 use super::World;
 
 impl<T: Real, P: Primitive<T>> World<T, P> {
@@ -17,12 +17,12 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         mut ray: Ray<T>,
         depth: u32,
         draws: &mut Draws,
-        doubt: &impl Doubt<T>,
+        style: &impl Style<T>,
     ) -> T::Vec3 {
         let mut sum = T::Vec3::ZERO;
         let mut throughput = T::Vec3::from_f64([1.0; 3]);
         for depth in depth..self.max_depth {
-            let Some(hit) = self.nearest(&ray, depth, doubt) else {
+            let Some(hit) = self.nearest(&ray, style) else {
                 return sum + throughput * self.background.color(ray.direction);
             };
             let material = &self.materials[hit.surface];
@@ -34,25 +34,25 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
                 Model::Emitter => return sum + color,
                 Model::Reflective(brdf) => {
                     let color = material.color(hit.point);
-                    let lit = self.lit(&hit, (brdf, color), -ray.direction, draws, doubt);
+                    let lit = self.lit(&hit, (brdf, color), -ray.direction, draws, style);
                     return sum + throughput * lit;
                 }
                 Model::Mirror => {
                     throughput = color;
-                    ray = hit.leave(reflected(), doubt);
+                    ray = hit.leave(reflected(), style);
                 }
                 Model::Glass(glass) => {
                     let parted = glass.part(ray.direction, hit.normal, facing);
-                    let mirrored = hit.leave(reflected(), doubt);
+                    let mirrored = hit.leave(reflected(), style);
                     let Some(refracted) = parted.refracted else {
                         throughput = color;
                         ray = mirrored;
                         continue;
                     };
-                    let seen = self.whitted(mirrored, depth + 1, draws, doubt);
+                    let seen = self.whitted(mirrored, depth + 1, draws, style);
                     sum = sum + color * parted.share * seen;
                     throughput = color * (T::one() - parted.share);
-                    ray = hit.leave(refracted, doubt);
+                    ray = hit.leave(refracted, style);
                 }
             }
         }
@@ -66,7 +66,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         (brdf, color): (&Brdf<T>, T::Vec3),
         view: T::Vec3,
         draws: &mut Draws,
-        doubt: &impl Doubt<T>,
+        style: &impl Style<T>,
     ) -> T::Vec3 {
         let frame = Frame {
             normal: hit.normal,
@@ -74,9 +74,9 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         };
         let mut sum = color * self.ambient;
         for light in &self.lights {
-            let (direction, ray, distance) = toward(hit, light, draws, doubt);
+            let (direction, ray, distance) = toward(hit, light, draws, style);
             let cosine = hit.normal.dot(direction);
-            if cosine > T::zero() && !(light.shadow && self.occluded(&ray, distance, None, doubt)) {
+            if cosine > T::zero() && !(light.shadow && self.occluded(&ray, distance, None, style)) {
                 sum = sum + light.color * brdf.value(color, &frame, direction) * cosine;
             }
         }
@@ -89,15 +89,15 @@ fn toward<T: Real>(
     hit: &Hit<T>,
     light: &Light<T>,
     draws: &mut Draws,
-    doubt: &impl Doubt<T>,
+    style: &impl Style<T>,
 ) -> (T::Vec3, Ray<T>, T) {
     if light.radius > T::zero() {
         let cone = Cone::new(light.position, light.radius, hit.point);
         let (direction, distance) = cone.draw(draws.pair());
-        return (direction, hit.leave(direction, doubt), distance);
+        return (direction, hit.leave(direction, style), distance);
     }
     let direction = (light.position - hit.point).normalize();
-    let mut ray = hit.leave(direction, doubt);
+    let mut ray = hit.leave(direction, style);
     let to_light = light.position - ray.origin;
     let distance = to_light.length();
     ray.direction = to_light / distance;

@@ -1,0 +1,41 @@
+//! The scene that a shader is compared with.
+
+use std::path::Path;
+
+use crate::cli::shader::Unusable;
+use crate::scene::{self, Scene};
+use crate::source::{self, Files, Found, FoundIn};
+
+/// The scene of a shader.
+pub(super) struct Reference {
+    pub(super) name: String,
+    pub(super) scene: Result<Scene, Unusable>,
+    pub(super) files: Files,
+}
+
+impl Reference {
+    /// The scene that `--scene` names, else the one beside the shader.
+    pub(super) fn find(scene: Option<&Path>, found: &Found) -> Option<Self> {
+        let path = match (scene, &found.place) {
+            (Some(path), _) => path.to_owned(),
+            (None, FoundIn::File(shader)) => {
+                let beside = shader.with_extension("toml");
+                beside.is_file().then_some(beside)?
+            }
+            (None, FoundIn::StandardInput) => return None,
+        };
+        let mut files = Files::default();
+        let scene = match source::read_text(&path) {
+            Ok(text) => {
+                let file = files.add(text);
+                scene::parse(&files, file).map_err(Unusable::Invalid)
+            }
+            Err(error) => Err(Unusable::Trouble(error.to_string())),
+        };
+        Some(Self {
+            name: path.display().to_string(),
+            scene,
+            files,
+        })
+    }
+}

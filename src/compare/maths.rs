@@ -1,0 +1,141 @@
+//! Is the algorithm right? The shader in f64 against the tracer in f64.
+
+use rayon::prelude::*;
+
+use super::{EXACT_TOLERANCE, Pixel, Standing};
+use crate::image::Image;
+use crate::trace::Hull;
+
+/// At most so often is the shader asked again with every operation moved by a unit in the last place. A pixel that
+/// hangs by a hair falls to the other side every second time, so that one in 2⁸ such pixels is missed.
+pub const SHAKES: u64 = 8;
+
+/// Compares the shader in f64, `actual`, with the tracer in f64, `expected`, bottom row first.
+///
+/// A pixel agrees if no component is farther than [`EXACT_TOLERANCE`] from the hull of the answers that the tracer gives in
+/// the legal styles of secondary rays; `hull` is asked only where the exact answer does not agree. A pixel outside of it
+/// is undecided if the shader's own answer moves by more than that in one of the pictures that `shaken` paints, given a
+/// seed, with every operation perturbed (Vignes, "A stochastic arithmetic for reliable scientific computation", 1993);
+/// it is asked only if something differs, and may give up.
+///
+/// # Panics
+/// If the sizes differ.
+pub fn maths(
+    expected: &Image,
+    actual: &Image,
+    undefined: &[bool],
+    hull: impl Fn(u32, u32) -> Hull + Sync,
+    mut shaken: impl FnMut(u64) -> Option<Image>,
+) -> Vec<Standing> {
+    assert_eq!(expected.size(), actual.size());
+    let mut standings: Vec<_> = undefined
+        .par_iter()
+        .enumerate()
+        .map(|(index, &undefined)| {
+            if undefined {
+                return Standing::Undefined;
+            }
+            let pixel = Pixel::at(index, expected, actual);
+            let agrees = pixel.difference() <= EXACT_TOLERANCE
+                || hull(pixel.x, pixel.y).distance(pixel.actual.map(f64::from)) <= EXACT_TOLERANCE;
+            if agrees {
+                Standing::Agrees
+            } else {
+                Standing::Differs
+            }
+        })
+        .collect();
+    // Two pictures in which no differing pixel moves say that what is left is decided.
+    let mut in_vain = 0;
+    for seed in 0..SHAKES {
+        if in_vain == 2 || !standings.contains(&Standing::Differs) {
+            break;
+        }
+        let Some(shaken) = shaken(seed) else { break };
+        let mut moved = false;
+        for (index, standing) in standings.iter_mut().enumerate() {
+            if *standing == Standing::Differs
+                && Pixel::at(index, actual, &shaken).difference() > EXACT_TOLERANCE
+            {
+                *standing = Standing::Undecided;
+                moved = true;
+            }
+        }
+        in_vain = if moved { 0 } else { in_vain + 1 };
+    }
+    standings
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(reds: &[f32]) -> Image {
+        Image::new(
+            reds.len() as u32,
+            1,
+            reds.iter().map(|&red| [red, 0.0, 0.0, 1.0]).collect(),
+        )
+    }
+
+    fn point(red: f64) -> Hull {
+        Hull {
+            low: [red, 0.0, 0.0],
+            high: [red, 0.0, 0.0],
+        }
+    }
+
+    #[test]
+    fn what_lies_in_the_hull_agrees_and_what_moves_is_undecided() {
+        let expected = row(&[0.0; 5]);
+        let actual = row(&[0.00009, 0.3, 0.3, 0.3, 0.3]);
+        let hull = |x, _| Hull {
+            high: [if x == 1 { 0.29995 } else { 0.0 }, 0.0, 0.0],
+            ..point(0.0)
+        };
+        let undefined = [false, false, false, false, true];
+        let moving = |seed| Some(row(&[0.0, 0.0, if seed == 1 { 0.0 } else { 0.3 }, 0.30005, 0.3]));
+        let standings = maths(&expected, &actual, &undefined, hull, moving);
+        assert_eq!(
+            standings,
+            [
+                Standing::Agrees,
+                Standing::Agrees,
+                Standing::Undecided,
+                Standing::Differs,
+                Standing::Undefined
+            ]
+        );
+    }
+
+    #[test]
+    fn nothing_is_shaken_without_need_nor_for_ever() {
+        let black = row(&[0.0]);
+        let mut asked = 0;
+        let mut count = |_| {
+            asked += 1;
+            Some(row(&[1.0]))
+        };
+        maths(&black, &black, &[false], |_, _| point(0.0), &mut count);
+        assert_eq!(asked, 0, "nothing differs");
+        let mut asked = 0;
+        let still = |_| {
+            asked += 1;
+            Some(row(&[1.0]))
+        };
+        let standings = maths(&black, &row(&[1.0]), &[false], |_, _| point(0.0), still);
+        assert_eq!((asked, standings), (2, vec![Standing::Differs]));
+    }
+
+    #[test]
+    fn nan_is_no_colour_that_a_scene_has() {
+        let standings = maths(
+            &row(&[0.0]),
+            &row(&[f32::NAN]),
+            &[false],
+            |_, _| point(0.0),
+            |_| None,
+        );
+        assert_eq!(standings, [Standing::Differs]);
+    }
+}

@@ -1,0 +1,173 @@
+//! Legal styles of secondary rays.
+//!
+//! The tracer has no epsilons: a ray that leaves a surface does not meet the point that it starts from. Shaders cannot know what
+//! a ray starts from, so they start it a little off the surface, or do not count what it meets at once. Both are legal,
+//! and move an answer where surfaces touch, at shadow edges and in mirrors. [`Tracer::hull`] asks the tracer in
+//! each of these styles.
+
+use super::real::Real;
+use super::sampler::Sample;
+use super::{Tracer, film};
+
+/// How secondary rays start. [`Exact`] costs nothing.
+pub(super) trait Style<T: Real> {
+    /// How far along the normal they start off their surface, in scene units.
+    fn offset(&self) -> T;
+    /// Hits must lie beyond this t; that of camera rays is 0.
+    fn t_min(&self, secondary: bool) -> T;
+}
+
+/// From the surface itself.
+pub(super) struct Exact;
+
+impl<T: Real> Style<T> for Exact {
+    fn offset(&self) -> T {
+        T::zero()
+    }
+    fn t_min(&self, _: bool) -> T {
+        T::zero()
+    }
+}
+
+/// Starts off the surface that shaders use, in scene units, and the smallest t that they accept.
+const OFFSETS: [f64; 3] = [0.0, 1e-4, 1e-3];
+const T_MINS: [f64; 2] = [0.0, 1e-3];
+
+/// As a shader might.
+struct Legal {
+    offset: f64,
+    t_min: f64,
+}
+
+impl Style<f64> for Legal {
+    fn offset(&self) -> f64 {
+        self.offset
+    }
+    fn t_min(&self, secondary: bool) -> f64 {
+        if secondary { self.t_min } else { 0.0 }
+    }
+}
+
+/// The smallest box that holds all answers, component by component.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hull {
+    /// The smallest of each component.
+    pub low: [f64; 3],
+    /// The largest of each component.
+    pub high: [f64; 3],
+}
+
+impl Hull {
+    /// How far `color`, clamped to [0, 1], lies outside of the clamped hull, by the component that is
+    /// farthest; infinite for NaN.
+    #[must_use]
+    pub fn distance(&self, color: [f64; 3]) -> f64 {
+        let outside = |i: usize| {
+            let [low, high, value] = [self.low[i], self.high[i], color[i]].map(|v| v.clamp(0.0, 1.0));
+            if value.is_nan() {
+                f64::INFINITY
+            } else {
+                (low - value).max(value - high).max(0.0)
+            }
+        };
+        (0..3).map(outside).fold(0.0, f64::max)
+    }
+}
+
+impl Tracer<f64> {
+    /// The colours that the pixel at (x, y) has in the legal styles. Each sample has its own hull, so that the mean's is
+    /// the mean of theirs: which style a shader follows is the same for all samples, but not what it means to each.
+    #[must_use]
+    pub fn hull(&self, x: u32, y: u32) -> Hull {
+        let mut sum = Hull {
+            low: [0.0; 3],
+            high: [0.0; 3],
+        };
+        let count = self.film.samples;
+        for index in 0..count {
+            let mut low = [f64::INFINITY; 3];
+            let mut high = [f64::NEG_INFINITY; 3];
+            let styles = OFFSETS
+                .into_iter()
+                .flat_map(|offset| T_MINS.map(|t_min| Legal { offset, t_min }));
+            for style in styles {
+                let sample = Sample {
+                    pixel: [x, y],
+                    index,
+                    count,
+                    set: 0,
+                };
+                let color = self.sample(sample, &style).to_array();
+                for i in 0..3 {
+                    low[i] = low[i].min(color[i]);
+                    high[i] = high[i].max(color[i]);
+                }
+            }
+            for i in 0..3 {
+                sum.low[i] += low[i];
+                sum.high[i] += high[i];
+            }
+        }
+        let mean = |total: f64| film::develop(&self.film, total / f64::from(count));
+        Hull {
+            low: sum.low.map(mean),
+            high: sum.high.map(mean),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene;
+    use crate::source::{File, Files};
+
+    fn hull(text: &str) -> (Hull, [f64; 3]) {
+        let mut files = Files::default();
+        let file = files.add(File::new("s", text));
+        let tracer = Tracer::<f64>::new(&scene::parse(&files, file).unwrap());
+        (tracer.hull(0, 0), tracer.pixel(0, 0))
+    }
+
+    /// One pixel that looks at a white floor 1 below the eye, where a ball may stand in the light from above.
+    fn floor(ball: &str) -> String {
+        format!(
+            "[film]\nsize = [1, 1]\n[camera]\neye = [0, 0, 0]\nscreen_distance = 1\n\
+             [[light]]\nposition = [0, 0, 0]\ncolor = [1, 1, 1]\n\
+             [[sphere]]\ncenter = [0, 0, -11]\nradius = 10\n\
+             material = {{ model = \"lambert\", color = [1, 1, 1] }}\n{ball}"
+        )
+    }
+
+    #[test]
+    fn away_from_edges_the_hull_is_the_answer() {
+        let (hull, exact) = hull(&floor(""));
+        assert!(hull.distance(exact) == 0.0);
+        assert!((0..3).all(|i| hull.high[i] - hull.low[i] < 1e-12), "{hull:?}");
+    }
+
+    #[test]
+    fn what_touches_the_surface_may_shade_it_or_not() {
+        // The ball hides the light from where the ray meets the floor, and lies nearer than the styles' offset and t.
+        let ball = "[[sphere]]\ncenter = [0.000268, 0, -0.999866]\nradius = 0.00005\n\
+                    material = { model = \"mirror\", color = [1, 1, 1] }\n";
+        let text = floor(ball).replace("position = [0, 0, 0]", "position = [1, 0, -0.5]");
+        let (hull, exact) = hull(&text);
+        assert_eq!(exact, [0.0; 3]);
+        assert_eq!(hull.low, [0.0; 3]);
+        // The cosine of the light from a point up to 0.001 higher.
+        let cosine = 0.5 / 1.25f64.sqrt();
+        assert!((hull.high[0] - cosine).abs() < 1e-3, "{hull:?}");
+    }
+
+    #[test]
+    fn the_distance_is_zero_inside_and_infinite_for_nan() {
+        let hull = Hull {
+            low: [0.2; 3],
+            high: [0.4, 0.4, 7.0],
+        };
+        assert_eq!(hull.distance([0.3, 0.2, 1.5]), 0.0);
+        assert!((hull.distance([0.3, 0.1, 0.3]) - 0.1).abs() < 1e-15);
+        assert_eq!(hull.distance([f64::NAN, 0.3, 0.3]), f64::INFINITY);
+    }
+}

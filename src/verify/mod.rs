@@ -1,0 +1,250 @@
+//! The three questions, asked of one shader: the GPU, the evaluator and the tracer paint at once, and their pictures are
+//! compared.
+
+mod cpu;
+mod notes;
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{self, ScopedJoinHandle};
+use std::time::{Duration, Instant};
+
+use thiserror::Error;
+
+use self::cpu::{Cpu, Limits};
+use crate::compare::{self, Answer, Answers, Comparison, Standing, Verdict};
+use crate::diagnostic::Diagnostic;
+use crate::eval::{self, Program};
+use crate::frame::Frame;
+use crate::glsl::Checked;
+use crate::gpu::{self, Drawn, FloatMode, Worker};
+use crate::image::{Image, Mark};
+use crate::scene::{Moment, Scene};
+use crate::trace::Tracer;
+
+/// What is to be verified.
+#[derive(Debug, Clone, Copy)]
+pub struct Case<'a> {
+    /// The shader.
+    pub checked: &'a Checked,
+    /// What it should paint, if that is known; the film's size is the frame's.
+    pub scene: Option<&'a Scene>,
+    /// The frame.
+    pub frame: &'a Frame,
+    /// How far the driver may rearrange arithmetic. If it may, the toolchain question is not asked.
+    pub float: FloatMode,
+    /// How long a picture may take.
+    pub timeout: Duration,
+}
+
+/// What was found.
+#[derive(Debug)]
+pub struct Findings {
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Why, in one sentence.
+    pub reason: String,
+    /// Is the algorithm right? Asked where there is a scene.
+    pub maths: Option<Asked>,
+    /// Is float32 enough?
+    pub rounding: Option<Asked>,
+    /// Was the shader run as it stands? Asked where a GPU painted strictly.
+    pub toolchain: Option<Asked>,
+    /// The shader's picture beside the reference's.
+    pub picture: Option<(Comparison, Vec<Mark>)>,
+    /// What the tracer painted.
+    pub reference: Option<Image>,
+    /// What the GPU painted, or the evaluator in f32 where there is none.
+    pub actual: Image,
+    /// What the evaluator painted in f64; none if it could not.
+    pub exact: Option<Image>,
+    /// How the GPU painted; none if the evaluator did.
+    pub painter: Option<Painter>,
+    /// What was seen on the way, with its line.
+    pub notes: Vec<Diagnostic>,
+    /// How long the evaluator took, for all its pictures.
+    pub eval: Duration,
+    /// How long the tracer took.
+    pub trace: Option<Duration>,
+}
+
+/// A GPU at work: [`Drawn`] without its picture.
+#[derive(Debug, Clone)]
+pub struct Painter {
+    /// Adapter and driver.
+    pub device: String,
+    /// Time for naga to parse, validate and write.
+    pub translate: Duration,
+    /// Time for the driver to compile.
+    pub compile: Duration,
+    /// Time to paint and read back.
+    pub draw: Duration,
+}
+
+/// The answer to a question, and what its picture shows.
+#[derive(Debug)]
+pub struct Asked {
+    /// The answer.
+    pub answer: Answer,
+    /// A mark for each pixel, bottom row first.
+    pub marks: Vec<Mark>,
+}
+
+impl Asked {
+    fn new(expected: &Image, actual: &Image, standings: &[Standing]) -> Self {
+        Self {
+            answer: Answer::new(expected, actual, standings),
+            marks: compare::marks(expected, actual, standings),
+        }
+    }
+}
+
+/// Why there are no findings.
+#[derive(Debug, Error)]
+pub enum Failure {
+    /// The GPU's side failed.
+    #[error(transparent)]
+    Gpu(#[from] gpu::Failure),
+    /// There is no GPU, and the evaluator failed.
+    #[error(transparent)]
+    Cpu(#[from] eval::Failure),
+    /// The driver ended loops by force in that many pixels.
+    #[error("a loop was ended by force in {0} pixels")]
+    CutShort(u64),
+}
+
+/// The evaluator may take so many times as long as the GPU: that it is slow is not the shader's fault.
+const PATIENCE: u32 = 4;
+
+/// Asks the three questions. Without a `worker` the evaluator paints in its stead, and the toolchain question is not asked.
+///
+/// # Errors
+/// Why there is no picture of the shader.
+pub fn verify(worker: Option<&mut Worker>, case: &Case) -> Result<Findings, Failure> {
+    let moment = Moment {
+        frame: case.frame.frame,
+        time: f64::from(case.frame.time),
+    };
+    let tracer = case.scene.map(|scene| Tracer::<f64>::at(scene, moment));
+    let program = Program::new(case.checked);
+    let stop = AtomicBool::new(false);
+    let limits = Limits {
+        // Where a GPU paints too, it is the one that must not take long.
+        each: case.timeout * if worker.is_some() { PATIENCE } else { 1 },
+        stop: &stop,
+    };
+    // They share the cores, but none waits for the others' latencies.
+    let (drawn, (cpu, eval), traced) = thread::scope(|scope| {
+        let cpu = scope.spawn(|| timed(|| Cpu::paint(&program, case, limits)));
+        let trace = |tracer: &Tracer<f64>| timed(|| tracer.picture(|| ()));
+        let traced = tracer.as_ref().map(|tracer| scope.spawn(move || trace(tracer)));
+        let drawn = worker.map(|worker| {
+            let lowered = case.float.lower(case.checked);
+            let drawn = worker.draw(lowered, case.frame.clone(), case.float);
+            let is_usable = |drawn: &Drawn| drawn.cut_short.is_none_or(|pixels| pixels == 0);
+            stop.store(!drawn.as_ref().is_ok_and(is_usable), Ordering::Relaxed);
+            drawn
+        });
+        (drawn.transpose(), join(cpu), traced.map(join))
+    });
+    let (actual, painter) = match (drawn?, &cpu) {
+        (Some(drawn), _) => {
+            if let Some(pixels @ 1..) = drawn.cut_short {
+                return Err(Failure::CutShort(pixels));
+            }
+            let (image, painter) = split(drawn);
+            (image, Some(painter))
+        }
+        (None, Ok(cpu)) => (cpu.single.clone(), None),
+        (None, Err(failure)) => return Err(failure.clone().into()),
+    };
+    let mut findings = Findings {
+        verdict: Verdict::Ok,
+        reason: String::new(),
+        maths: None,
+        rounding: None,
+        toolchain: None,
+        picture: None,
+        reference: None,
+        exact: None,
+        actual,
+        painter,
+        notes: Vec::new(),
+        eval,
+        trace: None,
+    };
+    if let Some((reference, trace)) = traced {
+        findings.picture = Some(compare::compare(&reference, &findings.actual));
+        findings.reference = Some(reference);
+        findings.trace = Some(trace);
+    }
+    match (cpu, &program) {
+        (Ok(cpu), Ok(program)) => {
+            findings.ask(case, &cpu, program, tracer.as_ref());
+            findings.exact = Some(cpu.double);
+        }
+        (Err(failure), _) => findings.cannot_ask(&failure),
+        (_, Err(refusal)) => findings.cannot_ask(&(*refusal).into()),
+    }
+    Ok(findings)
+}
+
+impl Findings {
+    fn ask(&mut self, case: &Case, cpu: &Cpu, program: &Program, tracer: Option<&Tracer<f64>>) {
+        let ask = |expected: &Image, actual: &Image, standings: &[Standing]| {
+            Some(Asked::new(expected, actual, standings))
+        };
+        if let (Some(tracer), Some(reference)) = (tracer, &self.reference) {
+            let hull = |x, y| tracer.hull(x, y);
+            let (standings, shaking) = timed(|| {
+                let shaken = |seed| cpu::shaken(program, case, seed);
+                compare::maths(reference, &cpu.double, &cpu.undefined, hull, shaken)
+            });
+            self.eval += shaking;
+            self.maths = ask(reference, &cpu.double, &standings);
+        }
+        let standings = compare::rounding(&cpu.double, &self.actual, &cpu.undefined);
+        self.rounding = ask(&cpu.double, &self.actual, &standings);
+        if self.painter.is_some() && case.float == FloatMode::Strict {
+            let standings = compare::toolchain(&cpu.single, &self.actual, &cpu.undefined);
+            self.toolchain = ask(&cpu.single, &self.actual, &standings);
+        }
+        self.notes = notes::notes(cpu);
+        (self.verdict, self.reason) = compare::judge(Answers {
+            maths: self.maths.as_ref().map(|asked| &asked.answer),
+            rounding: self.rounding.as_ref().map(|asked| &asked.answer),
+            toolchain: self.toolchain.as_ref().map(|asked| &asked.answer),
+        });
+    }
+
+    /// Without the evaluator nothing can be said of a shader but that it paints.
+    fn cannot_ask(&mut self, failure: &eval::Failure) {
+        if self.reference.is_some() {
+            self.verdict = Verdict::Inconclusive;
+            self.reason = format!("the shader could not be evaluated on the CPU: {failure}");
+        } else {
+            self.reason = format!("the shader paints; it could not be evaluated on the CPU: {failure}");
+        }
+    }
+}
+
+fn split(drawn: Drawn) -> (Image, Painter) {
+    let painter = Painter {
+        device: drawn.device,
+        translate: drawn.translate,
+        compile: drawn.compile,
+        draw: drawn.draw,
+    };
+    (drawn.image, painter)
+}
+
+fn timed<T>(work: impl FnOnce() -> T) -> (T, Duration) {
+    let start = Instant::now();
+    let value = work();
+    (value, start.elapsed())
+}
+
+fn join<T>(thread: ScopedJoinHandle<T>) -> T {
+    thread
+        .join()
+        .unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+}
