@@ -1,5 +1,5 @@
 //! What strictness costs on lavapipe: a shader's frame with everything spelled against the same as the driver likes it, in turn,
-//! and the time to the first frame. `cargo bench --bench strict`
+//! and the time to the first frame. `MESA_SHADER_CACHE_DISABLE=true cargo bench --bench strict`
 
 #![expect(clippy::print_stdout, reason = "a benchmark's own words")]
 
