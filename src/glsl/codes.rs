@@ -86,9 +86,16 @@ codes! {
     ReservedName "W0001" "A name that begins with what GLSL keeps for itself",
     UnknownExtension "W0002" "An `#extension` that does not exist",
     // What `warn` finds in a shader that keeps every rule.
+    Unwritten "W0003" "A variable that is read before it is written",
+    MaybeUnwritten "W0004" "A variable that is read and on some way there not written",
     SineHash "W0005" "Randomness from `fract(sin(x) * 43758.5453)`, which differs from GPU to GPU",
+    Derivative "W0006" "A derivative where neighbouring pixels may have gone another way",
+    ImplicitLod "W0007" "A texture lookup without a level where neighbouring pixels may have gone another way",
+    LongLoop "W0008" "Loops that may run longer than older drivers let them",
+    EndlessLoop "W0009" "A loop that never ends",
     UnusedResult "W0010" "A value that is computed and dropped",
     FloatEquality "W0011" "`==` or `!=` of floats that were computed",
+    UnnormalisedDirection "W0012" "A ray-sphere formula for unit directions, given one that is never normalised",
     BadAllow "W0014" "An `allow` that is not understood",
     UnusedAllow "W0015" "An `allow` that nothing needs",
 }

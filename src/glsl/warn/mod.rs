@@ -5,11 +5,16 @@
 //! recursion, as their nesting is bounded, and all else with loops.
 
 mod allow;
+mod direction;
 mod equality;
+mod iteration;
 mod program;
+mod quadratic;
 mod randomness;
 mod shape;
+mod uniformity;
 mod unused;
+mod unwritten;
 
 use std::collections::HashSet;
 
@@ -32,9 +37,14 @@ pub(super) fn warn(
 ) -> Vec<Diagnostic> {
     let program = Program::new(tree, main);
     let mut found = Found::default();
+    let quadratics = quadratic::quadratics(&program);
+    direction::run(&program, &quadratics, &mut found);
     equality::run(&program, &mut found);
+    iteration::run(&program, &mut found);
     randomness::run(&program, &mut found);
+    uniformity::run(&program, &mut found);
     unused::run(&program, &mut found);
+    unwritten::run(&program, files, &mut found);
     let mut all = told;
     all.append(&mut found.all);
     let mut of_remarks = Vec::new();

@@ -1,0 +1,140 @@
+//! Variables that are read before they are written, with the way that gets there.
+//!
+//! Told of components and members, through calls with `out` and `inout`, and along ways that can be: what is known of flags and
+//! sentinels on a way decides its conditions, and who writes a loop means it to run at least once.
+
+mod flow;
+mod global;
+mod knowledge;
+mod part;
+mod search;
+
+use super::super::codes::Code;
+use super::super::tree::{Direction, Tree, VariableId, VariableKind};
+use super::Found;
+use super::program::{Program, direction};
+use crate::source::Files;
+use flow::{Builder, Summary, begun, is_followed, summary};
+use part::Layout;
+use search::{Decision, DecisionKind, Quarry, Search, Way};
+
+/// How many blocks are visited for one shader: a second's work at most. Of what is beyond, nothing is told.
+const BUDGET: usize = 100_000;
+
+/// The longest condition that is shown.
+const MAX_SHOWN: usize = 48;
+
+pub(super) fn run(program: &Program, files: &Files, found: &mut Found) {
+    let tree = program.tree;
+    let layout = Layout::new(tree);
+    let mut summaries = vec![Summary::default(); tree.functions.len()];
+    let mut written = global::Written::default();
+    let mut left = BUDGET;
+    for &function in &program.functions {
+        let flow = Builder::build(tree, &layout, &summaries, function);
+        let mut sum = summary(tree, &flow, function);
+        let mut search = Search::new(program, &flow);
+        for (index, &parameter) in tree[function].parameters.iter().enumerate() {
+            if direction(tree, parameter) == Direction::InOut {
+                let quarry = Quarry {
+                    variable: parameter,
+                    parts: layout.whole(tree[parameter].ty),
+                    from: (0, 0),
+                    to_the_end: false,
+                };
+                let ways = search.ways(quarry, &mut left);
+                sum.reads[index] = ways.iter().fold(0, |parts, way| parts | way.parts);
+            }
+        }
+        summaries[function.index()] = sum;
+        let colour = tree[program.main].parameters.first().copied();
+        for (variable, block, event) in begun(&flow)
+            .into_iter()
+            .filter(|&(variable, ..)| is_followed(tree, variable))
+        {
+            let is_colour = Some(variable) == colour;
+            let whole = layout.whole(tree[variable].ty);
+            let quarry = Quarry {
+                variable,
+                // The image's alpha is 1, whatever it is given.
+                parts: whole,
+                from: (block, event + 1),
+                to_the_end: is_colour,
+            };
+            let ways = search.ways(quarry, &mut left);
+            let best = ways.iter().min_by_key(|way| (way.decisions.len(), way.expr));
+            if let Some(way) = best {
+                tell(tree, files, &layout, variable, way, found);
+            }
+        }
+        written.add(&flow);
+    }
+    written.tell(program, &layout, found);
+}
+
+fn tell(tree: &Tree, files: &Files, layout: &Layout, variable: VariableId, way: &Way, found: &mut Found) {
+    let is_out = matches!(tree[variable].kind, VariableKind::Parameter(_));
+    let name = layout.name(variable, way.parts);
+    let when = when(tree, files, &way.decisions);
+    let code = if when.is_empty() {
+        Code::Unwritten
+    } else {
+        Code::MaybeUnwritten
+    };
+    let message = match (way.expr, when.is_empty()) {
+        (Some(_), true) if is_out => {
+            format!("`{name}` is read here before it is written: an `out` parameter brings nothing in")
+        }
+        (Some(_), true) => format!("`{name}` is read here before it is written"),
+        (Some(_), false) => format!("`{name}` is read here but never written when {when}"),
+        (None, true) => format!("`{name}`, the pixel's colour, is never written"),
+        (None, false) => format!("`{name}`, the pixel's colour, is never written when {when}"),
+    };
+    let declared = tree[variable].at;
+    let Some(at) = way.expr.map(|expr| tree[expr].at).or(declared) else {
+        return;
+    };
+    found.tell(code, at, message, |mut diagnostic| {
+        if let Some(declared) = declared.filter(|_| way.expr.is_some()) {
+            diagnostic = diagnostic.related(declared.span, "declared here, without a value");
+        }
+        for decision in &way.decisions {
+            let at = tree[decision.expr].at.span;
+            diagnostic = diagnostic.related(at, outcome(decision.kind));
+        }
+        diagnostic.note("WebGL makes it zero; other hosts leave in it what was there before. Give it a value where it is declared")
+    });
+}
+
+/// The decisions in words, with their lines.
+fn when(tree: &Tree, files: &Files, decisions: &[Decision]) -> String {
+    let words: Vec<_> = decisions
+        .iter()
+        .map(|decision| {
+            let span = tree[decision.expr].at.span;
+            let line = files.position(span).line;
+            let text = files.text(span).split_whitespace().collect::<Vec<_>>().join(" ");
+            let shown = if text.len() > MAX_SHOWN {
+                "the condition".to_owned()
+            } else {
+                format!("`{text}`")
+            };
+            format!("{shown} {} (line {line})", outcome(decision.kind))
+        })
+        .collect();
+    match words.split_last() {
+        Some((last, [])) => last.clone(),
+        Some((last, others)) => format!("{} and {last}", others.join(", ")),
+        None => String::new(),
+    }
+}
+
+fn outcome(kind: DecisionKind) -> String {
+    match kind {
+        DecisionKind::Is(true) => "is true".to_owned(),
+        DecisionKind::Is(false) => "is false".to_owned(),
+        DecisionKind::Ends => "ends the loop".to_owned(),
+        DecisionKind::Chooses(Some(value)) => format!("is {}", value.cast_signed()),
+        DecisionKind::Chooses(None) => "is none of the labels".to_owned(),
+    }
+}
