@@ -211,6 +211,8 @@ fn may_be_unit(program: &Program, expr: ExprId) -> bool {
                     }
                 }
             }
+            // `d.yzx * n.x + d.zxy * n.y + …` may be a turn.
+            ExprKind::Swizzle { components, .. } if components.size() > 2 => return true,
             ExprKind::Swizzle { .. } | ExprKind::Member { .. } | ExprKind::Index { .. } => {}
             _ => tree[expr].kind.for_each_operand(|operand| pending.push(operand)),
         }

@@ -235,6 +235,8 @@ fn reads_of_what_was_not_written() {
         W0003 struct S { float a; }; S s[2]; | c.x = s[0].a;
         W0003 float g; void set() { g = 1.0; } | c.x = g;
         W0003 struct S { float a, b; }; S s; | s.a = 1.0; c.x = s.b;
+        W0003 float a; for (int i = 0; i < 3; i++) { a += f.x; } a = 2.0; c.x = a;
+        W0003 float a; if (f.x > 0.0) c.x = a; else a = 1.0;
         W0004 float pdf; if (f.x > 0.0) pdf = 1.0; c.x = pdf;
         W0004 float a; if (f.x > 0.0) a = 1.0; else if (f.x > -1.0) a = 2.0; c.x = a;
         W0004 float a; for (int i = 0; i < 3; i++) { if (f.x > float(i)) { a = 1.0; break; } } c.x = a;
@@ -471,4 +473,18 @@ fn analyses_are_linear_in_the_size_of_a_shader() {
             &text[..60]
         );
     }
+}
+
+#[test]
+fn the_course_has_nothing_to_be_warned_of() {
+    let mut told = Vec::new();
+    for entry in std::fs::read_dir("glsl").unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|extension| extension == "glsl") {
+            let (found, files) = diagnostics(&std::fs::read_to_string(&path).unwrap());
+            let lines = found.iter().map(|found| crate::diagnostic::short(found, &files));
+            told.extend(lines.map(|line| format!("{}: {line}", path.display())));
+        }
+    }
+    assert!(told.is_empty(), "{}", told.join("\n"));
 }

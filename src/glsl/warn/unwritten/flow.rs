@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use super::super::super::tree::{
-    BinaryOp, Block, Condition, Direction, ExprId, ExprKind, FunctionId, Label, Statement, StatementKind,
-    Tree, Type, VariableId, VariableKind,
+    BinaryOp, Block, Case, Condition, Direction, ExprId, ExprKind, FunctionId, Label, Statement,
+    StatementKind, Tree, Type, VariableId, VariableKind,
 };
 use super::super::program::direction;
 use super::part::{Layout, Part, Parts};
@@ -188,41 +188,7 @@ impl<'a> Builder<'a> {
                 }
                 self.go(join);
             }
-            StatementKind::Switch { selector, cases } => {
-                self.evaluate(*selector);
-                let bodies: Vec<_> = cases.iter().map(|_| self.open()).collect();
-                let join = self.open();
-                let values = |labels: &[Label]| {
-                    labels
-                        .iter()
-                        .filter_map(|label| match label {
-                            Label::Case { value, .. } => Some(*value),
-                            Label::Default => None,
-                        })
-                        .collect()
-                };
-                let default = cases
-                    .iter()
-                    .position(|case| case.labels.contains(&Label::Default));
-                self.end(End::Switch {
-                    selector: *selector,
-                    cases: cases
-                        .iter()
-                        .zip(&bodies)
-                        .map(|(case, &body)| (values(&case.labels), body))
-                        .collect(),
-                    default: default.map_or(join, |case| bodies[case]),
-                });
-                self.exits.push((join, None));
-                for (index, case) in cases.iter().enumerate() {
-                    self.at = bodies[index];
-                    self.block(&case.body);
-                    let next = bodies.get(index + 1).copied().unwrap_or(join);
-                    self.end(End::Goto(next));
-                }
-                self.exits.pop();
-                self.at = join;
-            }
+            StatementKind::Switch { selector, cases } => self.switch(*selector, cases),
             StatementKind::For {
                 init,
                 condition,
@@ -269,6 +235,42 @@ impl<'a> Builder<'a> {
             }
             StatementKind::Discard => self.jump(End::Open),
         }
+    }
+
+    fn switch(&mut self, selector: ExprId, cases: &[Case]) {
+        self.evaluate(selector);
+        let bodies: Vec<_> = cases.iter().map(|_| self.open()).collect();
+        let join = self.open();
+        let values = |labels: &[Label]| {
+            labels
+                .iter()
+                .filter_map(|label| match label {
+                    Label::Case { value, .. } => Some(*value),
+                    Label::Default => None,
+                })
+                .collect()
+        };
+        let default = cases
+            .iter()
+            .position(|case| case.labels.contains(&Label::Default));
+        self.end(End::Switch {
+            selector,
+            cases: cases
+                .iter()
+                .zip(&bodies)
+                .map(|(case, &body)| (values(&case.labels), body))
+                .collect(),
+            default: default.map_or(join, |case| bodies[case]),
+        });
+        self.exits.push((join, None));
+        for (index, case) in cases.iter().enumerate() {
+            self.at = bodies[index];
+            self.block(&case.body);
+            let next = bodies.get(index + 1).copied().unwrap_or(join);
+            self.end(End::Goto(next));
+        }
+        self.exits.pop();
+        self.at = join;
     }
 
     fn repeat(&mut self, condition: Option<Condition>, body: &Block, step: Option<ExprId>) {
@@ -403,25 +405,7 @@ impl<'a> Builder<'a> {
                     Work::Enter(join),
                 ]);
             }
-            ExprKind::Assign { op, target, value } => {
-                self.indices(*target, work);
-                work.push(Work::Evaluate(*value));
-                if let Some(part) = self.layout.part(*target) {
-                    if op.is_some() {
-                        work.push(Work::Happen(Event::Read {
-                            part: part.clone(),
-                            expr: *target,
-                        }));
-                    }
-                    let whole = matches!(tree[*target].kind, ExprKind::Variable(_)) && op.is_none();
-                    let known = if whole {
-                        Event::Set(part.variable, *value)
-                    } else {
-                        Event::Forget(part.variable)
-                    };
-                    work.extend([Work::Happen(Event::Write(part)), Work::Happen(known)]);
-                }
-            }
+            ExprKind::Assign { op, target, value } => self.assign(*op, *target, *value, work),
             ExprKind::Step { target, .. } => {
                 self.indices(*target, work);
                 if let Some(part) = self.layout.part(*target) {
@@ -448,6 +432,27 @@ impl<'a> Builder<'a> {
             }
             ExprKind::Length { .. } => {}
             kind => kind.for_each_operand(|operand| work.push(Work::Evaluate(operand))),
+        }
+    }
+
+    fn assign(&mut self, op: Option<BinaryOp>, target: ExprId, value: ExprId, work: &mut Vec<Work>) {
+        let tree = self.tree;
+        self.indices(target, work);
+        work.push(Work::Evaluate(value));
+        if let Some(part) = self.layout.part(target) {
+            if op.is_some() {
+                work.push(Work::Happen(Event::Read {
+                    part: part.clone(),
+                    expr: target,
+                }));
+            }
+            let whole = matches!(tree[target].kind, ExprKind::Variable(_)) && op.is_none();
+            let known = if whole {
+                Event::Set(part.variable, value)
+            } else {
+                Event::Forget(part.variable)
+            };
+            work.extend([Work::Happen(Event::Write(part)), Work::Happen(known)]);
         }
     }
 

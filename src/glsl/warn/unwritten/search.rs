@@ -341,7 +341,7 @@ impl<'a, 'p> Search<'a, 'p> {
             after.insert(visit.block);
             if let Some((decision, other)) = visit.decision
                 && !decisions.contains(&decision)
-                && self.writes_past(other, &after, variable, parts)
+                && self.writes_past(other, &after, (variable, parts), expr.is_none())
             {
                 if decisions.len() == MAX_DECISIONS || self.keeps_least(decision, other) {
                     return None;
@@ -394,26 +394,40 @@ impl<'a, 'p> Search<'a, 'p> {
         }
     }
 
-    /// Whether a variable could have been written from there on, before the way is met again.
-    fn writes_past(&self, from: BlockId, way: &HashSet<BlockId>, variable: VariableId, parts: Parts) -> bool {
+    /// Whether a variable could have been written from there on, and the read still be come to: the way is met again, or `to_the_end`.
+    fn writes_past(
+        &self,
+        from: BlockId,
+        way: &HashSet<BlockId>,
+        (variable, parts): (VariableId, Parts),
+        to_the_end: bool,
+    ) -> bool {
         let mut seen = HashSet::new();
         let mut pending = vec![from];
+        let (mut writes, mut meets) = (false, false);
         while let Some(block) = pending.pop()
             && seen.len() < MAX_PAST
+            && !(writes && meets)
         {
-            if way.contains(&block) || !seen.insert(block) {
+            if way.contains(&block) {
+                meets = true;
+                continue;
+            }
+            if !seen.insert(block) {
                 continue;
             }
             let node = &self.flow.nodes[block];
-            let writes = |event: &Event| matches!(event, Event::Write(part) if part.variable == variable && part.parts & parts != 0);
-            if node.events.iter().any(writes) {
-                return true;
-            }
-            if !matches!(node.end, End::Repeat(_)) {
-                each_next(&node.end, |next| pending.push(next));
+            writes |= node.events.iter().any(|event| match event {
+                Event::Write(part) => part.variable == variable && part.parts & parts != 0,
+                _ => false,
+            });
+            match &node.end {
+                End::Repeat(_) => {}
+                End::Return => meets |= to_the_end,
+                end => each_next(end, |next| pending.push(next)),
             }
         }
-        false
+        writes && meets
     }
 }
 
