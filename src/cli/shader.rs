@@ -34,8 +34,8 @@ impl Shader {
             Err(error) => (subject(error), Err(Unusable::Trouble(error.to_string()))),
             Ok(found) => {
                 let checked = read(found, &mut files, &driver.language());
-                let checked = checked.and_then(|mut checked| {
-                    warnings = std::mem::take(&mut checked.warnings);
+                let checked = checked.and_then(|checked| {
+                    warnings.clone_from(&checked.warnings);
                     let denied = denied(&mut warnings, driver.denied());
                     if denied.is_empty() {
                         Ok(checked)

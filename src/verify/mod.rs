@@ -208,7 +208,7 @@ impl Findings {
             let standings = compare::toolchain(&cpu.single, &self.actual, &cpu.undefined);
             self.toolchain = ask(&cpu.single, &self.actual, &standings);
         }
-        self.notes = notes::notes(cpu);
+        self.notes = notes::notes(cpu, &case.checked.warnings);
         (self.verdict, self.reason) = compare::judge(Answers {
             maths: self.maths.as_ref().map(|asked| &asked.answer),
             rounding: self.rounding.as_ref().map(|asked| &asked.answer),

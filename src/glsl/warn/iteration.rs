@@ -235,10 +235,10 @@ fn rounds(program: &Program, condition: ExprId, step: Option<ExprId>) -> Option<
     };
     let by = change_by(program, counter, step?)?;
     // It is given its first value, and changed by the step: by nothing else.
-    let (first, change) = match *program.definitions(counter) {
-        [Definition::Value(first), Definition::Change(change)]
-        | [Definition::Change(change), Definition::Value(first)] => (first, change),
-        _ => return None,
+    let ([Definition::Value(first), Definition::Change(change)]
+    | [Definition::Change(change), Definition::Value(first)]) = *program.definitions(counter)
+    else {
+        return None;
     };
     if Some(change) != step {
         return None;

@@ -497,12 +497,9 @@ impl<'a> Builder<'a> {
     }
 
     /// A structure may well be handed on with members that nobody needs: one of its members is meant, not all.
-    fn as_read(&self, part: Part, expr: ExprId) -> Part {
-        let handed_on = matches!(self.tree[expr].ty, Type::Struct(_) | Type::Array(_));
-        Part {
-            one_of: part.one_of || handed_on,
-            ..part
-        }
+    fn as_read(&self, mut part: Part, expr: ExprId) -> Part {
+        part.one_of |= matches!(self.tree[expr].ty, Type::Struct(_) | Type::Array(_));
+        part
     }
 
     /// The indices of an lvalue.

@@ -1,6 +1,6 @@
 //! Globals without an initialiser that nothing writes, or a part of which nothing writes.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::super::codes::Code;
 use super::super::super::tree::{ExprId, VariableId, VariableKind};
@@ -29,17 +29,14 @@ impl Written {
 
     pub(super) fn tell(self, program: &Program, layout: &Layout, found: &mut Found) {
         let tree = program.tree;
-        let mut told = BTreeMap::new();
+        let mut told = BTreeSet::new();
         for (part, expr) in self.reads {
             let variable = &tree[part.variable];
             if variable.kind != VariableKind::Global || variable.initialiser.is_some() {
                 continue;
             }
             let missing = part.parts & !self.writes.get(&part.variable).copied().unwrap_or(0);
-            if missing == 0
-                || (part.one_of && missing != part.parts)
-                || told.insert(part.variable, ()).is_some()
-            {
+            if missing == 0 || (part.one_of && missing != part.parts) || !told.insert(part.variable) {
                 continue;
             }
             let name = layout.name(part.variable, missing);

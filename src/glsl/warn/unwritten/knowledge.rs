@@ -453,14 +453,14 @@ fn narrow(
     };
     match (op, holds) {
         (BinaryOp::Less, true) | (BinaryOp::GreaterEqual, false) => {
-            range.most = range.most.min(bound.most - gap)
+            range.most = range.most.min(bound.most - gap);
         }
         (BinaryOp::LessEqual, true) | (BinaryOp::Greater, false) => range.most = range.most.min(bound.most),
         (BinaryOp::Greater, true) | (BinaryOp::LessEqual, false) => {
-            range.least = range.least.max(bound.least + gap)
+            range.least = range.least.max(bound.least + gap);
         }
         (BinaryOp::GreaterEqual, true) | (BinaryOp::Less, false) => {
-            range.least = range.least.max(bound.least)
+            range.least = range.least.max(bound.least);
         }
         (BinaryOp::Equal, true) | (BinaryOp::NotEqual, false) => range = bound,
         _ => return,
