@@ -56,19 +56,30 @@ impl Program {
     /// naga's words for a module, held to its arithmetic if strict.
     pub(super) fn new(module: &ValidModule, float: FloatMode) -> Result<Self, Failure> {
         let words = emit::spirv::words(module).map_err(Failure::Naga)?;
-        let words = match float {
-            FloatMode::Strict => emit::spirv::strict(&words),
-            FloatMode::Fast => words,
-        };
         Ok(Self {
-            words,
+            words: held_to(words, float),
             channels: module.channels(),
         })
+    }
+
+    /// Another compiler's words.
+    pub(super) fn foreign(words: Vec<u32>, float: FloatMode) -> Self {
+        Self {
+            words: held_to(words, float),
+            channels: [Shape::D2; 4],
+        }
     }
 
     /// As the bytes of a `.spv` file.
     pub(super) fn bytes(&self) -> Vec<u8> {
         emit::spirv::bytes(&self.words)
+    }
+}
+
+fn held_to(words: Vec<u32>, float: FloatMode) -> Vec<u32> {
+    match float {
+        FloatMode::Strict => emit::spirv::strict(&words),
+        FloatMode::Fast => words,
     }
 }
 

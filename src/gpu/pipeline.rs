@@ -168,8 +168,8 @@ fn module(device: &Device, words: &[u32]) -> ShaderModule {
         spirv: Some(words.into()),
         ..Default::default()
     };
-    // SAFETY: the words are naga's for a module that it validated, with indices clamped; what a driver makes of
-    // them happens in a process of its own.
+    // SAFETY: the words are naga's for a module that it validated, with indices clamped, or a compiler's that is compared with it;
+    // what a driver makes of them happens in a process of its own.
     unsafe { device.create_shader_module_passthrough(descriptor) }
 }
 

@@ -9,6 +9,7 @@ use super::{Drawn, Driver, Failure, FloatMode, On, Phase};
 use crate::emit::Target;
 use crate::frame::Frame;
 use crate::glsl::Lowered;
+use crate::image::Image;
 
 /// What the parent asks for.
 #[derive(Debug, Serialize, Deserialize)]
@@ -19,6 +20,8 @@ pub(super) enum Job {
     Translate(Lowered, Target, FloatMode),
     /// Translate, compile and paint a frame.
     Draw(Box<Shot>),
+    /// Compile and paint a frame with another compiler's SPIR-V.
+    Run(Box<Foreign>),
     /// Tell in how many pixels of that frame the driver ends a loop by force.
     WatchLoops(Box<Shot>),
 }
@@ -27,6 +30,15 @@ pub(super) enum Job {
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Shot {
     pub(super) lowered: Lowered,
+    pub(super) frame: Frame,
+    pub(super) float: FloatMode,
+    pub(super) on: On,
+}
+
+/// SPIR-V from elsewhere and the frame that it paints.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct Foreign {
+    pub(super) words: Vec<u32>,
     pub(super) frame: Frame,
     pub(super) float: FloatMode,
     pub(super) on: On,
@@ -45,6 +57,7 @@ pub(super) enum Output {
     Drivers(Vec<Driver>),
     Translated(Vec<u8>),
     Drawn(Box<Drawn>),
+    Ran(Image),
     CutShort(u64),
 }
 
@@ -75,7 +88,6 @@ pub(super) fn receive<T: DeserializeOwned>(mut from: impl Read) -> io::Result<T>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::image::Image;
 
     #[test]
     fn pixels_arrive_bit_for_bit() {

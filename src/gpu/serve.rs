@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use super::device::{self, Device};
 use super::draw::Program;
-use super::protocol::{Job, Output, Reply, Shot, receive, send};
+use super::protocol::{Foreign, Job, Output, Reply, Shot, receive, send};
 use super::{Failure, FloatMode, On, Phase, draw};
 use crate::emit::{self, Target};
 use crate::glsl::Lowered;
@@ -67,6 +67,7 @@ impl<W: Write> Server<W> {
                     self.guarded(|server| server.translate(lowered, target, float))
                 }
                 Job::Draw(shot) => self.guarded(|server| server.draw(*shot)),
+                Job::Run(foreign) => self.guarded(|server| server.run(*foreign)),
                 Job::WatchLoops(shot) => self.guarded(|server| server.watch_loops(*shot)),
             };
             if matches!(result, Err(Failure::Device(_))) {
@@ -136,6 +137,21 @@ impl<W: Write> Server<W> {
             compile,
             draw: start.elapsed(),
         })))
+    }
+
+    fn run(&mut self, foreign: Foreign) -> Result<Output, Failure> {
+        let Foreign {
+            words,
+            frame,
+            float,
+            on,
+        } = foreign;
+        self.open(&on)?;
+        self.phase(Phase::Compiling)?;
+        let program = Program::foreign(words, float);
+        let scene = self.device()?.prepare(&program, &frame)?;
+        self.phase(Phase::Drawing)?;
+        Ok(Output::Ran(self.device()?.paint(&scene)?))
     }
 
     fn watch_loops(&mut self, shot: Shot) -> Result<Output, Failure> {

@@ -9,11 +9,12 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use super::protocol::{Job, Output, Reply, Shot, receive, send};
+use super::protocol::{Foreign, Job, Output, Reply, Shot, receive, send};
 use super::{Drawn, Driver, Failure, FloatMode, On, Phase, driver};
 use crate::emit::Target;
 use crate::frame::Frame;
 use crate::glsl::Lowered;
+use crate::image::Image;
 
 /// A worker process that is started when it is first needed, and anew after each that died.
 #[derive(Debug)]
@@ -23,6 +24,7 @@ pub struct Worker {
     on: On,
     timeout: Duration,
     all_drivers: bool,
+    manifest: Option<PathBuf>,
     live: Option<Live>,
 }
 
@@ -41,6 +43,7 @@ impl Worker {
             on,
             timeout,
             all_drivers: false,
+            manifest: None,
             live: None,
         }
     }
@@ -49,6 +52,13 @@ impl Worker {
     #[must_use]
     pub fn with_all_drivers(mut self) -> Self {
         self.all_drivers = true;
+        self
+    }
+
+    /// The same, loading the driver of that manifest and no other, wherever it is installed.
+    #[must_use]
+    pub fn with_manifest(mut self, manifest: PathBuf) -> Self {
+        self.manifest = Some(manifest);
         self
     }
 
@@ -106,6 +116,24 @@ impl Worker {
         Ok(drawn)
     }
 
+    /// The picture that another compiler's SPIR-V paints: one entry point `main`, the frame's block and its two-dimensional channels at
+    /// the bindings that [`crate::emit`] tells of. For comparing compilers.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn run_spirv(&mut self, words: Vec<u32>, frame: Frame, float: FloatMode) -> Result<Image, Failure> {
+        let foreign = Foreign {
+            words,
+            frame,
+            float,
+            on: self.on.clone(),
+        };
+        match self.run(&Job::Run(Box::new(foreign)))? {
+            Output::Ran(image) => Ok(image),
+            _ => Err(out_of_turn()),
+        }
+    }
+
     fn run(&mut self, job: &Job) -> Result<Output, Failure> {
         let deadline = Instant::now() + self.timeout;
         let mut live = match self.live.take() {
@@ -143,14 +171,18 @@ impl Worker {
         }
     }
 
+    /// The one driver that is enough where none is asked for: loading it instead of all takes 20 ms instead of 170.
+    fn usual_manifest(&self) -> Option<PathBuf> {
+        let is_enough = matches!(self.on, On::Auto | On::Lavapipe);
+        (is_enough && !self.all_drivers && !driver::is_pinned_by_user())
+            .then(driver::lavapipe_manifest)
+            .flatten()
+    }
+
     fn start(&self) -> Result<Live, Failure> {
         let mut command = Command::new(&self.program);
         command.args(&self.arguments);
-        if !self.all_drivers
-            && !driver::is_pinned_by_user()
-            && let (On::Auto | On::Lavapipe, Some(manifest)) = (&self.on, driver::lavapipe_manifest())
-        {
-            // Loading one driver instead of all takes 20 ms instead of 170.
+        if let Some(manifest) = self.manifest.clone().or_else(|| self.usual_manifest()) {
             for name in driver::PINS {
                 command.env(name, &manifest);
             }

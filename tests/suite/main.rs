@@ -4,6 +4,7 @@
 
 mod architecture;
 mod bad_input;
+mod browser;
 mod commands;
 mod diagnostics;
 mod elementary;
@@ -12,6 +13,9 @@ mod evaluator;
 mod evaluator_programs;
 #[cfg(unix)]
 mod fuzzed;
+mod generate;
+mod generated;
+mod glslang;
 mod miscompiles;
 mod mistakes;
 mod planted_faults;

@@ -1,7 +1,9 @@
 //! Edited rungs of the course, judged as `toyproof check` judges them, but through the library.
 
+use std::env;
 use std::ops::Range;
 use std::path::PathBuf;
+use std::str::FromStr;
 use std::time::Duration;
 
 use toyproof::compare::Answer;
@@ -86,7 +88,7 @@ pub(crate) fn worker() -> Option<Worker> {
     let mut worker = Worker::new(program, vec!["worker".into()], On::Auto, Duration::from_secs(60));
     match worker.probe() {
         Ok(_) => Some(worker),
-        Err(Failure::NoDriver(why)) if std::env::var_os("CI").is_none() => {
+        Err(Failure::NoDriver(why)) if env::var_os("CI").is_none() => {
             eprintln!("skipped, for there is no Vulkan driver: {why}");
             None
         }
@@ -158,4 +160,12 @@ fn place(text: &str, from: &str) -> Result<Range<usize>, String> {
     let after = start + head.len();
     let end = text[after..].find(tail).ok_or("ends nowhere")?;
     Ok(start..after + end + tail.len())
+}
+
+/// What an environment variable says.
+pub(crate) fn setting<T: FromStr>(name: &str, default: T) -> T {
+    env::var(name)
+        .ok()
+        .and_then(|value| value.parse().ok())
+        .unwrap_or(default)
 }

@@ -1,5 +1,5 @@
 //! Constant expressions that naga cannot evaluate: infinities and NaNs (`1./0.`, `log(0.)`), shifts that overflow (`1 << 31`),
-//! shifts by more bits than there are, integer division by zero, `clamp` with crossed bounds, `smoothstep` with equal ones.
+//! shifts by more bits than there are, integer quotients that there are not, `clamp` with crossed bounds, `smoothstep` with equal ones.
 //!
 //! naga evaluates every expression of literals and refuses these results; so do WGSL compilers. An operand that goes
 //! through a function of our own, which gives it back as it is, is evaluated when the shader runs.
@@ -69,7 +69,7 @@ fn remedy(tree: &Tree, id: ExprId) -> Option<Remedy> {
                 Some(Remedy::Postpone(right))
             }
             BinaryOp::ShiftLeft if tree[id].constant => tree.value(id).map(Remedy::Spell),
-            BinaryOp::Divide | BinaryOp::Remainder if divides_by_zero(tree, right) => {
+            BinaryOp::Divide | BinaryOp::Remainder if has_no_quotient(tree, left, right) => {
                 Some(Remedy::Postpone(right))
             }
             BinaryOp::Divide => overflows(tree, id).then_some(Remedy::Postpone(right)),
@@ -118,11 +118,12 @@ fn is_beyond(value: Value) -> bool {
     matches!(value, Value::Float(value) if !(value as f32).is_finite())
 }
 
-fn divides_by_zero(tree: &Tree, divisor: ExprId) -> bool {
-    matches!(tree[divisor].ty.scalar(), Some(Scalar::Int | Scalar::Uint))
-        && any_scalar(tree, divisor, |value| {
-            matches!(value, Value::Int(0) | Value::Uint(0))
-        })
+/// Integer division by zero, or of the least integer by -1.
+fn has_no_quotient(tree: &Tree, dividend: ExprId, divisor: ExprId) -> bool {
+    any_scalar(tree, divisor, |value| {
+        matches!(value, Value::Int(0) | Value::Uint(0))
+    }) || any_scalar(tree, dividend, |value| matches!(value, Value::Int(i32::MIN)))
+        && any_scalar(tree, divisor, |value| matches!(value, Value::Int(-1)))
 }
 
 fn shifts_too_far(tree: &Tree, amount: ExprId) -> bool {

@@ -72,7 +72,9 @@ fn copy(draft: &mut Draft, call: ExprId, arguments: &[(ExprId, Direction)], disc
             }
             let home = build.detach(argument);
             let value = build.variable(copy);
-            after.push(build.assign(home, value));
+            let back = build.assign(home, value);
+            super::swizzle::mend(draft, back);
+            after.push(back);
             draft.tree[argument].kind = ExprKind::Variable(copy);
         } else if acting && !is_out(direction) && !draft.tree[argument].constant {
             before.push(lvalue::set_aside(draft, argument, "argument"));

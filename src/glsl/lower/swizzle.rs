@@ -82,6 +82,11 @@ fn awkward(tree: &Tree, target: ExprId) -> Option<ExprId> {
         })
 }
 
+/// An assignment of no value of its own, mended if it writes part of a vector that must be copied.
+pub(super) fn mend(draft: &mut Draft, assignment: ExprId) {
+    work_on_copy(draft, assignment, &HashSet::from([assignment]));
+}
+
 /// `m[i].xy = v` becomes `c = m[i], c.xy = v, m[i] = c`.
 fn work_on_copy(draft: &mut Draft, id: ExprId, discarded: &HashSet<ExprId>) {
     let (target, value) = match draft.tree[id].kind {
@@ -122,5 +127,5 @@ fn work_on_copy(draft: &mut Draft, id: ExprId, discarded: &HashSet<ExprId>) {
     steps.push(back);
     lvalue::replace(draft, id, steps, result);
     // The copy may itself be of a part that needs one.
-    work_on_copy(draft, back, &HashSet::from([back]));
+    mend(draft, back);
 }

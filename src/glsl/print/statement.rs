@@ -2,7 +2,7 @@
 
 use super::super::tree::{
     Arm, Block, Case, Condition, Direction, ExprId, ExprKind, FunctionId, Item, Label, Place, Statement,
-    StatementKind, StructId, UnaryOp, VariableId, VariableKind,
+    StatementKind, StructId, Tree, Type, UnaryOp, VariableId, VariableKind,
 };
 use super::printer::Printer;
 
@@ -108,7 +108,7 @@ impl Printer<'_> {
         let at = statement.at;
         match &statement.kind {
             StatementKind::Expression(expr) => {
-                self.expression(*expr);
+                self.effect(*expr);
                 self.plain(";");
             }
             StatementKind::Declare(variable) => {
@@ -214,9 +214,20 @@ impl Printer<'_> {
                         self.argument(value);
                     }
                 }
-                StatementKind::Expression(expr) => self.expression(expr),
+                StatementKind::Expression(expr) => self.effect(expr),
                 _ => {}
             }
+        }
+    }
+
+    /// An expression as a statement. naga takes `float[2](…)` there for a declaration, so it is hidden behind a parenthesis.
+    fn effect(&mut self, expr: ExprId) {
+        if begins_with_array(&self.draft.tree, expr) {
+            self.plain("(");
+            self.expression(expr);
+            self.plain(")");
+        } else {
+            self.expression(expr);
         }
     }
 
@@ -259,5 +270,28 @@ impl Printer<'_> {
                 printer.inset(|printer| printer.statements(&case.body));
             }
         });
+    }
+}
+
+/// Whether an expression's first word is an array's constructor, unless a parenthesis comes first.
+fn begins_with_array(tree: &Tree, expr: ExprId) -> bool {
+    let mut first = expr;
+    loop {
+        first = match tree[first].kind {
+            ExprKind::Construct { .. } => return matches!(tree[first].ty, Type::Array(_)),
+            ExprKind::Binary { left: inner, .. }
+            | ExprKind::Assign { target: inner, .. }
+            | ExprKind::Conditional { condition: inner, .. }
+            | ExprKind::Sequence { first: inner, .. }
+            | ExprKind::Swizzle { vector: inner, .. }
+            | ExprKind::Member { structure: inner, .. }
+            | ExprKind::Index { base: inner, .. }
+            | ExprKind::Step {
+                postfix: true,
+                target: inner,
+                ..
+            } => inner,
+            _ => return false,
+        };
     }
 }

@@ -1,0 +1,140 @@
+//! Expressions of any type: what holds of all types. What operators and built-in functions give is in `value`.
+
+use super::expr::{Expr, Level, Range};
+use super::types::{BOOL, Base, Type};
+use super::{Function, Generator, MOST_OPERANDS, MOST_WORK, Mode, Passing};
+
+/// How deep operands nest.
+const DEEPEST: usize = 5;
+
+impl Generator<'_> {
+    /// An expression of that type.
+    pub(super) fn expr(&mut self, ty: Type) -> Expr {
+        self.depth += 1;
+        self.operands += 1;
+        let deepest = if self.mode == Mode::Constant { 2 } else { DEEPEST };
+        let ends = self.depth > deepest || self.operands > MOST_OPERANDS || self.choices.is_over();
+        let expr = if ends || !self.choices.chance(190) {
+            self.leaf(ty)
+        } else {
+            self.general(ty).unwrap_or_else(|| self.value(ty))
+        };
+        self.depth -= 1;
+        if self.choices.chance(16) {
+            return Expr::primary(format!("({})", expr.text), expr.range);
+        }
+        expr
+    }
+
+    /// One whose floats a variable may hold.
+    pub(super) fn storable(&mut self, ty: Type) -> Expr {
+        let expr = self.expr(ty);
+        self.tamed(ty, expr)
+    }
+
+    /// What there is for every type: calls, choices, assignments, sequences.
+    fn general(&mut self, ty: Type) -> Option<Expr> {
+        match self.choices.below(16) {
+            0 | 1 => self.called(Some(ty)),
+            2 if ty.is_basic() => {
+                let condition = self.expr(BOOL);
+                let (yes, no) = (self.expr(ty), self.expr(ty));
+                let text = format!(
+                    "{} ? {} : {}",
+                    condition.at(Level::LogicalOr),
+                    yes.text,
+                    no.at(Level::Assignment)
+                );
+                Some(Expr::new(text, Level::Conditional, yes.range.or(no.range)))
+            }
+            3 if self.mode == Mode::Any => {
+                let (_, place) = self.place(ty, true, &[])?;
+                let value = self.storable(ty);
+                let text = format!("{} = {}", place.text, value.at(Level::Assignment));
+                Some(Expr::plain(text, Level::Assignment))
+            }
+            4 if ty.is_basic() && self.mode == Mode::Any => {
+                let first = self.ty();
+                let first = if first.is_basic() { first } else { BOOL };
+                let (first, second) = (self.expr(first), self.expr(ty));
+                let text = format!("{}, {}", first.text, second.at(Level::Assignment));
+                Some(Expr::new(text, Level::Sequence, second.range))
+            }
+            5 if ty.length.is_none() => {
+                // Indexing what is no variable.
+                let length = 2 + self.choices.below(3) as u8;
+                let parts: Vec<_> = (0..length).map(|_| self.storable(ty)).collect();
+                let array = Type {
+                    length: Some(length),
+                    ..ty
+                };
+                let index = self.index(length);
+                let array = Expr::call(&array.name(), &parts, Range::VARIABLE);
+                Some(Expr::primary(format!("{}[{index}]", array.text), Range::VARIABLE))
+            }
+            _ => None,
+        }
+    }
+
+    /// A call of a function with that result; none if none can be called here.
+    pub(super) fn called(&mut self, result: Option<Type>) -> Option<Expr> {
+        if self.mode != Mode::Any {
+            return None;
+        }
+        let fitting: Vec<_> = self
+            .functions
+            .iter()
+            .filter(|function| function.result == result && function.work * self.runs <= MOST_WORK)
+            .cloned()
+            .collect();
+        if fitting.is_empty() {
+            return None;
+        }
+        let index = self.choices.below(fitting.len());
+        self.call(&fitting[index])
+    }
+
+    /// A call of that function; none if there is nothing for it to write.
+    pub(super) fn call(&mut self, function: &Function) -> Option<Expr> {
+        let hands_out = function
+            .parameters
+            .iter()
+            .any(|&(passing, _)| passing != Passing::In);
+        let mode = if hands_out { Mode::Pure } else { Mode::Any };
+        let mut taken = Vec::new();
+        let mut arguments = Vec::new();
+        for &(passing, ty) in &function.parameters {
+            arguments.push(self.within(mode, |this| {
+                if passing == Passing::In {
+                    return Some(this.storable(ty));
+                }
+                let (name, place) = this.place(ty, true, &taken)?;
+                taken.push(name);
+                Some(place)
+            })?);
+        }
+        self.work = self.work.max(function.work * self.runs);
+        Some(Expr::call(&function.name, &arguments, Range::VARIABLE))
+    }
+
+    /// All parts of a structure or an array.
+    pub(super) fn constructed(&mut self, ty: Type) -> Expr {
+        let (name, parts): (_, Vec<Type>) = match (ty.length, ty.base) {
+            (Some(length), base) => {
+                let name = if self.choices.chance(100) {
+                    format!("{}[]", base.name())
+                } else {
+                    ty.name()
+                };
+                (name, vec![Type::of(base); usize::from(length)])
+            }
+            (None, Base::Struct(number)) => {
+                let fields = &self.structs[usize::from(number)].fields;
+                (ty.name(), fields.iter().map(|&(_, ty)| ty).collect())
+            }
+            (None, base) => (ty.name(), vec![Type::of(base)]),
+        };
+        let parts: Vec<_> = parts.into_iter().map(|part| self.storable(part)).collect();
+        Expr::call(&name, &parts, Range::VARIABLE)
+    }
+}

@@ -1,0 +1,272 @@
+//! Valid programs from bytes: every type and statement of the language, without undefined behaviour and with exact arithmetic,
+//! so that all who run one must paint the same picture to the bit.
+//!
+//! Operands with effects stand anywhere and are meant to be evaluated from left to right; a compound assignment reads its target after
+//! its right side; next to an `out` argument nothing has an effect. Indices are masked, divisors positive, shifts below 32,
+//! loops bounded. A float in a variable is a multiple of 1/16 of at most 64 ([`Range::VARIABLE`]); where an expression could
+//! leave what 24 bits hold, `tame` brings it back.
+
+mod choices;
+mod digest;
+mod expr;
+mod expression;
+mod place;
+mod statement;
+mod types;
+mod value;
+
+use std::fmt::Write;
+
+use choices::Choices;
+use expr::Range;
+use types::{Base, FLOAT, INT, SCALARS, Scalar, Struct, Type};
+
+/// How often the most deeply nested statement of a program may run.
+const MOST_WORK: u32 = 2_000;
+/// How many expressions a statement may hold, roughly.
+const MOST_OPERANDS: u32 = 40;
+
+/// A variable in reach.
+#[derive(Debug, Clone)]
+struct Variable {
+    name: String,
+    ty: Type,
+    writable: bool,
+    constant: bool,
+    /// Of its floats.
+    range: Range,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Passing {
+    In,
+    Out,
+    InOut,
+}
+
+/// A function that can be called.
+#[derive(Debug, Clone)]
+struct Function {
+    name: String,
+    parameters: Vec<(Passing, Type)>,
+    result: Option<Type>,
+    /// How often its most deeply nested statement runs.
+    work: u32,
+}
+
+/// What may stand where an expression stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Mode {
+    /// Anything.
+    Any,
+    /// Nothing with an effect.
+    Pure,
+    /// A constant expression.
+    Constant,
+}
+
+/// What a jump may leave.
+#[derive(Debug, Clone, Copy, Default)]
+struct Around {
+    in_loop: bool,
+    in_switch: bool,
+}
+
+struct Generator<'a> {
+    choices: Choices<'a>,
+    text: String,
+    indent: usize,
+    structs: Vec<Struct>,
+    functions: Vec<Function>,
+    /// From the outermost to the innermost.
+    scopes: Vec<Vec<Variable>>,
+    /// Functions that the program needs for its own sake, each behind those that it calls.
+    helpers: Vec<String>,
+    mode: Mode,
+    /// Whether places are the same however often they are evaluated.
+    steady: bool,
+    depth: usize,
+    operands: u32,
+    /// How often the statement at hand runs, for each time that its function does.
+    runs: u32,
+    /// The most of any statement of the function at hand.
+    work: u32,
+    /// What the function at hand gives.
+    result: Option<Type>,
+    in_main: bool,
+    around: Around,
+}
+
+/// The program that these bytes decide: an eighth of them what is global, three eighths the functions, the others `mainImage`.
+pub(crate) fn program(bytes: &[u8]) -> String {
+    let (globals, rest) = bytes.split_at(bytes.len() / 8);
+    let (functions, main) = rest.split_at(bytes.len() * 3 / 8);
+    let mut generator = Generator {
+        choices: Choices::new(globals),
+        text: String::new(),
+        indent: 0,
+        structs: Vec::new(),
+        functions: Vec::new(),
+        scopes: vec![inputs()],
+        helpers: Vec::new(),
+        mode: Mode::Any,
+        steady: false,
+        depth: 0,
+        operands: 0,
+        runs: 1,
+        work: 1,
+        result: None,
+        in_main: false,
+        around: Around::default(),
+    };
+    generator.program(functions, main)
+}
+
+/// What the surroundings offer.
+fn inputs() -> Vec<Variable> {
+    let input = |name: &str, ty, range| Variable {
+        name: name.into(),
+        ty,
+        writable: false,
+        constant: false,
+        range,
+    };
+    vec![
+        input("iTime", FLOAT, Range::new(2.5, 1)),
+        input("iFrame", INT, Range::VARIABLE),
+        input(
+            "iResolution",
+            Type::of(Base::Vector(Scalar::Float, 3)),
+            Range::new(64.0, 0),
+        ),
+    ]
+}
+
+const MACROS: &str = "#define THREE (1 + 2)
+#define MAD(a, b) ((a) * 3 + (b))
+#define LOOP(i, n) for (int i = 0; i < (n); i++)
+#define BUMP(x) x++
+";
+
+impl<'a> Generator<'a> {
+    fn program(&mut self, functions: &'a [u8], main: &'a [u8]) -> String {
+        let structs = self.choices.below(4);
+        for _ in 0..structs {
+            self.structure();
+        }
+        self.scopes.push(Vec::new());
+        let globals = self.choices.below(6);
+        for _ in 0..globals {
+            self.global();
+        }
+        let count = functions.len() / 40;
+        for part in functions.chunks(functions.len() / count.clamp(1, 4) + 1) {
+            self.choices = Choices::new(part);
+            self.function();
+        }
+        self.choices = Choices::new(main);
+        self.main_image();
+        let mut program = MACROS.to_owned();
+        for (number, structure) in self.structs.iter().enumerate() {
+            program += &declaration(number, structure);
+        }
+        for helper in &self.helpers {
+            program += helper;
+        }
+        program + &self.text
+    }
+
+    fn structure(&mut self) {
+        const NAMES: [&str; 6] = ["k", "xy", "f", "g", "m", "rgb"];
+        let count = 1 + self.choices.below(4);
+        let fields = (0..count)
+            .map(|field| (NAMES[field], self.field_type()))
+            .collect();
+        self.structs.push(Struct { fields });
+    }
+
+    /// Any type that there is.
+    fn ty(&mut self) -> Type {
+        let base = match self.choices.below(8) {
+            0 | 1 => Base::Scalar(self.choices.pick(&SCALARS)),
+            2..=4 => Base::Vector(self.choices.pick(&SCALARS), self.size()),
+            5 => Base::Matrix(self.size(), self.size()),
+            _ => match self.structs.len() {
+                0 => Base::Scalar(Scalar::Float),
+                count => Base::Struct(self.choices.below(count) as u8),
+            },
+        };
+        let length = self.choices.chance(40).then(|| 1 + self.choices.below(4) as u8);
+        // Structures nest twice and then no more: arrays of arrays of arrays are slow to compile.
+        let length = match base {
+            Base::Struct(_) => length.map(|length| length.min(2)),
+            _ => length,
+        };
+        Type { base, length }
+    }
+
+    /// naga gives an array of truths in a structure another type than one outside, and refuses what passes between them; it also
+    /// refuses arrays of matrices with two rows there.
+    fn field_type(&mut self) -> Type {
+        let ty = self.ty();
+        match ty.base {
+            Base::Scalar(Scalar::Bool) | Base::Vector(Scalar::Bool, _) | Base::Matrix(_, 2) => ty.element(),
+            _ => ty,
+        }
+    }
+
+    fn size(&mut self) -> u8 {
+        self.choices.pick(&[2, 3, 4])
+    }
+
+    fn line(&mut self, text: &str) {
+        let _ = writeln!(self.text, "{:1$}{text}", "", 4 * self.indent);
+    }
+
+    /// A name that nothing in the innermost scope has; more often than not one that hides another.
+    fn name(&mut self) -> String {
+        const NAMES: [&str; 10] = ["a", "b", "c", "d", "e", "sin", "p", "x", "iDate", "over"];
+        let scope = self.scopes.last().map_or(&[][..], Vec::as_slice);
+        let first = NAMES[self.choices.below(NAMES.len())];
+        let mut name = first.to_owned();
+        let mut number = 0;
+        while scope.iter().any(|variable| variable.name == name) {
+            number += 1;
+            name = format!("{first}{number}");
+        }
+        name
+    }
+
+    /// A place of that type to write whose indices are literals: naming it twice names the same.
+    fn steady_place(&mut self, ty: Type) -> Option<String> {
+        self.steady = true;
+        let place = self.place(ty, true, &[]);
+        self.steady = false;
+        Some(place?.1.text)
+    }
+
+    fn declare(&mut self, variable: Variable) {
+        self.scopes.last_mut().expect("a scope is open").push(variable);
+    }
+
+    fn within<T>(&mut self, mode: Mode, work: impl FnOnce(&mut Self) -> T) -> T {
+        let outer = self.mode;
+        self.mode = outer.max(mode);
+        let result = work(self);
+        self.mode = outer;
+        result
+    }
+}
+
+fn declaration(number: usize, structure: &Struct) -> String {
+    let mut text = format!("struct S{number} {{");
+    for &(name, ty) in &structure.fields {
+        let _ = write!(text, " {} {name}{};", ty.base.name(), dimension(ty));
+    }
+    text + " };\n"
+}
+
+/// `[3]` behind an array's name.
+fn dimension(ty: Type) -> String {
+    ty.length.map(|length| format!("[{length}]")).unwrap_or_default()
+}
