@@ -4,7 +4,7 @@ const float SCREEN_DEPTH = -2.0;
 const float NO_HIT = 1.0e6;
 const int SAMPLES = 16;
 const int SPHERES = 4;
-const vec3 AMBIENT = vec3(0.1);
+const vec3 AMBIENT = vec3(0.25);
 
 struct Ray {
     vec3 origin;
@@ -48,7 +48,7 @@ void makeScene() {
     spheres[1] = Sphere(vec3(-1.3, -0.2, -6.5), 0.8, vec3(0.9, 0.4, 0.2));
     spheres[2] = Sphere(vec3(0.5, 0.6, -7.0), 0.6, vec3(0.3, 0.7, 0.4));
     spheres[3] = Sphere(vec3(1.5, -0.6, -5.5), 0.4, vec3(0.3, 0.4, 0.9));
-    light = Light(vec3(3.0, 5.0, -5.0), 1.2, vec3(0.9));
+    light = Light(vec3(3.0, 5.0, -5.0), 0.6, vec3(0.7));
 }
 
 float intersectSphere(Ray ray, Sphere sphere) {

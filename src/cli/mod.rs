@@ -7,10 +7,12 @@ mod convert;
 mod course;
 mod doctor;
 mod explain;
+mod export;
 mod inputs;
 mod render;
 mod run;
 mod scenes;
+mod sequence;
 mod shader;
 mod terminal;
 mod worker;
@@ -45,6 +47,8 @@ enum Command {
     Convert(convert::Args),
     /// Compare two pictures
     Compare(compare::Args),
+    /// Write the shader that paints a scene
+    Export(export::Args),
     /// List the course's scenes and shaders, or write them to a folder
     Scenes(scenes::Args),
     /// Say which Vulkan drivers are installed, what is missing and how to get it
@@ -76,6 +80,7 @@ impl Cli {
             Command::Run(args) => run::run(&args, &terminal),
             Command::Convert(args) => convert::run(&args, &terminal),
             Command::Compare(args) => compare::run(&args, &terminal),
+            Command::Export(args) => export::run(&args, &terminal),
             Command::Scenes(args) => scenes::run(&args, &terminal),
             Command::Doctor(args) => doctor::run(&args, &terminal),
             Command::Worker => worker::run(),

@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::ValueEnum;
+use indicatif::ProgressBar;
 
+use super::sequence::{self, Frames, Sequence};
 use super::{Exit, Terminal, inputs};
 use crate::image::{self, Image};
 use crate::scene::{self, Moment, Requirements, Sampler, Scene};
@@ -16,7 +18,8 @@ use crate::trace::{Real, Tracer};
 #[command(
     after_help = "Examples:\n  toyproof render glsl/02-sphere.toml -o reference.png\n  \
                         toyproof render scene.toml -o reference.exr --size 1920x1080 --samples 64\n  \
-                        toyproof render scene.toml -o reference.png --sampler sobol --max-error 0.002"
+                        toyproof render scene.toml -o reference.png --sampler sobol --max-error 0.002\n  \
+                        toyproof render glsl/11-animation.toml -o frames/orrery.png --frames 0..479"
 )]
 pub(super) struct Args {
     /// The scene, in TOML
@@ -46,6 +49,10 @@ pub(super) struct Args {
     /// The number of the frame, where anything moves by it
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(i32).range(0..))]
     frame: i32,
+    /// All frames from A to B, at 60 a second, each into a file with its number; a sequence that was interrupted goes
+    /// on where it stopped
+    #[arg(long, value_name = "A..B", value_parser = sequence::frames, conflicts_with_all = ["frame", "time"])]
+    frames: Option<Frames>,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -97,24 +104,53 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         return Exit::Trouble;
     }
     terminal.detail(&format!("the scene requires {requirements}"));
+    let made = match args.frames {
+        None => {
+            let moment = Moment {
+                frame: args.frame,
+                time: args.time,
+            };
+            picture(&scene, moment, (args, &args.output), terminal)
+        }
+        Some(_) if args.output == Path::new("-") => {
+            terminal.error("a sequence needs a file to go to, whose name the numbers are added to");
+            false
+        }
+        Some(frames) => {
+            // What the frames are of: a record of anything else is not continued.
+            let what = format!("{scene:?} {:?} {:?}", args.precision, args.max_error);
+            let sequence = Sequence::resume(frames, &args.output, &what, terminal);
+            sequence.make(terminal, |one| {
+                let moment = Moment {
+                    frame: one.frame,
+                    time: one.time,
+                };
+                picture(&scene, moment, (args, &one.path), terminal)
+            })
+        }
+    };
+    if made { Exit::Good } else { Exit::Trouble }
+}
+
+/// Traces the scene at a moment and keeps the picture; tells whether it could.
+fn picture(scene: &Scene, moment: Moment, (args, path): (&Args, &Path), terminal: &Terminal) -> bool {
     let start = Instant::now();
     let picture = match args.precision {
-        Precision::F32 => trace::<f32>(&scene, args, terminal),
-        Precision::F64 => trace::<f64>(&scene, args, terminal),
+        Precision::F32 => trace::<f32>(scene, moment, args, terminal),
+        Precision::F64 => trace::<f64>(scene, moment, args, terminal),
     };
     terminal.detail(&format!("traced in {:.3} s", start.elapsed().as_secs_f64()));
-    match image::encode(&picture, &args.output) {
-        Ok(bytes) if terminal.write(&args.output, &bytes) => Exit::Good,
-        Ok(_) => Exit::Trouble,
+    match image::encode(&picture, path) {
+        Ok(bytes) => terminal.write(path, &bytes),
         Err(error) => {
             terminal.error(error);
-            Exit::Trouble
+            false
         }
     }
 }
 
 /// A scene from its file; says what is wrong with it.
-fn load(path: &Path, terminal: &Terminal) -> Option<Scene> {
+pub(super) fn load(path: &Path, terminal: &Terminal) -> Option<Scene> {
     if source::is_shader(path) {
         let path = path.display();
         terminal.error(format_args!(
@@ -136,13 +172,14 @@ fn load(path: &Path, terminal: &Terminal) -> Option<Scene> {
 }
 
 /// The picture, with a bar that shows its rows.
-fn trace<T: Real>(scene: &Scene, args: &Args, terminal: &Terminal) -> Image {
-    let moment = Moment {
-        frame: args.frame,
-        time: args.time,
-    };
+fn trace<T: Real>(scene: &Scene, moment: Moment, args: &Args, terminal: &Terminal) -> Image {
     let tracer = Tracer::<T>::at(scene, moment);
-    let bar = terminal.bar(u64::from(scene.film.size[1]), "tracing");
+    let rows = u64::from(scene.film.size[1]);
+    let bar = match args.frames {
+        None => terminal.bar(rows, "tracing"),
+        // The sequence has a bar of its own.
+        Some(_) => ProgressBar::hidden(),
+    };
     let Some(max_error) = args.max_error else {
         let picture = tracer.picture(|| bar.inc(1));
         bar.finish_and_clear();

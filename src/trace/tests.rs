@@ -1,7 +1,7 @@
 //! Pictures whose pixels are known.
 
 use super::*;
-use crate::scene;
+use crate::scene::{self, Sampler};
 use crate::source::{File, Files};
 
 fn scene(text: &str) -> Scene {
@@ -148,4 +148,182 @@ fn both_precisions_agree_to_float32() {
             assert!((a - b).abs() < 2e-5, "{a} {b}");
         }
     }
+}
+
+/// The scene of a rung, at another size.
+fn rung(name: &str, size: [u32; 2]) -> Scene {
+    let text = match name {
+        "03" => include_str!("../../glsl/03-shading.toml"),
+        "09" => include_str!("../../glsl/09-soft-shadows.toml"),
+        _ => unreachable!("{name}"),
+    };
+    let mut scene = scene(text);
+    scene.film.size = size;
+    scene
+}
+
+#[test]
+fn parallel_rays_see_the_far_as_large_as_the_near() {
+    let text = |z: &str| {
+        "[film]\nsize = [8, 8]\n[camera]\nprojection = \"parallel\"\nwidth = 4\n".to_owned()
+            + &ball(
+                &format!("[1, 0, {z}]"),
+                "0.8",
+                "{ model = \"facing\", color = [1, 1, 1] }",
+            )
+    };
+    for y in 0..8 {
+        for x in 0..8 {
+            // Pixels are half a unit wide.
+            let [px, py] = [x, y].map(|at| 0.5 * f64::from(at) - 1.75);
+            let rho2 = ((px - 1.0).powi(2) + py * py) / 0.64;
+            let expected = (1.0 - rho2).max(0.0).sqrt();
+            near(pixel(&text("-3"), x, y), [expected; 3]);
+            near(pixel(&text("-3000"), x, y), [expected; 3]);
+        }
+    }
+}
+
+#[test]
+fn the_mean_is_tone_mapped_and_then_takes_its_gamma() {
+    let text = "[film]\nsize = [1, 1]\ntone_map = \"reinhard\"\ngamma = 2\n[background]\ncolor = [3, 1, 0]\n";
+    near(pixel(text, 0, 0), [0.75f64.sqrt(), 0.5f64.sqrt(), 0.0]);
+}
+
+#[test]
+fn figures_lie_on_top_of_each_other_and_of_everything_else() {
+    let disk = |radius: &str, color: &str| {
+        format!("[[figure]]\noutline = \"disk\"\ncenter = [0, 0]\nradius = {radius}\ncolor = {color}\n")
+    };
+    let text = "[film]\nsize = [3, 1]\n[background]\ncolor = [1, 1, 1]\n".to_owned()
+        + &disk("0.7", "[1, 0, 0]")
+        + &disk("0.5", "[0, 1, 0]")
+        + &ball("[0, 0, -6]", "9", "{ model = \"facing\", color = [1, 1, 1] }");
+    near(pixel(&text, 1, 0), [0.0, 1.0, 0.0]);
+    near(pixel(&text, 0, 0), [1.0, 0.0, 0.0]);
+}
+
+#[test]
+fn a_scene_is_traced_at_its_moment() {
+    let text = ONE.to_owned()
+        + "[[motion]]\nname = \"m\"\npivot = [0, 0, 0]\nseconds = 4\n"
+        + &ball("[6, 0, 0]", "1", "{ model = \"facing\", color = [1, 1, 1] }")
+        + "motion = \"m\"\n";
+    let at = |time: f64| Tracer::<f64>::at(&scene(&text), Moment { frame: 0, time }).pixel(0, 0);
+    near(at(0.0), [0.0; 3]);
+    // A quarter turn brings x to −z, straight ahead.
+    near(at(1.0), [1.0; 3]);
+}
+
+#[test]
+fn a_white_furnace_stays_white() {
+    // Whatever direction is drawn, it comes from the same radiance and none is lost.
+    let text = "[film]\nsize = [4, 4]\nsamples = 4\nsampler = \"independent\"\nintegrator = \"path\"\nmax_depth = 2\n\
+                [background]\ncolor = [1, 1, 1]\n"
+        .to_owned()
+        + &ball("[0, 0, -6]", "1.5", "{ model = \"diffuse\", color = [1, 1, 1] }");
+    for at in 0..16 {
+        let [r, _, _] = pixel(&text, at % 4, at / 4);
+        assert!((r - 1.0).abs() < 1e-9, "{r}");
+    }
+}
+
+#[test]
+fn glass_loses_no_light() {
+    let text = "[film]\nsize = [9, 9]\nmax_depth = 16\n[background]\ncolor = [1, 1, 1]\n".to_owned()
+        + &ball(
+            "[0, 0, -4]",
+            "1.9",
+            "{ model = \"glass\", color = [1, 1, 1], ior = 1.5 }",
+        );
+    for at in 0..81 {
+        let [r, _, _] = pixel(&text, at % 9, at / 9);
+        assert!((r - 1.0).abs() < 1e-3, "{r}");
+    }
+}
+
+#[test]
+fn a_sphere_above_a_plane_gives_the_irradiance_of_the_textbooks() {
+    // E = π L (R/d)² straight below a sphere of radiance L, and so the radiance color · L · (R/d)².
+    let text =
+        "[film]\nsize = [1, 1]\nsamples = 1024\nsampler = \"sobol\"\nintegrator = \"path\"\nmax_depth = 2\n\
+                [camera]\neye = [0, 0, 5]\n[[plane]]\npoint = [0, 0, 0]\nnormal = [0, 0, 1]\n\
+                material = { model = \"diffuse\", color = [0.8, 0.8, 0.8] }\n"
+        .to_owned()
+        // Behind the eye, so that the eye sees the plane.
+        + &ball("[0, 0, 8]", "2", "{ model = \"emitter\", color = [3, 3, 3] }");
+    let [r, _, _] = pixel(&text, 0, 0);
+    // The pixel is two units wide at a distance of 2, and so 5 at 5: its mean is less than its middle's value. Hence
+    // a small pixel: the screen far away.
+    let narrow = text.replace("eye = [0, 0, 5]", "eye = [0, 0, 5]\nscreen_distance = 1000");
+    let [middle, _, _] = pixel(&narrow, 0, 0);
+    let expected = 0.8 * 3.0 * (2.0f64 / 8.0).powi(2);
+    assert!((middle - expected).abs() < 2e-3 * expected, "{middle} {expected}");
+    assert!(r < middle);
+}
+
+#[test]
+fn the_light_of_a_sphere_is_the_mean_over_its_cone() {
+    // Straight below: the mean cosine over a cone of half angle θ is (1 + cos θ) / 2.
+    let text = "[film]\nsize = [1, 1]\nsamples = 1024\nsampler = \"stratified\"\n[camera]\neye = [0, 0, 5]\n\
+                screen_distance = 1000\n[[light]]\nposition = [0, 0, 8]\nradius = 4\n[[plane]]\npoint = [0, 0, 0]\n\
+                normal = [0, 0, 1]\nmaterial = { model = \"lambert\", color = [1, 1, 1] }\n";
+    let [r, _, _] = pixel(text, 0, 0);
+    let expected = 0.5 * (1.0 + 0.75f64.sqrt());
+    assert!((r - expected).abs() < 1e-4, "{r} {expected}");
+}
+
+fn rmse(a: &Image, b: &Image) -> f64 {
+    let square =
+        |(a, b): (&[f32; 4], &[f32; 4])| -> f64 { (0..3).map(|i| f64::from(a[i] - b[i]).powi(2)).sum() };
+    let sum: f64 = a.pixels().iter().zip(b.pixels()).map(square).sum();
+    (sum / (3 * a.pixels().len()) as f64).sqrt()
+}
+
+/// How many samples it takes to an error of 1/255, at most 256, doubling.
+fn samples_needed(scene: &Scene, reference: &Image, sampler: Sampler) -> u32 {
+    let mut scene = scene.clone();
+    scene.film.sampler = sampler;
+    for exponent in 0..8 {
+        scene.film.samples = 1 << exponent;
+        if rmse(&Tracer::<f64>::new(&scene).picture(|| ()), reference) <= 1.0 / 255.0 {
+            return scene.film.samples;
+        }
+    }
+    256
+}
+
+#[test]
+fn sobols_sequence_needs_the_fewest_samples() {
+    // An edge needs fewer samples than an edge and a penumbra.
+    for (name, most) in [("03", 16), ("09", 32)] {
+        let mut scene = rung(name, [128, 72]);
+        scene.film.sampler = Sampler::Sobol;
+        scene.film.samples = 1024;
+        let reference = Tracer::<f64>::new(&scene).picture(|| ());
+        let needed = [Sampler::Independent, Sampler::Stratified, Sampler::Sobol]
+            .map(|sampler| samples_needed(&scene, &reference, sampler));
+        let [independent, stratified, sobol] = needed;
+        assert!(sobol <= most, "{name}: {needed:?}");
+        assert!(
+            sobol <= stratified && stratified < independent,
+            "{name}: {needed:?}"
+        );
+    }
+}
+
+#[test]
+fn the_error_that_is_asked_for_is_kept() {
+    let mut scene = rung("09", [48, 32]);
+    scene.film.sampler = Sampler::Sobol;
+    let (picture, spent) = Tracer::<f64>::new(&scene).picture_within(0.004, || ());
+    scene.film.samples = 4096;
+    let reference = Tracer::<f64>::new(&scene).picture(|| ());
+    let error = rmse(&picture, &reference);
+    assert!(error < 0.004 && spent.error <= 0.004, "{error} {spent:?}");
+    let [most, fewest] = spent.per_pixel;
+    assert!(
+        fewest == 16 && most > fewest,
+        "the sky needs fewer than the shadows: {spent:?}"
+    );
 }

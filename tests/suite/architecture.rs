@@ -17,6 +17,7 @@ const STAGES: [&str; 17] = [
     "emit",
     "gpu",
     "scene",
+    "export",
     "trace",
     "compare",
     "verify",

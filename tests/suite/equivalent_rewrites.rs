@@ -4,12 +4,13 @@
 use std::fmt;
 use std::sync::LazyLock;
 
+use crate::rungs::{EDITED, Edited};
 use crate::support::{
-    COMPLEX_SCENE, Edit, MANY_OBJECTS, REFLECTIONS, RUNGS, Rung, SHADING, SIZE, SPHERE, edited, judged,
-    maths, numbers, scene,
+    COMPLEX_SCENE, Edit, MANY_OBJECTS, REFLECTIONS, RUNGS, Rung, SHADING, SPHERE, edited, judged, maths,
+    numbers, tracer,
 };
 use toyproof::compare::{EXACT_TOLERANCE, Verdict};
-use toyproof::trace::{Hull, Tracer};
+use toyproof::trace::Hull;
 use toyproof::verify::Findings;
 
 /// What is said otherwise, the rungs that say it, and how.
@@ -734,12 +735,17 @@ struct Outcome {
 static OUTCOMES: LazyLock<Option<Vec<Outcome>>> = LazyLock::new(|| {
     let mut worker = crate::support::worker()?;
     let mut outcomes = Vec::new();
-    for &(name, rungs, edits) in REWRITES {
-        for &rung in rungs {
-            let findings = judged(&mut worker, &edited(rung, edits), rung.scene, SIZE);
-            eprintln!("{}: {name}: {}", rung.name, numbers(&findings));
-            outcomes.push(Outcome { name, rung, findings });
-        }
+    let early = REWRITES
+        .iter()
+        .flat_map(|&(name, rungs, edits)| rungs.iter().map(move |&rung| (name, rung, edits)));
+    let later = EDITED.iter().flat_map(|edited| {
+        let of_rung = |&(name, edits)| (name, edited.rung, edits);
+        edited.rewrites.iter().map(of_rung)
+    });
+    for (name, rung, edits) in early.chain(later) {
+        let findings = judged(&mut worker, &edited(rung, edits), rung);
+        eprintln!("{}: {name}: {}", rung.name, numbers(&findings));
+        outcomes.push(Outcome { name, rung, findings });
     }
     Some(outcomes)
 });
@@ -776,6 +782,10 @@ fn every_rung_has_its_rewrites() {
             .count();
         assert!(count >= 16, "{}: {count}", rung.name);
     }
+    for Edited { rung, rewrites, .. } in EDITED {
+        let count = rewrites.iter().filter(|(_, edits)| !edits.is_empty()).count();
+        assert!(count >= 5, "{}: {count}", rung.name);
+    }
 }
 
 /// The tolerance may be this many times what it is needed for, since another driver rounds otherwise.
@@ -810,8 +820,8 @@ fn the_tolerance_is_no_larger_than_needed() {
 
 /// The hull of each pixel, bottom row first.
 fn hulls(rung: &Rung) -> Vec<Hull> {
-    let tracer = Tracer::<f64>::new(&scene(rung.scene, SIZE));
-    let [width, height] = SIZE;
+    let tracer = tracer(rung);
+    let [width, height] = rung.size;
     (0..height)
         .flat_map(|y| (0..width).map(move |x| (x, y)))
         .map(|(x, y)| tracer.hull(x, y))

@@ -11,6 +11,7 @@ mod elementary;
 mod equivalent_rewrites;
 mod evaluator;
 mod evaluator_programs;
+mod exported;
 #[cfg(unix)]
 mod fuzzed;
 mod generate;
@@ -21,5 +22,6 @@ mod mistakes;
 mod planted_faults;
 mod program;
 mod rules;
+mod rungs;
 mod strict;
 mod support;

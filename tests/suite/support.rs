@@ -11,8 +11,9 @@ use toyproof::diagnostic::{self, Diagnostic};
 use toyproof::frame::Frame;
 use toyproof::glsl;
 use toyproof::gpu::{Failure, FloatMode, On, Worker};
-use toyproof::scene::{self, Scene};
+use toyproof::scene::{self, Moment, Scene};
 use toyproof::source::{File, Files};
+use toyproof::trace::Tracer;
 use toyproof::verify::{Case, Findings, verify};
 
 /// A shader of the course and the scene that it paints.
@@ -21,27 +22,55 @@ pub(crate) struct Rung {
     pub(crate) name: &'static str,
     pub(crate) shader: &'static str,
     pub(crate) scene: &'static str,
+    /// The number of the frame that is judged, and its time in seconds.
+    pub(crate) frame: i32,
+    pub(crate) time: f32,
+    /// Width and height in pixels.
+    pub(crate) size: [u32; 2],
 }
 
 macro_rules! rungs {
-    ($($rung:ident = $name:literal;)*) => {$(
+    ($($rung:ident = $name:literal $(at $frame:literal, $time:literal)? $(of $size:ident)?;)*) => {$(
         pub(crate) static $rung: Rung = Rung {
             name: $name,
             shader: include_str!(concat!("../../glsl/", $name, ".glsl")),
             scene: include_str!(concat!("../../glsl/", $name, ".toml")),
+            $(frame: $frame, time: $time,)?
+            $(size: $size,)?
+            ..STILL
         };
     )*};
 }
 
+/// What most rungs are judged at.
+const STILL: Rung = Rung {
+    name: "",
+    shader: "",
+    scene: "",
+    frame: 0,
+    time: 0.0,
+    size: SIZE,
+};
+
 rungs! {
+    SAMPLING = "01-sampling";
     SPHERE = "02-sphere";
     SHADING = "03-shading";
     MANY_OBJECTS = "04-many-objects";
-    COMPLEX_SCENE = "05-complex-scene";
+    COMPLEX_SCENE = "05-complex-scene" at 10, 0.0;
     REFLECTIONS = "06-reflections";
+    DIFFUSE = "07-diffuse";
+    DISNEY = "08-disney";
+    SOFT_SHADOWS = "09-soft-shadows" of SMALL;
+    QUADRICS = "10-quadrics";
+    ANIMATION = "11-animation" at 37, 1.3;
+    WHITTED = "12-whitted";
+    IMPORTANCE_SAMPLING = "13-importance-sampling" of SMALL;
+    ACCELERATOR = "14-accelerator";
+    PARALLEL_RAYS = "15-parallel-rays";
 }
 
-/// All rungs, in the course's order.
+/// The first rungs with rays, in the course's order: spheres, met by the same words in each.
 pub(crate) static RUNGS: [&Rung; 5] = [&SPHERE, &SHADING, &MANY_OBJECTS, &COMPLEX_SCENE, &REFLECTIONS];
 
 /// `(from, to)`. `from` occurs exactly once; a `…` in it stands for everything up to the first occurrence of what
@@ -51,6 +80,8 @@ pub(crate) type Edit = (&'static str, &'static str);
 /// Width and height in pixels: small enough for a hundred pictures, large enough that the share of pixels that may
 /// differ, 0.1 %, is more than a dozen of them.
 pub(crate) const SIZE: [u32; 2] = [160, 90];
+/// The same where each pixel takes many samples.
+const SMALL: [u32; 2] = [48, 27];
 
 /// The maths question's answer: every test here has a scene.
 pub(crate) fn maths(findings: &Findings) -> &Answer {
@@ -96,32 +127,42 @@ pub(crate) fn worker() -> Option<Worker> {
     }
 }
 
-/// A scene at `size`.
-pub(crate) fn scene(text: &str, size: [u32; 2]) -> Scene {
+/// A rung's scene.
+fn scene(rung: &Rung) -> Scene {
     let mut files = Files::default();
-    let file = files.add(File::new("<scene>", text));
-    let mut scene =
-        scene::parse(&files, file).unwrap_or_else(|errors| panic!("{}\n{text}", told(&errors, &files)));
-    scene.film.size = size;
+    let file = files.add(File::new("<scene>", rung.scene));
+    let mut scene = scene::parse(&files, file).unwrap_or_else(|errors| panic!("{}", told(&errors, &files)));
+    scene.film.size = rung.size;
     scene
 }
 
-/// What `toyproof check` finds of a shader at `size`.
+/// The tracer of a rung's scene.
+pub(crate) fn tracer(rung: &Rung) -> Tracer<f64> {
+    let moment = Moment {
+        frame: rung.frame,
+        time: f64::from(rung.time),
+    };
+    Tracer::at(&scene(rung), moment)
+}
+
+/// What `toyproof check` finds of a rung's shader, as edited.
 ///
 /// # Panics
 /// If anything goes wrong that is not the picture.
-pub(crate) fn judged(worker: &mut Worker, shader: &str, scene_text: &str, size: [u32; 2]) -> Findings {
+pub(crate) fn judged(worker: &mut Worker, shader: &str, rung: &Rung) -> Findings {
     let mut files = Files::default();
     let file = files.add(File::new("<shader>", shader));
     let checked = glsl::check(&files, file, &glsl::Options::default())
         .unwrap_or_else(|errors| panic!("{}\n{shader}", told(&errors, &files)));
     let frame = Frame {
-        size,
+        size: rung.size,
+        frame: rung.frame,
+        time: rung.time,
         ..Frame::default()
     };
     let case = Case {
         checked: &checked,
-        scene: Some(&scene(scene_text, size)),
+        scene: Some(&scene(rung)),
         frame: &frame,
         float: FloatMode::Strict,
         timeout: Duration::from_secs(60),

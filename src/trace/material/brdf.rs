@@ -78,3 +78,108 @@ impl<T: Real> Brdf<T> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::pcg;
+    use crate::scene::unit;
+    use glam::DVec3;
+
+    fn numbers(count: u32) -> impl Iterator<Item = [f64; 4]> {
+        (0..count).map(|i| [0, 1, 2, 3].map(|j| unit(pcg(4 * i + j))))
+    }
+
+    /// Uniform over the half space of +z.
+    fn above([u, v]: [f64; 2]) -> DVec3 {
+        around::<f64>(DVec3::Z, u, (1.0 - u * u).sqrt(), v)
+    }
+
+    fn all() -> [Brdf<f64>; 4] {
+        let disney = Disney {
+            metallic: 0.3,
+            subsurface: 0.4,
+            anisotropic: 0.6,
+            sheen: 0.5,
+            clearcoat: 0.7,
+            ..Disney::default()
+        };
+        [
+            Brdf::Lambert,
+            Brdf::Diffuse,
+            Brdf::Glossy { exponent: 20.0 },
+            Brdf::Disney(disney),
+        ]
+    }
+
+    #[test]
+    fn light_and_view_can_be_swapped() {
+        let color = DVec3::new(0.9, 0.5, 0.2);
+        for [a, b, c, d] in numbers(1000) {
+            let (light, view) = (above([a, b]), above([c, d]));
+            let frame = |view| Frame {
+                normal: DVec3::Z,
+                view,
+            };
+            for brdf in all() {
+                let there = brdf.value(color, &frame(view), light);
+                let back = brdf.value(color, &frame(light), view);
+                assert!((there - back).length() <= 1e-10 * there.length(), "{brdf:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_drawn_has_the_density_that_is_said() {
+        // The mean of g over drawn directions is the integral of g times the density.
+        let frame = Frame {
+            normal: DVec3::Z,
+            view: DVec3::new(0.3, -0.4, 0.75f64.sqrt()),
+        };
+        let g = |direction: DVec3| (direction - DVec3::new(0.2, 0.5, 0.8)).length_squared();
+        let count = 200_000;
+        for brdf in [Brdf::Diffuse, Brdf::Glossy { exponent: 5.0 }] {
+            let (mut drawn, mut integral, mut total) = (0.0, 0.0, 0.0);
+            for [a, b, c, d] in numbers(count) {
+                drawn += g(brdf.draw(&frame, [a, b]));
+                let anywhere =
+                    around::<f64>(DVec3::Z, 2.0 * c - 1.0, (1.0 - (2.0 * c - 1.0).powi(2)).sqrt(), d);
+                let density = 4.0 * std::f64::consts::PI * brdf.density(&frame, anywhere);
+                total += density;
+                integral += g(anywhere) * density;
+            }
+            let [drawn, integral, total] = [drawn, integral, total].map(|sum| sum / f64::from(count));
+            assert!(
+                (total - 1.0).abs() < 0.02,
+                "{brdf:?}: the density sums to {total}"
+            );
+            assert!(
+                (drawn - integral).abs() < 0.02 * drawn,
+                "{brdf:?}: {drawn} {integral}"
+            );
+        }
+    }
+
+    #[test]
+    fn no_more_light_comes_back_than_fell_in() {
+        let frame = |view| Frame {
+            normal: DVec3::Z,
+            view,
+        };
+        for brdf in all().into_iter().skip(1) {
+            for cosine in [0.2, 0.6, 0.95] {
+                let view = around::<f64>(DVec3::Z, cosine, (1.0f64 - cosine * cosine).sqrt(), 0.1);
+                // By cosine: f cos / density = π f.
+                let albedo: f64 = numbers(20_000)
+                    .map(|[a, b, _, _]| {
+                        let light = Brdf::Diffuse.draw(&frame(view), [a, b]);
+                        std::f64::consts::PI * brdf.value(DVec3::ONE, &frame(view), light).x
+                    })
+                    .sum::<f64>()
+                    / 20_000.0;
+                // Burley's sheen and retro-reflection may gain a little, as his paper says.
+                assert!(albedo > 0.2 && albedo < 1.15, "{brdf:?} at {cosine}: {albedo}");
+            }
+        }
+    }
+}

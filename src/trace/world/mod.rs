@@ -75,7 +75,8 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
 
     fn intersect(&self, surface: usize, ray: &Ray<T>, style: &impl Style<T>) -> Option<T> {
         let shape = &self.shapes[surface];
-        if ray.from == Some(surface) {
+        // Off its surface, a ray starts on none.
+        if ray.from == Some(surface) && style.offset() == T::zero() {
             shape.intersect_own(ray, style)
         } else {
             shape.intersect(ray, style)

@@ -1,0 +1,171 @@
+//! Random scenes, each painted by the shader that is exported for it: the tracer, the front end and the driver must
+//! agree on all of them.
+
+use toyproof::compare::Verdict;
+use toyproof::{export, scene, source};
+
+use crate::support::{Rung, verdict};
+
+/// How many, unless `EXPORTED_SCENES` says otherwise.
+const SCENES: u32 = 100;
+
+/// Numbers drawn from a seed by a multiplicative congruence (Knuth's MMIX).
+struct Random(u64);
+
+impl Random {
+    fn number(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 40) as f64 / f64::from(1 << 24)
+    }
+
+    /// With three digits.
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        ((low + (high - low) * self.number()) * 1000.0).round() / 1000.0
+    }
+
+    fn triple(&mut self, low: [f64; 3], high: [f64; 3]) -> String {
+        let [x, y, z] = [0, 1, 2].map(|i| self.between(low[i], high[i]));
+        format!("[{x:?}, {y:?}, {z:?}]")
+    }
+
+    fn color(&mut self) -> String {
+        self.triple([0.1; 3], [1.0; 3])
+    }
+
+    fn one<'a>(&mut self, of: &[&'a str]) -> &'a str {
+        of[(self.number() * of.len() as f64) as usize]
+    }
+
+    fn chance(&mut self, share: f64) -> bool {
+        self.number() < share
+    }
+}
+
+fn random_scene(seed: u32) -> String {
+    let mut random = Random(u64::from(seed) + 1);
+    for _ in 0..8 {
+        random.number();
+    }
+    let mut text = vec![format!(
+        "title = \"Scene {seed}\"\nambient = {}\n[film]\n",
+        random.triple([0.0; 3], [0.3; 3])
+    )];
+    text.push(format!("max_depth = {}\n", 1 + (random.number() * 3.0) as u32));
+    if random.chance(0.3) {
+        text.push("samples = 3\nsampler = \"independent\"\n".to_owned());
+    }
+    if random.chance(0.3) {
+        text.push("tone_map = \"reinhard\"\n".to_owned());
+    }
+    if random.chance(0.3) {
+        text.push("gamma = 2.2\n".to_owned());
+    }
+    if random.chance(0.2) {
+        text.push("[camera]\nprojection = \"parallel\"\nwidth = 5.0\n".to_owned());
+    }
+    text.push(if random.chance(0.5) {
+        format!("[background]\ncolor = {}\n", random.color())
+    } else {
+        format!(
+            "[background]\nbottom = {}\ntop = {}\n",
+            random.color(),
+            random.color()
+        )
+    });
+    for _ in 0..(random.number() * 3.0) as u32 {
+        let place = random.triple([-6.0, 2.0, -4.0], [6.0, 8.0, 3.0]);
+        let color = random.triple([0.1; 3], [0.6; 3]);
+        let shadow = random.chance(0.7);
+        text.push(format!(
+            "[[light]]\nposition = {place}\ncolor = {color}\nshadow = {shadow}\n"
+        ));
+    }
+    let models: &[&str] = match (random.number() * 3.0) as u32 {
+        0 => &["lambert"],
+        1 => &["lambert", "facing", "diffuse"],
+        _ => &["lambert", "facing", "diffuse", "mirror"],
+    };
+    for _ in 0..(random.number() * 6.0) as u32 {
+        let center = random.triple([-2.5, -0.8, -10.0], [2.5, 1.5, -4.5]);
+        let radius = random.between(0.3, 1.2);
+        let (model, color) = (random.one(models), random.color());
+        text.push(format!(
+            "[[sphere]]\ncenter = {center}\nradius = {radius:?}\nmaterial = {{ model = \"{model}\", color = {color} }}\n"
+        ));
+    }
+    if random.chance(0.4) {
+        let (model, color) = (random.one(models), random.color());
+        text.push(format!(
+            "[[plane]]\npoint = [0.0, -1.5, 0.0]\nmaterial = {{ model = \"{model}\", color = {color} }}\n"
+        ));
+    }
+    text.concat()
+}
+
+fn exported(text: &str) -> Result<String, String> {
+    let mut files = source::Files::default();
+    let file = files.add(source::File::new("<scene>", text));
+    export::shader(&scene::parse(&files, file).unwrap())
+}
+
+#[test]
+fn random_scenes_and_their_shaders_agree() {
+    let Some(mut worker) = crate::support::worker() else {
+        return;
+    };
+    let count = std::env::var("EXPORTED_SCENES").map_or(SCENES, |count| count.parse().unwrap());
+    let mut failed = Vec::new();
+    for seed in 0..count {
+        let scene: &'static str = Box::leak(random_scene(seed).into_boxed_str());
+        let shader: &'static str = Box::leak(exported(scene).unwrap().into_boxed_str());
+        let rung = Rung {
+            name: "exported",
+            shader,
+            scene,
+            frame: 0,
+            time: 0.0,
+            size: [96, 54],
+        };
+        let judged = verdict(&mut worker, shader, &rung);
+        if judged.verdict != Verdict::Correct {
+            failed.push(format!("{seed}: {}\n{scene}\n{shader}", judged.numbers()));
+        }
+    }
+    assert!(
+        failed.is_empty(),
+        "{} failed:\n{}",
+        failed.len(),
+        failed.join("\n")
+    );
+}
+
+#[test]
+fn a_shader_holds_only_what_its_scene_requires() {
+    let bare = exported("").unwrap();
+    for word in [
+        "Sphere",
+        "Light",
+        "makeScene",
+        "Intersection",
+        "random",
+        "SAMPLES",
+        "AMBIENT",
+        "pow",
+    ] {
+        assert!(!bare.contains(word), "{word} in\n{bare}");
+    }
+    let sphere = "[[sphere]]\ncenter = [0, 0, -6]\nradius = 1.5\nmaterial = { model = \"facing\", color = [1, 1, 0] }\n";
+    let one = exported(sphere).unwrap();
+    assert!(one.contains("intersectSphere"));
+    for word in ["Plane", "Light", "model", "MAX_DEPTH", "shade(", "AMBIENT"] {
+        assert!(!one.contains(word), "{word} in\n{one}");
+    }
+    let refused = exported(
+        "[[ellipsoid]]\ncenter = [0, 0, -6]\nradii = [1, 2, 3]\n\
+                            material = { model = \"facing\", color = [1, 1, 0] }\n",
+    );
+    assert_eq!(refused, Err("quadrics".to_owned()));
+}
