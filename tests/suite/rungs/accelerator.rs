@@ -71,7 +71,7 @@ pub(super) static EDITED: Edited = Edited {
             &[("max(into.z, 0.0)", "max(into.z, 1.5)")],
         ),
     ],
-    rewrites: &[
+    rewrites: &[&[
         ("as it stands", &[]),
         (
             "every cell, one after the other",
@@ -115,5 +115,5 @@ pub(super) static EDITED: Edited = Edited {
                 "cell += ivec3(stride.x, 0, 0);\n            next += vec3(step.x, 0.0, 0.0);",
             )],
         ),
-    ],
+    ]],
 };

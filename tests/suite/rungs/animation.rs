@@ -1,6 +1,7 @@
 //! Motion by frame and time.
 
 use super::Edited;
+use super::sphere::{CAMERA, SPHERE};
 use crate::support::ANIMATION;
 
 pub(super) static EDITED: Edited = Edited {
@@ -70,91 +71,38 @@ pub(super) static EDITED: Edited = Edited {
         ),
     ],
     rewrites: &[
-        ("as it stands", &[]),
-        (
-            "the full quadratic",
-            &[
-                (
-                    "float b = dot(f, ray.direction);",
-                    "float a = dot(ray.direction, ray.direction);\n    float b = 2.0 * dot(f, ray.direction);",
-                ),
-                ("float disc = b * b - c;", "float disc = b * b - 4.0 * a * c;"),
-                ("float t = -b - root;", "float t = (-b - root) / (2.0 * a);"),
-                ("t = -b + root;", "t = (-b + root) / (2.0 * a);"),
-            ],
-        ),
-        (
-            "stable roots",
-            &[
-                (
-                    "float t = -b - root;",
-                    "float q = b > 0.0 ? -b - root : -b + root;\n        float t = min(q, c / q);",
-                ),
-                ("t = -b + root;", "t = max(q, c / q);"),
-            ],
-        ),
-        (
-            "the centre projected, by Pythagoras",
-            &[
-                (
-                    "vec3 f = ray.origin - sphere.center;",
-                    "vec3 toCenter = sphere.center - ray.origin;",
-                ),
-                (
-                    "float b = dot(f, ray.direction);",
-                    "float along = dot(toCenter, ray.direction);",
-                ),
-                (
-                    "float c = dot(f, f) - sphere.radius * sphere.radius;",
-                    "float aside = dot(toCenter, toCenter) - along * along;",
-                ),
-                (
-                    "float disc = b * b - c;",
-                    "float disc = sphere.radius * sphere.radius - aside;",
-                ),
-                ("float t = -b - root;", "float t = along - root;"),
-                ("t = -b + root;", "t = along + root;"),
-            ],
-        ),
-        (
-            "an early return for a miss",
-            &[("if (disc > 0.0) {", "if (disc < 0.0) return NO_HIT;\n    {")],
-        ),
-        (
-            "the screen in pixels",
-            &[(
-                "Ray cameraRay(…\n}\n",
-                "Ray cameraRay(vec2 p) {\n    vec3 d = vec3(p - 0.5 * iResolution.xy, -iResolution.x);\n    return Ray(vec3(0.0), d / length(d));\n}\n",
-            )],
-        ),
-        ("no fract", &[("TAU * fract(turns)", "TAU * turns")]),
-        (
-            "Rodrigues by parallel and perpendicular",
-            &[(
-                "return c * v + s * cross(axis, v) + (1.0 - c) * dot(axis, v) * axis;",
-                "vec3 along = dot(axis, v) * axis;\n    return along + c * (v - along) + s * cross(axis, v);",
-            )],
-        ),
-        (
-            "a matrix",
-            &[(
-                "return c * v + s * cross(axis, v) + (1.0 - c) * dot(axis, v) * axis;",
-                "vec3 a = axis;\n    mat3 k = mat3(0.0, a.z, -a.y, -a.z, 0.0, a.x, a.y, -a.x, 0.0);\n    return (mat3(1.0) + s * k + (1.0 - c) * k * k) * v;",
-            )],
-        ),
-        (
-            "the year about y by hand",
-            &[(
-                "return rotateAbout(p, SUN, vec3(0.0, 1.0, 0.0), iTime / 8.0);",
-                "float a = TAU * iTime / 8.0;\n    vec3 q = p - SUN;\n    return SUN + vec3(cos(a) * q.x + sin(a) * q.z, q.y, cos(a) * q.z - sin(a) * q.x);",
-            )],
-        ),
-        (
-            "half angles",
-            &[(
-                "float c = cos(angle);\n    float s = sin(angle);",
-                "float h = tan(0.5 * angle);\n    float c = (1.0 - h * h) / (1.0 + h * h);\n    float s = 2.0 * h / (1.0 + h * h);",
-            )],
-        ),
+        SPHERE,
+        CAMERA,
+        &[
+            ("no fract", &[("TAU * fract(turns)", "TAU * turns")]),
+            (
+                "Rodrigues by parallel and perpendicular",
+                &[(
+                    "return c * v + s * cross(axis, v) + (1.0 - c) * dot(axis, v) * axis;",
+                    "vec3 along = dot(axis, v) * axis;\n    return along + c * (v - along) + s * cross(axis, v);",
+                )],
+            ),
+            (
+                "a matrix",
+                &[(
+                    "return c * v + s * cross(axis, v) + (1.0 - c) * dot(axis, v) * axis;",
+                    "vec3 a = axis;\n    mat3 k = mat3(0.0, a.z, -a.y, -a.z, 0.0, a.x, a.y, -a.x, 0.0);\n    return (mat3(1.0) + s * k + (1.0 - c) * k * k) * v;",
+                )],
+            ),
+            (
+                "the year about y by hand",
+                &[(
+                    "return rotateAbout(p, SUN, vec3(0.0, 1.0, 0.0), iTime / 8.0);",
+                    "float a = TAU * iTime / 8.0;\n    vec3 q = p - SUN;\n    return SUN + vec3(cos(a) * q.x + sin(a) * q.z, q.y, cos(a) * q.z - sin(a) * q.x);",
+                )],
+            ),
+            (
+                "half angles",
+                &[(
+                    "float c = cos(angle);\n    float s = sin(angle);",
+                    "float h = tan(0.5 * angle);\n    float c = (1.0 - h * h) / (1.0 + h * h);\n    float s = 2.0 * h / (1.0 + h * h);",
+                )],
+            ),
+        ],
     ],
 };

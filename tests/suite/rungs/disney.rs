@@ -1,6 +1,7 @@
 //! Burley's BRDF.
 
 use super::Edited;
+use super::sphere::{CAMERA, SPHERE};
 use crate::support::DISNEY;
 
 pub(super) static EDITED: Edited = Edited {
@@ -84,87 +85,34 @@ pub(super) static EDITED: Edited = Edited {
         ("no shadow", &[("if (!inShadow(point, normal)) {", "{")]),
     ],
     rewrites: &[
-        ("as it stands", &[]),
-        (
-            "the full quadratic",
-            &[
-                (
-                    "float b = dot(f, ray.direction);",
-                    "float a = dot(ray.direction, ray.direction);\n    float b = 2.0 * dot(f, ray.direction);",
-                ),
-                ("float disc = b * b - c;", "float disc = b * b - 4.0 * a * c;"),
-                ("float t = -b - root;", "float t = (-b - root) / (2.0 * a);"),
-                ("t = -b + root;", "t = (-b + root) / (2.0 * a);"),
-            ],
-        ),
-        (
-            "stable roots",
-            &[
-                (
-                    "float t = -b - root;",
-                    "float q = b > 0.0 ? -b - root : -b + root;\n        float t = min(q, c / q);",
-                ),
-                ("t = -b + root;", "t = max(q, c / q);"),
-            ],
-        ),
-        (
-            "the centre projected, by Pythagoras",
-            &[
-                (
-                    "vec3 f = ray.origin - sphere.center;",
-                    "vec3 toCenter = sphere.center - ray.origin;",
-                ),
-                (
-                    "float b = dot(f, ray.direction);",
-                    "float along = dot(toCenter, ray.direction);",
-                ),
-                (
-                    "float c = dot(f, f) - sphere.radius * sphere.radius;",
-                    "float aside = dot(toCenter, toCenter) - along * along;",
-                ),
-                (
-                    "float disc = b * b - c;",
-                    "float disc = sphere.radius * sphere.radius - aside;",
-                ),
-                ("float t = -b - root;", "float t = along - root;"),
-                ("t = -b + root;", "t = along + root;"),
-            ],
-        ),
-        (
-            "an early return for a miss",
-            &[("if (disc > 0.0) {", "if (disc < 0.0) return NO_HIT;\n    {")],
-        ),
-        (
-            "the screen in pixels",
-            &[(
-                "Ray cameraRay(…\n}\n",
-                "Ray cameraRay(vec2 p) {\n    vec3 d = vec3(p - 0.5 * iResolution.xy, -iResolution.x);\n    return Ray(vec3(0.0), d / length(d));\n}\n",
-            )],
-        ),
-        (
-            "Schlick's weight by pow",
-            &[("return square(square(m)) * m;", "return pow(m, 5.0);")],
-        ),
-        (
-            "tangents by the cross product",
-            &[(
-                "normalize(vec3(normal.z, 0.0, -normal.x))",
-                "normalize(cross(vec3(0.0, 1.0, 0.0), normal))",
-            )],
-        ),
-        (
-            "the cosine of the half angle by its own formula",
-            &[(
-                "float lH = dot(light, middle);",
-                "float lH = sqrt(0.5 * (1.0 + dot(light, view)));",
-            )],
-        ),
-        (
-            "shadowing by the tangent",
-            &[(
-                "return 1.0 / (cosine + sqrt(a2 + c2 - a2 * c2));",
-                "float t2 = (1.0 - c2) / c2;\n    return 1.0 / (cosine * (1.0 + sqrt(1.0 + a2 * t2)));",
-            )],
-        ),
+        SPHERE,
+        CAMERA,
+        &[
+            (
+                "Schlick's weight by pow",
+                &[("return square(square(m)) * m;", "return pow(m, 5.0);")],
+            ),
+            (
+                "tangents by the cross product",
+                &[(
+                    "normalize(vec3(normal.z, 0.0, -normal.x))",
+                    "normalize(cross(vec3(0.0, 1.0, 0.0), normal))",
+                )],
+            ),
+            (
+                "the cosine of the half angle by its own formula",
+                &[(
+                    "float lH = dot(light, middle);",
+                    "float lH = sqrt(0.5 * (1.0 + dot(light, view)));",
+                )],
+            ),
+            (
+                "shadowing by the tangent",
+                &[(
+                    "return 1.0 / (cosine + sqrt(a2 + c2 - a2 * c2));",
+                    "float t2 = (1.0 - c2) / c2;\n    return 1.0 / (cosine * (1.0 + sqrt(1.0 + a2 * t2)));",
+                )],
+            ),
+        ],
     ],
 };

@@ -89,7 +89,7 @@ pub(super) static EDITED: Edited = Edited {
             &[("startSample(fragCoord, i)", "startSample(fragCoord, 0)")],
         ),
     ],
-    rewrites: &[
+    rewrites: &[&[
         ("as it stands", &[]),
         (
             "the power heuristic by its squares",
@@ -126,5 +126,5 @@ pub(super) static EDITED: Edited = Edited {
                 ("    color /= float(SAMPLES);\n", ""),
             ],
         ),
-    ],
+    ]],
 };

@@ -9,6 +9,7 @@ mod parallel_rays;
 mod quadrics;
 mod sampling;
 mod soft_shadows;
+mod sphere;
 mod whitted;
 
 use crate::support::{Edit, Rung};
@@ -20,7 +21,8 @@ pub(crate) type Named = (&'static str, &'static [Edit]);
 pub(crate) struct Edited {
     pub(crate) rung: &'static Rung,
     pub(crate) faults: &'static [Named],
-    pub(crate) rewrites: &'static [Named],
+    /// Several lists, since some are common to several rungs.
+    pub(crate) rewrites: &'static [&'static [Named]],
 }
 
 pub(crate) static EDITED: [&Edited; 10] = [

@@ -1,6 +1,7 @@
 //! Parallel rays.
 
 use super::Edited;
+use super::sphere::SPHERE;
 use crate::support::PARALLEL_RAYS;
 
 pub(super) static EDITED: Edited = Edited {
@@ -54,82 +55,35 @@ pub(super) static EDITED: Edited = Edited {
         ("no ambient light", &[("AMBIENT + vec3(0.9)", "vec3(0.9)")]),
     ],
     rewrites: &[
-        ("as it stands", &[]),
-        (
-            "the full quadratic",
-            &[
-                (
-                    "float b = dot(f, ray.direction);",
-                    "float a = dot(ray.direction, ray.direction);\n    float b = 2.0 * dot(f, ray.direction);",
-                ),
-                ("float disc = b * b - c;", "float disc = b * b - 4.0 * a * c;"),
-                ("float t = -b - root;", "float t = (-b - root) / (2.0 * a);"),
-                ("t = -b + root;", "t = (-b + root) / (2.0 * a);"),
-            ],
-        ),
-        (
-            "stable roots",
-            &[
-                (
-                    "float t = -b - root;",
-                    "float q = b > 0.0 ? -b - root : -b + root;\n        float t = min(q, c / q);",
-                ),
-                ("t = -b + root;", "t = max(q, c / q);"),
-            ],
-        ),
-        (
-            "the centre projected, by Pythagoras",
-            &[
-                (
-                    "vec3 f = ray.origin - sphere.center;",
-                    "vec3 toCenter = sphere.center - ray.origin;",
-                ),
-                (
-                    "float b = dot(f, ray.direction);",
-                    "float along = dot(toCenter, ray.direction);",
-                ),
-                (
-                    "float c = dot(f, f) - sphere.radius * sphere.radius;",
-                    "float aside = dot(toCenter, toCenter) - along * along;",
-                ),
-                (
-                    "float disc = b * b - c;",
-                    "float disc = sphere.radius * sphere.radius - aside;",
-                ),
-                ("float t = -b - root;", "float t = along - root;"),
-                ("t = -b + root;", "t = along + root;"),
-            ],
-        ),
-        (
-            "an early return for a miss",
-            &[("if (disc > 0.0) {", "if (disc < 0.0) return NO_HIT;\n    {")],
-        ),
-        (
-            "the distance in the plane",
-            &[
-                (
-                    "float b = dot(f, ray.direction);",
-                    "float b = f.z * ray.direction.z;",
-                ),
-                (
-                    "float disc = b * b - c;",
-                    "float disc = sphere.radius * sphere.radius - dot(f.xy, f.xy);",
-                ),
-            ],
-        ),
-        (
-            "the screen in units of its width",
-            &[(
-                "Ray cameraRay(…\n}\n",
-                "Ray cameraRay(vec2 p) {\n    vec2 place = (p / iResolution.x - 0.5 * vec2(1.0, iResolution.y / iResolution.x)) * WIDTH;\n    return Ray(vec3(place, 0.0), vec3(0, 0, -1));\n}\n",
-            )],
-        ),
-        (
-            "rays that start farther behind",
-            &[(
-                "0.5 * WIDTH * vec3(x, y, 0.0)",
-                "vec3(0.5 * WIDTH * vec2(x, y), 1.0)",
-            )],
-        ),
+        SPHERE,
+        &[
+            (
+                "the distance in the plane",
+                &[
+                    (
+                        "float b = dot(f, ray.direction);",
+                        "float b = f.z * ray.direction.z;",
+                    ),
+                    (
+                        "float disc = b * b - c;",
+                        "float disc = sphere.radius * sphere.radius - dot(f.xy, f.xy);",
+                    ),
+                ],
+            ),
+            (
+                "the screen in units of its width",
+                &[(
+                    "Ray cameraRay(…\n}\n",
+                    "Ray cameraRay(vec2 p) {\n    vec2 place = (p / iResolution.x - 0.5 * vec2(1.0, iResolution.y / iResolution.x)) * WIDTH;\n    return Ray(vec3(place, 0.0), vec3(0, 0, -1));\n}\n",
+                )],
+            ),
+            (
+                "rays that start farther behind",
+                &[(
+                    "0.5 * WIDTH * vec3(x, y, 0.0)",
+                    "vec3(0.5 * WIDTH * vec2(x, y), 1.0)",
+                )],
+            ),
+        ],
     ],
 };

@@ -79,7 +79,7 @@ pub(super) static EDITED: Edited = Edited {
         ),
         ("not moved back", &[("return ahead + t0;", "return t0;")]),
     ],
-    rewrites: &[
+    rewrites: &[&[
         ("as it stands", &[]),
         (
             "from the eye itself",
@@ -130,5 +130,5 @@ pub(super) static EDITED: Edited = Edited {
                 "    hit.normal = faceforward(hit.normal, ray.direction, hit.normal);\n",
             )],
         ),
-    ],
+    ]],
 };

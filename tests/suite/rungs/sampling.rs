@@ -88,7 +88,7 @@ pub(super) static EDITED: Edited = Edited {
             )],
         ),
     ],
-    rewrites: &[
+    rewrites: &[&[
         ("as it stands", &[]),
         (
             "the disk by distance",
@@ -139,5 +139,5 @@ pub(super) static EDITED: Edited = Edited {
                 "vec2 uv = (2.0 * vec2(fx, fy) - iResolution.xy) / iResolution.x;\n        float x = uv.x, y = uv.y;",
             )],
         ),
-    ],
+    ]],
 };

@@ -100,7 +100,7 @@ pub(super) static EDITED: Edited = Edited {
             )],
         ),
     ],
-    rewrites: &[
+    rewrites: &[&[
         ("as it stands", &[]),
         (
             "refract() of the language",
@@ -157,5 +157,5 @@ pub(super) static EDITED: Edited = Edited {
                 ),
             ],
         ),
-    ],
+    ]],
 };
