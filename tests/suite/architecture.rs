@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The stages in the order of the flow.
-const STAGES: [&str; 17] = [
+const STAGES: [&str; 18] = [
     "source",
     "diagnostic",
     "output",

@@ -4,7 +4,7 @@
 use toyproof::compare::Verdict;
 use toyproof::{export, scene, source};
 
-use crate::support::{Rung, verdict};
+use crate::support::{Rung, judged, numbers};
 
 /// How many, unless `EXPORTED_SCENES` says otherwise.
 const SCENES: u32 = 100;
@@ -129,9 +129,9 @@ fn random_scenes_and_their_shaders_agree() {
             time: 0.0,
             size: [96, 54],
         };
-        let judged = verdict(&mut worker, shader, &rung);
-        if judged.verdict != Verdict::Correct {
-            failed.push(format!("{seed}: {}\n{scene}\n{shader}", judged.numbers()));
+        let findings = judged(&mut worker, shader, &rung);
+        if findings.verdict != Verdict::Correct {
+            failed.push(format!("{seed}: {}\n{scene}\n{shader}", numbers(&findings)));
         }
     }
     assert!(
