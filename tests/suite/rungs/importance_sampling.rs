@@ -113,12 +113,11 @@ pub(super) static EDITED: Edited = Edited {
             )],
         ),
         (
-            "no offset",
-            &[(
-                "ray = Ray(hit.point + EPSILON * hit.normal, direction);",
-                "ray = Ray(hit.point, direction);",
-            )],
+            "times one over the number of samples",
+            &[("color /= float(SAMPLES);", "color *= 1.0 / float(SAMPLES);")],
         ),
+        // Not here, and judged wrong in 0.15 % of the pixels: bounces that start on the surface beside light rays that start off it. The
+        // hull knows one style for all rays of a path.
         (
             "each sample divided",
             &[
