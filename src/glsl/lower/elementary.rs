@@ -252,6 +252,7 @@ fn is_of_vectors(function: BuiltIn) -> bool {
             | B::Inverse
             | B::UnpackSnorm2x16
             | B::UnpackUnorm2x16
+            | B::UnpackHalf2x16
     )
 }
 
@@ -273,6 +274,10 @@ fn text(draft: &Draft, spelled: Spelled, types: &[Type], ty: Type) -> String {
                 "return vec2(max(float(int({A} << 16u) >> 16u) / 32767.0, -1.0), \
                  max(float(int({A}) >> 16u) / 32767.0, -1.0));"
             );
+        }
+        // Mesa 22.3 takes the upper half of a constant for zero.
+        Spelled::Function(BuiltIn::UnpackHalf2x16) => {
+            return format!("return vec2(unpackHalf2x16({A}).x, unpackHalf2x16({A} >> 16u).x);");
         }
         Spelled::Function(_) | Spelled::Product => {}
     }

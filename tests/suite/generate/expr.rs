@@ -151,6 +151,34 @@ impl Expr {
             .collect();
         Self::primary(format!("{name}({})", arguments.join(", ")), range)
     }
+
+    /// `MACRO(arguments)`: commas outside of round brackets would part them.
+    pub(crate) fn expanded(name: &str, arguments: &[Self], range: Range) -> Self {
+        let arguments: Vec<_> = arguments
+            .iter()
+            .map(|argument| {
+                if has_open_comma(&argument.text) {
+                    Self::primary(format!("({})", argument.text), argument.range)
+                } else {
+                    argument.clone()
+                }
+            })
+            .collect();
+        Self::call(name, &arguments, range)
+    }
+}
+
+/// Whether a comma stands outside of round brackets.
+fn has_open_comma(text: &str) -> bool {
+    let mut depth = 0;
+    text.chars().any(|c| {
+        match c {
+            '(' => depth += 1,
+            ')' => depth -= 1,
+            _ => {}
+        }
+        c == ',' && depth == 0
+    })
 }
 
 /// The digits of a literal of that type.

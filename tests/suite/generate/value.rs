@@ -275,7 +275,7 @@ impl Generator<'_> {
             12 | 13 if self.mode == Mode::Any => self.changed(ty),
             14 if ty == INT => {
                 let (left, right) = (self.expr(INT), self.expr(INT));
-                Expr::call("MAD", &[left, right], Range::VARIABLE)
+                Expr::expanded("MAD", &[left, right], Range::VARIABLE)
             }
             15 if self.mode != Mode::Constant => {
                 let operand = self.storable(Type::of(Base::sized(Scalar::Float, ty.base.size())));

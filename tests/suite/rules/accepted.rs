@@ -1,25 +1,35 @@
 //! Who keeps a rule is accepted, and paints what the rule says.
 
 use toyproof::diagnostic::{Diagnostic, short};
-use toyproof::glsl::{Lowered, Options, check, lower};
+use toyproof::eval::{self, Settings};
+use toyproof::glsl::{Checked, Lowered, Options, check, lower};
 use toyproof::gpu::{FloatMode, Worker};
+use toyproof::image::Image;
 use toyproof::module::ValidModule;
 use toyproof::source::{File, Files};
 
 use super::{Expectation, Program, frame, programs};
 
-fn lowered(program: &Program, options: &Options) -> Result<Lowered, String> {
+fn checked(program: &Program, options: &Options) -> Result<(Checked, Files), String> {
     let mut files = Files::default();
     let file = files.add(File::new("s", program.text.as_str()));
-    let told = |errors: Vec<Diagnostic>| {
-        let lines: Vec<_> = errors.iter().map(|error| short(error, &files)).collect();
-        lines.join("\n    ")
-    };
-    let checked = check(&files, file, options).map_err(told)?;
+    match check(&files, file, options) {
+        Ok(checked) => Ok((checked, files)),
+        Err(errors) => Err(told(&errors, &files)),
+    }
+}
+
+fn lowered(program: &Program, options: &Options) -> Result<Lowered, String> {
+    let (checked, files) = checked(program, options)?;
     let lowered = lower(&checked);
     ValidModule::parse(&lowered)
-        .map_err(|errors| format!("naga: {}\n{}", told(errors), lowered.text()))
+        .map_err(|errors| format!("naga: {}\n{}", told(&errors, &files), lowered.text()))
         .map(|_| lowered)
+}
+
+fn told(errors: &[Diagnostic], files: &Files) -> String {
+    let lines: Vec<_> = errors.iter().map(|error| short(error, files)).collect();
+    lines.join("\n    ")
 }
 
 fn paint(worker: &mut Worker, program: &Program) -> Result<(), String> {
@@ -28,11 +38,22 @@ fn paint(worker: &mut Worker, program: &Program) -> Result<(), String> {
     let drawn = worker
         .draw(lowered, frame(), FloatMode::Strict)
         .map_err(|failure| format!("{failure:?}\n{text}"))?;
-    let red = drawn.image.get(0, 0)[0];
-    if red == 1.0 {
-        Ok(())
-    } else {
-        Err(format!("paints {red}\n{text}"))
+    is_red(&drawn.image).map_err(|why| format!("{why}\n{text}"))
+}
+
+fn evaluate(program: &Program) -> Result<(), String> {
+    let (checked, _) = checked(program, &Options::default())?;
+    let evaluator = eval::Program::new(&checked).map_err(|refusal| refusal.to_string())?;
+    let painted = evaluator
+        .paint::<f32>(&frame(), &Settings::default())
+        .map_err(|failure| failure.to_string())?;
+    is_red(&painted.painting.image())
+}
+
+fn is_red(image: &Image) -> Result<(), String> {
+    match image.get(0, 0)[0] {
+        1.0 => Ok(()),
+        red => Err(format!("paints {red}")),
     }
 }
 
@@ -63,6 +84,12 @@ fn each_is_accepted_leniently() {
         ..Options::default()
     };
     let failures = failures(|program| lowered(program, &lenient).map(drop));
+    assert!(failures.is_empty(), "\n{failures}");
+}
+
+#[test]
+fn each_holds_in_the_evaluator() {
+    let failures = failures(evaluate);
     assert!(failures.is_empty(), "\n{failures}");
 }
 
