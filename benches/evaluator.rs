@@ -9,7 +9,7 @@
 use std::fs;
 use std::time::Instant;
 
-use toyproof::eval::{Jittered, Number, Program, Seed, Settings};
+use toyproof::eval::{Jittered, Number, Program, Seed, Settings, Variant};
 use toyproof::frame::Frame;
 use toyproof::glsl::{Checked, Options, check, lower_strict};
 use toyproof::gpu::{FloatMode, On, Painter};
@@ -42,9 +42,9 @@ fn median(mut times: Vec<f64>) -> f64 {
     times[times.len() / 2]
 }
 
-fn paint<N: Number>(program: &Program, observe: bool, noise: N::Noise) {
+fn paint<N: Number>(program: &Program, variant: Variant, noise: N::Noise) {
     let settings = Settings::<N> {
-        observe,
+        variant,
         noise,
         ..Settings::default()
     };
@@ -80,11 +80,11 @@ fn main() {
             let taken = [
                 compile,
                 gpu,
-                time(|| paint::<f32>(&program, false, ())),
-                time(|| paint::<f32>(&program, true, ())),
-                time(|| paint::<f64>(&program, false, ())),
-                time(|| paint::<f64>(&program, true, ())),
-                time(|| paint::<Jittered>(&program, false, Seed(1))),
+                time(|| paint::<f32>(&program, Variant::Plain, ())),
+                time(|| paint::<f32>(&program, Variant::Observed, ())),
+                time(|| paint::<f64>(&program, Variant::Plain, ())),
+                time(|| paint::<f64>(&program, Variant::Observed, ())),
+                time(|| paint::<Jittered>(&program, Variant::Plain, Seed(1))),
             ];
             // The first round warms up.
             if round > 0 {

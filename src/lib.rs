@@ -6,6 +6,7 @@ pub mod diagnostic;
 pub mod elementary;
 pub mod emit;
 pub mod eval;
+pub mod explain;
 pub mod export;
 pub mod frame;
 pub mod glsl;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 
-use super::inputs::DriverArgs;
+use super::inputs::{DriverArgs, LanguageArgs};
 use super::shader::{Names, Shader, Unusable, find, is_invalid, with_suffix};
 use super::{Exit, Terminal};
 use crate::emit::Target;
@@ -33,6 +33,8 @@ pub(super) struct Args {
     /// The language; needed with a folder and with -
     #[arg(long, value_enum)]
     to: Option<To>,
+    #[command(flatten)]
+    language: LanguageArgs,
     #[command(flatten)]
     driver: DriverArgs,
 }
@@ -107,7 +109,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     for input in &inputs {
         // People read what is converted: it keeps the author's functions unless told otherwise.
         let float = args.driver.asked_float().unwrap_or(FloatMode::Fast);
-        let shader = Shader::load(input, &args.driver);
+        let shader = Shader::load(input, &args.language);
         let path = match (one, input) {
             (true, _) | (false, Err(_)) => args.output.clone(),
             (false, Ok(found)) => with_suffix(

@@ -1,35 +1,135 @@
-//! `toyproof check --explain CODE`
+//! `toyproof explain`
 
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use super::check::Reference;
+use super::inputs::{Format, FrameArgs, LanguageArgs};
+use super::run::place;
+use super::shader::{Shader, Unusable, find};
 use super::{Exit, Terminal};
-use crate::diagnostic::{self, Explanation};
+use crate::eval::{Failure, Program};
+use crate::explain::explain;
+use crate::frame::Frame;
+use crate::glsl::Checked;
+use crate::report;
+use crate::scene::Scene;
+use crate::source::{Found, ReadError};
 
-/// Prints what a code means.
-pub(super) fn run(code: &str, terminal: &Terminal) -> Exit {
-    let Some(Explanation { code, title, text }) = diagnostic::explain(code) else {
-        let codes = diagnostic::explanations().map(|explanation| explanation.code);
-        let hint = match diagnostic::nearest(code, codes) {
-            Some(near) => format!("did you mean {near}?"),
-            None => "codes are E or W and four digits, as in error[E0301]".to_owned(),
-        };
-        terminal.error(format_args!("there is no code {code}; {hint}"));
+/// Tell what one pixel does, line by line, in f32 beside f64, and where the two part
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Example:\n  toyproof explain glsl/05-shading.glsl --pixel 320,180\n\n\
+                        Pixels are counted as ShaderToy does: from the left, and from the bottom up."
+)]
+pub(super) struct Args {
+    /// The shader: a file, or - for standard input
+    shader: PathBuf,
+    /// The pixel, from the left and from the bottom
+    #[arg(long, value_name = "X,Y", value_parser = pixel)]
+    pixel: [u32; 2],
+    /// `human` shows what each line stores and decides (`-v`: every step, with the parts of expressions), `json` everything
+    #[arg(long, value_enum, default_value_t = Format::Human)]
+    format: Format,
+    #[command(flatten)]
+    language: LanguageArgs,
+    /// Stop after this long (10s, 500ms, 2m)
+    #[arg(long, value_name = "TIME", default_value = "10s", value_parser = humantime::parse_duration)]
+    timeout: Duration,
+    #[command(flatten)]
+    frame: FrameArgs,
+}
+
+pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
+    let found = find(std::slice::from_ref(&args.shader));
+    let [input] = found.as_slice() else {
+        terminal.error(format_args!(
+            "{} holds several shaders; explain takes one",
+            args.shader.display()
+        ));
         return Exit::Trouble;
     };
-    terminal.result(&format!("{code}: {title}\n\n{}", plain(text)));
+    let frame = match frame(args, input) {
+        Ok(frame) => frame,
+        Err(error) => {
+            terminal.error(error);
+            return Exit::Trouble;
+        }
+    };
+    let shader = Shader::load(input, &args.language);
+    terminal.diagnostics(&shader.warnings, &shader.files);
+    match &shader.checked {
+        Ok(checked) => tell(args, &shader, checked, &frame, terminal),
+        Err(Unusable::Invalid(diagnostics)) => {
+            terminal.diagnostics(diagnostics, &shader.files);
+            Exit::Bad
+        }
+        Err(Unusable::Trouble(error)) => {
+            terminal.error(error);
+            Exit::Trouble
+        }
+    }
+}
+
+/// The frame, of the size of the scene beside the shader unless the arguments tell another.
+fn frame(args: &Args, input: &Result<Found, ReadError>) -> Result<Frame, String> {
+    let mut frame = args.frame.frame()?;
+    let reference = input.as_ref().ok().and_then(|found| Reference::find(None, found));
+    let scene: Option<Scene> = reference.and_then(|reference| reference.scene.ok());
+    if let (None, Some(scene)) = (args.frame.size, scene) {
+        frame.size = scene.film.size;
+    }
+    let ([x, y], [width, height]) = (args.pixel, frame.size);
+    if x >= width || y >= height {
+        return Err(format!(
+            "there is no pixel ({x}, {y}) in a picture of {width}x{height}; the last is ({}, {})",
+            width - 1,
+            height - 1
+        ));
+    }
+    Ok(frame)
+}
+
+fn tell(args: &Args, shader: &Shader, checked: &Checked, frame: &Frame, terminal: &Terminal) -> Exit {
+    let spinner = terminal.spinner(&shader.name);
+    let deadline = Instant::now() + args.timeout;
+    let program = Program::new(checked).map_err(Failure::from);
+    let explained = match &program {
+        Ok(program) => explain(program, frame, args.pixel, Some(deadline)),
+        Err(failure) => Err(failure.clone()),
+    };
+    spinner.finish_and_clear();
+    let explanation = match explained {
+        Ok(explanation) => explanation,
+        Err(failure) => {
+            let place = place(&failure, &shader.files);
+            terminal.error(format_args!("{}: {failure}{place}", shader.name));
+            let ours = matches!(failure, Failure::Refused(_));
+            return if ours { Exit::Trouble } else { Exit::Bad };
+        }
+    };
+    let subject = report::Subject {
+        shader: &shader.name,
+        files: &shader.files,
+        tree: &checked.tree,
+        pixel: args.pixel,
+        size: frame.size,
+    };
+    let story = report::Story::new(&subject, &explanation);
+    match args.format {
+        Format::Json if terminal.bytes(story.json().as_bytes()).is_err() => return Exit::Trouble,
+        Format::Json => {}
+        Format::Human => terminal.result(&story.human(terminal.is_verbose())),
+    }
     Exit::Good
 }
 
-/// Markdown as a terminal shows it: what is fenced is indented instead.
-fn plain(text: &str) -> String {
-    let mut fenced = false;
-    let mut lines = Vec::new();
-    for line in text.lines() {
-        if line.starts_with("```") {
-            fenced = !fenced;
-        } else if fenced {
-            lines.push(format!("    {line}"));
-        } else {
-            lines.push(line.to_owned());
-        }
+fn pixel(text: &str) -> Result<[u32; 2], String> {
+    let parts = text
+        .split_once(',')
+        .map(|(x, y)| (x.trim().parse(), y.trim().parse()));
+    match parts {
+        Some((Ok(x), Ok(y))) => Ok([x, y]),
+        _ => Err("a pixel is two whole numbers: X,Y from the left and from the bottom".to_owned()),
     }
-    lines.join("\n")
 }

@@ -71,16 +71,22 @@ impl FrameArgs {
     }
 }
 
+/// What a shader may say.
+#[derive(Debug, Clone, clap::Args)]
+#[command(next_help_heading = "The shader")]
+pub(super) struct LanguageArgs {
+    /// Take what desktop GLSL allows and WebGL2 refuses: globals set from uniforms, integers where floats belong
+    #[arg(long)]
+    lenient: bool,
+    /// Take warnings for errors: `warnings` for all, or a code (W0005); `// toyproof: allow(W0005)` in the shader goes before it
+    #[arg(long, value_name = "warnings|CODE", value_parser = deny)]
+    deny: Vec<Deny>,
+}
+
 /// Where and how the shader runs.
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "The driver")]
 pub(super) struct DriverArgs {
-    /// Take what desktop GLSL allows and WebGL2 refuses: globals set from uniforms, integers where floats belong
-    #[arg(long, help_heading = "The shader")]
-    lenient: bool,
-    /// Take warnings for errors: `warnings` for all, or a code (W0005); `// toyproof: allow(W0005)` in the shader goes before it
-    #[arg(long, value_name = "warnings|CODE", value_parser = deny, help_heading = "The shader")]
-    deny: Vec<Deny>,
     /// `auto` (lavapipe where it is installed, else the first driver, else the CPU), `lavapipe`, `cpu` for toyproof's own
     /// evaluator, or words of an adapter's name
     #[arg(long, value_name = "ADAPTER", default_value = "auto", value_parser = place)]
@@ -122,6 +128,13 @@ impl Deny {
     }
 }
 
+/// What goes to standard output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Format {
+    Human,
+    Json,
+}
+
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(super) enum Float {
     Strict,
@@ -137,8 +150,8 @@ impl From<Float> for FloatMode {
     }
 }
 
-impl DriverArgs {
-    pub(super) fn language(&self) -> glsl::Options {
+impl LanguageArgs {
+    pub(super) fn options(&self) -> glsl::Options {
         glsl::Options {
             lenient: self.lenient,
             ..glsl::Options::default()
@@ -148,7 +161,9 @@ impl DriverArgs {
     pub(super) fn denied(&self) -> &[Deny] {
         &self.deny
     }
+}
 
+impl DriverArgs {
     pub(super) fn float(&self) -> FloatMode {
         self.float.unwrap_or(Float::Strict).into()
     }

@@ -2,6 +2,7 @@
 //! composes the stages and prints what came out.
 
 mod check;
+mod codes;
 mod compare;
 mod convert;
 mod course;
@@ -45,6 +46,8 @@ enum Command {
     Run(run::Args),
     /// Translate shaders to WGSL, SPIR-V, Metal, HLSL or GLSL ES
     Convert(convert::Args),
+    /// Tell what one pixel does, in f32 beside f64, line by line
+    Explain(explain::Args),
     /// Compare two pictures
     Compare(compare::Args),
     /// Write the shader that paints a scene
@@ -79,6 +82,7 @@ impl Cli {
             Command::Render(args) => render::run(&args, &terminal),
             Command::Run(args) => run::run(&args, &terminal),
             Command::Convert(args) => convert::run(&args, &terminal),
+            Command::Explain(args) => explain::run(&args, &terminal),
             Command::Compare(args) => compare::run(&args, &terminal),
             Command::Export(args) => export::run(&args, &terminal),
             Command::Scenes(args) => scenes::run(&args, &terminal),

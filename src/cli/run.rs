@@ -6,10 +6,10 @@ use std::time::Instant;
 use clap::ValueEnum;
 
 use super::check::cut_short;
-use super::inputs::{DriverArgs, FrameArgs};
+use super::inputs::{DriverArgs, FrameArgs, LanguageArgs};
 use super::shader::{Names, Shader, Unusable, find, is_invalid, with_suffix};
 use super::{Exit, Terminal};
-use crate::eval::{self, Number, Program, Settings};
+use crate::eval::{self, Number, Program, Settings, Variant};
 use crate::frame::Frame;
 use crate::glsl::Checked;
 use crate::gpu::{Drawn, Failure, Worker};
@@ -35,6 +35,8 @@ pub(super) struct Args {
     precision: Precision,
     #[command(flatten)]
     frame: FrameArgs,
+    #[command(flatten)]
+    language: LanguageArgs,
     #[command(flatten)]
     driver: DriverArgs,
 }
@@ -73,7 +75,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         frame,
     };
     for input in &inputs {
-        let shader = Shader::load(input, &args.driver);
+        let shader = Shader::load(input, &args.language);
         let path = match (one, input) {
             (true, _) | (false, Err(_)) => args.output.clone(),
             (false, Ok(found)) => with_suffix(&args.output.join(names.place(&found.relative)), ".png"),
@@ -161,7 +163,7 @@ impl Runner<'_> {
     fn evaluate<N: Number>(&self, checked: &Checked, shader: &Shader) -> Result<Image, Exit> {
         let start = Instant::now();
         let settings = Settings::<N> {
-            observe: false,
+            variant: Variant::Plain,
             deadline: Some(start + self.args.driver.timeout()),
             ..Settings::default()
         };

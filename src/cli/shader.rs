@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use super::inputs::{Deny, DriverArgs};
+use super::inputs::{Deny, LanguageArgs};
 use crate::diagnostic::{self, Diagnostic, Severity};
 use crate::glsl::{self, Checked};
 use crate::gpu::Failure;
@@ -27,16 +27,16 @@ pub(super) enum Unusable {
 }
 
 impl Shader {
-    pub(super) fn load(found: &Result<Found, ReadError>, driver: &DriverArgs) -> Self {
+    pub(super) fn load(found: &Result<Found, ReadError>, language: &LanguageArgs) -> Self {
         let mut files = Files::default();
         let mut warnings = Vec::new();
         let (name, checked) = match found {
             Err(error) => (subject(error), Err(Unusable::Trouble(error.to_string()))),
             Ok(found) => {
-                let checked = read(found, &mut files, &driver.language());
+                let checked = read(found, &mut files, &language.options());
                 let checked = checked.and_then(|checked| {
                     warnings.clone_from(&checked.warnings);
-                    let denied = denied(&mut warnings, driver.denied());
+                    let denied = denied(&mut warnings, language.denied());
                     if denied.is_empty() {
                         Ok(checked)
                     } else {

@@ -32,6 +32,10 @@ impl Terminal {
         Self { quiet, verbose }
     }
 
+    pub(super) fn is_verbose(&self) -> bool {
+        self.verbose
+    }
+
     /// A result, on standard output.
     pub(super) fn result(&self, text: &str) {
         // A reader that closed its end has all it wants.

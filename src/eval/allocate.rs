@@ -225,6 +225,7 @@ impl<'a> Uses<'a> {
                         self.read(value, at);
                     }
                 }
+                Step::Tell { value, .. } if *value != super::flow::NONE => self.read(*value, at),
                 _ => {}
             }
         }

@@ -5,6 +5,7 @@ use std::cell::{Cell, RefCell};
 use super::flow::Axis;
 use super::number::Number;
 use super::observe::Notes;
+use super::story::Scribe;
 use super::texture::Texture;
 
 /// How many pixels of a row are computed together: four quads.
@@ -44,6 +45,8 @@ pub(super) struct Batch<'a, N: Number> {
     /// Loop rounds of each pixel beside those.
     pub(super) own_rounds: Vec<Cell<Lanes<u32>>>,
     pub(super) notes: RefCell<Notes>,
+    /// Who takes down what a pixel does, where that is asked for.
+    pub(super) scribe: Option<Scribe<'a>>,
 }
 
 /// Why a batch ended early.

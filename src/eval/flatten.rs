@@ -63,6 +63,11 @@ pub(super) enum Step {
         values: [Value; 2],
         site: SiteId,
     },
+    Tell {
+        event: u32,
+        component: u32,
+        value: Value,
+    },
 }
 
 /// A program in a row.
@@ -232,6 +237,15 @@ impl Flatten<'_> {
                 predicate,
                 values,
                 site,
+            }),
+            Node::Tell {
+                event,
+                component,
+                value,
+            } => self.push(Step::Tell {
+                event,
+                component,
+                value,
             }),
         }
     }

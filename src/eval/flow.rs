@@ -118,6 +118,12 @@ pub(super) enum Node {
         values: [Value; 2],
         site: SiteId,
     },
+    /// Tells one component of a value; [`NONE`] for an event without one.
+    Tell {
+        event: u32,
+        component: u32,
+        value: Value,
+    },
 }
 
 /// A whole program.
@@ -224,7 +230,8 @@ impl Node {
                 .iter()
                 .filter(|&&value| value != NONE)
                 .for_each(|&value| visit(value)),
-            Self::Let(_) | Self::Scope { .. } | Self::Loop { .. } | Self::Leave(_) => {}
+            Self::Tell { value, .. } if *value != NONE => visit(*value),
+            Self::Tell { .. } | Self::Let(_) | Self::Scope { .. } | Self::Loop { .. } | Self::Leave(_) => {}
         }
     }
 
@@ -238,7 +245,8 @@ impl Node {
             }
             Self::If { condition, .. } | Self::LeaveIf { condition, .. } => visit(condition),
             Self::Check { values, .. } => values.iter_mut().filter(|value| **value != NONE).for_each(visit),
-            Self::Let(_) | Self::Scope { .. } | Self::Loop { .. } | Self::Leave(_) => {}
+            Self::Tell { value, .. } if *value != NONE => visit(value),
+            Self::Tell { .. } | Self::Let(_) | Self::Scope { .. } | Self::Loop { .. } | Self::Leave(_) => {}
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Loads become the values that were stored, and what was computed before is not computed again.
 //!
 //! Along each way through the code it is known what cells hold; where ways meet, what holds on all of them. Whatever a loop stores is
-//! unknown in it and after it.
+//! unknown in it and after it, unless it was known before and is stored again.
 
 use std::collections::{HashMap, HashSet};
 
@@ -164,9 +164,11 @@ impl Forward<'_> {
             Node::Loop { id, body } => {
                 let mut stored = Stored::default();
                 stored.collect(&body);
-                for cell in stored.cells {
+                for (cell, value) in stored.cells {
                     self.stored(cell);
-                    self.known.set(cell, None);
+                    if self.known.map.get(&cell) != Some(&self.alias[value.0 as usize]) {
+                        self.known.set(cell, None);
+                    }
                 }
                 for cells in stored.ranges {
                     self.forget(cells);
@@ -186,7 +188,7 @@ impl Forward<'_> {
                 self.leave(scope);
                 out.push(node);
             }
-            Node::Check { .. } => out.push(node),
+            Node::Check { .. } | Node::Tell { .. } => out.push(node),
         }
     }
 
@@ -278,7 +280,7 @@ impl Forward<'_> {
 /// What a block stores to.
 #[derive(Debug, Default)]
 struct Stored {
-    cells: Vec<Cell>,
+    cells: Vec<(Cell, Value)>,
     ranges: Vec<Cells>,
 }
 
@@ -286,7 +288,7 @@ impl Stored {
     fn collect(&mut self, block: &Block) {
         for node in block {
             match node {
-                Node::Store { cell, .. } => self.cells.push(*cell),
+                Node::Store { cell, value } => self.cells.push((*cell, *value)),
                 Node::StoreAt { cells, .. } => self.ranges.push(*cells),
                 _ => {}
             }

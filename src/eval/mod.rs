@@ -33,12 +33,17 @@ mod paint;
 mod painting;
 mod program;
 mod prune;
+mod story;
+mod teller;
 mod texture;
+mod tile;
 mod uniform;
 
 pub use compile::Refusal;
 pub use number::{Jittered, Number, Seed};
 pub use observe::{Fault, MESA_CAP, Observations, Observed, Site};
-pub use paint::{Failure, Painted, Settings};
+pub use paint::{Failure, Painted, Settings, Variant};
 pub use painting::Painting;
 pub use program::Program;
+pub use story::{Call, CallId, Event, EventId, Happened, Lead, Plot, Story, Told, What};
+pub use teller::Teller;

@@ -42,16 +42,23 @@ pub enum Fault {
     ArcOfNothing,
     /// A derivative where a neighbour in the quad does not run the same.
     LonelyDerivative,
+    /// A variable that nothing was written to: zero, as WebGL has it.
+    NeverWritten,
 }
 
 impl Fault {
     /// Whether implementations differ in what comes of it, so that the pixel is left out of comparisons. Of roots, logarithms and
-    /// arcs beyond their domain NaN comes everywhere, and of reversed edges the formula.
+    /// arcs beyond their domain NaN comes everywhere, of reversed edges the formula, and what was never written is zero in WebGL.
     #[must_use]
     pub fn is_undefined(self) -> bool {
         !matches!(
             self,
-            Self::ReversedEdges | Self::RootDomain | Self::LogDomain | Self::ArcDomain | Self::ArcOfNothing
+            Self::ReversedEdges
+                | Self::RootDomain
+                | Self::LogDomain
+                | Self::ArcDomain
+                | Self::ArcOfNothing
+                | Self::NeverWritten
         )
     }
 
@@ -74,6 +81,7 @@ impl Fault {
             Self::ArcDomain => "an inverse function beyond its domain",
             Self::ArcOfNothing => "`atan(0, 0)`",
             Self::LonelyDerivative => "a derivative where a neighbouring pixel runs something else",
+            Self::NeverWritten => "the value of a variable that was never written",
         }
     }
 }

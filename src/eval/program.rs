@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use super::allocate::{Home, Homes, allocate};
 use super::batch::LANES;
-use super::compile::{Extras, Refusal, compile, with_stack};
+use super::compile::{self, Choice, Extras, Refusal, compile, with_stack};
 use super::flatten::{Flat, Step, flatten};
 use super::flow::{Flow, Lookup, NONE, Origin, Value};
 use super::forward::forward;
@@ -14,7 +14,9 @@ use super::input;
 use super::number::{Jittered, Number};
 use super::observe::{Predicate, Site};
 use super::operation::Kind;
+use super::paint::Variant;
 use super::prune::prune;
+use super::story::Plot;
 use super::uniform::Varying;
 use crate::frame::Frame;
 use crate::glsl::Checked;
@@ -26,8 +28,12 @@ pub struct Program {
     checked: Arc<Checked>,
     /// With notes of undefined operations.
     observing: Compiled,
+    /// With other values where GLSL leaves them open; made when it is first asked for.
+    otherwise: OnceLock<Result<Compiled, Refusal>>,
     /// Without; made when it is first asked for.
     plain: OnceLock<Result<Compiled, Refusal>>,
+    /// With what each pixel does; made when it is first asked for.
+    telling: OnceLock<Result<Compiled, Refusal>>,
 }
 
 impl Program {
@@ -37,23 +43,59 @@ impl Program {
     /// If it is too large once its calls are inlined.
     pub fn new(checked: &Checked) -> Result<Self, Refusal> {
         let checked = Arc::new(checked.clone());
-        let observing = Compiled::new(&checked, Extras { checks: true })?;
+        let observing = Compiled::new(
+            &checked,
+            Extras {
+                choice: Choice::Noted,
+                ..Extras::default()
+            },
+        )?;
         Ok(Self {
             checked,
             observing,
+            otherwise: OnceLock::new(),
             plain: OnceLock::new(),
+            telling: OnceLock::new(),
         })
     }
 
-    /// The code that observes, or the code that does not.
-    pub(super) fn code(&self, observe: bool) -> Result<&Compiled, Refusal> {
-        if observe {
-            return Ok(&self.observing);
+    /// The code of a variant.
+    pub(super) fn code(&self, variant: Variant) -> Result<&Compiled, Refusal> {
+        match variant {
+            Variant::Observed => Ok(&self.observing),
+            Variant::Plain => self.made(&self.plain, Extras::default()),
+            Variant::Otherwise => self.made(
+                &self.otherwise,
+                Extras {
+                    choice: Choice::Other,
+                    ..Extras::default()
+                },
+            ),
         }
-        let plain = self
-            .plain
-            .get_or_init(|| Compiled::new(&self.checked, Extras { checks: false }));
-        plain.as_ref().map_err(|&refusal| refusal)
+    }
+
+    fn made<'a>(
+        &self,
+        kept: &'a OnceLock<Result<Compiled, Refusal>>,
+        extras: Extras,
+    ) -> Result<&'a Compiled, Refusal> {
+        let made = kept.get_or_init(|| Compiled::new(&self.checked, extras));
+        made.as_ref().map_err(|&refusal| refusal)
+    }
+
+    /// The code that tells what a pixel does.
+    pub(super) fn telling(&self) -> Result<&Compiled, Refusal> {
+        let extras = Extras {
+            story: true,
+            ..Extras::default()
+        };
+        self.made(&self.telling, extras)
+    }
+
+    /// The shader.
+    #[must_use]
+    pub fn checked(&self) -> &Checked {
+        &self.checked
     }
 }
 
@@ -86,6 +128,7 @@ pub struct Compiled {
     /// Whether stores to a cell leave alone the pixels that are elsewhere.
     shared: Vec<bool>,
     pub(super) sites: Vec<Site>,
+    pub(super) plot: Plot,
 }
 
 /// Code for one number type and frame.
@@ -121,7 +164,11 @@ const SPARE: u32 = 2;
 impl Compiled {
     fn new(checked: &Checked, extras: Extras) -> Result<Self, Refusal> {
         with_stack(|| {
-            let (mut flow, sites) = compile(checked, extras)?;
+            let compile::Program {
+                mut flow,
+                sites,
+                plot,
+            } = compile(checked, extras)?;
             forward(&mut flow);
             prune(&mut flow);
             let groups = Groups::of(&flow);
@@ -137,6 +184,7 @@ impl Compiled {
                 homes,
                 shared,
                 sites,
+                plot,
             })
         })?
     }
@@ -336,6 +384,18 @@ impl<N: Number> Writer<'_, N> {
                 values,
                 site,
             } => self.check(predicate, values, site.0),
+            Step::Tell {
+                event, value: NONE, ..
+            } => self.push(handler::mention(), event, [0; 3], 0),
+            Step::Tell {
+                event,
+                component,
+                value,
+            } => {
+                let (from, row) = self.value(value);
+                let run = handler::tell(self.compiled.flow.kind(value), row);
+                self.push(run, event, [from, 0, 0], component);
+            }
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::flow::{Block, Cell, Flow, Node, Origin, Value};
 use super::group::Groups;
+use super::observe::Predicate;
 
 /// Rewrites a program.
 pub(super) fn prune(flow: &mut Flow) {
@@ -101,6 +102,12 @@ impl Prune<'_> {
                     let body = self.keep(body);
                     (!body.is_empty()).then_some(Node::Scope { scope, body })
                 }
+                // What is written for certain.
+                Node::Check {
+                    predicate: Predicate::Zero,
+                    values: [value, _],
+                    ..
+                } if matches!(self.flow.origin(value), Origin::Word(word) if word != 0) => None,
                 Node::Loop { id, body } => Some(Node::Loop {
                     id,
                     body: self.keep(body),

@@ -158,7 +158,7 @@ impl<'a> Map<'a> {
                 Node::Loop { body, .. } => self.enter(body, here, What::Loop),
                 Node::Leave(scope) => self.leaves.push((*scope, here, None)),
                 Node::LeaveIf { scope, condition, .. } => self.leaves.push((*scope, here, Some(*condition))),
-                Node::Check { .. } => {}
+                Node::Check { .. } | Node::Tell { .. } => {}
             }
         }
     }

@@ -1,7 +1,9 @@
 //! What was found, for people and for programs.
 
 mod record;
+mod story;
 mod terminal;
 
 pub use record::{Record, Report, SCHEMA, Seconds};
+pub use story::{Story, Subject};
 pub use terminal::{line, place, summary};

@@ -1,6 +1,7 @@
 //! The three questions, asked of one shader: the GPU, the evaluator and the tracer paint at once, and their pictures are
 //! compared.
 
+mod cause;
 mod cpu;
 mod notes;
 
@@ -11,7 +12,7 @@ use std::time::{Duration, Instant};
 use thiserror::Error;
 
 use self::cpu::{Cpu, Limits};
-use crate::compare::{self, Answer, Answers, Comparison, Standing, Verdict};
+use crate::compare::{self, Answer, Answers, Comparison, MAX_UNSTABLE, Standing, Verdict};
 use crate::diagnostic::Diagnostic;
 use crate::eval::{self, Program};
 use crate::frame::Frame;
@@ -19,6 +20,7 @@ use crate::glsl::Checked;
 use crate::gpu::{self, Drawn, FloatMode, Worker};
 use crate::image::{Image, Mark};
 use crate::scene::{Moment, Scene};
+use crate::source::Span;
 use crate::trace::Tracer;
 
 /// What is to be verified.
@@ -61,6 +63,8 @@ pub struct Findings {
     pub painter: Option<Painter>,
     /// What was seen on the way, with its line.
     pub notes: Vec<Diagnostic>,
+    /// Where a shader loses its digits, if float32 is not enough for it and that could be found; a warning or a note says how.
+    pub cause: Option<Span>,
     /// How long the evaluator took, for all its pictures.
     pub eval: Duration,
     /// How long the tracer took.
@@ -87,13 +91,16 @@ pub struct Asked {
     pub answer: Answer,
     /// A mark for each pixel, bottom row first.
     pub marks: Vec<Mark>,
+    /// How each pixel stands.
+    standings: Vec<Standing>,
 }
 
 impl Asked {
-    fn new(expected: &Image, actual: &Image, standings: &[Standing]) -> Self {
+    fn new(expected: &Image, actual: &Image, standings: Vec<Standing>) -> Self {
         Self {
-            answer: Answer::new(expected, actual, standings),
-            marks: compare::marks(expected, actual, standings),
+            answer: Answer::new(expected, actual, &standings),
+            marks: compare::marks(expected, actual, &standings),
+            standings,
         }
     }
 }
@@ -171,6 +178,7 @@ pub fn verify(worker: Option<&mut Worker>, case: &Case) -> Result<Findings, Fail
         actual,
         painter,
         notes: Vec::new(),
+        cause: None,
         eval,
         trace: None,
     };
@@ -192,9 +200,7 @@ pub fn verify(worker: Option<&mut Worker>, case: &Case) -> Result<Findings, Fail
 
 impl Findings {
     fn ask(&mut self, case: &Case, cpu: &Cpu, program: &Program, tracer: Option<&Tracer<f64>>) {
-        let ask = |expected: &Image, actual: &Image, standings: &[Standing]| {
-            Some(Asked::new(expected, actual, standings))
-        };
+        let ask = |expected: &Image, actual: &Image, standings| Some(Asked::new(expected, actual, standings));
         if let (Some(tracer), Some(reference)) = (tracer, &self.reference) {
             let hull = |x, y| tracer.hull(x, y);
             let (standings, shaking) = timed(|| {
@@ -202,20 +208,34 @@ impl Findings {
                 compare::maths(reference, &cpu.double, &cpu.undefined, hull, shaken)
             });
             self.eval += shaking;
-            self.maths = ask(reference, &cpu.double, &standings);
+            self.maths = ask(reference, &cpu.double, standings);
         }
         let standings = compare::rounding(&cpu.double, &self.actual, &cpu.undefined);
-        self.rounding = ask(&cpu.double, &self.actual, &standings);
+        self.rounding = ask(&cpu.double, &self.actual, standings);
         if self.painter.is_some() && case.float == FloatMode::Strict {
             let standings = compare::toolchain(&cpu.single, &self.actual, &cpu.undefined);
-            self.toolchain = ask(&cpu.single, &self.actual, &standings);
+            self.toolchain = ask(&cpu.single, &self.actual, standings);
         }
         self.notes = notes::notes(cpu, &case.checked.warnings);
+        self.notes.extend(cause::not_finite(program, case, &self.actual));
         (self.verdict, self.reason) = compare::judge(Answers {
             maths: self.maths.as_ref().map(|asked| &asked.answer),
             rounding: self.rounding.as_ref().map(|asked| &asked.answer),
             toolchain: self.toolchain.as_ref().map(|asked| &asked.answer),
         });
+        let rounds = |asked: &Asked| asked.answer.share(asked.answer.differing) > MAX_UNSTABLE;
+        let loses = self.verdict == Verdict::Ok && self.rounding.as_ref().is_some_and(rounds);
+        if self.verdict == Verdict::Unstable || loses {
+            let mut questions = [&self.rounding, &self.maths].into_iter().flatten();
+            let cause = questions.find_map(|asked| cause::cause(program, case, asked));
+            self.cause = cause.as_ref().and_then(|cause| cause.span);
+            let is_foreseen = case
+                .checked
+                .warnings
+                .iter()
+                .any(|warning| warning.span == self.cause);
+            self.notes.extend(cause.filter(|_| !is_foreseen));
+        }
     }
 
     /// Without the evaluator nothing can be said of a shader but that it paints.

@@ -3,7 +3,7 @@
 use super::cpu::Cpu;
 use crate::compare::grouped;
 use crate::diagnostic::Diagnostic;
-use crate::eval::{MESA_CAP, Observed};
+use crate::eval::{Fault, MESA_CAP, Observed};
 use crate::glsl::Code;
 
 /// A shader does what GLSL leaves undefined.
@@ -11,10 +11,26 @@ pub(super) const UNDEFINED: &str = "W0600";
 /// Its loops run longer than older drivers allow.
 pub(super) const LONG_LOOPS: &str = "W0601";
 
+/// It reads what it has not written.
+const NEVER_WRITTEN: &str = "W0604";
+
 /// What was seen, but for what was foreseen: `warned` before the run.
 pub(super) fn notes(cpu: &Cpu, warned: &[Diagnostic]) -> Vec<Diagnostic> {
-    let undefined = |observed: &&Observed| observed.site.fault.is_undefined();
-    let mut notes: Vec<_> = cpu.faults.iter().filter(undefined).map(fault).collect();
+    let is_foreseen = |observed: &Observed| {
+        let codes = [Code::Unwritten, Code::MaybeUnwritten].map(Code::as_str);
+        let is_same = |warning: &Diagnostic| {
+            warning.span == Some(observed.site.at.span) && codes.contains(&&*warning.code)
+        };
+        warned.iter().any(is_same)
+    };
+    let mut notes = Vec::new();
+    for observed in &cpu.faults {
+        if observed.site.fault == Fault::NeverWritten && !is_foreseen(observed) {
+            notes.push(never_written(observed));
+        } else if observed.site.fault.is_undefined() {
+            notes.push(undefined(observed, cpu));
+        }
+    }
     let foreseen = warned
         .iter()
         .any(|warning| warning.code == Code::LongLoop.as_str());
@@ -29,13 +45,33 @@ pub(super) fn notes(cpu: &Cpu, warned: &[Diagnostic]) -> Vec<Diagnostic> {
     notes
 }
 
-fn fault(observed: &Observed) -> Diagnostic {
-    let [x, y] = observed.first;
+fn undefined(observed: &Observed, cpu: &Cpu) -> Diagnostic {
     let message = format!(
-        "{} in {} {}, first at ({x}, {y}): GLSL leaves open what comes of it",
+        "{} in {}: GLSL leaves open what comes of it",
         observed.site.fault.words(),
-        grouped(observed.pixels),
-        if observed.pixels == 1 { "pixel" } else { "pixels" },
+        pixels(observed)
     );
-    Diagnostic::warning(UNDEFINED, message).at(observed.site.at.span)
+    let diagnostic = Diagnostic::warning(UNDEFINED, message).at(observed.site.at.span);
+    if cpu.undefined.contains(&true) {
+        diagnostic
+    } else {
+        diagnostic.note("no pixel's colour depends on it, so that none is left out of the comparison")
+    }
+}
+
+fn never_written(observed: &Observed) -> Diagnostic {
+    let message = format!(
+        "read in {}, where nothing has been written to it: WebGL takes zero, other drivers anything",
+        pixels(observed)
+    );
+    Diagnostic::warning(NEVER_WRITTEN, message)
+        .at(observed.site.at.span)
+        .note("give the variable a value where it is declared")
+}
+
+/// In how many pixels, and the first of them.
+fn pixels(observed: &Observed) -> String {
+    let [x, y] = observed.first;
+    let plural = if observed.pixels == 1 { "pixel" } else { "pixels" };
+    format!("{} {plural}, first at ({x}, {y})", grouped(observed.pixels))
 }

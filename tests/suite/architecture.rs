@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The stages in the order of the flow.
-const STAGES: [&str; 18] = [
+const STAGES: [&str; 19] = [
     "source",
     "diagnostic",
     "output",
@@ -20,6 +20,7 @@ const STAGES: [&str; 18] = [
     "export",
     "trace",
     "compare",
+    "explain",
     "verify",
     "report",
     "cli",

@@ -13,7 +13,9 @@ fn root() -> &'static Path {
 
 #[test]
 fn the_help_of_each_command_shows_an_example() {
-    for name in ["check", "render", "run", "convert", "compare", "scenes", "doctor"] {
+    for name in [
+        "check", "render", "run", "convert", "explain", "compare", "scenes", "doctor",
+    ] {
         let help = toyproof(root(), &[name, "--help"]).stdout;
         assert!(
             help.contains("Example") && help.contains(&format!("toyproof {name}")),

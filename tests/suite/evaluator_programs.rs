@@ -1,6 +1,6 @@
 //! Small programs with what they must paint: what GLSL says, told of the evaluator in f32 and f64, and of the GPU.
 
-use toyproof::eval::{Fault, Jittered, Number, Program, Settings};
+use toyproof::eval::{Fault, Jittered, Number, Program, Settings, Variant};
 use toyproof::frame::Frame;
 use toyproof::glsl::{Checked, Options, check, lower_strict};
 use toyproof::gpu::FloatMode;
@@ -294,9 +294,9 @@ fn frame() -> Frame {
 
 fn evaluated<N: Number>(checked: &Checked) -> f64 {
     let program = Program::new(checked).unwrap();
-    let painted = [true, false].map(|observe| {
+    let painted = [Variant::Observed, Variant::Plain].map(|variant| {
         let settings = Settings::<N> {
-            observe,
+            variant,
             ..Settings::default()
         };
         program.paint(&frame(), &settings).unwrap().painting.get(0, 0)[0].to_f64()
@@ -347,7 +347,39 @@ fn small_programs_paint_the_same_on_the_gpu() {
 
 /// What stands in `mainImage`, and the faults that its pixels meet.
 static FAULTS: &[(&str, &[Fault])] = &[
-    ("float a[3]; o.x = a[int(p.x) + 7];", &[Fault::IndexOutOfBounds]),
+    (
+        "float a[3]; o.x = a[int(p.x) + 7];",
+        &[Fault::IndexOutOfBounds, Fault::NeverWritten],
+    ),
+    (
+        "float a[3] = float[](1.0, 2.0, 3.0); o.x = a[int(p.x) + 7];",
+        &[Fault::IndexOutOfBounds],
+    ),
+    (
+        "float x; if (p.x > 9.0) x = 1.0; o.x = x;",
+        &[Fault::NeverWritten],
+    ),
+    ("float x; if (p.x < 9.0) x = 1.0; o.x = x;", &[]),
+    ("float x; x += 1.0; o.x = x;", &[Fault::NeverWritten]),
+    ("vec3 v; v.xz = p; o.x = v.x + v.z;", &[]),
+    ("vec3 v; v.xz = p; o.x = length(v);", &[Fault::NeverWritten]),
+    ("float a[3]; a[int(p.x) + 1] = 2.0; o.x = a[1];", &[]),
+    (
+        "float a[3]; a[int(p.x) + 1] = 2.0; o.x = a[2];",
+        &[Fault::NeverWritten],
+    ),
+    (
+        "float t; for (int i = 0; i < int(p.x); i++) t = float(i); o.x = t;",
+        &[Fault::NeverWritten],
+    ),
+    (
+        "float t; for (int i = 0; i < 3; i++) { t = float(i); o.x += t; } o.x += t;",
+        &[],
+    ),
+    (
+        "struct S { float a; vec2 b; } s, t; s.a = 1.0; t = s; o.x = t.a;",
+        &[],
+    ),
     (
         "float a[3]; int i = int(p.x) + 7; if (i < 3 && a[i] > 0.0) o.x = 1.0;",
         &[],
@@ -468,6 +500,56 @@ fn divergent_pixels_paint_the_same_bits_as_on_the_gpu() {
         {
             let (ours, theirs) = (image.get(x, y), drawn.image.get(x, y));
             wrong.push(format!("({x}, {y}) of {body}: {ours:?} and {theirs:?}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// What stands in `mainImage`, and whether its colour hangs on what GLSL leaves open.
+static OPEN: &[(&str, bool)] = &[
+    (
+        "float a[3] = float[](1.0, 2.0, 3.0); o.x = a[int(p.x) + 7];",
+        true,
+    ),
+    (
+        "float a[3] = float[](1.0, 2.0, 3.0); float b = a[int(p.x) - 1]; o.x = p.x < 9.0 ? 1.0 : b;",
+        false,
+    ),
+    ("o.x = float(7 / int(p.x));", true),
+    ("o.x = float(7u % uint(p.x)) * 0.0;", false),
+    ("o.x = float(1 << (int(p.x) + 32));", true),
+    ("o.x = float(uint(p.x - 2.0));", false),
+    ("o.x = float(uint(p.x - 2.0) + 1u);", false),
+    ("o.x = float(int(p.x * 1e20) / 2);", true),
+    ("o.x = smoothstep(p.x, p.y, 1.0);", true),
+    ("o.x = pow(p.x - 1.0, 2.0);", true),
+    ("o.x = min(pow(p.x - 1.0, 2.0), 0.0) > 9.0 ? 1.0 : 0.0;", false),
+    ("o.x = max(p.x, sqrt(p.x - 1.0));", true),
+    ("o.x = max(p.x, sqrt(p.x - 1.0)) > 9.0 ? 1.0 : 0.0;", false),
+    ("o.x = clamp(1.0, p.x, 0.0);", true),
+];
+
+#[test]
+fn another_choice_shows_which_pixels_hang_on_what_is_undefined() {
+    let mut wrong = Vec::new();
+    for &(body, hangs) in OPEN {
+        let program = Program::new(&checked("", body).unwrap()).unwrap();
+        let frame = Frame {
+            size: [1, 1],
+            ..Frame::default()
+        };
+        let paint = |variant| {
+            let settings = Settings::<f32> {
+                variant,
+                ..Settings::default()
+            };
+            program.paint(&frame, &settings).unwrap().painting
+        };
+        let usual = paint(Variant::Observed);
+        assert!(usual.is_undefined(0, 0), "{body}");
+        let [usual, other] = [usual, paint(Variant::Otherwise)].map(|painting| painting.get(0, 0)[0]);
+        if (usual.to_bits() != other.to_bits()) != hangs {
+            wrong.push(format!("{body}: {usual} {other}"));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));

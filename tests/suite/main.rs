@@ -23,5 +23,7 @@ mod planted_faults;
 mod program;
 mod rules;
 mod rungs;
+mod stories;
 mod strict;
 mod support;
+mod unstable;

@@ -73,6 +73,25 @@ rungs! {
 /// The first rungs with rays, in the course's order: spheres, met by the same words in each.
 pub(crate) static RUNGS: [&Rung; 5] = [&SPHERE, &SHADING, &MANY_OBJECTS, &COMPLEX_SCENE, &REFLECTIONS];
 
+/// All of the course.
+pub(crate) static EVERY_RUNG: [&Rung; 15] = [
+    &SAMPLING,
+    &SPHERE,
+    &SHADING,
+    &MANY_OBJECTS,
+    &COMPLEX_SCENE,
+    &REFLECTIONS,
+    &DIFFUSE,
+    &DISNEY,
+    &SOFT_SHADOWS,
+    &QUADRICS,
+    &ANIMATION,
+    &WHITTED,
+    &IMPORTANCE_SAMPLING,
+    &ACCELERATOR,
+    &PARALLEL_RAYS,
+];
+
 /// `(from, to)`. `from` occurs exactly once; a `…` in it stands for everything up to the first occurrence of what
 /// follows the `…`.
 pub(crate) type Edit = (&'static str, &'static str);
@@ -183,9 +202,17 @@ fn told(errors: &[Diagnostic], files: &Files) -> String {
 /// # Panics
 /// If there is nothing to edit, or it is not clear where.
 pub(crate) fn edited(rung: &Rung, edits: &[Edit]) -> String {
-    let mut text = rung.shader.to_owned();
+    edit(rung.shader, edits, rung.name)
+}
+
+/// A text after all edits, one after the other; `name` is for messages.
+///
+/// # Panics
+/// If there is nothing to edit, or it is not clear where.
+pub(crate) fn edit(text: &str, edits: &[Edit], name: &str) -> String {
+    let mut text = text.to_owned();
     for (from, to) in edits {
-        let range = place(&text, from).unwrap_or_else(|why| panic!("{}: `{from}` {why}", rung.name));
+        let range = place(&text, from).unwrap_or_else(|why| panic!("{name}: `{from}` {why}\n{text}"));
         text.replace_range(range, to);
     }
     text

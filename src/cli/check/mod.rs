@@ -7,13 +7,11 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use clap::ValueEnum;
-
-use self::reference::Reference;
+pub(super) use self::reference::Reference;
 use self::stopped::Stopped;
-use super::inputs::{DriverArgs, FrameArgs};
+use super::inputs::{DriverArgs, Format, FrameArgs, LanguageArgs};
 use super::shader::{Names, Shader, find, with_suffix};
-use super::{Exit, Terminal, explain};
+use super::{Exit, Terminal, codes};
 use crate::compare::{TOLERANCE, Verdict};
 use crate::diagnostic::{self, Diagnostic};
 use crate::frame::Frame;
@@ -50,18 +48,14 @@ pub(super) struct Args {
     #[command(flatten)]
     frame: FrameArgs,
     #[command(flatten)]
+    language: LanguageArgs,
+    #[command(flatten)]
     driver: DriverArgs,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Format {
-    Human,
-    Json,
 }
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     if let Some(code) = &args.explain {
-        return explain::run(code, terminal);
+        return codes::run(code, terminal);
     }
     let (worker, frame) = match (args.driver.worker(), args.frame.frame()) {
         (Ok(worker), Ok(frame)) => (worker, frame),
@@ -133,7 +127,7 @@ struct Checker<'a> {
 
 impl Checker<'_> {
     fn check(&mut self, input: &Result<Found, ReadError>) -> Record {
-        let shader = Shader::load(input, &self.args.driver);
+        let shader = Shader::load(input, &self.args.language);
         let spinner = self.terminal.spinner(&shader.name);
         let scene = self.args.scene.as_deref();
         let reference = input
@@ -218,7 +212,12 @@ impl Checker<'_> {
             self.worker = None;
             verified = verify(None, &case);
         }
-        let findings = verified.map_err(|failure| Stopped::failure(failure, files.clone()))?;
+        let mut findings = verified.map_err(|failure| Stopped::failure(failure, files.clone()))?;
+        if let (Verdict::Unstable, Some(cause)) = (findings.verdict, findings.cause) {
+            let at = files.position(cause);
+            let place = format!("; it is lost in line {}, column {}", at.line, at.column);
+            findings.reason.push_str(&place);
+        }
         self.tell(record, &findings.notes, &files);
         Ok(findings)
     }

@@ -7,15 +7,15 @@ use crate::scene::{self, Scene};
 use crate::source::{self, Files, Found, FoundIn};
 
 /// The scene of a shader.
-pub(super) struct Reference {
-    pub(super) name: String,
-    pub(super) scene: Result<Scene, Unusable>,
-    pub(super) files: Files,
+pub(in crate::cli) struct Reference {
+    pub(in crate::cli) name: String,
+    pub(in crate::cli) scene: Result<Scene, Unusable>,
+    pub(in crate::cli) files: Files,
 }
 
 impl Reference {
     /// The scene that `--scene` names, else the one beside the shader.
-    pub(super) fn find(scene: Option<&Path>, found: &Found) -> Option<Self> {
+    pub(in crate::cli) fn find(scene: Option<&Path>, found: &Found) -> Option<Self> {
         let path = match (scene, &found.place) {
             (Some(path), _) => path.to_owned(),
             (None, FoundIn::File(shader)) => {

@@ -51,14 +51,17 @@ impl Builder<'_> {
         let last = arguments.last().map(|&last| self.ty(last));
         Ok(operands
             .into_iter()
-            .map(|operands| match operands[..] {
-                [x] => self.of_one(function, scalar, x, at),
-                [x, y] => self.of_two(function, scalar, [x, y], at),
-                [x, y, z] => {
-                    let chooses = last.and_then(Type::scalar) == Some(Scalar::Bool);
-                    self.of_three(function, scalar, chooses, [x, y, z], at)
-                }
-                _ => self.float(0.0),
+            .map(|operands| {
+                let value = match operands[..] {
+                    [x] => self.of_one(function, scalar, x, at),
+                    [x, y] => self.of_two(function, scalar, [x, y], at),
+                    [x, y, z] => {
+                        let chooses = last.and_then(Type::scalar) == Some(Scalar::Bool);
+                        self.of_three(function, scalar, chooses, [x, y, z], at)
+                    }
+                    _ => self.float(0.0),
+                };
+                self.settle(value)
             })
             .collect())
     }

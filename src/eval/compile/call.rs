@@ -3,7 +3,8 @@
 use super::place::{Home, Target};
 use super::{Builder, Frame, Result};
 use crate::eval::flow::{Cells, Node, Value};
-use crate::glsl::tree::{Direction, ExprId, ExprKind, FunctionId, Type, VariableId, VariableKind};
+use crate::eval::story::CallId;
+use crate::glsl::tree::{Direction, ExprId, ExprKind, FunctionId, Place, Type, VariableId, VariableKind};
 
 /// What an argument gives to its parameter, and takes back.
 struct Passed {
@@ -12,8 +13,14 @@ struct Passed {
 }
 
 impl Builder<'_> {
-    pub(super) fn call(&mut self, function: FunctionId, arguments: &[ExprId]) -> Result<Vec<Value>> {
+    pub(super) fn call(
+        &mut self,
+        function: FunctionId,
+        arguments: &[ExprId],
+        at: Place,
+    ) -> Result<Vec<Value>> {
         let tree = self.tree;
+        let call = self.name_call(function, at);
         let parameters = &tree[function].parameters;
         let mut passed = Vec::with_capacity(arguments.len());
         for (&argument, &parameter) in arguments.iter().zip(parameters) {
@@ -26,7 +33,7 @@ impl Builder<'_> {
                 && direction(tree[parameter].kind) == Direction::InOut
             {
                 // A variable as such is handed over when the call begins, after all arguments.
-                passed.values = self.read(back);
+                passed.values = self.read(back, tree[argument].at);
             }
         }
         let mut taken = Vec::new();
@@ -39,16 +46,20 @@ impl Builder<'_> {
             {
                 if direction(tree[parameter].kind) == Direction::Out {
                     self.store_all(cells, &passed.values);
+                    self.begin_unwritten(cells);
                 }
                 self.homes.insert(parameter, Home::Cells(cells));
                 continue;
             }
             let cells = self.allocate_type(tree[parameter].ty)?;
             self.store_all(cells, &passed.values);
+            if direction(tree[parameter].kind) == Direction::Out {
+                self.begin_unwritten(cells);
+            }
             self.homes.insert(parameter, Home::Cells(cells));
             taken.extend(passed.back.map(|back| (cells, back)));
         }
-        let result = self.inline(function)?;
+        let result = self.inline(function, call)?;
         let value = self.load_all(result);
         for (cells, back) in taken {
             let values = self.load_all(cells);
@@ -87,7 +98,7 @@ impl Builder<'_> {
         }
         let back = self.target(argument)?;
         let values = match &back {
-            Some(target) if direction == Direction::InOut => self.read(target),
+            Some(target) if direction == Direction::InOut => self.read(target, self.at(argument)),
             _ => self.zeros(ty),
         };
         Ok(Passed { values, back })
@@ -105,7 +116,7 @@ impl Builder<'_> {
     }
 
     /// The body of a function whose parameters have homes; its result, in cells.
-    fn inline(&mut self, function: FunctionId) -> Result<Cells> {
+    fn inline(&mut self, function: FunctionId, call: Option<CallId>) -> Result<Cells> {
         let tree = self.tree;
         let ty = tree[function].return_type;
         let result = self.allocate_type(ty)?;
@@ -114,7 +125,8 @@ impl Builder<'_> {
         self.store_all(result, &zeros);
         let scope = self.scope();
         let body = self.inner(|builder| {
-            builder.frames.push(Frame { scope, result });
+            builder.frames.push(Frame { scope, result, call });
+            builder.tell_parameters(function);
             let (breaks, continues) = (
                 std::mem::take(&mut builder.breaks),
                 std::mem::take(&mut builder.continues),
@@ -142,7 +154,7 @@ impl Builder<'_> {
             self.store_all(cells, &coordinates);
             self.homes.insert(position, Home::Cells(cells));
         }
-        self.inline(function).map(drop)
+        self.inline(function, None).map(drop)
     }
 
     /// A scope, or its body alone where nothing leaves it.
@@ -156,7 +168,8 @@ impl Builder<'_> {
     }
 }
 
-fn direction(kind: VariableKind) -> Direction {
+/// How a parameter is passed.
+pub(super) fn direction(kind: VariableKind) -> Direction {
     match kind {
         VariableKind::Parameter(direction) => direction,
         _ => Direction::In,

@@ -32,7 +32,8 @@ impl Builder<'_> {
             };
             let at = self.at(argument);
             for value in components.into_iter().take(wanted) {
-                values.push(self.convert(value, from, to, at));
+                let converted = self.convert(value, from, to, at);
+                values.push(self.settle(converted));
             }
         }
         Ok(match (constructor, ty) {

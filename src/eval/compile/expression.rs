@@ -3,6 +3,7 @@
 use super::{Builder, Result, layout};
 use crate::eval::flow::{NONE, Node, Value};
 use crate::eval::operation::Operation;
+use crate::eval::story::What;
 use crate::glsl::tree::{BinaryOp, ExprId, ExprKind, Scalar, StepOp, Type};
 
 use super::place::Home;
@@ -24,11 +25,16 @@ impl Builder<'_> {
             chain.push(first);
         }
         let mut values = match chain.pop() {
-            Some(leaf) => self.leaf(leaf)?,
+            Some(leaf) => {
+                let values = self.leaf(leaf)?;
+                self.tell_part(leaf, &values);
+                values
+            }
             None => Vec::new(),
         };
         while let Some(expr) = chain.pop() {
             values = self.go_on(expr, values)?;
+            self.tell_part(expr, &values);
         }
         Ok(values)
     }
@@ -37,6 +43,13 @@ impl Builder<'_> {
     pub(super) fn scalar(&mut self, expr: ExprId) -> Result<Value> {
         let values = self.expression(expr)?;
         Ok(values.first().copied().unwrap_or_else(|| self.word(0)))
+    }
+
+    /// The value of a `bool` that decides what runs.
+    pub(super) fn condition(&mut self, expr: ExprId) -> Result<Value> {
+        let value = self.scalar(expr)?;
+        self.tell(What::Branch, self.at(expr), Type::BOOL, &[value]);
+        Ok(value)
     }
 
     /// The operand that is evaluated first and then no more than its value is asked for.
@@ -65,13 +78,17 @@ impl Builder<'_> {
         Ok(match &tree[expr].kind {
             ExprKind::Literal(literal) => vec![self.literal(literal.value)],
             ExprKind::Variable(variable) => match self.home(*variable) {
-                Home::Cells(cells) => self.load_all(cells),
+                Home::Cells(cells) => {
+                    let own: Vec<u32> = (cells.first..cells.first + cells.count).collect();
+                    self.note_read(tree[expr].ty, &own, None, tree[expr].at);
+                    self.load_all(cells)
+                }
                 Home::Values(values) => values,
                 Home::Channel(_) => Vec::new(),
             },
             ExprKind::Swizzle { .. } | ExprKind::Member { .. } | ExprKind::Index { .. } => {
                 match self.target(expr)? {
-                    Some(target) => self.read(&target),
+                    Some(target) => self.read(&target, tree[expr].at),
                     None => Vec::new(),
                 }
             }
@@ -82,7 +99,7 @@ impl Builder<'_> {
             &ExprKind::Assign { op, target, value } => self.assign(op, target, value, expr)?,
             &ExprKind::Step { op, postfix, target } => self.step(op, postfix, target)?,
             &ExprKind::Conditional { condition, yes, no } => {
-                let condition = self.scalar(condition)?;
+                let condition = self.condition(condition)?;
                 let ty = tree[expr].ty;
                 self.choose(
                     condition,
@@ -91,7 +108,7 @@ impl Builder<'_> {
                     |builder| builder.expression(no),
                 )?
             }
-            ExprKind::Call { function, arguments } => self.call(*function, arguments)?,
+            ExprKind::Call { function, arguments } => self.call(*function, arguments, tree[expr].at)?,
             ExprKind::BuiltIn { function, arguments } => self.built_in(*function, arguments, expr)?,
             ExprKind::Construct {
                 constructor,
@@ -167,8 +184,8 @@ impl Builder<'_> {
             no_values = no(builder)?;
             Ok(())
         })?;
-        let mut scalars = Vec::new();
-        layout::scalars(self.tree, ty, &mut scalars);
+        let scalars = self.tree.scalars(ty);
+
         let is_silent =
             |block: &[Node]| block.len() <= SMALL && block.iter().all(|node| matches!(node, Node::Let(_)));
         if is_silent(&yes_block) && is_silent(&no_block) {
@@ -216,9 +233,11 @@ impl Builder<'_> {
         };
         let mut values = self.expression(value)?;
         if let Some(op) = op {
-            let old = self.read(&place);
+            let old = self.read(&place, self.at(target));
             values = self.binary_operator(op, types, &old, &values, self.at(whole));
         }
+        let what = What::Stored(self.at(target));
+        self.tell(what, self.at(whole), types.0, &values);
         self.write(&place, &values);
         Ok(values)
     }
@@ -228,7 +247,7 @@ impl Builder<'_> {
         let Some(place) = self.target(target)? else {
             return self.expression(target);
         };
-        let old = self.read(&place);
+        let old = self.read(&place, self.at(target));
         let float = ty.scalar() == Some(Scalar::Float);
         let one = if float { self.float(1.0) } else { self.word(1) };
         let operation = match (op, float) {
@@ -238,6 +257,8 @@ impl Builder<'_> {
             (StepOp::Decrement, false) => Operation::SubWord,
         };
         let new: Vec<Value> = old.iter().map(|&old| self.binary(operation, old, one)).collect();
+        let at = self.at(target);
+        self.tell(What::Stored(at), at, ty, &new);
         self.write(&place, &new);
         Ok(if postfix { old } else { new })
     }

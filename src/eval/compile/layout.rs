@@ -15,31 +15,6 @@ pub(super) fn size(tree: &Tree, ty: Type) -> usize {
     }
 }
 
-/// What each component is, in order.
-pub(super) fn scalars(tree: &Tree, ty: Type, out: &mut Vec<Scalar>) {
-    match ty {
-        Type::Array(id) => {
-            let array = tree.array(id);
-            let start = out.len();
-            scalars(tree, array.element, out);
-            let element = out[start..].to_vec();
-            for _ in 1..array.size {
-                out.extend_from_slice(&element);
-            }
-        }
-        Type::Struct(id) => {
-            for member in &tree[id].members {
-                scalars(tree, member.ty, out);
-            }
-        }
-        _ => {
-            if let (Some(scalar), Some(count)) = (ty.scalar(), ty.component_count()) {
-                out.extend(std::iter::repeat_n(scalar, usize::from(count)));
-            }
-        }
-    }
-}
-
 /// How many components stand before a member.
 pub(super) fn offset(tree: &Tree, id: StructId, member: usize) -> usize {
     tree[id].members[..member]

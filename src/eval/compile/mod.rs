@@ -9,17 +9,21 @@ mod operator;
 mod place;
 mod statement;
 mod tail;
+mod tell;
 mod term;
 mod texture;
+mod undefined;
+mod written;
 
 use std::cell::RefCell;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use self::place::Home;
 use self::term::Term;
 use super::flow::{Block, Cell, Cells, Flow, LoopId, NONE, Node, Origin, Scope, Value};
-use super::observe::{Fault, Predicate, Site, SiteId};
+use super::observe::{Predicate, Site, SiteId};
 use super::operation::{Kind, Operation};
+use super::story::{CallId, EventId, Plot};
 use crate::glsl::Checked;
 use thiserror::Error;
 
@@ -51,11 +55,25 @@ pub enum Refusal {
     NoMemory,
 }
 
+/// What comes of operations that GLSL leaves undefined.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) enum Choice {
+    /// What strict GPU runs make of them.
+    #[default]
+    Usual,
+    /// The same, and it is noted.
+    Noted,
+    /// Something else.
+    Other,
+}
+
 /// What is compiled besides the picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Extras {
-    /// Notes of undefined operations.
-    pub(super) checks: bool,
+    /// What comes of operations that GLSL leaves undefined.
+    pub(super) choice: Choice,
+    /// What each pixel does, step by step.
+    pub(super) story: bool,
 }
 
 /// Does what may recurse deep, on a stack of its own.
@@ -69,8 +87,17 @@ pub(super) fn with_stack<T: Send>(work: impl FnOnce() -> T + Send) -> std::resul
     })
 }
 
+/// What comes of a tree.
+pub(super) struct Program {
+    pub(super) flow: Flow,
+    /// Where something may be noted.
+    pub(super) sites: Vec<Site>,
+    /// What may be told.
+    pub(super) plot: Plot,
+}
+
 /// Writes a shader's flow.
-pub(super) fn compile(checked: &Checked, extras: Extras) -> Result<(Flow, Vec<Site>)> {
+pub(super) fn compile(checked: &Checked, extras: Extras) -> Result<Program> {
     let mut builder = Builder {
         tree: &checked.tree,
         extras,
@@ -85,6 +112,10 @@ pub(super) fn compile(checked: &Checked, extras: Extras) -> Result<(Flow, Vec<Si
         continues: Vec::new(),
         sites: Vec::new(),
         site_ids: HashMap::new(),
+        open: Vec::new(),
+        written: BTreeMap::new(),
+        plot: Plot::default(),
+        rounds: Vec::new(),
         depth: 0,
         discarded: Cell(0),
     };
@@ -99,7 +130,11 @@ pub(super) fn compile(checked: &Checked, extras: Extras) -> Result<(Flow, Vec<Si
         body: draft.block,
         output: [red, green, blue, discarded],
     };
-    Ok((flow, builder.sites))
+    Ok(Program {
+        flow,
+        sites: builder.sites,
+        plot: builder.plot,
+    })
 }
 
 /// The nodes that are being written: shared, so that terms may write as they are added and multiplied.
@@ -148,6 +183,8 @@ impl Draft {
 struct Frame {
     scope: Scope,
     result: Cells,
+    /// Its call, for stories.
+    call: Option<CallId>,
 }
 
 /// Writes the flow of a tree.
@@ -166,6 +203,13 @@ struct Builder<'a> {
     continues: Vec<Scope>,
     sites: Vec<Site>,
     site_ids: HashMap<Site, SiteId>,
+    /// What was checked and is not settled.
+    open: Vec<(Predicate, [Value; 2])>,
+    /// Of variables by their first cell, a word for each component: whether it has been written.
+    written: BTreeMap<u32, Cells>,
+    plot: Plot,
+    /// The rounds of the loops that are being written.
+    rounds: Vec<EventId>,
     depth: usize,
     /// The cell that tells of `discard`.
     discarded: Cell,
@@ -193,6 +237,7 @@ impl Builder<'_> {
             builder.frames.push(Frame {
                 scope: all,
                 result: Cells { first: 0, count: 0 },
+                call: None,
             });
             builder.globals()?;
             builder.main_image(main_image, colour)?;
@@ -263,11 +308,11 @@ impl Builder<'_> {
 
     /// Cells for a variable of that type.
     fn allocate_type(&mut self, ty: Type) -> Result<Cells> {
-        let mut scalars = Vec::new();
+        let scalars = self.tree.scalars(ty);
         if self.cells.len() + layout::size(self.tree, ty) > MAX_CELLS {
             return Err(Refusal::TooLong);
         }
-        layout::scalars(self.tree, ty, &mut scalars);
+
         let first = self.cells.len() as u32;
         self.cells
             .extend(scalars.iter().map(|&scalar| layout::kind(scalar)));
@@ -303,7 +348,7 @@ impl Builder<'_> {
 
     /// Stops when a program grows beyond all measure.
     fn bounded(&self) -> Result<()> {
-        if self.draft.borrow().origins.len() > MAX_VALUES {
+        if self.draft.borrow().origins.len().max(self.plot.events.len()) > MAX_VALUES {
             return Err(Refusal::TooLong);
         }
         Ok(())
@@ -348,8 +393,8 @@ impl Builder<'_> {
 
     /// The zero of each component of a type.
     fn zeros(&self, ty: Type) -> Vec<Value> {
-        let mut scalars = Vec::new();
-        layout::scalars(self.tree, ty, &mut scalars);
+        let scalars = self.tree.scalars(ty);
+
         scalars
             .into_iter()
             .map(|scalar| match layout::kind(scalar) {
@@ -365,23 +410,5 @@ impl Builder<'_> {
 
     fn at(&self, expr: ExprId) -> Place {
         self.tree[expr].at
-    }
-
-    /// Notes pixels for which a predicate holds.
-    fn check(&mut self, fault: Fault, at: Place, predicate: Predicate, values: [Value; 2]) {
-        if !self.extras.checks {
-            return;
-        }
-        let site = Site { fault, at };
-        let next = SiteId(self.sites.len() as u32);
-        let id = *self.site_ids.entry(site).or_insert(next);
-        if id == next {
-            self.sites.push(site);
-        }
-        self.push(Node::Check {
-            predicate,
-            values,
-            site: id,
-        });
     }
 }

@@ -44,7 +44,10 @@ impl Builder<'_> {
         let count = a.len().max(b.len());
         let pick = |side: &[Value], at: usize| side[if side.len() == 1 { 0 } else { at }];
         (0..count)
-            .map(|index| self.scalars(op, scalar, pick(a, index), pick(b, index), at))
+            .map(|index| {
+                let value = self.scalars(op, scalar, pick(a, index), pick(b, index), at);
+                self.settle(value)
+            })
             .collect()
     }
 
@@ -111,8 +114,8 @@ impl Builder<'_> {
 
     /// Whether all components are equal.
     pub(super) fn equal(&self, ty: Type, a: &[Value], b: &[Value]) -> Value {
-        let mut scalars = Vec::new();
-        layout::scalars(self.tree, ty, &mut scalars);
+        let scalars = self.tree.scalars(ty);
+
         let pairs = a.iter().zip(b).zip(scalars);
         let each = pairs.map(|((&a, &b), scalar)| match layout::kind(scalar) {
             Kind::Float => self.binary(Operation::Equal, a, b),

@@ -4,7 +4,7 @@ use super::{Builder, Result, layout};
 use crate::eval::flow::{Cell, Cells, NONE, Node, Origin, Value};
 use crate::eval::observe::{Fault, Predicate};
 use crate::eval::operation::{Kind, Operation};
-use crate::glsl::tree::{BuiltInVariable, ExprId, ExprKind, Input, Type, VariableId, VariableKind};
+use crate::glsl::tree::{BuiltInVariable, ExprId, ExprKind, Input, Place, Type, VariableId, VariableKind};
 
 /// Where a variable lives.
 #[derive(Debug, Clone)]
@@ -192,7 +192,8 @@ impl Builder<'_> {
         let index = self.scalar(index)?;
         self.check(Fault::IndexOutOfBounds, at, Predicate::From(count), [index, NONE]);
         let last = self.word(count - 1);
-        Ok(self.binary(Operation::MinUint, index, last))
+        let held = self.binary(Operation::MinUint, index, last);
+        Ok(self.settle(held))
     }
 
     /// The cells of a part, if they follow each other and no index leads to them.
@@ -214,9 +215,11 @@ impl Builder<'_> {
     }
 
     /// The values of a part.
-    pub(super) fn read(&self, target: &Target) -> Vec<Value> {
-        let cells_of = self.cells_of(target).into_iter();
-        cells_of
+    pub(super) fn read(&mut self, target: &Target, at: Place) -> Vec<Value> {
+        let cells = self.cells_of(target);
+        self.note_read(target.ty, &cells, target.index, at);
+        cells
+            .into_iter()
             .map(|cell| match target.index {
                 None => self.load(Cell(cell)),
                 Some((index, cells)) => self.value(Origin::LoadAt {
@@ -232,6 +235,7 @@ impl Builder<'_> {
     /// Puts values into a part.
     pub(super) fn write(&self, target: &Target, values: &[Value]) {
         for (cell, &value) in self.cells_of(target).into_iter().zip(values) {
+            self.note_written(cell, target.index);
             self.push(match target.index {
                 None => Node::Store {
                     cell: Cell(cell),
@@ -256,6 +260,7 @@ impl Builder<'_> {
         }
         let cells = self.allocate_type(ty)?;
         self.store_all(cells, values);
+        let at = self.at(index);
         let index = self.clamped_index(index, count)?;
         let mut target = Target {
             ty,
@@ -264,6 +269,6 @@ impl Builder<'_> {
             index: None,
         };
         self.index_at(&mut target, index);
-        Ok(self.read(&target))
+        Ok(self.read(&target, at))
     }
 }

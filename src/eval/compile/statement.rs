@@ -4,8 +4,10 @@ use super::place::Home;
 use super::{Builder, Result, tail};
 use crate::eval::flow::{Block as Nodes, Cell, Node, Origin, Scope, Value};
 use crate::eval::operation::Operation;
+use crate::eval::story::What;
 use crate::glsl::tree::{
     Arm, Block, Case, Condition, ExprId, Label, Place, Statement, StatementKind, Type, VariableId,
+    VariableKind,
 };
 
 impl Builder<'_> {
@@ -45,24 +47,38 @@ impl Builder<'_> {
             StatementKind::DoWhile { body, condition } => {
                 self.repeat(statement.at, None, body, None, Some(*condition))?;
             }
-            StatementKind::Break => self.leave(self.breaks.last().copied()),
-            StatementKind::Continue => self.leave(self.continues.last().copied()),
+            StatementKind::Break => {
+                self.ran(statement.at);
+                self.leave(self.breaks.last().copied());
+            }
+            StatementKind::Continue => {
+                self.ran(statement.at);
+                self.leave(self.continues.last().copied());
+            }
             StatementKind::Return(value) => {
                 if let Some(value) = value {
                     let values = self.expression(*value)?;
+                    self.tell(What::Returned, statement.at, self.ty(*value), &values);
                     if let Some(frame) = self.frames.last() {
                         self.store_all(frame.result, &values);
                     }
+                } else {
+                    self.ran(statement.at);
                 }
                 self.leave(self.frames.last().map(|frame| frame.scope));
             }
             StatementKind::Discard => {
+                self.ran(statement.at);
                 let yes = self.truth(true);
                 self.store(self.discarded, yes);
                 self.leave(self.frames.first().map(|frame| frame.scope));
             }
         }
         Ok(())
+    }
+
+    fn ran(&mut self, at: Place) {
+        self.tell(What::Ran, at, Type::Void, &[]);
     }
 
     fn leave(&self, scope: Option<Scope>) {
@@ -86,7 +102,17 @@ impl Builder<'_> {
             _ => self.allocate_type(ty)?,
         };
         self.homes.insert(variable, Home::Cells(cells));
+        if let (Some(initialiser), Some(at)) = (initialiser, self.tree[variable].at)
+            && self.tree[variable].value.is_none()
+        {
+            let whole = at.to(self.at(initialiser));
+            self.tell(What::Stored(at), whole, ty, &values);
+        }
         self.store_all(cells, &values);
+        let local = self.tree[variable].kind == VariableKind::Local;
+        if local && initialiser.is_none() && !self.shared.contains(&variable) {
+            self.begin_unwritten(cells);
+        }
         Ok(())
     }
 
@@ -94,7 +120,7 @@ impl Builder<'_> {
         let Some((arm, others)) = arms.split_first() else {
             return otherwise.map_or(Ok(()), |block| self.block(block));
         };
-        let condition = self.scalar(arm.condition)?;
+        let condition = self.condition(arm.condition)?;
         let yes = self.inner(|builder| builder.block(&arm.body))?;
         let no = self.inner(|builder| builder.arms(others, otherwise))?;
         self.choice(condition, yes, no);
@@ -135,9 +161,10 @@ impl Builder<'_> {
         let (out, on) = (self.scope(), self.scope());
         let id = self.new_loop(at);
         let nodes = self.inner(|builder| {
+            builder.begin_round(at);
             if let Some(condition) = condition {
                 let condition = match condition {
-                    Condition::Expression(expr) => builder.scalar(expr)?,
+                    Condition::Expression(expr) => builder.condition(expr)?,
                     Condition::Declare(variable) => {
                         builder.declare(variable)?;
                         match builder.home(variable) {
@@ -163,10 +190,11 @@ impl Builder<'_> {
                     builder.expression(step)?;
                 }
                 if let Some(until) = until {
-                    let condition = builder.scalar(until)?;
+                    let condition = builder.condition(until)?;
                     builder.leave_unless(out, condition);
                 }
             }
+            builder.end_rounds();
             Ok(())
         })?;
         let body = vec![Node::Loop { id, body: nodes }];

@@ -7,6 +7,7 @@ mod check;
 mod compute;
 mod control;
 mod memory;
+mod tell;
 mod texel;
 
 use super::batch::{Batch, Lanes};
@@ -16,6 +17,7 @@ pub(super) use check::check;
 pub(super) use compute::compute;
 pub(super) use control::{copy_mask, iterate, jump, jump_if, jump_if_empty, remove, split};
 pub(super) use memory::{copy, load_at, store, store_at};
+pub(super) use tell::{mention, tell};
 pub(super) use texel::texel;
 
 /// An instruction that is ready to run.

@@ -89,6 +89,25 @@ impl Tree {
         name + &dimensions.concat()
     }
 
+    /// What each component of a value is: columns, members and elements in order. None of `void` and samplers.
+    #[must_use]
+    pub fn scalars(&self, ty: Type) -> Vec<Scalar> {
+        match ty {
+            Type::Array(id) => {
+                let ArrayType { element, size } = self.arrays[id];
+                self.scalars(element).repeat(size as usize)
+            }
+            Type::Struct(id) => {
+                let members = self.structs[id].members.iter();
+                members.flat_map(|member| self.scalars(member.ty)).collect()
+            }
+            _ => {
+                let count = ty.component_count().map_or(0, usize::from);
+                ty.scalar().map_or_else(Vec::new, |scalar| vec![scalar; count])
+            }
+        }
+    }
+
     /// The expressions at and below `root`, operands before what uses them, in the order of evaluation.
     #[must_use]
     pub fn postorder(&self, root: ExprId) -> Vec<ExprId> {

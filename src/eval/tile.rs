@@ -1,0 +1,287 @@
+//! One tile of a frame after another: a batch is begun, run, and what it painted and noted is kept.
+
+use std::cell::{Cell, RefCell};
+use std::collections::BTreeMap;
+
+use super::allocate::Home;
+use super::batch::{Batch, FUEL, Here, LANES, Lanes, Stop, Watch, middle, place};
+use super::flow::Axis;
+use super::handler::run;
+use super::number::Number;
+use super::observe::{MESA_CAP, Observations, Observed, Site, earlier};
+use super::paint::{Failure, Limits, Settings};
+use super::painting::{DISCARDED, UNDEFINED};
+use super::program::{Compiled, Prepared};
+use super::story::{Lead, Scribe, Story};
+use super::texture::Texture;
+
+/// Why a band was not painted.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum End {
+    Late,
+    Loop(Stop),
+}
+
+impl End {
+    /// The same for those who wait for the picture.
+    pub(super) fn failure(self, compiled: &Compiled, limits: &Limits<'_>, rounds: u32) -> Failure {
+        match self {
+            Self::Loop(stop) if stop.too_often => Failure::TooOften {
+                rounds,
+                at: compiled.loop_at(stop.id),
+            },
+            _ if limits.is_interrupted() => Failure::Interrupted,
+            Self::Loop(stop) => Failure::Timeout {
+                at: compiled.loop_at(stop.id),
+            },
+            Self::Late => Failure::TimeUp,
+        }
+    }
+}
+
+/// A frame that is being painted.
+pub(super) struct Job<'a, N: Number> {
+    prepared: &'a Prepared<N>,
+    textures: &'a [Option<Texture<'a>>; 4],
+    limits: &'a Limits<'a>,
+    settings: &'a Settings<'a, N>,
+    floats: Vec<N>,
+    words: Vec<u32>,
+    sites: &'a [Site],
+    size: [u32; 2],
+}
+
+impl<'a, N: Number> Job<'a, N> {
+    pub(super) fn new(
+        compiled: &'a Compiled,
+        prepared: &'a Prepared<N>,
+        textures: &'a [Option<Texture<'a>>; 4],
+        limits: &'a Limits<'a>,
+        settings: &'a Settings<'a, N>,
+        size: [u32; 2],
+    ) -> Self {
+        let (floats, words) = prologue(prepared, settings, textures, limits);
+        Self {
+            prepared,
+            textures,
+            limits,
+            settings,
+            floats,
+            words,
+            sites: &compiled.sites,
+            size,
+        }
+    }
+
+    /// Columns and rows of a tile: square where a batch is large.
+    pub(super) fn tile(&self) -> [usize; 2] {
+        match self.prepared.width {
+            1 => [LANES / 2, 2],
+            width => [LANES, width],
+        }
+    }
+
+    pub(super) fn batch(&self) -> Batch<'_, N> {
+        let prepared = self.prepared;
+        let width = prepared.width;
+        let mut here = vec![Here::default(); prepared.masks];
+        here[0] = Here {
+            chunks: u32::MAX >> (32 - width),
+            all: true,
+        };
+        let mut masks = vec![[0; LANES]; prepared.masks * width];
+        masks[..width].fill([u32::MAX; LANES]);
+        Batch {
+            width,
+            floats: vec![Cell::new([N::default(); LANES]); prepared.float_rows * width],
+            words: vec![Cell::new([0; LANES]); prepared.word_rows * width],
+            float_scalars: self.floats.iter().copied().map(Cell::new).collect(),
+            word_scalars: self.words.iter().copied().map(Cell::new).collect(),
+            masks: masks.into_iter().map(Cell::new).collect(),
+            here: here.into_iter().map(Cell::new).collect(),
+            noise: self.settings.noise,
+            textures: self.textures,
+            fuel: Cell::new(FUEL),
+            stopped: Cell::new(None),
+            watch: self.limits,
+            limit: self.settings.rounds,
+            rounds: Cell::new(0),
+            own_rounds: vec![Cell::new([0; LANES]); width],
+            notes: RefCell::default(),
+            scribe: None,
+        }
+    }
+
+    /// Paints a row of tiles.
+    pub(super) fn band(
+        &self,
+        batch: &mut Batch<'_, N>,
+        row: usize,
+        pixels: &mut [[N; 3]],
+        marks: &mut [u8],
+    ) -> Result<Observations, End> {
+        let [columns, rows] = self.tile();
+        let mut observations = Observations::default();
+        for left in (0..self.size[0]).step_by(columns) {
+            if self.limits.is_over() {
+                return Err(End::Late);
+            }
+            let corner = [left, (row * rows) as u32];
+            self.begin(batch, corner);
+            run(batch, &self.prepared.code);
+            if let Some(stop) = batch.stopped.take() {
+                return Err(End::Loop(stop));
+            }
+            self.end(batch, corner, pixels, marks, &mut observations);
+        }
+        Ok(observations)
+    }
+
+    /// Runs the tile of a pixel, and takes down what that one does, led by another story.
+    pub(super) fn story(&self, pixel: [u32; 2], lead: Option<Lead<'_>>) -> Result<Story, End> {
+        let [columns, rows] = self.tile().map(|side| side as u32);
+        let corner = [pixel[0] / columns * columns, pixel[1] / rows * rows];
+        let own = (pixel[0] - corner[0], pixel[1] - corner[1]);
+        let mut batch = self.batch();
+        let lanes = 0..LANES * batch.width;
+        let position = lanes
+            .into_iter()
+            .position(|lane| place(lane, columns as usize) == own)
+            .unwrap_or_default();
+        batch.scribe = Some(Scribe::new(position, lead));
+        self.begin(&mut batch, corner);
+        run(&batch, &self.prepared.code);
+        if let Some(stop) = batch.stopped.take() {
+            return Err(End::Loop(stop));
+        }
+        let mut story = batch.scribe.take().map_or_else(Story::default, Scribe::story);
+        let (chunk, lane) = (position / LANES, position % LANES);
+        let (colour, discarded) = self.painted(&batch, chunk);
+        story.colour = (discarded[lane] == 0).then(|| colour.map(|component| component[lane].to_f64()));
+        Ok(story)
+    }
+
+    /// Sets the coordinates of a tile.
+    fn begin(&self, batch: &mut Batch<'_, N>, [left, low]: [u32; 2]) {
+        let [columns, _] = self.tile();
+        for (axis, row) in [Axis::X, Axis::Y].into_iter().zip(self.prepared.coordinates) {
+            let Some(row) = row else {
+                continue;
+            };
+            for (chunk, cell) in batch.float_row(row).iter().enumerate() {
+                cell.set(std::array::from_fn(|lane| {
+                    let (x, y) = place(chunk * LANES + lane, columns);
+                    N::from_f64(middle(axis, (left + x, low + y)))
+                }));
+            }
+        }
+        batch.rounds.set(0);
+        for rounds in &batch.own_rounds {
+            rounds.set([0; LANES]);
+        }
+    }
+
+    /// The colours of a chunk, and which of its pixels were discarded.
+    fn painted(&self, batch: &Batch<'_, N>, chunk: usize) -> ([Lanes<N>; 3], Lanes<u32>) {
+        let colour = self.prepared.colour.map(|home| match home {
+            Home::Row(row) => batch.float_row(row)[chunk].get(),
+            Home::Scalar(scalar) => [batch.float_scalars[scalar as usize].get(); LANES],
+        });
+        let discarded = match self.prepared.discarded {
+            Home::Row(row) => batch.word_row(row)[chunk].get(),
+            Home::Scalar(scalar) => [batch.word_scalars[scalar as usize].get(); LANES],
+        };
+        (colour, discarded)
+    }
+
+    /// Keeps what a batch painted and noted, of the pixels that are in the picture.
+    fn end(
+        &self,
+        batch: &Batch<'_, N>,
+        [left, low]: [u32; 2],
+        pixels: &mut [[N; 3]],
+        marks: &mut [u8],
+        observations: &mut Observations,
+    ) {
+        let [columns, _] = self.tile();
+        let width = self.size[0] as usize;
+        let at = |chunk: usize, lane: usize| {
+            let (x, y) = place(chunk * LANES + lane, columns);
+            let (x, y) = (left + x, low + y);
+            (x < self.size[0] && y < self.size[1]).then_some([x, y])
+        };
+        let index = |[x, y]: [u32; 2]| (y - low) as usize * width + x as usize;
+        for chunk in 0..batch.width {
+            let (colour, discarded) = self.painted(batch, chunk);
+            let own_rounds = batch.own_rounds[chunk].get();
+            for lane in 0..LANES {
+                let Some(pixel) = at(chunk, lane) else {
+                    continue;
+                };
+                pixels[index(pixel)] = colour.map(|component| component[lane]);
+                if discarded[lane] != 0 {
+                    marks[index(pixel)] |= DISCARDED;
+                }
+                let rounds = batch.rounds.get() + own_rounds[lane];
+                observations.most_rounds = observations.most_rounds.max(rounds);
+                observations.beyond_cap += u64::from(rounds > MESA_CAP);
+            }
+        }
+        let sites = std::mem::take(&mut batch.notes.borrow_mut().sites);
+        let mut noted = BTreeMap::new();
+        for (id, chunks) in sites {
+            let site = self.sites[id.0 as usize];
+            for (chunk, bits) in chunks.into_iter().enumerate() {
+                let lanes = (0..LANES).filter(|lane| bits >> lane & 1 != 0);
+                for pixel in lanes.filter_map(|lane| at(chunk, lane)) {
+                    if site.fault.is_undefined() {
+                        marks[index(pixel)] |= UNDEFINED;
+                    }
+                    let fault = noted.entry(id).or_insert(Observed {
+                        site,
+                        pixels: 0,
+                        first: pixel,
+                    });
+                    fault.pixels += 1;
+                    fault.first = earlier(fault.first, pixel);
+                }
+            }
+        }
+        observations.merge(Observations {
+            faults: noted.into_values().collect(),
+            ..Observations::default()
+        });
+    }
+}
+
+/// The scalars that all batches begin with.
+fn prologue<N: Number>(
+    prepared: &Prepared<N>,
+    settings: &Settings<'_, N>,
+    textures: &[Option<Texture<'_>>; 4],
+    limits: &Limits<'_>,
+) -> (Vec<N>, Vec<u32>) {
+    let batch = Batch {
+        width: 0,
+        floats: Vec::new(),
+        words: Vec::new(),
+        float_scalars: prepared.floats.iter().copied().map(Cell::new).collect(),
+        word_scalars: prepared.words.iter().copied().map(Cell::new).collect(),
+        masks: Vec::new(),
+        here: Vec::new(),
+        noise: settings.noise,
+        textures,
+        fuel: Cell::new(FUEL),
+        stopped: Cell::new(None),
+        watch: limits,
+        limit: settings.rounds,
+        rounds: Cell::new(0),
+        own_rounds: Vec::new(),
+        notes: RefCell::default(),
+        scribe: None,
+    };
+    run(&batch, &prepared.prologue);
+    let floats = batch.float_scalars.iter().map(Cell::get).collect();
+    let words = batch.word_scalars.iter().map(Cell::get).collect();
+    (floats, words)
+}

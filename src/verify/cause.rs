@@ -1,0 +1,123 @@
+//! The line that a shader loses its digits in.
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use super::{Asked, Case};
+use crate::compare::{Standing, grouped};
+use crate::diagnostic::Diagnostic;
+use crate::eval::{Program, Told, What};
+use crate::explain::{Explanation, digits, explain};
+use crate::image::Image;
+use crate::source::Span;
+
+/// Float32 is not enough, and this is where.
+const LOST: &str = "W0602";
+
+/// A colour is NaN or infinite.
+const NOT_FINITE: &str = "W0603";
+
+/// So many of the pixels that differ are asked for their cause.
+const ASKED: usize = 5;
+
+/// What most of some pixels that differ name as the place where f32 and f64 part; none if there is no time to ask them.
+pub(super) fn cause(program: &Program, case: &Case, asked: &Asked) -> Option<Diagnostic> {
+    let deadline = Instant::now() + case.timeout;
+    let mut named = BTreeMap::<u32, (u64, Diagnostic)>::new();
+    for pixel in some(asked, case.frame.size) {
+        let explained = explain(program, case.frame, pixel, Some(deadline));
+        let told = explained
+            .ok()
+            .and_then(|explanation| diagnostic(&explanation, pixel));
+        if let Some((span, told)) = told {
+            named.entry(span.start).or_insert((0, told)).0 += 1;
+        }
+    }
+    let most = named.into_values().max_by_key(|&(votes, _)| votes);
+    most.map(|(_, diagnostic)| diagnostic)
+}
+
+/// Where the first colour that is no number, or infinite, comes from; none if all are finite.
+pub(super) fn not_finite(program: &Program, case: &Case, actual: &Image) -> Option<Diagnostic> {
+    let is_bad = |pixel: &[f32; 4]| pixel[..3].iter().any(|part| !part.is_finite());
+    let count = actual.pixels().iter().filter(|pixel| is_bad(pixel)).count() as u64;
+    let first = actual.pixels().iter().position(is_bad)?;
+    let width = case.frame.size[0] as usize;
+    let [x, y] = [(first % width) as u32, (first / width) as u32];
+    let deadline = Instant::now() + case.timeout;
+    let explained = explain(program, case.frame, [x, y], Some(deadline)).ok()?;
+    let step = explained.not_finite.map(|at| &explained.steps[at])?;
+    let value = step.single.iter().flatten().find_map(|told| match told {
+        Told::Float(value) if !value.is_finite() => Some(digits(*value, true)),
+        _ => None,
+    });
+    let message = format!(
+        "{} in {} {}, first at ({x}, {y}), where {} comes of this",
+        if count == 1 {
+            "a colour that is not finite"
+        } else {
+            "colours that are not finite"
+        },
+        grouped(count),
+        if count == 1 { "pixel" } else { "pixels" },
+        value.unwrap_or_default(),
+    );
+    let span = explained.plot.event(step.event).at.span;
+    Some(
+        Diagnostic::warning(NOT_FINITE, message)
+            .at(span)
+            .note(hint([x, y])),
+    )
+}
+
+/// Some of the pixels that differ, or that hang by a hair where none does, from all over the picture.
+fn some(asked: &Asked, size: [u32; 2]) -> Vec<[u32; 2]> {
+    let width = size[0] as usize;
+    let of = |standing| -> Vec<usize> {
+        let standings = asked.standings.iter().enumerate();
+        standings
+            .filter(|&(_, &own)| own == standing)
+            .map(|(at, _)| at)
+            .collect()
+    };
+    let mut pixels = of(Standing::Differs);
+    if pixels.is_empty() {
+        pixels = of(Standing::Undecided);
+    }
+    let count = pixels.len().min(ASKED);
+    let chosen = (0..count).map(|at| pixels[(2 * at + 1) * pixels.len() / (2 * count)]);
+    chosen
+        .map(|at| [(at % width) as u32, (at / width) as u32])
+        .collect()
+}
+
+fn diagnostic(explanation: &Explanation<'_>, [x, y]: [u32; 2]) -> Option<(Span, Diagnostic)> {
+    let step = &explanation.steps[explanation.cause?];
+    let event = explanation.plot.event(step.event);
+    let at = format!("at ({x}, {y})");
+    let message = match step.worst() {
+        Some((_, single, double)) if event.what == What::Branch => {
+            let truth = |told| matches!(told, Told::Word(word) if word != 0);
+            format!(
+                "float32 decides otherwise here: {at} this is {}, and {} in double precision",
+                truth(single),
+                truth(double)
+            )
+        }
+        Some((_, Told::Float(single), Told::Float(double))) => format!(
+            "float32 loses its digits here: {at} this is {}, and {} in double precision",
+            digits(single, true),
+            digits(double, false)
+        ),
+        _ => format!("float32 and double precision part here, {at}"),
+    };
+    let span = event.at.span;
+    Some((
+        span,
+        Diagnostic::warning(LOST, message).at(span).note(hint([x, y])),
+    ))
+}
+
+fn hint([x, y]: [u32; 2]) -> String {
+    format!("`toyproof explain` with `--pixel {x},{y}` tells how it comes to this")
+}
