@@ -18,8 +18,10 @@ const NEVER_WRITTEN: &str = "W0604";
 pub(super) fn notes(cpu: &Cpu, warned: &[Diagnostic]) -> Vec<Diagnostic> {
     let is_foreseen = |observed: &Observed| {
         let codes = [Code::Unwritten, Code::MaybeUnwritten].map(Code::as_str);
+        let at = observed.site.at.span;
         let is_same = |warning: &Diagnostic| {
-            warning.span == Some(observed.site.at.span) && codes.contains(&&*warning.code)
+            let declared = warning.related.iter().any(|(span, _)| *span == at);
+            declared && codes.contains(&&*warning.code)
         };
         warned.iter().any(is_same)
     };
@@ -61,12 +63,12 @@ fn undefined(observed: &Observed, cpu: &Cpu) -> Diagnostic {
 
 fn never_written(observed: &Observed) -> Diagnostic {
     let message = format!(
-        "read in {}, where nothing has been written to it: WebGL takes zero, other drivers anything",
+        "read before anything is written to it in {}: WebGL takes zero, other drivers anything",
         pixels(observed)
     );
     Diagnostic::warning(NEVER_WRITTEN, message)
         .at(observed.site.at.span)
-        .note("give the variable a value where it is declared")
+        .note("give it a value where it is declared")
 }
 
 /// In how many pixels, and the first of them.

@@ -33,7 +33,7 @@ impl Builder<'_> {
                 && direction(tree[parameter].kind) == Direction::InOut
             {
                 // A variable as such is handed over when the call begins, after all arguments.
-                passed.values = self.read(back, tree[argument].at);
+                passed.values = self.read(back);
             }
         }
         let mut taken = Vec::new();
@@ -46,7 +46,7 @@ impl Builder<'_> {
             {
                 if direction(tree[parameter].kind) == Direction::Out {
                     self.store_all(cells, &passed.values);
-                    self.begin_unwritten(cells);
+                    self.begin_unwritten(parameter, cells);
                 }
                 self.homes.insert(parameter, Home::Cells(cells));
                 continue;
@@ -54,7 +54,7 @@ impl Builder<'_> {
             let cells = self.allocate_type(tree[parameter].ty)?;
             self.store_all(cells, &passed.values);
             if direction(tree[parameter].kind) == Direction::Out {
-                self.begin_unwritten(cells);
+                self.begin_unwritten(parameter, cells);
             }
             self.homes.insert(parameter, Home::Cells(cells));
             taken.extend(passed.back.map(|back| (cells, back)));
@@ -98,7 +98,7 @@ impl Builder<'_> {
         }
         let back = self.target(argument)?;
         let values = match &back {
-            Some(target) if direction == Direction::InOut => self.read(target, self.at(argument)),
+            Some(target) if direction == Direction::InOut => self.read(target),
             _ => self.zeros(ty),
         };
         Ok(Passed { values, back })

@@ -80,7 +80,7 @@ impl Builder<'_> {
             ExprKind::Variable(variable) => match self.home(*variable) {
                 Home::Cells(cells) => {
                     let own: Vec<u32> = (cells.first..cells.first + cells.count).collect();
-                    self.note_read(tree[expr].ty, &own, None, tree[expr].at);
+                    self.note_read(tree[expr].ty, &own, None);
                     self.load_all(cells)
                 }
                 Home::Values(values) => values,
@@ -88,7 +88,7 @@ impl Builder<'_> {
             },
             ExprKind::Swizzle { .. } | ExprKind::Member { .. } | ExprKind::Index { .. } => {
                 match self.target(expr)? {
-                    Some(target) => self.read(&target, tree[expr].at),
+                    Some(target) => self.read(&target),
                     None => Vec::new(),
                 }
             }
@@ -233,7 +233,7 @@ impl Builder<'_> {
         };
         let mut values = self.expression(value)?;
         if let Some(op) = op {
-            let old = self.read(&place, self.at(target));
+            let old = self.read(&place);
             values = self.binary_operator(op, types, &old, &values, self.at(whole));
         }
         let what = What::Stored(self.at(target));
@@ -247,7 +247,7 @@ impl Builder<'_> {
         let Some(place) = self.target(target)? else {
             return self.expression(target);
         };
-        let old = self.read(&place, self.at(target));
+        let old = self.read(&place);
         let float = ty.scalar() == Some(Scalar::Float);
         let one = if float { self.float(1.0) } else { self.word(1) };
         let operation = match (op, float) {

@@ -20,6 +20,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use self::place::Home;
 use self::term::Term;
+use self::written::Written;
 use super::flow::{Block, Cell, Cells, Flow, LoopId, NONE, Node, Origin, Scope, Value};
 use super::observe::{Predicate, Site, SiteId};
 use super::operation::{Kind, Operation};
@@ -205,8 +206,8 @@ struct Builder<'a> {
     site_ids: HashMap<Site, SiteId>,
     /// What was checked and is not settled.
     open: Vec<(Predicate, [Value; 2])>,
-    /// Of variables by their first cell, a word for each component: whether it has been written.
-    written: BTreeMap<u32, Cells>,
+    /// Variables that began unwritten, by their first cells.
+    written: BTreeMap<u32, Written>,
     plot: Plot,
     /// The rounds of the loops that are being written.
     rounds: Vec<EventId>,

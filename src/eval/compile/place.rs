@@ -4,7 +4,7 @@ use super::{Builder, Result, layout};
 use crate::eval::flow::{Cell, Cells, NONE, Node, Origin, Value};
 use crate::eval::observe::{Fault, Predicate};
 use crate::eval::operation::{Kind, Operation};
-use crate::glsl::tree::{BuiltInVariable, ExprId, ExprKind, Input, Place, Type, VariableId, VariableKind};
+use crate::glsl::tree::{BuiltInVariable, ExprId, ExprKind, Input, Type, VariableId, VariableKind};
 
 /// Where a variable lives.
 #[derive(Debug, Clone)]
@@ -215,9 +215,9 @@ impl Builder<'_> {
     }
 
     /// The values of a part.
-    pub(super) fn read(&mut self, target: &Target, at: Place) -> Vec<Value> {
+    pub(super) fn read(&mut self, target: &Target) -> Vec<Value> {
         let cells = self.cells_of(target);
-        self.note_read(target.ty, &cells, target.index, at);
+        self.note_read(target.ty, &cells, target.index);
         cells
             .into_iter()
             .map(|cell| match target.index {
@@ -260,7 +260,6 @@ impl Builder<'_> {
         }
         let cells = self.allocate_type(ty)?;
         self.store_all(cells, values);
-        let at = self.at(index);
         let index = self.clamped_index(index, count)?;
         let mut target = Target {
             ty,
@@ -269,6 +268,6 @@ impl Builder<'_> {
             index: None,
         };
         self.index_at(&mut target, index);
-        Ok(self.read(&target, at))
+        Ok(self.read(&target))
     }
 }

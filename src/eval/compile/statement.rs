@@ -111,7 +111,7 @@ impl Builder<'_> {
         self.store_all(cells, &values);
         let local = self.tree[variable].kind == VariableKind::Local;
         if local && initialiser.is_none() && !self.shared.contains(&variable) {
-            self.begin_unwritten(cells);
+            self.begin_unwritten(variable, cells);
         }
         Ok(())
     }
