@@ -234,16 +234,17 @@ impl Device {
         use wgpu::ErrorFilter::{Internal, OutOfMemory, Validation};
         let scopes = [Internal, OutOfMemory, Validation].map(|filter| self.gpu.push_error_scope(filter));
         let result = work();
-        // The scope that was opened last closes first.
-        let errors: Vec<_> = scopes
+        // The scope that was opened last closes first. What is built on a device that is lost, or on what the driver or the memory
+        // failed to give, is invalid too: the cause is told.
+        let error = scopes
             .into_iter()
             .rev()
             .filter_map(|scope| pollster::block_on(scope.pop()))
-            .collect();
+            .last();
         let lost = self.lost.lock().ok().and_then(|lost| lost.clone());
-        match (errors.into_iter().next(), lost) {
-            (Some(error), _) => Err(Failure::Device(one_line(&error.to_string()))),
-            (None, Some(lost)) => Err(Failure::Device(lost)),
+        match (lost, error) {
+            (Some(lost), _) => Err(Failure::Device(lost)),
+            (None, Some(error)) => Err(Failure::Device(one_line(&error.to_string()))),
             (None, None) => result,
         }
     }

@@ -84,6 +84,23 @@ static PROGRAMS: &[(&str, &str, f64)] = &[
     ),
     ("", "float a, b; a = b = p.x + 1.0; o.x = a + b;", 3.0),
     ("", "o.x = (o.y = 2.0, o.y * 3.0);", 6.0),
+    (
+        "vec2 f() { return vec2(1.0, 2.0); } float f(int i) { return float(i); }",
+        "int i = int(p.x); vec2 v[2]; v[0] = vec2(1.0, 2.0); v[1] = vec2(4.0, 8.0); o.x = v[i++][i] + 10.0 * v[i][i--] + 100.0 * f()[i] \
+         + 1000.0 * f(int(v[i = 1][i - 1]));",
+        4182.0,
+    ),
+    (
+        "const float five = float(uvec2(5u));",
+        "const float a[2] = float[](five, five * 2.0); o.x = a[int(p.x) + 1] + a[0];",
+        15.0,
+    ),
+    (
+        "",
+        "int i; float g; o.x = float((1 << (i = 31)) < 0) + 2.0 * float((i = 7, 1) << 2 == 4) + 4.0 * float(1e38 * (g = 100.0) > 3e38) \
+         + 8.0 * float(i);",
+        63.0,
+    ),
     // Functions: copied in, copied out.
     (
         "void f(in float a, out float b, inout float c) { a += 1.0; c += a; b = a; }",

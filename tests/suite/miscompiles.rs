@@ -37,6 +37,18 @@ static CASES: &[Case] = &[
         25.0,
     ),
     (
+        Pass::Indices,
+        "",
+        "vec2 v[2]; v[0] = vec2(1.0, 2.0); v[1] = vec2(4.0, 8.0); int i = int(p.x); o.x = v[i = 1][i];",
+        8.0,
+    ),
+    (
+        Pass::Indices,
+        "",
+        "vec2 v[2]; v[1] = vec2(4.0, 8.0); int i = int(p.x); v[i = 1][i] = 5.0; o.x = v[1].y;",
+        5.0,
+    ),
+    (
         Pass::Compounds,
         "float g; float next() { g += 1.0; return g; }",
         "g = 2.0; g += next(); vec2 u = vec2(1.0); u += vec2(dot(u *= 2.0, vec2(1.0))); o.x = g + 10.0 * u.x;",

@@ -2,7 +2,8 @@
 //! shifts by more bits than there are, integer quotients that there are not, `clamp` with crossed bounds, `smoothstep` with equal ones.
 //!
 //! naga evaluates every expression of literals and refuses these results; so do WGSL compilers. An operand that goes
-//! through a function of our own, which gives it back as it is, is evaluated when the shader runs.
+//! through a function of our own, which gives it back as it is, is evaluated when the shader runs. `(a, 31)` and `(i = 31)`, which are no
+//! constant expressions (§4.3.3), naga takes for 31: what follows from such values is unknown here, so that all of them go that way.
 
 use super::super::tree::{
     BinaryOp, BuiltIn, Constant, Constructor, ExprId, ExprKind, Scalar, Tree, Type, Value,
@@ -12,6 +13,9 @@ use super::helper::Helper;
 
 pub(super) fn run(draft: &mut Draft) {
     draft.each_expression(|draft, id| {
+        for value in passed_on(&draft.tree, id) {
+            postpone(draft, value);
+        }
         let remedy = remedy(&draft.tree, id);
         match remedy {
             Some(Remedy::Spell(value)) => {
@@ -43,6 +47,33 @@ pub(super) fn run(draft: &mut Draft) {
             None => {}
         }
     });
+}
+
+/// The constants that an operation computes with by way of sequences and assignments.
+fn passed_on(tree: &Tree, id: ExprId) -> Vec<ExprId> {
+    let mut found = Vec::new();
+    if matches!(
+        tree[id].kind,
+        ExprKind::Sequence { .. } | ExprKind::Assign { .. } | ExprKind::Call { .. }
+    ) {
+        return found;
+    }
+    tree[id].kind.for_each_operand(|operand| {
+        let mut value = operand;
+        while let ExprKind::Sequence { second: next, .. }
+        | ExprKind::Assign {
+            op: None,
+            value: next,
+            ..
+        } = tree[value].kind
+        {
+            value = next;
+        }
+        if value != operand && tree[value].constant {
+            found.push(value);
+        }
+    });
+    found
 }
 
 enum Remedy {

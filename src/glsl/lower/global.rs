@@ -24,7 +24,6 @@ pub(super) fn run(draft: &mut Draft) {
         })
         .collect();
     let globals = variables.iter().copied().collect();
-    lift_arrays(draft, &globals);
     for variable in variables {
         let Some(value) = draft.tree[variable].initialiser else {
             continue;
@@ -39,6 +38,8 @@ pub(super) fn run(draft: &mut Draft) {
             draft.start.push(set);
         }
     }
+    // Now that it is clear which constants still are: a variable has no value yet where arrays begin.
+    lift_arrays(draft, &globals);
     start(draft);
 }
 

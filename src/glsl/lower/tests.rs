@@ -373,6 +373,8 @@ fn constants_that_naga_cannot_evaluate() {
         "o.x = float(int(p.x) / 0 + 5 / 0);",
         "o.x = clamp(0.5, 1.0, 0.0);",
         "o.x = normalize(vec3(0.0)).x;",
+        "int i; o.x = float(1 << (i = 31));",
+        "o.x = 1e38 * (o.y, 100.0);",
     ] {
         mends(Pass::Constants, &main_image("", body));
     }
