@@ -45,6 +45,13 @@ pub(super) struct FrameArgs {
 }
 
 impl FrameArgs {
+    /// The files that channels are read from.
+    pub(super) fn files(&self) -> impl Iterator<Item = &PathBuf> {
+        let channels = [&self.channel0, &self.channel1, &self.channel2, &self.channel3];
+        let named = channels.into_iter().flatten();
+        named.filter(|path| path.as_os_str() != "noise")
+    }
+
     /// The frame, its channels loaded; its size is the flag's or the default.
     pub(super) fn frame(&self) -> Result<Frame, String> {
         let default = Frame::default();

@@ -1,6 +1,6 @@
 //! What one question found, pixel by pixel.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::Pixel;
 use crate::image::{Image, Mark};
@@ -19,7 +19,7 @@ pub enum Standing {
 }
 
 /// The answer to a question, over the whole picture.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Answer {
     /// Pixels in the picture.
     pub pixels: u64,

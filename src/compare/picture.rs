@@ -1,13 +1,13 @@
 //! Two pictures as a viewer sees them, and one pixel in both.
 
-use serde::Serialize;
+use serde::{Deserialize, Deserializer, Serialize};
 
 use super::TOLERANCE;
 use crate::image::{Image, Mark, quantise};
 
 /// What two pictures differ by. Colours are compared clamped to [0, 1]; NaN equals NaN, and differs from
 /// everything else by 1.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
     /// Pixels in the picture.
     pub pixels: u64,
@@ -28,16 +28,24 @@ pub struct Comparison {
 }
 
 /// One pixel in both pictures, RGB as it is.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Pixel {
     /// From the left, from 0.
     pub x: u32,
     /// From the bottom, from 0.
     pub y: u32,
     /// In the reference.
+    #[serde(deserialize_with = "colour")]
     pub expected: [f32; 3],
     /// In the picture that is judged.
+    #[serde(deserialize_with = "colour")]
     pub actual: [f32; 3],
+}
+
+/// A colour as JSON has it, where what is not finite is null.
+fn colour<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[f32; 3], D::Error> {
+    let parts = <[Option<f32>; 3]>::deserialize(deserializer)?;
+    Ok(parts.map(|part| part.unwrap_or(f32::NAN)))
 }
 
 impl Pixel {

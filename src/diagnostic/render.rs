@@ -2,7 +2,7 @@
 
 use codespan_reporting::diagnostic::{Diagnostic as Report, Label, Severity as Level};
 use codespan_reporting::term::{self, termcolor::Buffer};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::{Diagnostic, Severity};
 use crate::source::Files;
@@ -80,7 +80,7 @@ pub fn short(diagnostic: &Diagnostic, files: &Files) -> String {
 }
 
 /// A diagnostic as programs read it.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Json {
     severity: Severity,
     code: String,

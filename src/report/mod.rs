@@ -6,4 +6,4 @@ mod terminal;
 
 pub use record::{Record, Report, SCHEMA, Seconds};
 pub use story::{Story, Subject};
-pub use terminal::{line, place, summary};
+pub use terminal::{Tally, line, place, summary};

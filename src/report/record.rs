@@ -1,6 +1,6 @@
 //! The report as programs read it: `verdict.json`, and `--format json` on standard output.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::compare::{Answer, Comparison, Verdict};
 use crate::diagnostic;
@@ -45,7 +45,7 @@ impl Report {
 }
 
 /// What was found of one shader. Questions that were not asked are null.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, Deserialize)]
 pub struct Record {
     /// Its name, as the user gave it.
     pub shader: String,
@@ -72,7 +72,7 @@ pub struct Record {
 }
 
 /// Times in seconds; null for what was not done.
-#[derive(Debug, Default, Serialize)]
+#[derive(Debug, Default, Serialize, Deserialize)]
 pub struct Seconds {
     /// naga: parse, validate, write.
     pub translate: Option<f64>,

@@ -1,5 +1,9 @@
 //! The report as people read it on a terminal, with ANSI colours that the printer may strip.
 
+use std::cmp::Reverse;
+use std::collections::BTreeMap;
+use std::fmt;
+
 use anstyle::{AnsiColor, Style};
 
 use super::Record;
@@ -56,20 +60,36 @@ fn errors(record: &Record) -> Option<String> {
     })
 }
 
-/// How many shaders have each verdict, best first.
+/// How many shaders have each verdict; as words, best first.
+#[derive(Debug, Clone, Default)]
+pub struct Tally(BTreeMap<Reverse<Verdict>, u64>);
+
+impl Tally {
+    /// One more.
+    pub fn add(&mut self, verdict: Verdict) {
+        *self.0.entry(Reverse(verdict)).or_default() += 1;
+    }
+}
+
+impl fmt::Display for Tally {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let counts = self.0.iter().map(|(Reverse(verdict), count)| {
+            let style = style(*verdict);
+            format!("{count} {style}{verdict}{style:#}")
+        });
+        f.write_str(&counts.collect::<Vec<_>>().join(", "))
+    }
+}
+
+/// How many shaders there are, and their tally.
 #[must_use]
 pub fn summary(records: &[Record]) -> String {
-    let mut verdicts: Vec<_> = records.iter().map(|record| record.verdict).collect();
-    verdicts.sort_by(|a, b| b.cmp(a));
-    let counts: Vec<_> = verdicts
-        .chunk_by(|a, b| a == b)
-        .map(|same| {
-            let style = style(same[0]);
-            format!("{} {style}{}{style:#}", same.len(), same[0])
-        })
-        .collect();
+    let mut tally = Tally::default();
+    for record in records {
+        tally.add(record.verdict);
+    }
     let noun = if records.len() == 1 { "shader" } else { "shaders" };
-    format!("{} {noun}: {}", records.len(), counts.join(", "))
+    format!("{} {noun}: {tally}", records.len())
 }
 
 fn style(verdict: Verdict) -> Style {

@@ -1,25 +1,27 @@
 //! `toyproof check`
 
+mod judge;
+mod pictures;
+mod pool;
 mod reference;
+mod results;
 mod stopped;
 
-use std::path::{Path, PathBuf};
+use std::num::NonZero;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use self::judge::{Hand, Judge, Judged, Submission};
+use self::pool::InOrder;
 pub(super) use self::reference::Reference;
-use self::stopped::Stopped;
+use self::results::Results;
 use super::inputs::{DriverArgs, Format, FrameArgs, LanguageArgs};
-use super::shader::{Names, Shader, find, with_suffix};
+use super::shader::{Names, find};
 use super::{Exit, Terminal, codes};
-use crate::compare::{TOLERANCE, Verdict};
-use crate::diagnostic::{self, Diagnostic};
-use crate::frame::Frame;
-use crate::gpu::{self, INSTALL_HINT, Worker};
-use crate::image::{self, Image, Legend};
-use crate::report::{self, Record, Report, Seconds};
-use crate::source::{Files, Found, ReadError};
-use crate::verify::{self, Case, Findings, verify};
+use crate::compare::Verdict;
+use crate::gpu::INSTALL_HINT;
+use crate::report::{self, Record, Report};
 
 /// Compare what shaders paint with the reference tracer, and give a verdict on each
 ///
@@ -39,9 +41,15 @@ pub(super) struct Args {
     /// The scene of all these shaders
     #[arg(long, value_name = "SCENE.toml")]
     scene: Option<PathBuf>,
-    /// Write the pictures (reference, actual, difference) and verdict.json into this folder
+    /// Write the pictures (reference, actual, difference), verdict.json and results.jsonl into this folder
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Take over what an earlier run into the same folder found, where shader, scene and flags are still the same
+    #[arg(long, requires = "out")]
+    resume: bool,
+    /// Check so many shaders at a time [default: as many as there are cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
+    jobs: Option<u16>,
     /// What goes to standard output
     #[arg(long, value_enum, default_value_t = Format::Human)]
     format: Format,
@@ -57,37 +65,40 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     if let Some(code) = &args.explain {
         return codes::run(code, terminal);
     }
-    let (worker, frame) = match (args.driver.worker(), args.frame.frame()) {
-        (Ok(worker), Ok(frame)) => (worker, frame),
-        (Err(error), _) | (_, Err(error)) => {
+    // The arguments are asked for a worker once here, so that what is wrong with them is told before anything is done.
+    let frame = match args.driver.worker().and_then(|_| args.frame.frame()) {
+        Ok(frame) => frame,
+        Err(error) => {
             terminal.error(error);
             return Exit::Trouble;
         }
     };
-    let interrupted = stop_on_interrupt();
-    let mut checker = Checker {
+    let mut results = None;
+    if let Some(out) = &args.out {
+        match Results::open(out, args.resume) {
+            Ok(opened) => results = Some(opened),
+            Err(error) => {
+                terminal.error(format_args!("cannot write {error}"));
+                return Exit::Trouble;
+            }
+        }
+    }
+    let mut names = Names::default();
+    let submissions: Vec<Submission> = find(&args.shaders)
+        .into_iter()
+        .map(|input| Submission::new(input, args, &mut names))
+        .collect();
+    let mut batch = Batch {
         args,
         terminal,
-        worker,
-        frame,
-        names: Names::default(),
+        results,
+        order: InOrder::default(),
+        told: Vec::new(),
         device: None,
         trouble: false,
     };
-    let mut records = Vec::new();
-    for input in find(&args.shaders) {
-        if interrupted.load(Ordering::Relaxed) {
-            terminal.error("interrupted; what was done is kept");
-            checker.trouble = true;
-            break;
-        }
-        let record = checker.check(&input);
-        if args.format == Format::Human {
-            terminal.result(&report::line(&record));
-        }
-        records.push(record);
-    }
-    checker.finish(records)
+    batch.check(&submissions, &Judge::new(args, frame));
+    batch.finish()
 }
 
 /// The first interrupt asks to stop after the shader that is being checked, the second stops at once.
@@ -113,169 +124,120 @@ pub(super) fn cut_short(pixels: u64) -> String {
     )
 }
 
-struct Checker<'a> {
+/// All shaders of one command.
+struct Batch<'a> {
     args: &'a Args,
     terminal: &'a Terminal,
-    /// None where the evaluator paints.
-    worker: Option<Worker>,
-    frame: Frame,
-    names: Names,
+    results: Option<Results>,
+    order: InOrder<Judged>,
+    /// The records that have been told of, in order.
+    told: Vec<Record>,
     device: Option<String>,
     /// Something failed that no verdict tells.
     trouble: bool,
 }
 
-impl Checker<'_> {
-    fn check(&mut self, input: &Result<Found, ReadError>) -> Record {
-        let shader = Shader::load(input, &self.args.language);
-        let spinner = self.terminal.spinner(&shader.name);
-        let scene = self.args.scene.as_deref();
-        let reference = input
-            .as_ref()
-            .ok()
-            .and_then(|found| Reference::find(scene, found));
-        let mut record = Record {
-            shader: shader.name.clone(),
-            scene: reference.as_ref().map(|reference| reference.name.clone()),
-            verdict: Verdict::Ok,
-            reason: String::new(),
-            maths: None,
-            rounding: None,
-            toolchain: None,
-            picture: None,
-            mistake: (),
-            diagnostics: Vec::new(),
-            seconds: Seconds::default(),
+impl Batch<'_> {
+    fn check(&mut self, submissions: &[Submission], judge: &Judge) {
+        let interrupted = stop_on_interrupt();
+        let bar = match submissions {
+            [one] => self.terminal.spinner(&one.name),
+            several => self.terminal.bar(several.len() as u64, "checking"),
         };
-        let verified = self.verify(&mut record, shader, reference);
-        spinner.finish_and_clear();
-        match verified {
-            Ok(findings) => {
-                if let (Some(out), Ok(found)) = (&self.args.out, input) {
-                    let place = out.join(self.names.place(&found.relative));
-                    for (suffix, picture) in pictures(&findings) {
-                        self.keep(&with_suffix(&place, suffix), &picture);
-                    }
+        let mut tally = report::Tally::default();
+        let mut todo = Vec::new();
+        for (index, submission) in submissions.iter().enumerate() {
+            let key = submission.key.as_deref();
+            let known = key.and_then(|key| self.results.as_mut()?.known(key));
+            match known {
+                Some(record) => {
+                    tally.add(record.verdict);
+                    bar.inc(1);
+                    self.take(index, Judged::known(record));
                 }
-                self.fill(&mut record, findings);
-            }
-            Err(stopped) => {
-                record.verdict = stopped.verdict;
-                record.reason = stopped.reason;
-                self.tell(&mut record, &stopped.diagnostics, &stopped.files);
+                None => todo.push(index),
             }
         }
-        record
+        let taken_over = submissions.len() - todo.len();
+        if taken_over > 0 {
+            let of = submissions.len();
+            self.terminal.say(&format!(
+                "{taken_over} of {of} shaders are taken over from an earlier run"
+            ));
+        }
+        let threads = match self.args.jobs {
+            Some(jobs) => usize::from(jobs),
+            None => std::thread::available_parallelism().map_or(1, NonZero::get),
+        };
+        pool::each(
+            &todo,
+            threads,
+            &interrupted,
+            || Hand::new(self.args),
+            |hand, index| judge.judge(hand, &submissions[index]),
+            |index, judged| {
+                tally.add(judged.record.verdict);
+                bar.inc(1);
+                bar.set_message(tally.to_string());
+                self.keep(&submissions[index], &judged);
+                bar.suspend(|| self.take(index, judged));
+            },
+        );
+        bar.finish_and_clear();
+        if interrupted.load(Ordering::Relaxed) {
+            for judged in std::mem::take(&mut self.order).rest() {
+                self.tell(judged);
+            }
+            let how = match self.args.out {
+                Some(_) => "; the same command with --resume goes on",
+                None => "",
+            };
+            self.terminal
+                .error(format_args!("interrupted; what was done is kept{how}"));
+            self.trouble = true;
+        }
     }
 
-    fn verify(
-        &mut self,
-        record: &mut Record,
-        shader: Shader,
-        reference: Option<Reference>,
-    ) -> Result<Findings, Stopped> {
-        let Shader {
-            files,
-            checked,
-            warnings,
-            ..
-        } = shader;
-        self.tell(record, &warnings, &files);
-        let checked = match checked {
-            Ok(checked) => checked,
-            Err(unusable) => return Err(Stopped::unusable(unusable, files, Verdict::Invalid)),
-        };
-        let mut frame = self.frame.clone();
-        let scene = match reference.map(|reference| (reference.scene, reference.files)) {
-            None => None,
-            Some((Err(unusable), files)) => return Err(Stopped::unusable(unusable, files, Verdict::Error)),
-            Some((Ok(mut scene), _)) => {
-                frame.size = self.args.frame.size.unwrap_or(scene.film.size);
-                scene.film.size = frame.size;
-                Some(scene)
-            }
-        };
-        let case = Case {
-            checked: &checked,
-            scene: scene.as_ref(),
-            frame: &frame,
-            float: self.args.driver.float(),
-            timeout: self.args.driver.timeout(),
-        };
-        let mut verified = verify(self.worker.as_mut(), &case);
-        if let Err(verify::Failure::Gpu(gpu::Failure::NoDriver(why))) = &verified
-            && self.args.driver.may_fall_back()
+    /// Adds a record to the file of results.
+    fn keep(&mut self, submission: &Submission, judged: &Judged) {
+        if let (Some(results), Some(key)) = (&mut self.results, &submission.key)
+            && let Err(error) = results.add(key, &judged.record)
         {
-            self.terminal.warn(format_args!(
-                "{why}; shaders run on the CPU, and whether a GPU would paint the same is not asked"
-            ));
-            self.worker = None;
-            verified = verify(None, &case);
+            self.terminal.error(format_args!("cannot write {error}"));
+            self.trouble = true;
         }
-        let mut findings = verified.map_err(|failure| Stopped::failure(failure, files.clone()))?;
-        if let (Verdict::Unstable, Some(cause)) = (findings.verdict, findings.cause) {
-            let at = files.position(cause);
-            let place = format!("; it is lost in line {}, column {}", at.line, at.column);
-            findings.reason.push_str(&place);
+    }
+
+    fn take(&mut self, index: usize, judged: Judged) {
+        for judged in self.order.take(index, judged) {
+            self.tell(judged);
         }
-        self.tell(record, &findings.notes, &files);
-        Ok(findings)
     }
 
-    /// Keeps what was found.
-    fn fill(&mut self, record: &mut Record, findings: Findings) {
-        let seconds = &mut record.seconds;
-        seconds.eval = Some(findings.eval.as_secs_f64());
-        seconds.trace = findings.trace.map(|trace| trace.as_secs_f64());
-        if let Some(painter) = findings.painter {
-            seconds.translate = Some(painter.translate.as_secs_f64());
-            seconds.gpu = Some((painter.compile + painter.draw).as_secs_f64());
-            self.terminal.detail(&format!(
-                "{}: translated in {:.4} s, compiled in {:.3} s, painted in {:.3} s on {}",
-                record.shader,
-                painter.translate.as_secs_f64(),
-                painter.compile.as_secs_f64(),
-                painter.draw.as_secs_f64(),
-                painter.device
-            ));
-            self.device = Some(painter.device);
+    /// Says what was found of a shader.
+    fn tell(&mut self, judged: Judged) {
+        for said in &judged.said {
+            said.say(self.terminal);
         }
-        record.verdict = findings.verdict;
-        record.reason = findings.reason;
-        record.maths = findings.maths.map(|asked| asked.answer);
-        record.rounding = findings.rounding.map(|asked| asked.answer);
-        record.toolchain = findings.toolchain.map(|asked| asked.answer);
-        record.picture = findings.picture.map(|(comparison, _)| comparison);
+        if self.args.format == Format::Human {
+            self.terminal.result(&report::line(&judged.record));
+        }
+        self.trouble |= judged.trouble;
+        self.device = judged.device.or(self.device.take());
+        self.told.push(judged.record);
     }
 
-    fn tell(&self, record: &mut Record, diagnostics: &[Diagnostic], files: &Files) {
-        self.terminal.diagnostics(diagnostics, files);
-        record
-            .diagnostics
-            .extend(diagnostics.iter().map(|told| diagnostic::json(told, files)));
-    }
-
-    fn keep(&mut self, path: &Path, picture: &Image) {
-        let written = match image::encode(picture, path) {
-            Ok(bytes) => self.terminal.write(path, &bytes),
-            Err(error) => {
-                self.terminal.error(error);
-                false
-            }
-        };
-        self.trouble |= !written;
-    }
-
-    fn finish(self, records: Vec<Record>) -> Exit {
+    fn finish(self) -> Exit {
         let Self {
             args,
             terminal,
+            told,
             device,
             mut trouble,
             ..
         } = self;
-        let no_driver = records.iter().any(|record| record.reason.contains(INSTALL_HINT));
-        let report = Report::new(device, records);
+        let no_driver = told.iter().any(|record| record.reason.contains(INSTALL_HINT));
+        let report = Report::new(device, told);
         if args.format == Format::Human {
             terminal.say(&report::summary(report.shaders()));
         } else {
@@ -302,34 +264,3 @@ impl Checker<'_> {
         }
     }
 }
-
-/// The pictures of a shader, each with the end of its file's name: what was expected, what came, how they differ, and one for each
-/// question whose answer is not “the same”.
-fn pictures(findings: &Findings) -> Vec<(&'static str, Image)> {
-    let size = findings.actual.size();
-    let mut pictures = vec![("-actual.png", findings.actual.clone())];
-    if let Some(reference) = &findings.reference {
-        pictures.push(("-reference.png", reference.clone()));
-    }
-    if let Some((_, marks)) = &findings.picture {
-        pictures.push(("-difference.png", image::difference(size, marks, SEEN_BY_EYE)));
-    }
-    let questions = [
-        ("-maths.png", &findings.maths, SEEN_BY_EYE),
-        ("-rounding.png", &findings.rounding, SEEN_BY_EYE),
-        ("-toolchain.png", &findings.toolchain, IN_BITS),
-    ];
-    for (suffix, asked, legend) in questions {
-        if let Some(asked) = asked.as_ref().filter(|asked| !asked.answer.is_same()) {
-            pictures.push((suffix, image::difference(size, &asked.marks, legend)));
-        }
-    }
-    pictures
-}
-
-/// What is more than rounding stands out.
-const SEEN_BY_EYE: Legend = Legend {
-    tolerance: TOLERANCE as f32,
-};
-/// Where every bit counts, all but the last bits stand out.
-const IN_BITS: Legend = Legend { tolerance: 1e-6 };

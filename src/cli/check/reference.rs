@@ -1,6 +1,6 @@
 //! The scene that a shader is compared with.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::cli::shader::Unusable;
 use crate::scene::{self, Scene};
@@ -14,16 +14,21 @@ pub(in crate::cli) struct Reference {
 }
 
 impl Reference {
-    /// The scene that `--scene` names, else the one beside the shader.
-    pub(in crate::cli) fn find(scene: Option<&Path>, found: &Found) -> Option<Self> {
-        let path = match (scene, &found.place) {
-            (Some(path), _) => path.to_owned(),
+    /// Where the scene of a shader is: the one that `--scene` names, else the one beside the shader.
+    pub(super) fn path(scene: Option<&Path>, found: &Found) -> Option<PathBuf> {
+        match (scene, &found.place) {
+            (Some(path), _) => Some(path.to_owned()),
             (None, FoundIn::File(shader)) => {
                 let beside = shader.with_extension("toml");
-                beside.is_file().then_some(beside)?
+                beside.is_file().then_some(beside)
             }
-            (None, FoundIn::StandardInput) => return None,
-        };
+            (None, FoundIn::StandardInput) => None,
+        }
+    }
+
+    /// The scene of a shader; none if it has none.
+    pub(in crate::cli) fn find(scene: Option<&Path>, found: &Found) -> Option<Self> {
+        let path = Self::path(scene, found)?;
         let mut files = Files::default();
         let scene = match source::read_text(&path) {
             Ok(text) => {

@@ -1,0 +1,299 @@
+//! One shader, from its text to its record and its pictures.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use sha2::{Digest, Sha256};
+
+use super::pictures::{SUFFIXES, pictures};
+use super::stopped::Stopped;
+use super::{Args, Reference};
+use crate::cli::Terminal;
+use crate::cli::shader::{Names, Shader, with_suffix};
+use crate::compare::Verdict;
+use crate::diagnostic::{self, Diagnostic};
+use crate::frame::Frame;
+use crate::gpu::{self, Worker};
+use crate::image::{self, Image};
+use crate::output;
+use crate::report::{Record, Seconds};
+use crate::scene::Scene;
+use crate::source::{self, Files, Found, ReadError};
+use crate::verify::{self, Case, Findings, verify};
+
+/// A shader that is to be judged.
+pub(super) struct Submission {
+    pub(super) input: Result<Found, ReadError>,
+    pub(super) name: String,
+    /// Where its pictures go, without their suffixes.
+    place: Option<PathBuf>,
+    /// What its record depends on, as a hash; none if its files cannot be read.
+    pub(super) key: Option<String>,
+}
+
+impl Submission {
+    pub(super) fn new(input: Result<Found, ReadError>, args: &Args, names: &mut Names) -> Self {
+        let found = input.as_ref().ok();
+        let place = match (&args.out, found) {
+            (Some(out), Some(found)) => Some(out.join(names.place(&found.relative))),
+            _ => None,
+        };
+        Self {
+            name: found.map_or_else(String::new, Found::name),
+            key: found
+                .filter(|_| args.out.is_some())
+                .and_then(|found| key(found, args)),
+            place,
+            input,
+        }
+    }
+}
+
+/// A hash of what a record depends on: this version, the shader, its scene, the flags, and the files that they name.
+fn key(found: &Found, args: &Args) -> Option<String> {
+    let mut hash = Sha256::new();
+    let mut add = |part: &[u8]| {
+        hash.update((part.len() as u64).to_le_bytes());
+        hash.update(part);
+    };
+    let settings = (&args.frame, &args.language, &args.driver);
+    add(env!("CARGO_PKG_VERSION").as_bytes());
+    add(format!("{settings:?} {:?} {}", args.scene, found.name()).as_bytes());
+    add(source::read(found).ok()?.text().as_bytes());
+    for path in Reference::path(args.scene.as_deref(), found)
+        .iter()
+        .chain(args.frame.files())
+    {
+        add(&std::fs::read(path).ok()?);
+    }
+    let hash: [u8; 32] = hash.finalize().into();
+    let half = hash.first_chunk().copied().map(u128::from_be_bytes);
+    half.map(|half| format!("{half:032x}"))
+}
+
+/// What a thread needs for itself.
+pub(super) struct Hand {
+    /// None where the evaluator paints.
+    worker: Option<Worker>,
+}
+
+impl Hand {
+    pub(super) fn new(args: &Args) -> Self {
+        // That the arguments are right has been seen before.
+        Self {
+            worker: args.driver.worker().ok().flatten(),
+        }
+    }
+}
+
+/// Something that is to be said, once it is the shader's turn.
+pub(super) enum Said {
+    Diagnostics(Vec<Diagnostic>, Files),
+    Warning(String),
+    Error(String),
+    Detail(String),
+}
+
+impl Said {
+    pub(super) fn say(&self, terminal: &Terminal) {
+        match self {
+            Self::Diagnostics(diagnostics, files) => terminal.diagnostics(diagnostics, files),
+            Self::Warning(words) => terminal.warn(words),
+            Self::Error(words) => terminal.error(words),
+            Self::Detail(words) => terminal.detail(words),
+        }
+    }
+}
+
+/// What was found of a shader, and what is to be said of it.
+pub(super) struct Judged {
+    pub(super) record: Record,
+    pub(super) said: Vec<Said>,
+    pub(super) device: Option<String>,
+    /// Something failed that the verdict does not tell.
+    pub(super) trouble: bool,
+}
+
+impl Judged {
+    /// An earlier run found it.
+    pub(super) fn known(record: Record) -> Self {
+        Self {
+            record,
+            said: Vec::new(),
+            device: None,
+            trouble: false,
+        }
+    }
+
+    fn tell(&mut self, diagnostics: Vec<Diagnostic>, files: &Files) {
+        let told = diagnostics.iter().map(|told| diagnostic::json(told, files));
+        self.record.diagnostics.extend(told);
+        if !diagnostics.is_empty() {
+            self.said.push(Said::Diagnostics(diagnostics, files.clone()));
+        }
+    }
+
+    fn failed(&mut self, words: String) {
+        self.said.push(Said::Error(words));
+        self.trouble = true;
+    }
+}
+
+/// Judges shaders, on any thread.
+pub(super) struct Judge<'a> {
+    args: &'a Args,
+    frame: Frame,
+    /// Whether somebody was told that there is no driver.
+    fell_back: AtomicBool,
+}
+
+impl<'a> Judge<'a> {
+    pub(super) fn new(args: &'a Args, frame: Frame) -> Self {
+        Self {
+            args,
+            frame,
+            fell_back: AtomicBool::new(false),
+        }
+    }
+
+    /// Judges a shader and keeps its pictures.
+    pub(super) fn judge(&self, hand: &mut Hand, submission: &Submission) -> Judged {
+        let shader = Shader::load(&submission.input, &self.args.language);
+        let found = submission.input.as_ref().ok();
+        let reference = found.and_then(|found| Reference::find(self.args.scene.as_deref(), found));
+        let mut judged = Judged::known(Record {
+            shader: shader.name.clone(),
+            scene: reference.as_ref().map(|reference| reference.name.clone()),
+            verdict: Verdict::Ok,
+            reason: String::new(),
+            maths: None,
+            rounding: None,
+            toolchain: None,
+            picture: None,
+            mistake: (),
+            diagnostics: Vec::new(),
+            seconds: Seconds::default(),
+        });
+        let findings = self.verify(hand, &mut judged, shader, reference);
+        if let Some(place) = &submission.place {
+            let pictures = findings.as_ref().map_or_else(|_| Vec::new(), pictures);
+            keep(place, &pictures, &mut judged);
+        }
+        match findings {
+            Ok(findings) => fill(&mut judged, findings),
+            Err(stopped) => {
+                judged.record.verdict = stopped.verdict;
+                judged.record.reason = stopped.reason;
+                judged.tell(stopped.diagnostics, &stopped.files);
+            }
+        }
+        judged
+    }
+
+    fn verify(
+        &self,
+        hand: &mut Hand,
+        judged: &mut Judged,
+        shader: Shader,
+        reference: Option<Reference>,
+    ) -> Result<Findings, Stopped> {
+        let Shader {
+            files,
+            checked,
+            warnings,
+            ..
+        } = shader;
+        judged.tell(warnings, &files);
+        let checked = match checked {
+            Ok(checked) => checked,
+            Err(unusable) => return Err(Stopped::unusable(unusable, files, Verdict::Invalid)),
+        };
+        let mut frame = self.frame.clone();
+        let scene = match reference.map(|reference| (reference.scene, reference.files)) {
+            None => None,
+            Some((Err(unusable), files)) => return Err(Stopped::unusable(unusable, files, Verdict::Error)),
+            Some((Ok(scene), _)) => Some(self.sized(scene, &mut frame)),
+        };
+        let case = Case {
+            checked: &checked,
+            scene: scene.as_ref(),
+            frame: &frame,
+            float: self.args.driver.float(),
+            timeout: self.args.driver.timeout(),
+        };
+        let mut verified = verify(hand.worker.as_mut(), &case);
+        if let Err(verify::Failure::Gpu(gpu::Failure::NoDriver(why))) = &verified
+            && self.args.driver.may_fall_back()
+        {
+            if !self.fell_back.swap(true, Ordering::Relaxed) {
+                judged.said.push(Said::Warning(format!(
+                    "{why}; shaders run on the CPU, and whether a GPU would paint the same is not asked"
+                )));
+            }
+            hand.worker = None;
+            verified = verify(None, &case);
+        }
+        let mut findings = verified.map_err(|failure| Stopped::failure(failure, files.clone()))?;
+        if let (Verdict::Unstable, Some(cause)) = (findings.verdict, findings.cause) {
+            let at = files.position(cause);
+            let place = format!("; it is lost in line {}, column {}", at.line, at.column);
+            findings.reason.push_str(&place);
+        }
+        judged.tell(std::mem::take(&mut findings.notes), &files);
+        Ok(findings)
+    }
+
+    /// The scene in the size of the frame, which is the scene's own unless the arguments tell another.
+    fn sized(&self, mut scene: Scene, frame: &mut Frame) -> Scene {
+        frame.size = self.args.frame.size.unwrap_or(scene.film.size);
+        scene.film.size = frame.size;
+        scene
+    }
+}
+
+/// Puts what was found into the record.
+fn fill(judged: &mut Judged, findings: Findings) {
+    let record = &mut judged.record;
+    let seconds = &mut record.seconds;
+    seconds.eval = Some(findings.eval.as_secs_f64());
+    seconds.trace = findings.trace.map(|trace| trace.as_secs_f64());
+    if let Some(painter) = findings.painter {
+        seconds.translate = Some(painter.translate.as_secs_f64());
+        seconds.gpu = Some((painter.compile + painter.draw).as_secs_f64());
+        judged.said.push(Said::Detail(format!(
+            "{}: translated in {:.4} s, compiled in {:.3} s, painted in {:.3} s on {}",
+            record.shader,
+            painter.translate.as_secs_f64(),
+            painter.compile.as_secs_f64(),
+            painter.draw.as_secs_f64(),
+            painter.device
+        )));
+        judged.device = Some(painter.device);
+    }
+    record.verdict = findings.verdict;
+    record.reason = findings.reason;
+    record.maths = findings.maths.map(|asked| asked.answer);
+    record.rounding = findings.rounding.map(|asked| asked.answer);
+    record.toolchain = findings.toolchain.map(|asked| asked.answer);
+    record.picture = findings.picture.map(|(comparison, _)| comparison);
+}
+
+/// Writes the pictures, and removes those of an earlier run that there are no more.
+fn keep(place: &Path, pictures: &[(&str, Image)], judged: &mut Judged) {
+    for suffix in SUFFIXES {
+        let path = with_suffix(place, suffix);
+        let Some((_, picture)) = pictures.iter().find(|(own, _)| *own == suffix) else {
+            // Usually there is none.
+            let _ = std::fs::remove_file(&path);
+            continue;
+        };
+        match image::encode(picture, &path) {
+            Ok(bytes) => {
+                if let Err(error) = output::write(&path, &bytes) {
+                    judged.failed(format!("cannot write {error}"));
+                }
+            }
+            Err(error) => judged.failed(error.to_string()),
+        }
+    }
+}

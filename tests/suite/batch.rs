@@ -1,0 +1,191 @@
+//! Many shaders in one command: in order, each once, also when the command is killed and goes on.
+
+use std::fs;
+use std::path::Path;
+use std::process::Stdio;
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+use crate::program::{Run, command, toyproof};
+use crate::support::SPHERE;
+
+/// A folder of submissions: every third is wrong, every seventh does not compile.
+fn homework(count: usize) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let hw = folder.path().join("hw");
+    fs::create_dir(&hw).unwrap();
+    fs::write(folder.path().join("scene.toml"), SPHERE.scene).unwrap();
+    for at in 0..count {
+        let text = match at {
+            _ if at % 7 == 6 => SPHERE.shader.replace("float disc", "flaot disc"),
+            _ if at % 3 == 2 => SPHERE.shader.replace("b * b - c", "b * b - 0.9 * c"),
+            _ => SPHERE.shader.to_owned(),
+        };
+        fs::write(hw.join(format!("{at:03}.glsl")), format!("// {at}\n{text}")).unwrap();
+    }
+    folder
+}
+
+fn verdict(at: usize) -> &'static str {
+    match at {
+        _ if at % 7 == 6 => "invalid",
+        _ if at % 3 == 2 => "wrong",
+        _ => "correct",
+    }
+}
+
+const CHECK: &[&str] = &[
+    "check",
+    "hw",
+    "--scene",
+    "scene.toml",
+    "--on",
+    "cpu",
+    "--size",
+    "64x36",
+    "--out",
+    "out",
+];
+
+fn check(folder: &Path, rest: &[&str]) -> Run {
+    toyproof(folder, &[CHECK, rest].concat())
+}
+
+/// The records without their times.
+fn records(folder: &Path) -> Vec<Value> {
+    let text = fs::read_to_string(folder.join("out/verdict.json")).unwrap();
+    let mut report: Value = serde_json::from_str(&text).unwrap();
+    let shaders = report["shaders"].as_array_mut().unwrap();
+    for shader in shaders.iter_mut() {
+        shader["seconds"] = Value::Null;
+    }
+    shaders.clone()
+}
+
+fn results(folder: &Path) -> Vec<Value> {
+    let text = fs::read_to_string(folder.join("out/results.jsonl")).unwrap();
+    text.lines()
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect()
+}
+
+#[test]
+fn shaders_are_told_in_their_order_however_many_are_checked_at_a_time() {
+    let folder = homework(20);
+    let one = check(folder.path(), &["--jobs", "1"]);
+    let alone = records(folder.path());
+    let three = check(folder.path(), &["--jobs", "3"]);
+    assert_eq!((one.code, three.code), (1, 1));
+    assert_eq!(one.stdout, three.stdout);
+    assert_eq!(one.stderr, three.stderr);
+    assert_eq!(alone, records(folder.path()));
+    let verdicts: Vec<_> = alone
+        .iter()
+        .map(|record| record["verdict"].as_str().unwrap())
+        .collect();
+    assert_eq!(verdicts, (0..20).map(verdict).collect::<Vec<_>>());
+    assert!(
+        three
+            .stderr
+            .contains("20 shaders: 12 correct, 6 wrong, 2 invalid"),
+        "{}",
+        three.stderr
+    );
+    let mut named: Vec<_> = results(folder.path())
+        .iter()
+        .map(|line| line["record"]["shader"].as_str().unwrap().to_owned())
+        .collect();
+    named.sort();
+    let all: Vec<_> = (0..20).map(|at| format!("hw/{at:03}.glsl")).collect();
+    assert_eq!(named, all);
+}
+
+#[test]
+fn what_was_killed_goes_on_and_nothing_is_lost_or_done_twice() {
+    const COUNT: usize = 30;
+    let folder = homework(COUNT);
+    check(folder.path(), &[]);
+    let whole = records(folder.path());
+    fs::remove_dir_all(folder.path().join("out")).unwrap();
+    for wanted in [3, 11, 20] {
+        let mut running = command(folder.path())
+            .args([CHECK, &["--resume"]].concat())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let lines = || {
+            let text = fs::read_to_string(folder.path().join("out/results.jsonl")).unwrap_or_default();
+            text.lines().count()
+        };
+        let start = Instant::now();
+        while lines() < wanted && start.elapsed() < Duration::from_secs(60) {
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        running.kill().unwrap();
+        running.wait().unwrap();
+    }
+    // As if the last line had been cut.
+    let path = folder.path().join("out/results.jsonl");
+    let mut text = fs::read_to_string(&path).unwrap();
+    text.push_str("{\"key\":\"abc\",\"rec");
+    fs::write(&path, text).unwrap();
+    let last = check(folder.path(), &["--resume"]);
+    assert!(
+        last.stderr.contains("are taken over from an earlier run"),
+        "{}",
+        last.stderr
+    );
+    assert_eq!(records(folder.path()), whole);
+    let mut named: Vec<_> = results(folder.path())
+        .iter()
+        .map(|line| line["record"]["shader"].as_str().unwrap().to_owned())
+        .collect();
+    named.sort();
+    named.dedup();
+    assert_eq!(named.len(), COUNT);
+    assert_eq!(results(folder.path()).len(), COUNT, "none is there twice");
+}
+
+#[test]
+fn what_has_changed_is_checked_again() {
+    let folder = homework(4);
+    check(folder.path(), &[]);
+    let again = check(folder.path(), &["--resume"]);
+    assert!(
+        again.stderr.contains("4 of 4 shaders are taken over"),
+        "{}",
+        again.stderr
+    );
+    let path = folder.path().join("hw/002.glsl");
+    fs::write(&path, SPHERE.shader).unwrap();
+    let mended = check(folder.path(), &["--resume"]);
+    assert!(
+        mended.stderr.contains("3 of 4 shaders are taken over"),
+        "{}",
+        mended.stderr
+    );
+    assert_eq!(mended.code, 0, "{}", mended.stdout);
+    let scene = SPHERE.scene.replace("radius = 1.5", "radius = 1.4");
+    fs::write(folder.path().join("scene.toml"), scene).unwrap();
+    let other = check(folder.path(), &["--resume"]);
+    assert!(!other.stderr.contains("taken over"), "{}", other.stderr);
+    assert_eq!(other.code, 1);
+    let bare = toyproof(folder.path(), &["check", "hw", "--resume"]);
+    assert!(bare.code == 2 && bare.stderr.contains("--out"), "{}", bare.stderr);
+}
+
+#[test]
+fn pictures_that_are_no_longer_true_do_not_stay() {
+    let folder = homework(3);
+    check(folder.path(), &[]);
+    let exists = |name: &str| folder.path().join("out").join(name).is_file();
+    assert!(exists("002-actual.png") && exists("002-maths.png"));
+    fs::write(folder.path().join("hw/002.glsl"), SPHERE.shader).unwrap();
+    check(folder.path(), &[]);
+    assert!(exists("002-actual.png") && !exists("002-maths.png"));
+    fs::write(folder.path().join("hw/002.glsl"), "void main").unwrap();
+    check(folder.path(), &[]);
+    assert!(!exists("002-actual.png"));
+}
