@@ -21,6 +21,7 @@ mod glslang;
 mod miscompiles;
 mod mistakes;
 mod planted_faults;
+mod povray;
 mod program;
 mod rules;
 mod rungs;
