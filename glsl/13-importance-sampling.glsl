@@ -214,6 +214,10 @@ vec3 trace(Ray ray) {
             }
             return color + throughput * hit.material.color * share;
         }
+        // Light that is looked for here would come by a segment too many.
+        if (depth + 1 == MAX_DEPTH) {
+            return color;
+        }
         vec3 reflected = reflect(ray.direction, hit.normal);
         color += throughput * sampleLight(hit, reflected);
         vec3 direction = sampleBrdf(hit.material, hit.normal, reflected);

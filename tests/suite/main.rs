@@ -10,6 +10,7 @@ mod commands;
 mod diagnostics;
 mod elementary;
 mod equivalent_rewrites;
+mod estimators;
 mod evaluator;
 mod evaluator_programs;
 mod exported;

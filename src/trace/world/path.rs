@@ -22,7 +22,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         let mut throughput = T::Vec3::from_f64([1.0; 3]);
         // None where no emitter could have been drawn: at the camera and at mirrors.
         let mut drawn: Option<Drawn<T>> = None;
-        for _ in 0..self.max_depth {
+        for segment in 1..=self.max_depth {
             let Some(hit) = self.nearest(&ray, style) else {
                 return sum + throughput * self.background.color(ray.direction);
             };
@@ -36,6 +36,8 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
                     drawn = None;
                     ray = hit.leave(ray.direction - hit.normal * (T::from_f64(2.0) * facing), style);
                 }
+                // Light that is looked for here, or found from here, would have come by a segment too many.
+                Model::Reflective(_) if segment == self.max_depth => return sum,
                 Model::Reflective(brdf) => {
                     let frame = Frame {
                         normal: hit.normal,

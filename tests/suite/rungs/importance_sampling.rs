@@ -74,6 +74,10 @@ pub(super) static EDITED: Edited = Edited {
         ),
         ("one segment too few", &[("MAX_DEPTH = 4", "MAX_DEPTH = 3")]),
         (
+            "light looked for by a segment too many",
+            &[("depth + 1 == MAX_DEPTH", "depth == MAX_DEPTH")],
+        ),
+        (
             "throughput not kept",
             &[("throughput *= brdf", "throughput = brdf")],
         ),

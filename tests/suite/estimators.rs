@@ -1,0 +1,295 @@
+//! Soft shadows and paths beside estimates of the same integrals that are made in another way: lights are sampled over
+//! their surface, not over the cone that they fill; nothing is weighted; diffuse directions come from a disk.
+
+use std::f64::consts::{PI, TAU};
+
+use glam::DVec3;
+use toyproof::image::Image;
+use toyproof::scene::{Background, Integrator, Model, Projection, Sampler, Scene, Shape, ToneMap, parse};
+use toyproof::source::{File, Files};
+use toyproof::trace::Tracer;
+
+const SIZE: [u32; 2] = [16, 9];
+/// Of ours in each pixel.
+const ESTIMATES: u32 = 32_000;
+
+/// A generator of its own: xorshift64* (S. Vigna, “An experimental exploration of Marsaglia's xorshift generators,
+/// scrambled”, 2016).
+struct Random(u64);
+
+impl Random {
+    fn number(&mut self) -> f64 {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        (self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// Uniform over the unit sphere (Archimedes).
+    fn on_sphere(&mut self) -> DVec3 {
+        let z = 2.0 * self.number() - 1.0;
+        let (sine, cosine) = (TAU * self.number()).sin_cos();
+        let across = (1.0 - z * z).sqrt();
+        DVec3::new(across * cosine, across * sine, z)
+    }
+
+    /// By the cosine around a normal: a point of the unit sphere around its tip.
+    fn by_cosine(&mut self, normal: DVec3) -> DVec3 {
+        (normal + self.on_sphere()).normalize()
+    }
+
+    /// By a power of the cosine around an axis: the part across it is that of a direction of the whole sphere.
+    fn around(&mut self, axis: DVec3, exponent: f64) -> DVec3 {
+        let cosine = (1.0 - self.number()).powf(1.0 / (exponent + 1.0));
+        let across = self.on_sphere().cross(axis).normalize();
+        axis * cosine + across * (1.0 - cosine * cosine).sqrt()
+    }
+}
+
+/// Where a ray meets a surface.
+struct Met {
+    point: DVec3,
+    normal: DVec3,
+    surface: usize,
+}
+
+/// A scene of spheres and planes.
+struct World<'a> {
+    scene: &'a Scene,
+}
+
+impl World<'_> {
+    fn distance(&self, surface: usize, origin: DVec3, direction: DVec3) -> f64 {
+        let candidates = match self.scene.objects[surface].shape {
+            Shape::Sphere { center, radius } => {
+                let f = origin - DVec3::from_array(center);
+                let b = f.dot(direction);
+                let disc = b * b - f.dot(f) + radius * radius;
+                [-b - disc.sqrt(), -b + disc.sqrt()]
+            }
+            Shape::Plane { point, normal } => {
+                let normal = DVec3::from_array(normal);
+                [normal.dot(DVec3::from_array(point) - origin) / normal.dot(direction); 2]
+            }
+            Shape::Quadric(_) => unreachable!("not in these scenes"),
+        };
+        let ahead = candidates.into_iter().filter(|&t| t > 1e-7);
+        ahead.fold(f64::INFINITY, f64::min)
+    }
+
+    fn meet(&self, origin: DVec3, direction: DVec3) -> Option<Met> {
+        let distances = (0..self.scene.objects.len()).map(|i| (self.distance(i, origin, direction), i));
+        let (t, surface) = distances.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        if t.is_infinite() {
+            return None;
+        }
+        let point = origin + t * direction;
+        let normal = match self.scene.objects[surface].shape {
+            Shape::Sphere { center, .. } => (point - DVec3::from_array(center)).normalize(),
+            Shape::Plane { normal, .. } => DVec3::from_array(normal),
+            Shape::Quadric(_) => unreachable!("not in these scenes"),
+        };
+        Some(Met {
+            point,
+            normal,
+            surface,
+        })
+    }
+
+    /// A point on a sphere that shines, seen from `met`: its direction, and cosine · cosine / distance² · area, which is
+    /// 0 where anything but `itself` lies between.
+    fn to_light(
+        &self,
+        met: &Met,
+        (center, radius, itself): (DVec3, f64, Option<usize>),
+        random: &mut Random,
+    ) -> (DVec3, f64) {
+        let outward = random.on_sphere();
+        let to = center + radius * outward - met.point;
+        let distance = to.length();
+        let direction = to / distance;
+        let (here, there) = (direction.dot(met.normal), -direction.dot(outward));
+        if here <= 0.0 || there <= 0.0 {
+            return (direction, 0.0);
+        }
+        let hidden = (0..self.scene.objects.len())
+            .any(|i| Some(i) != itself && self.distance(i, met.point, direction) < distance * (1.0 - 1e-9));
+        let area = 4.0 * PI * radius * radius;
+        let share = if hidden {
+            0.0
+        } else {
+            here * there / (distance * distance) * area
+        };
+        (direction, share)
+    }
+
+    fn background(&self) -> DVec3 {
+        match self.scene.background {
+            Background::Uniform(color) => DVec3::from_array(color),
+            Background::Gradient { .. } => unreachable!("not in these scenes"),
+        }
+    }
+
+    /// One estimate of the light along a camera ray, where lights light matte surfaces.
+    fn lit(&self, direction: DVec3, random: &mut Random) -> DVec3 {
+        let Some(met) = self.meet(DVec3::ZERO, direction) else {
+            return self.background();
+        };
+        let material = &self.scene.objects[met.surface].material;
+        assert!(material.model == Model::Lambert);
+        let mut sum = DVec3::from_array(self.scene.ambient);
+        for light in &self.scene.lights {
+            let center = DVec3::from_array(light.position);
+            let (_, share) = self.to_light(&met, (center, light.radius, None), random);
+            let sine = light.radius / center.distance(met.point);
+            let solid_angle = TAU * (1.0 - (1.0 - sine * sine).sqrt());
+            sum += DVec3::from_array(light.color) * share / solid_angle;
+        }
+        DVec3::from_array(material.color) * sum
+    }
+
+    /// One estimate of the light that comes along a ray by at most that many segments. The light of emitters is counted
+    /// where the path looks for them, and where the eye sees them, but not where the path finds them.
+    fn path(&self, origin: DVec3, direction: DVec3, segments: u32, random: &mut Random) -> DVec3 {
+        let (mut origin, mut direction) = (origin, direction);
+        let (mut sum, mut throughput) = (DVec3::ZERO, DVec3::ONE);
+        for segment in 1..=segments {
+            let Some(met) = self.meet(origin, direction) else {
+                return sum + throughput * self.background();
+            };
+            let material = &self.scene.objects[met.surface].material;
+            let color = DVec3::from_array(material.color);
+            if material.model == Model::Emitter {
+                return if segment == 1 { color } else { sum };
+            }
+            if segment == segments {
+                return sum;
+            }
+            let mirrored = direction - 2.0 * direction.dot(met.normal) * met.normal;
+            let brdf = |to: DVec3| match material.model {
+                Model::Diffuse => 1.0 / PI,
+                Model::Glossy { exponent } => {
+                    (exponent + 2.0) / TAU * mirrored.dot(to).max(0.0).powf(exponent)
+                }
+                model => unreachable!("{model:?} is not in these scenes"),
+            };
+            for (i, emitter) in self.scene.objects.iter().enumerate() {
+                let (Shape::Sphere { center, radius }, Model::Emitter) =
+                    (emitter.shape, emitter.material.model)
+                else {
+                    continue;
+                };
+                let place = (DVec3::from_array(center), radius, Some(i));
+                let (to, share) = self.to_light(&met, place, random);
+                sum += throughput * color * DVec3::from_array(emitter.material.color) * brdf(to) * share;
+            }
+            let next = match material.model {
+                Model::Glossy { exponent } => {
+                    let next = random.around(mirrored, exponent);
+                    throughput *= color * (exponent + 2.0) / (exponent + 1.0) * next.dot(met.normal).max(0.0);
+                    next
+                }
+                _ => {
+                    throughput *= color;
+                    random.by_cosine(met.normal)
+                }
+            };
+            (origin, direction) = (met.point, next);
+        }
+        sum
+    }
+}
+
+fn course(text: &str) -> Scene {
+    let mut files = Files::default();
+    let file = files.add(File::new("scene", text));
+    let mut scene = parse(&files, file).unwrap();
+    scene.film.size = SIZE;
+    scene.film.samples = 16_384;
+    scene.film.sampler = Sampler::Sobol;
+    scene.film.tone_map = ToneMap::None;
+    scene.film.gamma = 1.0;
+    scene
+}
+
+/// How the tracer's picture stands to the mean of the estimates in each pixel: the root mean square of differences
+/// in standard errors, and the largest.
+fn standing(picture: &Image, scene: &Scene) -> [f64; 2] {
+    let world = World { scene };
+    let mut random = Random(0x9E37_79B9_7F4A_7C15);
+    let [width, height] = scene.film.size.map(f64::from);
+    let Projection::Pinhole { screen_distance } = scene.camera.projection else {
+        unreachable!("not in these scenes")
+    };
+    assert!(scene.camera.eye == [0.0; 3]);
+    let (mut squares, mut largest, mut number) = (0.0, 0.0f64, 0.0);
+    for y in 0..scene.film.size[1] {
+        for x in 0..scene.film.size[0] {
+            let (mut sum, mut sum2) = (0.0, 0.0);
+            for _ in 0..ESTIMATES {
+                let fx = (f64::from(x) + random.number()) / width * 2.0 - 1.0;
+                let fy = (f64::from(y) + random.number()) / height * 2.0 - 1.0;
+                let direction = DVec3::new(fx, fy * height / width, -screen_distance).normalize();
+                let light = match scene.film.integrator {
+                    Integrator::Whitted => world.lit(direction, &mut random),
+                    Integrator::Path => world.path(DVec3::ZERO, direction, scene.film.max_depth, &mut random),
+                };
+                let value = light.element_sum();
+                sum += value;
+                sum2 += value * value;
+            }
+            let mean = sum / f64::from(ESTIMATES);
+            let variance = (sum2 / f64::from(ESTIMATES) - mean * mean).max(0.0);
+            // The last is about what the tracer's own picture is off by.
+            let error = (variance / f64::from(ESTIMATES)).sqrt() + 3e-4 * mean;
+            let [r, g, b, _] = picture.get(x, y).map(f64::from);
+            let z = (r + g + b - mean) / error;
+            squares += z * z;
+            largest = largest.max(z.abs());
+            number += 1.0;
+        }
+    }
+    [(squares / number).sqrt(), largest]
+}
+
+/// The tracer's picture of `scene` beside estimates of `other`.
+fn compared(scene: &Scene, other: &Scene) -> [f64; 2] {
+    let picture = Tracer::<f64>::new(scene).picture(|| ());
+    standing(&picture, other)
+}
+
+const SOFT_SHADOWS: &str = include_str!("../../glsl/09-soft-shadows.toml");
+const IMPORTANCE_SAMPLING: &str = include_str!("../../glsl/13-importance-sampling.toml");
+
+/// A light whose penumbras are wide.
+fn large_light() -> Scene {
+    let mut scene = course(SOFT_SHADOWS);
+    scene.lights[0].radius = 2.0;
+    scene
+}
+
+#[test]
+fn estimates_over_the_lights_surface_agree() {
+    for scene in [large_light(), course(SOFT_SHADOWS), course(IMPORTANCE_SAMPLING)] {
+        let [rms, largest] = compared(&scene, &scene);
+        eprintln!("{}: {rms:.2} standard errors, at most {largest:.1}", scene.title);
+        assert!(rms < 1.2 && largest < 6.0, "{}: {rms} {largest}", scene.title);
+    }
+}
+
+#[test]
+fn another_light_and_another_depth_are_told_apart() {
+    let scene = large_light();
+    let mut other = scene.clone();
+    other.lights[0].radius *= 1.25;
+    let [rms, largest] = compared(&scene, &other);
+    eprintln!("a light larger by a quarter: {rms:.2}, at most {largest:.1}");
+    assert!(rms > 1.5, "{rms}");
+
+    let scene = course(IMPORTANCE_SAMPLING);
+    let mut other = scene.clone();
+    other.film.max_depth -= 1;
+    let [rms, _] = compared(&scene, &other);
+    eprintln!("a segment less: {rms:.2}");
+    assert!(rms > 3.0, "{rms}");
+}
