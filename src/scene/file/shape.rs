@@ -45,39 +45,6 @@ pub(super) struct EllipsoidTable {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct CylinderTable {
-    base: Triple,
-    axis: Option<Triple>,
-    radius: Spanned<f64>,
-    height: Spanned<f64>,
-    material: material::Table,
-    motion: Option<Spanned<String>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct ConeTable {
-    apex: Triple,
-    axis: Option<Triple>,
-    radius: Spanned<f64>,
-    height: Spanned<f64>,
-    material: material::Table,
-    motion: Option<Spanned<String>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct ParaboloidTable {
-    apex: Triple,
-    axis: Option<Triple>,
-    radius: Spanned<f64>,
-    height: Spanned<f64>,
-    material: material::Table,
-    motion: Option<Spanned<String>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
 pub(super) struct HyperboloidTable {
     center: Triple,
     axis: Option<Triple>,
@@ -161,37 +128,37 @@ impl Surface for EllipsoidTable {
     }
 }
 
-impl Surface for CylinderTable {
-    fn check(self, names: &Names, checks: &mut Checks) -> (Vec<Object>, Range<usize>) {
-        let kind = QuadricKind::Cylinder {
-            radius: checks.positive("radius", &self.radius),
-            height: checks.positive("height", &self.height),
-        };
-        let shape = quadric(("base", self.base), self.axis, kind, checks);
-        object(shape, (self.material, self.motion), names, checks)
-    }
+/// Tables of what has a radius at one end of its axis and a height along it.
+macro_rules! round {
+    ($($table:ident: $kind:ident from $origin:ident;)*) => {$(
+        #[derive(Deserialize)]
+        #[serde(deny_unknown_fields)]
+        pub(super) struct $table {
+            $origin: Triple,
+            axis: Option<Triple>,
+            radius: Spanned<f64>,
+            height: Spanned<f64>,
+            material: material::Table,
+            motion: Option<Spanned<String>>,
+        }
+
+        impl Surface for $table {
+            fn check(self, names: &Names, checks: &mut Checks) -> (Vec<Object>, Range<usize>) {
+                let kind = QuadricKind::$kind {
+                    radius: checks.positive("radius", &self.radius),
+                    height: checks.positive("height", &self.height),
+                };
+                let shape = quadric((stringify!($origin), self.$origin), self.axis, kind, checks);
+                object(shape, (self.material, self.motion), names, checks)
+            }
+        }
+    )*};
 }
 
-impl Surface for ConeTable {
-    fn check(self, names: &Names, checks: &mut Checks) -> (Vec<Object>, Range<usize>) {
-        let kind = QuadricKind::Cone {
-            radius: checks.positive("radius", &self.radius),
-            height: checks.positive("height", &self.height),
-        };
-        let shape = quadric(("apex", self.apex), self.axis, kind, checks);
-        object(shape, (self.material, self.motion), names, checks)
-    }
-}
-
-impl Surface for ParaboloidTable {
-    fn check(self, names: &Names, checks: &mut Checks) -> (Vec<Object>, Range<usize>) {
-        let kind = QuadricKind::Paraboloid {
-            radius: checks.positive("radius", &self.radius),
-            height: checks.positive("height", &self.height),
-        };
-        let shape = quadric(("apex", self.apex), self.axis, kind, checks);
-        object(shape, (self.material, self.motion), names, checks)
-    }
+round! {
+    CylinderTable: Cylinder from base;
+    ConeTable: Cone from apex;
+    ParaboloidTable: Paraboloid from apex;
 }
 
 impl Surface for HyperboloidTable {
