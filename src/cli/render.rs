@@ -113,7 +113,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             picture(&scene, moment, (args, &args.output), terminal)
         }
         Some(_) if args.output == Path::new("-") => {
-            terminal.error("a sequence needs a file to go to, whose name the numbers are added to");
+            terminal.error(sequence::NO_FILE);
             false
         }
         Some(frames) => {

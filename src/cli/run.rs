@@ -1,5 +1,6 @@
 //! `toyproof run`
 
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -7,6 +8,7 @@ use clap::ValueEnum;
 
 use super::check::cut_short;
 use super::inputs::{DriverArgs, FrameArgs, LanguageArgs};
+use super::sequence::{self, Frames, Sequence};
 use super::shader::{Names, Shader, Unusable, find, is_invalid, with_suffix};
 use super::{Exit, Terminal};
 use crate::eval::{self, Number, Program, Settings, Variant};
@@ -21,7 +23,8 @@ use crate::source::Files;
 #[command(
     after_help = "Examples:\n  toyproof run glsl/02-sphere.glsl -o sphere.png --time 1.5\n  \
                         toyproof run glsl -o pictures\n  \
-                        toyproof run glsl/02-sphere.glsl -o sphere.exr --on cpu --precision f64"
+                        toyproof run glsl/02-sphere.glsl -o sphere.exr --on cpu --precision f64\n  \
+                        toyproof run glsl/11-animation.glsl -o frames/orrery.png --frames 0..479"
 )]
 pub(super) struct Args {
     /// Shaders: files, folders, or - for standard input
@@ -33,6 +36,10 @@ pub(super) struct Args {
     /// The number type of every float; f64 runs on the CPU: the shader's mathematics without its rounding
     #[arg(long, value_enum, default_value_t = Precision::F32)]
     precision: Precision,
+    /// All frames from A to B, at 60 a second, each into a file with its number; a sequence that was interrupted goes
+    /// on where it stopped
+    #[arg(long, value_name = "A..B", value_parser = sequence::frames, conflicts_with_all = ["frame", "time"])]
+    frames: Option<Frames>,
     #[command(flatten)]
     frame: FrameArgs,
     #[command(flatten)]
@@ -65,6 +72,10 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         ));
         return Exit::Trouble;
     }
+    if standard && args.frames.is_some() {
+        terminal.error(sequence::NO_FILE);
+        return Exit::Trouble;
+    }
     let one = standard || (!several && !args.output.is_dir());
     let mut names = Names::default();
     let mut exit = Exit::Good;
@@ -80,13 +91,15 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             (true, _) | (false, Err(_)) => args.output.clone(),
             (false, Ok(found)) => with_suffix(&args.output.join(names.place(&found.relative)), ".png"),
         };
-        let spinner = terminal.spinner(&shader.name);
         terminal.diagnostics(&shader.warnings, &shader.files);
-        let painted = runner.paint(&shader);
-        spinner.finish_and_clear();
-        exit = exit.max(match painted {
-            Ok(picture) => keep(&picture, &path, terminal),
-            Err(exit) => exit,
+        exit = exit.max(match args.frames {
+            None => {
+                let spinner = terminal.spinner(&shader.name);
+                let painted = runner.paint(&shader);
+                spinner.finish_and_clear();
+                painted.map_or_else(|exit| exit, |picture| keep(&picture, &path, terminal))
+            }
+            Some(frames) => runner.sequence(&shader, frames, &path),
         });
     }
     exit
@@ -101,6 +114,44 @@ struct Runner<'a> {
 }
 
 impl Runner<'_> {
+    /// The shader's pictures, each into its file; stops at the first that there is none of.
+    fn sequence(&mut self, shader: &Shader, frames: Frames, output: &Path) -> Exit {
+        let what = self.what(shader);
+        let sequence = Sequence::resume(frames, output, &what, self.terminal);
+        let mut exit = Exit::Good;
+        let whole = sequence.make(self.terminal, |one| {
+            self.frame.frame = one.frame;
+            self.frame.time = one.time as f32;
+            exit = match self.paint(shader) {
+                Ok(picture) => keep(&picture, &one.path, self.terminal),
+                Err(exit) => exit,
+            };
+            exit == Exit::Good
+        });
+        // Else it was the record that could not be written, which the terminal has been told.
+        if whole || exit != Exit::Good {
+            exit
+        } else {
+            Exit::Trouble
+        }
+    }
+
+    /// A digest of what the frames of a sequence are painted of: a record of anything else is not continued.
+    fn what(&self, shader: &Shader) -> String {
+        let mut hasher = DefaultHasher::new();
+        if let Ok(checked) = &shader.checked {
+            self.args.driver.float().lower(checked).text().hash(&mut hasher);
+        }
+        let any = Frame {
+            frame: 0,
+            time: 0.0,
+            ..self.frame.clone()
+        };
+        postcard::to_stdvec(&any).unwrap_or_default().hash(&mut hasher);
+        format!("{:?} {:?}", self.args.precision, self.args.driver).hash(&mut hasher);
+        format!("{:016x}", hasher.finish())
+    }
+
     /// The shader's picture; says why there is none.
     fn paint(&mut self, shader: &Shader) -> Result<Image, Exit> {
         let checked = match &shader.checked {

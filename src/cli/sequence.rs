@@ -12,6 +12,9 @@ pub(super) struct Frames {
     last: i32,
 }
 
+/// Why standard output takes no sequence.
+pub(super) const NO_FILE: &str = "a sequence needs a file to go to, whose name the numbers are added to";
+
 /// Reads A..B.
 pub(super) fn frames(text: &str) -> Result<Frames, String> {
     let expected = "expected the first and the last frame as A..B, with 0 ≤ A ≤ B";

@@ -195,6 +195,58 @@ fn the_frame_flags_reach_the_shader() {
 }
 
 #[test]
+fn a_sequence_is_painted_by_number_and_goes_on_where_it_stopped() {
+    let folder = tempfile::tempdir().unwrap();
+    let shader = "void mainImage(out vec4 c, in vec2 p) {
+        c = vec4(float(iFrame) / 4.0, iTime * 15.0, iMouse.x, 1.0);
+    }";
+    fs::write(folder.path().join("s.glsl"), shader).unwrap();
+    let paint = |more: &str| {
+        let arguments = format!("run s.glsl -o s.exr --size 2x2 --on cpu --frames 0..3{more}");
+        toyproof(folder.path(), &arguments.split(' ').collect::<Vec<_>>())
+    };
+    let file = |name: &str| folder.path().join(name);
+    let color = |name: &str| toyproof::image::read(&file(name)).unwrap().get(0, 0);
+
+    // The third frame has nowhere to go.
+    fs::create_dir(file("s-0002.exr")).unwrap();
+    let stopped = paint("");
+    assert_eq!(stopped.code, 2, "{}", stopped.stderr);
+    assert!(!file("s-0003.exr").exists() && file("s.sequence").is_file());
+    fs::remove_dir(file("s-0002.exr")).unwrap();
+    fs::write(file("s-0000.exr"), "kept").unwrap();
+    let resumed = paint("");
+    assert_eq!(resumed.code, 0, "{}", resumed.stderr);
+    let words = "2 of 4 frames are there already";
+    assert!(resumed.stderr.contains(words), "{}", resumed.stderr);
+    assert_eq!(fs::read(file("s-0000.exr")).unwrap(), b"kept");
+    assert!(!file("s.sequence").exists());
+    for (name, share) in [("s-0001.exr", 0.25), ("s-0002.exr", 0.5), ("s-0003.exr", 0.75)] {
+        let [r, g, b, _] = color(name);
+        assert_eq!((r, b), (share, 0.0), "{name}");
+        assert!((g - share).abs() < 1e-6, "{name}: {g}");
+    }
+
+    // Another mouse is another sequence.
+    fs::remove_file(file("s-0003.exr")).unwrap();
+    fs::create_dir(file("s-0003.exr")).unwrap();
+    assert_eq!(paint("").code, 2);
+    fs::remove_dir(file("s-0003.exr")).unwrap();
+    let other = paint(" --mouse 1,0");
+    assert_eq!(other.code, 0, "{}", other.stderr);
+    assert!(!other.stderr.contains("already"), "{}", other.stderr);
+    assert_eq!(color("s-0000.exr"), [0.0, 0.0, 1.0, 1.0]);
+
+    let nowhere = toyproof(folder.path(), &["run", "s.glsl", "-o", "-", "--frames", "0..3"]);
+    assert_eq!(nowhere.code, 2);
+    assert!(
+        nowhere.stderr.contains("a sequence needs a file"),
+        "{}",
+        nowhere.stderr
+    );
+}
+
+#[test]
 fn derivatives_grow_upwards() {
     if !has_driver() {
         return;
