@@ -156,7 +156,7 @@ vec3 sampleBrdf(Material material, vec3 normal, vec3 reflected) {
     float u = random();
     float v = random();
     if (material.model == GLOSSY) {
-        return around(reflected, pow(u, 1.0 / (material.exponent + 1.0)), v);
+        return around(reflected, pow(1.0 - u, 1.0 / (material.exponent + 1.0)), v);
     }
     return around(normal, sqrt(1.0 - u), v);
 }

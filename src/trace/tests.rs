@@ -280,36 +280,106 @@ fn rmse(a: &Image, b: &Image) -> f64 {
     (sum / (3 * a.pixels().len()) as f64).sqrt()
 }
 
-/// How many samples it takes to an error of 1/255, at most 256, doubling.
-fn samples_needed(scene: &Scene, reference: &Image, sampler: Sampler) -> u32 {
+/// Every so many-th pixel, across and up.
+const STRIDE: u32 = 4;
+
+/// Some pixels of a picture in its own size, where edges have the share that they have.
+fn some(scene: &Scene, sampler: Sampler, samples: u32) -> Vec<[f64; 3]> {
     let mut scene = scene.clone();
     scene.film.sampler = sampler;
-    for exponent in 0..8 {
-        scene.film.samples = 1 << exponent;
-        if rmse(&Tracer::<f64>::new(&scene).picture(|| ()), reference) <= 1.0 / 255.0 {
-            return scene.film.samples;
-        }
-    }
-    256
+    scene.film.samples = samples;
+    let tracer = Tracer::<f64>::new(&scene);
+    let [width, height] = scene.film.size.map(|side| side / STRIDE);
+    (0..width * height)
+        .into_par_iter()
+        .map(|at| tracer.pixel(at % width * STRIDE + 1, at / width * STRIDE + 1))
+        .collect()
 }
 
 #[test]
-fn sobols_sequence_needs_the_fewest_samples() {
+fn spread_samples_need_fewer() {
     // An edge needs fewer samples than an edge and a penumbra.
-    for (name, most) in [("03", 16), ("09", 32)] {
-        let mut scene = rung(name, [128, 72]);
-        scene.film.sampler = Sampler::Sobol;
-        scene.film.samples = 1024;
-        let reference = Tracer::<f64>::new(&scene).picture(|| ());
-        let needed = [Sampler::Independent, Sampler::Stratified, Sampler::Sobol]
-            .map(|sampler| samples_needed(&scene, &reference, sampler));
-        let [independent, stratified, sobol] = needed;
-        assert!(sobol <= most, "{name}: {needed:?}");
+    for (name, needed) in [("03", [4, 4, 4]), ("09", [64, 16, 16])] {
+        let scene = rung(name, [640, 360]);
+        let reference = some(&scene, Sampler::Sobol, 256);
+        let error = |sampler: Sampler, samples: u32| {
+            let square =
+                |(a, b): (&[f64; 3], &[f64; 3])| -> f64 { (0..3).map(|i| (a[i] - b[i]).powi(2)).sum() };
+            let pixels = some(&scene, sampler, samples);
+            let sum: f64 = pixels.iter().zip(&reference).map(square).sum();
+            255.0 * (sum / (3 * pixels.len()) as f64).sqrt()
+        };
+        let samplers = [Sampler::Independent, Sampler::Stratified, Sampler::Sobol];
+        let [independent, stratified, sobol] = samplers.map(|sampler| error(sampler, 16));
         assert!(
-            sobol <= stratified && stratified < independent,
-            "{name}: {needed:?}"
+            independent > 1.5 * stratified && stratified > 0.9 * sobol,
+            "{name}: {independent} {stratified} {sobol}"
         );
+        for (sampler, needed) in samplers.into_iter().zip(needed) {
+            let [enough, few] = [needed, needed / 4].map(|samples| error(sampler, samples));
+            assert!(enough <= 1.0 && few > 1.0, "{name}, {sampler:?}: {enough} {few}");
+        }
     }
+}
+
+/// Two mirrors that meet in the x axis, at an angle. Seen from the apex, a ray that is mirrored goes straight on through
+/// copies of the wedge, so that the number of reflections and the last direction follow from two angles.
+#[test]
+fn a_wedge_of_mirrors_is_a_kaleidoscope() {
+    let angle = 1.85f64.to_radians();
+    let (sine, cosine) = angle.sin_cos();
+    let color = 0.995f64;
+    let text = |depth: u32| {
+        // The apex lies ahead, a little below the eye; the upper mirror rises towards the eye.
+        format!(
+            "[film]\nsize = [3, 64]\nmax_depth = {depth}\n[camera]\neye = [0, 0.02, 3]\nscreen_distance = 40\n\
+             [background]\nbottom = [0.2, 0.2, 0.2]\ntop = [0.9, 0.9, 0.9]\n\
+             [[plane]]\npoint = [0, 0, 0]\nmaterial = {{ model = \"mirror\", color = [{color}, 1, 1] }}\n\
+             [[plane]]\npoint = [0, 0, 0]\nnormal = [0, {}, {sine}]\n\
+             material = {{ model = \"mirror\", color = [{color}, 1, 1] }}\n",
+            -cosine
+        )
+    };
+    let tracer = Tracer::<f64>::new(&scene(&text(100)));
+    let shallow = Tracer::<f64>::new(&scene(&text(20)));
+    let mut most = 0;
+    for y in 0..64 {
+        for x in 0..3 {
+            // As the camera has it; then as angles around the apex, from the lower mirror upwards.
+            let [sx, sy] = [
+                (f64::from(x) + 0.5) / 1.5 - 1.0,
+                ((f64::from(y) + 0.5) / 32.0 - 1.0) * 64.0 / 3.0,
+            ];
+            let d = [sx, sy, -40.0];
+            let length = d.iter().map(|c| c * c).sum::<f64>().sqrt();
+            let start = (0.02f64).atan2(3.0);
+            let end = d[1].atan2(d[2]);
+            // Upwards the way round leads to larger angles, downwards to smaller ones.
+            let line = |angle_of: f64| (angle_of / angle).floor();
+            let clockwise = 0.02 * d[2] - 3.0 * d[1] > 0.0;
+            let end = match (clockwise, end > 0.0) {
+                (true, true) => end - std::f64::consts::TAU,
+                (false, false) => end + std::f64::consts::TAU,
+                _ => end,
+            };
+            let reflections = (line(end) - line(start)).abs();
+            let folded = end - angle * line(end);
+            let last = if line(end).rem_euclid(2.0) == 0.0 {
+                folded
+            } else {
+                angle - folded
+            };
+            let rise = last.sin() * d[1].hypot(d[2]) / length;
+            let sky = 0.2 + 0.7 * 0.5 * (1.0 + rise);
+            let expected = [sky * color.powf(reflections), sky, sky];
+            near(tracer.pixel(x, y), expected);
+            if reflections >= 20.0 {
+                near(shallow.pixel(x, y), [0.0; 3]);
+            }
+            most = most.max(reflections as u32);
+        }
+    }
+    assert!((90..100).contains(&most), "{most} reflections");
 }
 
 #[test]

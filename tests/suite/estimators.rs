@@ -183,16 +183,13 @@ impl World<'_> {
                 let (to, share) = self.to_light(&met, place, random);
                 sum += throughput * color * DVec3::from_array(emitter.material.color) * brdf(to) * share;
             }
-            let next = match material.model {
-                Model::Glossy { exponent } => {
-                    let next = random.around(mirrored, exponent);
-                    throughput *= color * (exponent + 2.0) / (exponent + 1.0) * next.dot(met.normal).max(0.0);
-                    next
-                }
-                _ => {
-                    throughput *= color;
-                    random.by_cosine(met.normal)
-                }
+            let next = if let Model::Glossy { exponent } = material.model {
+                let next = random.around(mirrored, exponent);
+                throughput *= color * (exponent + 2.0) / (exponent + 1.0) * next.dot(met.normal).max(0.0);
+                next
+            } else {
+                throughput *= color;
+                random.by_cosine(met.normal)
             };
             (origin, direction) = (met.point, next);
         }

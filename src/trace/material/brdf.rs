@@ -59,7 +59,7 @@ impl<T: Real> Brdf<T> {
     pub(in super::super) fn draw(&self, frame: &Frame<T>, [u, v]: [T; 2]) -> T::Vec3 {
         match self {
             Self::Glossy { exponent } => {
-                let cosine = u.power((*exponent + T::one()).recip());
+                let cosine = (T::one() - u).power((*exponent + T::one()).recip());
                 let sine = (T::one() - cosine * cosine).max(T::zero()).sqrt();
                 around::<T>(frame.reflected(), cosine, sine, v)
             }

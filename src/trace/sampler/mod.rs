@@ -109,6 +109,33 @@ impl Draws {
         let first = self.number();
         [first, self.number()]
     }
+
+    /// A pair that is taken as a place in a disk: (r², the turn). What is spread evenly over the square is so over the disk,
+    /// and what lies close together stays so, as long as nobody else is to draw the same.
+    pub(super) fn polar<T: Real>(&mut self) -> [T; 2] {
+        let pair = self.pair();
+        match self {
+            Self::Stratified(_) | Self::Sobol { .. } => concentric(pair),
+            _ => pair,
+        }
+    }
+}
+
+/// Takes the square to the disk, squares around the middle to circles: P. Shirley and K. Chiu, “A Low Distortion Map
+/// Between Disk and Square”, 1997. The place in the disk is (r², φ/2π), both in [0, 1], and every part of the square
+/// keeps its area.
+fn concentric<T: Real>([u, v]: [T; 2]) -> [T; 2] {
+    let [eighth, quarter, half, two] = [0.125, 0.25, 0.5, 2.0].map(T::from_f64);
+    let (x, y) = (two * u - T::one(), two * v - T::one());
+    let (radius, turn) = if x.abs() > y.abs() {
+        (x, eighth * (y / x))
+    } else if y == T::zero() {
+        (y, T::zero())
+    } else {
+        (y, quarter - eighth * (x / y))
+    };
+    let turn = if radius < T::zero() { turn + half } else { turn };
+    [radius * radius, turn - turn.floor()]
 }
 
 #[cfg(test)]
@@ -161,6 +188,31 @@ mod tests {
                         "{sampler:?} {skipped}: {counts:?}"
                     );
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn the_disk_is_filled_evenly_and_neighbours_stay_so() {
+        let side = 64u32;
+        let place = |i: u32, j: u32| concentric([i, j].map(|at| (f64::from(at) + 0.5) / f64::from(side)));
+        let mut counts = [[0u32; 4]; 8];
+        for (i, j) in (0..side).flat_map(|i| (0..side).map(move |j| (i, j))) {
+            let [r2, turn] = place(i, j);
+            assert!((0.0..=1.0).contains(&r2) && (0.0..1.0).contains(&turn));
+            counts[(turn * 8.0) as usize][(r2.sqrt() * 4.0) as usize] += 1;
+            let at = |[r2, turn]: [f64; 2]| {
+                let (sine, cosine) = (std::f64::consts::TAU * turn).sin_cos();
+                [r2.sqrt() * cosine, r2.sqrt() * sine]
+            };
+            let ([x, y], [u, v]) = (at([r2, turn]), at(place(i, (j + 1).min(side - 1))));
+            assert!((x - u).hypot(y - v) < 2.6 / f64::from(side), "{i} {j}");
+        }
+        // Rings of one width, whose areas are as the odd numbers; the cells on a diagonal belong to one side of it.
+        for ring in 0..4u32 {
+            let even = (2 * ring + 1) * side * side / 128;
+            for eighth in counts {
+                assert!(eighth[ring as usize].abs_diff(even) <= side / 8, "{counts:?}");
             }
         }
     }
