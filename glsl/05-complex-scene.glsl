@@ -74,7 +74,7 @@ void keepNearest(Ray ray, Sphere sphere, inout Intersection hit) {
 }
 
 Intersection hitScene(Ray ray, int frame) {
-    Sphere parent = Sphere(vec3(0.0, 0.0, -6.0), 1.0, vec3(0.9, 0.9, 0.8));
+    Sphere parent = Sphere(vec3(0.0, 0.0, -7.5), 1.0, vec3(0.9, 0.9, 0.8));
     Intersection hit = Intersection(NO_HIT, parent);
     keepNearest(ray, parent, hit);
     for (int i = 0; i < 6; i++) {

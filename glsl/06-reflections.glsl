@@ -4,7 +4,7 @@ const float SCREEN_DEPTH = -2.0;
 const float NO_HIT = 1.0e6;
 const float EPSILON = 0.001;
 const int SPHERES = 4;
-const int MAX_DEPTH = 8;
+const int MAX_DEPTH = 100;
 
 struct Ray {
     vec3 origin;

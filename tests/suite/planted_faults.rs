@@ -493,12 +493,12 @@ static FAULTS: &[Fault] = &[
         &REFLECTIONS,
         &[("color = throughput * sky", "color = sky")],
     ),
-    ("only two bounces", &REFLECTIONS, &[("DEPTH = 8", "DEPTH = 3")]),
+    ("only two bounces", &REFLECTIONS, &[("DEPTH = 100", "DEPTH = 3")]),
     (
         "sky after one bounce, whatever is met",
         &REFLECTIONS,
         &[
-            ("DEPTH = 8", "DEPTH = 2"),
+            ("DEPTH = 100", "DEPTH = 2"),
             (
                 "    fragColor",
                 "    if (color == vec3(0.0)) { color = throughput * sky(ray.direction); }\n    fragColor",
