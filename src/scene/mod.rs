@@ -36,6 +36,9 @@ pub struct Scene {
     pub title: String,
     /// Light from everywhere, added to that of the lights on every surface that has a BRDF.
     pub ambient: Color,
+    /// How far off its surface, in scene units, a shader of the scene may start a secondary ray, and how near a hit it may
+    /// leave out; > 0. The tracer itself starts on the surface.
+    pub max_offset: f64,
     /// How it is sampled and developed.
     pub film: Film,
     /// Where it is seen from.

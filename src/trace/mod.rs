@@ -23,7 +23,7 @@ use rayon::prelude::*;
 
 pub use adaptive::Spent;
 pub use real::{Real, Vector};
-pub use style::Hull;
+pub use style::{Hull, Styles};
 
 use self::camera::Camera;
 use self::figure::Figure;
@@ -38,6 +38,8 @@ use crate::scene::{self, Film, Moment, Requirements, Scene};
 #[derive(Debug)]
 pub struct Tracer<T: Real> {
     film: Film,
+    /// [`Scene::max_offset`]
+    max_offset: f64,
     camera: Camera<T>,
     figures: Vec<Figure<T>>,
     kernel: Kernel<T>,
@@ -64,6 +66,7 @@ impl<T: Real> Tracer<T> {
         let scene = &scene.at(moment);
         Self {
             film: scene.film,
+            max_offset: scene.max_offset,
             camera: Camera::new(scene),
             figures: scene.figures.iter().map(Figure::new).collect(),
             kernel: if requirements.shapes {

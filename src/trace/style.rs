@@ -3,7 +3,7 @@
 //! The tracer has no epsilons: a ray that leaves a surface does not meet the point that it starts from. Shaders cannot know what
 //! a ray starts from, so they start it a little off the surface, or do not count what it meets at once. Both are legal,
 //! and move an answer where surfaces touch, at shadow edges and in mirrors. [`Tracer::hull`] asks the tracer in
-//! each of these styles.
+//! each of these styles. How far is a little, the scene says: [`crate::scene::Scene::max_offset`].
 
 use super::real::Real;
 use super::sampler::Sample;
@@ -15,6 +15,8 @@ pub(super) trait Style<T: Real> {
     fn offset(&self) -> T;
     /// Hits must lie beyond this t; that of camera rays is 0.
     fn t_min(&self, secondary: bool) -> T;
+    /// The style of rays that look for a light, where that of the others is this one.
+    fn of_light_rays(&self) -> impl Style<T>;
 }
 
 /// From the surface itself.
@@ -27,16 +29,32 @@ impl<T: Real> Style<T> for Exact {
     fn t_min(&self, _: bool) -> T {
         T::zero()
     }
+    fn of_light_rays(&self) -> impl Style<T> {
+        Self
+    }
 }
 
-/// Starts off the surface that shaders use, in scene units, and the smallest t that they accept.
-const OFFSETS: [f64; 3] = [0.0, 1e-4, 1e-3];
-const T_MINS: [f64; 2] = [0.0, 1e-3];
+/// Starts off the surface that shaders use, and the smallest t that they accept, by the scene's largest offset.
+const OFFSETS: [f64; 3] = [0.0, 0.1, 1.0];
+const T_MINS: [f64; 2] = [0.0, 1.0];
 
 /// As a shader might.
+#[derive(Clone, Copy)]
 struct Legal {
     offset: f64,
     t_min: f64,
+}
+
+impl Legal {
+    fn all(max_offset: f64) -> impl Iterator<Item = Self> + Clone {
+        let of_offset = move |offset: f64| {
+            T_MINS.map(|t_min| Self {
+                offset: offset * max_offset,
+                t_min: t_min * max_offset,
+            })
+        };
+        OFFSETS.into_iter().flat_map(of_offset)
+    }
 }
 
 impl Style<f64> for Legal {
@@ -46,6 +64,36 @@ impl Style<f64> for Legal {
     fn t_min(&self, secondary: bool) -> f64 {
         if secondary { self.t_min } else { 0.0 }
     }
+    fn of_light_rays(&self) -> impl Style<f64> {
+        *self
+    }
+}
+
+/// Rays that look for a light start in one style, those that go on in another.
+struct Mixed {
+    light: Legal,
+    other: Legal,
+}
+
+impl Style<f64> for Mixed {
+    fn offset(&self) -> f64 {
+        self.other.offset
+    }
+    fn t_min(&self, secondary: bool) -> f64 {
+        self.other.t_min(secondary)
+    }
+    fn of_light_rays(&self) -> impl Style<f64> {
+        self.light
+    }
+}
+
+/// Which rays of a shader have one style.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Styles {
+    /// All of them.
+    Alike,
+    /// Those that look for a light have one, those that go on another: six times as many answers.
+    Mixed,
 }
 
 /// The smallest box that holds all answers, component by component.
@@ -74,38 +122,52 @@ impl Hull {
     }
 }
 
+impl Hull {
+    /// Of no colours.
+    const EMPTY: Self = Self {
+        low: [f64::INFINITY; 3],
+        high: [f64::NEG_INFINITY; 3],
+    };
+
+    fn take(&mut self, color: [f64; 3]) {
+        for (i, component) in color.into_iter().enumerate() {
+            self.low[i] = self.low[i].min(component);
+            self.high[i] = self.high[i].max(component);
+        }
+    }
+}
+
 impl Tracer<f64> {
     /// The colours that the pixel at (x, y) has in the legal styles. Each sample has its own hull, so that the mean's is
     /// the mean of theirs: which style a shader follows is the same for all samples, but not what it means to each.
     #[must_use]
-    pub fn hull(&self, x: u32, y: u32) -> Hull {
+    pub fn hull(&self, x: u32, y: u32, styles: Styles) -> Hull {
+        let legal = || Legal::all(self.max_offset);
         let mut sum = Hull {
             low: [0.0; 3],
             high: [0.0; 3],
         };
         let count = self.film.samples;
         for index in 0..count {
-            let mut low = [f64::INFINITY; 3];
-            let mut high = [f64::NEG_INFINITY; 3];
-            let styles = OFFSETS
-                .into_iter()
-                .flat_map(|offset| T_MINS.map(|t_min| Legal { offset, t_min }));
-            for style in styles {
-                let sample = Sample {
-                    pixel: [x, y],
-                    index,
-                    count,
-                    set: 0,
-                };
-                let color = self.sample(sample, &style).to_array();
-                for i in 0..3 {
-                    low[i] = low[i].min(color[i]);
-                    high[i] = high[i].max(color[i]);
+            let sample = Sample {
+                pixel: [x, y],
+                index,
+                count,
+                set: 0,
+            };
+            let mut hull = Hull::EMPTY;
+            for other in legal() {
+                if styles == Styles::Alike {
+                    hull.take(self.sample(sample, &other).to_array());
+                    continue;
+                }
+                for light in legal() {
+                    hull.take(self.sample(sample, &Mixed { light, other }).to_array());
                 }
             }
             for i in 0..3 {
-                sum.low[i] += low[i];
-                sum.high[i] += high[i];
+                sum.low[i] += hull.low[i];
+                sum.high[i] += hull.high[i];
             }
         }
         let mean = |total: f64| film::develop(&self.film, total / f64::from(count));
@@ -126,7 +188,7 @@ mod tests {
         let mut files = Files::default();
         let file = files.add(File::new("s", text));
         let tracer = Tracer::<f64>::new(&scene::parse(&files, file).unwrap());
-        (tracer.hull(0, 0), tracer.pixel(0, 0))
+        (tracer.hull(0, 0, Styles::Alike), tracer.pixel(0, 0))
     }
 
     /// One pixel that looks at a white floor 1 below the eye, where a ball may stand in the light from above.

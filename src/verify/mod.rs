@@ -202,7 +202,7 @@ impl Findings {
     fn ask(&mut self, case: &Case, cpu: &Cpu, program: &Program, tracer: Option<&Tracer<f64>>) {
         let ask = |expected: &Image, actual: &Image, standings| Some(Asked::new(expected, actual, standings));
         if let (Some(tracer), Some(reference)) = (tracer, &self.reference) {
-            let hull = |x, y| tracer.hull(x, y);
+            let hull = |x, y, styles| tracer.hull(x, y, styles);
             let (standings, shaking) = timed(|| {
                 let shaken = |seed| cpu::shaken(program, case, seed);
                 compare::maths(reference, &cpu.double, &cpu.undefined, hull, shaken)

@@ -6,11 +6,11 @@ use std::sync::LazyLock;
 
 use crate::rungs::{EDITED, Edited};
 use crate::support::{
-    COMPLEX_SCENE, Edit, MANY_OBJECTS, REFLECTIONS, RUNGS, Rung, SHADING, SPHERE, edited, judged, maths,
-    numbers, tracer,
+    COMPLEX_SCENE, DISNEY, Edit, MANY_OBJECTS, REFLECTIONS, RUNGS, Rung, SHADING, SPHERE, edited, judged,
+    maths, numbers, tracer,
 };
 use toyproof::compare::{EXACT_TOLERANCE, Verdict};
-use toyproof::trace::Hull;
+use toyproof::trace::{Hull, Styles};
 use toyproof::verify::Findings;
 
 /// What is said otherwise, the rungs that say it, and how.
@@ -773,6 +773,20 @@ fn every_rewrite_stays_correct() {
     assert!(failed.is_empty(), "not correct:\n{}", failed.join("\n"));
 }
 
+/// The sixth class starts its shadow rays a hundredth off the surface.
+#[test]
+fn a_scene_says_how_far_off_the_surface_rays_may_start() {
+    let Some(mut worker) = crate::support::worker() else {
+        return;
+    };
+    let shader = edited(&DISNEY, &[("0.001 * normal", "0.01 * normal")]);
+    let scene: &'static str = Box::leak(format!("max_offset = 0.01\n{}", DISNEY.scene).into_boxed_str());
+    let allowed = judged(&mut worker, &shader, &Rung { scene, ..DISNEY });
+    assert_eq!(allowed.verdict, Verdict::Correct, "{}", numbers(&allowed));
+    let unsaid = judged(&mut worker, &shader, &DISNEY);
+    assert!(maths(&unsaid).differing > 0, "{}", numbers(&unsaid));
+}
+
 #[test]
 fn every_rung_has_its_rewrites() {
     for rung in RUNGS {
@@ -825,7 +839,7 @@ fn hulls(rung: &Rung) -> Vec<Hull> {
     let [width, height] = rung.size;
     (0..height)
         .flat_map(|y| (0..width).map(move |x| (x, y)))
-        .map(|(x, y)| tracer.hull(x, y))
+        .map(|(x, y)| tracer.hull(x, y, Styles::Alike))
         .collect()
 }
 

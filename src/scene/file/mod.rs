@@ -48,6 +48,7 @@ struct Document {
     #[serde(default)]
     title: String,
     ambient: Option<Triple>,
+    max_offset: Option<Spanned<f64>>,
     #[serde(default)]
     film: film::Table,
     #[serde(default)]
@@ -150,6 +151,9 @@ impl Document {
         Scene {
             title: self.title,
             ambient: scene_ambient,
+            max_offset: self
+                .max_offset
+                .map_or(MAX_OFFSET, |offset| checks.positive("max_offset", &offset)),
             film,
             camera: self.camera.check(checks),
             background: background(self.background, checks),
@@ -165,6 +169,8 @@ impl Document {
     }
 }
 
+/// How far off their surface secondary rays start in most shaders, at most.
+const MAX_OFFSET: f64 = 1e-3;
 /// The most path segments of a scene with glass.
 const MAX_BRANCHES: u32 = 16;
 

@@ -35,6 +35,13 @@ fn an_empty_file_is_the_empty_scene_with_all_defaults() {
         }
     );
     assert_eq!(scene.background, Background::Uniform([0.0; 3]));
+    assert_eq!(scene.max_offset, 1e-3);
+}
+
+#[test]
+fn the_largest_offset_is_above_zero() {
+    assert_eq!(read("max_offset = 0.01\n").unwrap().max_offset, 0.01);
+    assert!(read("max_offset = 0.0\n").is_err());
 }
 
 #[test]

@@ -11,7 +11,7 @@ use super::super::shape::Primitive;
 use super::super::style::Style;
 use super::World;
 
-/// The last direction that was drawn for a BRDF: its density, and the point that it was drawn at.
+/// The last direction that was drawn for a BRDF: its density, and where its ray starts.
 type Drawn<T> = (T, <T as Real>::Vec3);
 
 impl<T: Real, P: Primitive<T>> World<T, P> {
@@ -44,15 +44,15 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
                         view: -ray.direction,
                     };
                     sum = sum + throughput * self.emitted(&hit, (brdf, color), &frame, draws, style);
-                    let direction = brdf.draw(&frame, draws.pair());
+                    let direction = brdf.draw(&frame, draws.polar());
                     let cosine = hit.normal.dot(direction);
                     if cosine <= T::zero() {
                         return sum;
                     }
                     let density = brdf.density(&frame, direction);
                     throughput = throughput * brdf.value(color, &frame, direction) * (cosine / density);
-                    drawn = Some((density, hit.point));
                     ray = hit.leave(direction, style);
+                    drawn = Some((density, ray.origin));
                 }
                 // Refused when the scene is read.
                 Model::Facing | Model::Glass(_) => return sum,
@@ -70,6 +70,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         draws: &mut Draws,
         style: &impl Style<T>,
     ) -> T::Vec3 {
+        let style = &style.of_light_rays();
         let number = T::from_f64(self.emitters.len() as f64);
         if self.emitters.is_empty() {
             return T::Vec3::ZERO;
@@ -78,7 +79,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         let which = (drawn * number).to_usize().unwrap_or(0);
         let emitter = &self.emitters[which.min(self.emitters.len() - 1)];
         let cone = Cone::new(emitter.center, emitter.radius, hit.point);
-        let (direction, distance) = cone.draw(draws.pair());
+        let (direction, distance) = cone.draw(draws.polar());
         let cosine = hit.normal.dot(direction);
         let ray = hit.leave(direction, style);
         if cosine <= T::zero() || self.occluded(&ray, distance, Some(emitter.surface), style) {

@@ -68,6 +68,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         draws: &mut Draws,
         style: &impl Style<T>,
     ) -> T::Vec3 {
+        let style = &style.of_light_rays();
         let frame = Frame {
             normal: hit.normal,
             view,
@@ -93,7 +94,7 @@ fn toward<T: Real>(
 ) -> (T::Vec3, Ray<T>, T) {
     if light.radius > T::zero() {
         let cone = Cone::new(light.position, light.radius, hit.point);
-        let (direction, distance) = cone.draw(draws.pair());
+        let (direction, distance) = cone.draw(draws.polar());
         return (direction, hit.leave(direction, style), distance);
     }
     let direction = (light.position - hit.point).normalize();

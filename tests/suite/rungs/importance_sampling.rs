@@ -120,8 +120,20 @@ pub(super) static EDITED: Edited = Edited {
             "times one over the number of samples",
             &[("color /= float(SAMPLES);", "color *= 1.0 / float(SAMPLES);")],
         ),
-        // Not here, and judged wrong in 0.15 % of the pixels: bounces that start on the surface beside light rays that start off it. The
-        // hull knows one style for all rays of a path.
+        (
+            "bounces start on the surface, light rays off it",
+            &[(
+                "ray = Ray(hit.point + EPSILON * hit.normal, direction);",
+                "ray = Ray(hit.point, direction);",
+            )],
+        ),
+        (
+            "light rays start on the surface, bounces off it",
+            &[(
+                "inShadow(Ray(hit.point + EPSILON * hit.normal, direction), emitter)",
+                "inShadow(Ray(hit.point, direction), emitter)",
+            )],
+        ),
         (
             "each sample divided",
             &[
