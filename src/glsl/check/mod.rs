@@ -14,14 +14,17 @@ mod mend;
 mod operator;
 mod overload;
 mod prelude;
+mod qualifier;
 mod scope;
 mod signature;
 mod statement;
 mod types;
 mod unknown;
+mod whole;
 
-pub(crate) use declare::{Declarator, Qualifiers, Storage};
+pub(crate) use declare::Declarator;
 pub(crate) use function::Parameter;
+pub(crate) use qualifier::{Qualifiers, Storage};
 pub(crate) use statement::Labels;
 pub(crate) use types::{Size, Specifier};
 

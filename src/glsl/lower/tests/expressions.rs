@@ -1,0 +1,320 @@
+//! Passes that mend expressions.
+
+use super::*;
+
+#[test]
+fn sampler_parameters() {
+    let text = main_image(
+        "vec4 f(sampler2D s, vec2 p) { return texture(s, p); }\n\
+         vec4 g(vec2 p, sampler2D t) { return f(t, p) + f(t, p.yx); }",
+        "o = g(p, iChannel0) + g(p, iChannel2) + f(iChannel0, p);",
+    );
+    let lowered = mends(Pass::Samplers, &text);
+    assert!(
+        lowered.contains("vec4 g_iChannel2(vec2 p) {\n    return f_iChannel2(p) + f_iChannel2(p.yx);"),
+        "{lowered}"
+    );
+    assert_eq!(lowered.matches("vec4 f_iChannel0(vec2 p)").count(), 1);
+}
+
+#[test]
+fn short_circuit() {
+    let text = main_image(
+        "bool hit(float x, inout float t) { t = x; return x > 0.0; }",
+        "float t = 1.0; bool near = p.x > 1.0; if (near && hit(p.y, t)) o.x = t;",
+    );
+    let early = |wgsl: &str| {
+        let body = &wgsl[position(wgsl, "fn mainImage")..];
+        position(body, "hit(") < position(body, "if ")
+    };
+    corrects(Pass::ShortCircuit, &text, early);
+    assert_eq!(
+        lines(
+            "bool f(inout float t) { t += 1.0; return t > 2.0; }",
+            "float t = p.x; bool b = p.y > 0.0 || f(t); o.x = float(b) + t;"
+        ),
+        "float t = p.x;\nbool b = p.y > 0.0 ? true : f(t);\no.x = float(b) + t;"
+    );
+}
+
+#[test]
+fn functions_that_naga_lacks() {
+    mends(Pass::Missing, &main_image("", "float i; o.x = modf(p.x, i) + i;"));
+    mends(
+        Pass::Missing,
+        &main_image("", "mat2 m = matrixCompMult(mat2(p, p), mat2(1.0)); o.xy = m[0];"),
+    );
+    mends(
+        Pass::Missing,
+        &main_image("", "mat2x3 m = outerProduct(vec3(p, 1.0), p); o.xyz = m[1];"),
+    );
+}
+
+#[test]
+fn inverse_for_every_target() {
+    let checked = checked(
+        &main_image("", "mat4 m = inverse(mat4(p, p, p, p, p, p, p, p)); o = m[0];"),
+        false,
+    );
+    let metal = |passes| {
+        let lowered = lower_with(&checked, passes);
+        let options = Options::from(naga::ShaderStage::Fragment);
+        let module = Frontend::default()
+            .parse(&options, lowered.text())
+            .expect("naga parses it");
+        let info = Validator::new(ValidationFlags::all(), Capabilities::default())
+            .validate(&module)
+            .expect("valid");
+        let (options, pipeline) = (
+            naga::back::msl::Options::default(),
+            naga::back::msl::PipelineOptions::default(),
+        );
+        naga::back::msl::write_string(&module, &info, &options, &pipeline).is_ok()
+    };
+    assert!(!metal(Passes::all().without(Pass::Missing)) && metal(Passes::all()));
+}
+
+#[test]
+fn geometric_functions_of_floats() {
+    for call in [
+        "dot(p.x, p.y)",
+        "normalize(p.x)",
+        "reflect(p.x, p.y)",
+        "refract(p.x, p.y, 0.5)",
+        "faceforward(p.x, p.y, 1.0)",
+    ] {
+        mends(Pass::Geometric, &main_image("", &format!("o.x = {call};")));
+    }
+}
+
+#[test]
+fn is_nan_and_is_inf() {
+    mends(
+        Pass::IsNan,
+        &main_image("", "if (isnan(p.x) || any(isinf(p))) o = vec4(1.0);"),
+    );
+}
+
+#[test]
+fn texel_offsets() {
+    let text = main_image("", "o = texelFetchOffset(iChannel0, ivec2(p), 0, ivec2(1, 2));");
+    let lowered = corrects(Pass::Texels, &text, |wgsl| !wgsl.contains("2i"));
+    assert!(
+        lowered.contains("texelFetch(sampler2D(iChannel0, iChannel0_sampler), ivec2(p) + ivec2(1, 2), 0)"),
+        "{lowered}"
+    );
+    mends(
+        Pass::Texels,
+        &main_image(
+            "",
+            "const ivec2 d = ivec2(1, 2); o = textureOffset(iChannel0, p, d);",
+        ),
+    );
+}
+
+#[test]
+fn matrix_constructors() {
+    mends(
+        Pass::Matrices,
+        &main_image("", "mat2 m = mat2(cos(p.x + vec4(0, 33, 11, 0))); o.xy = m * p;"),
+    );
+    mends(
+        Pass::Matrices,
+        &main_image("", "mat2 m = mat2(vec3(p, 1.0), vec3(p, 2.0)); o.xy = m * p;"),
+    );
+}
+
+#[test]
+fn numbers_of_booleans() {
+    mends(
+        Pass::Booleans,
+        &main_image("", "vec3 v = vec3(p.x > 1.0); o.xyz = v;"),
+    );
+    mends(
+        Pass::Booleans,
+        &main_image("", "bvec4 b = bvec4(p, p); vec2 v = vec2(b); o.xy = v;"),
+    );
+    mends(
+        Pass::Booleans,
+        &main_image("", "bvec2 b = bvec2(p); float v = float(b); o.x = v;"),
+    );
+}
+
+#[test]
+fn swizzles_of_columns() {
+    mends(
+        Pass::Swizzles,
+        &main_image("", "mat3 m = mat3(1.0); m[1].x = p.x; o.xyz = m[1];"),
+    );
+    mends(
+        Pass::Swizzles,
+        &main_image("", "mat3 m = mat3(1.0); m[1].yz *= p; o.xyz = m[1];"),
+    );
+    assert_eq!(
+        lines(
+            "",
+            "mat3 m = mat3(1.0); int i = int(p.x); m[i++].yz = p; o.xyz = m[1];"
+        ),
+        "mat3 m = mat3(1.0);\nint i = int(p.x);\nint toyproof_index = i++;\nvec3 toyproof_vector = m[toyproof_index];\n\
+         toyproof_vector.yz = p;\nm[toyproof_index] = toyproof_vector;\no.xyz = m[1];"
+    );
+    assert_eq!(
+        lines("", "vec3 v = vec3(1.0); v.zyx.xy.y = p.x; o.xyz = v;"),
+        "vec3 v = vec3(1.0);\nv.y = p.x;\no.xyz = v;"
+    );
+}
+
+#[test]
+fn indices_that_act() {
+    let text = main_image(
+        "",
+        "float a[3] = float[](1.0, 2.0, p.x); int i = 0; a[i++] += 5.0; o.x = a[i];",
+    );
+    let twice = |wgsl: &str| wgsl.matches("+ 1i").count() > 1;
+    let lowered = corrects(Pass::Indices, &text, twice);
+    assert!(
+        lowered.contains("int toyproof_index = i++;\n    a[toyproof_index] += 5.0;"),
+        "{lowered}"
+    );
+}
+
+#[test]
+fn compound_assignments() {
+    assert_eq!(
+        lines(
+            "float g; float next() { return g += 1.0; }",
+            "g = 2.0; g += next(); float x = 1.0; x += next(); o.x = x;"
+        ),
+        "g = 2.0;\nfloat toyproof_value = next();\ng += toyproof_value;\nfloat x = 1.0;\nx += next();\no.x = x;"
+    );
+}
+
+#[test]
+fn inequality_of_floats() {
+    let text = main_image(
+        "",
+        "o.x = float(p.x != p.y); o.y = float(notEqual(p, p.yx).x); o.z = float(p != p.yx);",
+    );
+    let lowered = corrects(Pass::Inequality, &text, |wgsl| wgsl.contains("!="));
+    assert!(
+        lowered.contains("!(p.x == p.y)") && lowered.contains("not(equal(p, p.yx))"),
+        "{lowered}"
+    );
+    assert!(lines("", "o.x = float(int(p.x) != 1);").contains("int(p.x) != 1"));
+}
+
+#[test]
+fn negation_of_unsigned_integers() {
+    mends(
+        Pass::Negations,
+        &main_image("", "uint u = uint(p.x); o.x = float(-u);"),
+    );
+}
+
+#[test]
+fn remainders() {
+    mends(
+        Pass::Remainders,
+        &main_image("", "uvec2 u = uvec2(p) % 3u; o.xy = vec2(u);"),
+    );
+    let text = main_image("", "int i = int(p.x) - 5; i %= 3; o.x = float(i);");
+    corrects(Pass::Remainders, &text, |wgsl| {
+        !wgsl.contains("toyproof_remainder")
+    });
+}
+
+#[test]
+fn out_arguments() {
+    let f = "void f(inout float x) { x += 1.0; }\nstruct S { float a; vec2 b; };";
+    mends(
+        Pass::OutArguments,
+        &main_image(f, "vec2 q = p; f(q.x); o.xy = q;"),
+    );
+    mends(
+        Pass::OutArguments,
+        &main_image(f, "mat2 m = mat2(1.0); f(m[1][0]); o.xy = m[1];"),
+    );
+    assert_eq!(
+        lines(f, "float a[2]; int i = int(p.x); f(a[i]); o.x = a[0];"),
+        "float[2] a;\nint i = int(p.x);\nint toyproof_index = i;\nfloat toyproof_argument = a[toyproof_index];\n\
+         f(toyproof_argument);\na[toyproof_index] = toyproof_argument;\no.x = a[0];"
+    );
+    assert_eq!(
+        lines(f, "S s; f(s.a); float x = s.a; f(x); o.x = x;")
+            .matches("toyproof")
+            .count(),
+        3
+    );
+    let g = "float g(float a, out float b) { b = a; return a; }";
+    assert_eq!(
+        lines(g, "vec2 q = p; float d = g(q.y, q.x) + q.x; o.x = d;"),
+        "vec2 q = p;\nfloat toyproof_argument;\nfloat toyproof_result = g(q.y, toyproof_argument);\nq.x = toyproof_argument;\n\
+         float d = toyproof_result + q.x;\no.x = d;"
+    );
+}
+
+#[test]
+fn equality_of_structures_and_arrays() {
+    let s = "struct In { mat2x3 m; }; struct S { float a; In b[2]; };";
+    let text = main_image(s, "S s, t; s.a = p.x; if (s == t || s != t) o.x = 1.0;");
+    mends(Pass::Equality, &text);
+    mends(
+        Pass::Equality,
+        &main_image(
+            "",
+            "float a[2], b[2]; a[0] = p.x; b[0] = p.y; if (a == b) o.x = 1.0;",
+        ),
+    );
+}
+
+#[test]
+fn constants_that_naga_cannot_evaluate() {
+    for body in [
+        "const float INF = 1.0 / 0.0; o.x = INF;",
+        "o.x = log(0.0) + p.x;",
+        "o.x = sqrt(-1.0) * p.x;",
+        "o.x = float(1 << 31) + p.x;",
+        "o.x = 1e39 * p.x;",
+        "o.x = float(int(p.x) / 0 + 5 / 0);",
+        "o.x = clamp(0.5, 1.0, 0.0);",
+        "o.x = normalize(vec3(0.0)).x;",
+        "int i; o.x = float(1 << (i = 31));",
+        "o.x = 1e38 * (o.y, 100.0);",
+    ] {
+        mends(Pass::Constants, &main_image("", body));
+    }
+    mends(
+        Pass::Constants,
+        &main_image("const float INF = 1.0 / 0.0;", "o.x = INF;"),
+    );
+}
+
+#[test]
+fn members_of_structures() {
+    let arrays = "struct S { float a[2]; vec2 b; };";
+    mends(
+        Pass::Members,
+        &main_image(arrays, "S s = S(float[](p.x, 2.0), p); o.x = s.a[1];"),
+    );
+    mends(
+        Pass::Members,
+        &main_image(
+            arrays,
+            "S s; s.a = float[](p.x, 2.0); float a[2] = s.a; o.x = a[1];",
+        ),
+    );
+    let matrix =
+        "struct M { mat2 m; float x; }; M f(mat2 m) { return M(m, 1.0); } void g(inout mat2 m) { m *= 2.0; }";
+    let lowered = mends(
+        Pass::Members,
+        &main_image(
+            matrix,
+            "M a = f(mat2(p, p)); a.m *= 3.0; a.m[1].x = 4.0; g(a.m); M b = a; o.xy = a.m * p + f(b.m).m[0]; if (a == b) o.z = 1.0;",
+        ),
+    );
+    assert!(lowered.contains("vec2[2] m;"), "{lowered}");
+    accepted(&checked(
+        &main_image(arrays, "for (int i = 0; i < 2; i++) { S s; o.x += s.a[i]; }"),
+        false,
+    ));
+}
