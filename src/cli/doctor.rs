@@ -39,7 +39,9 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     });
     match drivers {
         Ok(drivers) => {
-            terminal.result(&format!("\nChosen, {}:", reason(&args.on)));
+            if let Some(chosen) = drivers.first() {
+                terminal.result(&format!("\nChosen, {}:", reason(&args.on, chosen)));
+            }
             for (index, driver) in drivers.iter().enumerate() {
                 if index == 1 {
                     terminal.result("\nOthers (--on takes words of a name):");
@@ -60,11 +62,12 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     }
 }
 
-fn reason(on: &On) -> String {
+fn reason(on: &On, chosen: &Driver) -> String {
     match on {
-        On::Auto if lavapipe_manifest().is_some() => {
+        On::Auto if chosen.is_lavapipe() => {
             "because lavapipe gives the same bits on every machine".to_owned()
         }
+        On::Auto if is_pinned_by_user() => "because the environment names it".to_owned(),
         On::Auto => "because it comes first".to_owned(),
         On::Lavapipe => "because --on lavapipe asks for it".to_owned(),
         On::Named(words) => format!("because --on “{words}” asks for it"),

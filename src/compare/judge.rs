@@ -87,8 +87,9 @@ pub fn judge(answers: Answers) -> (Verdict, String) {
         && answer.share(answer.differing) > MAX_DIFFERING
     {
         let reason = format!(
-            "{} are not what the shader says: naga, the driver or toyproof broke it, and it is not the shader's fault",
-            count(answer, answer.differing)
+            "{} {} not what the shader says: naga, the driver or toyproof broke it, and it is not the shader's fault",
+            count(answer, answer.differing),
+            plural(answer.differing, "is", "are")
         );
         return (Verdict::Error, reason);
     }
@@ -100,22 +101,24 @@ pub fn judge(answers: Answers) -> (Verdict, String) {
     };
     if maths.share(maths.differing) > MAX_DIFFERING {
         let reason = format!(
-            "{} differ from the scene even in exact arithmetic: it is the mathematics",
-            count(maths, maths.differing)
+            "{} {} from the scene even in exact arithmetic: it is the mathematics",
+            count(maths, maths.differing),
+            plural(maths.differing, "differs", "differ")
         );
         return (Verdict::Wrong, reason);
     }
     if maths.share(maths.undefined) > MAX_UNDEFINED {
         let reason = format!(
-            "in {} the shader does what GLSL leaves undefined, so they cannot be compared",
+            "in {} the shader does what GLSL leaves undefined, so that cannot be compared",
             count(maths, maths.undefined)
         );
         return (Verdict::Inconclusive, reason);
     }
     if maths.share(maths.undecided) > MAX_UNSTABLE {
         let reason = format!(
-            "the mathematics may be right, but {} hang by a hair even in double precision: a rounding error decides them",
-            count(maths, maths.undecided)
+            "the mathematics may be right, but {} {} by a hair even in double precision: a rounding error decides",
+            count(maths, maths.undecided),
+            plural(maths.undecided, "hangs", "hang")
         );
         return (Verdict::Unstable, reason);
     }
@@ -123,9 +126,10 @@ pub fn judge(answers: Answers) -> (Verdict, String) {
         && rounding.share(rounding.differing) > MAX_UNSTABLE
     {
         let reason = format!(
-            "the mathematics is right, but float32 is not enough for it here: {} are visibly another colour than in \
+            "the mathematics is right, but float32 is not enough for it here: {} {} visibly another colour than in \
              double precision",
-            count(rounding, rounding.differing)
+            count(rounding, rounding.differing),
+            plural(rounding.differing, "is", "are")
         );
         return (Verdict::Unstable, reason);
     }
@@ -133,8 +137,9 @@ pub fn judge(answers: Answers) -> (Verdict, String) {
         (0, 0) => format!("all {} pixels agree with the scene", grouped(maths.pixels)),
         (0, left) => format!("all pixels agree with the scene but {left} that cannot be decided"),
         (differing, _) => format!(
-            "{differing} of {} pixels differ from the scene, fewer than the {} that are allowed",
+            "{differing} of {} pixels {} from the scene, fewer than the {} that are allowed",
             grouped(maths.pixels),
+            plural(differing, "differs", "differ"),
             (maths.pixels as f64 * MAX_DIFFERING).floor() + 1.0
         ),
     };
@@ -148,6 +153,12 @@ fn count(answer: &Answer, count: u64) -> String {
         grouped(answer.pixels),
         100.0 * answer.share(count)
     )
+}
+
+/// The form of a word that goes with a count.
+#[must_use]
+pub fn plural<'a>(count: u64, one: &'a str, many: &'a str) -> &'a str {
+    if count == 1 { one } else { many }
 }
 
 /// A count with its thousands apart: 230,400.

@@ -15,7 +15,7 @@ mod tolerance;
 mod toolchain;
 
 pub use answer::{Answer, Standing, marks};
-pub use judge::{Answers, MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABLE, Verdict, grouped, judge};
+pub use judge::{Answers, MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABLE, Verdict, grouped, judge, plural};
 pub use maths::{SHAKES, maths};
 pub use picture::{Comparison, Pixel, compare};
 pub use rounding::{SEEN, rounding};

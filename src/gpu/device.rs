@@ -25,6 +25,17 @@ pub struct Driver {
     pub loop_cap: Option<LoopCap>,
 }
 
+impl Driver {
+    /// Whether it is Mesa's software driver.
+    #[must_use]
+    pub fn is_lavapipe(&self) -> bool {
+        self.name.contains(LAVAPIPE)
+    }
+}
+
+/// What lavapipe calls its adapter.
+const LAVAPIPE: &str = "llvmpipe";
+
 /// Whether a driver ends the loops of an invocation by force.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum LoopCap {
@@ -68,8 +79,8 @@ fn choose(mut adapters: Vec<Adapter>, on: &On) -> Result<Vec<Adapter>, Failure> 
             .position(|name| name.to_lowercase().contains(&words.to_lowercase()))
     };
     let chosen = match on {
-        On::Auto => holds("llvmpipe").unwrap_or(0),
-        On::Lavapipe => holds("llvmpipe").ok_or_else(|| {
+        On::Auto => holds(LAVAPIPE).unwrap_or(0),
+        On::Lavapipe => holds(LAVAPIPE).ok_or_else(|| {
             Failure::NoDriver(format!(
                 "lavapipe is not among the Vulkan drivers here; {INSTALL_HINT}"
             ))
@@ -186,7 +197,7 @@ impl Device {
     /// After how many iterations this driver ends an invocation's loops, if it does.
     pub(super) fn loop_cap(&mut self) -> Result<Option<u32>, Failure> {
         // Only Mesa's software rasteriser is known to do so.
-        if !self.adapter.get_info().name.contains("llvmpipe") {
+        if !self.adapter.get_info().name.contains(LAVAPIPE) {
             return Ok(None);
         }
         Ok(match self.measured_cap()? {

@@ -7,7 +7,7 @@ use std::fmt;
 use anstyle::{AnsiColor, Style};
 
 use super::Record;
-use crate::compare::{Answer, Comparison, Pixel, Verdict, grouped};
+use crate::compare::{Answer, Comparison, Pixel, Verdict, grouped, plural};
 use crate::diagnostic::Json;
 
 /// One shader: verdict, name, reason, and a line for each question whose answer is worth reading.
@@ -104,37 +104,44 @@ fn style(verdict: Verdict) -> Style {
 fn maths(answer: &Answer) -> String {
     question(
         answer,
-        "differ from the scene",
-        "hang by a hair, so that a rounding error decides them",
+        ["differs", "differ"],
+        "from the scene",
+        [
+            "hangs by a hair, so that a rounding error decides",
+            "hang by a hair, so that a rounding error decides them",
+        ],
     )
 }
 
 fn rounding(answer: &Answer) -> String {
     question(
         answer,
-        "are visibly another colour in float32 than in double precision",
-        "cannot be told",
+        ["is", "are"],
+        "visibly another colour in float32 than in double precision",
+        ["cannot be told"; 2],
     )
 }
 
 fn toolchain(answer: &Answer) -> String {
     let says = format!(
-        "are not to the bit what the shader says (by at most {:.1e})",
+        "not to the bit what the shader says (by at most {:.1e})",
         answer.max_abs
     );
-    question(answer, &says, "cannot be told")
+    question(answer, ["is", "are"], &says, ["cannot be told"; 2])
 }
 
-/// How many pixels differ or hang by a hair, with the first of them, and how many were left out.
-fn question(answer: &Answer, differ: &str, hang: &str) -> String {
+/// How many pixels differ or hang by a hair, with the first of them, and how many were left out. Of two forms, one is for one pixel.
+fn question(answer: &Answer, verb: [&str; 2], differ: &str, hang: [&str; 2]) -> String {
     let mut parts = Vec::new();
-    let counts = [(answer.differing, differ), (answer.undecided, hang)];
-    for (count, says) in counts.into_iter().filter(|(count, _)| *count > 0) {
-        parts.push(format!(
-            "{} of {} pixels {says}",
-            grouped(count),
-            grouped(answer.pixels)
-        ));
+    let of = |count: u64, [one, many]: [&str; 2]| {
+        let (of, total) = (grouped(count), grouped(answer.pixels));
+        format!("{of} of {total} pixels {}", plural(count, one, many))
+    };
+    if answer.differing > 0 {
+        parts.push(format!("{} {differ}", of(answer.differing, verb)));
+    }
+    if answer.undecided > 0 {
+        parts.push(of(answer.undecided, hang));
     }
     if let (Some(told), Some(pixel)) = (parts.first_mut(), &answer.first) {
         told.push_str(", first ");
@@ -185,8 +192,4 @@ pub fn place(pixel: &Pixel) -> String {
         colour(pixel.expected),
         colour(pixel.actual)
     )
-}
-
-fn plural<'a>(count: u64, one: &'a str, many: &'a str) -> &'a str {
-    if count == 1 { one } else { many }
 }

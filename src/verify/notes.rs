@@ -1,7 +1,7 @@
 //! What was seen while a shader ran, as diagnostics with their lines.
 
 use super::cpu::Cpu;
-use crate::compare::grouped;
+use crate::compare::{grouped, plural};
 use crate::diagnostic::Diagnostic;
 use crate::eval::{Fault, MESA_CAP, Observed};
 use crate::glsl::Code;
@@ -38,9 +38,10 @@ pub(super) fn notes(cpu: &Cpu, warned: &[Diagnostic]) -> Vec<Diagnostic> {
         .any(|warning| warning.code == Code::LongLoop.as_str());
     if cpu.beyond_cap > 0 && !foreseen {
         let message = format!(
-            "loops run more than {} rounds in {} pixels, after which Mesa before 23 ends them by force",
+            "loops run more than {} rounds in {} {}, after which Mesa before 23 ends them by force",
             grouped(u64::from(MESA_CAP)),
-            grouped(cpu.beyond_cap)
+            grouped(cpu.beyond_cap),
+            plural(cpu.beyond_cap, "pixel", "pixels")
         );
         notes.push(Diagnostic::warning(LONG_LOOPS, message));
     }
@@ -74,6 +75,10 @@ fn never_written(observed: &Observed) -> Diagnostic {
 /// In how many pixels, and the first of them.
 fn pixels(observed: &Observed) -> String {
     let [x, y] = observed.first;
-    let plural = if observed.pixels == 1 { "pixel" } else { "pixels" };
-    format!("{} {plural}, first at ({x}, {y})", grouped(observed.pixels))
+    let count = observed.pixels;
+    format!(
+        "{} {}, first at ({x}, {y})",
+        grouped(count),
+        plural(count, "pixel", "pixels")
+    )
 }
