@@ -96,8 +96,11 @@ codes! {
     UnusedResult "W0010" "A value that is computed and dropped",
     FloatEquality "W0011" "`==` or `!=` of floats that were computed",
     UnnormalisedDirection "W0012" "A ray-sphere formula for unit directions, given one that is never normalised",
+    // Where `warn` finds the formula, and the scene shows the trap.
+    NearTangent "W0013" "A ray-sphere formula that loses the edge of a sphere of the scene",
     BadAllow "W0014" "An `allow` that is not understood",
     UnusedAllow "W0015" "An `allow` that nothing needs",
+    MissingReturn "W0016" "A function that on some way ends without a `return`",
 }
 
 /// How many errors of one file are told, and how many warnings; more would help nobody.

@@ -30,7 +30,7 @@ pub use print::Lowered;
 use self::check::{Channels, Checker};
 use self::parse::Parser;
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::source::{FileId, Files};
+use crate::source::{FileId, Files, Span};
 use tree::{FunctionId, SamplerShape, Tree};
 
 /// How deep statements, parentheses, calls, unary operators and `?:` may nest, all together. More is refused with a diagnostic; this much
@@ -48,6 +48,8 @@ pub struct Checked {
     pub channels: [SamplerShape; 4],
     /// What is legal and worth a word, and not allowed by the author.
     pub warnings: Vec<Diagnostic>,
+    /// Discriminants of spheres that lose digits, as textbooks write them, and not allowed by the author.
+    pub discriminants: Vec<Span>,
 }
 
 /// Checks a shader: its tree, or what is wrong with it, in the order of the text.
@@ -90,12 +92,13 @@ pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, 
         return match main_image {
             Some(main_image) if !all.iter().any(is_error) => {
                 let tree = checker.tree;
-                let warnings = warn::warn(files, &tree, main_image, &text.remarks, all);
+                let warned = warn::warn(files, &tree, main_image, &text.remarks, all);
                 Ok(Checked {
                     tree,
                     main_image,
                     channels: channels.shapes,
-                    warnings,
+                    warnings: warned.warnings,
+                    discriminants: warned.discriminants,
                 })
             }
             _ => {

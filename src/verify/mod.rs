@@ -4,6 +4,7 @@
 mod cause;
 mod cpu;
 mod notes;
+mod tangent;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, ScopedJoinHandle};
@@ -36,6 +37,15 @@ pub struct Case<'a> {
     pub float: FloatMode,
     /// How long a picture may take.
     pub timeout: Duration,
+}
+
+impl Case<'_> {
+    fn moment(&self) -> Moment {
+        Moment {
+            frame: self.frame.frame,
+            time: f64::from(self.frame.time),
+        }
+    }
 }
 
 /// What was found.
@@ -127,11 +137,7 @@ const PATIENCE: u32 = 4;
 /// # Errors
 /// Why there is no picture of the shader.
 pub fn verify(worker: Option<&mut Worker>, case: &Case) -> Result<Findings, Failure> {
-    let moment = Moment {
-        frame: case.frame.frame,
-        time: f64::from(case.frame.time),
-    };
-    let tracer = case.scene.map(|scene| Tracer::<f64>::at(scene, moment));
+    let tracer = case.scene.map(|scene| Tracer::<f64>::at(scene, case.moment()));
     let program = Program::new(case.checked);
     let stop = AtomicBool::new(false);
     let limits = Limits {
@@ -218,6 +224,12 @@ impl Findings {
         }
         self.notes = notes::notes(cpu, &case.checked.warnings);
         self.notes.extend(cause::not_finite(program, case, &self.actual));
+        if let Some(scene) = case.scene {
+            let traps = tangent::traps(&scene.at(case.moment()), &cpu.single, &cpu.double);
+            let formula = case.checked.discriminants.first();
+            self.notes
+                .extend(formula.and_then(|at| tangent::told(&traps, *at)));
+        }
         (self.verdict, self.reason) = compare::judge(Answers {
             maths: self.maths.as_ref().map(|asked| &asked.answer),
             rounding: self.rounding.as_ref().map(|asked| &asked.answer),

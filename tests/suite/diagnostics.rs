@@ -11,7 +11,7 @@ use toyproof::diagnostic::{self, Diagnostic, Explanation, explanations};
 use toyproof::frame::Frame;
 use toyproof::glsl::{self, Checked, Code};
 use toyproof::gpu::FloatMode;
-use toyproof::scene;
+use toyproof::scene::{self, Scene};
 use toyproof::source::{File, Files};
 use toyproof::verify::{Case, verify};
 
@@ -45,8 +45,22 @@ fn examples(explanation: &Explanation) -> Vec<Example> {
     examples
 }
 
+/// The scene that the examples of a code paint: what is indented.
+fn scene(explanation: &Explanation) -> Option<Scene> {
+    let outside_fences = explanation.text.split("```").step_by(2);
+    let text: String = outside_fences
+        .flat_map(str::lines)
+        .filter_map(|line| line.strip_prefix("    "))
+        .flat_map(|line| [line, "\n"])
+        .collect();
+    let mut files = Files::default();
+    let file = files.add(File::new("scene.toml", text));
+    let is_scene = !files.get(file).text().is_empty();
+    is_scene.then(|| scene::parse(&files, file).unwrap())
+}
+
 /// Everything that is said of an example.
-fn told(example: &Example) -> (Vec<Diagnostic>, Files) {
+fn told(example: &Example, scene: Option<&Scene>) -> (Vec<Diagnostic>, Files) {
     let mut files = Files::default();
     match example.language {
         "glsl" => {
@@ -57,7 +71,10 @@ fn told(example: &Example) -> (Vec<Diagnostic>, Files) {
             };
             let file = files.add(File::new("example.glsl", format!("{}{rest}", example.text)));
             let checked = glsl::check(&files, file, &glsl::Options::default());
-            (checked.map_or_else(|told| told, |checked| seen(&checked)), files)
+            (
+                checked.map_or_else(|told| told, |checked| seen(&checked, scene)),
+                files,
+            )
         }
         "toml" => {
             let file = files.add(File::new("example.toml", example.text));
@@ -68,14 +85,14 @@ fn told(example: &Example) -> (Vec<Diagnostic>, Files) {
 }
 
 /// The warnings about a shader, and those about its run.
-fn seen(checked: &Checked) -> Vec<Diagnostic> {
+fn seen(checked: &Checked, scene: Option<&Scene>) -> Vec<Diagnostic> {
     let frame = Frame {
-        size: [16, 9],
+        size: scene.map_or([16, 9], |scene| scene.film.size),
         ..Frame::default()
     };
     let case = Case {
         checked,
-        scene: None,
+        scene,
         frame: &frame,
         float: FloatMode::Strict,
         timeout: Duration::from_secs(60),
@@ -135,8 +152,9 @@ fn wrong_examples_give_their_code_alone_and_right_ones_nothing() {
             "{}",
             explanation.code
         );
+        let scene = scene(&explanation);
         for example in &examples {
-            let (told, files) = told(example);
+            let (told, files) = told(example, scene.as_ref());
             let codes: Vec<_> = told.iter().map(|diagnostic| &*diagnostic.code).collect();
             let wanted = if example.wrong {
                 vec![explanation.code]

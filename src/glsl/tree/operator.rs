@@ -65,6 +65,19 @@ pub enum BinaryOp {
     Or,
 }
 
+impl BinaryOp {
+    /// The operator that says the same with its sides exchanged: `a < b` is `b > a`. Itself for all that are no order.
+    pub(crate) fn mirrored(self) -> Self {
+        match self {
+            Self::Less => Self::Greater,
+            Self::Greater => Self::Less,
+            Self::LessEqual => Self::GreaterEqual,
+            Self::GreaterEqual => Self::LessEqual,
+            other => other,
+        }
+    }
+}
+
 impl UnaryOp {
     /// The operator as written.
     #[must_use]

@@ -19,6 +19,7 @@ pub(super) fn run(program: &Program, found: &mut Found) {
     let tree = program.tree;
     for &function in &program.functions {
         let mut divisors = None;
+        let lengths = lengths(program, function);
         for &expr in program.exprs(function) {
             let (sign, left, right) = match &tree[expr].kind {
                 ExprKind::Binary {
@@ -32,7 +33,7 @@ pub(super) fn run(program: &Program, found: &mut Found) {
                 } => (function.name(), arguments[0], arguments[1]),
                 _ => continue,
             };
-            if !is_float(tree[left].ty) {
+            if !is_float(tree[left].ty) || lengths.contains(&expr) {
                 continue;
             }
             let divisors = divisors.get_or_insert_with(|| self::divisors(program, function));
@@ -46,6 +47,36 @@ pub(super) fn run(program: &Program, found: &mut Found) {
             }
         }
     }
+}
+
+/// `x == 0.0 && y == 0.0` asks whether a vector has no length: its components are not asked one by one.
+fn lengths(program: &Program, function: FunctionId) -> HashSet<ExprId> {
+    let tree = program.tree;
+    let is_zero = |expr: ExprId| match tree[expr].kind {
+        ExprKind::Binary {
+            op: BinaryOp::Equal,
+            right,
+            ..
+        } => program.constant(right).is_some_and(|constant| {
+            constant
+                .scalars
+                .iter()
+                .all(|scalar| matches!(scalar, Value::Float(0.0)))
+        }),
+        _ => false,
+    };
+    let pairs = program
+        .exprs(function)
+        .iter()
+        .filter_map(|expr| match tree[*expr].kind {
+            ExprKind::Binary {
+                op: BinaryOp::And,
+                left,
+                right,
+            } if is_zero(left) && is_zero(right) => Some([left, right]),
+            _ => None,
+        });
+    pairs.flatten().collect()
 }
 
 /// What a function divides by: who asks whether that is zero asks for no more than not to divide by it.

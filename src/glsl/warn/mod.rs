@@ -24,17 +24,24 @@ use super::codes::{Code, MAX_TOLD};
 use super::preprocess::Remark;
 use super::tree::{FunctionId, Place, Tree};
 use crate::diagnostic::Diagnostic;
-use crate::source::Files;
+use crate::source::{Files, Span};
 
-/// The warnings about a shader that keeps every rule, `told` before among them: in the order of the text, without those that its author
-/// allows, and what they allow.
+/// What is found in a shader that keeps every rule.
+pub(super) struct Warned {
+    /// In the order of the text, without what its author allows.
+    pub(super) warnings: Vec<Diagnostic>,
+    /// Where discriminants of spheres stand that lose digits, but for those that its author allows: whether it shows, a scene tells.
+    pub(super) discriminants: Vec<Span>,
+}
+
+/// Looks for all that is worth a word, `told` before among it.
 pub(super) fn warn(
     files: &Files,
     tree: &Tree,
     main: FunctionId,
     remarks: &[Remark],
     told: Vec<Diagnostic>,
-) -> Vec<Diagnostic> {
+) -> Warned {
     let program = Program::new(tree, main);
     let mut found = Found::default();
     let quadratics = quadratic::quadratics(&program);
@@ -45,6 +52,11 @@ pub(super) fn warn(
     uniformity::run(&program, &mut found);
     unused::run(&program, &mut found);
     unwritten::run(&program, files, &mut found);
+    for quadratic in &quadratics {
+        found.tell(Code::NearTangent, tree[quadratic.expr].at, "", |diagnostic| {
+            diagnostic
+        });
+    }
     let mut all = told;
     all.append(&mut found.all);
     let mut of_remarks = Vec::new();
@@ -52,8 +64,14 @@ pub(super) fn warn(
     let mut left = allows.sift(all);
     left.append(&mut of_remarks);
     left.sort_by_key(|diagnostic| diagnostic.span.map(|span| span.start));
-    left.truncate(MAX_TOLD);
-    left
+    let (seeds, mut warnings): (Vec<_>, Vec<_>) = left
+        .into_iter()
+        .partition(|diagnostic| diagnostic.code == Code::NearTangent.as_str());
+    warnings.truncate(MAX_TOLD);
+    Warned {
+        warnings,
+        discriminants: seeds.into_iter().filter_map(|seed| seed.span).collect(),
+    }
 }
 
 /// What the analyses found so far.

@@ -1,22 +1,32 @@
-//! Variables that are read before they are written, with the way that gets there.
+//! Variables that are read before they are written, and functions that end before they return, with the way that gets there.
 //!
 //! Told of components and members, through calls with `out` and `inout`, and along ways that can be: what is known of flags and
 //! sentinels on a way decides its conditions, and who writes a loop means it to run at least once.
 
+mod builder;
+mod conditions;
+mod evaluate;
 mod flow;
 mod global;
-mod knowledge;
+mod known;
 mod part;
+mod range;
 mod search;
+mod summary;
+mod terms;
+mod way;
 
 use super::super::codes::Code;
-use super::super::tree::{Direction, Tree, VariableId, VariableKind};
+use super::super::tree::{Direction, FunctionId, Tree, Type, VariableId, VariableKind};
 use super::Found;
 use super::program::{Program, direction};
 use crate::source::Files;
-use flow::{Builder, Summary, begun, is_followed, summary};
+use builder::Builder;
+use flow::{begun, is_followed};
 use part::Layout;
-use search::{Decision, DecisionKind, Quarry, Search, Way};
+use search::{Quarry, Search};
+use summary::{Summary, summary};
+use way::{Decision, DecisionKind, Way};
 
 /// How many blocks are visited for one shader: a second's work at most. Of what is beyond, nothing is told.
 const BUDGET: usize = 100_000;
@@ -30,14 +40,15 @@ pub(super) fn run(program: &Program, files: &Files, found: &mut Found) {
     let mut summaries = vec![Summary::default(); tree.functions.len()];
     let mut written = global::Written::default();
     let mut left = BUDGET;
+    let colour = tree[program.main].parameters.first().copied();
     for &function in &program.functions {
-        let flow = Builder::build(tree, &layout, &summaries, function);
+        let flow = Builder::build(tree, &layout, &summaries, colour, function);
         let mut sum = summary(tree, &flow, function);
         let mut search = Search::new(program, &flow);
         for (index, &parameter) in tree[function].parameters.iter().enumerate() {
             if direction(tree, parameter) == Direction::InOut {
                 let quarry = Quarry {
-                    variable: parameter,
+                    variable: Some(parameter),
                     parts: layout.whole(tree[parameter].ty),
                     from: (0, 0),
                     to_the_end: false,
@@ -47,7 +58,7 @@ pub(super) fn run(program: &Program, files: &Files, found: &mut Found) {
             }
         }
         summaries[function.index()] = sum;
-        let colour = tree[program.main].parameters.first().copied();
+        let mut reads: Vec<(VariableId, Way, Vec<VariableId>)> = Vec::new();
         for (variable, block, event) in begun(&flow)
             .into_iter()
             .filter(|&(variable, ..)| is_followed(tree, variable))
@@ -55,24 +66,55 @@ pub(super) fn run(program: &Program, files: &Files, found: &mut Found) {
             let is_colour = Some(variable) == colour;
             let whole = layout.whole(tree[variable].ty);
             let quarry = Quarry {
-                variable,
-                // The image's alpha is 1, whatever it is given.
+                variable: Some(variable),
                 parts: whole,
                 from: (block, event + 1),
                 to_the_end: is_colour,
             };
             let ways = search.ways(quarry, &mut left);
-            let best = ways.iter().min_by_key(|way| (way.decisions.len(), way.expr));
-            if let Some(way) = best {
-                tell(tree, files, &layout, variable, way, found);
+            let best = ways.into_iter().min_by_key(|way| (way.decisions.len(), way.expr));
+            let Some(way) = best else {
+                continue;
+            };
+            // What is unwritten for the same reason is told once.
+            let alike = |(_, told, _): &&mut (VariableId, Way, Vec<VariableId>)| {
+                !way.decisions.is_empty() && told.decisions == way.decisions
+            };
+            match reads.iter_mut().find(alike) {
+                Some((.., others)) => others.push(variable),
+                None => reads.push((variable, way, Vec::new())),
             }
+        }
+        if tree[function].return_type != Type::Void {
+            let quarry = Quarry {
+                variable: None,
+                parts: 1,
+                from: (0, 0),
+                to_the_end: true,
+            };
+            let ways = search.ways(quarry, &mut left);
+            let best = ways.into_iter().min_by_key(|way| way.decisions.len());
+            if let Some(way) = best {
+                tell_missing_return(tree, files, function, &way, found);
+            }
+        }
+        for (variable, way, others) in &reads {
+            tell(tree, files, &layout, *variable, way, others, found);
         }
         written.add(&flow);
     }
     written.tell(program, &layout, found);
 }
 
-fn tell(tree: &Tree, files: &Files, layout: &Layout, variable: VariableId, way: &Way, found: &mut Found) {
+fn tell(
+    tree: &Tree,
+    files: &Files,
+    layout: &Layout,
+    variable: VariableId,
+    way: &Way,
+    others: &[VariableId],
+    found: &mut Found,
+) {
     let is_out = matches!(tree[variable].kind, VariableKind::Parameter(_));
     let name = layout.name(variable, way.parts);
     let when = when(tree, files, &way.decisions);
@@ -102,8 +144,58 @@ fn tell(tree: &Tree, files: &Files, layout: &Layout, variable: VariableId, way: 
             let at = tree[decision.expr].at.span;
             diagnostic = diagnostic.related(at, outcome(decision.kind));
         }
+        for other in others.iter().filter_map(|&other| tree[other].at) {
+            diagnostic = diagnostic.related(other.span, "so is this");
+        }
+        if !others.is_empty() {
+            diagnostic = diagnostic.note(format!("so it is with {}", listed(tree, others)));
+        }
         diagnostic.note("WebGL makes it zero; other hosts leave in it what was there before. Give it a value where it is declared")
     });
+}
+
+fn tell_missing_return(tree: &Tree, files: &Files, function: FunctionId, way: &Way, found: &mut Found) {
+    let name = &tree[function].name;
+    let when = when(tree, files, &way.decisions);
+    let message = if when.is_empty() {
+        format!("`{name}` may end without a `return`")
+    } else {
+        format!("`{name}` ends without a `return` when {when}")
+    };
+    found.tell(
+        Code::MissingReturn,
+        tree[function].at,
+        message,
+        |mut diagnostic| {
+            for decision in &way.decisions {
+                let at = tree[decision.expr].at.span;
+                diagnostic = diagnostic.related(at, outcome(decision.kind));
+            }
+            diagnostic
+                .note("WebGL then gives zero; other hosts give what was there before. End it with a `return`")
+        },
+    );
+}
+
+/// Names for a sentence; of many, the first.
+fn listed(tree: &Tree, variables: &[VariableId]) -> String {
+    const SHOWN: usize = 4;
+    let names = |variables: &[VariableId]| {
+        let names: Vec<_> = variables
+            .iter()
+            .map(|&variable| format!("`{}`", tree[variable].name))
+            .collect();
+        names.join(", ")
+    };
+    match variables {
+        [only] => names(&[*only]),
+        [most @ .., last] if variables.len() <= SHOWN => format!("{} and {}", names(most), names(&[*last])),
+        _ => format!(
+            "{} and {} more",
+            names(&variables[..SHOWN - 1]),
+            variables.len() + 1 - SHOWN
+        ),
+    }
 }
 
 /// The decisions in words, with their lines.
