@@ -31,6 +31,7 @@ fn reads_of_what_was_not_written() {
         W0004 float a; f.x > 0.0 ? a = 1.0 : 0.0; c.x = a;
         W0004 float a; bool hit = false; if (f.x > 0.0) { a = 1.0; hit = true; } if (!hit) c.x = a;
         W0004 float a; if (f.x > 0.0) a = 1.0; if (f.y > 0.0) c.x = a;
+        W0004 bool p = f.x > 1.0, q = f.y > 1.0; float a; if (p && q) a = 1.0; else if (p && !q) a = 2.0; else if (!p && q) a = 3.0; c.x = a;
         W0004 float a, b, t = f.x; if (f.y > 0.0) { a = 1.0; t = 9.0; } if (min(t, f.y) < f.x) c.x = a;
         W0004 vec4 find(vec2 p) { vec2 n; float t = -1.0; for (int i = 0; i < 9; i++) { if (p.x < t) { n = p; break; } t += 1.0; } return vec4(t, n, 0); } | c = find(f);
         W0004 float far; void set() { far = 9.0; } | far = f.y; float a; if (f.x < far) a = 1.0; set(); if (f.x < far) c.x = a;
@@ -78,6 +79,7 @@ fn reads_of_what_was_not_written() {
         -     float a; bool found = false; for (int i = 0; i < 9; i++) { if (f.x > float(i)) { found = true; a = 1.0; } } if (found) c.x = a;
         -     float a; for (int i = 0; i++ < 9 && f.x > float(i);) a = 1.0; c.x = a;
         -     bool hit(float x, out float t) { t = x; return x > 1.0; } | float t; if (f.x > 0.0 && hit(f.y, t) && t > 1.0) c.x = 1.0;
+        -     | bool p = f.x > 1.0, q = f.y > 1.0; if (p || q) { float a; if (p && q) a = 1.0; else if (p && !q) a = 2.0; else if (!p && q) a = 3.0; c.x = a; }
         -     float a = 1.0; c.x = a;
         -     float a; const float b = 1.0; a = b; c.x = a;
         ",
@@ -110,6 +112,7 @@ fn functions_that_end_before_they_return() {
         -     float pick(float x) { if (x > 1.0) return 2.0; return 1.0; } | c.x = pick(f.x);
         -     float pick(float x) { if (x > 1.0) return 2.0; else return 1.0; } | c.x = pick(f.x);
         -     float pick(float x) { if (x > 1.0) return 2.0; if (x <= 1.0) return 1.0; } | c.x = pick(f.x);
+        -     float pick(float x) { if (x == 1.5) return 2.0; else if (x < 1.5) return 1.0; else if (x > 1.5) return 0.0; } | c.x = pick(floor(f.x));
         -     float pick(int i) { if (i == 0) return 2.0; if (i == 1) return 1.0; } | c.x = pick(int(f.x));
         -     float pick(int i) { switch (i) { case 0: return 1.0; default: return 2.0; } } | c.x = pick(int(f.x));
         -     float march(float x) { while (true) { if (x > 9.0) return x; x += 1.0; } } | c.x = march(f.x);

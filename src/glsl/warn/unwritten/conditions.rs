@@ -2,7 +2,7 @@
 
 use super::super::super::tree::{BinaryOp, BuiltIn, ExprId, ExprKind, Type, UnaryOp, VariableId};
 use super::super::program::Program;
-use super::known::{Fact, Known};
+use super::known::{Answer, Fact, Known};
 use super::range::{Range, range};
 use super::terms::Terms;
 
@@ -50,6 +50,10 @@ impl<'a> Conditions<'a> {
         let part = target.filter(|&target| !matches!(tree[target].kind, ExprKind::Variable(_)));
         if let (None, Some(range)) = (part, range) {
             known.note(variable, range);
+            if tree[variable].ty == Type::BOOL {
+                let fact = Fact::Holds(self.terms.of_variable(variable));
+                known.learn((fact, range.least != 0.0));
+            }
         }
         // Another name for it: neither is less.
         if matches!(tree[value].ty, Type::FLOAT | Type::INT)
@@ -104,6 +108,8 @@ impl<'a> Conditions<'a> {
                         pending.push((right, holds));
                     } else if self.answer(known, right, 0) == Some(!decides) {
                         pending.push((left, holds));
+                    } else {
+                        known.learn_either([self.literal(left, holds), self.literal(right, holds)]);
                     }
                 }
                 _ => self.assume_one(known, condition, holds),
@@ -188,7 +194,6 @@ impl<'a> Conditions<'a> {
         match &tree[condition].kind {
             ExprKind::Variable(variable) => {
                 known.note(*variable, Range::only(f64::from(u8::from(holds))));
-                return;
             }
             &ExprKind::Binary { op, left, right } => {
                 let (of_left, of_right) = (
@@ -272,6 +277,19 @@ impl<'a> Conditions<'a> {
             } => Some(arguments[0]),
             _ => None,
         }
+    }
+
+    /// What is so when a condition holds, or does not.
+    fn literal(&mut self, mut condition: ExprId, mut holds: bool) -> Answer {
+        while let ExprKind::Unary {
+            op: UnaryOp::Not,
+            operand,
+        } = self.program.tree[condition].kind
+        {
+            (condition, holds) = (operand, !holds);
+        }
+        let (fact, same) = self.fact(condition);
+        (fact, holds == same)
     }
 
     /// The fact that a condition asks for, and whether for it or its opposite.

@@ -125,6 +125,11 @@ impl Known {
         if let Some(holds) = self.told(Fact::Less(a, b)) {
             return Some(holds);
         }
+        // Neither equal nor the other way round.
+        let differ = [Fact::Equal(a, b), Fact::Equal(b, a)].map(|equal| self.told(equal) == Some(false));
+        if differ.contains(&true) && self.told(Fact::Less(b, a)) == Some(false) {
+            return Some(true);
+        }
         // (x, y, strictly): x < y, or x <= y.
         let order = || {
             self.facts
@@ -163,8 +168,23 @@ impl Known {
             let less = self.less(x, y).filter(|_| r == s && holds == also)?;
             Some(if less == holds { one } else { other })
         });
-        if let Some(answer) = found {
+        if let Some(answer) = found.or_else(|| self.resolve()) {
             self.learn(answer);
         }
+    }
+
+    /// `a` or `b`, and `a` or not `b`: so `a`.
+    fn resolve(&self) -> Option<Answer> {
+        let opposite = |(a, holds): Answer, (b, also): Answer| a == b && holds != also;
+        let of_two = |one: &[Answer; 2], other: &[Answer; 2]| {
+            (0..2).find_map(|i| {
+                let both = |j: usize| one[i] == other[j] && opposite(one[1 - i], other[1 - j]);
+                (both(0) || both(1)).then_some(one[i])
+            })
+        };
+        let mut pairs = self.either.iter().enumerate();
+        pairs
+            .find_map(|(index, one)| self.either[..index].iter().find_map(|other| of_two(one, other)))
+            .filter(|(fact, _)| self.told(*fact).is_none())
     }
 }
