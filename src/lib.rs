@@ -12,6 +12,7 @@ pub mod frame;
 pub mod glsl;
 pub mod gpu;
 pub mod image;
+pub mod mistake;
 pub mod module;
 pub mod output;
 pub mod report;

@@ -50,7 +50,7 @@ fn colour<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[f32; 3], D::Err
 
 impl Pixel {
     /// The pixel of that index, bottom row first, in two pictures of one size.
-    pub(super) fn at(index: usize, expected: &Image, actual: &Image) -> Self {
+    pub(crate) fn at(index: usize, expected: &Image, actual: &Image) -> Self {
         let width = expected.size()[0] as usize;
         let rgb = |image: &Image| {
             let [r, g, b, _] = image.pixels()[index];

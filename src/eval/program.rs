@@ -27,7 +27,7 @@ use crate::glsl::tree::{Input, Place};
 pub struct Program {
     checked: Arc<Checked>,
     /// With notes of undefined operations.
-    observing: Compiled,
+    observing: OnceLock<Result<Compiled, Refusal>>,
     /// With other values where GLSL leaves them open; made when it is first asked for.
     otherwise: OnceLock<Result<Compiled, Refusal>>,
     /// Without; made when it is first asked for.
@@ -42,27 +42,35 @@ impl Program {
     /// # Errors
     /// If it is too large once its calls are inlined.
     pub fn new(checked: &Checked) -> Result<Self, Refusal> {
-        let checked = Arc::new(checked.clone());
-        let observing = Compiled::new(
-            &checked,
-            Extras {
-                choice: Choice::Noted,
-                ..Extras::default()
-            },
-        )?;
-        Ok(Self {
-            checked,
-            observing,
+        Self::prepared(checked, Variant::Observed)
+    }
+
+    /// The same of a shader that is to be painted in that variant; others are compiled when they are first asked for.
+    ///
+    /// # Errors
+    /// If it is too large once its calls are inlined.
+    pub fn prepared(checked: &Checked, variant: Variant) -> Result<Self, Refusal> {
+        let program = Self {
+            checked: Arc::new(checked.clone()),
+            observing: OnceLock::new(),
             otherwise: OnceLock::new(),
             plain: OnceLock::new(),
             telling: OnceLock::new(),
-        })
+        };
+        program.code(variant)?;
+        Ok(program)
     }
 
     /// The code of a variant.
     pub(super) fn code(&self, variant: Variant) -> Result<&Compiled, Refusal> {
         match variant {
-            Variant::Observed => Ok(&self.observing),
+            Variant::Observed => self.made(
+                &self.observing,
+                Extras {
+                    choice: Choice::Noted,
+                    ..Extras::default()
+                },
+            ),
             Variant::Plain => self.made(&self.plain, Extras::default()),
             Variant::Otherwise => self.made(
                 &self.otherwise,

@@ -4,6 +4,6 @@ mod record;
 mod story;
 mod terminal;
 
-pub use record::{Record, Report, SCHEMA, Seconds};
+pub use record::{Mistake, Record, Report, SCHEMA, Seconds};
 pub use story::{Story, Subject};
 pub use terminal::{Tally, line, place, summary};

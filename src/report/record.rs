@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::compare::{Answer, Comparison, Verdict};
 use crate::diagnostic;
+use crate::mistake::Named;
 
 /// The JSON Schema of a [`Report`].
 pub const SCHEMA: &str = include_str!("verdict.schema.json");
@@ -63,12 +64,36 @@ pub struct Record {
     pub toolchain: Option<Answer>,
     /// The picture beside the reference's; null without a scene or a picture.
     pub picture: Option<Comparison>,
-    /// No mistakes are recognised yet.
-    pub mistake: (),
+    /// The classic mistake, or the two, that explain a wrong picture; null if none does.
+    pub mistake: Option<Mistake>,
     /// What was said of the shader and its scene.
     pub diagnostics: Vec<diagnostic::Json>,
     /// How long it took.
     pub seconds: Seconds,
+}
+
+/// What explains a wrong picture.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Mistake {
+    /// Its name, as `far-root`; of two that were made at once, both: `no-aspect+gamma`.
+    pub id: String,
+    /// What it means, in a sentence.
+    pub says: String,
+}
+
+impl Mistake {
+    /// Of the mistakes that were recognised.
+    #[must_use]
+    pub fn new(named: &[Named]) -> Self {
+        let (ids, says): (Vec<_>, Vec<_>) = named.iter().map(|mistake| (mistake.name, mistake.says)).unzip();
+        Self {
+            id: ids.join("+"),
+            says: format!(
+                "the picture is exactly what a tracer paints that {}",
+                says.join(", and that ")
+            ),
+        }
+    }
 }
 
 /// Times in seconds; null for what was not done.
@@ -98,7 +123,7 @@ mod tests {
             rounding: None,
             toolchain: None,
             picture,
-            mistake: (),
+            mistake: None,
             diagnostics: Vec::new(),
             seconds: Seconds::default(),
         }

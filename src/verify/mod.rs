@@ -20,6 +20,7 @@ use crate::frame::Frame;
 use crate::glsl::Checked;
 use crate::gpu::{self, Drawn, FloatMode, Worker};
 use crate::image::{Image, Mark};
+use crate::mistake::{Named, Suspects};
 use crate::scene::{Moment, Scene};
 use crate::source::Span;
 use crate::trace::Tracer;
@@ -31,6 +32,8 @@ pub struct Case<'a> {
     pub checked: &'a Checked,
     /// What it should paint, if that is known; the film's size is the frame's.
     pub scene: Option<&'a Scene>,
+    /// What a wrong picture is compared with, to tell what went wrong: of that scene and frame.
+    pub suspects: Option<&'a Suspects>,
     /// The frame.
     pub frame: &'a Frame,
     /// How far the driver may rearrange arithmetic. If it may, the toolchain question is not asked.
@@ -75,6 +78,8 @@ pub struct Findings {
     pub notes: Vec<Diagnostic>,
     /// Where a shader loses its digits, if float32 is not enough for it and that could be found; a warning or a note says how.
     pub cause: Option<Span>,
+    /// What explains a wrong picture, if that is a classic mistake, or two.
+    pub mistake: Option<Vec<Named>>,
     /// How long the evaluator took, for all its pictures.
     pub eval: Duration,
     /// How long the tracer took.
@@ -185,6 +190,7 @@ pub fn verify(worker: Option<&mut Worker>, case: &Case) -> Result<Findings, Fail
         painter,
         notes: Vec::new(),
         cause: None,
+        mistake: None,
         eval,
         trace: None,
     };
@@ -235,6 +241,9 @@ impl Findings {
             rounding: self.rounding.as_ref().map(|asked| &asked.answer),
             toolchain: self.toolchain.as_ref().map(|asked| &asked.answer),
         });
+        if let (Verdict::Wrong, Some(suspects)) = (self.verdict, case.suspects) {
+            self.mistake = suspects.recognise(program, &cpu.double, case.frame, true);
+        }
         let rounds = |asked: &Asked| asked.answer.share(asked.answer.differing) > MAX_UNSTABLE;
         let loses = self.verdict == Verdict::Ok && self.rounding.as_ref().is_some_and(rounds);
         if self.verdict == Verdict::Unstable || loses {

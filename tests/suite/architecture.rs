@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The stages in the order of the flow.
-const STAGES: [&str; 19] = [
+const STAGES: [&str; 20] = [
     "source",
     "diagnostic",
     "output",
@@ -21,6 +21,7 @@ const STAGES: [&str; 19] = [
     "trace",
     "compare",
     "explain",
+    "mistake",
     "verify",
     "report",
     "cli",

@@ -93,6 +93,7 @@ fn seen(checked: &Checked, scene: Option<&Scene>) -> Vec<Diagnostic> {
     let case = Case {
         checked,
         scene,
+        suspects: None,
         frame: &frame,
         float: FloatMode::Strict,
         timeout: Duration::from_secs(60),

@@ -20,6 +20,7 @@ mod generate;
 mod generated;
 mod glslang;
 mod miscompiles;
+mod mistaken;
 mod mistakes;
 mod planted_faults;
 mod povray;

@@ -9,7 +9,7 @@ use crate::support::{
 use toyproof::compare::Verdict;
 
 /// What the mistake is, the rung that it is made in, and how.
-type Fault = (&'static str, &'static Rung, &'static [Edit]);
+pub(crate) type Fault = (&'static str, &'static Rung, &'static [Edit]);
 
 const B: &str = "float b = dot(f, ray.direction);";
 const TWO_B: &str = "float b = 2.0 * dot(f, ray.direction);";
@@ -568,7 +568,7 @@ static FAULTS: &[Fault] = &[
 ];
 
 /// Those above and those of the later rungs.
-fn faults() -> impl Iterator<Item = Fault> {
+pub(crate) fn faults() -> impl Iterator<Item = Fault> {
     let later = EDITED.iter().flat_map(|edited| {
         let of_rung = |&(name, edits)| (name, edited.rung, edits);
         edited.faults.iter().map(of_rung)

@@ -147,7 +147,7 @@ pub(crate) fn worker() -> Option<Worker> {
 }
 
 /// A rung's scene.
-fn scene(rung: &Rung) -> Scene {
+pub(crate) fn scene(rung: &Rung) -> Scene {
     let mut files = Files::default();
     let file = files.add(File::new("<scene>", rung.scene));
     let mut scene = scene::parse(&files, file).unwrap_or_else(|errors| panic!("{}", told(&errors, &files)));
@@ -182,6 +182,7 @@ pub(crate) fn judged(worker: &mut Worker, shader: &str, rung: &Rung) -> Findings
     let case = Case {
         checked: &checked,
         scene: Some(&scene(rung)),
+        suspects: None,
         frame: &frame,
         float: FloatMode::Strict,
         timeout: Duration::from_secs(60),

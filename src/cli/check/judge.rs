@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use sha2::{Digest, Sha256};
 
@@ -15,8 +16,9 @@ use crate::diagnostic::{self, Diagnostic};
 use crate::frame::Frame;
 use crate::gpu::{self, Worker};
 use crate::image::{self, Image};
+use crate::mistake::Suspects;
 use crate::output;
-use crate::report::{Record, Seconds};
+use crate::report::{Mistake, Record, Seconds};
 use crate::scene::Scene;
 use crate::source::{self, Files, Found, ReadError};
 use crate::verify::{self, Case, Findings, verify};
@@ -145,6 +147,8 @@ pub(super) struct Judge<'a> {
     frame: Frame,
     /// Whether somebody was told that there is no driver.
     fell_back: AtomicBool,
+    /// The last scene with its suspects.
+    suspects: Mutex<Option<(Scene, Option<Arc<Suspects>>)>>,
 }
 
 impl<'a> Judge<'a> {
@@ -153,6 +157,7 @@ impl<'a> Judge<'a> {
             args,
             frame,
             fell_back: AtomicBool::new(false),
+            suspects: Mutex::new(None),
         }
     }
 
@@ -170,7 +175,7 @@ impl<'a> Judge<'a> {
             rounding: None,
             toolchain: None,
             picture: None,
-            mistake: (),
+            mistake: None,
             diagnostics: Vec::new(),
             seconds: Seconds::default(),
         });
@@ -214,9 +219,11 @@ impl<'a> Judge<'a> {
             Some((Err(unusable), files)) => return Err(Stopped::unusable(unusable, files, Verdict::Error)),
             Some((Ok(scene), _)) => Some(self.sized(scene, &mut frame)),
         };
+        let suspects = scene.as_ref().and_then(|scene| self.suspects(scene, &frame));
         let case = Case {
             checked: &checked,
             scene: scene.as_ref(),
+            suspects: suspects.as_deref(),
             frame: &frame,
             float: self.args.driver.float(),
             timeout: self.args.driver.timeout(),
@@ -241,6 +248,19 @@ impl<'a> Judge<'a> {
         }
         judged.tell(std::mem::take(&mut findings.notes), &files);
         Ok(findings)
+    }
+
+    /// The suspects of a scene: those of the scene before, where it is the same.
+    fn suspects(&self, scene: &Scene, frame: &Frame) -> Option<Arc<Suspects>> {
+        let mut last = self.suspects.lock().unwrap_or_else(PoisonError::into_inner);
+        match &*last {
+            Some((known, suspects)) if known == scene => suspects.clone(),
+            _ => {
+                let suspects = Suspects::of(scene, frame).map(Arc::new);
+                *last = Some((scene.clone(), suspects.clone()));
+                suspects
+            }
+        }
     }
 
     /// The scene in the size of the frame, which is the scene's own unless the arguments tell another.
@@ -272,6 +292,10 @@ fn fill(judged: &mut Judged, findings: Findings) {
     }
     record.verdict = findings.verdict;
     record.reason = findings.reason;
+    record.mistake = findings.mistake.as_deref().map(Mistake::new);
+    if let Some(mistake) = &record.mistake {
+        record.reason = format!("{}; {}", record.reason, mistake.says);
+    }
     record.maths = findings.maths.map(|asked| asked.answer);
     record.rounding = findings.rounding.map(|asked| asked.answer);
     record.toolchain = findings.toolchain.map(|asked| asked.answer);
