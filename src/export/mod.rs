@@ -2,11 +2,13 @@
 
 mod background;
 mod camera;
+mod figure;
 mod film;
 mod intersection;
 mod light;
 mod parts;
 mod path;
+mod quadric;
 mod sampler;
 mod structure;
 
@@ -20,9 +22,6 @@ use crate::scene::{Integrator, Requirements, Sampler, Scene};
 pub fn shader(scene: &Scene) -> Result<String, String> {
     let requirements = Requirements::of(scene);
     let film = &scene.film;
-    if requirements.figures {
-        return Err("figures".to_owned());
-    }
     if requirements.motion {
         return Err("motion".to_owned());
     }

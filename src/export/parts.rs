@@ -1,12 +1,15 @@
 //! What of the course's words a scene needs, and the order in which they stand.
 
-use super::{background, camera, sampler, vector};
-use crate::scene::{Model, Object, Point, Sampler, Scene, Shape};
+use super::{background, camera, figure, sampler, vector};
+use crate::scene::{Model, Object, Point, Quadric, Sampler, Scene, Shape};
 
 /// What of the course's words a scene needs.
 pub(super) struct Parts<'a> {
     pub(super) spheres: Vec<(Point, f64, &'a Object)>,
     pub(super) planes: Vec<(Point, Point, &'a Object)>,
+    pub(super) quadrics: Vec<(Quadric, &'a Object)>,
+    /// Whether anything is checkered.
+    pub(super) checkers: bool,
     /// The models in use, in the order in which they are first met.
     pub(super) models: Vec<Model>,
 }
@@ -26,6 +29,8 @@ impl<'a> Parts<'a> {
         let mut parts = Self {
             spheres: Vec::new(),
             planes: Vec::new(),
+            quadrics: Vec::new(),
+            checkers: false,
             models: Vec::new(),
         };
         for object in &scene.objects {
@@ -33,16 +38,14 @@ impl<'a> Parts<'a> {
             if word(&model).is_none() {
                 return Err("the models \"disney\", \"glossy\", \"glass\" and \"emitter\"".to_owned());
             }
-            if object.material.checker.is_some() {
-                return Err("a checker".to_owned());
-            }
+            parts.checkers |= object.material.checker.is_some();
             if !parts.models.contains(&model) {
                 parts.models.push(model);
             }
             match object.shape {
                 Shape::Sphere { center, radius } => parts.spheres.push((center, radius, object)),
                 Shape::Plane { point, normal } => parts.planes.push((point, normal, object)),
-                Shape::Quadric(_) => return Err("quadrics".to_owned()),
+                Shape::Quadric(quadric) => parts.quadrics.push((quadric, object)),
             }
         }
         Ok(parts)
@@ -78,6 +81,7 @@ impl<'a> Parts<'a> {
             pieces.extend(self.shading(scene));
         }
         pieces.push(self.trace());
+        pieces.extend(figure::functions(&scene.figures));
         pieces.push(camera::camera(scene));
         pieces.push(self.main(scene));
         pieces.join("\n")
@@ -98,6 +102,9 @@ impl<'a> Parts<'a> {
         }
         if !self.planes.is_empty() {
             say(format!("const int PLANES = {};\n", self.planes.len()));
+        }
+        if !self.quadrics.is_empty() {
+            say(format!("const int QUADRICS = {};\n", self.quadrics.len()));
         }
         if self.lit() && !scene.lights.is_empty() {
             say(format!("const int LIGHTS = {};\n", scene.lights.len()));

@@ -22,7 +22,7 @@ pub use material::{Checker, Disney, Fresnel, Material, Model};
 pub use motion::{Moment, Motion, Period};
 pub use requirements::Requirements;
 pub use scatter::{Scatter, unit};
-pub use shape::{Quadric, QuadricKind, Shape};
+pub use shape::{Equation, Quadric, QuadricKind, Shape};
 
 /// A colour, linear RGB; each component ≥ 0, nominally in [0, 1].
 pub type Color = [f64; 3];

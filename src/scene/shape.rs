@@ -62,6 +62,73 @@ pub enum QuadricKind {
     Hyperboloid { waist: f64, radius: f64, height: f64 },
 }
 
+/// The equation of a quadric, in units of its own: q·p² + 2 g z + k = 0, the square taken component by component.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(missing_docs, reason = "the equation says it")]
+pub struct Equation {
+    pub q: [f64; 3],
+    pub g: f64,
+    pub k: f64,
+    /// What z lies between; a closed surface has no ends.
+    pub ends: Option<[f64; 2]>,
+}
+
+impl QuadricKind {
+    /// Its largest radius.
+    #[must_use]
+    pub fn size(&self) -> f64 {
+        match *self {
+            Self::Ellipsoid { radii } => radii.into_iter().fold(0.0, f64::max),
+            Self::Cylinder { radius, .. }
+            | Self::Cone { radius, .. }
+            | Self::Paraboloid { radius, .. }
+            | Self::Hyperboloid { radius, .. } => radius,
+        }
+    }
+
+    /// Its equation where lengths are counted in `unit`, which is given in scene units.
+    #[must_use]
+    pub fn equation(&self, unit: f64) -> Equation {
+        let round = |z2: f64, g: f64, k: f64, ends: [f64; 2]| Equation {
+            q: [1.0, 1.0, z2],
+            g,
+            k,
+            ends: Some(ends),
+        };
+        match *self {
+            Self::Ellipsoid { radii } => Equation {
+                // Relative to the unit, so that no square overflows.
+                q: radii.map(|radius| (unit / radius) * (unit / radius)),
+                g: 0.0,
+                k: -1.0,
+                ends: None,
+            },
+            Self::Cylinder { radius, height } => {
+                let r = radius / unit;
+                round(0.0, 0.0, -r * r, [0.0, height / unit])
+            }
+            Self::Cone { radius, height } => {
+                let slope = radius / height;
+                round(-slope * slope, 0.0, 0.0, [0.0, height / unit])
+            }
+            Self::Paraboloid { radius, height } => {
+                let g = -0.5 * (radius / unit) * (radius / height);
+                round(0.0, g, 0.0, [0.0, height / unit])
+            }
+            Self::Hyperboloid {
+                waist,
+                radius,
+                height,
+            } => {
+                let half = 0.5 * height;
+                let slope2 = (radius - waist) / half * ((radius + waist) / half);
+                let (w, end) = (waist / unit, half / unit);
+                round(-slope2, 0.0, -w * w, [-end, end])
+            }
+        }
+    }
+}
+
 impl Quadric {
     /// A quadric around an axis of length 1.
     #[must_use]

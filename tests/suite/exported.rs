@@ -39,6 +39,50 @@ impl Random {
         of[(self.number() * of.len() as f64) as usize]
     }
 
+    /// One of the models, checkered or not.
+    fn material(&mut self, models: &[&str]) -> String {
+        let (model, color) = (self.one(models), self.color());
+        let checker = if self.chance(0.2) {
+            let (other, size) = (self.color(), self.between(0.3, 1.1));
+            format!(", checker = {{ color = {other}, size = {size:?} }}")
+        } else {
+            String::new()
+        };
+        format!("material = {{ model = \"{model}\", color = {color}{checker} }}\n")
+    }
+
+    /// A table of a quadric, without its material.
+    fn quadric(&mut self) -> String {
+        let place = self.triple([-2.0, -0.6, -9.0], [2.0, 1.2, -5.0]);
+        let axis = self.triple([-1.0, 0.3, -1.0], [1.0, 1.0, 1.0]);
+        let (radius, height) = (self.between(0.3, 0.9), self.between(0.4, 1.6));
+        let round = |table: &str, at: &str| {
+            format!("[[{table}]]\n{at} = {place}\naxis = {axis}\nradius = {radius:?}\nheight = {height:?}\n")
+        };
+        match (self.number() * 5.0) as u32 {
+            0 => {
+                let radii = self.triple([0.3; 3], [1.0; 3]);
+                format!("[[ellipsoid]]\ncenter = {place}\nradii = {radii}\n")
+            }
+            1 => round("cylinder", "base"),
+            2 => round("cone", "apex"),
+            3 => round("paraboloid", "apex"),
+            _ => format!("{}waist = {:?}\n", round("hyperboloid", "center"), 0.5 * radius),
+        }
+    }
+
+    /// A table of a figure on the screen.
+    fn figure(&mut self) -> String {
+        let (x, y) = (self.between(-0.8, 0.8), self.between(-0.4, 0.4));
+        let (size, color) = (self.between(0.05, 0.3), self.color());
+        let outline = match (self.number() * 3.0) as u32 {
+            0 => format!("\"disk\"\ncenter = [{x:?}, {y:?}]\nradius = {size:?}"),
+            1 => format!("\"heart\"\ncenter = [{x:?}, {y:?}]\nsize = {size:?}"),
+            _ => format!("\"wave\"\nheight = -0.45\namplitude = {size:?}\nfrequency = 7.0"),
+        };
+        format!("[[figure]]\noutline = {outline}\ncolor = {color}\n")
+    }
+
     fn chance(&mut self, share: f64) -> bool {
         self.number() < share
     }
@@ -91,16 +135,24 @@ fn random_scene(seed: u32) -> String {
     for _ in 0..(random.number() * 6.0) as u32 {
         let center = random.triple([-2.5, -0.8, -10.0], [2.5, 1.5, -4.5]);
         let radius = random.between(0.3, 1.2);
-        let (model, color) = (random.one(models), random.color());
+        let material = random.material(models);
         text.push(format!(
-            "[[sphere]]\ncenter = {center}\nradius = {radius:?}\nmaterial = {{ model = \"{model}\", color = {color} }}\n"
+            "[[sphere]]\ncenter = {center}\nradius = {radius:?}\n{material}"
         ));
     }
     if random.chance(0.4) {
-        let (model, color) = (random.one(models), random.color());
-        text.push(format!(
-            "[[plane]]\npoint = [0.0, -1.5, 0.0]\nmaterial = {{ model = \"{model}\", color = {color} }}\n"
-        ));
+        let material = random.material(models);
+        text.push(format!("[[plane]]\npoint = [0.0, -1.5, 0.0]\n{material}"));
+    }
+    if random.chance(0.4) {
+        for _ in 0..=(random.number() * 2.0) as u32 {
+            text.push(random.quadric() + &random.material(models));
+        }
+    }
+    if random.chance(0.2) {
+        for _ in 0..=(random.number() * 2.0) as u32 {
+            text.push(random.figure());
+        }
     }
     text.concat()
 }
@@ -163,9 +215,11 @@ fn a_shader_holds_only_what_its_scene_requires() {
     for word in ["Plane", "Light", "model", "MAX_DEPTH", "shade(", "AMBIENT"] {
         assert!(!one.contains(word), "{word} in\n{one}");
     }
-    let refused = exported(
-        "[[ellipsoid]]\ncenter = [0, 0, -6]\nradii = [1, 2, 3]\n\
-                            material = { model = \"facing\", color = [1, 1, 0] }\n",
-    );
-    assert_eq!(refused, Err("quadrics".to_owned()));
+    for word in ["Quadric", "checkered", "figure"] {
+        assert!(!one.contains(word), "{word} in\n{one}");
+    }
+    let refused = exported(&format!(
+        "{sphere}motion = \"turn\"\n[[motion]]\nname = \"turn\"\npivot = [0, 0, 0]\nseconds = 1\n"
+    ));
+    assert_eq!(refused, Err("motion".to_owned()));
 }

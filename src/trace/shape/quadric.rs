@@ -4,7 +4,7 @@ use super::super::ray::Ray;
 use super::super::real::{Real, Vector};
 use super::super::style::Style;
 use super::{Primitive, roots};
-use crate::scene::{self, QuadricKind};
+use crate::scene::{self, Equation};
 
 /// A quadric q·p² + 2 g z + k = 0 in coordinates p = (x, y, z) of its own, whose unit is a power of two near its size;
 /// the square is taken component by component.
@@ -25,20 +25,13 @@ pub(in super::super) struct Quadric<T: Real> {
 
 impl<T: Real> Quadric<T> {
     pub(super) fn new(quadric: &scene::Quadric) -> Self {
-        let size = match quadric.kind {
-            QuadricKind::Ellipsoid { radii } => radii.into_iter().fold(0.0, f64::max),
-            QuadricKind::Cylinder { radius, .. }
-            | QuadricKind::Cone { radius, .. }
-            | QuadricKind::Paraboloid { radius, .. }
-            | QuadricKind::Hyperboloid { radius, .. } => radius,
-        };
+        let size = quadric.kind.size();
         let unit = if size.is_normal() {
             size.power_of_two()
         } else {
             1.0
         };
-        let [q, [g, k, _], ends] = coefficients(&quadric.kind, unit);
-        let closed = matches!(quadric.kind, QuadricKind::Ellipsoid { .. });
+        let Equation { q, g, k, ends } = quadric.kind.equation(unit);
         Self {
             origin: T::Vec3::from_f64(quadric.origin),
             axes: quadric.axes.map(T::Vec3::from_f64),
@@ -47,7 +40,7 @@ impl<T: Real> Quadric<T> {
             q: T::Vec3::from_f64(q),
             g: T::from_f64(g),
             k: T::from_f64(k),
-            ends: (!closed).then(|| [ends[0], ends[1]].map(T::from_f64)),
+            ends: ends.map(|ends| ends.map(T::from_f64)),
         }
     }
 
@@ -85,41 +78,6 @@ impl<T: Real> Quadric<T> {
     fn is_within_ends(&self, point: T::Vec3) -> bool {
         let [_, _, z] = point.to_array();
         self.ends.is_none_or(|[low, high]| z >= low && z <= high)
-    }
-}
-
-/// q, then g and k, then the ends, of a kind in that unit.
-fn coefficients(kind: &QuadricKind, unit: f64) -> [[f64; 3]; 3] {
-    let round = |q: f64| [1.0, 1.0, q];
-    match *kind {
-        QuadricKind::Ellipsoid { radii } => {
-            // Relative to the largest, so that no square overflows.
-            let q = radii.map(|radius| (unit / radius) * (unit / radius));
-            [q, [0.0, -1.0, 0.0], [0.0; 3]]
-        }
-        QuadricKind::Cylinder { radius, height } => {
-            let r = radius / unit;
-            [round(0.0), [0.0, -r * r, 0.0], [0.0, height / unit, 0.0]]
-        }
-        QuadricKind::Cone { radius, height } => {
-            let slope = radius / height;
-            [round(-slope * slope), [0.0; 3], [0.0, height / unit, 0.0]]
-        }
-        QuadricKind::Paraboloid { radius, height } => {
-            let g = -0.5 * (radius / unit) * (radius / height);
-            [round(0.0), [g, 0.0, 0.0], [0.0, height / unit, 0.0]]
-        }
-        QuadricKind::Hyperboloid {
-            waist,
-            radius,
-            height,
-        } => {
-            let half = 0.5 * height;
-            let slope2 = (radius - waist) / half * ((radius + waist) / half);
-            let w = waist / unit;
-            let end = half / unit;
-            [round(-slope2), [0.0, -w * w, 0.0], [-end, end, 0.0]]
-        }
     }
 }
 
