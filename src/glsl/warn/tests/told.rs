@@ -127,3 +127,24 @@ fn the_course_has_nothing_to_be_warned_of() {
     }
     assert!(told.is_empty(), "{}", told.join("\n"));
 }
+
+#[test]
+fn a_discriminant_waits_for_its_scene_unless_it_is_allowed() {
+    let discriminants = |remark: &str| {
+        let mut files = Files::default();
+        let text = format!(
+            "void mainImage(out vec4 c, in vec2 p) {{
+                vec3 f = vec3(p, 1.0), d = normalize(vec3(p, -1.0));
+                float b = dot(f, d);
+                float disc = b * b - (dot(f, f) - 4.0); {remark}
+                c = vec4(disc);
+            }}"
+        );
+        let file = files.add(File::new("a", text));
+        let checked = check(&files, file, &Options::default()).unwrap();
+        assert!(checked.warnings.is_empty(), "{:#?}", checked.warnings);
+        checked.discriminants.len()
+    };
+    assert_eq!(discriminants(""), 1);
+    assert_eq!(discriminants("// toyproof: allow(W0013) it is near"), 0);
+}
