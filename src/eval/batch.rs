@@ -2,7 +2,6 @@
 
 use std::cell::{Cell, RefCell};
 
-use super::flow::Axis;
 use super::number::Number;
 use super::observe::Notes;
 use super::story::Scribe;
@@ -14,7 +13,8 @@ pub(super) const LANES: usize = 16;
 /// One component of that many pixels.
 pub(super) type Lanes<T> = [T; LANES];
 
-/// Which of a batch's chunks of [`LANES`] pixels have one that is here, a bit for each; and whether all pixels are.
+/// Which of a batch's chunks of [`LANES`] pixels have one that is here, a bit for each; and whether all pixels are. What the mask holds of
+/// other chunks means nothing.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Here {
     pub(super) chunks: u32,
@@ -92,34 +92,41 @@ impl<N: Number> Batch<'_, N> {
         self.rounds.get() + own.max().unwrap_or(0)
     }
 
-    /// Notes which chunks have any.
-    pub(super) fn note_here(&self, mask: u32) -> Here {
-        let mut here = Here { chunks: 0, all: true };
-        for (chunk, lanes) in self.mask_row(mask).iter().enumerate() {
-            let lanes = lanes.get();
-            let (any, all) = lanes
-                .iter()
-                .fold((0, u32::MAX), |(any, all), &lane| (any | lane, all & lane));
-            here.chunks |= u32::from(any != 0) << chunk;
-            here.all &= all == u32::MAX;
+    /// Takes pixels of a chunk out of a mask.
+    #[inline(always)]
+    pub(super) fn take_out(&self, mask: u32, chunk: usize, gone: &Lanes<u32>) {
+        let row = self.mask_row(mask);
+        let mut lanes = row[chunk].get();
+        for lane in 0..LANES {
+            lanes[lane] &= !gone[lane];
         }
-        self.here[mask as usize].set(here);
-        here
+        row[chunk].set(lanes);
+        let here = &self.here[mask as usize];
+        let Here { chunks, .. } = here.get();
+        here.set(Here {
+            chunks: chunks & !(u32::from(!any(&lanes)) << chunk),
+            all: false,
+        });
     }
 }
 
-/// The place of a lane in a batch of 16×16 pixels or fewer rows: quads from left to right, rows of quads upwards.
-pub(super) fn place(lane: usize, columns: usize) -> (u32, u32) {
+/// Whether any bit is set.
+#[inline(always)]
+pub(super) fn any(lanes: &Lanes<u32>) -> bool {
+    lanes.iter().fold(0, |any, lane| any | lane) != 0
+}
+
+/// How many pixels a tile is wide: two chunks.
+pub(super) const COLUMNS: usize = 16;
+
+/// The place of a lane in a batch: quads from left to right, rows of quads upwards.
+pub(super) const fn place(lane: usize) -> [usize; 2] {
     let (quad, corner) = (lane / 4, lane % 4);
-    let quads = columns / 2;
-    let (x, y) = (2 * (quad % quads) + corner % 2, 2 * (quad / quads) + corner / 2);
-    (x as u32, y as u32)
+    let quads = COLUMNS / 2;
+    [2 * (quad % quads) + corner % 2, 2 * (quad / quads) + corner / 2]
 }
 
-/// The middle of a pixel.
-pub(super) fn middle(axis: Axis, (x, y): (u32, u32)) -> f64 {
-    match axis {
-        Axis::X => f64::from(x) + 0.5,
-        Axis::Y => f64::from(y) + 0.5,
-    }
+/// The same the other way.
+pub(super) const fn lane_at([x, y]: [usize; 2]) -> usize {
+    4 * (y / 2 * (COLUMNS / 2) + x / 2) + 2 * (y % 2) + x % 2
 }

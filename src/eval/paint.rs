@@ -141,7 +141,7 @@ impl Program {
         let failure = Mutex::new(None);
         let observations = {
             let (pixels, marks) = painting.parts_mut();
-            let band = frame.size[0] as usize * job.tile()[1];
+            let band = frame.size[0] as usize * job.rows();
             let bands = pixels
                 .par_chunks_mut(band)
                 .zip(marks.par_chunks_mut(band))

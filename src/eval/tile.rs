@@ -4,8 +4,7 @@ use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 
 use super::allocate::Home;
-use super::batch::{Batch, FUEL, Here, LANES, Lanes, Stop, Watch, middle, place};
-use super::flow::Axis;
+use super::batch::{Batch, COLUMNS, FUEL, Here, LANES, Lanes, Stop, Watch, lane_at, place};
 use super::handler::run;
 use super::number::Number;
 use super::observe::{MESA_CAP, Observations, Observed, Site, earlier};
@@ -38,6 +37,10 @@ impl End {
         }
     }
 }
+
+/// How many pixels a chunk is wide, and how many high.
+const CHUNK_COLUMNS: usize = COLUMNS / 2;
+const CHUNK_ROWS: usize = LANES / CHUNK_COLUMNS;
 
 /// A frame that is being painted.
 pub(super) struct Job<'a, N: Number> {
@@ -73,12 +76,9 @@ impl<'a, N: Number> Job<'a, N> {
         }
     }
 
-    /// Columns and rows of a tile: square where a batch is large.
-    pub(super) fn tile(&self) -> [usize; 2] {
-        match self.prepared.width {
-            1 => [LANES / 2, 2],
-            width => [LANES, width],
-        }
+    /// How many rows of pixels a tile has.
+    pub(super) fn rows(&self) -> usize {
+        self.prepared.width * LANES / COLUMNS
     }
 
     pub(super) fn batch(&self) -> Batch<'_, N> {
@@ -120,13 +120,12 @@ impl<'a, N: Number> Job<'a, N> {
         pixels: &mut [[N; 3]],
         marks: &mut [u8],
     ) -> Result<Observations, End> {
-        let [columns, rows] = self.tile();
         let mut observations = Observations::default();
-        for left in (0..self.size[0]).step_by(columns) {
+        for left in (0..self.size[0]).step_by(COLUMNS) {
             if self.limits.is_over() {
                 return Err(End::Late);
             }
-            let corner = [left, (row * rows) as u32];
+            let corner = [left, (row * self.rows()) as u32];
             self.begin(batch, corner);
             run(batch, &self.prepared.code);
             if let Some(stop) = batch.stopped.take() {
@@ -139,15 +138,11 @@ impl<'a, N: Number> Job<'a, N> {
 
     /// Runs the tile of a pixel, and takes down what that one does, led by another story.
     pub(super) fn story(&self, pixel: [u32; 2], lead: Option<Lead<'_>>) -> Result<Story, End> {
-        let [columns, rows] = self.tile().map(|side| side as u32);
-        let corner = [pixel[0] / columns * columns, pixel[1] / rows * rows];
-        let own = (pixel[0] - corner[0], pixel[1] - corner[1]);
+        let sides = [COLUMNS, self.rows()];
+        let own = [0, 1].map(|axis| pixel[axis] as usize % sides[axis]);
+        let corner = [0, 1].map(|axis| pixel[axis] - own[axis] as u32);
+        let position = lane_at(own);
         let mut batch = self.batch();
-        let lanes = 0..LANES * batch.width;
-        let position = lanes
-            .into_iter()
-            .position(|lane| place(lane, columns as usize) == own)
-            .unwrap_or_default();
         batch.scribe = Some(Scribe::new(position, lead));
         self.begin(&mut batch, corner);
         run(&batch, &self.prepared.code);
@@ -162,16 +157,15 @@ impl<'a, N: Number> Job<'a, N> {
     }
 
     /// Sets the coordinates of a tile.
-    fn begin(&self, batch: &mut Batch<'_, N>, [left, low]: [u32; 2]) {
-        let [columns, _] = self.tile();
-        for (axis, row) in [Axis::X, Axis::Y].into_iter().zip(self.prepared.coordinates) {
+    fn begin(&self, batch: &mut Batch<'_, N>, corner: [u32; 2]) {
+        for (axis, row) in self.prepared.coordinates.into_iter().enumerate() {
             let Some(row) = row else {
                 continue;
             };
             for (chunk, cell) in batch.float_row(row).iter().enumerate() {
+                let first = f64::from(corner[axis]) + place(chunk * LANES)[axis] as f64;
                 cell.set(std::array::from_fn(|lane| {
-                    let (x, y) = place(chunk * LANES + lane, columns);
-                    N::from_f64(middle(axis, (left + x, low + y)))
+                    N::from_f64(first + place(lane)[axis] as f64 + 0.5)
                 }));
             }
         }
@@ -203,28 +197,34 @@ impl<'a, N: Number> Job<'a, N> {
         marks: &mut [u8],
         observations: &mut Observations,
     ) {
-        let [columns, _] = self.tile();
-        let width = self.size[0] as usize;
+        let size = self.size.map(|side| side as usize);
+        let corner = [left as usize, low as usize];
         let at = |chunk: usize, lane: usize| {
-            let (x, y) = place(chunk * LANES + lane, columns);
-            let (x, y) = (left + x, low + y);
-            (x < self.size[0] && y < self.size[1]).then_some([x, y])
+            let place = place(chunk * LANES + lane);
+            let [x, y] = [0, 1].map(|axis| corner[axis] + place[axis]);
+            (x < size[0] && y < size[1]).then_some([x, y])
         };
-        let index = |[x, y]: [u32; 2]| (y - low) as usize * width + x as usize;
+        let index = |[x, y]: [usize; 2]| (y - corner[1]) * size[0] + x;
+        let rounds = batch.rounds.get();
         for chunk in 0..batch.width {
             let (colour, discarded) = self.painted(batch, chunk);
             let own_rounds = batch.own_rounds[chunk].get();
-            for lane in 0..LANES {
-                let Some(pixel) = at(chunk, lane) else {
+            for row in 0..CHUNK_ROWS {
+                let Some(first) = at(chunk, lane_at([0, row])) else {
                     continue;
                 };
-                pixels[index(pixel)] = colour.map(|component| component[lane]);
-                if discarded[lane] != 0 {
-                    marks[index(pixel)] |= DISCARDED;
+                let count = CHUNK_COLUMNS.min(size[0] - first[0]);
+                let here = index(first)..index(first) + count;
+                for (column, (pixel, mark)) in
+                    pixels[here.clone()].iter_mut().zip(&mut marks[here]).enumerate()
+                {
+                    let lane = lane_at([column, row]) % LANES;
+                    *pixel = colour.map(|component| component[lane]);
+                    *mark = if discarded[lane] != 0 { DISCARDED } else { 0 };
+                    let rounds = rounds + own_rounds[lane];
+                    observations.most_rounds = observations.most_rounds.max(rounds);
+                    observations.beyond_cap += u64::from(rounds > MESA_CAP);
                 }
-                let rounds = batch.rounds.get() + own_rounds[lane];
-                observations.most_rounds = observations.most_rounds.max(rounds);
-                observations.beyond_cap += u64::from(rounds > MESA_CAP);
             }
         }
         let sites = std::mem::take(&mut batch.notes.borrow_mut().sites);
@@ -237,6 +237,7 @@ impl<'a, N: Number> Job<'a, N> {
                     if site.fault.is_undefined() {
                         marks[index(pixel)] |= UNDEFINED;
                     }
+                    let pixel = pixel.map(|place| place as u32);
                     let fault = noted.entry(id).or_insert(Observed {
                         site,
                         pixels: 0,

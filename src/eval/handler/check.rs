@@ -1,7 +1,7 @@
 //! Notes of undefined operations: cheap where there are none.
 
-use super::{Handler, Instruction, Level, One, Row, Run, Source, handler};
-use crate::eval::batch::{Batch, LANES};
+use super::{Handler, Instruction, Level, One, Row, Run, Source, for_each_chunk, handler};
+use crate::eval::batch::{Batch, LANES, any};
 use crate::eval::number::Number;
 use crate::eval::observe::{Predicate, SiteId};
 
@@ -48,21 +48,16 @@ impl<N: Number, P: Holds<N, T>, A: Source<N, T>, B: Source<N, T>, T: Copy> Run<N
         let a = A::open(batch, instruction.operands[0]);
         let b = B::open(batch, instruction.operands[1]);
         let mask = batch.mask_row(instruction.mask);
-        let chunks = batch.here[instruction.mask as usize].get().chunks;
-        for chunk in 0..batch.width {
-            if chunks >> chunk & 1 == 0 {
-                continue;
-            }
+        for_each_chunk!(batch, instruction.mask, chunk => {
             let (a, b, mask) = (A::chunk(a, chunk), B::chunk(b, chunk), mask[chunk].get());
-            let (mut hit, mut any) = ([0; LANES], 0);
+            let mut hit = [0; LANES];
             for lane in 0..LANES {
                 hit[lane] = mask[lane] & u32::from(P::holds(a[lane], b[lane], instruction.to)).wrapping_neg();
-                any |= hit[lane];
             }
-            if any != 0 {
+            if any(&hit) {
                 batch.notes.borrow_mut().add(SiteId(instruction.out), chunk, &hit);
             }
-        }
+        });
         at + 1
     }
 }
@@ -77,8 +72,9 @@ impl<N: Number> Run<N> for Lonely {
         if here.all {
             return at + 1;
         }
-        for (chunk, mask) in batch.mask_row(instruction.mask).iter().enumerate() {
-            let mask = mask.get();
+        let mask = batch.mask_row(instruction.mask);
+        for_each_chunk!(batch, instruction.mask, chunk => {
+            let mask = mask[chunk].get();
             let mut hit = [0; LANES];
             for (hit, quad) in hit.chunks_exact_mut(4).zip(mask.chunks_exact(4)) {
                 if quad.contains(&0) {
@@ -88,7 +84,7 @@ impl<N: Number> Run<N> for Lonely {
             if hit != [0; LANES] {
                 batch.notes.borrow_mut().add(SiteId(instruction.out), chunk, &hit);
             }
-        }
+        });
         at + 1
     }
 }

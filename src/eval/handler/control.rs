@@ -3,7 +3,7 @@
 use std::marker::PhantomData;
 
 use super::{Handler, Instruction, Level, Run, for_each_chunk, handler};
-use crate::eval::batch::{Batch, FUEL, Here, LANES, Stop};
+use crate::eval::batch::{Batch, FUEL, Here, LANES, Stop, any};
 use crate::eval::number::Number;
 
 /// Divides the pixels that are here by a word: those whose bits are all set go to one mask, the others to another, unless it is the
@@ -17,28 +17,29 @@ impl<N: Number, const WHEN: bool> Run<N> for Split<WHEN> {
         let condition = batch.word_row(word);
         let from = batch.mask_row(instruction.mask);
         let (yes_row, no_row) = (batch.mask_row(yes), batch.mask_row(no));
-        let (mut yes_here, mut no_here) = (Here::default(), Here::default());
-        (yes_here.all, no_here.all) = (true, true);
-        for chunk in 0..batch.width {
+        let here = batch.here[instruction.mask as usize].get();
+        // Of different sizes, or LLVM takes both tests apart to do them at once, which takes three times as long.
+        let (mut any_chosen, mut any_other) = (0_u32, 0_u64);
+        for_each_chunk!(batch, instruction.mask, chunk => {
             let (condition, from) = (condition[chunk].get(), from[chunk].get());
             let (mut chosen, mut others) = ([0; LANES], [0; LANES]);
-            let (mut any_chosen, mut any_other, mut all_chosen, mut all_others) = (0, 0, u32::MAX, u32::MAX);
             for lane in 0..LANES {
-                let condition = if WHEN { condition[lane] } else { !condition[lane] };
-                chosen[lane] = from[lane] & condition;
-                others[lane] = from[lane] & !condition;
-                any_chosen |= chosen[lane];
-                all_chosen &= chosen[lane];
-                any_other |= others[lane];
-                all_others &= others[lane];
+                chosen[lane] = from[lane] & if WHEN { condition[lane] } else { !condition[lane] };
+                others[lane] = from[lane] ^ chosen[lane];
             }
-            yes_here.chunks |= u32::from(any_chosen != 0) << chunk;
-            yes_here.all &= all_chosen == u32::MAX;
-            no_here.chunks |= u32::from(any_other != 0) << chunk;
-            no_here.all &= all_others == u32::MAX;
+            any_chosen |= u32::from(any(&chosen)) << chunk;
+            any_other |= u64::from(any(&others)) << chunk;
             no_row[chunk].set(others);
             yes_row[chunk].set(chosen);
-        }
+        });
+        let no_here = Here {
+            chunks: any_other as u32,
+            all: here.all && any_chosen == 0,
+        };
+        let yes_here = Here {
+            chunks: any_chosen,
+            all: here.all && any_other == 0,
+        };
         batch.here[no as usize].set(no_here);
         batch.here[yes as usize].set(yes_here);
         if yes_here.chunks == 0 {
@@ -66,9 +67,9 @@ impl<N: Number> Run<N> for CopyMask {
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
         let to = instruction.operands[0];
         let (from_row, to_row) = (batch.mask_row(instruction.mask), batch.mask_row(to));
-        for (from, to) in from_row.iter().zip(to_row) {
-            to.set(from.get());
-        }
+        for_each_chunk!(batch, instruction.mask, chunk => {
+            to_row[chunk].set(from_row[chunk].get());
+        });
         batch.here[to as usize].set(batch.here[instruction.mask as usize].get());
         at + 1
     }
@@ -90,7 +91,7 @@ impl<N: Number, const WHICH: u8> Run<N> for Remove<WHICH> {
         let [word, outer, _] = instruction.operands;
         let condition = (WHICH != ALL).then(|| batch.word_row(word));
         let inner = batch.mask_row(instruction.mask);
-        for chunk in 0..batch.width {
+        for_each_chunk!(batch, instruction.mask, chunk => {
             let mut gone = inner[chunk].get();
             if let Some(condition) = condition {
                 let condition = condition[chunk].get();
@@ -102,18 +103,12 @@ impl<N: Number, const WHICH: u8> Run<N> for Remove<WHICH> {
                     };
                 }
             }
-            for mask in outer..=instruction.mask {
-                let row = batch.mask_row(mask);
-                let mut lanes = row[chunk].get();
-                for lane in 0..LANES {
-                    lanes[lane] &= !gone[lane];
+            if any(&gone) {
+                for mask in outer..=instruction.mask {
+                    batch.take_out(mask, chunk, &gone);
                 }
-                row[chunk].set(lanes);
             }
-        }
-        for mask in outer..=instruction.mask {
-            batch.note_here(mask);
-        }
+        });
         if batch.here[instruction.mask as usize].get().chunks == 0 {
             instruction.to as usize
         } else {

@@ -58,8 +58,10 @@ impl<N: Number> Run<N> for Mention {
 /// Who takes it down, if the pixel is here.
 fn here<'a, N: Number>(batch: &'a Batch<'_, N>, instruction: &Instruction<N>) -> Option<&'a Scribe<'a>> {
     let scribe = batch.scribe.as_ref()?;
-    let mask = batch.mask_row(instruction.mask)[scribe.chunk()].get();
-    (mask[scribe.lane()] != 0).then_some(scribe)
+    let chunk = scribe.chunk();
+    let mask = batch.mask_row(instruction.mask)[chunk].get();
+    let any = batch.here[instruction.mask as usize].get().chunks >> chunk & 1 != 0;
+    (any && mask[scribe.lane()] != 0).then_some(scribe)
 }
 
 /// The handler that tells a value of a kind in a row or not.
