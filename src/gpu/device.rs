@@ -194,10 +194,14 @@ impl Device {
         format!("{}, {}", info.name, version(&info))
     }
 
+    /// Whether this driver is of a kind that is known to end loops by force: some versions of Mesa's software rasteriser are.
+    pub(super) fn may_end_loops(&self) -> bool {
+        self.adapter.get_info().name.contains(LAVAPIPE)
+    }
+
     /// After how many iterations this driver ends an invocation's loops, if it does.
     pub(super) fn loop_cap(&mut self) -> Result<Option<u32>, Failure> {
-        // Only Mesa's software rasteriser is known to do so.
-        if !self.adapter.get_info().name.contains(LAVAPIPE) {
+        if !self.may_end_loops() {
             return Ok(None);
         }
         Ok(match self.measured_cap()? {

@@ -21,10 +21,10 @@ pub struct Drawn {
     pub image: Image,
     /// Adapter and driver.
     pub device: String,
-    /// Whether the driver might have ended a loop by force.
+    /// Whether the shader has loops and the driver is of a kind that ends loops by force.
     pub(super) may_be_cut_short: bool,
     /// Pixels in which the driver ended a loop by force, whose colours mean nothing; none if that could not be
-    /// found out in time.
+    /// found out in time. Zero where nobody looked.
     pub cut_short: Option<u64>,
     /// Time for naga to parse, validate and write.
     pub translate: Duration,
@@ -92,12 +92,16 @@ const UNPAINTED: wgpu::Color = wgpu::Color {
 };
 
 /// llvmpipe runs this many pixels together, on the widest processors, and counts their iterations as one.
-const LANES: f32 = 16.0;
+const LANES: u32 = 16;
+
+/// A pixel that runs no more rounds of loops than this, all loops together, is ended by force on no driver: Mesa before 23 grants 65,535
+/// to all pixels that it runs together.
+pub const SAFE_ROUNDS: u32 = 65_535 / LANES;
 
 /// Whether a driver that stops after `cap` iterations can have stopped any pixel of a picture that tells one more
 /// than the iterations of each; so it can where the picture tells what no count can be.
 pub(super) fn may_reach(iterations: &Image, cap: u32) -> bool {
-    let counts = 1.0..cap as f32 / LANES;
+    let counts = 1.0..cap as f32 / LANES as f32;
     let tells = |alpha: f32| !counts.contains(&alpha) || alpha.fract() != 0.0;
     iterations.pixels().iter().any(|pixel| tells(pixel[3]))
 }

@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 pub use device::{Driver, LoopCap};
-pub use draw::{Drawn, Painter};
+pub use draw::{Drawn, Painter, SAFE_ROUNDS};
 pub use driver::{INSTALL_HINT, is_pinned_by_user, lavapipe_manifest, manifests};
 pub use serve::{MEMORY_BYTES, serve};
 pub use worker::Worker;

@@ -131,7 +131,7 @@ impl<W: Write> Server<W> {
         Ok(Output::Drawn(Box::new(draw::Drawn {
             image,
             device: device.name(),
-            may_be_cut_short: loops && device.loop_cap()?.is_some(),
+            may_be_cut_short: loops && device.may_end_loops(),
             cut_short: Some(0),
             translate,
             compile,

@@ -95,6 +95,21 @@ impl Worker {
     /// # Errors
     /// Why there is none.
     pub fn draw(&mut self, lowered: Lowered, frame: Frame, float: FloatMode) -> Result<Drawn, Failure> {
+        self.draw_and_watch(lowered, frame, float, |_| true)
+    }
+
+    /// The same, but the frame is painted again only if `watch` says so, told how long the first time took: somebody else may know
+    /// that no pixel runs more than [`SAFE_ROUNDS`](super::SAFE_ROUNDS).
+    ///
+    /// # Errors
+    /// Why there is no picture.
+    pub fn draw_and_watch(
+        &mut self,
+        lowered: Lowered,
+        frame: Frame,
+        float: FloatMode,
+        watch: impl FnOnce(Duration) -> bool,
+    ) -> Result<Drawn, Failure> {
         let shot = Box::new(Shot {
             lowered,
             frame,
@@ -102,11 +117,14 @@ impl Worker {
             on: self.on.clone(),
         });
         let job = Job::Draw(shot);
+        let start = Instant::now();
         let mut drawn = match self.run(&job)? {
             Output::Drawn(drawn) => *drawn,
             _ => return Err(out_of_turn()),
         };
-        if let (true, Job::Draw(shot)) = (drawn.may_be_cut_short, job) {
+        if let (true, Job::Draw(shot)) = (drawn.may_be_cut_short, job)
+            && watch(start.elapsed())
+        {
             // Whatever stops this, the picture stands.
             drawn.cut_short = match self.run(&Job::WatchLoops(shot)) {
                 Ok(Output::CutShort(pixels)) => Some(pixels),

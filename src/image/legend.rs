@@ -56,9 +56,11 @@ pub fn difference(size: [u32; 2], marks: &[Mark], legend: Legend) -> Image {
     let line = GLYPH + 4;
     let strip = rows * line + 4;
     let mut canvas = Canvas::new(wide, height + strip);
-    for (index, mark) in marks.iter().enumerate() {
-        let (x, y) = (index as u32 % width, index as u32 / width);
-        canvas.set(x, y + strip, legend.colour(*mark));
+    let bands: Vec<_> = legend.bands().collect();
+    for (row, y) in marks.chunks(width as usize).zip(strip..) {
+        for (mark, x) in row.iter().zip(0..) {
+            canvas.set(x, y, colour(&bands, *mark));
+        }
     }
     for (index, (words, colour)) in entries.iter().enumerate() {
         let index = index as u32;
@@ -70,21 +72,23 @@ pub fn difference(size: [u32; 2], marks: &[Mark], legend: Legend) -> Image {
     canvas.finish()
 }
 
-impl Legend {
-    fn colour(self, mark: Mark) -> [f32; 3] {
-        match mark {
-            Mark::Undecided => UNDECIDED,
-            Mark::Undefined => UNDEFINED,
-            Mark::By(difference) => {
-                let difference = if difference.is_nan() { 1.0 } else { difference };
-                self.bands()
-                    .rev()
-                    .find(|&(from, _)| difference > from)
-                    .map_or([0.0; 3], |(_, colour)| colour)
-            }
+/// What a mark is shown as, given [`Legend::bands`].
+fn colour(bands: &[(f32, [f32; 3])], mark: Mark) -> [f32; 3] {
+    match mark {
+        Mark::Undecided => UNDECIDED,
+        Mark::Undefined => UNDEFINED,
+        Mark::By(difference) => {
+            let difference = if difference.is_nan() { 1.0 } else { difference };
+            bands
+                .iter()
+                .rev()
+                .find(|&&(from, _)| difference > from)
+                .map_or([0.0; 3], |&(_, colour)| colour)
         }
     }
+}
 
+impl Legend {
     /// The lower bound and the colour of each decade, upwards.
     fn bands(self) -> impl DoubleEndedIterator<Item = (f32, [f32; 3])> {
         let decades = self.tolerance.log10().round() as i32;
@@ -168,11 +172,12 @@ mod tests {
 
     #[test]
     fn each_decade_has_its_colour_and_equal_pixels_are_black() {
-        assert_eq!(LEGEND.colour(Mark::By(0.0)), [0.0; 3]);
-        assert_eq!(LEGEND.colour(Mark::By(0.9e-3)), COOL[3]);
-        assert_eq!(LEGEND.colour(Mark::By(1.1e-3)), WARM[0]);
-        assert_eq!(LEGEND.colour(Mark::By(0.5)), WARM[2]);
-        assert_eq!(LEGEND.colour(Mark::By(f32::NAN)), WARM[2]);
+        let bands: Vec<_> = LEGEND.bands().collect();
+        assert_eq!(colour(&bands, Mark::By(0.0)), [0.0; 3]);
+        assert_eq!(colour(&bands, Mark::By(0.9e-3)), COOL[3]);
+        assert_eq!(colour(&bands, Mark::By(1.1e-3)), WARM[0]);
+        assert_eq!(colour(&bands, Mark::By(0.5)), WARM[2]);
+        assert_eq!(colour(&bands, Mark::By(f32::NAN)), WARM[2]);
     }
 
     #[test]

@@ -1,11 +1,13 @@
 //! What the evaluator says of a shader: its picture in f32 and in f64, and which pixels do what GLSL leaves undefined.
 
 use std::sync::atomic::AtomicBool;
+use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 
 use super::Case;
 use crate::eval::{
-    Failure, Fault, Jittered, Number, Observed, Painted, Program, Refusal, Seed, Settings, Variant,
+    Failure, Fault, Jittered, Number, Observations, Observed, Painted, Program, Refusal, Seed, Settings,
+    Variant,
 };
 use crate::image::Image;
 
@@ -18,10 +20,11 @@ pub(super) struct Limits<'a> {
     pub(super) stop: &'a AtomicBool,
 }
 
-/// Both pictures of a shader.
+/// Told the most rounds of loops that a pixel ran in f32, as soon as they are known.
+pub(super) type Counted = Sender<u32>;
+
+/// What is known of a shader, beside its picture in f32.
 pub(super) struct Cpu {
-    /// In f32: the same bits as a strict GPU run.
-    pub(super) single: Image,
     /// In f64, rounded once at the end.
     pub(super) double: Image,
     /// Pixels whose colour hangs on what GLSL leaves undefined, in either.
@@ -33,23 +36,34 @@ pub(super) struct Cpu {
 }
 
 impl Cpu {
-    /// Paints until `limits` end it.
+    /// Paints until `limits` end it. The picture in f32 has the bits of a strict GPU run.
     pub(super) fn paint(
         program: &Result<Program, Refusal>,
         case: &Case,
         limits: Limits,
-    ) -> Result<Self, Failure> {
+        counted: Counted,
+    ) -> Result<(Image, Self), Failure> {
         let program = program.as_ref().map_err(|&refusal| refusal)?;
         let single = paint::<f32>(program, case, limits, Variant::Observed)?;
+        // Perhaps nobody asks.
+        let _ = counted.send(single.observations.most_rounds);
+        drop(counted);
+        let Observations {
+            faults, beyond_cap, ..
+        } = single.observations.clone();
+        let (single, mut undefined) = settled(program, case, limits, single);
         let double = paint::<f64>(program, case, limits, Variant::Observed)?;
-        let undefined = undefined(program, case, limits, &single, &double);
-        Ok(Self {
-            single: single.painting.image(),
-            double: double.painting.image(),
+        let (double, also) = settled(program, case, limits, double);
+        for (undefined, also) in undefined.iter_mut().zip(also) {
+            *undefined |= also;
+        }
+        let cpu = Self {
+            double,
             undefined,
-            faults: single.observations.faults,
-            beyond_cap: single.observations.beyond_cap,
-        })
+            faults,
+            beyond_cap,
+        };
+        Ok((single, cpu))
     }
 }
 
@@ -65,23 +79,28 @@ pub(super) fn shaken(program: &Program, case: &Case, seed: u64) -> Option<Image>
     Some(painted.painting.image())
 }
 
-/// The pixels whose colour depends on what GLSL leaves undefined. Where it is met and there is no time to find out, they all may.
-fn undefined(
+/// A picture, and the pixels whose colour depends on what GLSL leaves undefined. Where it is met and there is no time to find out, they
+/// all may. The painting itself is larger, and given up here.
+fn settled<N: Number>(
     program: &Program,
     case: &Case,
     limits: Limits,
-    single: &Painted<f32>,
-    double: &Painted<f64>,
-) -> Vec<bool> {
-    let (single, double) = (
-        dependent(program, case, limits, single),
-        dependent(program, case, limits, double),
-    );
-    single.into_iter().zip(double).map(|(a, b)| a || b).collect()
+    painted: Painted<N>,
+) -> (Image, Vec<bool>) {
+    let image = painted.painting.image();
+    let undefined = dependent(program, case, limits, &painted, &image);
+    drop(painted);
+    (image, undefined)
 }
 
 /// Of the pixels that are marked, those that are painted otherwise where another choice is taken.
-fn dependent<N: Number>(program: &Program, case: &Case, limits: Limits, painted: &Painted<N>) -> Vec<bool> {
+fn dependent<N: Number>(
+    program: &Program,
+    case: &Case,
+    limits: Limits,
+    painted: &Painted<N>,
+    usual: &Image,
+) -> Vec<bool> {
     let marks: Vec<bool> = marks(painted).collect();
     if !marks.contains(&true) {
         return marks;
@@ -94,7 +113,7 @@ fn dependent<N: Number>(program: &Program, case: &Case, limits: Limits, painted:
         // No choice stands for what a derivative might be.
         return marks;
     }
-    let (usual, other) = (painted.painting.image(), other.painting.image());
+    let other = other.painting.image();
     let pairs = usual.pixels().iter().zip(other.pixels());
     let moved = pairs.map(|(usual, other)| usual.map(f32::to_bits) != other.map(f32::to_bits));
     marks

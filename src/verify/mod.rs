@@ -7,6 +7,7 @@ mod notes;
 mod tangent;
 
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc;
 use std::thread::{self, ScopedJoinHandle};
 use std::time::{Duration, Instant};
 
@@ -18,7 +19,7 @@ use crate::diagnostic::Diagnostic;
 use crate::eval::{self, Program};
 use crate::frame::Frame;
 use crate::glsl::Checked;
-use crate::gpu::{self, Drawn, FloatMode, Worker};
+use crate::gpu::{self, Drawn, FloatMode, SAFE_ROUNDS, Worker};
 use crate::image::{Image, Mark};
 use crate::mistake::{Named, Suspects};
 use crate::scene::{Moment, Scene};
@@ -104,7 +105,7 @@ pub struct Painter {
 pub struct Asked {
     /// The answer.
     pub answer: Answer,
-    /// A mark for each pixel, bottom row first.
+    /// A mark for each pixel, bottom row first; none if there is nothing to show, as [`Answer::is_same`] tells.
     pub marks: Vec<Mark>,
     /// How each pixel stands.
     standings: Vec<Standing>,
@@ -112,9 +113,15 @@ pub struct Asked {
 
 impl Asked {
     fn new(expected: &Image, actual: &Image, standings: Vec<Standing>) -> Self {
+        let answer = Answer::new(expected, actual, &standings);
+        let marks = if answer.is_same() {
+            Vec::new()
+        } else {
+            compare::marks(expected, actual, &standings)
+        };
         Self {
-            answer: Answer::new(expected, actual, &standings),
-            marks: compare::marks(expected, actual, &standings),
+            answer,
+            marks,
             standings,
         }
     }
@@ -152,30 +159,39 @@ pub fn verify(worker: Option<&mut Worker>, case: &Case) -> Result<Findings, Fail
     };
     // They share the cores, but none waits for the others' latencies.
     let (drawn, (cpu, eval), traced) = thread::scope(|scope| {
-        let cpu = scope.spawn(|| timed(|| Cpu::paint(&program, case, limits)));
+        let (counted, rounds) = mpsc::channel();
+        let cpu = scope.spawn(|| timed(|| Cpu::paint(&program, case, limits, counted)));
         let trace = |tracer: &Tracer<f64>| timed(|| tracer.picture(|| ()));
         let traced = tracer.as_ref().map(|tracer| scope.spawn(move || trace(tracer)));
         let drawn = worker.map(|worker| {
             let lowered = case.float.lower(case.checked);
-            let drawn = worker.draw(lowered, case.frame.clone(), case.float);
+            // A strict run goes round as often as the evaluator does, who has often counted by now. Otherwise, it is waited for no longer
+            // than it would take the driver to paint again.
+            let is_short = |painting| {
+                rounds
+                    .recv_timeout(painting)
+                    .is_ok_and(|most| most <= SAFE_ROUNDS)
+            };
+            let watch = |painting| case.float == FloatMode::Fast || !is_short(painting);
+            let drawn = worker.draw_and_watch(lowered, case.frame.clone(), case.float, watch);
             let is_usable = |drawn: &Drawn| drawn.cut_short.is_none_or(|pixels| pixels == 0);
             stop.store(!drawn.as_ref().is_ok_and(is_usable), Ordering::Relaxed);
             drawn
         });
         (drawn.transpose(), join(cpu), traced.map(join))
     });
-    let (actual, painter) = match (drawn?, &cpu) {
-        (Some(drawn), _) => {
+    let (actual, painter, cpu) = match (drawn?, cpu) {
+        (Some(drawn), cpu) => {
             // Where the driver could not be watched in time, the evaluator has counted the rounds.
-            let counted = || cpu.as_ref().map_or(0, |cpu| cpu.beyond_cap);
-            if let pixels @ 1.. = drawn.cut_short.unwrap_or_else(counted) {
+            let counted = cpu.as_ref().map_or(0, |(_, cpu)| cpu.beyond_cap);
+            if let pixels @ 1.. = drawn.cut_short.unwrap_or(counted) {
                 return Err(Failure::CutShort(pixels));
             }
             let (image, painter) = split(drawn);
-            (image, Some(painter))
+            (image, Some(painter), cpu.map(|(single, cpu)| (Some(single), cpu)))
         }
-        (None, Ok(cpu)) => (cpu.single.clone(), None),
-        (None, Err(failure)) => return Err(failure.clone().into()),
+        (None, Ok((single, cpu))) => (single, None, Ok((None, cpu))),
+        (None, Err(failure)) => return Err(failure.into()),
     };
     let mut findings = Findings {
         verdict: Verdict::Ok,
@@ -200,8 +216,8 @@ pub fn verify(worker: Option<&mut Worker>, case: &Case) -> Result<Findings, Fail
         findings.trace = Some(trace);
     }
     match (cpu, &program) {
-        (Ok(cpu), Ok(program)) => {
-            findings.ask(case, &cpu, program, tracer.as_ref());
+        (Ok((single, cpu)), Ok(program)) => {
+            findings.ask(case, &cpu, single.as_ref(), program, tracer.as_ref());
             findings.exact = Some(cpu.double);
         }
         (Err(failure), _) => findings.cannot_ask(&failure),
@@ -211,7 +227,15 @@ pub fn verify(worker: Option<&mut Worker>, case: &Case) -> Result<Findings, Fail
 }
 
 impl Findings {
-    fn ask(&mut self, case: &Case, cpu: &Cpu, program: &Program, tracer: Option<&Tracer<f64>>) {
+    /// `single` is the evaluator's picture in f32, where a GPU painted another.
+    fn ask(
+        &mut self,
+        case: &Case,
+        cpu: &Cpu,
+        single: Option<&Image>,
+        program: &Program,
+        tracer: Option<&Tracer<f64>>,
+    ) {
         let ask = |expected: &Image, actual: &Image, standings| Some(Asked::new(expected, actual, standings));
         if let (Some(tracer), Some(reference)) = (tracer, &self.reference) {
             let hull = |x, y, styles| tracer.hull(x, y, styles);
@@ -224,14 +248,18 @@ impl Findings {
         }
         let standings = compare::rounding(&cpu.double, &self.actual, &cpu.undefined);
         self.rounding = ask(&cpu.double, &self.actual, standings);
-        if self.painter.is_some() && case.float == FloatMode::Strict {
-            let standings = compare::toolchain(&cpu.single, &self.actual, &cpu.undefined);
-            self.toolchain = ask(&cpu.single, &self.actual, standings);
+        if let (Some(single), FloatMode::Strict) = (single, case.float) {
+            let standings = compare::toolchain(single, &self.actual, &cpu.undefined);
+            self.toolchain = ask(single, &self.actual, standings);
         }
         self.notes = notes::notes(cpu, &case.checked.warnings);
         self.notes.extend(cause::not_finite(program, case, &self.actual));
         if let Some(scene) = case.scene {
-            let traps = tangent::traps(&scene.at(case.moment()), &cpu.single, &cpu.double);
+            let traps = tangent::traps(
+                &scene.at(case.moment()),
+                single.unwrap_or(&self.actual),
+                &cpu.double,
+            );
             let formula = case.checked.discriminants.first();
             self.notes
                 .extend(formula.and_then(|at| tangent::told(&traps, *at)));

@@ -10,13 +10,7 @@ use toyproof::gpu::{FloatMode, On, Worker};
 use toyproof::image::Image;
 use toyproof::source::{File, Files};
 
-use crate::support::{self, RUNGS};
-
-fn checked(text: &str) -> Checked {
-    let mut files = Files::default();
-    let file = files.add(File::new("shader.glsl", text));
-    check(&files, file, &Options::default()).unwrap_or_else(|errors| panic!("{errors:?}\n{text}"))
-}
+use crate::support::{self, RUNGS, checked};
 
 /// Differences between two pictures: how many pixels, and the first with both colours.
 fn differences(a: &Image, b: &Image, ignore: impl Fn(u32, u32) -> bool) -> (usize, String) {

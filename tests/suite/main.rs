@@ -27,6 +27,7 @@ mod povray;
 mod program;
 mod rules;
 mod rungs;
+mod sensitivity;
 mod stories;
 mod strict;
 mod support;

@@ -6,26 +6,16 @@ use std::path::Path;
 use serde_json::Value;
 use toyproof::eval::{Lead, Number, Program, Settings};
 use toyproof::frame::Frame;
-use toyproof::glsl;
-use toyproof::source::{File, Files};
 
 use crate::program::toyproof;
-use crate::support::{EVERY_RUNG, Rung};
+use crate::support::{self, EVERY_RUNG, Rung};
 
 fn program(shader: &str) -> Program {
-    let mut files = Files::default();
-    let file = files.add(File::new("<shader>", shader));
-    let checked = glsl::check(&files, file, &glsl::Options::default()).unwrap();
-    Program::new(&checked).unwrap()
+    Program::new(&support::checked(shader)).unwrap()
 }
 
 fn frame(rung: &Rung) -> Frame {
-    Frame {
-        size: [33, 21],
-        frame: rung.frame,
-        time: rung.time,
-        ..Frame::default()
-    }
+    support::frame(rung, [33, 21])
 }
 
 /// Pixels in the middle of things, and at the picture's edge, where the last tile is cut.

@@ -9,7 +9,7 @@ use std::time::Duration;
 use toyproof::compare::Answer;
 use toyproof::diagnostic::{self, Diagnostic};
 use toyproof::frame::Frame;
-use toyproof::glsl;
+use toyproof::glsl::{self, Checked};
 use toyproof::gpu::{Failure, FloatMode, On, Worker};
 use toyproof::scene::{self, Moment, Scene};
 use toyproof::source::{File, Files};
@@ -164,26 +164,37 @@ pub(crate) fn tracer(rung: &Rung) -> Tracer<f64> {
     Tracer::at(&scene(rung), moment)
 }
 
+/// A shader, checked.
+///
+/// # Panics
+/// If it is not valid.
+pub(crate) fn checked(shader: &str) -> Checked {
+    let mut files = Files::default();
+    let file = files.add(File::new("<shader>", shader));
+    glsl::check(&files, file, &glsl::Options::default())
+        .unwrap_or_else(|errors| panic!("{}\n{shader}", told(&errors, &files)))
+}
+
+/// The frame that a rung is judged at, in a size.
+pub(crate) fn frame(rung: &Rung, size: [u32; 2]) -> Frame {
+    Frame {
+        size,
+        frame: rung.frame,
+        time: rung.time,
+        ..Frame::default()
+    }
+}
+
 /// What `toyproof check` finds of a rung's shader, as edited.
 ///
 /// # Panics
 /// If anything goes wrong that is not the picture.
 pub(crate) fn judged(worker: &mut Worker, shader: &str, rung: &Rung) -> Findings {
-    let mut files = Files::default();
-    let file = files.add(File::new("<shader>", shader));
-    let checked = glsl::check(&files, file, &glsl::Options::default())
-        .unwrap_or_else(|errors| panic!("{}\n{shader}", told(&errors, &files)));
-    let frame = Frame {
-        size: rung.size,
-        frame: rung.frame,
-        time: rung.time,
-        ..Frame::default()
-    };
     let case = Case {
-        checked: &checked,
+        checked: &checked(shader),
         scene: Some(&scene(rung)),
         suspects: None,
-        frame: &frame,
+        frame: &frame(rung, rung.size),
         float: FloatMode::Strict,
         timeout: Duration::from_secs(60),
     };

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use sha2::{Digest, Sha256};
 
-use super::pictures::{SUFFIXES, pictures};
+use super::pictures::PICTURES;
 use super::stopped::Stopped;
 use super::{Args, Reference};
 use crate::cli::Terminal;
@@ -15,7 +15,7 @@ use crate::compare::Verdict;
 use crate::diagnostic::{self, Diagnostic};
 use crate::frame::Frame;
 use crate::gpu::{self, Worker};
-use crate::image::{self, Image};
+use crate::image;
 use crate::mistake::Suspects;
 use crate::output;
 use crate::report::{Mistake, Record, Seconds};
@@ -181,8 +181,7 @@ impl<'a> Judge<'a> {
         });
         let findings = self.verify(hand, &mut judged, shader, reference);
         if let Some(place) = &submission.place {
-            let pictures = findings.as_ref().map_or_else(|_| Vec::new(), pictures);
-            keep(place, &pictures, &mut judged);
+            keep(place, findings.as_ref().ok(), &mut judged);
         }
         match findings {
             Ok(findings) => fill(&mut judged, findings),
@@ -303,15 +302,15 @@ fn fill(judged: &mut Judged, findings: Findings) {
 }
 
 /// Writes the pictures, and removes those of an earlier run that there are no more.
-fn keep(place: &Path, pictures: &[(&str, Image)], judged: &mut Judged) {
-    for suffix in SUFFIXES {
-        let path = with_suffix(place, suffix);
-        let Some((_, picture)) = pictures.iter().find(|(own, _)| *own == suffix) else {
+fn keep(place: &Path, findings: Option<&Findings>, judged: &mut Judged) {
+    for picture in PICTURES {
+        let path = with_suffix(place, picture.suffix);
+        let Some(picture) = findings.and_then(picture.of) else {
             // Usually there is none.
             let _ = std::fs::remove_file(&path);
             continue;
         };
-        match image::encode(picture, &path) {
+        match image::encode(&picture, &path) {
             Ok(bytes) => {
                 if let Err(error) = output::write(&path, &bytes) {
                     judged.failed(format!("cannot write {error}"));

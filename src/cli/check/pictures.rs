@@ -1,8 +1,10 @@
 //! The pictures that `--out` keeps of a shader.
 
+use std::borrow::Cow;
+
 use crate::compare::TOLERANCE;
-use crate::image::{self, Image, Legend};
-use crate::verify::Findings;
+use crate::image::{self, Image, Legend, Mark};
+use crate::verify::{Asked, Findings};
 
 /// What is more than rounding stands out.
 const SEEN_BY_EYE: Legend = Legend {
@@ -11,37 +13,50 @@ const SEEN_BY_EYE: Legend = Legend {
 /// Where every bit counts, all but the last bits stand out.
 const IN_BITS: Legend = Legend { tolerance: 1e-6 };
 
-/// The ends of the names of all pictures that there may be.
-pub(super) const SUFFIXES: [&str; 6] = [
-    "-actual.png",
-    "-reference.png",
-    "-difference.png",
-    "-maths.png",
-    "-rounding.png",
-    "-toolchain.png",
+/// A picture that there may be.
+pub(super) struct Picture {
+    /// The end of its file's name.
+    pub(super) suffix: &'static str,
+    /// It itself, if there is one. Pictures are large: they are made one at a time, when they are written.
+    pub(super) of: fn(&Findings) -> Option<Cow<'_, Image>>,
+}
+
+/// What was expected, what came, how they differ, and one for each question whose answer is not “the same”.
+pub(super) const PICTURES: [Picture; 6] = [
+    Picture {
+        suffix: "-actual.png",
+        of: |findings| Some(Cow::Borrowed(&findings.actual)),
+    },
+    Picture {
+        suffix: "-reference.png",
+        of: |findings| findings.reference.as_ref().map(Cow::Borrowed),
+    },
+    Picture {
+        suffix: "-difference.png",
+        of: |findings| {
+            let (_, marks) = findings.picture.as_ref()?;
+            Some(difference(findings, marks, SEEN_BY_EYE))
+        },
+    },
+    Picture {
+        suffix: "-maths.png",
+        of: |findings| asked(findings, findings.maths.as_ref(), SEEN_BY_EYE),
+    },
+    Picture {
+        suffix: "-rounding.png",
+        of: |findings| asked(findings, findings.rounding.as_ref(), SEEN_BY_EYE),
+    },
+    Picture {
+        suffix: "-toolchain.png",
+        of: |findings| asked(findings, findings.toolchain.as_ref(), IN_BITS),
+    },
 ];
 
-/// The pictures of a shader, each with the end of its file's name: what was expected, what came, how they differ, and one for each
-/// question whose answer is not “the same”.
-pub(super) fn pictures(findings: &Findings) -> Vec<(&'static str, Image)> {
-    let [actual, reference, difference, maths, rounding, toolchain] = SUFFIXES;
-    let size = findings.actual.size();
-    let mut pictures = vec![(actual, findings.actual.clone())];
-    if let Some(picture) = &findings.reference {
-        pictures.push((reference, picture.clone()));
-    }
-    if let Some((_, marks)) = &findings.picture {
-        pictures.push((difference, image::difference(size, marks, SEEN_BY_EYE)));
-    }
-    let questions = [
-        (maths, &findings.maths, SEEN_BY_EYE),
-        (rounding, &findings.rounding, SEEN_BY_EYE),
-        (toolchain, &findings.toolchain, IN_BITS),
-    ];
-    for (suffix, asked, legend) in questions {
-        if let Some(asked) = asked.as_ref().filter(|asked| !asked.answer.is_same()) {
-            pictures.push((suffix, image::difference(size, &asked.marks, legend)));
-        }
-    }
-    pictures
+fn asked<'a>(findings: &Findings, asked: Option<&Asked>, legend: Legend) -> Option<Cow<'a, Image>> {
+    let asked = asked.filter(|asked| !asked.answer.is_same())?;
+    Some(difference(findings, &asked.marks, legend))
+}
+
+fn difference<'a>(findings: &Findings, marks: &[Mark], legend: Legend) -> Cow<'a, Image> {
+    Cow::Owned(image::difference(findings.actual.size(), marks, legend))
 }
