@@ -52,6 +52,15 @@ pub struct Checked {
     pub discriminants: Vec<Span>,
 }
 
+impl Checked {
+    /// Whether `dFdx`, `dFdy` or `fwidth` occur in it.
+    #[must_use]
+    pub fn takes_derivatives(&self) -> bool {
+        let is_derivative = |kind: &tree::ExprKind| matches!(kind, tree::ExprKind::BuiltIn { function, .. } if function.is_derivative());
+        self.tree.exprs.iter().any(|(_, expr)| is_derivative(&expr.kind))
+    }
+}
+
 /// Checks a shader: its tree, or what is wrong with it, in the order of the text.
 ///
 /// ```

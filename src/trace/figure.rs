@@ -6,7 +6,7 @@ use crate::scene::{self, Outline};
 #[derive(Debug)]
 pub(super) struct Figure<T: Real> {
     outline: Outline,
-    color: T::Vec3,
+    pub(super) color: T::Vec3,
 }
 
 impl<T: Real> Figure<T> {
@@ -43,8 +43,7 @@ impl<T: Real> Figure<T> {
     }
 }
 
-/// The colour of the topmost figure at a point of the screen.
-pub(super) fn color<T: Real>(figures: &[Figure<T>], x: T, y: T) -> Option<T::Vec3> {
-    let inside = |figure: &&Figure<T>| figure.value(x, y) < T::zero();
-    figures.iter().rev().find(inside).map(|figure| figure.color)
+/// The number of the topmost figure at a point of the screen.
+pub(super) fn topmost<T: Real>(figures: &[Figure<T>], [x, y]: [T; 2]) -> Option<usize> {
+    figures.iter().rposition(|figure| figure.value(x, y) < T::zero())
 }

@@ -2,7 +2,8 @@
 //!
 //! It is written for correctness: recentred discriminants with stable roots, no epsilons, secondary rays
 //! do not meet the point that they start from. [`Tracer::hull`] tells which colours a pixel has in
-//! the styles that shaders may start secondary rays in.
+//! the styles that shaders may start secondary rays in, [`Tracer::is_quad_mixed`] where its quad
+//! sees different things.
 
 mod adaptive;
 mod camera;
@@ -13,6 +14,7 @@ mod material;
 mod ray;
 mod real;
 mod sampler;
+mod seen;
 mod shape;
 mod style;
 #[cfg(test)]
@@ -119,18 +121,27 @@ impl<T: Real> Tracer<T> {
 
     fn sample(&self, sample: Sample, style: &impl Style<T>) -> T::Vec3 {
         let mut draws = Draws::new(self.film.sampler, sample);
-        let [jx, jy] = draws.jitter();
+        let place = Self::place(sample, &mut draws);
+        self.radiance(place, &mut draws, style)
+    }
+
+    /// Where a sample lies in the picture, in pixels from the bottom left: the first that is drawn for it.
+    fn place(sample: Sample, draws: &mut Draws) -> [T; 2] {
+        let jitter = draws.jitter();
         let half = T::from_f64(0.5);
-        let [x, y] = sample.pixel;
-        let place = |pixel: u32, jitter: T| T::from_f64(f64::from(pixel)) + half + jitter;
-        let screen = self.camera.screen(place(x, jx), place(y, jy));
-        if let Some(color) = figure::color(&self.figures, screen[0], screen[1]) {
-            return color;
+        [0, 1].map(|axis| T::from_f64(f64::from(sample.pixel[axis])) + half + jitter[axis])
+    }
+
+    /// What comes from a place of the picture.
+    fn radiance(&self, [x, y]: [T; 2], draws: &mut Draws, style: &impl Style<T>) -> T::Vec3 {
+        let screen = self.camera.screen(x, y);
+        if let Some(figure) = figure::topmost(&self.figures, screen) {
+            return self.figures[figure].color;
         }
         let ray = self.camera.ray(screen);
         match &self.kernel {
-            Kernel::Spheres(world) => world.radiance(ray, &mut draws, style),
-            Kernel::Shapes(world) => world.radiance(ray, &mut draws, style),
+            Kernel::Spheres(world) => world.radiance(ray, draws, style),
+            Kernel::Shapes(world) => world.radiance(ray, draws, style),
         }
     }
 }

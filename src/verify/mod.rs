@@ -239,9 +239,11 @@ impl Findings {
         let ask = |expected: &Image, actual: &Image, standings| Some(Asked::new(expected, actual, standings));
         if let (Some(tracer), Some(reference)) = (tracer, &self.reference) {
             let hull = |x, y, styles| tracer.hull(x, y, styles);
+            let derives = case.checked.takes_derivatives();
+            let edge = |x, y| derives && tracer.is_quad_mixed(x, y);
             let (standings, shaking) = timed(|| {
                 let shaken = |seed| cpu::shaken(program, case, seed);
-                compare::maths(reference, &cpu.double, &cpu.undefined, hull, shaken)
+                compare::maths(reference, &cpu.double, &cpu.undefined, hull, edge, shaken)
             });
             self.eval += shaking;
             self.maths = ask(reference, &cpu.double, standings);

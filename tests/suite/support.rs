@@ -43,7 +43,7 @@ macro_rules! rungs {
 }
 
 /// What most rungs are judged at.
-const STILL: Rung = Rung {
+pub(crate) const STILL: Rung = Rung {
     name: "",
     shader: "",
     scene: "",

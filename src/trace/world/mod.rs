@@ -9,7 +9,7 @@ use super::ray::{Hit, Ray};
 use super::real::{Real, Vector};
 use super::sampler::Draws;
 use super::shape::Primitive;
-use super::style::Style;
+use super::style::{Exact, Style};
 use crate::scene::{Integrator, Object, Scene, Shape};
 
 /// Surfaces and lights. `P` is the one shape that a scene requires, so that the loops over it know it.
@@ -101,6 +101,11 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
             normal,
             surface,
         })
+    }
+
+    /// The surface that a camera ray meets first.
+    pub(super) fn seen(&self, ray: &Ray<T>) -> Option<usize> {
+        self.nearest(ray, &Exact).map(|hit| hit.surface)
     }
 
     /// Whether anything but the surface `light` lies strictly between the ray's origin and `distance`.
