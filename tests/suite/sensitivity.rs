@@ -160,6 +160,8 @@ impl Subject {
             &self.exact,
             &vec![false; self.exact.pixels().len()],
             |x, y, styles| tracer.hull(x, y, styles),
+            // The rungs take no derivatives.
+            |_, _| false,
             |seed| self.shaken.get(seed as usize).cloned(),
         );
         let answer = Answer::new(&expected, &self.exact, &standings);
