@@ -19,5 +19,5 @@ pub use judge::{Answers, MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABLE, Verdict, gr
 pub use maths::{SHAKES, maths};
 pub use picture::{Comparison, Pixel, compare};
 pub use rounding::{SEEN, rounding};
-pub use tolerance::{EXACT_TOLERANCE, TOLERANCE};
+pub use tolerance::{EXACT_TOLERANCE, IN_BITS, SEEN_BY_EYE, TOLERANCE};
 pub use toolchain::toolchain;

@@ -1,5 +1,7 @@
 //! How much is a difference.
 
+use crate::image::Legend;
+
 /// Components of two pictures that differ by no more than this agree.
 ///
 /// A quarter of an 8-bit level: it can move a rounded value by one level and no more.
@@ -11,3 +13,11 @@ pub const TOLERANCE: f64 = 1e-3;
 /// as π = 3.1416 or a gamma of 0.4545, by up to 4e−5. That is the room that this leaves. The test
 /// `the_tolerance_is_no_larger_than_needed` measures it again, and fails if it is ten times as large.
 pub const EXACT_TOLERANCE: f64 = 1e-4;
+
+/// The colours of pictures that are judged by eye: what is more than rounding stands out.
+pub const SEEN_BY_EYE: Legend = Legend {
+    tolerance: TOLERANCE as f32,
+};
+
+/// The colours where every bit counts: all but the last bits stand out.
+pub const IN_BITS: Legend = Legend { tolerance: 1e-6 };

@@ -1,7 +1,7 @@
 //! What is wrong with a file before anyone reads it.
 
 use super::Diagnostic;
-use crate::source::{File, Files, NOT_UTF8, ReadError, Span, TOO_LARGE};
+use crate::source::{File, FileId, Files, NOT_UTF8, ReadError, Span, TOO_LARGE};
 
 /// The message on what a file holds, and in `files` a file to show it in.
 ///
@@ -15,6 +15,15 @@ pub fn of_content(error: ReadError, files: &mut Files) -> Result<Diagnostic, Rea
     };
     let id = files.add(file);
     Ok(Diagnostic::error("E0500", message).at(Span::new(id, bytes.start as u32, bytes.end as u32)))
+}
+
+/// What TOML, or the types that it is read into, refuse in a file.
+#[must_use]
+pub fn of_toml(code: &'static str, error: &toml::de::Error, file: FileId) -> Diagnostic {
+    let lines: Vec<_> = error.message().lines().map(str::trim).collect();
+    let bytes = error.span().unwrap_or_default();
+    let end = bytes.end.max(bytes.start);
+    Diagnostic::error(code, lines.join("; ")).at(Span::new(file, bytes.start as u32, end as u32))
 }
 
 #[cfg(test)]

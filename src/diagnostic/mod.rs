@@ -6,10 +6,11 @@ mod render;
 mod suggest;
 
 use std::borrow::Cow;
+use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-pub use content::of_content;
+pub use content::{of_content, of_toml};
 pub use explain::{Explanation, explain, explanations};
 pub use render::{Json, human, json, short};
 pub use suggest::nearest;
@@ -26,6 +27,16 @@ pub enum Severity {
     Warning,
     /// Worth knowing.
     Note,
+}
+
+impl fmt::Display for Severity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Error => "error",
+            Self::Warning => "warning",
+            Self::Note => "note",
+        })
+    }
 }
 
 /// One message about an author's text.

@@ -1,5 +1,7 @@
 //! A diagnostic for people, for editors (one line) and for programs (JSON).
 
+use std::fmt;
+
 use codespan_reporting::diagnostic::{Diagnostic as Report, Label, Severity as Level};
 use codespan_reporting::term::{self, termcolor::Buffer};
 use serde::{Deserialize, Serialize};
@@ -57,38 +59,36 @@ pub fn human(diagnostic: &Diagnostic, files: &Files, colour: bool) -> String {
 /// `file:line:column: error[E0001]: message`, as editors read it.
 #[must_use]
 pub fn short(diagnostic: &Diagnostic, files: &Files) -> String {
-    let Json {
-        severity,
-        code,
-        message,
-        file,
-        line,
-        column,
-        ..
-    } = json(diagnostic, files);
-    let level = match severity {
-        Severity::Error => "error",
-        Severity::Warning => "warning",
-        Severity::Note => "note",
-    };
-    match (file, line, column) {
-        (Some(file), Some(line), Some(column)) => {
-            format!("{file}:{line}:{column}: {level}[{code}]: {message}")
-        }
-        _ => format!("{level}[{code}]: {message}"),
-    }
+    json(diagnostic, files).to_string()
 }
 
 /// A diagnostic as programs read it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Json {
-    severity: Severity,
-    code: String,
-    message: String,
-    file: Option<String>,
-    line: Option<usize>,
-    column: Option<usize>,
-    notes: Vec<String>,
+    /// How bad it is.
+    pub severity: Severity,
+    /// `E` or `W` and four digits.
+    pub code: String,
+    /// One sentence without a full stop.
+    pub message: String,
+    /// The name of the file it is about, if it is about one.
+    pub file: Option<String>,
+    /// Counted from 1.
+    pub line: Option<usize>,
+    /// Counted from 1, in characters.
+    pub column: Option<usize>,
+    /// What to do about it, and what else helps.
+    pub notes: Vec<String>,
+}
+
+/// `file:line:column: error[E0001]: message`, as editors read it.
+impl fmt::Display for Json {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let (Some(file), Some(line), Some(column)) = (&self.file, self.line, self.column) {
+            write!(f, "{file}:{line}:{column}: ")?;
+        }
+        write!(f, "{}[{}]: {}", self.severity, self.code, self.message)
+    }
 }
 
 impl Json {

@@ -104,7 +104,9 @@ impl Legend {
             .map(|(decade, colour)| (10f32.powi(decade), colour))
     }
 
-    fn entries(self) -> Vec<(String, [f32; 3])> {
+    /// What stands beside the picture: words, and their colour; sizes upwards.
+    #[must_use]
+    pub fn entries(self) -> Vec<(String, [f32; 3])> {
         let mut entries: Vec<_> = self
             .bands()
             .map(|(from, colour)| (format!("> {from:.0e}"), colour))

@@ -31,6 +31,11 @@ impl Report {
         }
     }
 
+    /// Adapter and driver; none if nothing ran on any.
+    pub(super) fn device(&self) -> Option<&str> {
+        self.device.as_deref()
+    }
+
     /// The shaders' records.
     #[must_use]
     pub fn shaders(&self) -> &[Record] {
@@ -109,25 +114,19 @@ pub struct Seconds {
     pub trace: Option<f64>,
 }
 
+impl Seconds {
+    /// All of it. Some of it was at once.
+    #[must_use]
+    pub fn total(&self) -> f64 {
+        let parts = [self.translate, self.gpu, self.eval, self.trace];
+        parts.into_iter().flatten().sum()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn record(picture: Option<Comparison>) -> Record {
-        Record {
-            shader: "a.glsl".to_owned(),
-            scene: None,
-            verdict: Verdict::Ok,
-            reason: "it paints".to_owned(),
-            maths: None,
-            rounding: None,
-            toolchain: None,
-            picture,
-            mistake: None,
-            diagnostics: Vec::new(),
-            seconds: Seconds::default(),
-        }
-    }
+    use crate::report::tests::{every_verdict, record};
 
     #[test]
     fn reports_follow_the_schema_and_other_things_do_not() {
@@ -141,9 +140,12 @@ mod tests {
             maths: Some(answer.clone()),
             rounding: Some(answer.clone()),
             toolchain: Some(answer),
-            ..record(Some(comparison))
+            picture: Some(comparison),
+            ..record(Verdict::Ok)
         };
-        let report = Report::new(Some("x".to_owned()), vec![record(None), asked]);
+        let mut records = every_verdict();
+        records.push(asked);
+        let report = Report::new(Some("x".to_owned()), records);
         let mut json: serde_json::Value = serde_json::from_str(&report.json()).unwrap();
         assert!(
             validator.is_valid(&json),

@@ -60,6 +60,21 @@ fn errors(record: &Record) -> Option<String> {
     })
 }
 
+/// All that a person is told of a shader, without colours: what [`line`] says, and each message with its notes.
+pub(super) fn details(record: &Record) -> String {
+    let mut lines = vec![plain(&line(record))];
+    for told in &record.diagnostics {
+        lines.push(told.to_string());
+        lines.extend(told.notes.iter().map(|note| format!("  = {note}")));
+    }
+    lines.join("\n")
+}
+
+/// A text without its colours.
+pub(super) fn plain(text: &str) -> String {
+    anstream::adapter::strip_str(text).to_string()
+}
+
 /// How many shaders have each verdict; as words, best first.
 #[derive(Debug, Clone, Default)]
 pub struct Tally(BTreeMap<Reverse<Verdict>, u64>);
@@ -101,7 +116,7 @@ fn style(verdict: Verdict) -> Style {
     Style::new().fg_color(Some(colour.into())).bold()
 }
 
-fn maths(answer: &Answer) -> String {
+pub(super) fn maths(answer: &Answer) -> String {
     question(
         answer,
         ["differs", "differ"],
@@ -113,7 +128,7 @@ fn maths(answer: &Answer) -> String {
     )
 }
 
-fn rounding(answer: &Answer) -> String {
+pub(super) fn rounding(answer: &Answer) -> String {
     question(
         answer,
         ["is", "are"],

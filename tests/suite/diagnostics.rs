@@ -11,6 +11,7 @@ use toyproof::diagnostic::{self, Diagnostic, Explanation, explanations};
 use toyproof::frame::Frame;
 use toyproof::glsl::{self, Checked, Code};
 use toyproof::gpu::FloatMode;
+use toyproof::report::Rubric;
 use toyproof::scene::{self, Scene};
 use toyproof::source::{File, Files};
 use toyproof::verify::{Case, verify};
@@ -79,6 +80,10 @@ fn told(example: &Example, scene: Option<&Scene>) -> (Vec<Diagnostic>, Files) {
         "toml" => {
             let file = files.add(File::new("example.toml", example.text));
             (scene::parse(&files, file).err().unwrap_or_default(), files)
+        }
+        "toml rubric" => {
+            let file = files.add(File::new("example.toml", example.text));
+            (Rubric::parse(&files, file).err().unwrap_or_default(), files)
         }
         other => panic!("what is ```{other}?"),
     }

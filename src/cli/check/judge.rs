@@ -28,7 +28,7 @@ pub(super) struct Submission {
     pub(super) input: Result<Found, ReadError>,
     pub(super) name: String,
     /// Where its pictures go, without their suffixes.
-    place: Option<PathBuf>,
+    pub(super) place: Option<PathBuf>,
     /// What its record depends on, as a hash; none if its files cannot be read.
     pub(super) key: Option<String>,
 }

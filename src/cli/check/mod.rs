@@ -1,9 +1,11 @@
 //! `toyproof check`
 
+mod gallery;
 mod judge;
 mod pictures;
 mod pool;
 mod reference;
+mod reports;
 mod results;
 mod stopped;
 
@@ -21,7 +23,7 @@ use super::shader::{Names, find};
 use super::{Exit, Terminal, codes};
 use crate::compare::Verdict;
 use crate::gpu::INSTALL_HINT;
-use crate::report::{self, Record, Report};
+use crate::report::{self, Record, Report, Rubric};
 
 /// Compare what shaders paint with the reference tracer, and give a verdict on each
 ///
@@ -41,12 +43,16 @@ pub(super) struct Args {
     /// The scene of all these shaders
     #[arg(long, value_name = "SCENE.toml")]
     scene: Option<PathBuf>,
-    /// Write the pictures (reference, actual, difference), verdict.json and results.jsonl into this folder
+    /// Write the pictures (reference, actual, difference), verdict.json, results.jsonl, report.html, report.csv, junit.xml and
+    /// report.sarif into this folder
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Take over what an earlier run into the same folder found, where shader, scene and flags are still the same
     #[arg(long, requires = "out")]
     resume: bool,
+    /// Points for each question; the marks go into results.json, as Gradescope takes them, and into report.csv
+    #[arg(long, value_name = "RUBRIC.toml", requires = "out")]
+    rubric: Option<PathBuf>,
     /// Check so many shaders at a time [default: as many as there are cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
     jobs: Option<u16>,
@@ -73,6 +79,9 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             return Exit::Trouble;
         }
     };
+    let Ok(rubric) = reports::rubric(args, terminal) else {
+        return Exit::Trouble;
+    };
     let mut results = None;
     if let Some(out) = &args.out {
         match Results::open(out, args.resume) {
@@ -91,6 +100,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let mut batch = Batch {
         args,
         terminal,
+        rubric,
         results,
         order: InOrder::default(),
         told: Vec::new(),
@@ -98,7 +108,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         trouble: false,
     };
     batch.check(&submissions, &Judge::new(args, frame));
-    batch.finish()
+    batch.finish(&submissions)
 }
 
 /// The first interrupt asks to stop after the shader that is being checked, the second stops at once.
@@ -128,10 +138,11 @@ pub(super) fn cut_short(pixels: u64) -> String {
 struct Batch<'a> {
     args: &'a Args,
     terminal: &'a Terminal,
+    rubric: Option<Rubric>,
     results: Option<Results>,
-    order: InOrder<Judged>,
-    /// The records that have been told of, in order.
-    told: Vec<Record>,
+    order: InOrder<(usize, Judged)>,
+    /// The records that have been told of, in order, each with the place of its submission.
+    told: Vec<(usize, Record)>,
     device: Option<String>,
     /// Something failed that no verdict tells.
     trouble: bool,
@@ -185,8 +196,8 @@ impl Batch<'_> {
         );
         bar.finish_and_clear();
         if interrupted.load(Ordering::Relaxed) {
-            for judged in std::mem::take(&mut self.order).rest() {
-                self.tell(judged);
+            for (index, judged) in std::mem::take(&mut self.order).rest() {
+                self.tell(index, judged);
             }
             let how = match self.args.out {
                 Some(_) => "; the same command with --resume goes on",
@@ -209,13 +220,13 @@ impl Batch<'_> {
     }
 
     fn take(&mut self, index: usize, judged: Judged) {
-        for judged in self.order.take(index, judged) {
-            self.tell(judged);
+        for (index, judged) in self.order.take(index, (index, judged)) {
+            self.tell(index, judged);
         }
     }
 
     /// Says what was found of a shader.
-    fn tell(&mut self, judged: Judged) {
+    fn tell(&mut self, index: usize, judged: Judged) {
         for said in &judged.said {
             said.say(self.terminal);
         }
@@ -224,18 +235,23 @@ impl Batch<'_> {
         }
         self.trouble |= judged.trouble;
         self.device = judged.device.or(self.device.take());
-        self.told.push(judged.record);
+        self.told.push((index, judged.record));
     }
 
-    fn finish(self) -> Exit {
+    fn finish(self, submissions: &[Submission]) -> Exit {
         let Self {
             args,
             terminal,
+            rubric,
             told,
             device,
             mut trouble,
             ..
         } = self;
+        let (told_of, told): (Vec<_>, Vec<_>) = told
+            .into_iter()
+            .map(|(index, record)| (&submissions[index], record))
+            .unzip();
         let no_driver = told.iter().any(|record| record.reason.contains(INSTALL_HINT));
         let report = Report::new(device, told);
         if args.format == Format::Human {
@@ -244,9 +260,8 @@ impl Batch<'_> {
             trouble |= terminal.bytes(report.json().as_bytes()).is_err();
         }
         if let Some(out) = &args.out {
-            let path = out.join("verdict.json");
-            if terminal.write(&path, report.json().as_bytes()) {
-                terminal.say(&format!("pictures and verdict.json are in {}", out.display()));
+            if reports::write(&report, &told_of, rubric.as_ref(), out, terminal) {
+                terminal.say(&format!("pictures and reports are in {}", out.display()));
             } else {
                 trouble = true;
             }

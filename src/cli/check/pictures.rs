@@ -2,16 +2,9 @@
 
 use std::borrow::Cow;
 
-use crate::compare::TOLERANCE;
+use crate::compare::{IN_BITS, SEEN_BY_EYE};
 use crate::image::{self, Image, Legend, Mark};
 use crate::verify::{Asked, Findings};
-
-/// What is more than rounding stands out.
-const SEEN_BY_EYE: Legend = Legend {
-    tolerance: TOLERANCE as f32,
-};
-/// Where every bit counts, all but the last bits stand out.
-const IN_BITS: Legend = Legend { tolerance: 1e-6 };
 
 /// A picture that there may be.
 pub(super) struct Picture {

@@ -13,10 +13,10 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::{Background, Integrator, Light, Model, Object, Scene, Shape};
-use crate::diagnostic::Diagnostic;
-use crate::source::{FileId, Files, Span};
+use crate::diagnostic::{self, Diagnostic};
+use crate::source::{FileId, Files};
 
-use self::checks::{Checks, Triple, span};
+use self::checks::{Checks, Triple};
 use self::motion::Names;
 
 /// Reads a scene.
@@ -26,20 +26,11 @@ use self::motion::Names;
 /// that is out of range.
 pub fn parse(files: &Files, file: FileId) -> Result<Scene, Vec<Diagnostic>> {
     let text = files.get(file).text();
-    let document: Document = toml::from_str(text).map_err(|error| {
-        let diagnostic = Diagnostic::error("E0501", one_sentence(error.message()));
-        vec![match error.span() {
-            Some(bytes) => diagnostic.at(span(file, bytes)),
-            None => diagnostic.at(Span::new(file, 0, 0)),
-        }]
-    })?;
+    let document: Document =
+        toml::from_str(text).map_err(|error| vec![diagnostic::of_toml("E0501", &error, file)])?;
     let mut checks = Checks::new(file);
     let scene = document.check(&mut checks);
     checks.finish(scene)
-}
-
-fn one_sentence(message: &str) -> String {
-    message.lines().map(str::trim).collect::<Vec<_>>().join("; ")
 }
 
 #[derive(Deserialize)]

@@ -4,7 +4,7 @@
 //! By itself the course is compared. `TOYPROOF_SHADERS` names a folder of other shaders, of which `TOYPROOF_COUNT` (500) are drawn by
 //! `TOYPROOF_SEED` (0) among those that read no channel; a line for each goes to standard error.
 
-mod chromium;
+pub(crate) mod chromium;
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};

@@ -1,0 +1,181 @@
+//! A headless Chromium with one page open, told what to do over a pipe by the `DevTools` protocol.
+
+use std::io::{BufRead, BufReader, Write};
+use std::path::Path;
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::mpsc::{self, Receiver};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+/// How long the browser may take for one thing, its own start included.
+const PATIENCE: Duration = Duration::from_secs(90);
+
+/// One page of a browser.
+#[derive(Debug)]
+pub(crate) struct Page {
+    browser: Child,
+    orders: ChildStdin,
+    told: Receiver<Value>,
+    session: Option<String>,
+    last: u64,
+    /// What happened so far.
+    events: Vec<Value>,
+    _profile: TempDir,
+}
+
+impl Page {
+    /// A page that shows nothing yet.
+    pub(crate) fn new(program: &Path) -> Self {
+        let profile = tempfile::tempdir().unwrap();
+        let mut browser = Command::new("sh")
+            // The protocol is spoken on descriptors 3 and 4.
+            .args(["-c", "exec \"$0\" \"$@\" 3<&0 4>&1 0</dev/null 1>/dev/null"])
+            .arg(program)
+            // Chromium's own sandbox does not run as root; the page is ours.
+            .args([
+                "--headless=new",
+                "--no-sandbox",
+                "--no-first-run",
+                "--disable-extensions",
+            ])
+            .args([
+                "--disable-background-networking",
+                "--disable-component-update",
+                "--disable-gpu",
+            ])
+            .arg("--remote-debugging-pipe")
+            .arg(format!("--user-data-dir={}", profile.path().display()))
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let orders = browser.stdin.take().unwrap();
+        let answers = BufReader::new(browser.stdout.take().unwrap());
+        let (tell, told) = mpsc::channel();
+        thread::spawn(move || {
+            for message in answers.split(0).map_while(Result::ok) {
+                let message = serde_json::from_slice(&message).expect("the protocol is JSON");
+                if tell.send(message).is_err() {
+                    break;
+                }
+            }
+        });
+        let mut page = Self {
+            browser,
+            orders,
+            told,
+            session: None,
+            last: 0,
+            events: Vec::new(),
+            _profile: profile,
+        };
+        let target = page.call("Target.createTarget", &json!({ "url": "about:blank" }));
+        let attach = json!({ "targetId": target["targetId"], "flatten": true });
+        let session = page.call("Target.attachToTarget", &attach);
+        page.session = session["sessionId"].as_str().map(str::to_owned);
+        for domain in ["Runtime", "Log", "Network", "Page"] {
+            page.call(&format!("{domain}.enable"), &json!({}));
+        }
+        page
+    }
+
+    /// Asks for something and waits for the answer.
+    pub(crate) fn call(&mut self, method: &str, parameters: &Value) -> Value {
+        self.last += 1;
+        let mut order = json!({ "id": self.last, "method": method, "params": parameters });
+        if let Some(session) = &self.session {
+            order["sessionId"] = session.as_str().into();
+        }
+        write!(self.orders, "{order}\0").unwrap();
+        self.orders.flush().unwrap();
+        loop {
+            let message = self.told.recv_timeout(PATIENCE).expect(method);
+            if message["id"] == self.last {
+                assert!(message["error"].is_null(), "{method}: {}", message["error"]);
+                return message["result"].clone();
+            }
+            self.events.push(message);
+        }
+    }
+
+    /// Goes to a file and waits until it has been read; gives how long that took.
+    pub(crate) fn open(&mut self, file: &Path) -> Duration {
+        let start = Instant::now();
+        self.events.clear();
+        let url = format!("file://{}", file.display());
+        self.call("Page.navigate", &json!({ "url": url }));
+        while !self
+            .events
+            .iter()
+            .any(|event| event["method"] == "Page.loadEventFired")
+        {
+            let event = self.told.recv_timeout(PATIENCE).expect("the page loads");
+            self.events.push(event);
+        }
+        start.elapsed()
+    }
+
+    /// The value of an expression of JavaScript, awaited.
+    pub(crate) fn value(&mut self, script: &str) -> Value {
+        let asked = json!({ "expression": script, "awaitPromise": true, "returnByValue": true });
+        let result = self.call("Runtime.evaluate", &asked);
+        assert!(result["exceptionDetails"].is_null(), "{script}: {result}");
+        result["result"]["value"].clone()
+    }
+
+    /// Waits until an expression is true.
+    pub(crate) fn until(&mut self, script: &str) {
+        let start = Instant::now();
+        while self.value(script) != true {
+            assert!(start.elapsed() < PATIENCE, "never: {script}");
+            thread::sleep(Duration::from_millis(20));
+        }
+    }
+
+    /// Presses and lets go of a key that writes nothing.
+    pub(crate) fn press(&mut self, key: &str) {
+        for kind in ["rawKeyDown", "keyUp"] {
+            self.call(
+                "Input.dispatchKeyEvent",
+                &json!({ "type": kind, "key": key, "code": key }),
+            );
+        }
+    }
+
+    /// A window of that size in pixels, in the dark or by day.
+    pub(crate) fn window(&mut self, [width, height]: [u32; 2], dark: bool) {
+        let metrics = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
+        self.call("Emulation.setDeviceMetricsOverride", &metrics);
+        let scheme = if dark { "dark" } else { "light" };
+        let feature = json!({ "name": "prefers-color-scheme", "value": scheme });
+        self.call("Emulation.setEmulatedMedia", &json!({ "features": [feature] }));
+    }
+
+    /// The window as a PNG.
+    pub(crate) fn screenshot(&mut self) -> Vec<u8> {
+        let shot = self.call("Page.captureScreenshot", &json!({ "format": "png" }));
+        STANDARD.decode(shot["data"].as_str().unwrap()).unwrap()
+    }
+
+    /// What happened by that name since the page was opened.
+    pub(crate) fn events(&mut self, method: &str) -> Vec<Value> {
+        // Whatever was on its way is there once this is answered.
+        self.value("0");
+        let events = self.events.iter().filter(|event| event["method"] == method);
+        events.map(|event| event["params"].clone()).collect()
+    }
+}
+
+impl Drop for Page {
+    fn drop(&mut self) {
+        // Its children end with it.
+        let _ = self.browser.kill();
+        let _ = self.browser.wait();
+    }
+}

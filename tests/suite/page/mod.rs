@@ -1,0 +1,302 @@
+//! `report.html` in a real browser. `TOYPROOF_SCREENSHOTS` names a folder for pictures of it.
+
+mod devtools;
+
+use std::path::{Path, PathBuf};
+use std::{env, fs};
+
+use serde_json::{Value, json};
+use toyproof::image::{self, Image, quantise};
+
+use self::devtools::Page;
+use crate::browser::chromium;
+use crate::program::toyproof;
+use crate::support::SPHERE;
+
+const HOSTILE: &str = "<img src=x onerror=hacked=1>.glsl";
+
+/// A folder with the report of some homework: right, wrong, hostile, warned of, and endless.
+fn report(folder: &Path, rest: &[&str]) -> Vec<Value> {
+    let write = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
+    fs::create_dir(folder.join("hw")).unwrap();
+    write("scene.toml", SPHERE.scene);
+    write(
+        "rubric.toml",
+        "compiles.points = 2\nmaths.points = 6\nmaths.partial_from = 0.5\nrounding.points = 2\n",
+    );
+    write("hw/ann.glsl", SPHERE.shader);
+    write(
+        "hw/bob.glsl",
+        &SPHERE.shader.replace("b * b - c", "b * b - 0.9 * c"),
+    );
+    write("hw/cyd.glsl", &SPHERE.shader.replace("float disc", "flaot disc"));
+    write(
+        "hw/dan.glsl",
+        &format!("float unused() {{ float x; return x; }}\n{}", SPHERE.shader),
+    );
+    let hostile =
+        "void mainImage(out vec4 c, in vec2 p) {\n    c = vec4(</script><script>hacked=1</script>);\n}\n";
+    write(&format!("hw/{HOSTILE}"), hostile);
+    let check = [
+        "check",
+        "hw",
+        "--scene",
+        "scene.toml",
+        "--on",
+        "cpu",
+        "--out",
+        "out",
+        "--rubric",
+        "rubric.toml",
+    ];
+    let run = toyproof(folder, &[&check, rest].concat());
+    assert_eq!(run.code, 1, "{}", run.stderr);
+    let text = fs::read_to_string(folder.join("out/verdict.json")).unwrap();
+    let verdicts: Value = serde_json::from_str(&text).unwrap();
+    verdicts["shaders"].as_array().unwrap().clone()
+}
+
+fn page() -> Option<Page> {
+    let Some((program, _)) = chromium::find() else {
+        eprintln!("skipped: no Chromium here");
+        return None;
+    };
+    Some(Page::new(&program))
+}
+
+/// Where the shader of that name is among all.
+fn place(records: &[Value], name: &str) -> usize {
+    let named = |record: &Value| {
+        record["shader"]
+            .as_str()
+            .is_some_and(|shader| shader.ends_with(name))
+    };
+    records.iter().position(named).unwrap()
+}
+
+fn shot(page: &mut Page, name: &str) {
+    if let Some(folder) = env::var_os("TOYPROOF_SCREENSHOTS") {
+        let path = PathBuf::from(folder).join(format!("{name}.png"));
+        fs::write(path, page.screenshot()).unwrap();
+    }
+}
+
+/// Nothing went wrong in the page, and it fetched nothing.
+fn is_quiet(page: &mut Page) {
+    for trouble in [
+        "Runtime.exceptionThrown",
+        "Runtime.consoleAPICalled",
+        "Log.entryAdded",
+    ] {
+        assert_eq!(page.events(trouble), [Value::Null; 0], "{trouble}");
+    }
+    for request in page.events("Network.requestWillBeSent") {
+        let url = request["request"]["url"].as_str().unwrap();
+        assert!(
+            url.starts_with("data:") || url.ends_with("/out/report.html"),
+            "{url}"
+        );
+    }
+}
+
+/// A pixel's colour as the inspector writes it.
+fn levels(picture: &Image, x: u32, y: u32) -> String {
+    let [r, g, b, _] = picture.get(x, y).map(quantise);
+    format!("{r}, {g}, {b} of 255")
+}
+
+const NARROW: &str = "document.documentElement.scrollWidth <= innerWidth";
+const NAMES: &str = "[...document.querySelectorAll('#shaders tbody tr')].filter(row => !row.hidden)\
+                     .map(row => row.cells[0].textContent)";
+const INSPECTED: &str = "Object.fromEntries([...document.querySelectorAll('article.open dt')]\
+                         .map(dt => [dt.textContent, dt.nextSibling.textContent]))";
+/// The colour of the canvas where the inspector is.
+const CANVAS: &str = "(() => { const c = document.querySelector('article.open canvas'); \
+                      const [x, y] = ['x', 'y'].map(n => Number(document.querySelector(`article.open [name=${n}]`).value)); \
+                      const copy = new OffscreenCanvas(1, 1).getContext('2d', { willReadFrequently: true }); \
+                      copy.drawImage(c, -x, y + 1 - c.height); \
+                      return [...copy.getImageData(0, 0, 1, 1).data.slice(0, 3)].join(', ') + ' of 255' })()";
+
+#[test]
+fn the_table_sorts_and_filters_and_nothing_of_a_shader_runs() {
+    let Some(mut page) = page() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let records = report(folder.path(), &["--size", "64x36"]);
+    page.window([1400, 900], false);
+    page.open(&folder.path().join("out/report.html"));
+    let told: Vec<_> = records.iter().map(|record| record["shader"].clone()).collect();
+    assert_eq!(page.value(NAMES), json!(told), "as they came");
+
+    let click = |name: &str| {
+        format!(
+            "[...document.querySelectorAll('#shaders thead button')].find(b => b.textContent === '{name}').click()"
+        )
+    };
+    let mut sorted: Vec<_> = told
+        .iter()
+        .map(|name| name.as_str().unwrap().to_owned())
+        .collect();
+    page.value(&click("Points"));
+    let points = page
+        .value("[...document.querySelectorAll('#shaders td:nth-child(3)')].map(td => Number(td.dataset.by))");
+    let points: Vec<f64> = serde_json::from_value(points).unwrap();
+    assert!(
+        points.is_sorted() && points[0] == 0.0 && points[4] == 10.0,
+        "{points:?}"
+    );
+    page.value(&click("Points"));
+    let down = page.value("document.querySelector('#shaders td:nth-child(3)').dataset.by");
+    assert_eq!(down, "10");
+    assert_eq!(
+        page.value("document.querySelector('#shaders th[aria-sort]').ariaSort"),
+        "descending"
+    );
+    page.value(&click("Shader"));
+    sorted.sort();
+    assert_eq!(page.value(NAMES).as_array().unwrap().len(), sorted.len());
+
+    let search = |words: &str| {
+        format!(
+            "{{ const f = document.querySelector('#filter'); f.words.value = '{words}'; f.words.dispatchEvent(new Event('input', {{ bubbles: true }})) }}"
+        )
+    };
+    page.value(&search("BOB"));
+    assert_eq!(page.value(NAMES), json!(["hw/bob.glsl"]));
+    assert_eq!(
+        page.value("document.querySelector('#shown').textContent"),
+        "1 of 5 shown"
+    );
+    page.value(&search(""));
+    page.value("document.querySelector('#filter [value=invalid]').click()");
+    let left: Vec<_> = ["ann", "bob", "dan"]
+        .iter()
+        .map(|name| format!("hw/{name}.glsl"))
+        .collect();
+    assert_eq!(page.value(NAMES), json!(left));
+    page.value("document.querySelector('#filter [value=invalid]').click()");
+
+    let hostile = place(&records, HOSTILE);
+    page.value(&format!("location.hash = '#s{hostile}'"));
+    page.until("document.querySelector('article.open') !== null");
+    let code = page.value("document.querySelector('article.open code').textContent");
+    assert!(
+        code.as_str()
+            .unwrap()
+            .contains("</script><script>hacked=1</script>"),
+        "{code}"
+    );
+    assert_eq!(page.value("typeof hacked"), "undefined");
+    assert_eq!(
+        page.value("document.querySelectorAll('body img, article script').length"),
+        0
+    );
+    shot(&mut page, "invalid");
+    is_quiet(&mut page);
+}
+
+#[test]
+fn the_inspector_tells_what_the_pictures_hold() {
+    let Some(mut page) = page() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let records = report(folder.path(), &["--size", "320x180"]);
+    let bob = place(&records, "bob.glsl");
+    let picture = |end: &str| image::read(&folder.path().join(format!("out/bob-{end}.png"))).unwrap();
+    let (reference, actual) = (picture("reference"), picture("actual"));
+    page.window([1400, 900], false);
+    page.open(&folder.path().join("out/report.html"));
+    shot(&mut page, "table");
+    page.value(&format!("document.querySelector('a[href=\"#s{bob}\"]').click()"));
+    page.until("document.querySelector('article.open dl dd') !== null");
+
+    let worst = &records[bob]["maths"]["worst"];
+    let [x, y] = ["x", "y"].map(|name| worst[name].as_u64().unwrap() as u32);
+    let told = page.value(INSPECTED);
+    assert_eq!(told["expected"], levels(&reference, x, y));
+    assert_eq!(told["actual"], levels(&actual, x, y));
+    assert!(
+        told["maths"].as_str().unwrap().starts_with("another by > 1e-"),
+        "{told}"
+    );
+    assert_eq!(told["toolchain"], "not asked", "no GPU painted");
+    let floats = worst["expected"].as_array().unwrap();
+    let first: f64 = told["maths: expected"]
+        .as_str()
+        .unwrap()
+        .split(", ")
+        .next()
+        .unwrap()
+        .parse()
+        .unwrap();
+    assert!((first - floats[0].as_f64().unwrap()).abs() < 1e-6, "{told}");
+
+    page.value("document.querySelector('article.open canvas').focus()");
+    page.press("ArrowRight");
+    page.press("ArrowUp");
+    let told = page.value(INSPECTED);
+    assert_eq!(told["expected"], levels(&reference, x + 1, y + 1));
+    assert_eq!(told["actual"], levels(&actual, x + 1, y + 1));
+    assert_eq!(
+        page.value("document.querySelector('article.open [name=y]').value"),
+        (y + 1).to_string()
+    );
+
+    let field = |name: &str, value: u32| {
+        format!(
+            "{{ const f = document.querySelector('article.open [name={name}]'); f.value = {value}; f.dispatchEvent(new Event('change')) }}"
+        )
+    };
+    page.value(&field("x", 0));
+    page.value(&field("y", 9999));
+    assert_eq!(page.value(INSPECTED)["expected"], levels(&reference, 0, 179));
+
+    let slide = |value: u32| {
+        format!(
+            "{{ const s = document.querySelector('article.open [type=range]'); s.value = {value}; s.dispatchEvent(new Event('input')) }}"
+        )
+    };
+    page.value(&field("x", x));
+    page.value(&field("y", y));
+    for (value, picture) in [(1000, &reference), (0, &actual)] {
+        page.value(&slide(value));
+        assert_eq!(page.value(CANVAS), levels(picture, x, y), "{value}");
+    }
+    page.value(&slide(500));
+    shot(&mut page, "wrong");
+    page.value("document.querySelector('article.open [value=difference]').click()");
+    assert_ne!(page.value(CANVAS), "0, 0, 0 of 255");
+    shot(&mut page, "difference");
+    page.window([1400, 900], true);
+    shot(&mut page, "dark");
+    page.window([390, 844], false);
+    shot(&mut page, "narrow");
+    assert_eq!(page.value(NARROW), true, "nothing sticks out");
+    page.press("Escape");
+    page.until("document.querySelector('article.open') === null");
+    let focused = page.value("document.activeElement.textContent");
+    assert_eq!(focused, "hw/bob.glsl", "one is back where one came from");
+    shot(&mut page, "narrow-table");
+    assert_eq!(page.value(NARROW), true, "nothing sticks out");
+    is_quiet(&mut page);
+}
+
+#[test]
+fn without_scripts_there_are_still_the_table_and_the_messages() {
+    let Some(mut page) = page() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let records = report(folder.path(), &["--size", "64x36"]);
+    page.call("Emulation.setScriptExecutionDisabled", &json!({ "value": true }));
+    page.open(&folder.path().join("out/report.html"));
+    assert_eq!(
+        page.value("document.querySelectorAll('#shaders tbody tr').length"),
+        records.len()
+    );
+    assert_eq!(
+        page.value("document.querySelector('#filter').checkVisibility()"),
+        false
+    );
+    assert_eq!(
+        page.value("[...document.querySelectorAll('article')].every(a => a.checkVisibility())"),
+        true
+    );
+    shot(&mut page, "without-script");
+}
