@@ -119,7 +119,8 @@ impl Seconds {
     #[must_use]
     pub fn total(&self) -> f64 {
         let parts = [self.translate, self.gpu, self.eval, self.trace];
-        parts.into_iter().flatten().sum()
+        // A sum of nothing is −0.
+        parts.into_iter().flatten().fold(0.0, |sum, part| sum + part)
     }
 }
 

@@ -182,6 +182,12 @@ pub fn verify(worker: Option<&mut Worker>, case: &Case) -> Result<Findings, Fail
     });
     let (actual, painter, cpu) = match (drawn?, cpu) {
         (Some(drawn), cpu) => {
+            // A loop that the evaluator saw no end of, on a driver that may have ended it by force and could not be watched.
+            if let (None, Err(failure @ (eval::Failure::Timeout { .. } | eval::Failure::TooOften { .. }))) =
+                (drawn.cut_short, &cpu)
+            {
+                return Err(failure.clone().into());
+            }
             // Where the driver could not be watched in time, the evaluator has counted the rounds.
             let counted = cpu.as_ref().map_or(0, |(_, cpu)| cpu.beyond_cap);
             if let pixels @ 1.. = drawn.cut_short.unwrap_or(counted) {
