@@ -31,6 +31,7 @@ mod observe;
 mod operation;
 mod paint;
 mod painting;
+mod prepare;
 mod program;
 mod prune;
 mod story;

@@ -129,7 +129,7 @@ const MAX_TOLD: usize = 1 << 21;
 pub struct Lead<'a> {
     /// The other story.
     pub story: &'a Story,
-    /// So many of its events.
+    /// So many of its events, or all.
     pub events: usize,
 }
 
@@ -149,7 +149,10 @@ impl<'a> Scribe<'a> {
         Self {
             chunk: position / LANES,
             lane: position % LANES,
-            lead: lead.map_or(&[], |lead| &lead.story.happened[..lead.events]),
+            lead: lead.map_or(&[], |lead| {
+                let happened = &lead.story.happened;
+                &happened[..lead.events.min(happened.len())]
+            }),
             story: RefCell::default(),
             told: Cell::new(0),
         }

@@ -2,7 +2,8 @@
 
 use super::number::Number;
 use super::paint::{Failure, Limits, Settings};
-use super::program::{Compiled, Prepared, Program};
+use super::prepare::Prepared;
+use super::program::{Compiled, Program};
 use super::story::{Lead, Plot, Story};
 use super::texture::Texture;
 use super::tile::Job;

@@ -10,7 +10,8 @@ use super::number::Number;
 use super::observe::{MESA_CAP, Observations, Observed, Site, earlier};
 use super::paint::{Failure, Limits, Settings};
 use super::painting::{DISCARDED, UNDEFINED};
-use super::program::{Compiled, Prepared};
+use super::prepare::Prepared;
+use super::program::Compiled;
 use super::story::{Lead, Scribe, Story};
 use super::texture::Texture;
 

@@ -23,11 +23,6 @@ impl Mistake {
     }
 }
 
-/// The names of all mistakes that can be told.
-pub fn names() -> impl Iterator<Item = &'static str> {
-    CATALOGUE.iter().map(|mistake| mistake.name)
-}
-
 const F: &str = "vec3 f = ray.origin - sphere.center;";
 const DISC: &str = "float disc = sphere.radius * sphere.radius - dot(closest, closest);";
 /// The same for directions of length 1.

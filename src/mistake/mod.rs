@@ -20,8 +20,6 @@ use crate::image::Image;
 use crate::scene::Scene;
 use crate::source::{File, Files};
 
-pub use self::catalogue::names;
-
 /// What explains a wrong picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Named {
@@ -43,8 +41,8 @@ const MAX_LEFT_OVER: f64 = 0.005;
 /// picture has too many explanations.
 const MANY: usize = 2;
 
-/// How long two mistakes at once are looked for.
-const PATIENCE: Duration = Duration::from_secs(4);
+/// The longest that one picture may take: most take milliseconds.
+const PATIENCE: Duration = Duration::from_secs(10);
 
 /// The shaders that paint a scene with a classic mistake in them. Their pictures are painted once, when they are first asked for.
 #[derive(Debug)]
@@ -80,15 +78,15 @@ impl Suspects {
         })
     }
 
-    /// The mistake, or the two, that paint what the `student`'s shader does: `wrong`, painted in that frame in f64. Two at once are
-    /// looked for only if `two`, and only for some seconds.
+    /// The mistake, or the two, that paint what the `student`'s shader does: `wrong`, painted in that frame in f64. Where no single one
+    /// does, two at once are looked for, for as long as `patience` says.
     #[must_use]
     pub fn recognise(
         &self,
         student: &Program,
         wrong: &Image,
         frame: &Frame,
-        two: bool,
+        patience: Duration,
     ) -> Option<Vec<Named>> {
         let small = paint(student, &self.frame, None)?;
         let pixels = small.pixels().len();
@@ -112,7 +110,7 @@ impl Suspects {
             }
             return first.confirm(wrong, &self.right.paint(frame, None)?, frame);
         }
-        let deadline = two.then(|| Instant::now() + PATIENCE)?;
+        let deadline = Instant::now() + patience;
         let pairs: Vec<Suspect> = self.pairs().collect();
         let pairs = pairs.into_par_iter().filter_map(|pair| {
             let picture = pair.paint(&self.frame, Some(deadline))?;
@@ -198,8 +196,7 @@ fn differing(one: &Image, other: &Image) -> u64 {
 fn paint(program: &Program, frame: &Frame, deadline: Option<Instant>) -> Option<Image> {
     let settings = Settings::<f64> {
         variant: Variant::Plain,
-        // A picture of few pixels; where it takes longer than this, something else is wrong.
-        deadline: Some(deadline.unwrap_or_else(|| Instant::now() + 2 * PATIENCE)),
+        deadline: Some(deadline.unwrap_or_else(|| Instant::now() + PATIENCE)),
         ..Settings::default()
     };
     Some(program.paint(frame, &settings).ok()?.painting.image())

@@ -94,7 +94,7 @@ impl Mistake {
         Self {
             id: ids.join("+"),
             says: format!(
-                "the picture is exactly what a tracer paints that {}",
+                "the picture is what a tracer paints that {}",
                 says.join(", and that ")
             ),
         }

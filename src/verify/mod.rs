@@ -141,6 +141,9 @@ pub enum Failure {
     CutShort(u64),
 }
 
+/// How long two mistakes at once are looked for in a wrong picture.
+const PATIENCE_FOR_TWO: Duration = Duration::from_secs(4);
+
 /// The evaluator may take so many times as long as the GPU: that it is slow is not the shader's fault.
 const PATIENCE: u32 = 4;
 
@@ -278,7 +281,7 @@ impl Findings {
             toolchain: self.toolchain.as_ref().map(|asked| &asked.answer),
         });
         if let (Verdict::Wrong, Some(suspects)) = (self.verdict, case.suspects) {
-            self.mistake = suspects.recognise(program, &cpu.double, case.frame, true);
+            self.mistake = suspects.recognise(program, &cpu.double, case.frame, PATIENCE_FOR_TWO);
         }
         let rounds = |asked: &Asked| asked.answer.share(asked.answer.differing) > MAX_UNSTABLE;
         let loses = self.verdict == Verdict::Ok && self.rounding.as_ref().is_some_and(rounds);

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-use crate::program::{Run, command, toyproof};
+use crate::program::{Run, check_homework, run, toyproof};
 use crate::support::SPHERE;
 
 /// A folder of submissions: every third is wrong, every seventh does not compile.
@@ -19,7 +19,9 @@ fn homework(count: usize) -> tempfile::TempDir {
     for at in 0..count {
         let text = match at {
             _ if at % 7 == 6 => SPHERE.shader.replace("float disc", "flaot disc"),
-            _ if at % 3 == 2 => SPHERE.shader.replace("b * b - c", "b * b - 0.9 * c"),
+            _ if at % 3 == 2 => SPHERE
+                .shader
+                .replace("sphere.radius * sphere.radius", "sphere.radius"),
             _ => SPHERE.shader.to_owned(),
         };
         fs::write(hw.join(format!("{at:03}.glsl")), format!("// {at}\n{text}")).unwrap();
@@ -35,21 +37,8 @@ fn verdict(at: usize) -> &'static str {
     }
 }
 
-const CHECK: &[&str] = &[
-    "check",
-    "hw",
-    "--scene",
-    "scene.toml",
-    "--on",
-    "cpu",
-    "--size",
-    "64x36",
-    "--out",
-    "out",
-];
-
 fn check(folder: &Path, rest: &[&str]) -> Run {
-    toyproof(folder, &[CHECK, rest].concat())
+    run(check_homework(folder).args(["--out", "out"]).args(rest))
 }
 
 /// The records without their times.
@@ -109,8 +98,8 @@ fn what_was_killed_goes_on_and_nothing_is_lost_or_done_twice() {
     let whole = records(folder.path());
     fs::remove_dir_all(folder.path().join("out")).unwrap();
     for wanted in [3, 11, 20] {
-        let mut running = command(folder.path())
-            .args([CHECK, &["--resume"]].concat())
+        let mut running = check_homework(folder.path())
+            .args(["--out", "out", "--resume"])
             .stdout(Stdio::null())
             .stderr(Stdio::null())
             .spawn()

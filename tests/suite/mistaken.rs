@@ -1,5 +1,7 @@
 //! Classic mistakes are named, and what is right is not.
 
+use std::time::Duration;
+
 use toyproof::eval::{Program, Settings};
 use toyproof::frame::Frame;
 use toyproof::glsl;
@@ -30,11 +32,11 @@ fn painted(program: &Program, frame: &Frame) -> Image {
     painted.painting.image()
 }
 
-/// What a shader is told that is judged by a rung's scene.
-fn named(rung: &Rung, suspects: &Suspects, shader: &str, two: bool) -> String {
+/// What a shader is told that is judged by a rung's scene; two mistakes at once are looked for for so many seconds.
+fn named(rung: &Rung, suspects: &Suspects, shader: &str, patience: u64) -> String {
     let (program, frame) = (program(shader), frame(rung));
     let wrong = painted(&program, &frame);
-    let named = suspects.recognise(&program, &wrong, &frame, two);
+    let named = suspects.recognise(&program, &wrong, &frame, Duration::from_secs(patience));
     let names: Vec<_> = named.into_iter().flatten().map(|named| named.name).collect();
     names.join("+")
 }
@@ -158,7 +160,7 @@ fn mistakes_are_named() {
             .find(|fault| std::ptr::eq(fault.1, rung) && fault.0 == title)
             .unwrap_or_else(|| panic!("{}: no fault `{title}`", rung.name));
         let told = match &suspects {
-            Some((_, suspects)) => named(rung, suspects, &edited(rung, edits), false),
+            Some((_, suspects)) => named(rung, suspects, &edited(rung, edits), 0),
             None => String::new(),
         };
         if told != name {
@@ -175,8 +177,8 @@ fn two_mistakes_at_once_are_named() {
         &SPHERE,
         &[(" / aspect", ""), ("vec4(color, 1.0)", "vec4(color.bgr, 1.0)")],
     );
-    assert_eq!(named(&SPHERE, &suspects, &shader, false), "");
-    assert_eq!(named(&SPHERE, &suspects, &shader, true), "no-aspect+blue-is-red");
+    assert_eq!(named(&SPHERE, &suspects, &shader, 0), "");
+    assert_eq!(named(&SPHERE, &suspects, &shader, 300), "no-aspect+blue-is-red");
 }
 
 /// `cargo test --release --test suite -- --ignored every_fault --nocapture`: what each planted fault is called whose scene can be exported.
@@ -189,7 +191,7 @@ fn every_fault_and_its_name() {
             continue;
         };
         for (title, _, edits) in faults().filter(|fault| std::ptr::eq(fault.1, rung)) {
-            let name = named(rung, &suspects, &edited(rung, edits), false);
+            let name = named(rung, &suspects, &edited(rung, edits), 0);
             eprintln!("{}: {title}: {name}", rung.name);
             told.push(name);
         }
@@ -202,7 +204,7 @@ fn every_fault_and_its_name() {
 fn what_is_right_has_no_name() {
     for rung in EVERY_RUNG {
         if let Some(suspects) = Suspects::of(&scene(rung), &frame(rung)) {
-            assert_eq!(named(rung, &suspects, rung.shader, true), "", "{}", rung.name);
+            assert_eq!(named(rung, &suspects, rung.shader, 300), "", "{}", rung.name);
         }
     }
 }

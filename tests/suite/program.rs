@@ -26,6 +26,22 @@ pub(crate) fn command(folder: &Path) -> Command {
     command
 }
 
+/// `check` of the folder `hw`, small and without a GPU, by `scene.toml`.
+pub(crate) fn check_homework(folder: &Path) -> Command {
+    let mut check = command(folder);
+    check.args([
+        "check",
+        "hw",
+        "--scene",
+        "scene.toml",
+        "--on",
+        "cpu",
+        "--size",
+        "64x36",
+    ]);
+    check
+}
+
 pub(crate) fn run(command: &mut Command) -> Run {
     let Output {
         status,

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::program::{Run, toyproof};
+use crate::program::{Run, check_homework, run, toyproof};
 use crate::support::SPHERE;
 
 const RUBRIC: &str =
@@ -21,7 +21,9 @@ fn homework() -> tempfile::TempDir {
     write("hw/ann.glsl", SPHERE.shader);
     write(
         "hw/bob.glsl",
-        &SPHERE.shader.replace("b * b - c", "b * b - 0.9 * c"),
+        &SPHERE
+            .shader
+            .replace("sphere.radius * sphere.radius", "sphere.radius"),
     );
     write(
         "hw/<b>cyd & co.glsl",
@@ -31,17 +33,7 @@ fn homework() -> tempfile::TempDir {
 }
 
 fn check(folder: &Path, rest: &[&str]) -> Run {
-    let check = [
-        "check",
-        "hw",
-        "--scene",
-        "scene.toml",
-        "--on",
-        "cpu",
-        "--size",
-        "64x36",
-    ];
-    toyproof(folder, &[&check, rest].concat())
+    run(check_homework(folder).args(rest))
 }
 
 fn read(folder: &Path, name: &str) -> String {
