@@ -1,17 +1,28 @@
-//! Files that appear whole or not at all.
+//! Files that appear whole or not at all; a device or a pipe is written to, never replaced.
 
 use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
 /// Writes a file under a temporary name beside its place and renames it, so that neither a crash nor a
-/// reader ever sees half of it. Missing folders are made.
+/// reader ever sees half of it. Missing folders are made. A link is followed, and what is there but is no file
+/// (`/dev/null`, `/dev/stdout`, a named pipe) is written into: a rename would put a file in its place.
 ///
 /// # Errors
 /// The system's, with the path in its words.
 pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let named = |error: io::Error| io::Error::new(error.kind(), format!("{}: {error}", path.display()));
-    let folder = match path.parent() {
+    // What does not exist yet, or cannot be looked at, is for the steps below to make or to name.
+    let followed = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    let kind = fs::metadata(&followed).map(|found| found.file_type());
+    if kind.is_ok_and(|kind| !kind.is_file() && !kind.is_dir()) {
+        return fs::OpenOptions::new()
+            .write(true)
+            .open(&followed)
+            .and_then(|mut stream| stream.write_all(bytes))
+            .map_err(named);
+    }
+    let folder = match followed.parent() {
         Some(parent) if parent != Path::new("") => parent,
         _ => Path::new("."),
     };
@@ -26,7 +37,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     }
     let mut file = builder.tempfile_in(folder).map_err(named)?;
     file.write_all(bytes).map_err(named)?;
-    file.persist(path).map_err(|error| named(error.error))?;
+    file.persist(&followed).map_err(|error| named(error.error))?;
     Ok(())
 }
 
@@ -42,6 +53,30 @@ mod tests {
         write(&path, b"two").unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"two");
         assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_is_followed_and_a_pipe_is_written_into() {
+        use std::os::unix::fs::FileTypeExt;
+        let folder = tempfile::tempdir().unwrap();
+        let (file, link) = (folder.path().join("file"), folder.path().join("link"));
+        fs::write(&file, b"old").unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        write(&link, b"new").unwrap();
+        assert_eq!(fs::read(&file).unwrap(), b"new");
+        assert!(fs::symlink_metadata(&link).unwrap().file_type().is_symlink());
+
+        let pipe = folder.path().join("pipe");
+        let made = std::process::Command::new("mkfifo").arg(&pipe).status().unwrap();
+        assert!(made.success());
+        let reader = std::thread::spawn({
+            let pipe = pipe.clone();
+            move || fs::read(pipe).unwrap()
+        });
+        write(&pipe, b"through").unwrap();
+        assert_eq!(reader.join().unwrap(), b"through");
+        assert!(fs::metadata(&pipe).unwrap().file_type().is_fifo());
     }
 
     #[test]
