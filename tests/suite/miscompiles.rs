@@ -92,6 +92,13 @@ static CASES: &[Case] = &[
         "uint u = 0xC000BC00u; o.x = unpackHalf2x16(u).y;",
         -2.0,
     ),
+    // Two rounds, and not three steps.
+    (
+        Pass::Steps,
+        "",
+        "vec2 k = vec2(1.0); for (; k.x > 0.0 && p.x > 0.25; k -= 0.125) p.x -= 0.125; o.x = k.x;",
+        0.75,
+    ),
 ];
 
 /// Those that naga needs, or all where it is about one of strict shaders.

@@ -15,6 +15,7 @@ mod draft;
 mod elementary;
 mod else_if;
 mod equality;
+mod for_step;
 mod geometric;
 mod global;
 mod helper;

@@ -72,6 +72,8 @@ passes! {
     Globals = super::global::run,
     /// Variables that begin without a value.
     Uninitialised = super::uninitialised::run,
+    /// Steps of `for` that Mesa takes once too often; for strict shaders only.
+    Steps = super::for_step::run,
     /// Declarations in the heads of loops.
     LoopHeads = super::loop_head::run,
     /// `continue` in `do … while`.
@@ -98,7 +100,10 @@ impl Passes {
     /// Every pass that naga needs.
     #[must_use]
     pub fn all() -> Self {
-        Self::strict().without(Pass::Elementary).without(Pass::Products)
+        Self::strict()
+            .without(Pass::Elementary)
+            .without(Pass::Products)
+            .without(Pass::Steps)
     }
 
     /// These, and those that make a shader's bits the same everywhere.
