@@ -21,6 +21,8 @@ pub(super) fn run(draft: &mut Draft) {
             Some(Remedy::Spell(value)) => {
                 let node = spell(draft, &value, id);
                 draft.tree[id] = draft.tree[node].clone();
+                // What stands around it asks: naga evaluates on from here.
+                draft.tree[id].constant = true;
             }
             Some(Remedy::Postpone(operand)) => postpone(draft, operand),
             Some(Remedy::Bits(bits)) => {

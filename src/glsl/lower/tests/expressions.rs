@@ -280,6 +280,7 @@ fn constants_that_naga_cannot_evaluate() {
         "o.x = normalize(vec3(0.0)).x;",
         "int i; o.x = float(1 << (i = 31));",
         "o.x = 1e38 * (o.y, 100.0);",
+        "o.x = float(((o.y, uvec2(15) << 16).yx << 27).x);",
     ] {
         mends(Pass::Constants, &main_image("", body));
     }
