@@ -71,7 +71,7 @@ fn the_corpus_has_the_same_bits_on_the_cpu() {
     let folder = std::env::var_os("TOYPROOF_CORPUS").expect("TOYPROOF_CORPUS names a folder");
     let limit = std::env::var("TOYPROOF_CORPUS_LIMIT").map_or(usize::MAX, |limit| limit.parse().unwrap());
     let program = PathBuf::from(env!("CARGO_BIN_EXE_toyproof"));
-    let patience = Duration::from_secs(10);
+    let patience = Duration::from_secs(60);
     let mut worker = Worker::new(program, vec!["worker".into()], On::Auto, patience);
     let mut paths: Vec<PathBuf> = std::fs::read_dir(folder)
         .unwrap()

@@ -49,6 +49,12 @@ static CASES: &[Case] = &[
         5.0,
     ),
     (
+        Pass::Indices,
+        "",
+        "int i = int(p.x); o.x = float(int[2](i + 4, 1)[(i = 2) & 1]);",
+        4.0,
+    ),
+    (
         Pass::Compounds,
         "float g; float next() { g += 1.0; return g; }",
         "g = 2.0; g += next(); vec2 u = vec2(1.0); u += vec2(dot(u *= 2.0, vec2(1.0))); o.x = g + 10.0 * u.x;",

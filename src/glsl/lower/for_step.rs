@@ -2,7 +2,7 @@
 //!
 //! naga puts the step into SPIR-V's continue construct. Mesa 22.3 moves that to the beginning of the loop, behind a test for
 //! the first round, and peels the test off: a vector that begins as a constant then takes one step too many. With a
-//! `continue` in the body the driver does not peel, and is right.
+//! `continue` in the body the driver does not peel, and is right. Metal, HLSL and GLSL have no such construct either: naga writes a flag for it.
 
 use super::super::tree::{Statement, StatementKind};
 use super::draft::Draft;

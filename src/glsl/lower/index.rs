@@ -36,12 +36,13 @@ fn fix(draft: &mut Draft, operation: ExprId, path: ExprId, twice: bool) {
         .clone()
         .filter(|&operand| walk::acts(&draft.tree, operand));
     let changing = operands.filter(|&operand| operand != root && !draft.tree[operand].constant);
-    let root_acts = walk::acts(&draft.tree, root);
-    if acting.count() == 0 || !twice && changing.count() + usize::from(root_acts) < 2 {
+    // A value that is made where it is indexed, of variables that an index may change.
+    let root_is_made = !draft.tree[root].constant && !matches!(draft.tree[root].kind, ExprKind::Variable(_));
+    if acting.count() == 0 || !twice && changing.count() + usize::from(root_is_made) < 2 {
         return;
     }
     let mut steps = Vec::new();
-    if root_acts {
+    if root_is_made {
         steps.push(lvalue::set_aside(draft, root, "base"));
     }
     lvalue::fix_indices(draft, path, Fix::Changing, &mut steps);

@@ -72,7 +72,7 @@ passes! {
     Globals = super::global::run,
     /// Variables that begin without a value.
     Uninitialised = super::uninitialised::run,
-    /// Steps of `for` that Mesa takes once too often; for strict shaders only.
+    /// Steps of `for` that Mesa takes once too often.
     Steps = super::for_step::run,
     /// Declarations in the heads of loops.
     LoopHeads = super::loop_head::run,
@@ -97,13 +97,10 @@ passes! {
 pub struct Passes(u64);
 
 impl Passes {
-    /// Every pass that naga needs.
+    /// Every pass that naga and the drivers need.
     #[must_use]
     pub fn all() -> Self {
-        Self::strict()
-            .without(Pass::Elementary)
-            .without(Pass::Products)
-            .without(Pass::Steps)
+        Self::strict().without(Pass::Elementary).without(Pass::Products)
     }
 
     /// These, and those that make a shader's bits the same everywhere.

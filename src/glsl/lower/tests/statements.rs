@@ -64,7 +64,7 @@ fn loop_heads() {
     let body = "int i; float x; for (i = 0, x = 1.0; i < 3; i++) o.x += x;";
     assert_eq!(
         lines("", body),
-        "int i;\nfloat x;\n{\ni = 0;\nx = 1.0;\nfor (; i < 3; i++) {\no.x += x;"
+        "int i;\nfloat x;\n{\ni = 0;\nx = 1.0;\nfor (; i < 3;) {\no.x += x;\ni++;"
     );
 }
 
