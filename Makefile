@@ -1,6 +1,6 @@
 # What a newcomer types: `make demo`, then `make test`.
 
-.PHONY: demo test setup bench fuzz
+.PHONY: demo test setup bench fuzz accuracy
 .DEFAULT_GOAL := demo
 
 # Builds, checks the course's shaders and says where the pictures are.
@@ -17,6 +17,11 @@ setup:
 
 bench:
 	XDG_RUNTIME_DIR=$${XDG_RUNTIME_DIR:-/tmp} cargo bench
+
+# Writes docs/accuracy/ and the parts of docs/accuracy.md that are measured anew.
+accuracy:
+	cargo build --release
+	sh docs/accuracy/regenerate.sh ./target/release/toyproof
 
 # Until it finds something or is stopped; needs a nightly compiler and cargo-fuzz. The code is safe Rust: no sanitiser.
 fuzz:

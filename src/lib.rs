@@ -1,5 +1,6 @@
 //! toyproof checks, renders and converts ShaderToy shaders, and says how far each picture can be trusted.
 
+pub mod chart;
 pub mod cli;
 pub mod compare;
 pub mod diagnostic;
@@ -18,5 +19,7 @@ pub mod output;
 pub mod report;
 pub mod scene;
 pub mod source;
+pub mod stress;
 pub mod trace;
+pub mod trade;
 pub mod verify;

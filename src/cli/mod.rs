@@ -10,12 +10,15 @@ mod doctor;
 mod explain;
 mod export;
 mod inputs;
+mod interrupt;
 mod render;
 mod run;
 mod scenes;
 mod sequence;
 mod shader;
+mod stress;
 mod terminal;
+mod trade;
 mod worker;
 
 use clap::{Parser, Subcommand};
@@ -48,6 +51,10 @@ enum Command {
     Convert(convert::Args),
     /// Tell what one pixel does, in f32 beside f64, line by line
     Explain(explain::Args),
+    /// Find out where formulas for rays and surfaces fail: numerical stability at the extremes
+    Stress(stress::Args),
+    /// Measure what accuracy costs: every way to a picture, with its time and its error
+    Trade(trade::Args),
     /// Compare two pictures
     Compare(compare::Args),
     /// Write the shader that paints a scene
@@ -83,6 +90,8 @@ impl Cli {
             Command::Run(args) => run::run(&args, &terminal),
             Command::Convert(args) => convert::run(&args, &terminal),
             Command::Explain(args) => explain::run(&args, &terminal),
+            Command::Stress(args) => stress::run(&args, &terminal),
+            Command::Trade(args) => trade::run(&args, &terminal),
             Command::Compare(args) => compare::run(&args, &terminal),
             Command::Export(args) => export::run(&args, &terminal),
             Command::Scenes(args) => scenes::run(&args, &terminal),

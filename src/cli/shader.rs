@@ -53,6 +53,12 @@ impl Shader {
             warnings,
         }
     }
+
+    /// The text that a shader was read from.
+    pub(super) fn text(&self, checked: &Checked) -> &str {
+        let at = checked.tree[checked.main_image].at;
+        self.files.get(at.span.file).text()
+    }
 }
 
 /// Takes out the warnings that count as errors.

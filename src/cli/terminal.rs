@@ -76,10 +76,10 @@ impl Terminal {
     }
 
     /// What an interrupt means, said at once.
-    pub(super) fn interrupted() {
+    pub(super) fn interrupted(words: &str) {
         let _ = writeln!(
             anstream::stderr().lock(),
-            "finishing the shader in hand; interrupt again to stop at once"
+            "{words}; interrupt again to stop at once"
         );
     }
 

@@ -4,11 +4,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The stages in the order of the flow.
-const STAGES: [&str; 20] = [
+const STAGES: [&str; 23] = [
     "source",
     "diagnostic",
     "output",
     "image",
+    "chart",
     "frame",
     "elementary",
     "glsl",
@@ -20,6 +21,8 @@ const STAGES: [&str; 20] = [
     "export",
     "trace",
     "compare",
+    "stress",
+    "trade",
     "explain",
     "mistake",
     "verify",

@@ -14,7 +14,7 @@ fn root() -> &'static Path {
 #[test]
 fn the_help_of_each_command_shows_an_example() {
     for name in [
-        "check", "render", "run", "convert", "explain", "compare", "scenes", "doctor",
+        "check", "render", "run", "convert", "explain", "stress", "trade", "compare", "scenes", "doctor",
     ] {
         let help = toyproof(root(), &[name, "--help"]).stdout;
         assert!(

@@ -32,6 +32,7 @@ mod rules;
 mod rungs;
 mod sensitivity;
 mod stories;
+mod stress;
 mod strict;
 mod support;
 mod unstable;

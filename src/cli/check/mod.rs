@@ -11,8 +11,7 @@ mod stopped;
 
 use std::num::NonZero;
 use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 
 use self::judge::{Hand, Judge, Judged, Submission};
 use self::pool::InOrder;
@@ -20,7 +19,7 @@ pub(super) use self::reference::Reference;
 use self::results::Results;
 use super::inputs::{DriverArgs, Format, FrameArgs, LanguageArgs};
 use super::shader::{Names, find};
-use super::{Exit, Terminal, codes};
+use super::{Exit, Terminal, codes, interrupt};
 use crate::compare::Verdict;
 use crate::gpu::INSTALL_HINT;
 use crate::report::{self, Record, Report, Rubric};
@@ -111,21 +110,6 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     batch.finish(&submissions)
 }
 
-/// The first interrupt asks to stop after the shader that is being checked, the second stops at once.
-fn stop_on_interrupt() -> Arc<AtomicBool> {
-    let interrupted = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&interrupted);
-    // Where no handler can be set, an interrupt ends the program as it always did.
-    let _ = ctrlc::set_handler(move || {
-        Terminal::interrupted();
-        if flag.swap(true, Ordering::Relaxed) {
-            #[expect(clippy::exit, reason = "the user asked twice")]
-            std::process::exit(130);
-        }
-    });
-    interrupted
-}
-
 /// What a driver that ended loops by force means for a shader.
 pub(super) fn cut_short(pixels: u64) -> String {
     format!(
@@ -150,7 +134,7 @@ struct Batch<'a> {
 
 impl Batch<'_> {
     fn check(&mut self, submissions: &[Submission], judge: &Judge) {
-        let interrupted = stop_on_interrupt();
+        let interrupted = interrupt::watch("finishing the shader in hand");
         let bar = match submissions {
             [one] => self.terminal.spinner(&one.name),
             several => self.terminal.bar(several.len() as u64, "checking"),

@@ -1,0 +1,32 @@
+#!/bin/sh
+# Writes the pictures in docs/accuracy and the parts of docs/accuracy.md between marks anew: `make accuracy`.
+set -eu
+program=$1
+out=docs/accuracy
+page=docs/accuracy.md
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# fill NAME: puts standard input between the marks of that name.
+fill() {
+    cat >"$work/part"
+    awk -v name="$1" -v part="$work/part" '
+        $0 == "<!-- end " name " -->" { while ((getline line < part) > 0) print line; skip = 0 }
+        !skip { print }
+        $0 == "<!-- begin " name " -->" { skip = 1 }
+    ' "$page" >"$work/page"
+    cp "$work/page" "$page"
+}
+
+"$program" stress -q -o "$work" >"$work/lines"
+cp "$work"/stress-*.png "$out"
+sed 's/^/- /' "$work/lines" | fill stress
+
+for rung in 03-shading 06-reflections 09-soft-shadows 12-whitted; do
+    size=320x180
+    [ $rung = 09-soft-shadows ] && size=160x90
+    "$program" trade -q "glsl/$rung.toml" -o "$work/$rung" --size $size >"$work/$rung.lines"
+    cp "$work/$rung/trade.svg" "$out/trade-$rung.svg"
+    cp "$work/$rung/trade.png" "$out/trade-$rung.png"
+    sed "s/^/- $rung: /" "$work/$rung.lines"
+done | fill trade

@@ -1,0 +1,246 @@
+//! `toyproof trade`
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+use super::check::Reference;
+use super::inputs::{FrameArgs, LanguageArgs, on, worker};
+use super::render::load;
+use super::shader::{Shader, Unusable, find};
+use super::{Exit, Terminal, interrupt};
+use crate::export;
+use crate::frame::Frame;
+use crate::gpu::{On, Worker};
+use crate::image;
+use crate::scene::Scene;
+use crate::source::{self, File, Files};
+use crate::trade::{self, ERRORS, Report, Subject};
+
+/// Measure what accuracy costs: every way to the picture of a scene, or of a shader, with its time and its error
+///
+/// The ways are those that the scene asks for: the tracer in f32 and f64, with its samples and depths; and the shader beside the scene, or the
+/// one that `export` writes, on the CPU and on GPUs, with each formula for spheres. What is written: trade.csv, trade.json, trade.svg and
+/// trade.png.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:\n  toyproof trade glsl/03-shading.toml -o trade\n  \
+                        toyproof trade glsl/06-reflections.glsl -o trade --budget 60s\n  \
+                        toyproof trade glsl/09-soft-shadows.toml --max-error 0.004 --size 160x90")]
+pub(super) struct Args {
+    /// A scene, in TOML, or a shader
+    subject: PathBuf,
+    /// Where the results go
+    #[arg(short, long, value_name = "DIR", required_unless_present = "max_error")]
+    output: Option<PathBuf>,
+    /// How long everything may take
+    #[arg(long, value_name = "TIME", default_value = "30s", value_parser = humantime::parse_duration)]
+    budget: Duration,
+    /// Say only which way is the cheapest whose error, a root mean square in [0, 1], is at most this
+    #[arg(long, value_name = "ERROR", value_parser = max_error)]
+    max_error: Option<f64>,
+    /// The GPUs: `all` that there are, `cpu` for none, `lavapipe`, or words of an adapter's name
+    #[arg(long, value_name = "ADAPTER", default_value = "all")]
+    on: String,
+    #[command(flatten)]
+    language: LanguageArgs,
+    #[command(flatten)]
+    frame: FrameArgs,
+}
+
+fn max_error(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(error) if (0.0..=1.0).contains(&error) => Ok(error),
+        _ => Err("expected a number from 0 to 1".to_owned()),
+    }
+}
+
+pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
+    let interrupted = interrupt::watch("stopping; nothing is written");
+    match measure(args, &interrupted, terminal) {
+        Ok(report) => tell(&report, args, terminal),
+        Err(exit) => exit,
+    }
+}
+
+/// Measures; says why not.
+fn measure(args: &Args, interrupted: &AtomicBool, terminal: &Terminal) -> Result<Report, Exit> {
+    let start = Instant::now();
+    let fail = |error: String| {
+        terminal.error(error);
+        Exit::Trouble
+    };
+    let frame = args.frame.frame().map_err(fail)?;
+    let is_shader = source::is_shader(&args.subject);
+    let scene = (!is_shader).then(|| load(&args.subject, terminal).ok_or(Exit::Trouble));
+    let scene = scene.transpose()?;
+    let shader = if is_shader {
+        Some(from_file(&args.subject, args, terminal)?)
+    } else {
+        beside(&args.subject, scene.as_ref(), args)
+    };
+    let scene = scene.or_else(|| of_shader(&args.subject));
+    let (scene, frame) = fitted(scene, frame, args.frame.size);
+    let checked = shader
+        .as_ref()
+        .and_then(|shader| Some((shader, shader.checked.as_ref().ok()?)));
+    let subject = Subject {
+        name: args.subject.display().to_string(),
+        scene: scene.as_ref(),
+        shader: checked.map(|(shader, checked)| (shader.text(checked), checked)),
+        options: args.language.options(),
+        frame: &frame,
+        workers: workers(&args.on, args.budget, terminal)?,
+        start,
+        budget: args.budget,
+    };
+    let bar = terminal.bar(1000, "measuring");
+    let report = trade::study(subject, interrupted, |share| {
+        bar.set_position((1000.0 * share) as u64);
+    });
+    bar.finish_and_clear();
+    report.map_err(|failure| fail(failure.to_string()))
+}
+
+/// Scene and frame of one size: the flag's, else the scene's, else the default.
+fn fitted(scene: Option<Scene>, mut frame: Frame, size: Option<[u32; 2]>) -> (Option<Scene>, Frame) {
+    if let (None, Some(scene)) = (size, &scene) {
+        frame.size = scene.film.size;
+    }
+    let scene = scene.map(|mut scene| {
+        scene.film.size = frame.size;
+        scene
+    });
+    (scene, frame)
+}
+
+/// A shader that must be valid.
+fn from_file(path: &Path, args: &Args, terminal: &Terminal) -> Result<Shader, Exit> {
+    let found = find(&[path.to_owned()]);
+    let [input] = found.as_slice() else {
+        terminal.error(format_args!(
+            "{} holds several shaders; trade takes one",
+            path.display()
+        ));
+        return Err(Exit::Trouble);
+    };
+    let shader = Shader::load(input, &args.language);
+    match &shader.checked {
+        Ok(_) => Ok(shader),
+        Err(Unusable::Invalid(diagnostics)) => {
+            terminal.diagnostics(diagnostics, &shader.files);
+            Err(Exit::Bad)
+        }
+        Err(Unusable::Trouble(error)) => {
+            terminal.error(error);
+            Err(Exit::Trouble)
+        }
+    }
+}
+
+/// The shader beside a scene, else the one that is exported for it, if there is one.
+fn beside(path: &Path, scene: Option<&Scene>, args: &Args) -> Option<Shader> {
+    let shader = path.with_extension("glsl");
+    if shader.is_file() {
+        let found = find(&[shader]);
+        return Some(Shader::load(found.first()?, &args.language));
+    }
+    let text = export::shader(scene?).ok()?;
+    let mut files = Files::default();
+    let file = files.add(File::new("<exported>", text));
+    Some(Shader {
+        name: "<exported>".to_owned(),
+        checked: crate::glsl::check(&files, file, &args.language.options()).map_err(Unusable::Invalid),
+        files,
+        warnings: Vec::new(),
+    })
+}
+
+/// The scene beside a shader.
+fn of_shader(path: &Path) -> Option<Scene> {
+    let found = find(&[path.to_owned()]);
+    let found = found.first()?.as_ref().ok()?;
+    Reference::find(None, found)?.scene.ok()
+}
+
+/// A worker for each device that is asked for.
+fn workers(asked: &str, budget: Duration, terminal: &Terminal) -> Result<Vec<(String, Worker)>, Exit> {
+    let fail = |error: String| {
+        terminal.error(error);
+        Exit::Trouble
+    };
+    let ons = match asked {
+        "cpu" => return Ok(Vec::new()),
+        "all" => {
+            let mut probe = worker(On::Auto, budget).map_err(fail)?.with_all_drivers();
+            match probe.probe() {
+                Ok(drivers) => drivers.iter().map(|driver| driver.name.clone()).collect(),
+                Err(failure) => {
+                    terminal.warn(format_args!("{failure}; only the CPU is measured"));
+                    return Ok(Vec::new());
+                }
+            }
+        }
+        name => vec![name.to_owned()],
+    };
+    let made = ons.into_iter().map(|name: String| {
+        let on = if name.to_lowercase().contains("llvmpipe") {
+            On::Lavapipe
+        } else {
+            on(&name)?
+        };
+        let short = if on == On::Lavapipe {
+            "lavapipe".to_owned()
+        } else {
+            name
+        };
+        Ok((short, worker(on, budget)?))
+    });
+    made.collect::<Result<_, String>>().map_err(fail)
+}
+
+fn tell(report: &Report, args: &Args, terminal: &Terminal) -> Exit {
+    if let Some(error) = args.max_error {
+        terminal.result(&report.line(error, &error.to_string()));
+    } else {
+        terminal.say(&format!(
+            "{} ways; the truth is {}: {}",
+            report.ways.len(),
+            report.truth,
+            if report.truth_error > 0.0 {
+                format!("{:.1e}", report.truth_error)
+            } else {
+                "nothing that a picture in f32 holds".to_owned()
+            }
+        ));
+        if !report.left_out.is_empty() {
+            terminal.say(&format!("no time for {}", report.left_out.join("; ")));
+        }
+        for (error, word) in ERRORS {
+            terminal.result(&report.line(error, word));
+        }
+        if let Some(line) = report.stability() {
+            terminal.result(&line);
+        }
+    }
+    let Some(folder) = &args.output else {
+        return Exit::Good;
+    };
+    let chart = report.chart();
+    let picture = match image::encode(&chart.image(), "trade.png".as_ref()) {
+        Ok(bytes) => bytes,
+        Err(error) => {
+            terminal.error(error);
+            return Exit::Trouble;
+        }
+    };
+    let files = [
+        ("trade.csv", report.csv().into_bytes()),
+        ("trade.json", report.json().into_bytes()),
+        ("trade.svg", chart.svg().into_bytes()),
+        ("trade.png", picture),
+    ];
+    let kept = files
+        .iter()
+        .all(|(name, bytes)| terminal.write(&folder.join(name), bytes));
+    if kept { Exit::Good } else { Exit::Trouble }
+}

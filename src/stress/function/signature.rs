@@ -1,0 +1,557 @@
+//! What an author's function takes and gives, recognised by types and names.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use crate::glsl::Checked;
+use crate::glsl::tree::{Direction, Function, Scalar, Tree, Type, VariableKind};
+
+/// What a value is to the intersection of a ray with a sphere.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Role {
+    /// Where the ray starts.
+    Origin,
+    /// Where it goes.
+    Direction,
+    /// The sphere's centre.
+    Center,
+    /// Its radius.
+    Radius,
+    /// Centre and radius in one vec4.
+    Sphere,
+    /// The smallest t that counts.
+    TMin,
+    /// The largest.
+    TMax,
+    /// The t that was found.
+    T,
+    /// The second one.
+    Second,
+    /// Whether one was found.
+    Flag,
+}
+
+/// Roles and the names that people give them, in small letters without underscores.
+const NAMES: [(Role, &[&str]); 10] = [
+    (
+        Role::Origin,
+        &[
+            "o",
+            "ro",
+            "or",
+            "org",
+            "orig",
+            "origin",
+            "rayorigin",
+            "rayorig",
+            "rayo",
+            "rayorg",
+            "eye",
+            "start",
+            "from",
+            "camera",
+            "raypos",
+            "rayposition",
+            "src",
+        ],
+    ),
+    (
+        Role::Direction,
+        &[
+            "d",
+            "rd",
+            "dir",
+            "direction",
+            "raydir",
+            "raydirection",
+            "rayd",
+            "ray",
+            "v",
+            "dirn",
+            "ird",
+            "rdir",
+        ],
+    ),
+    (
+        Role::Center,
+        &[
+            "c",
+            "ce",
+            "cen",
+            "center",
+            "centre",
+            "spherecenter",
+            "spherecentre",
+            "sphcenter",
+            "sc",
+            "spherepos",
+            "sphereposition",
+            "spherec",
+            "spos",
+        ],
+    ),
+    (
+        Role::Radius,
+        &[
+            "r",
+            "ra",
+            "rad",
+            "radius",
+            "sphereradius",
+            "sphradius",
+            "sr",
+            "spherer",
+            "srad",
+            "size",
+        ],
+    ),
+    (Role::Sphere, &["sph", "sphere", "s", "ball"]),
+    (Role::TMin, &["tmin", "mint", "epsilon", "eps", "near"]),
+    (Role::TMax, &["tmax", "maxt", "far"]),
+    (
+        Role::T,
+        &[
+            "t", "dist", "distance", "thit", "hitt", "t0", "tnear", "tn", "depth", "len", "tclosest",
+        ],
+    ),
+    (Role::Second, &["t1", "tfar", "tf", "t2"]),
+    (
+        Role::Flag,
+        &[
+            "hit",
+            "ishit",
+            "didhit",
+            "intersects",
+            "valid",
+            "found",
+            "happened",
+            "id",
+            "index",
+            "object",
+        ],
+    ),
+];
+
+impl Role {
+    /// The role that `--map` calls so.
+    #[must_use]
+    pub fn named(word: &str) -> Option<Self> {
+        let roles = [
+            ("origin", Self::Origin),
+            ("direction", Self::Direction),
+            ("center", Self::Center),
+            ("centre", Self::Center),
+            ("radius", Self::Radius),
+            ("sphere", Self::Sphere),
+            ("tmin", Self::TMin),
+            ("tmax", Self::TMax),
+            ("t", Self::T),
+            ("second", Self::Second),
+            ("hit", Self::Flag),
+        ];
+        roles
+            .into_iter()
+            .find(|(name, _)| *name == word)
+            .map(|(_, role)| role)
+    }
+
+    fn word(self) -> &'static str {
+        match self {
+            Self::Origin => "the ray's origin",
+            Self::Direction => "its direction",
+            Self::Center => "the sphere's centre",
+            Self::Radius => "its radius",
+            Self::Sphere => "the sphere",
+            Self::TMin => "the smallest t",
+            Self::TMax => "the largest t",
+            Self::T => "t",
+            Self::Second => "the second t",
+            Self::Flag => "whether it hits",
+        }
+    }
+
+    /// What a shader that reads a case passes for it.
+    fn input(self) -> Option<&'static str> {
+        Some(match self {
+            Self::Origin => "a.xyz",
+            Self::Direction => "b.xyz",
+            Self::Center => "c.xyz",
+            Self::Radius => "a.w",
+            Self::Sphere => "vec4(c.xyz, a.w)",
+            Self::TMin => "0.0",
+            Self::TMax => "3.0e38",
+            Self::T | Self::Second | Self::Flag => return None,
+        })
+    }
+
+    fn fits(self, ty: Type) -> bool {
+        match self {
+            Self::Origin | Self::Direction | Self::Center => ty == Type::vector(Scalar::Float, 3),
+            Self::Sphere => ty == Type::vector(Scalar::Float, 4),
+            Self::Radius | Self::TMin | Self::TMax | Self::Second => ty == Type::FLOAT,
+            Self::T => ty == Type::FLOAT || ty == Type::vector(Scalar::Float, 2),
+            Self::Flag => [Type::BOOL, Type::INT].contains(&ty),
+        }
+    }
+}
+
+/// What the user says about a function, where names do not: paths (`ray.origin`, `s`, `return`) and their roles.
+pub type Map = BTreeMap<String, Role>;
+
+/// A value that a function takes or gives: a parameter, its result, or a part of one.
+#[derive(Debug, Clone)]
+struct Leaf {
+    path: String,
+    ty: Type,
+    /// The name of the structure that it is a member of.
+    within: String,
+}
+
+/// A function, and what its values are.
+#[derive(Debug, Clone)]
+pub struct Signature {
+    /// Its name.
+    pub name: String,
+    /// The names of its parameters with their types.
+    parameters: Vec<(String, String)>,
+    /// The type of what it returns; none for nothing.
+    returns: Option<String>,
+    /// What it takes, by its path.
+    pub(super) inputs: Vec<(String, Role)>,
+    /// What it gives, by its path.
+    pub(super) outputs: Vec<(String, Role, Type)>,
+}
+
+impl Signature {
+    /// Of the function of that name.
+    ///
+    /// # Errors
+    /// What cannot be recognised, in a sentence.
+    pub fn recognise(checked: &Checked, name: &str, map: &Map) -> Result<Self, String> {
+        let tree = &checked.tree;
+        let mut why = None;
+        for (_, function) in tree.functions.iter() {
+            if function.name == name && function.body.is_some() {
+                match Self::of(tree, function, map) {
+                    Ok(signature) => return Ok(signature),
+                    Err(reason) => why = Some(reason),
+                }
+            }
+        }
+        Err(why.unwrap_or_else(|| {
+            let names = tree.functions.iter().map(|(_, function)| function.name.as_str());
+            let names: Vec<_> = names.filter(|name| *name != "mainImage").collect();
+            format!("there is no function {name}; there are {}", names.join(", "))
+        }))
+    }
+
+    /// All functions that can be recognised without help.
+    #[must_use]
+    pub fn all(checked: &Checked) -> Vec<Self> {
+        let functions = checked.tree.functions.iter();
+        let functions = functions.filter(|(_, function)| function.body.is_some());
+        functions
+            .filter_map(|(_, function)| Self::of(&checked.tree, function, &Map::new()).ok())
+            .collect()
+    }
+
+    /// The one function that can be recognised without help.
+    ///
+    /// # Errors
+    /// That there is none, or which ones there are.
+    pub fn only(checked: &Checked) -> Result<Self, String> {
+        let mut all = Self::all(checked);
+        match (all.pop(), all.is_empty()) {
+            (Some(one), true) => Ok(one),
+            (None, _) => Err(
+                "no function is seen to take a ray and a sphere and to give t; name it with --function"
+                    .to_owned(),
+            ),
+            (Some(last), false) => {
+                let names = all.iter().chain([&last]).map(|one| one.name.as_str());
+                let names: Vec<_> = names.collect();
+                Err(format!("say with --function which one: {}", names.join(", ")))
+            }
+        }
+    }
+
+    fn of(tree: &Tree, function: &Function, map: &Map) -> Result<Self, String> {
+        let mut takes = Vec::new();
+        let mut gives = Vec::new();
+        let mut parameters = Vec::new();
+        for (index, &id) in function.parameters.iter().enumerate() {
+            let variable = &tree[id];
+            let name = if variable.name.is_empty() {
+                format!("unnamed{index}")
+            } else {
+                variable.name.clone()
+            };
+            parameters.push((name.clone(), tree.type_name(variable.ty)));
+            let VariableKind::Parameter(direction) = variable.kind else {
+                continue;
+            };
+            let leaves = leaves(tree, &name, variable.ty, "");
+            if matches!(direction, Direction::Out | Direction::InOut) {
+                gives.extend(leaves.clone());
+            }
+            if direction != Direction::Out {
+                takes.extend(leaves);
+            }
+        }
+        let returns = (function.return_type != Type::Void).then(|| tree.type_name(function.return_type));
+        gives.extend(leaves(tree, "return", function.return_type, ""));
+        let inputs = inputs(&takes, map);
+        let has = |role| inputs.iter().any(|(_, found)| *found == role);
+        let wanted = [Role::Origin, Role::Direction, Role::Center, Role::Radius];
+        let whole = has(Role::Sphere);
+        let missing: Vec<_> = wanted
+            .into_iter()
+            .filter(|role| !has(*role) && (!whole || matches!(role, Role::Origin | Role::Direction)))
+            .map(Role::word)
+            .collect();
+        let name = &function.name;
+        if !missing.is_empty() {
+            let paths: Vec<_> = takes.iter().map(|leaf| leaf.path.as_str()).collect();
+            return Err(format!(
+                "of what {name} takes ({}), it is not clear what is {}; say so with --map, as in --map {}=origin",
+                paths.join(", "),
+                missing.join(" and what is "),
+                paths.first().unwrap_or(&"p")
+            ));
+        }
+        let outputs = outputs(&gives, map);
+        if !outputs.iter().any(|(_, role, _)| *role == Role::T) {
+            return Err(format!(
+                "it is not clear how {name} gives t: as a float, as a vec2 of both, in an out parameter or in a member; say so with --map, \
+                 as in --map return.depth=t"
+            ));
+        }
+        Ok(Self {
+            name: name.clone(),
+            parameters,
+            returns,
+            inputs,
+            outputs,
+        })
+    }
+
+    /// Whether it gives both roots.
+    #[must_use]
+    pub fn gives_two(&self) -> bool {
+        let two = |(_, role, ty): &(String, Role, Type)| {
+            *role == Role::Second || (*role == Role::T && *ty != Type::FLOAT)
+        };
+        self.outputs.iter().any(two)
+    }
+
+    /// Whether it tells apart from t whether there is one.
+    #[must_use]
+    pub fn gives_flag(&self) -> bool {
+        self.outputs.iter().any(|(_, role, _)| *role == Role::Flag)
+    }
+
+    /// Statements that call it for a case, and the colour of t, flag and second t.
+    pub(super) fn call(&self) -> (String, String) {
+        let mut text = String::new();
+        let local = |path: &str| {
+            let (head, rest) = path.split_at(path.find('.').unwrap_or(path.len()));
+            let place = self.parameters.iter().position(|(name, _)| name == head);
+            place.map_or_else(|| format!("tpResult{rest}"), |at| format!("tp{at}{rest}"))
+        };
+        for (index, (_, ty)) in self.parameters.iter().enumerate() {
+            let _ = writeln!(text, "    {ty} tp{index};");
+        }
+        for (path, role) in &self.inputs {
+            if let Some(input) = role.input() {
+                let _ = writeln!(text, "    {} = {input};", local(path));
+            }
+        }
+        let arguments: Vec<_> = (0..self.parameters.len()).map(|i| format!("tp{i}")).collect();
+        let call = format!("{}({})", self.name, arguments.join(", "));
+        let _ = match &self.returns {
+            Some(ty) => writeln!(text, "    {ty} tpResult = {call};"),
+            None => writeln!(text, "    {call};"),
+        };
+        let of = |wanted: Role| {
+            let found = self.outputs.iter().find(|(_, role, _)| *role == wanted);
+            found.map(|(path, _, ty)| (local(path), *ty))
+        };
+        let (t, pair) = of(Role::T).map_or(("0.0".to_owned(), false), |(path, ty)| (path, ty != Type::FLOAT));
+        let second = of(Role::Second).map_or("0.0".to_owned(), |(path, _)| path);
+        let flag = of(Role::Flag).map_or("0.0".to_owned(), |(path, _)| format!("float({path})"));
+        let result = if pair {
+            format!("vec3({t}.x, {flag}, {t}.y)")
+        } else {
+            format!("vec3({t}, {flag}, {second})")
+        };
+        (text, result)
+    }
+
+    /// Statements that give a function's parameters these values.
+    #[must_use]
+    pub fn assignments(&self, o: [f32; 3], d: [f32; 3], c: [f32; 3], r: f32) -> Vec<String> {
+        let number = |x: f32| {
+            let text = format!("{x:?}");
+            if text.contains(['.', 'e', 'N', 'i']) {
+                text
+            } else {
+                text + ".0"
+            }
+        };
+        let vector = |v: [f32; 3]| format!("vec3({})", v.map(number).join(", "));
+        let value = |role: Role| match role {
+            Role::Origin => Some(vector(o)),
+            Role::Direction => Some(vector(d)),
+            Role::Center => Some(vector(c)),
+            Role::Radius => Some(number(r)),
+            Role::Sphere => Some(format!("vec4({}, {})", c.map(number).join(", "), number(r))),
+            _ => None,
+        };
+        let told = self.inputs.iter();
+        told.filter_map(|(path, role)| Some(format!("{path} = {};", value(*role)?)))
+            .collect()
+    }
+}
+
+/// The parts of a value that are scalars or vectors; elements of arrays are not looked at.
+fn leaves(tree: &Tree, path: &str, ty: Type, within: &str) -> Vec<Leaf> {
+    match ty {
+        Type::Struct(id) => {
+            let of = &tree[id];
+            let members = of.members.iter();
+            members
+                .flat_map(|member| leaves(tree, &format!("{path}.{}", member.name), member.ty, &of.name))
+                .collect()
+        }
+        Type::Scalar(_) | Type::Vector(..) => vec![Leaf {
+            path: path.to_owned(),
+            ty,
+            within: within.to_owned(),
+        }],
+        _ => Vec::new(),
+    }
+}
+
+impl Leaf {
+    /// Its last name as people vary it.
+    fn plain(&self) -> String {
+        let last = self.path.rsplit('.').next().unwrap_or_default();
+        last.to_lowercase().replace('_', "")
+    }
+
+    fn named(&self, role: Role) -> bool {
+        let names = NAMES.iter().find(|(named, _)| *named == role);
+        role.fits(self.ty) && names.is_some_and(|(_, names)| names.contains(&self.plain().as_str()))
+    }
+
+    /// Whether it may be a place, and not a colour or a normal.
+    fn is_spatial(&self) -> bool {
+        let plain = self.plain();
+        let other = [
+            "col", "albedo", "emi", "kd", "ks", "spec", "norm", "mat", "amb", "diff",
+        ];
+        self.ty == Type::vector(Scalar::Float, 3)
+            && !other.iter().any(|word| plain.contains(word))
+            && plain != "n"
+    }
+
+    fn is_within(&self, word: &str) -> bool {
+        self.within.to_lowercase().contains(word)
+    }
+}
+
+fn inputs(takes: &[Leaf], map: &Map) -> Vec<(String, Role)> {
+    let mut found: Vec<(String, Role)> = Vec::new();
+    for leaf in takes {
+        if let Some(&role) = map.get(&leaf.path) {
+            found.push((leaf.path.clone(), role));
+        }
+    }
+    let give = |found: &mut Vec<(String, Role)>, leaf: &Leaf, role: Role| {
+        let taken = found
+            .iter()
+            .any(|(path, other)| *path == leaf.path || *other == role);
+        if !taken && !map.contains_key(&leaf.path) {
+            found.push((leaf.path.clone(), role));
+        }
+    };
+    let roles = [
+        Role::Origin,
+        Role::Direction,
+        Role::Center,
+        Role::Radius,
+        Role::Sphere,
+        Role::TMin,
+        Role::TMax,
+    ];
+    for role in roles {
+        for leaf in takes.iter().filter(|leaf| leaf.named(role)) {
+            give(&mut found, leaf, role);
+        }
+    }
+    // What is called `pos` is what its structure makes of it, or its place among the others.
+    let has = |found: &[(String, Role)], role: Role| found.iter().any(|(_, other)| *other == role);
+    for (word, role) in [
+        ("ray", Role::Origin),
+        ("ray", Role::Direction),
+        ("sph", Role::Center),
+        ("ball", Role::Center),
+    ] {
+        for leaf in takes
+            .iter()
+            .filter(|leaf| leaf.is_spatial() && leaf.is_within(word))
+        {
+            give(&mut found, leaf, role);
+        }
+    }
+    let whole = has(&found, Role::Sphere);
+    for role in [Role::Origin, Role::Direction, Role::Center] {
+        if !(whole && role == Role::Center) {
+            for leaf in takes.iter().filter(|leaf| leaf.is_spatial()) {
+                give(&mut found, leaf, role);
+            }
+        }
+    }
+    if !whole {
+        for leaf in takes.iter().filter(|leaf| leaf.ty == Type::FLOAT) {
+            give(&mut found, leaf, Role::Radius);
+        }
+    }
+    found
+}
+
+fn outputs(gives: &[Leaf], map: &Map) -> Vec<(String, Role, Type)> {
+    let mut found: Vec<(String, Role, Type)> = Vec::new();
+    let mut give = |leaf: &Leaf, role: Role| {
+        let taken = found
+            .iter()
+            .any(|(path, other, _)| *path == leaf.path || *other == role);
+        if !taken {
+            found.push((leaf.path.clone(), role, leaf.ty));
+        }
+    };
+    for leaf in gives {
+        if let Some(&role) = map.get(&leaf.path) {
+            give(leaf, role);
+        }
+    }
+    // What is returned by itself is t, or whether there is one.
+    for leaf in gives.iter().filter(|leaf| leaf.path == "return") {
+        if Role::T.fits(leaf.ty) {
+            give(leaf, Role::T);
+        } else if Role::Flag.fits(leaf.ty) {
+            give(leaf, Role::Flag);
+        }
+    }
+    for role in [Role::T, Role::Second, Role::Flag] {
+        for leaf in gives.iter().filter(|leaf| leaf.named(role)) {
+            give(leaf, role);
+        }
+    }
+    // The only floats that a function gives out are its t.
+    let floats: Vec<_> = gives.iter().filter(|leaf| leaf.ty == Type::FLOAT).collect();
+    if let [leaf] = floats[..] {
+        give(leaf, Role::T);
+    }
+    found
+}

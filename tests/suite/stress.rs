@@ -1,0 +1,368 @@
+//! Functions of authors at the extremes: planted mistakes are named, right ones are not blamed, and the GPU says what the CPU says.
+
+use std::fs;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use serde_json::Value;
+use toyproof::glsl::Options;
+use toyproof::gpu::FloatMode;
+use toyproof::stress::function::{self, Findings, Map, Role, Signature};
+use toyproof::stress::{self, Settings, formula};
+
+use crate::program::{command, has_driver, toyproof};
+use crate::support::{EVERY_RUNG, Edit, SPHERE, checked, edited, worker};
+
+const FEW: Settings = Settings {
+    seed: 1,
+    cases: 60,
+    float: FloatMode::Strict,
+};
+
+fn examined(text: &str, name: &str, map: &Map) -> Findings {
+    let signature = Signature::recognise(&checked(text), name, map).unwrap_or_else(|why| panic!("{why}"));
+    let subject = function::subject(text, &signature, Options::default());
+    let never = AtomicBool::new(false);
+    function::examine(&subject, &signature, None, FEW, &never, || ()).unwrap()
+}
+
+fn mistake(text: &str, name: &str) -> Option<&'static str> {
+    examined(text, name, &Map::new())
+        .mistake
+        .map(|mistake| mistake.name)
+}
+
+/// A whole quadratic equation, for directions of any length, as the slide has it but for the division that the slide forgets.
+const TEXTBOOK: &str = "bool hitSphere(vec3 ro, vec3 rd, vec3 center, float radius, out float t) {
+    vec3 oc = ro - center;
+    float a = dot(rd, rd);
+    float b = 2.0 * dot(oc, rd);
+    float c = dot(oc, oc) - radius * radius;
+    float disc = b * b - 4.0 * a * c;
+    if (disc < 0.0) return false;
+    t = (-b - sqrt(disc)) / (2.0 * a);
+    if (t > 0.0) return true;
+    t = (-b + sqrt(disc)) / (2.0 * a);
+    return t > 0.0;
+}
+void mainImage(out vec4 color, in vec2 place) { color = vec4(0.0); }
+";
+
+#[test]
+fn planted_mistakes_have_their_names() {
+    let near = "float t = -b - root;";
+    let of_rung: [(&str, &[Edit]); 9] = [
+        ("direction-of-length-1", &[]),
+        (
+            "roots-not-halved",
+            &[
+                (near, "float t = 2.0 * (-b - root);"),
+                ("t = -b + root;", "t = 2.0 * (-b + root);"),
+            ],
+        ),
+        ("larger-root", &[(near, "float t = -b + root;")]),
+        (
+            "behind-the-eye",
+            &[(
+                "if (t > 0.00001) {\n            return t;\n        }\n        t = -b + root;\n        if (t > 0.00001) {\n            return t;\n        }",
+                "return t;",
+            )],
+        ),
+        (
+            "not-from-inside",
+            &[(
+                "        t = -b + root;\n        if (t > 0.00001) {\n            return t;\n        }\n",
+                "",
+            )],
+        ),
+        (
+            "radius-not-squared",
+            &[("sphere.radius * sphere.radius", "sphere.radius")],
+        ),
+        (
+            "sign-of-b",
+            &[(
+                "float b = dot(f, ray.direction);",
+                "float b = -dot(f, ray.direction);",
+            )],
+        ),
+        (
+            "radius-added",
+            &[("dot(f, f) - sphere.radius", "dot(f, f) + sphere.radius")],
+        ),
+        (
+            "centre-ignored",
+            &[("vec3 f = ray.origin - sphere.center;", "vec3 f = ray.origin;")],
+        ),
+    ];
+    let of_textbook: [(&str, &str, &str); 7] = [
+        ("roots-not-halved", "/ (2.0 * a)", ""),
+        ("not-over-a", "/ (2.0 * a)", "/ 2.0"),
+        ("discriminant-without-4", "4.0 * a * c", "a * c"),
+        ("no-square-root", "sqrt(disc)", "disc"),
+        ("discriminant-plus", "b * b - 4.0", "b * b + 4.0"),
+        ("half-b-with-4", "float b = 2.0 *", "float b ="),
+        (
+            "direction-of-length-1",
+            "float a = dot(rd, rd);",
+            "float a = 1.0;",
+        ),
+    ];
+    let mut right = 0;
+    let mut told = Vec::new();
+    let mut judge = |expected: &str, found: Option<&str>| {
+        right += u32::from(found == Some(expected));
+        told.push(format!("{expected}: {found:?}"));
+    };
+    for (expected, edits) in of_rung {
+        judge(expected, mistake(&edited(&SPHERE, edits), "intersectSphere"));
+    }
+    for (expected, from, to) in of_textbook {
+        judge(expected, mistake(&TEXTBOOK.replace(from, to), "hitSphere"));
+    }
+    assert!(right >= 15, "{right} of 16 are named: {told:#?}");
+}
+
+#[test]
+fn a_right_function_is_not_blamed_and_its_limits_are_told() {
+    let findings = examined(TEXTBOOK, "hitSphere", &Map::new());
+    assert_eq!(findings.mistake, None);
+    let lines = findings.report.lines();
+    assert!(
+        lines[0].starts_with("hitSphere f32 fails from scale 1e-20 down"),
+        "{lines:?}"
+    );
+    let example = findings.example.unwrap();
+    assert!(
+        example.paste.iter().any(|line| line.starts_with("ro = vec3(")),
+        "{example:?}"
+    );
+}
+
+#[test]
+fn an_example_has_few_digits_and_is_wrong_as_it_says() {
+    let text = edited(&SPHERE, &[("float t = -b - root;", "float t = -b + root;")]);
+    let example = examined(&text, "intersectSphere", &Map::new()).example.unwrap();
+    let digits: usize = example.paste.iter().map(String::len).sum();
+    assert!(digits < 160, "{example:?}");
+    assert_ne!(example.expected, example.came);
+}
+
+#[test]
+fn signatures_are_recognised_by_types_and_names_or_told() {
+    let main = "void mainImage(out vec4 c, in vec2 p) { c = vec4(0.0); }";
+    let answer = "vec3 oc = O - C; float b = dot(oc, D); float h = b * b - dot(oc, oc) + R * R;";
+    let cases = [
+        (
+            "vec2 f(in vec3 ro, in vec3 rd, in vec3 ce, float ra)",
+            "ro",
+            "rd",
+            "ce",
+            "ra",
+            "if (h < 0.0) return vec2(-1.0); h = sqrt(h); return vec2(-b - h, -b + h);",
+        ),
+        (
+            "float f(vec3 ro, vec3 rd, vec4 sph)",
+            "ro",
+            "rd",
+            "sph.xyz",
+            "sph.w",
+            "return h < 0.0 ? -1.0 : -b - sqrt(h) > 0.0 ? -b - sqrt(h) : -b + sqrt(h);",
+        ),
+        (
+            "bool f(vec3 center, float radius, vec3 origin, vec3 direction, out float dist)",
+            "origin",
+            "direction",
+            "center",
+            "radius",
+            "if (h < 0.0) return false; dist = -b - sqrt(h); if (dist < 0.0) dist = -b + sqrt(h); return dist > 0.0;",
+        ),
+        (
+            "int f(Ray ray, Ball ball, inout Hit hit)",
+            "ray.pos",
+            "ray.dir",
+            "ball.pos",
+            "ball.r",
+            "if (h < 0.0) return 0; hit.t = -b - sqrt(h); if (hit.t < 0.0) hit.t = -b + sqrt(h); return hit.t > 0.0 ? 1 : 0;",
+        ),
+    ];
+    let structs = "struct Ray { vec3 pos; vec3 dir; }; struct Ball { vec3 pos; vec3 color; float r; }; struct Hit { float t; vec3 n; };";
+    for (head, o, d, c, r, body) in cases {
+        let formula = answer
+            .replace('O', o)
+            .replace('D', d)
+            .replace('C', c)
+            .replace('R', r);
+        let text = format!("{structs}\n{head} {{ {formula} {body} }}\n{main}");
+        assert_eq!(mistake(&text, "f"), Some("direction-of-length-1"), "{text}");
+    }
+    let formula = answer
+        .replace('O', "a")
+        .replace('D', "v")
+        .replace('C', "m")
+        .replace('R', "w");
+    let text = format!(
+        "float f(vec3 m, vec3 a, vec3 v, float w) {{ {formula} return h < 0.0 ? 1e9 : -b - sqrt(h) > 0.0 ? -b - sqrt(h) : -b + sqrt(h) > 0.0 ? -b + sqrt(h) : 1e9; }}\n{main}"
+    );
+    let map = [("m", Role::Center), ("a", Role::Origin), ("v", Role::Direction)];
+    let map: Map = map
+        .into_iter()
+        .map(|(path, role)| (path.to_owned(), role))
+        .collect();
+    let found = examined(&text, "f", &map).mistake.map(|mistake| mistake.name);
+    assert_eq!(found, Some("direction-of-length-1"));
+    let why = Signature::recognise(&checked(&text), "g", &Map::new()).unwrap_err();
+    assert!(why.contains("there is no function g; there are f"), "{why}");
+    let other = format!("float f(float x) {{ return x; }}\n{main}");
+    let why = Signature::recognise(&checked(&other), "f", &Map::new()).unwrap_err();
+    assert!(why.contains("it is not clear what is the ray's origin"), "{why}");
+}
+
+#[test]
+fn the_rungs_functions_are_recognised_and_blamed_for_nothing_but_unit_directions() {
+    let mut seen = 0;
+    for rung in EVERY_RUNG {
+        let Ok(signature) = Signature::recognise(&checked(rung.shader), "intersectSphere", &Map::new())
+        else {
+            continue;
+        };
+        let found = mistake(rung.shader, &signature.name);
+        assert_eq!(found, Some("direction-of-length-1"), "{}", rung.name);
+        seen += 1;
+    }
+    assert!(seen >= 12, "{seen}");
+}
+
+#[test]
+fn a_strict_gpu_fails_where_the_cpu_does() {
+    let Some(mut worker) = worker() else { return };
+    let subjects = formula::subjects();
+    let never = AtomicBool::new(false);
+    let report = stress::study(&subjects, Some(&mut worker), FEW, &never, || ()).unwrap();
+    let mut compared = 0;
+    for row in report.rows.iter().filter(|row| row.device != stress::CPU) {
+        let same = |other: &&stress::Row| {
+            (other.device.as_str(), other.precision) == (stress::CPU, "f32")
+                && (&other.formula, other.axis, other.value) == (&row.formula, row.axis, row.value)
+        };
+        let cpu = report.rows.iter().find(same).unwrap();
+        assert_eq!(
+            cpu.tally, row.tally,
+            "{} on {} {}",
+            row.formula, row.axis, row.value
+        );
+        compared += 1;
+    }
+    assert!(compared > 700, "{compared}");
+}
+
+#[test]
+fn what_is_known_of_the_formulas_is_found() {
+    let never = AtomicBool::new(false);
+    let few = Settings { cases: 200, ..FEW };
+    let report = stress::study(&formula::subjects(), None, few, &never, || ()).unwrap();
+    let share = |formula: &str, precision: &str, axis: &str, value: &str| {
+        let rows = report.rows.iter();
+        let mut rows = rows.filter(|row| row.formula == formula && row.precision == precision);
+        let row = rows.find(|row| row.axis == axis && row.value.to_string() == value);
+        row.unwrap_or_else(|| panic!("{formula} {axis} {value}"))
+            .tally
+            .failing_share()
+    };
+    // Cancellation in |f|² − r², and what recentring does about it.
+    assert!(share("textbook", "f32", "distance/radius", "1e4") > 0.1);
+    assert!(share("half-b", "f32", "distance/radius", "1e4") > 0.1);
+    assert!(share("recentred", "f32", "distance/radius", "1e4") == 0.0);
+    // Overflow and underflow of squares.
+    assert!(share("textbook", "f32", "scale", "1e20") > 0.9);
+    for (scale, precision) in [
+        ("1e-30", "f32"),
+        ("1e30", "f32"),
+        ("1e-30", "f64"),
+        ("1e30", "f64"),
+    ] {
+        assert!(
+            share("scaled", precision, "scale", scale) == 0.0,
+            "{precision} {scale}"
+        );
+    }
+    // a = 1 with another direction.
+    assert!(share("course", "f64", "|d|", "1e2") > 0.5 && share("textbook", "f64", "|d|", "1e2") == 0.0);
+    // Rays that leave a surface.
+    assert!(share("t > 0", "f32", "mirrored rays", "scale 1") > 0.3);
+    assert!(share("t > 1e-3", "f32", "mirrored rays", "scale 1") > 0.9);
+    assert!(share("skip the surface", "f32", "grazing rays", "ground r = 1000") == 0.0);
+}
+
+#[test]
+fn the_command_writes_its_files_and_names_the_columns() {
+    let folder = tempfile::tempdir().unwrap();
+    let on = if has_driver() { "auto" } else { "cpu" };
+    let run = toyproof(
+        folder.path(),
+        &["stress", "-o", "out", "--cases", "20", "--on", on],
+    );
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    assert!(
+        run.stdout.contains("textbook f32 fails from scale"),
+        "{}",
+        run.stdout
+    );
+    let out = folder.path().join("out");
+    let csv = fs::read_to_string(out.join("stress.csv")).unwrap();
+    let head = "formula,precision,device,axis,value,cases,wrong_hits,t_ulp_p50,t_ulp_p99,t_ulp_max,nan,self_hits,lost";
+    assert_eq!(csv.lines().next(), Some(head));
+    let json: Value = serde_json::from_str(&fs::read_to_string(out.join("stress.json")).unwrap()).unwrap();
+    assert_eq!(json["rows"].as_array().unwrap().len(), csv.lines().count() - 1);
+    for name in ["spheres", "errors", "quadrics", "secondary"] {
+        assert!(out.join(format!("stress-{name}.png")).is_file(), "{name}");
+    }
+}
+
+#[test]
+fn bad_input_is_told_and_leaves_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.glsl");
+    fs::write(&path, "void mainImage(out vec4 c, in vec2 p) { c = vec4(1.0); }").unwrap();
+    let stress = |arguments: &[&str]| {
+        let all = [&["stress", "-o", "out", "--on", "cpu"], arguments].concat();
+        toyproof(folder.path(), &all)
+    };
+    for (arguments, says) in [
+        (&["a.glsl", "--function", "f"][..], "there is no function f"),
+        (&["a.glsl"], "no function is seen"),
+        (&["none.glsl"], "none.glsl"),
+        (&["--function", "f"], "SHADER"),
+        (&["a.glsl", "--map", "x=nonsense"], "say what is what"),
+        (&["--cases", "0"], "--cases"),
+    ] {
+        let run = stress(arguments);
+        assert_eq!(run.code, 2, "{arguments:?}: {}", run.stderr);
+        assert!(run.stderr.contains(says), "{arguments:?}: {}", run.stderr);
+    }
+    assert!(!folder.path().join("out").exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_leaves_nothing_half_written() {
+    use rustix::process::{Pid, Signal, kill_process};
+    let folder = tempfile::tempdir().unwrap();
+    for arguments in [
+        &["stress", "-o", "out", "--on", "cpu", "--cases", "10000"][..],
+        &[
+            "trade", "-o", "out", "--on", "cpu", "--budget", "60s", "--size", "320x180", "s.toml",
+        ],
+    ] {
+        fs::write(folder.path().join("s.toml"), SPHERE.scene).unwrap();
+        let mut child = command(folder.path())
+            .args(arguments)
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(std::time::Duration::from_secs(3));
+        kill_process(Pid::from_child(&child), Signal::INT).unwrap();
+        assert_eq!(child.wait().unwrap().code(), Some(2), "{arguments:?}");
+        assert!(!Path::exists(&folder.path().join("out")), "{arguments:?}");
+    }
+}
