@@ -186,9 +186,14 @@ impl DriverArgs {
 
     /// What runs shaders on a GPU; none if the evaluator is asked for.
     pub(super) fn worker(&self) -> Result<Option<Worker>, String> {
+        self.worker_for(1)
+    }
+
+    /// The same with so many times the patience, for as many pictures at once.
+    pub(super) fn worker_for(&self, pictures: u32) -> Result<Option<Worker>, String> {
         match &self.on {
             Place::Cpu => Ok(None),
-            Place::Gpu(on) => worker(on.clone(), self.timeout).map(Some),
+            Place::Gpu(on) => worker(on.clone(), self.timeout * pictures).map(Some),
         }
     }
 

@@ -11,6 +11,7 @@ mod explain;
 mod export;
 mod inputs;
 mod interrupt;
+mod pool;
 mod render;
 mod run;
 mod scenes;

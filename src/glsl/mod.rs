@@ -20,6 +20,7 @@ mod print;
 mod token;
 pub mod tree;
 mod warn;
+pub mod wgsl;
 mod words;
 
 pub use codes::Code;
@@ -58,6 +59,13 @@ impl Checked {
     pub fn takes_derivatives(&self) -> bool {
         let is_derivative = |kind: &tree::ExprKind| matches!(kind, tree::ExprKind::BuiltIn { function, .. } if function.is_derivative());
         self.tree.exprs.iter().any(|(_, expr)| is_derivative(&expr.kind))
+    }
+
+    /// Whether it looks anything up in a texture.
+    #[must_use]
+    pub fn reads_textures(&self) -> bool {
+        let looks_up = |kind: &tree::ExprKind| matches!(kind, tree::ExprKind::BuiltIn { function, .. } if function.is_texture());
+        self.tree.exprs.iter().any(|(_, expr)| looks_up(&expr.kind))
     }
 }
 

@@ -123,12 +123,32 @@ pub(super) fn cut_short(watched: &Image, discards: bool) -> u64 {
     watched.pixels().iter().filter(|pixel| cut(pixel[3])).count() as u64
 }
 
+/// A program as a pipeline, for frames of any size.
+#[derive(Debug)]
+pub(super) struct Compiled {
+    layout: Layout,
+    pipeline: RenderPipeline,
+}
+
 impl Device {
     /// Compiles: a pipeline, and a draw that covers no pixel, since drivers compile when they first draw.
     pub(super) fn prepare(&self, program: &Program, frame: &Frame) -> Result<Scene, Failure> {
-        let [width, height] = frame.size;
+        self.stage(&self.compile(program)?, frame)
+    }
+
+    /// The pipeline; the driver may do its work when it first draws.
+    pub(super) fn compile(&self, program: &Program) -> Result<Compiled, Failure> {
         self.checked(|| {
             let layout = Layout::new(&self.gpu, self.filterable, program.channels);
+            let pipeline = layout.pipeline(&self.gpu, &program.words);
+            Ok(Compiled { layout, pipeline })
+        })
+    }
+
+    /// What a frame is painted with and into, and a draw that covers no pixel.
+    pub(super) fn stage(&self, compiled: &Compiled, frame: &Frame) -> Result<Scene, Failure> {
+        let [width, height] = frame.size;
+        self.checked(|| {
             let target = self.gpu.create_texture(&wgpu::TextureDescriptor {
                 label: None,
                 size: wgpu::Extent3d {
@@ -152,8 +172,8 @@ impl Device {
             });
             let scene = Scene {
                 size: frame.size,
-                pipeline: layout.pipeline(&self.gpu, &program.words),
-                bindings: layout.bind(&self.gpu, &self.queue, frame),
+                pipeline: compiled.pipeline.clone(),
+                bindings: compiled.layout.bind(&self.gpu, &self.queue, frame),
                 target,
                 readback,
                 bytes_per_row,

@@ -21,6 +21,7 @@ use thiserror::Error;
 pub use device::{Driver, LoopCap};
 pub use draw::{Drawn, Painter, SAFE_ROUNDS};
 pub use driver::{INSTALL_HINT, is_pinned_by_user, lavapipe_manifest, manifests};
+pub use protocol::Written;
 pub use serve::{MEMORY_BYTES, serve};
 pub use worker::Worker;
 
@@ -95,6 +96,9 @@ pub enum Failure {
     /// naga refuses what we made of a valid shader.
     #[error("naga cannot translate this shader")]
     Refused(Vec<Diagnostic>),
+    /// What was written is not read again.
+    #[error("what was written is refused by naga's own front end: {0}")]
+    Reread(String),
     /// naga gave up on it.
     #[error("naga cannot translate this shader: {0}")]
     Naga(String),

@@ -9,6 +9,7 @@ use super::{Drawn, Driver, Failure, FloatMode, On, Phase};
 use crate::emit::Target;
 use crate::frame::Frame;
 use crate::glsl::Lowered;
+use crate::glsl::wgsl::Hosted;
 use crate::image::Image;
 
 /// What the parent asks for.
@@ -22,6 +23,8 @@ pub(super) enum Job {
     Draw(Box<Shot>),
     /// Compile and paint a frame with another compiler's SPIR-V.
     Run(Box<Foreign>),
+    /// Read a converted shader again, compile it with what drivers differ in spelled out, and paint frames.
+    Paint(Box<Written>, Vec<Frame>, On),
     /// Tell in how many pixels of that frame the driver ends a loop by force.
     WatchLoops(Box<Shot>),
 }
@@ -44,6 +47,15 @@ pub(super) struct Foreign {
     pub(super) on: On,
 }
 
+/// A shader that was converted, as its file holds it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Written {
+    /// A WGSL file, within what stands for its host.
+    Wgsl(Hosted),
+    /// What naga was fed to write a file that it does not read.
+    Lowered(Lowered),
+}
+
 /// What the worker says, any number of phases and then the end.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Reply {
@@ -58,6 +70,7 @@ pub(super) enum Output {
     Translated(Vec<u8>),
     Drawn(Box<Drawn>),
     Ran(Image),
+    Painted(Vec<Image>, String),
     CutShort(u64),
 }
 

@@ -8,9 +8,10 @@ use std::time::Instant;
 
 use super::device::{self, Device};
 use super::draw::Program;
-use super::protocol::{Foreign, Job, Output, Reply, Shot, receive, send};
+use super::protocol::{Foreign, Job, Output, Reply, Shot, Written, receive, send};
 use super::{Failure, FloatMode, On, Phase, draw};
 use crate::emit::{self, Target};
+use crate::frame::Frame;
 use crate::glsl::Lowered;
 use crate::module::{Probe, ValidModule};
 
@@ -68,6 +69,9 @@ impl<W: Write> Server<W> {
                 }
                 Job::Draw(shot) => self.guarded(|server| server.draw(*shot)),
                 Job::Run(foreign) => self.guarded(|server| server.run(*foreign)),
+                Job::Paint(written, frames, on) => {
+                    self.guarded(|server| server.paint(*written, &frames, &on))
+                }
                 Job::WatchLoops(shot) => self.guarded(|server| server.watch_loops(*shot)),
             };
             if matches!(result, Err(Failure::Device(_))) {
@@ -152,6 +156,31 @@ impl<W: Write> Server<W> {
         let scene = self.device()?.prepare(&program, &frame)?;
         self.phase(Phase::Drawing)?;
         Ok(Output::Ran(self.device()?.paint(&scene)?))
+    }
+
+    fn paint(&mut self, written: Written, frames: &[Frame], on: &On) -> Result<Output, Failure> {
+        self.phase(Phase::Translating)?;
+        let upside_down = matches!(&written, Written::Wgsl(hosted) if hosted.upside_down);
+        let program = apart(move || {
+            let module = match written {
+                Written::Wgsl(hosted) => ValidModule::of_wgsl(&hosted.text).map_err(Failure::Reread)?,
+                Written::Lowered(lowered) => ValidModule::parse(&lowered).map_err(Failure::Refused)?,
+            };
+            Program::new(&module.spelled().map_err(Failure::Naga)?, FloatMode::Strict)
+        })?;
+        self.open(on)?;
+        let mut painted = Vec::new();
+        self.phase(Phase::Compiling)?;
+        let compiled = self.device()?.compile(&program)?;
+        for frame in frames {
+            self.phase(Phase::Compiling)?;
+            let scene = self.device()?.stage(&compiled, frame)?;
+            self.phase(Phase::Drawing)?;
+            let image = self.device()?.paint(&scene)?;
+            painted.push(if upside_down { image.upside_down() } else { image });
+        }
+        let name = self.device()?.name();
+        Ok(Output::Painted(painted, name))
     }
 
     fn watch_loops(&mut self, shot: Shot) -> Result<Output, Failure> {

@@ -9,7 +9,7 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use super::protocol::{Foreign, Job, Output, Reply, Shot, receive, send};
+use super::protocol::{Foreign, Job, Output, Reply, Shot, Written, receive, send};
 use super::{Drawn, Driver, Failure, FloatMode, On, Phase, driver};
 use crate::emit::Target;
 use crate::frame::Frame;
@@ -148,6 +148,18 @@ impl Worker {
         };
         match self.run(&Job::Run(Box::new(foreign)))? {
             Output::Ran(image) => Ok(image),
+            _ => Err(out_of_turn()),
+        }
+    }
+
+    /// The pictures that a converted shader paints, read again from what was written, and who painted them. What drivers differ in is spelled
+    /// in operations that they agree on, and they are held to the arithmetic as written.
+    ///
+    /// # Errors
+    /// [`Failure::Reread`] if the text is refused; else why there are no pictures.
+    pub fn paint(&mut self, written: Written, frames: Vec<Frame>) -> Result<(Vec<Image>, String), Failure> {
+        match self.run(&Job::Paint(Box::new(written), frames, self.on.clone()))? {
+            Output::Painted(images, device) => Ok((images, device)),
             _ => Err(out_of_turn()),
         }
     }

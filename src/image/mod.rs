@@ -62,6 +62,13 @@ impl Image {
         self.pixels[y as usize * self.width as usize + x as usize]
     }
 
+    /// The same with its first row last.
+    #[must_use]
+    pub fn upside_down(&self) -> Self {
+        let [width, height] = self.size();
+        Self::new(width, height, self.rows().rev().flatten().copied().collect())
+    }
+
     /// The rows, from the bottom up.
     #[must_use]
     pub fn rows(&self) -> impl DoubleEndedIterator<Item = &[[f32; 4]]> {

@@ -1,6 +1,7 @@
 //! naga's module: parsed from what `glsl` lowered, and validated.
 
 mod loops;
+mod spell;
 
 pub use loops::Probe;
 
@@ -64,6 +65,18 @@ impl ValidModule {
                 .map_or(naga::Span::UNDEFINED, |(span, _)| *span);
             vec![complaint("E0901", &chain(error.as_inner()), span, lowered)]
         })
+    }
+
+    /// Parses and validates a shader in WGSL.
+    ///
+    /// # Errors
+    /// naga's complaint, with the line.
+    pub fn of_wgsl(text: &str) -> Result<Self, String> {
+        let module = naga::front::wgsl::parse_str(text).map_err(|error| {
+            let line = error.location(text).map_or(0, |location| location.line_number);
+            format!("line {line}: {error}")
+        })?;
+        Self::validate(module).map_err(|error| chain(error.as_inner()))
     }
 
     fn validate(module: Module) -> Result<Self, naga::WithSpan<naga::valid::ValidationError>> {

@@ -35,6 +35,29 @@ pub(super) struct Cpu {
     pub(super) beyond_cap: u64,
 }
 
+/// A picture in f32, and what is known of it.
+pub(super) struct Single {
+    pub(super) image: Image,
+    /// Pixels whose colour hangs on what GLSL leaves undefined.
+    pub(super) undefined: Vec<bool>,
+    /// In how many pixels Mesa before 23 would end the loops.
+    pub(super) beyond_cap: u64,
+}
+
+impl Single {
+    /// Paints until `limits` end it, with the bits of a strict GPU run.
+    pub(super) fn paint(program: &Program, case: &Case, limits: Limits) -> Result<Self, Failure> {
+        let painted = paint::<f32>(program, case, limits, Variant::Observed)?;
+        let beyond_cap = painted.observations.beyond_cap;
+        let (image, undefined) = settled(program, case, limits, painted);
+        Ok(Self {
+            image,
+            undefined,
+            beyond_cap,
+        })
+    }
+}
+
 impl Cpu {
     /// Paints until `limits` end it. The picture in f32 has the bits of a strict GPU run.
     pub(super) fn paint(

@@ -2,6 +2,7 @@
 //! compared.
 
 mod cause;
+pub mod conversion;
 mod cpu;
 mod notes;
 mod tangent;

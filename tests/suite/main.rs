@@ -7,6 +7,7 @@ mod bad_input;
 mod batch;
 mod browser;
 mod commands;
+mod conversion;
 mod derivatives;
 mod diagnostics;
 mod elementary;

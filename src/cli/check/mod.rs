@@ -3,7 +3,6 @@
 mod gallery;
 mod judge;
 mod pictures;
-mod pool;
 mod reference;
 mod reports;
 mod results;
@@ -14,10 +13,10 @@ use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
 use self::judge::{Hand, Judge, Judged, Submission};
-use self::pool::InOrder;
 pub(super) use self::reference::Reference;
 use self::results::Results;
 use super::inputs::{DriverArgs, Format, FrameArgs, LanguageArgs};
+use super::pool::{self, InOrder};
 use super::shader::{Names, find};
 use super::{Exit, Terminal, codes, interrupt};
 use crate::compare::Verdict;

@@ -31,7 +31,7 @@ pub(crate) struct Draft {
 }
 
 impl Draft {
-    pub(super) fn new(tree: Tree, main_image: FunctionId) -> Self {
+    pub(in crate::glsl) fn new(tree: Tree, main_image: FunctionId) -> Self {
         Self {
             tree,
             main_image,

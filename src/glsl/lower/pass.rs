@@ -121,7 +121,7 @@ impl Passes {
         self.0 & (1 << pass as u32) != 0
     }
 
-    pub(super) fn run(self, draft: &mut Draft) {
+    pub(in crate::glsl) fn run(self, draft: &mut Draft) {
         for pass in Pass::ALL.iter().filter(|pass| self.contains(**pass)) {
             pass.run(draft);
         }

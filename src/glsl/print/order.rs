@@ -9,14 +9,14 @@ use super::super::lower::{Draft, walk};
 use super::super::tree::{ExprId, ExprKind, Function, Item, Type, VariableId, VariableKind};
 
 /// Everything that a picture needs, definitions before uses.
-pub(super) struct Order {
-    pub(super) items: Vec<Item>,
+pub(in crate::glsl) struct Order {
+    pub(in crate::glsl) items: Vec<Item>,
     /// The inputs that are read.
-    pub(super) inputs: Vec<VariableId>,
+    pub(in crate::glsl) inputs: Vec<VariableId>,
 }
 
 impl Order {
-    pub(super) fn of(draft: &Draft) -> Self {
+    pub(in crate::glsl) fn of(draft: &Draft) -> Self {
         let mut finder = Finder {
             draft,
             locals: locals(draft),

@@ -1,4 +1,4 @@
-//! A headless Chromium that paints shaders with WebGL 2, one after the other: a page of ours fetches them from a server of ours
+//! A headless Chromium that paints shaders with WebGL 2 or WebGPU, one after the other: a page of ours fetches them from a server of ours
 //! and posts what they paint.
 
 use std::io::{BufRead, BufReader, Read, Write};
@@ -85,6 +85,26 @@ impl Chromium {
     pub(crate) fn paint(
         &mut self,
         source: &str,
+        size: [u32; 2],
+        shots: &[(f32, i32)],
+    ) -> Result<Pixels, Failure> {
+        self.work("source", source, size, shots)
+    }
+
+    /// Paints a fragment shader in WGSL, with the bindings of converted shaders.
+    pub(crate) fn paint_wgsl(
+        &mut self,
+        text: &str,
+        size: [u32; 2],
+        shots: &[(f32, i32)],
+    ) -> Result<Pixels, Failure> {
+        self.work("wgsl", text, size, shots)
+    }
+
+    fn work(
+        &mut self,
+        language: &str,
+        text: &str,
         [width, height]: [u32; 2],
         shots: &[(f32, i32)],
     ) -> Result<Pixels, Failure> {
@@ -93,7 +113,7 @@ impl Chromium {
         }
         // What a browser that was given up on said too late.
         while self.answers.try_recv().is_ok() {}
-        let job = json!({"source": source, "width": width, "height": height, "shots": shots});
+        let job = json!({language: text, "width": width, "height": height, "shots": shots});
         self.jobs.send(job.to_string()).expect("the server lives");
         let answer = self
             .answers
@@ -120,6 +140,11 @@ impl Chromium {
                 "--use-gl=angle",
                 "--use-angle=swiftshader",
                 "--enable-unsafe-swiftshader",
+            ])
+            .args([
+                "--enable-unsafe-webgpu",
+                "--use-webgpu-adapter=swiftshader",
+                "--enable-features=Vulkan",
             ])
             .args(["--disable-background-networking", "--disable-component-update"])
             .arg(format!("--user-data-dir={}", profile.path().display()))

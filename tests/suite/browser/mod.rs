@@ -6,6 +6,7 @@
 
 pub(crate) mod chromium;
 
+use std::ffi::OsStr;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -13,6 +14,7 @@ use std::{env, fs};
 
 use chromium::{Chromium, Failure, Pixels};
 use toyproof::frame::Frame;
+use toyproof::glsl::wgsl::{Style, wgsl};
 use toyproof::glsl::{Options, check, lower};
 use toyproof::gpu::{FloatMode, On, Worker};
 use toyproof::source::{File, Files};
@@ -46,6 +48,34 @@ void main() {{
 }}
 "
     )
+}
+
+/// A shader's WGSL, in our own words.
+fn converted(shader: &str) -> Result<String, String> {
+    let mut files = Files::default();
+    let file = files.add(File::new("shader", shader));
+    let checked = check(&files, file, &Options::default())
+        .map_err(|errors| toyproof::diagnostic::short(&errors[0], &files))?;
+    wgsl(&checked, &files, Style::Plain).map_err(|why| why.to_string())
+}
+
+/// The author's shader with WebGL 2 beside its conversion with WebGPU.
+fn judge_conversion(browser: &mut Chromium, shader: &str) -> (Outcome, String) {
+    let told = |failure: Failure| match failure {
+        Failure::Refused(words) => words,
+        Failure::Silent => "the browser is silent".to_owned(),
+    };
+    let text = match converted(shader) {
+        Ok(text) => text,
+        Err(why) => return (Outcome::Unpainted, format!("not converted: {why}")),
+    };
+    let original = browser.paint(&wrapped(shader), SIZE, &SHOTS);
+    let conversion = browser.paint_wgsl(&text, SIZE, &SHOTS);
+    match (original, conversion) {
+        (Ok(original), Ok(conversion)) => compare(&conversion, &original),
+        (Err(failure), _) => (Outcome::Unpainted, format!("WebGL 2: {}", told(failure))),
+        (_, Err(failure)) => (Outcome::Unpainted, format!("WebGPU: {}", told(failure))),
+    }
 }
 
 /// What came of one shader.
@@ -147,6 +177,18 @@ fn the_course_is_the_same_in_a_browser() {
     }
 }
 
+#[test]
+fn conversions_of_the_course_are_the_same_in_a_browser() {
+    let Some((mut browser, _)) = both() else {
+        return;
+    };
+    for rung in RUNGS {
+        let (outcome, words) = judge_conversion(&mut browser, rung.shader);
+        let agrees = matches!(outcome, Outcome::Equal | Outcome::Close);
+        assert!(agrees, "{}: {outcome:?} {words}", rung.name);
+    }
+}
+
 /// Shaders of that folder that read no channel, drawn by the seed.
 fn drawn(folder: &Path) -> Vec<(PathBuf, String)> {
     let (count, seed): (usize, u64) = (setting("TOYPROOF_COUNT", 500), setting("TOYPROOF_SEED", 0));
@@ -174,9 +216,26 @@ fn other_shaders_are_the_same_in_a_browser() {
     let Some((mut browser, mut worker)) = both() else {
         return;
     };
+    tally(&folder, |text| judge(&mut browser, &mut worker, text));
+}
+
+#[test]
+fn conversions_of_other_shaders_are_the_same_in_a_browser() {
+    let Some(folder) = env::var_os("TOYPROOF_SHADERS") else {
+        eprintln!("skipped: TOYPROOF_SHADERS names no folder of shaders");
+        return;
+    };
+    let Some((mut browser, _)) = both() else {
+        return;
+    };
+    tally(&folder, |text| judge_conversion(&mut browser, text));
+}
+
+/// Judges shaders of a folder; few may differ.
+fn tally(folder: &OsStr, mut judge: impl FnMut(&str) -> (Outcome, String)) {
     let (mut equal, mut close, mut differ, mut others) = (0, 0, 0, 0);
-    for (path, text) in drawn(Path::new(&folder)) {
-        let (outcome, words) = judge(&mut browser, &mut worker, &text);
+    for (path, text) in drawn(Path::new(folder)) {
+        let (outcome, words) = judge(&text);
         eprintln!("{} {outcome:?} {words}", path.display());
         *match outcome {
             Outcome::Equal => &mut equal,

@@ -1,0 +1,136 @@
+//! What expressions do: assignments, steps, calls. WGSL assigns to no swizzle of several components.
+
+use super::super::tree::{BinaryOp, ExprId, ExprKind, Swizzle, Type, VariableKind};
+use super::Unprintable;
+use super::expression::Text;
+use super::writer::Writer;
+
+impl Writer<'_> {
+    /// Prints what an expression does; its value is not wanted.
+    pub(super) fn effect(&mut self, id: ExprId) -> Result<(), Unprintable> {
+        let tree = &self.draft.tree;
+        match &tree[id].kind {
+            &ExprKind::Assign { op, target, value } => self.assign(op, target, value),
+            &ExprKind::Step { op, target, .. } => self.step(op, target),
+            &ExprKind::Sequence { first, second } => {
+                self.effect(first)?;
+                self.effect(second)
+            }
+            &ExprKind::Conditional { condition, yes, no } => {
+                let condition = self.value(condition)?;
+                self.line(&format!("if {} {{", condition.words));
+                self.inset(|writer| writer.effect(yes))?;
+                self.line("} else {");
+                self.inset(|writer| writer.effect(no))?;
+                self.line("}");
+                Ok(())
+            }
+            ExprKind::Call { .. } => {
+                let call = self.value(id)?;
+                // A call that copied its arguments back was printed already.
+                if call.words.ends_with(')') {
+                    self.line(&format!("{};", call.words));
+                }
+                Ok(())
+            }
+            ExprKind::Binary {
+                op: BinaryOp::And | BinaryOp::Or,
+                ..
+            } if self.hoists(id) => {
+                self.value(id)?;
+                Ok(())
+            }
+            kind => {
+                let mut operands = Vec::new();
+                kind.for_each_operand(|operand| operands.push(operand));
+                operands.into_iter().try_for_each(|operand| self.effect(operand))
+            }
+        }
+    }
+
+    fn assign(&mut self, op: Option<BinaryOp>, target: ExprId, value: ExprId) -> Result<(), Unprintable> {
+        let tree = &self.draft.tree;
+        let types = (tree[target].ty, tree[value].ty);
+        let is_swizzle =
+            matches!(tree[target].kind, ExprKind::Swizzle { components, .. } if components.size() > 1);
+        let Some(op) = op else {
+            let value = self.value(value)?;
+            return self.set(target, &value);
+        };
+        let is_matrix = matches!(types.0, Type::Matrix { .. }) || matches!(types.1, Type::Matrix { .. });
+        let shifts = matches!(op, BinaryOp::ShiftLeft | BinaryOp::ShiftRight);
+        if is_swizzle || is_matrix || shifts || self.hoists(value) {
+            // GLSL leaves open when the target is read; WebGL's translators read it last.
+            let value = self.value(value)?;
+            let before = self.value(target)?;
+            let after = self.operation(op, (before, types.0), (value, types.1))?;
+            return self.set(target, &after);
+        }
+        let value = self.value(value)?;
+        let target = self.value(target)?.words;
+        self.line(&format!("{target} {}= {};", op.symbol(), value.words));
+        Ok(())
+    }
+
+    /// Prints an assignment of words.
+    pub(super) fn set(&mut self, target: ExprId, value: &Text) -> Result<(), Unprintable> {
+        match self.draft.tree[target].kind {
+            ExprKind::Swizzle { vector, components } if components.size() > 1 => {
+                self.set_components(vector, components, value)
+            }
+            _ => {
+                let target = self.value(target)?.words;
+                self.line(&format!("{target} = {};", value.words));
+                Ok(())
+            }
+        }
+    }
+
+    /// `v.xz = value` as `v = vec3f(value.x, v.y, value.y)`.
+    fn set_components(
+        &mut self,
+        vector: ExprId,
+        components: Swizzle,
+        value: &Text,
+    ) -> Result<(), Unprintable> {
+        let Type::Vector(_, size) = self.draft.tree[vector].ty else {
+            return Err(Unprintable("a swizzle of what is no vector"));
+        };
+        let chosen = components.components();
+        let ascending = chosen.windows(2).all(|pair| pair[1] == pair[0] + 1);
+        let base = self.value(vector)?;
+        let target = base.words.clone();
+        let base = base.operand();
+        if ascending && chosen.len() == usize::from(size) {
+            self.line(&format!("{target} = {};", value.words));
+            return Ok(());
+        }
+        let letter = |index: usize| "xyzw".get(index..=index).unwrap_or("x");
+        let mut parts = Vec::new();
+        // A call may change the vector that the rest is read from.
+        let root = self.draft.tree.root_variable(vector);
+        let may_change = value.words.contains('(')
+            && root.is_some_and(|id| self.draft.tree[id].kind == VariableKind::Global);
+        let whole = if ascending && !may_change {
+            value.clone()
+        } else {
+            self.keep(value)
+        };
+        let mut at = 0;
+        while at < usize::from(size) {
+            match chosen.iter().position(|&component| usize::from(component) == at) {
+                Some(_) if ascending => {
+                    parts.push(whole.words.clone());
+                    at += chosen.len();
+                    continue;
+                }
+                Some(place) => parts.push(format!("{}.{}", whole.words, letter(place))),
+                None => parts.push(format!("{base}.{}", letter(at))),
+            }
+            at += 1;
+        }
+        let ty = self.type_name(self.draft.tree[vector].ty);
+        self.line(&format!("{target} = {ty}({});", parts.join(", ")));
+        Ok(())
+    }
+}

@@ -1,0 +1,111 @@
+//! Built-in functions: most have their name in WGSL, some are operators there, few are missing.
+
+use super::super::tree::{BinaryOp, BuiltIn, ExprId, Scalar, Type};
+use super::Unprintable;
+use super::expression::{Class, Printed, Text};
+use super::writer::Writer;
+
+impl Writer<'_> {
+    pub(super) fn built_in(&mut self, function: BuiltIn, arguments: &[ExprId], ty: Type) -> Printed {
+        use BuiltIn as B;
+        if function.is_texture() {
+            return self.lookup(function, arguments, ty);
+        }
+        let types: Vec<Type> = arguments
+            .iter()
+            .map(|&argument| self.draft.tree[argument].ty)
+            .collect();
+        let outer = self.suffixed;
+        self.suffixed |= arguments.iter().all(|&argument| self.is_abstract(argument));
+        let texts = self.values(arguments);
+        self.suffixed = outer;
+        let mut texts = texts?;
+        let relation = match function {
+            B::LessThan => Some(BinaryOp::Less),
+            B::LessThanEqual => Some(BinaryOp::LessEqual),
+            B::GreaterThan => Some(BinaryOp::Greater),
+            B::GreaterThanEqual => Some(BinaryOp::GreaterEqual),
+            B::Equal => Some(BinaryOp::Equal),
+            B::NotEqual => Some(BinaryOp::NotEqual),
+            _ => None,
+        };
+        if let Some(op) = relation {
+            // Told as numbers: WGSL compares vectors component by component.
+            let words: Vec<_> = texts.into_iter().map(Text::term).collect();
+            return Ok(Text {
+                words: words.join(&format!(" {} ", op.symbol())),
+                class: Class::Relation,
+            });
+        }
+        self.derives |= function.is_derivative();
+        let name = match function {
+            B::Mod => return self.modulo(texts),
+            B::Not => {
+                let operand = texts.pop().ok_or(Unprintable("a call"))?.operand();
+                return Ok(Text {
+                    words: format!("!{operand}"),
+                    class: Class::Unary,
+                });
+            }
+            B::Atan if texts.len() == 2 => "atan2",
+            B::InverseSqrt => "inverseSqrt",
+            B::RoundEven | B::Round => "round",
+            B::Faceforward => "faceForward",
+            B::DFdx => "dpdx",
+            B::DFdy if self.style.is_upside_down() => {
+                let operand = Self::list(texts);
+                return Ok(Text {
+                    words: format!("-dpdy({operand})"),
+                    class: Class::Unary,
+                });
+            }
+            B::DFdy => "dpdy",
+            B::Mix if types.last().and_then(|ty| ty.scalar()) == Some(Scalar::Bool) => "select",
+            B::FloatBitsToInt | B::FloatBitsToUint | B::IntBitsToFloat | B::UintBitsToFloat => {
+                let name = self.type_name(ty);
+                return Ok(Text::primary(format!("bitcast<{name}>({})", Self::list(texts))));
+            }
+            B::PackSnorm2x16 => "pack2x16snorm",
+            B::PackUnorm2x16 => "pack2x16unorm",
+            B::PackHalf2x16 => "pack2x16float",
+            B::UnpackSnorm2x16 => "unpack2x16snorm",
+            B::UnpackUnorm2x16 => "unpack2x16unorm",
+            B::UnpackHalf2x16 => "unpack2x16float",
+            B::Modf | B::IsNan | B::IsInf | B::Inverse | B::OuterProduct | B::MatrixCompMult => {
+                return Err(Unprintable("that built-in function"));
+            }
+            other => other.name(),
+        };
+        // GLSL takes a number for a vector of it here, WGSL does not; but for the last of `mix`.
+        let splats = matches!(
+            function,
+            B::Min | B::Max | B::Clamp | B::Step | B::Smoothstep | B::Mix
+        );
+        if let (true, Type::Vector(..)) = (splats, ty) {
+            let vector = self.type_name(ty);
+            let last = texts.len() - 1;
+            for (at, (text, from)) in texts.iter_mut().zip(&types).enumerate() {
+                if matches!(from, Type::Scalar(_)) && !(function == B::Mix && at == last) {
+                    *text = Text::primary(format!("{vector}({})", text.words));
+                }
+            }
+        }
+        Ok(Text::primary(format!("{name}({})", Self::list(texts))))
+    }
+
+    /// `x - y * floor(x / y)`, which is what GLSL says `mod` is.
+    fn modulo(&mut self, texts: Vec<Text>) -> Printed {
+        let is_short =
+            |text: &Text| text.class == Class::Primary && text.words.len() < 24 && !text.words.contains('(');
+        let texts: Vec<Text> = texts
+            .into_iter()
+            .map(|text| if is_short(&text) { text } else { self.keep(&text) })
+            .collect();
+        let [x, y] = <[Text; 2]>::try_from(texts).map_err(|_| Unprintable("a call"))?;
+        let words = format!("{x} - {y} * floor({x} / {y})", x = x.words, y = y.words);
+        Ok(Text {
+            words,
+            class: Class::Sum,
+        })
+    }
+}

@@ -1,0 +1,477 @@
+//! Expressions as values, with the parentheses that WGSL asks for (§8.19): it mixes neither `&&` with `||` nor any of the
+//! bitwise operators with others.
+
+use super::super::lower::walk;
+use super::super::tree::{
+    BinaryOp, BuiltInVariable, ExprId, ExprKind, FunctionId, Scalar, StepOp, Type, UnaryOp, VariableId,
+    VariableKind,
+};
+use super::Unprintable;
+use super::facts::is_out;
+use super::writer::Writer;
+
+/// What an expression is at its top: what may take it as an operand without parentheses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Class {
+    Primary,
+    Unary,
+    Product,
+    Sum,
+    Relation,
+    /// One of the operators that only chains of itself need no parentheses for.
+    Chain(BinaryOp),
+}
+
+/// A value in words.
+#[derive(Debug, Clone)]
+pub(super) struct Text {
+    pub(super) words: String,
+    pub(super) class: Class,
+}
+
+pub(super) type Printed = Result<Text, Unprintable>;
+
+impl Text {
+    pub(super) fn primary(words: impl Into<String>) -> Self {
+        Self {
+            words: words.into(),
+            class: Class::Primary,
+        }
+    }
+
+    /// The same in parentheses, unless it is of one of those classes.
+    fn within(self, bare: &[Class]) -> String {
+        if bare.contains(&self.class) {
+            self.words
+        } else {
+            format!("({})", self.words)
+        }
+    }
+
+    /// As a side of a comparison.
+    pub(super) fn term(self) -> String {
+        self.within(&[Class::Primary, Class::Unary, Class::Product, Class::Sum])
+    }
+
+    /// As what a `.`, `[` or unary operator is put to.
+    pub(super) fn operand(self) -> String {
+        self.within(&[Class::Primary])
+    }
+}
+
+impl Writer<'_> {
+    /// The words for a value; lines for what it does are printed first.
+    pub(super) fn value(&mut self, id: ExprId) -> Printed {
+        let tree = &self.draft.tree;
+        let expr = &tree[id];
+        match &expr.kind {
+            ExprKind::Literal(literal) => {
+                let words = self.literal(literal, expr.at);
+                Ok(Text::primary(words))
+            }
+            &ExprKind::Variable(variable) => self.read(variable),
+            &ExprKind::Unary { op, operand } => self.unary(op, operand),
+            &ExprKind::Binary { op, left, right } => self.binary(op, left, right),
+            ExprKind::Assign { .. } | ExprKind::Step { postfix: false, .. } => {
+                self.effect(id)?;
+                let target = match expr.kind {
+                    ExprKind::Assign { target, .. } | ExprKind::Step { target, .. } => target,
+                    _ => id,
+                };
+                self.value(target)
+            }
+            &ExprKind::Step { op, target, .. } => {
+                let before = self.value(target)?;
+                let before = self.keep(&before);
+                self.step(op, target)?;
+                Ok(before)
+            }
+            &ExprKind::Conditional { condition, yes, no } => self.conditional(id, condition, yes, no),
+            &ExprKind::Sequence { first, second } => {
+                self.effect(first)?;
+                self.value(second)
+            }
+            ExprKind::Call { function, arguments } => self.call(*function, arguments, expr.ty),
+            ExprKind::BuiltIn { function, arguments } => self.built_in(*function, arguments, expr.ty),
+            ExprKind::Construct {
+                constructor,
+                arguments,
+            } => self.construct(*constructor, arguments, expr.ty),
+            &ExprKind::Swizzle { vector, components } => {
+                let vector = self.value(vector)?.operand();
+                Ok(Text::primary(format!("{vector}.{}", components.name())))
+            }
+            &ExprKind::Member { structure, member } => {
+                let name = match tree[structure].ty {
+                    Type::Struct(id) => self.names.members.get(&(id, member)).cloned().unwrap_or_default(),
+                    _ => return Err(Unprintable("a member of what is no structure")),
+                };
+                let structure = self.value(structure)?.operand();
+                Ok(Text::primary(format!("{structure}.{name}")))
+            }
+            &ExprKind::Index { base, index } => self.index(base, index),
+            ExprKind::Length { array } => match tree[*array].ty {
+                Type::Array(array) => Ok(Text::primary(tree.array(array).size.to_string())),
+                _ => Err(Unprintable("the length of what is no array")),
+            },
+        }
+    }
+
+    /// Several values, each as it is when its turn comes.
+    pub(super) fn values(&mut self, ids: &[ExprId]) -> Result<Vec<Text>, Unprintable> {
+        let mut texts: Vec<Text> = Vec::new();
+        for &id in ids {
+            if self.hoists(id) {
+                for (text, &earlier) in texts.iter_mut().zip(ids) {
+                    if !self.draft.tree[earlier].constant {
+                        *text = self.keep(text);
+                    }
+                }
+            }
+            let text = self.value(id)?;
+            texts.push(text);
+        }
+        Ok(texts)
+    }
+
+    /// Values between commas. WGSL takes `a < b, c > d` for a list of types (§3.9).
+    pub(super) fn list(texts: Vec<Text>) -> String {
+        let is_relation = |text: &Text| text.class == Class::Relation;
+        let has = |sign| {
+            texts
+                .iter()
+                .any(|text| is_relation(text) && text.words.contains(sign))
+        };
+        let is_list_of_types = has('<') && has('>');
+        let words = texts.into_iter().map(|text| {
+            if is_list_of_types && is_relation(&text) {
+                format!("({})", text.words)
+            } else {
+                text.words
+            }
+        });
+        words.collect::<Vec<_>>().join(", ")
+    }
+
+    /// Whether printing a value prints lines before it: found out by printing it.
+    pub(super) fn hoists(&mut self, id: ExprId) -> bool {
+        if let Some(&known) = self.hoisting.get(&id) {
+            return known;
+        }
+        let length = self.out.len();
+        let temporaries = self.temporaries.clone();
+        // What cannot be printed is found out when it is printed.
+        let printed = self.value(id);
+        let hoists = printed.is_ok() && self.out.len() > length;
+        self.out.truncate(length);
+        self.temporaries = temporaries;
+        self.hoisting.insert(id, hoists);
+        hoists
+    }
+
+    /// A value under a name, as it is now.
+    pub(super) fn keep(&mut self, text: &Text) -> Text {
+        let name = self.temporary("kept");
+        self.line(&format!("let {name} = {};", text.words));
+        Text::primary(name)
+    }
+
+    /// A variable where it is read.
+    pub(super) fn read(&mut self, id: VariableId) -> Printed {
+        let variable = &self.draft.tree[id];
+        match variable.kind {
+            VariableKind::Input(input) => Ok(Text::primary(self.input(input)?)),
+            VariableKind::BuiltIn(BuiltInVariable::FragCoord) => {
+                self.reads_position = true;
+                Ok(Text::primary("gl_FragCoord"))
+            }
+            VariableKind::BuiltIn(_) | VariableKind::BuiltInConstant => {
+                Err(Unprintable("that built-in variable"))
+            }
+            _ if is_out(self.draft, id) => Ok(Text {
+                words: format!("*{}", self.variable(id)),
+                class: Class::Unary,
+            }),
+            _ => Ok(Text::primary(self.variable(id))),
+        }
+    }
+
+    fn unary(&mut self, op: UnaryOp, operand: ExprId) -> Printed {
+        if matches!(self.draft.tree[operand].ty, Type::Matrix { .. }) && op == UnaryOp::Minus {
+            let operand = self.value(operand)?.within(&[Class::Primary]);
+            return Ok(Text {
+                words: format!("-1.0 * {operand}"),
+                class: Class::Product,
+            });
+        }
+        let operand = self.value(operand)?;
+        Ok(match op {
+            UnaryOp::Plus => operand,
+            _ => Text {
+                words: format!("{}{}", op.symbol(), operand.operand()),
+                class: Class::Unary,
+            },
+        })
+    }
+
+    pub(super) fn binary(&mut self, op: BinaryOp, left: ExprId, right: ExprId) -> Printed {
+        let tree = &self.draft.tree;
+        if matches!(op, BinaryOp::And | BinaryOp::Or) && self.hoists(right) {
+            return self.either(op, left, right);
+        }
+        let types = [tree[left].ty, tree[right].ty];
+        let outer = self.suffixed;
+        self.suffixed |= self.is_abstract(left) && self.is_abstract(right);
+        let texts = self.values(&[left, right]);
+        self.suffixed = outer;
+        let [left, right] = <[Text; 2]>::try_from(texts?).map_err(|_| Unprintable("an operator"))?;
+        self.operation(op, (left, types[0]), (right, types[1]))
+    }
+
+    /// An operator between words.
+    pub(super) fn operation(
+        &mut self,
+        op: BinaryOp,
+        (left, left_type): (Text, Type),
+        (right, right_type): (Text, Type),
+    ) -> Printed {
+        use Class::{Chain, Primary, Product, Relation, Sum, Unary};
+        let is_matrix = |ty| matches!(ty, Type::Matrix { .. });
+        let is_scalar = |ty| matches!(ty, Type::Scalar(_));
+        let [l, r] = [is_matrix(left_type), is_matrix(right_type)];
+        if (l || r)
+            && !matches!(op, BinaryOp::Multiply)
+            && !(l && r && matches!(op, BinaryOp::Add | BinaryOp::Subtract))
+        {
+            return Err(Unprintable("that operation of a matrix"));
+        }
+        let (left, right, class) = match op {
+            BinaryOp::Multiply | BinaryOp::Divide | BinaryOp::Remainder => (
+                left.within(&[Primary, Unary, Product]),
+                right.within(&[Primary, Unary]),
+                Product,
+            ),
+            BinaryOp::Add | BinaryOp::Subtract => (
+                left.within(&[Primary, Unary, Product, Sum]),
+                right.within(&[Primary, Unary, Product]),
+                Sum,
+            ),
+            BinaryOp::ShiftLeft | BinaryOp::ShiftRight => {
+                let right = match right_type {
+                    Type::Scalar(Scalar::Int) | Type::Vector(Scalar::Int, _) => {
+                        let unsigned = right_type.with_scalar(Scalar::Uint).unwrap_or(Type::UINT);
+                        format!("{}({})", self.type_name(unsigned), right.words)
+                    }
+                    _ => right.within(&[Primary, Unary]),
+                };
+                let right = match (left_type, right_type) {
+                    (Type::Vector(_, size), ty) if is_scalar(ty) => format!("vec{size}u({right})"),
+                    _ => right,
+                };
+                (left.within(&[Primary, Unary]), right, Chain(op))
+            }
+            BinaryOp::Less | BinaryOp::Greater | BinaryOp::LessEqual | BinaryOp::GreaterEqual => {
+                let bare = [Primary, Unary, Product, Sum];
+                (left.within(&bare), right.within(&bare), Relation)
+            }
+            BinaryOp::Equal | BinaryOp::NotEqual | BinaryOp::Xor => {
+                let bare = [Primary, Unary, Product, Sum];
+                let symbol = if op == BinaryOp::Equal { "==" } else { "!=" };
+                let words = format!("{} {symbol} {}", left.within(&bare), right.within(&bare));
+                return Ok(match left_type {
+                    Type::Vector(..) if op == BinaryOp::Equal => Text::primary(format!("all({words})")),
+                    Type::Vector(..) => Text::primary(format!("any({words})")),
+                    _ => Text {
+                        words,
+                        class: Relation,
+                    },
+                });
+            }
+            BinaryOp::BitAnd | BinaryOp::BitOr | BinaryOp::BitXor => {
+                let splat = |words: String, own: Type, other: Type| match other {
+                    Type::Vector(..) if is_scalar(own) => format!("{}({words})", self.type_name(other)),
+                    _ => words,
+                };
+                let left = splat(left.within(&[Primary, Unary, Chain(op)]), left_type, right_type);
+                let right = splat(right.within(&[Primary, Unary]), right_type, left_type);
+                (left, right, Chain(op))
+            }
+            BinaryOp::And | BinaryOp::Or => {
+                let bare = [Primary, Unary, Relation];
+                (
+                    left.within(&[Primary, Unary, Relation, Chain(op)]),
+                    right.within(&bare),
+                    Chain(op),
+                )
+            }
+        };
+        Ok(Text {
+            words: format!("{left} {} {right}", op.symbol()),
+            class,
+        })
+    }
+
+    /// `&&` and `||` whose right side does something.
+    fn either(&mut self, op: BinaryOp, left: ExprId, right: ExprId) -> Printed {
+        let left = self.value(left)?;
+        let name = self.temporary("holds");
+        self.line(&format!("var {name} = {};", left.words));
+        let not = if op == BinaryOp::Or { "!" } else { "" };
+        self.line(&format!("if {not}{name} {{"));
+        self.inset(|writer| {
+            let right = writer.value(right)?;
+            writer.line(&format!("{name} = {};", right.words));
+            Ok(())
+        })?;
+        self.line("}");
+        Ok(Text::primary(name))
+    }
+
+    /// Whether an expression may be evaluated whether or not it is wanted: it is cheap, and does nothing.
+    pub(super) fn is_selectable(&mut self, id: ExprId) -> bool {
+        let tree = &self.draft.tree;
+        let is_plain = matches!(tree[id].ty, Type::Scalar(_) | Type::Vector(..))
+            && !walk::any(tree, id, |kind| match kind {
+                ExprKind::Call { .. } => true,
+                ExprKind::BuiltIn { function, .. } => function.is_texture(),
+                _ => false,
+            });
+        is_plain && !self.hoists(id)
+    }
+
+    fn conditional(&mut self, id: ExprId, condition: ExprId, yes: ExprId, no: ExprId) -> Printed {
+        if self.is_selectable(yes) && self.is_selectable(no) {
+            let acts = walk::acts(&self.draft.tree, condition);
+            let condition = self.value(condition)?;
+            // The sides stand before the condition, and would be evaluated first.
+            let condition = if acts { self.keep(&condition) } else { condition };
+            let [no, yes] = [self.value(no)?, self.value(yes)?];
+            return Ok(Text::primary(format!(
+                "select({})",
+                Self::list(vec![no, yes, condition])
+            )));
+        }
+        let condition = self.value(condition)?;
+        let name = self.temporary("chosen");
+        self.line(&format!(
+            "var {name}: {};",
+            self.type_name(self.draft.tree[id].ty)
+        ));
+        self.line(&format!("if {} {{", condition.words));
+        let set = |writer: &mut Self, id| {
+            let value = writer.value(id)?;
+            writer.line(&format!("{name} = {};", value.words));
+            Ok(())
+        };
+        self.inset(|writer| set(writer, yes))?;
+        self.line("} else {");
+        self.inset(|writer| set(writer, no))?;
+        self.line("}");
+        Ok(Text::primary(name))
+    }
+
+    pub(super) fn index(&mut self, base: ExprId, index: ExprId) -> Printed {
+        let tree = &self.draft.tree;
+        let in_memory = tree.root_variable(base).is_some() || matches!(tree[base].ty, Type::Vector(..));
+        let constant = tree[index].constant;
+        let [base, index] = if tree.root_variable(base).is_some() {
+            // A place, not a value: it is the same before and after what the index does.
+            let index = self.value(index)?;
+            [self.value(base)?, index]
+        } else {
+            <[Text; 2]>::try_from(self.values(&[base, index])?).map_err(|_| Unprintable("an index"))?
+        };
+        let base = if in_memory || constant {
+            base.operand()
+        } else {
+            let name = self.temporary("indexed");
+            self.line(&format!("var {name} = {};", base.words));
+            name
+        };
+        Ok(Text::primary(format!("{base}[{}]", index.words)))
+    }
+
+    /// The pointer that an `out` argument is passed as, if it is a variable that a function may be given one of.
+    pub(super) fn pointer(&self, argument: ExprId) -> Option<String> {
+        let ExprKind::Variable(id) = self.draft.tree[argument].kind else {
+            return None;
+        };
+        match self.draft.tree[id].kind {
+            _ if is_out(self.draft, id) => Some(self.variable(id).to_owned()),
+            VariableKind::Local | VariableKind::Parameter(_) => Some(format!("&{}", self.variable(id))),
+            _ => None,
+        }
+    }
+
+    /// A call of a function of the author's.
+    fn call(&mut self, function: FunctionId, arguments: &[ExprId], ty: Type) -> Printed {
+        let parameters = &self.draft.tree[function].parameters;
+        let mut plain = Vec::new();
+        let mut back = Vec::new();
+        for (&argument, &parameter) in arguments.iter().zip(parameters) {
+            if !is_out(self.draft, parameter) {
+                plain.push(argument);
+            } else if self.pointer(argument).is_none() {
+                back.push(argument);
+            }
+        }
+        let mut values = self.values(&plain)?.into_iter();
+        let mut copies = Vec::new();
+        for &argument in &back {
+            let name = self.temporary("copied");
+            let value = self.value(argument)?;
+            self.line(&format!("var {name} = {};", value.words));
+            copies.push((argument, name));
+        }
+        let mut names = copies.iter();
+        let mut texts = Vec::new();
+        for (&argument, &parameter) in arguments.iter().zip(parameters) {
+            texts.push(if !is_out(self.draft, parameter) {
+                values.next().ok_or(Unprintable("a call"))?
+            } else if let Some(pointer) = self.pointer(argument) {
+                Text::primary(pointer)
+            } else {
+                let (_, name) = names.next().ok_or(Unprintable("a call"))?;
+                Text::primary(format!("&{name}"))
+            });
+        }
+        let call = format!("{}({})", self.function(function), Self::list(texts));
+        if copies.is_empty() {
+            return Ok(Text::primary(call));
+        }
+        let result = if ty == Type::Void {
+            self.line(&format!("{call};"));
+            Text::primary("")
+        } else {
+            self.keep(&Text::primary(call))
+        };
+        for (argument, name) in copies {
+            self.set(argument, &Text::primary(name))?;
+        }
+        Ok(result)
+    }
+
+    /// `x++` or `x -= 1.0`.
+    pub(super) fn step(&mut self, op: StepOp, target: ExprId) -> Result<(), Unprintable> {
+        let target_text = self.value(target)?;
+        let sign = if op == StepOp::Increment { '+' } else { '-' };
+        let ty = self.draft.tree[target].ty;
+        let target_text = target_text.words;
+        match ty {
+            Type::Scalar(Scalar::Int | Scalar::Uint) => self.line(&format!("{target_text}{sign}{sign};")),
+            Type::Scalar(_) => self.line(&format!("{target_text} {sign}= 1.0;")),
+            _ => {
+                let one = match ty.scalar() {
+                    Some(Scalar::Float) => "1.0",
+                    Some(Scalar::Uint) => "1u",
+                    _ => "1",
+                };
+                if matches!(ty, Type::Matrix { .. }) {
+                    return Err(Unprintable("a matrix that is counted up"));
+                }
+                self.line(&format!("{target_text} {sign}= {one};"));
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,215 @@
+//! Structures, globals and functions, in the author's order.
+
+use super::super::lower::{Draft, walk};
+use super::super::print::Order;
+use super::super::tree::{
+    Block, Direction, ExprKind, FunctionId, Item, Statement, StatementKind, StructId, Type, VariableId,
+    VariableKind,
+};
+use super::Unprintable;
+use super::facts::{Facts, is_out};
+use super::names::Names;
+use super::writer::Writer;
+use crate::glsl::{self, Options};
+use crate::source::{File, Files};
+
+impl Writer<'_> {
+    pub(super) fn item(&mut self, item: Item) -> Result<(), Unprintable> {
+        self.temporaries.clear();
+        match item {
+            Item::Struct(id) => self.structure(id),
+            Item::Variable(id) => self.global(id),
+            Item::Function(id) => {
+                if let Some(text) = self.draft.helpers.get(&id) {
+                    return self.helper(id, text);
+                }
+                self.definition(id)
+            }
+            Item::Prototype(_) => Ok(()),
+        }
+    }
+
+    fn structure(&mut self, id: StructId) -> Result<(), Unprintable> {
+        let tree = &self.draft.tree;
+        self.line("");
+        self.comment(tree[id].at);
+        let name = self.names.structs.get(&id).cloned().unwrap_or_default();
+        self.line(&format!("struct {name} {{"));
+        for (at, member) in tree[id].members.iter().enumerate() {
+            if matches!(member.ty, Type::Sampler(_)) {
+                return Err(Unprintable("a sampler in a structure"));
+            }
+            let name = self.names.members.get(&(id, at)).cloned().unwrap_or_default();
+            let ty = self.type_name(member.ty);
+            self.inset(|writer| {
+                writer.comment(member.at);
+                writer.line(&format!("{name}: {ty},"));
+            });
+        }
+        self.line("}");
+        Ok(())
+    }
+
+    fn global(&mut self, id: VariableId) -> Result<(), Unprintable> {
+        let variable = &self.draft.tree[id];
+        if matches!(variable.ty, Type::Sampler(_)) {
+            return Err(Unprintable("a sampler that nobody feeds"));
+        }
+        if self.out.ends_with("}\n") {
+            self.line("");
+        }
+        if let Some(at) = variable.at {
+            self.comment(at);
+        }
+        let name = self.variable(id);
+        let ty = self.type_name(variable.ty);
+        let line = match (variable.kind, variable.initialiser) {
+            (VariableKind::Const, Some(initialiser)) => {
+                let value = self.value(initialiser)?;
+                format!("const {name}: {ty} = {};", value.words)
+            }
+            (_, Some(initialiser)) => {
+                let value = self.value(initialiser)?;
+                format!("var<private> {name}: {ty} = {};", value.words)
+            }
+            (_, None) => format!("var<private> {name}: {ty};"),
+        };
+        self.line(&line);
+        Ok(())
+    }
+
+    fn definition(&mut self, id: FunctionId) -> Result<(), Unprintable> {
+        let function = &self.draft.tree[id];
+        let Some(body) = &function.body else {
+            return Err(Unprintable("a function without a body"));
+        };
+        self.line("");
+        self.comment(function.at);
+        self.head(id)?;
+        self.indent += 1;
+        for &parameter in &function.parameters {
+            let variable = &self.draft.tree[parameter];
+            if is_out(self.draft, parameter) {
+                let is_read_first = variable.kind == VariableKind::Parameter(Direction::Out)
+                    && !self.is_set_first(body, parameter);
+                if is_read_first {
+                    let zero = self.zero(variable.ty);
+                    self.line(&format!("*{} = {zero};", self.variable(parameter)));
+                }
+            } else if self.facts.is_memory(parameter) {
+                let argument = self.names.arguments.get(&parameter).cloned().unwrap_or_default();
+                self.line(&format!("var {} = {argument};", self.variable(parameter)));
+            }
+        }
+        self.statements(body)?;
+        if function.return_type != Type::Void && Self::may_end(body) {
+            let zero = self.zero(function.return_type);
+            self.line(&format!("return {zero};"));
+        }
+        self.indent -= 1;
+        self.line("}");
+        Ok(())
+    }
+
+    fn head(&mut self, id: FunctionId) -> Result<(), Unprintable> {
+        let function = &self.draft.tree[id];
+        let mut parameters = Vec::new();
+        for &parameter in &function.parameters {
+            let variable = &self.draft.tree[parameter];
+            if matches!(variable.ty, Type::Sampler(_)) {
+                return Err(Unprintable("a sampler as a parameter"));
+            }
+            let ty = self.type_name(variable.ty);
+            let own = self.variable(parameter);
+            parameters.push(if is_out(self.draft, parameter) {
+                format!("{own}: ptr<function, {ty}>")
+            } else if self.facts.is_memory(parameter) {
+                format!(
+                    "{}: {ty}",
+                    self.names.arguments.get(&parameter).cloned().unwrap_or_default()
+                )
+            } else {
+                format!("{own}: {ty}")
+            });
+        }
+        let returns = match function.return_type {
+            Type::Void => String::new(),
+            ty => format!(" -> {}", self.type_name(ty)),
+        };
+        self.line(&format!(
+            "fn {}({}){returns} {{",
+            self.function(id),
+            parameters.join(", ")
+        ));
+        Ok(())
+    }
+
+    /// Whether an `out` parameter is written as a whole before anything else is done with it, on every way.
+    fn is_set_first(&self, body: &Block, parameter: VariableId) -> bool {
+        let tree = &self.draft.tree;
+        for statement in body {
+            if let StatementKind::Expression(expr) = statement.kind
+                && let ExprKind::Assign {
+                    op: None,
+                    target,
+                    value,
+                } = tree[expr].kind
+                && matches!(tree[target].kind, ExprKind::Variable(id) if id == parameter)
+            {
+                return !walk::mentions(tree, value, parameter);
+            }
+            let block = std::slice::from_ref(statement);
+            let mut leaves = false;
+            walk::each(block, &mut |inner: &Statement| {
+                leaves |= matches!(inner.kind, StatementKind::Return(_) | StatementKind::Discard);
+            });
+            let block: Block = vec![statement.clone()];
+            let mentions = walk::roots(tree, &block)
+                .into_iter()
+                .any(|root| walk::mentions(tree, root, parameter));
+            if leaves || mentions {
+                return false;
+            }
+        }
+        false
+    }
+
+    /// A function of lowering's own, whose body is text: read as GLSL and printed as any other.
+    fn helper(&mut self, id: FunctionId, text: &str) -> Result<(), Unprintable> {
+        const BROKEN: Unprintable = Unprintable("a function of lowering's own");
+        let tree = &self.draft.tree;
+        let function = &tree[id];
+        let parameters = function.parameters.iter().map(|&parameter| {
+            let variable = &tree[parameter];
+            let direction = if is_out(self.draft, parameter) { "out " } else { "" };
+            format!("{direction}{} {}", tree.type_name(variable.ty), variable.name)
+        });
+        let parameters: Vec<_> = parameters.collect();
+        let source = format!(
+            "{} {}({}) {{ {text} }}\nvoid mainImage(out vec4 c, in vec2 p) {{}}",
+            tree.type_name(function.return_type),
+            self.function(id),
+            parameters.join(", ")
+        );
+        let mut files = Files::default();
+        let file = files.add(File::new("<helper>", source));
+        let checked = glsl::check(&files, file, &Options::default()).map_err(|_| BROKEN)?;
+        let draft = Draft::new(checked.tree, checked.main_image);
+        let first = draft.tree.items.iter().find_map(|item| match item {
+            Item::Function(id) => Some(*id),
+            _ => None,
+        });
+        let first = first.ok_or(BROKEN)?;
+        let order = Order {
+            items: vec![Item::Function(first)],
+            inputs: Vec::new(),
+        };
+        let names = Names::of(&draft, &order, self.style);
+        let facts = Facts::of(&draft);
+        let mut writer = Writer::new(&draft, &names, &facts, self.style, &files);
+        writer.definition(first)?;
+        self.derives |= writer.derives;
+        self.out.push_str(&writer.out);
+        Ok(())
+    }
+}

@@ -1,0 +1,68 @@
+//! Prints a shader as WGSL that its author would know again: names, comments, loops and expressions as they were written.
+//!
+//! naga's own writer goes by way of its intermediate form, in which every expression has a number and every variable stands at
+//! the head of its function. What is printed here is the tree, after the few passes of lowering that WGSL needs as naga does. What cannot
+//! be said so ([`Unprintable`]) is left to naga's writer. Sections are those of the WGSL specification.
+
+mod assign;
+mod builtin;
+mod comment;
+mod construct;
+mod expression;
+mod facts;
+mod host;
+mod item;
+mod literal;
+mod names;
+mod statement;
+mod style;
+mod texture;
+mod word;
+mod writer;
+
+use thiserror::Error;
+
+use super::Checked;
+use super::lower::{Draft, Pass, Passes};
+use super::print::Order;
+use crate::source::Files;
+pub use host::Hosted;
+pub use style::Style;
+
+/// What this writer has no words for.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("{0}")]
+pub struct Unprintable(pub &'static str);
+
+/// A checked shader as WGSL for a kind of host; the author's comments are read from `files`.
+///
+/// # Errors
+/// What cannot be said.
+pub fn wgsl(checked: &Checked, files: &Files, style: Style) -> Result<String, Unprintable> {
+    let mut draft = Draft::new(checked.tree.clone(), checked.main_image);
+    passes().run(&mut draft);
+    let order = Order::of(&draft);
+    let names = names::Names::of(&draft, &order, style);
+    let facts = facts::Facts::of(&draft);
+    let writer = writer::Writer::new(&draft, &names, &facts, style, files);
+    writer.write(&order)
+}
+
+/// What WGSL, as GLSL in naga's reading, does not have. Loops, `?:` and swizzles that are assigned to are printed here instead, locals begin
+/// with zero in any case, and functions return where they must.
+fn passes() -> Passes {
+    [
+        Pass::ShortCircuit,
+        Pass::Matrices,
+        Pass::Inequality,
+        Pass::Members,
+        Pass::Uninitialised,
+        Pass::DoWhile,
+        Pass::MissingReturns,
+    ]
+    .into_iter()
+    .fold(Passes::all(), Passes::without)
+}
+
+#[cfg(test)]
+mod tests;

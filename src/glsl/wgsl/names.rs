@@ -1,0 +1,129 @@
+//! What everything is called: as the author called it, unless WGSL has another use for the word. WGSL has no overloads:
+//! of several functions with one name all but the first are also called by the types of their parameters.
+
+use std::collections::{HashMap, HashSet};
+
+use super::super::lower::{Draft, walk};
+use super::super::print::Order;
+use super::super::tree::{FunctionId, Item, StructId, Type, VariableId};
+use super::style::Style;
+use super::word;
+use super::writer::type_name;
+
+/// The names of a draft's things.
+#[derive(Default)]
+pub(super) struct Names {
+    pub(super) variables: HashMap<VariableId, String>,
+    /// What a parameter is called that its function works on in a copy.
+    pub(super) arguments: HashMap<VariableId, String>,
+    pub(super) functions: HashMap<FunctionId, String>,
+    pub(super) structs: HashMap<StructId, String>,
+    pub(super) members: HashMap<(StructId, usize), String>,
+    /// Every word that is in use somewhere.
+    pub(super) all: HashSet<String>,
+}
+
+impl Names {
+    pub(super) fn of(draft: &Draft, order: &Order, style: Style) -> Self {
+        let tree = &draft.tree;
+        let mut names = Self::default();
+        let mut taken: HashSet<String> = style.words().map(str::to_owned).collect();
+        let taken_at = |taken: &HashSet<String>, name: &str| word::is_taken(name) || taken.contains(name);
+        for item in &order.items {
+            if let Item::Struct(id) = *item {
+                let own = if tree[id].name.is_empty() {
+                    "Struct"
+                } else {
+                    &tree[id].name
+                };
+                let name = word::free(own, |name| taken_at(&taken, name));
+                taken.insert(name.clone());
+                names.structs.insert(id, name);
+                let mut members = HashSet::new();
+                for (at, member) in tree[id].members.iter().enumerate() {
+                    let is_taken = |name: &str| word::is_reserved(name) || members.contains(name);
+                    let name = word::free(&member.name, is_taken);
+                    members.insert(name.clone());
+                    names.members.insert((id, at), name);
+                }
+            }
+        }
+        for item in &order.items {
+            if let Item::Variable(id) = *item {
+                let name = word::free(&tree[id].name, |name| taken_at(&taken, name));
+                taken.insert(name.clone());
+                names.variables.insert(id, name);
+            }
+        }
+        for item in &order.items {
+            if let Item::Function(id) = *item {
+                let own = &tree[id].name;
+                let name = if taken_at(&taken, own) && !word::is_taken(own) {
+                    let types = tree[id]
+                        .parameters
+                        .iter()
+                        .map(|&parameter| label(draft, &names, tree[parameter].ty));
+                    format!("{own}_{}", types.collect::<Vec<_>>().join("_"))
+                } else {
+                    own.clone()
+                };
+                let name = word::free(&name, |name| taken_at(&taken, name));
+                taken.insert(name.clone());
+                names.functions.insert(id, name);
+            }
+        }
+        names.all.clone_from(&taken);
+        for item in &order.items {
+            if let Item::Function(id) = *item {
+                names.name_locals(draft, id, &taken);
+            }
+        }
+        names
+    }
+
+    /// Locals may hide what stands outside, as in GLSL, but nothing that is printed by another name than the author's.
+    fn name_locals(&mut self, draft: &Draft, function: FunctionId, global: &HashSet<String>) {
+        let tree = &draft.tree;
+        let mut locals = tree[function].parameters.clone();
+        if let Some(body) = &tree[function].body {
+            walk::each(body, &mut |statement| locals.extend(walk::declared(statement)));
+        }
+        let mut counts: HashMap<&str, usize> = HashMap::new();
+        for &id in &locals {
+            *counts.entry(tree[id].name.as_str()).or_default() += 1;
+        }
+        let mut taken: HashSet<String> = locals.iter().map(|&id| tree[id].name.clone()).collect();
+        for &id in &locals {
+            let own = tree[id].name.as_str();
+            let meets = draft.moved.contains(&id) && counts.get(own).is_some_and(|&count| count > 1);
+            let name = if own.is_empty() || meets || word::is_taken(own) || global.contains(own) {
+                word::free(own, |name| {
+                    word::is_taken(name) || global.contains(name) || taken.contains(name)
+                })
+            } else {
+                own.to_owned()
+            };
+            taken.insert(name.clone());
+            self.variables.insert(id, name);
+        }
+        for &id in &tree[function].parameters {
+            let name = self.variables[&id].clone() + "_in";
+            let name = word::free(&name, |name| {
+                word::is_taken(name) || global.contains(name) || taken.contains(name)
+            });
+            taken.insert(name.clone());
+            self.arguments.insert(id, name);
+        }
+        self.all.extend(taken);
+    }
+}
+
+/// A type as part of a name.
+fn label(draft: &Draft, names: &Names, ty: Type) -> String {
+    let name = type_name(draft, names, ty);
+    let parts = name.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+    parts
+        .filter(|part| !part.is_empty())
+        .collect::<Vec<_>>()
+        .join("_")
+}

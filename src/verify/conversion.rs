@@ -1,0 +1,202 @@
+//! Is a converted shader what its author wrote? What was written is read again, run, and compared with the shader itself.
+//!
+//! The file keeps `sin` and the like, whose last bits WGSL and its relatives leave to whoever runs them. So the proof puts
+//! definitions of our own in their place, the evaluator's, into what naga read; everything else is the file's. No tolerance is then needed:
+//! a conversion is proved if every pixel has the evaluator's bits.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::Duration;
+
+use super::cpu::{Limits, Single};
+use super::{Case, Failure, PATIENCE, join};
+use crate::compare::{self, Answer};
+use crate::eval::{self, Program};
+use crate::frame::Frame;
+use crate::glsl::Checked;
+use crate::glsl::tree::SamplerShape;
+use crate::gpu::{FloatMode, Worker, Written};
+use crate::image;
+
+/// What came of running a converted shader.
+#[derive(Debug, Clone)]
+pub struct Proof {
+    /// One comparison for each frame.
+    pub answers: Vec<Answer>,
+    /// Who painted.
+    pub device: String,
+    /// What it was compared with.
+    pub against: Against,
+}
+
+/// What a conversion is compared with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Against {
+    /// The evaluator's picture in f32.
+    Evaluator,
+    /// What the same driver paints of the shader itself, strictly: filters of textures differ from the evaluator's by 2e−7.
+    StrictRun,
+}
+
+impl Proof {
+    /// Whether every pixel has the same bits, and some are not left out.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        let compared: u64 = self
+            .answers
+            .iter()
+            .map(|answer| answer.pixels - answer.undefined)
+            .sum();
+        compared > 0 && self.differing() == 0
+    }
+
+    /// Pixels of all frames.
+    #[must_use]
+    pub fn pixels(&self) -> u64 {
+        self.answers.iter().map(|answer| answer.pixels).sum()
+    }
+
+    /// Pixels that are not the same.
+    #[must_use]
+    pub fn differing(&self) -> u64 {
+        self.answers.iter().map(|answer| answer.differing).sum()
+    }
+
+    /// Pixels that hang on what GLSL leaves undefined.
+    #[must_use]
+    pub fn undefined(&self) -> u64 {
+        self.answers.iter().map(|answer| answer.undefined).sum()
+    }
+}
+
+/// A frame that conversions are compared in.
+#[derive(Debug, Clone, Copy)]
+pub struct Moment {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// `iTime`, in seconds.
+    pub time: f32,
+    frame: i32,
+    mouse: [f32; 4],
+    date: [f32; 4],
+}
+
+/// The frames that conversions are compared in: several times, sizes, mice and dates.
+pub const FRAMES: [Moment; 3] = [
+    Moment {
+        size: [160, 90],
+        time: 0.0,
+        frame: 0,
+        mouse: [0.0; 4],
+        date: [0.0; 4],
+    },
+    Moment {
+        size: [128, 128],
+        time: 1.3,
+        frame: 78,
+        mouse: [37.0, 81.0, 37.0, 81.0],
+        date: [2026.0, 4.0, 17.0, 43_200.0],
+    },
+    Moment {
+        size: [90, 160],
+        time: 10.7,
+        frame: 642,
+        mouse: [41.5, 30.5, -12.0, -5.0],
+        date: [2026.0, 11.0, 2.0, 3_661.5],
+    },
+];
+
+/// The frames for a shader, with noise in each of its channels that is flat.
+#[must_use]
+pub fn frames(checked: &Checked) -> Vec<Frame> {
+    let channels = if checked.reads_textures() {
+        checked
+            .channels
+            .map(|shape| (shape == SamplerShape::D2).then(image::noise))
+    } else {
+        [const { None }; 4]
+    };
+    let of = |moment: Moment| Frame {
+        size: moment.size,
+        time: moment.time,
+        frame: moment.frame,
+        mouse: moment.mouse,
+        date: moment.date,
+        channels: channels.clone(),
+    };
+    FRAMES.map(of).to_vec()
+}
+
+/// Runs what was written in each of the frames and compares it with the shader.
+///
+/// # Errors
+/// Why one of both has no pictures.
+pub fn prove(
+    worker: &mut Worker,
+    checked: &Checked,
+    written: Written,
+    frames: &[Frame],
+    timeout: Duration,
+) -> Result<Proof, Failure> {
+    let stop = AtomicBool::new(false);
+    let (painted, singles) = thread::scope(|scope| {
+        let cpu = scope.spawn(|| evaluate(checked, frames, timeout, &stop));
+        let painted = worker.paint(written, frames.to_vec());
+        stop.store(painted.is_err(), Ordering::Relaxed);
+        (painted, join(cpu))
+    });
+    let (mut painted, device) = painted?;
+    let singles = singles?;
+    if let pixels @ 1.. = singles.iter().map(|single| single.beyond_cap).sum::<u64>() {
+        return Err(Failure::CutShort(pixels));
+    }
+    let against = if checked.reads_textures() {
+        Against::StrictRun
+    } else {
+        Against::Evaluator
+    };
+    let mut answers = Vec::new();
+    for ((frame, single), painted) in frames.iter().zip(singles).zip(&mut painted) {
+        let expected = match against {
+            Against::Evaluator => single.image,
+            Against::StrictRun => {
+                let lowered = FloatMode::Strict.lower(checked);
+                worker
+                    .draw_and_watch(lowered, frame.clone(), FloatMode::Strict, |_| false)?
+                    .image
+            }
+        };
+        let standings = compare::toolchain(&expected, painted, &single.undefined);
+        answers.push(Answer::new(&expected, painted, &standings));
+    }
+    Ok(Proof {
+        answers,
+        device,
+        against,
+    })
+}
+
+fn evaluate(
+    checked: &Checked,
+    frames: &[Frame],
+    timeout: Duration,
+    stop: &AtomicBool,
+) -> Result<Vec<Single>, eval::Failure> {
+    let program = Program::new(checked)?;
+    let limits = Limits {
+        each: timeout * PATIENCE,
+        stop,
+    };
+    let single = |frame| {
+        let case = Case {
+            checked,
+            scene: None,
+            suspects: None,
+            frame,
+            float: FloatMode::Strict,
+            timeout,
+        };
+        Single::paint(&program, &case, limits)
+    };
+    frames.iter().map(single).collect()
+}
