@@ -4,6 +4,9 @@ use std::fmt;
 
 use super::{Integrator, Model, Sampler, Scene, Shape, ToneMap};
 
+/// The most spheres that are looked at one after the other.
+const FEW_SPHERES: usize = 128;
+
 /// What a scene uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "a scene uses a thing or does not")]
@@ -14,6 +17,8 @@ pub struct Requirements {
     pub surfaces: bool,
     /// Surfaces that are no spheres.
     pub shapes: bool,
+    /// So many spheres that it pays to sort them in space before they are looked at.
+    pub many_spheres: bool,
     /// Rays that go on from a surface: mirrors, glass, drawn directions.
     pub secondary_rays: bool,
     /// Rays that part in two: glass.
@@ -41,13 +46,16 @@ impl Requirements {
         let path_tracing = scene.film.integrator == Integrator::Path;
         let branches = surface(|model| matches!(model, Model::Glass { .. }));
         let moves = |motion: Option<usize>| motion.is_some();
+        let spheres = scene
+            .objects
+            .iter()
+            .filter(|object| matches!(object.shape, Shape::Sphere { .. }))
+            .count();
         Self {
             figures: !scene.figures.is_empty(),
             surfaces: !scene.objects.is_empty(),
-            shapes: scene
-                .objects
-                .iter()
-                .any(|object| !matches!(object.shape, Shape::Sphere { .. })),
+            shapes: spheres < scene.objects.len(),
+            many_spheres: spheres > FEW_SPHERES,
             secondary_rays: scene.film.max_depth > 1
                 && (path_tracing || branches || surface(|model| *model == Model::Mirror)),
             branches,
@@ -68,6 +76,7 @@ impl fmt::Display for Requirements {
             (self.figures, "figures"),
             (self.surfaces && !self.shapes, "spheres alone"),
             (self.shapes, "shapes of several kinds"),
+            (self.many_spheres, "many spheres"),
             (self.secondary_rays, "secondary rays"),
             (self.branches, "rays that part"),
             (self.shadows, "shadows"),

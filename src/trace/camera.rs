@@ -1,7 +1,14 @@
 //! The course's cameras.
 
+#![expect(
+    clippy::inline_always,
+    reason = "only what is inlined into a kernel is compiled for its instruction set"
+)]
+
+use super::lanes::{Kernel, Lanes, Level, Wide, Wide3};
 use super::ray::Ray;
 use super::real::{Real, Vector};
+use super::spheres::{Origins, PACKET, Packet};
 use crate::scene::{Projection, Scene};
 
 #[derive(Debug)]
@@ -38,7 +45,7 @@ impl<T: Real> Camera<T> {
 
     /// The place on the screen of the fragment coordinates (fx, fy), in pixels from the bottom left:
     /// `x = 2 fx / width − 1`, `y = (2 fy / height − 1) / aspect`.
-    pub(super) fn screen(&self, fx: T, fy: T) -> [T; 2] {
+    pub(super) fn screen(&self, [fx, fy]: [T; 2]) -> [T; 2] {
         let two = T::from_f64(2.0);
         let x = fx / self.width * two - T::one();
         let y = (fy / self.height * two - T::one()) / (self.width / self.height);
@@ -48,16 +55,97 @@ impl<T: Real> Camera<T> {
     /// The ray through a place on the screen.
     pub(super) fn ray(&self, [x, y]: [T; 2]) -> Ray<T> {
         let (origin, direction) = match self.projection {
-            View::Pinhole { screen_distance } => (self.eye, T::Vec3::new(x, y, -screen_distance).normalize()),
-            View::Parallel { half_width } => {
-                let across = T::Vec3::new(x * half_width, y * half_width, T::zero());
-                (self.eye + across, T::Vec3::from_f64([0.0, 0.0, -1.0]))
+            View::Pinhole { screen_distance } => {
+                let mut direction = [[T::zero()]; 3];
+                let towards = Towards {
+                    x: &[x],
+                    y: &[y],
+                    screen_distance,
+                    directions: direction.each_mut().map(|component| &mut component[..]),
+                };
+                T::run(Level::Base, towards);
+                let [[x], [y], [z]] = direction;
+                (self.eye, T::Vec3::new(x, y, z))
             }
+            View::Parallel { .. } => (self.start([x, y]), T::Vec3::from_f64(AHEAD)),
         };
         Ray {
             origin,
             direction,
             from: None,
+        }
+    }
+
+    /// The same rays, together.
+    pub(super) fn packet(&self, [x, y]: &[[T; PACKET]; 2], level: Level) -> Packet<T> {
+        let mut directions = AHEAD.map(|component| [T::from_f64(component); PACKET]);
+        let origins = match self.projection {
+            View::Pinhole { screen_distance } => {
+                let towards = Towards {
+                    x,
+                    y,
+                    screen_distance,
+                    directions: directions.each_mut().map(|component| &mut component[..]),
+                };
+                T::run(level, towards);
+                Origins::One(self.eye.to_array())
+            }
+            View::Parallel { .. } => {
+                let start = |at: usize, axis: usize| self.start([x[at], y[at]]).to_array()[axis];
+                Origins::Each([0, 1, 2].map(|axis| std::array::from_fn(|at| start(at, axis))))
+            }
+        };
+        Packet { origins, directions }
+    }
+
+    /// Where a parallel ray starts.
+    fn start(&self, [x, y]: [T; 2]) -> T::Vec3 {
+        let half_width = match self.projection {
+            View::Parallel { half_width } => half_width,
+            View::Pinhole { .. } => T::zero(),
+        };
+        self.eye + T::Vec3::new(x * half_width, y * half_width, T::zero())
+    }
+}
+
+/// Where parallel rays go.
+const AHEAD: [f64; 3] = [0.0, 0.0, -1.0];
+
+/// Directions from a pinhole to places on the screen, of length 1: (x, y, −`screen_distance`) is scaled by a power of two
+/// first, so that no square overflows.
+struct Towards<'a, T> {
+    x: &'a [T],
+    y: &'a [T],
+    screen_distance: T,
+    directions: [&'a mut [T]; 3],
+}
+
+impl<T: Real> Kernel<T> for Towards<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Lanes<T>>(self, simd: S) {
+        let [one, least, infinity, distance] = [
+            T::one(),
+            T::min_positive_value(),
+            T::infinity(),
+            self.screen_distance,
+        ]
+        .map(|number| Wide::splat(simd, number));
+        let mut at = 0;
+        while at < self.x.len() {
+            let (x, y) = (Wide::load(simd, &self.x[at..]), Wide::load(simd, &self.y[at..]));
+            let size = x.max(-x).max(y.max(-y)).max(distance);
+            // The exponent alone.
+            let power = size.and(infinity);
+            let power = power.select(least.less_or_equal(size), one);
+            let power = power.select(size.less(infinity), one);
+            let scaled = Wide3(x, y, -distance) * (one / power);
+            let length = scaled.dot(scaled).sqrt();
+            (scaled.0 / length).store(&mut self.directions[0][at..]);
+            (scaled.1 / length).store(&mut self.directions[1][at..]);
+            (scaled.2 / length).store(&mut self.directions[2][at..]);
+            at += S::COUNT;
         }
     }
 }

@@ -1,7 +1,8 @@
 //! The reference tracer: what a scene looks like, in f32 or f64.
 //!
-//! It is written for correctness: recentred discriminants with stable roots, no epsilons, secondary rays
-//! do not meet the point that they start from. [`Tracer::hull`] tells which colours a pixel has in
+//! Recentred discriminants with stable roots, no epsilons, secondary rays do not meet the point that they start from. Camera
+//! rays go in packets and others meet eight spheres at once, by the one formula of `spheres`, whose bits are the same in
+//! any instruction set. [`Tracer::hull`] tells which colours a pixel has in
 //! the styles that shaders may start secondary rays in, [`Tracer::is_quad_mixed`] where its quad
 //! sees different things.
 
@@ -9,6 +10,7 @@ mod adaptive;
 mod camera;
 mod figure;
 mod film;
+mod lanes;
 mod light;
 mod material;
 mod ray;
@@ -16,9 +18,11 @@ mod real;
 mod sampler;
 mod seen;
 mod shape;
+mod spheres;
 mod style;
 #[cfg(test)]
 mod tests;
+mod tile;
 mod world;
 
 use rayon::prelude::*;
@@ -29,7 +33,9 @@ pub use style::{Hull, Styles};
 
 use self::camera::Camera;
 use self::figure::Figure;
+use self::lanes::Level;
 use self::sampler::{Draws, Sample};
+use self::seen::Seen;
 use self::shape::{Shape, Sphere};
 use self::style::{Exact, Style};
 use self::world::World;
@@ -45,6 +51,8 @@ pub struct Tracer<T: Real> {
     camera: Camera<T>,
     figures: Vec<Figure<T>>,
     kernel: Kernel<T>,
+    /// Of the instruction set that it is traced with; all give the same bits.
+    level: Level,
 }
 
 /// What a scene requires of the loops over its surfaces.
@@ -64,6 +72,10 @@ impl<T: Real> Tracer<T> {
     /// A tracer of `scene` at that moment.
     #[must_use]
     pub fn at(scene: &Scene, moment: Moment) -> Self {
+        Self::with_level(scene, moment, Level::best())
+    }
+
+    fn with_level(scene: &Scene, moment: Moment, level: Level) -> Self {
         let requirements = Requirements::of(scene);
         let scene = &scene.at(moment);
         Self {
@@ -72,32 +84,26 @@ impl<T: Real> Tracer<T> {
             camera: Camera::new(scene),
             figures: scene.figures.iter().map(Figure::new).collect(),
             kernel: if requirements.shapes {
-                Kernel::Shapes(World::new(scene, |object| Shape::new(&object.shape)))
+                Kernel::Shapes(World::new(scene, level, |object| Shape::new(&object.shape)))
             } else {
-                Kernel::Spheres(World::new(scene, |object| match object.shape {
+                Kernel::Spheres(World::new(scene, level, |object| match object.shape {
                     scene::Shape::Sphere { center, radius } => Sphere::new(center, radius),
                     _ => unreachable!("a scene that requires other shapes has the other kernel"),
                 }))
             },
+            level,
         }
     }
 
     /// The whole picture, unclamped; `row_done` is called once for each row, from any thread.
     pub fn picture(&self, row_done: impl Fn() + Sync) -> Image {
         let [width, height] = self.film.size;
-        let pixels = (0..height)
-            .into_par_iter()
-            .flat_map_iter(|y| {
-                let row: Vec<_> = (0..width)
-                    .map(|x| {
-                        let [r, g, b] = self.pixel(x, y).map(|c| c.to_f64() as f32);
-                        [r, g, b, 1.0]
-                    })
-                    .collect();
-                row_done();
-                row
-            })
-            .collect();
+        let mut pixels = vec![[0.0, 0.0, 0.0, 1.0]; width as usize * height as usize];
+        let bands = pixels.par_chunks_mut(width as usize * tile::SIDE as usize);
+        bands.enumerate().for_each(|(band, pixels)| {
+            self.band(band as u32 * tile::SIDE, pixels);
+            (0..pixels.len() / width as usize).for_each(|_| row_done());
+        });
         Image::new(width, height, pixels)
     }
 
@@ -122,7 +128,8 @@ impl<T: Real> Tracer<T> {
     fn sample(&self, sample: Sample, style: &impl Style<T>) -> T::Vec3 {
         let mut draws = Draws::new(self.film.sampler, sample);
         let place = Self::place(sample, &mut draws);
-        self.radiance(place, &mut draws, style)
+        let seen = self.look(self.camera.screen(place));
+        self.radiance(seen, &mut draws, style)
     }
 
     /// Where a sample lies in the picture, in pixels from the bottom left: the first that is drawn for it.
@@ -132,16 +139,12 @@ impl<T: Real> Tracer<T> {
         [0, 1].map(|axis| T::from_f64(f64::from(sample.pixel[axis])) + half + jitter[axis])
     }
 
-    /// What comes from a place of the picture.
-    fn radiance(&self, [x, y]: [T; 2], draws: &mut Draws, style: &impl Style<T>) -> T::Vec3 {
-        let screen = self.camera.screen(x, y);
-        if let Some(figure) = figure::topmost(&self.figures, screen) {
-            return self.figures[figure].color;
-        }
-        let ray = self.camera.ray(screen);
-        match &self.kernel {
-            Kernel::Spheres(world) => world.radiance(ray, draws, style),
-            Kernel::Shapes(world) => world.radiance(ray, draws, style),
+    /// What comes from a place on the screen.
+    fn radiance(&self, seen: Seen<T>, draws: &mut Draws, style: &impl Style<T>) -> T::Vec3 {
+        match (seen, &self.kernel) {
+            (Seen::Figure(figure), _) => self.figures[figure].color,
+            (Seen::Scene(ray, first), Kernel::Spheres(world)) => world.radiance(ray, first, draws, style),
+            (Seen::Scene(ray, first), Kernel::Shapes(world)) => world.radiance(ray, first, draws, style),
         }
     }
 }

@@ -6,8 +6,10 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use glam::{DVec3, Vec3};
 use num_traits::Float;
 
+use super::lanes::Vectorised;
+
 /// f32 or f64, with the vector of glam's that carries it.
-pub trait Real: Float + Debug + Send + Sync + 'static {
+pub trait Real: Float + Vectorised + Debug + Send + Sync + 'static {
     /// Three components of this type.
     type Vec3: Vector<Self>;
 
@@ -32,6 +34,14 @@ pub trait Real: Float + Debug + Send + Sync + 'static {
     /// The largest power of two that is not above this, which is positive, normal and finite.
     #[must_use]
     fn power_of_two(self) -> Self;
+
+    /// Bits that stand for a number of something. They are not to be reckoned with.
+    #[must_use]
+    fn tag(number: u32) -> Self;
+
+    /// What [`Real::tag`] was given.
+    #[must_use]
+    fn untag(self) -> u32;
 }
 
 /// Three components.
@@ -114,6 +124,14 @@ macro_rules! real {
 
             fn power_of_two(self) -> Self {
                 Self::from_bits(self.to_bits() & Self::INFINITY.to_bits())
+            }
+
+            fn tag(number: u32) -> Self {
+                Self::from_bits(number.into())
+            }
+
+            fn untag(self) -> u32 {
+                self.to_bits() as u32
             }
         }
 

@@ -1,17 +1,29 @@
-//! What the pixels of a quad see.
+//! What places on the screen show, and what the pixels of a quad see.
 
-use super::real::Real;
+use super::ray::Ray;
+use super::real::{Real, Vector};
 use super::sampler::{Draws, Sample};
+use super::style::Exact;
+use super::world::First;
 use super::{Kernel, Tracer, figure};
 
-/// What lies at a place of the picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Seen {
-    Background,
+/// What lies at a place of the screen.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Seen<T: Real> {
     /// A figure on the screen, by its number in the scene.
     Figure(usize),
-    /// A surface, likewise.
-    Surface(usize),
+    /// What the camera's ray meets first.
+    Scene(Ray<T>, First<T>),
+}
+
+impl<T: Real> Seen<T> {
+    /// Which figure or surface; both are none for the background.
+    fn what(&self) -> [Option<usize>; 2] {
+        match self {
+            Self::Figure(figure) => [Some(*figure), None],
+            Self::Scene(_, first) => [None, first.map(|(_, surface)| surface)],
+        }
+    }
 }
 
 impl<T: Real> Tracer<T> {
@@ -31,22 +43,48 @@ impl<T: Real> Tracer<T> {
                 set: 0,
             })
         });
-        let mut seen = samples.map(|sample| self.seen(sample));
+        let mut seen = samples.map(|sample| {
+            let place = Self::place(sample, &mut Draws::new(self.film.sampler, sample));
+            self.look(self.camera.screen(place)).what()
+        });
         let first = seen.next();
         seen.any(|other| Some(other) != first)
     }
 
-    fn seen(&self, sample: Sample) -> Seen {
-        let [x, y] = Self::place(sample, &mut Draws::new(self.film.sampler, sample));
-        let screen = self.camera.screen(x, y);
+    /// The ray through the middle of a pixel: its origin and its direction.
+    #[must_use]
+    pub fn camera_ray(&self, x: u32, y: u32) -> [[T; 3]; 2] {
+        let half = T::from_f64(0.5);
+        let middle = [x, y].map(|along| T::from_f64(f64::from(along)) + half);
+        let ray = self.camera.ray(self.camera.screen(middle));
+        [ray.origin.to_array(), ray.direction.to_array()]
+    }
+
+    /// What a ray from anywhere meets first: how many times its direction away, and the surface, by its number in the scene.
+    /// If it starts on a surface, that one is only met elsewhere.
+    #[must_use]
+    pub fn meet(&self, origin: [T; 3], direction: [T; 3], from: Option<usize>) -> Option<(T, usize)> {
+        let vector = |[x, y, z]: [T; 3]| T::Vec3::new(x, y, z);
+        self.nearest(&Ray {
+            origin: vector(origin),
+            direction: vector(direction),
+            from,
+        })
+    }
+
+    /// What lies at a place of the screen.
+    pub(super) fn look(&self, screen: [T; 2]) -> Seen<T> {
         if let Some(figure) = figure::topmost(&self.figures, screen) {
             return Seen::Figure(figure);
         }
         let ray = self.camera.ray(screen);
-        let surface = match &self.kernel {
-            Kernel::Spheres(world) => world.seen(&ray),
-            Kernel::Shapes(world) => world.seen(&ray),
-        };
-        surface.map_or(Seen::Background, Seen::Surface)
+        Seen::Scene(ray, self.nearest(&ray))
+    }
+
+    fn nearest(&self, ray: &Ray<T>) -> First<T> {
+        match &self.kernel {
+            Kernel::Spheres(world) => world.nearest(ray, &Exact),
+            Kernel::Shapes(world) => world.nearest(ray, &Exact),
+        }
     }
 }

@@ -6,7 +6,7 @@
 //! each of these styles. How far is a little, the scene says: [`crate::scene::Scene::max_offset`].
 
 use super::real::Real;
-use super::sampler::Sample;
+use super::sampler::{Draws, Sample};
 use super::{Tracer, film};
 
 /// How secondary rays start. [`Exact`] costs nothing.
@@ -155,14 +155,19 @@ impl Tracer<f64> {
                 count,
                 set: 0,
             };
+            // What the camera sees does not depend on the style.
+            let mut draws = Draws::new(self.film.sampler, sample);
+            let place = Self::place(sample, &mut draws);
+            let seen = self.look(self.camera.screen(place));
             let mut hull = Hull::EMPTY;
             for other in legal() {
                 if styles == Styles::Alike {
-                    hull.take(self.sample(sample, &other).to_array());
+                    hull.take(self.radiance(seen, &mut draws.clone(), &other).to_array());
                     continue;
                 }
                 for light in legal() {
-                    hull.take(self.sample(sample, &Mixed { light, other }).to_array());
+                    let style = Mixed { light, other };
+                    hull.take(self.radiance(seen, &mut draws.clone(), &style).to_array());
                 }
             }
             for i in 0..3 {

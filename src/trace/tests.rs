@@ -1,5 +1,8 @@
 //! Pictures whose pixels are known.
 
+use std::fs;
+use std::path::PathBuf;
+
 use super::*;
 use crate::scene::{self, Sampler};
 use crate::source::{File, Files};
@@ -152,12 +155,13 @@ fn both_precisions_agree_to_float32() {
 
 /// The scene of a rung, at another size.
 fn rung(name: &str, size: [u32; 2]) -> Scene {
-    let text = match name {
-        "03" => include_str!("../../glsl/03-shading.toml"),
-        "09" => include_str!("../../glsl/09-soft-shadows.toml"),
-        _ => unreachable!("{name}"),
+    let is_it = |path: &PathBuf| {
+        let stem = path.file_stem().unwrap().to_str().unwrap();
+        stem.starts_with(name) && path.extension().is_some_and(|extension| extension == "toml")
     };
-    let mut scene = scene(text);
+    let mut paths = fs::read_dir("glsl").unwrap().map(|entry| entry.unwrap().path());
+    let text = fs::read_to_string(paths.find(is_it).unwrap()).unwrap();
+    let mut scene = scene(&text);
     scene.film.size = size;
     scene
 }
@@ -396,4 +400,56 @@ fn the_error_that_is_asked_for_is_kept() {
         fewest == 16 && most > fewest,
         "the sky needs fewer than the shadows: {spent:?}"
     );
+}
+
+/// The bits of a picture.
+fn bits(image: &Image) -> Vec<[u32; 4]> {
+    image
+        .pixels()
+        .iter()
+        .map(|pixel| pixel.map(f32::to_bits))
+        .collect()
+}
+
+fn same_bits_however_it_is_traced<T: Real>(name: &str) {
+    let mut scene = rung(name, [45, 27]);
+    scene.film.samples = scene.film.samples.min(2);
+    let tracers: Vec<_> = Level::all()
+        .map(|level| Tracer::<T>::with_level(&scene, Moment::default(), level))
+        .collect();
+    let expected = bits(&tracers[0].picture(|| ()));
+    for tracer in &tracers {
+        for threads in [1, 3] {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .unwrap();
+            let picture = pool.install(|| tracer.picture(|| ()));
+            assert!(
+                bits(&picture) == expected,
+                "{name}: {:?}, {threads} threads",
+                tracer.level
+            );
+        }
+        // Pixel by pixel, no rays go together.
+        let pixels = (0..27).flat_map(|y| (0..45).map(move |x| [x, y]));
+        for ([x, y], expected) in pixels.zip(&expected) {
+            let [r, g, b] = tracer.pixel(x, y).map(|c| (c.to_f64() as f32).to_bits());
+            assert_eq!(
+                [r, g, b],
+                expected[..3],
+                "{name}: {:?}, pixel {x}, {y}",
+                tracer.level
+            );
+        }
+    }
+}
+
+#[test]
+fn every_instruction_set_and_number_of_threads_paints_the_same_bits() {
+    for rung in 1..=15 {
+        let name = format!("{rung:02}");
+        same_bits_however_it_is_traced::<f32>(&name);
+        same_bits_however_it_is_traced::<f64>(&name);
+    }
 }

@@ -20,7 +20,7 @@ pub(super) struct Sample {
 }
 
 /// The numbers of one sample, in the order in which they are drawn: the place in the pixel comes first.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) enum Draws {
     /// At the centre, and nothing more.
     Center,

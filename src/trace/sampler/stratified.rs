@@ -4,7 +4,7 @@ use crate::image::pcg;
 use crate::scene::unit;
 
 /// The cells of one sample, a new one for each draw.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(in super::super) struct Strata {
     index: u32,
     count: u32,

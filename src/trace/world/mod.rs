@@ -3,16 +3,21 @@
 mod path;
 mod whitted;
 
+use super::lanes::Level;
 use super::light::{Background, Light};
 use super::material::{Material, Model};
 use super::ray::{Hit, Ray};
 use super::real::{Real, Vector};
 use super::sampler::Draws;
 use super::shape::Primitive;
+use super::spheres::{Found, NONE, Numbered, PACKET, Packet, Query, Spheres};
 use super::style::{Exact, Style};
-use crate::scene::{Integrator, Object, Scene, Shape};
+use crate::scene::{Integrator, Object, Requirements, Scene, Shape};
 
-/// Surfaces and lights. `P` is the one shape that a scene requires, so that the loops over it know it.
+/// What a ray meets first: its t, and the number of the surface.
+pub(super) type First<T> = Option<(T, usize)>;
+
+/// Surfaces and lights. `P` is the one shape that a scene requires, so that what is asked of each knows it.
 #[derive(Debug)]
 pub(super) struct World<T: Real, P> {
     integrator: Integrator,
@@ -21,6 +26,10 @@ pub(super) struct World<T: Real, P> {
     background: Background<T>,
     lights: Vec<Light<T>>,
     shapes: Vec<P>,
+    /// Those of them that are spheres, once more.
+    spheres: Spheres<T>,
+    /// The numbers of the others.
+    others: Vec<usize>,
     /// One for each shape.
     materials: Vec<Material<T>>,
     /// The spheres that shine.
@@ -35,13 +44,25 @@ struct Emitter<T: Real> {
 }
 
 impl<T: Real, P: Primitive<T>> World<T, P> {
-    pub(super) fn new(scene: &Scene, shape: impl Fn(&Object) -> P) -> Self {
+    pub(super) fn new(scene: &Scene, level: Level, shape: impl Fn(&Object) -> P) -> Self {
         let materials: Vec<_> = scene
             .objects
             .iter()
             .map(|object| Material::new(&object.material))
             .collect();
         let emitters = scene.objects.iter().zip(&materials).enumerate();
+        let spheres: Vec<_> = (0..)
+            .zip(&scene.objects)
+            .filter_map(|(number, object)| match object.shape {
+                Shape::Sphere { center, radius } => Some(Numbered {
+                    center: center.map(T::from_f64),
+                    radius: T::from_f64(radius),
+                    number,
+                }),
+                _ => None,
+            })
+            .collect();
+        let is_other = |object: &Object| !matches!(object.shape, Shape::Sphere { .. });
         Self {
             integrator: scene.film.integrator,
             max_depth: scene.film.max_depth,
@@ -49,6 +70,10 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
             background: Background::new(&scene.background),
             lights: scene.lights.iter().map(Light::new).collect(),
             shapes: scene.objects.iter().map(shape).collect(),
+            spheres: Spheres::new(&spheres, Requirements::of(scene).many_spheres, level),
+            others: (0..scene.objects.len())
+                .filter(|&at| is_other(&scene.objects[at]))
+                .collect(),
             emitters: emitters
                 .filter_map(
                     |(surface, (object, material))| match (object.shape, &material.model) {
@@ -65,37 +90,81 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         }
     }
 
-    /// The radiance along a camera ray.
-    pub(super) fn radiance(&self, ray: Ray<T>, draws: &mut Draws, style: &impl Style<T>) -> T::Vec3 {
+    /// The radiance along a camera ray, which meets that first.
+    pub(super) fn radiance(
+        &self,
+        ray: Ray<T>,
+        first: First<T>,
+        draws: &mut Draws,
+        style: &impl Style<T>,
+    ) -> T::Vec3 {
         match self.integrator {
-            Integrator::Whitted => self.whitted(ray, 0, draws, style),
-            Integrator::Path => self.path(ray, draws, style),
+            Integrator::Whitted => self.whitted(ray, Some(first), 0, draws, style),
+            Integrator::Path => self.path(ray, first, draws, style),
         }
     }
 
-    fn intersect(&self, surface: usize, ray: &Ray<T>, style: &impl Style<T>) -> Option<T> {
-        let shape = &self.shapes[surface];
-        // Off its surface, a ray starts on none.
-        if ray.from == Some(surface) && style.offset() == T::zero() {
-            shape.intersect_own(ray, style)
-        } else {
-            shape.intersect(ray, style)
+    /// The surface that a ray starts on, if it is not to meet it where it starts: off its surface, it starts on none.
+    fn own(ray: &Ray<T>, style: &impl Style<T>) -> Option<usize> {
+        ray.from.filter(|_| style.offset() == T::zero())
+    }
+
+    /// What the ray looks for among the spheres; its own surface is looked at apart.
+    fn query(
+        ray: &Ray<T>,
+        style: &impl Style<T>,
+        own: Option<usize>,
+        light: Option<usize>,
+        t_max: T,
+    ) -> Query<T> {
+        Query {
+            origin: ray.origin.to_array(),
+            direction: ray.direction.to_array(),
+            t_min: style.t_min(ray.from.is_some()),
+            t_max,
+            but: [own, light].map(|surface| surface.map_or(NONE, |surface| surface as u32)),
         }
     }
 
-    fn nearest(&self, ray: &Ray<T>, style: &impl Style<T>) -> Option<Hit<T>> {
-        let mut nearest = None;
-        let mut t_nearest = T::infinity();
-        for surface in 0..self.shapes.len() {
-            if let Some(t) = self.intersect(surface, ray, style)
-                && t < t_nearest
-            {
-                t_nearest = t;
-                nearest = Some(surface);
+    /// The surface that a ray meets first; where several have the same t, the one with the smallest number.
+    pub(super) fn nearest(&self, ray: &Ray<T>, style: &impl Style<T>) -> First<T> {
+        let own = Self::own(ray, style);
+        let query = Self::query(ray, style, own, None, T::infinity());
+        let first = self.spheres.nearest(&query);
+        let mut first = first.map(|(t, number)| (t, number as usize));
+        if let Some(own) = own {
+            nearer(&mut first, self.shapes[own].intersect_own(ray, style), own);
+        }
+        self.nearest_other(ray, &mut first, style);
+        first
+    }
+
+    /// Looks among those that are no spheres, but not at the ray's own.
+    fn nearest_other(&self, ray: &Ray<T>, first: &mut First<T>, style: &impl Style<T>) {
+        let own = Self::own(ray, style);
+        for &other in &self.others {
+            if own != Some(other) {
+                nearer(first, self.shapes[other].intersect(ray, style), other);
             }
         }
-        let surface = nearest?;
-        let [point, normal] = self.shapes[surface].surface(ray, t_nearest);
+    }
+
+    /// The surfaces that the rays of a packet meet first.
+    pub(super) fn nearest_of_packet(&self, packet: &Packet<T>) -> [First<T>; PACKET] {
+        let found: Found<T> = self.spheres.nearest_of_packet(packet);
+        std::array::from_fn(|at| {
+            let mut first = found.of(at).map(|(t, number)| (t, number as usize));
+            if !self.others.is_empty() {
+                self.nearest_other(&packet.ray(at), &mut first, &Exact);
+            }
+            first
+        })
+    }
+
+    /// The point where a ray meets a surface first.
+    fn hit(&self, ray: &Ray<T>, first: First<T>) -> Option<Hit<T>> {
+        let (t, surface) = first?;
+        let [point, normal] = self.shapes[surface].surface(ray, t);
         Some(Hit {
             point,
             normal,
@@ -103,15 +172,26 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         })
     }
 
-    /// The surface that a camera ray meets first.
-    pub(super) fn seen(&self, ray: &Ray<T>) -> Option<usize> {
-        self.nearest(ray, &Exact).map(|hit| hit.surface)
-    }
-
     /// Whether anything but the surface `light` lies strictly between the ray's origin and `distance`.
     fn occluded(&self, ray: &Ray<T>, distance: T, light: Option<usize>, style: &impl Style<T>) -> bool {
-        (0..self.shapes.len()).any(|surface| {
-            light != Some(surface) && self.intersect(surface, ray, style).is_some_and(|t| t < distance)
-        })
+        let own = Self::own(ray, style);
+        let hides = |t: Option<T>| t.is_some_and(|t| t < distance);
+        let own_hides = |own: usize| light != Some(own) && hides(self.shapes[own].intersect_own(ray, style));
+        let other_hides = |&other: &usize| {
+            own != Some(other) && light != Some(other) && hides(self.shapes[other].intersect(ray, style))
+        };
+        own.is_some_and(own_hides)
+            || self.spheres.any(&Self::query(ray, style, own, light, distance))
+            || self.others.iter().any(other_hides)
+    }
+}
+
+/// Takes a surface that is met at t where it comes before the first so far.
+fn nearer<T: Real>(first: &mut First<T>, t: Option<T>, surface: usize) {
+    if let Some(t) = t
+        && t < T::infinity()
+        && first.is_none_or(|(nearest, before)| t < nearest || (t == nearest && surface < before))
+    {
+        *first = Some((t, surface));
     }
 }

@@ -9,7 +9,7 @@ use super::super::real::{Real, Vector};
 use super::super::sampler::Draws;
 use super::super::shape::Primitive;
 use super::super::style::Style;
-use super::World;
+use super::{First, World};
 
 /// The last direction that was drawn for a BRDF: its density, and where its ray starts.
 type Drawn<T> = (T, <T as Real>::Vec3);
@@ -17,13 +17,21 @@ type Drawn<T> = (T, <T as Real>::Vec3);
 impl<T: Real, P: Primitive<T>> World<T, P> {
     /// Draws, at each point with a BRDF: which emitter (one number), a direction in its cone (a pair), a direction for
     /// the BRDF (a pair). The first are left out where nothing shines.
-    pub(super) fn path(&self, mut ray: Ray<T>, draws: &mut Draws, style: &impl Style<T>) -> T::Vec3 {
+    pub(super) fn path(
+        &self,
+        mut ray: Ray<T>,
+        first: First<T>,
+        draws: &mut Draws,
+        style: &impl Style<T>,
+    ) -> T::Vec3 {
+        let mut first = Some(first);
         let mut sum = T::Vec3::ZERO;
         let mut throughput = T::Vec3::from_f64([1.0; 3]);
         // None where no emitter could have been drawn: at the camera and at mirrors.
         let mut drawn: Option<Drawn<T>> = None;
         for segment in 1..=self.max_depth {
-            let Some(hit) = self.nearest(&ray, style) else {
+            let first = first.take().unwrap_or_else(|| self.nearest(&ray, style));
+            let Some(hit) = self.hit(&ray, first) else {
                 return sum + throughput * self.background.color(ray.direction);
             };
             let material = &self.materials[hit.surface];

@@ -8,13 +8,14 @@ use super::super::real::{Real, Vector};
 use super::super::sampler::Draws;
 use super::super::shape::Primitive;
 use super::super::style::Style;
-use super::World;
+use super::{First, World};
 
 impl<T: Real, P: Primitive<T>> World<T, P> {
-    /// The radiance along a ray whose path has `depth` segments before it.
+    /// The radiance along a ray whose path has `depth` segments before it; what it meets first may be known.
     pub(super) fn whitted(
         &self,
         mut ray: Ray<T>,
+        mut first: Option<First<T>>,
         depth: u32,
         draws: &mut Draws,
         style: &impl Style<T>,
@@ -22,7 +23,8 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         let mut sum = T::Vec3::ZERO;
         let mut throughput = T::Vec3::from_f64([1.0; 3]);
         for depth in depth..self.max_depth {
-            let Some(hit) = self.nearest(&ray, style) else {
+            let first = first.take().unwrap_or_else(|| self.nearest(&ray, style));
+            let Some(hit) = self.hit(&ray, first) else {
                 return sum + throughput * self.background.color(ray.direction);
             };
             let material = &self.materials[hit.surface];
@@ -49,7 +51,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
                         ray = mirrored;
                         continue;
                     };
-                    let seen = self.whitted(mirrored, depth + 1, draws, style);
+                    let seen = self.whitted(mirrored, None, depth + 1, draws, style);
                     sum = sum + color * parted.share * seen;
                     throughput = color * (T::one() - parted.share);
                     ray = hit.leave(refracted, style);

@@ -1,0 +1,122 @@
+//! Embree's side: a small C program, compiled here, that meets our rays with our spheres when it is told to.
+
+use std::io::{Read, Write};
+use std::path::Path;
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+
+use toyproof::scene::{Scene, Shape};
+
+/// A ray: origin, direction, smallest t.
+pub(crate) type Ray = [f32; 7];
+
+/// The program at work.
+pub(crate) struct Embree {
+    child: Child,
+    to: ChildStdin,
+    from: ChildStdout,
+    rays: usize,
+    /// Seconds of processor time that building took.
+    pub(crate) build: f64,
+}
+
+/// Compiles the program; why it cannot, if it cannot.
+pub(crate) fn compile(to: &Path) -> Result<(), String> {
+    let source = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/tracers/embree.c");
+    let output = Command::new("cc")
+        .args(["-O3", "-march=native", source, "-o"])
+        .arg(to)
+        .arg("-lembree3")
+        .output()
+        .map_err(|error| format!("cc: {error}"))?;
+    if output.status.success() {
+        Ok(())
+    } else {
+        Err("it needs Debian's libembree-dev".to_owned())
+    }
+}
+
+impl Embree {
+    pub(crate) fn new(program: &Path, scene: &Scene, rays: &[Ray]) -> Self {
+        let mut child = Command::new(program)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("it was compiled");
+        let (to, from) = (child.stdin.take(), child.stdout.take());
+        let (mut to, from) = (to.expect("it is piped"), from.expect("it is piped"));
+        let mut bytes = Vec::new();
+        for count in [scene.objects.len(), rays.len()] {
+            bytes.extend((count as u32).to_ne_bytes());
+        }
+        for object in &scene.objects {
+            if let Shape::Sphere {
+                center: [x, y, z],
+                radius,
+            } = object.shape
+            {
+                bytes.extend(
+                    [x, y, z, radius]
+                        .iter()
+                        .flat_map(|&number| (number as f32).to_ne_bytes()),
+                );
+            }
+        }
+        bytes.extend(rays.iter().flatten().flat_map(|number| number.to_ne_bytes()));
+        to.write_all(&bytes).expect("it reads");
+        let mut embree = Self {
+            child,
+            to,
+            from,
+            rays: rays.len(),
+            build: 0.0,
+        };
+        embree.build = embree.seconds();
+        embree
+    }
+
+    fn command(&mut self, command: u8) {
+        self.to
+            .write_all(&[command])
+            .and_then(|()| self.to.flush())
+            .expect("it reads");
+    }
+
+    fn seconds(&mut self) -> f64 {
+        let mut bytes = [0; 8];
+        self.from.read_exact(&mut bytes).expect("it answers");
+        f64::from_ne_bytes(bytes)
+    }
+
+    /// Seconds of processor time for all rays, one by one.
+    pub(crate) fn one_by_one(&mut self) -> f64 {
+        self.command(b'1');
+        self.seconds()
+    }
+
+    /// Eight at a time.
+    pub(crate) fn by_eights(&mut self) -> f64 {
+        self.command(b'8');
+        self.seconds()
+    }
+
+    /// The number of each ray's sphere.
+    pub(crate) fn numbers(&mut self) -> Vec<Option<u32>> {
+        self.command(b'i');
+        let mut bytes = vec![0; 4 * self.rays];
+        self.from.read_exact(&mut bytes).expect("it answers");
+        let numbers = bytes
+            .chunks_exact(4)
+            .map(|four| u32::from_ne_bytes([four[0], four[1], four[2], four[3]]));
+        numbers
+            .map(|number| (number != u32::MAX).then_some(number))
+            .collect()
+    }
+}
+
+impl Drop for Embree {
+    fn drop(&mut self) {
+        // It has nothing to lose.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}

@@ -1,0 +1,488 @@
+//! The reference tracer beside Embree, lavapipe and POV-Ray, in turns, so that all meet the same noise; in seconds of
+//! processor time, ours on one thread. Who is not installed is left out. `cargo bench --bench tracers`
+
+#![expect(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a benchmark's own words"
+)]
+
+mod embree;
+mod scenes;
+#[path = "../../tests/suite/povray/words.rs"]
+mod words;
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use rustix::time::{ClockId, clock_gettime};
+use toyproof::export;
+use toyproof::frame::Frame;
+use toyproof::glsl::{Options, check, lower_strict};
+use toyproof::gpu::{FloatMode, On, Painter};
+use toyproof::scene::{
+    self, Fresnel, Integrator, Light, Model, Motion, Object, Period, Sampler, Scene, Shape,
+};
+use toyproof::source::{File, Files};
+use toyproof::trace::{Real, Tracer};
+
+use self::embree::{Embree, Ray};
+use self::scenes::{Random, light, material, spheres};
+
+const ROUNDS: usize = 7;
+/// The most spheres that a shader holds: beyond that, drivers take minutes to compile it.
+const MOST_IN_A_SHADER: usize = 100;
+
+/// Milliseconds that this process ran.
+fn clock() -> f64 {
+    let now = clock_gettime(ClockId::ProcessCPUTime);
+    now.tv_sec as f64 * 1e3 + now.tv_nsec as f64 / 1e6
+}
+
+fn time<R>(work: impl FnOnce() -> R) -> f64 {
+    let start = clock();
+    std::hint::black_box(work());
+    clock() - start
+}
+
+fn median(mut times: Vec<f64>) -> f64 {
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
+}
+
+/// The medians of several contestants, who take turns.
+fn in_turns<const N: usize>(mut turn: impl FnMut() -> [f64; N]) -> [f64; N] {
+    let mut times = [const { Vec::new() }; N];
+    // The first round warms up.
+    turn();
+    for _ in 0..ROUNDS {
+        for (times, taken) in times.iter_mut().zip(turn()) {
+            times.push(taken);
+        }
+    }
+    times.map(median)
+}
+
+/// Lavapipe with the shader that paints a scene.
+fn painter(scene: &Scene) -> Option<Painter> {
+    let text = export::shader(scene).ok()?;
+    let mut files = Files::default();
+    let file = files.add(File::new("exported", text));
+    let checked = check(&files, file, &Options::default()).ok()?;
+    Painter::new(
+        &lower_strict(&checked),
+        &Frame::default(),
+        FloatMode::Strict,
+        &On::Lavapipe,
+    )
+    .ok()
+}
+
+/// The camera rays, as float32, and those that leave what they meet in any direction.
+fn rays(scene: &Scene) -> [Vec<(Ray, Option<usize>)>; 2] {
+    let tracer = Tracer::<f32>::new(scene);
+    let [width, height] = scene.film.size;
+    let mut random = Random(99);
+    let (mut camera, mut others) = (Vec::new(), Vec::new());
+    for y in 0..height {
+        for x in 0..width {
+            let [origin, direction] = tracer.camera_ray(x, y);
+            camera.push((ray(origin, direction, 0.0), None));
+            if let Some((t, surface)) = tracer.meet(origin, direction, None) {
+                let point = [0, 1, 2].map(|i| origin[i] + t * direction[i]);
+                let away = loop {
+                    let v = [0; 3].map(|_| random.between(-1.0, 1.0) as f32);
+                    let square = v.iter().map(|c| c * c).sum::<f32>();
+                    if (0.01..1.0).contains(&square) {
+                        break v.map(|c| c / square.sqrt());
+                    }
+                };
+                others.push((ray(point, away, 1e-3), Some(surface)));
+            }
+        }
+    }
+    // In no order, as many as the camera's.
+    let shuffled = (0..camera.len())
+        .map(|_| others[(random.number() * others.len() as f64) as usize])
+        .collect();
+    [camera, shuffled]
+}
+
+fn ray([ox, oy, oz]: [f32; 3], [dx, dy, dz]: [f32; 3], t_min: f32) -> Ray {
+    [ox, oy, oz, dx, dy, dz, t_min]
+}
+
+fn meet_all<T: Real>(tracer: &Tracer<T>, rays: &[([T; 3], [T; 3], Option<usize>)]) -> usize {
+    let met = rays
+        .iter()
+        .filter(|(origin, direction, from)| tracer.meet(*origin, *direction, *from).is_some());
+    met.count()
+}
+
+fn in_numbers<T: Real>(rays: &[(Ray, Option<usize>)]) -> Vec<([T; 3], [T; 3], Option<usize>)> {
+    let number = |x: f32| T::from_f64(f64::from(x));
+    rays.iter()
+        .map(|&([ox, oy, oz, dx, dy, dz, _], from)| {
+            ([ox, oy, oz].map(number), [dx, dy, dz].map(number), from)
+        })
+        .collect()
+}
+
+fn cell(milliseconds: f64) -> String {
+    if milliseconds.is_nan() {
+        "–".to_owned()
+    } else {
+        format!("{milliseconds:.2}")
+    }
+}
+
+fn ratio(theirs: f64, ours: f64) -> String {
+    if theirs.is_nan() {
+        "–".to_owned()
+    } else {
+        format!("{:.2}", theirs / ours)
+    }
+}
+
+/// The surfaces that camera rays meet, and those that shuffled ones meet.
+fn beside_embree_and_lavapipe(program: Option<&Path>, counts: &[usize]) {
+    println!(
+        "Milliseconds at 640×360 on one thread. Primary: making the camera rays, meeting what is nearest, storing which."
+    );
+    println!(
+        "Shuffled: as many rays from what was met in any direction. Lavapipe paints the exported shader in flat colours.\n"
+    );
+    println!(
+        "| spheres | f32 | f64 | picture f32 | f64 | Embree 1 | 8 | lavapipe | Embree 8 / f32 | lavapipe / f32 | / f64 \
+         | shuffled f32 | f64 | Embree 1 | f32 / Embree | other ids f32 | Embree |"
+    );
+    println!("|{}", "---|".repeat(17));
+    for &count in counts {
+        let scene = spheres(count, Model::Emitter);
+        let [primary, shuffled] = rays(&scene);
+        let (single, double) = (Tracer::<f32>::new(&scene), Tracer::<f64>::new(&scene));
+        let (shuffled32, shuffled64) = (in_numbers::<f32>(&shuffled), in_numbers::<f64>(&shuffled));
+        let plain = |rays: &[(Ray, Option<usize>)]| rays.iter().map(|(ray, _)| *ray).collect::<Vec<_>>();
+        let mut embree = program
+            .map(|program| [&primary, &shuffled].map(|rays| Embree::new(program, &scene, &plain(rays))));
+        let mut painter = (count <= MOST_IN_A_SHADER).then(|| painter(&scene)).flatten();
+        let times = in_turns(|| {
+            let theirs = embree.as_mut().map_or([f64::NAN; 3], |[primary, shuffled]| {
+                [primary.one_by_one(), primary.by_eights(), shuffled.one_by_one()]
+                    .map(|seconds| 1e3 * seconds)
+            });
+            let gpu = painter
+                .as_mut()
+                .map_or(f64::NAN, |painter| time(|| painter.paint().expect("it compiled")));
+            [
+                time(|| single.surfaces()),
+                time(|| double.surfaces()),
+                time(|| single.picture(|| ())),
+                time(|| double.picture(|| ())),
+                theirs[0],
+                theirs[1],
+                gpu,
+                time(|| meet_all(&single, &shuffled32)),
+                time(|| meet_all(&double, &shuffled64)),
+                theirs[2],
+            ]
+        });
+        let [
+            f32,
+            f64,
+            picture32,
+            picture64,
+            one,
+            eight,
+            gpu,
+            other32,
+            other64,
+            other,
+        ] = times;
+        let exact = double.surfaces();
+        let wrong = |numbers: &[Option<u32>]| numbers.iter().zip(&exact).filter(|(a, b)| a != b).count();
+        let theirs = embree.as_mut().map_or("–".to_owned(), |[primary, _]| {
+            wrong(&primary.numbers()).to_string()
+        });
+        let numbers = [f32, f64, picture32, picture64, one, eight, gpu]
+            .map(cell)
+            .join(" | ");
+        let ratios = [ratio(eight, f32), ratio(gpu, f32), ratio(gpu, f64)].join(" | ");
+        let others = [cell(other32), cell(other64), cell(other)].join(" | ");
+        println!(
+            "| {count} | {numbers} | {ratios} | {others} | {} | {} | {theirs} |",
+            if other.is_nan() {
+                "–".to_owned()
+            } else {
+                ratio(other32, other)
+            },
+            wrong(&single.surfaces())
+        );
+    }
+}
+
+fn parse(text: &str) -> Scene {
+    let mut files = Files::default();
+    let file = files.add(File::new("scene", text));
+    scene::parse(&files, file).expect("it is valid")
+}
+
+/// Seconds of processor time that POV-Ray says it traced.
+fn povray(scene: &Scene, folder: &Path) -> Option<f64> {
+    let source = folder.join("scene.pov");
+    fs::write(&source, words::words(scene)).ok()?;
+    let output = Command::new("povray")
+        .args([
+            "+W640",
+            "+H360",
+            "-D",
+            "+A0.0",
+            "+AM1",
+            "+R4",
+            "-J",
+            "+WT1",
+            "File_Gamma=1",
+        ])
+        .arg(format!("+I{}", source.display()))
+        .arg(format!("+O{}", folder.join("scene.png").display()))
+        .output()
+        .ok()?;
+    let told = String::from_utf8_lossy(&output.stderr);
+    let (_, trace) = told.split_once("Trace Time:")?;
+    let (_, with) = trace.split_once(" with ")?;
+    let (seconds, _) = with.split_once(" CPU-seconds")?;
+    seconds.trim().parse().ok()
+}
+
+fn beside_povray(folder: &Path) {
+    let mut scene = parse(include_str!("whitted.toml"));
+    if povray(&scene, folder).is_none() {
+        eprintln!("without POV-Ray: Debian has a package of that name");
+        return;
+    }
+    scene.film.samples = 16;
+    scene.film.sampler = Sampler::Stratified;
+    let (single, double) = (Tracer::<f32>::new(&scene), Tracer::<f64>::new(&scene));
+    scene.film.samples = 1;
+    scene.film.sampler = Sampler::Center;
+    let [f32, f64, theirs] = in_turns(|| {
+        [
+            time(|| single.picture(|| ())),
+            time(|| double.picture(|| ())),
+            povray(&scene, folder).map_or(f64::NAN, |seconds| 1e3 * seconds),
+        ]
+    });
+    println!(
+        "\nSeven spheres, mirrors and glass up to six segments, two lights with shadows, 16 samples, milliseconds:\n"
+    );
+    println!("| f32 | f64 | POV-Ray 3.7 (its trace time) | POV-Ray / f32 | / f64 |\n|---|---|---|---|---|");
+    println!(
+        "| {f32:.0} | {f64:.0} | {theirs:.0} | {} | {} |",
+        ratio(theirs, f32),
+        ratio(theirs, f64)
+    );
+}
+
+/// What a scene has besides ten spheres under a light without shadows.
+type Feature = (&'static str, fn(&mut Scene));
+
+static FEATURES: [Feature; 11] = [
+    ("shadows", |scene| scene.lights[0].shadow = true),
+    ("a second light", |scene| {
+        scene.lights.push(Light {
+            position: [-5.0, 9.0, 4.0],
+            ..light()
+        });
+    }),
+    ("a soft shadow", |scene| {
+        scene.film.sampler = Sampler::Stratified;
+        scene.lights[0].shadow = true;
+        scene.lights[0].radius = 1.0;
+    }),
+    ("mirrors, two segments", |scene| {
+        scene.film.max_depth = 2;
+        scene
+            .objects
+            .iter_mut()
+            .step_by(2)
+            .for_each(|object| object.material = material(Model::Mirror));
+    }),
+    ("glass, four segments", |scene| {
+        scene.film.max_depth = 4;
+        let glass = Model::Glass {
+            ior: 1.5,
+            fresnel: Fresnel::Exact,
+        };
+        scene
+            .objects
+            .iter_mut()
+            .step_by(2)
+            .for_each(|object| object.material = material(glass));
+    }),
+    ("four samples", |scene| {
+        scene.film.samples = 4;
+        scene.film.sampler = Sampler::Stratified;
+    }),
+    ("a gamma", |scene| scene.film.gamma = 2.2),
+    ("a plane", |scene| {
+        let shape = Shape::Plane {
+            point: [0.0, -10.0, 0.0],
+            normal: [0.0, 1.0, 0.0],
+        };
+        scene.objects.push(Object {
+            shape,
+            material: material(Model::Lambert),
+            motion: None,
+        });
+    }),
+    ("motion", |scene| {
+        let motion = Motion {
+            pivot: [0.0; 3],
+            axis: [0.0, 1.0, 0.0],
+            period: Period::Frames(60.0),
+            within: None,
+        };
+        scene.motions.push(motion);
+        scene
+            .objects
+            .iter_mut()
+            .for_each(|object| object.motion = Some(0));
+    }),
+    ("a thousand spheres", |scene| {
+        scene.objects = spheres(1000, Model::Lambert).objects;
+    }),
+    ("path tracing, three segments", |scene| {
+        scene.film.integrator = Integrator::Path;
+        scene.film.sampler = Sampler::Stratified;
+        scene.film.max_depth = 3;
+        scene
+            .objects
+            .iter_mut()
+            .for_each(|object| object.material = material(Model::Diffuse));
+        scene.objects[0].material = material(Model::Emitter);
+    }),
+];
+
+fn features() {
+    let mut base = spheres(10, Model::Lambert);
+    base.lights.push(light());
+    println!(
+        "\nWhat features cost a picture of ten spheres under a light, 640×360, milliseconds, and times the picture without:\n"
+    );
+    println!("| | f32 | | f64 | |\n|---|---|---|---|---|");
+    let (single, double) = (Tracer::<f32>::new(&base), Tracer::<f64>::new(&base));
+    for (name, add) in FEATURES {
+        let mut scene = base.clone();
+        add(&mut scene);
+        let (more32, more64) = (Tracer::<f32>::new(&scene), Tracer::<f64>::new(&scene));
+        let [f32, with32, f64, with64] = in_turns(|| {
+            [
+                time(|| single.picture(|| ())),
+                time(|| more32.picture(|| ())),
+                time(|| double.picture(|| ())),
+                time(|| more64.picture(|| ())),
+            ]
+        });
+        println!(
+            "| {name} | {with32:.1} | {} | {with64:.1} | {} |",
+            ratio(with32, f32),
+            ratio(with64, f64)
+        );
+    }
+}
+
+/// The slope of the line nearest to the logarithms.
+fn exponent(points: &[(f64, f64)]) -> f64 {
+    let logs: Vec<_> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
+    let mean = |of: fn(&(f64, f64)) -> f64| logs.iter().map(of).sum::<f64>() / logs.len() as f64;
+    let (x, y) = (mean(|p| p.0), mean(|p| p.1));
+    let over: f64 = logs.iter().map(|p| (p.0 - x) * (p.1 - y)).sum();
+    over / logs.iter().map(|p| (p.0 - x).powi(2)).sum::<f64>()
+}
+
+fn growth(name: &str, scenes: Vec<(f64, Scene)>) {
+    println!("\n| {name} | f32 | f64 |\n|---|---|---|");
+    let mut points = [Vec::new(), Vec::new()];
+    for (at, scene) in scenes {
+        let (single, double) = (Tracer::<f32>::new(&scene), Tracer::<f64>::new(&scene));
+        let times = in_turns(|| [time(|| single.picture(|| ())), time(|| double.picture(|| ()))]);
+        println!("| {at} | {:.2} | {:.2} |", times[0], times[1]);
+        for (points, time) in points.iter_mut().zip(times) {
+            points.push((at, time));
+        }
+    }
+    let [single, double] = points.map(|points| exponent(&points));
+    println!("| exponent | {single:.2} | {double:.2} |");
+}
+
+/// Kilobytes of this process in memory.
+fn resident() -> f64 {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
+    line.and_then(|line| line.trim().strip_suffix(" kB")?.trim().parse().ok())
+        .unwrap_or(f64::NAN)
+}
+
+fn building(program: Option<&Path>, counts: &[usize]) {
+    println!("\nMaking a tracer, its tree included, milliseconds, and the memory it then holds:\n");
+    println!("| spheres | f32 | MB | f64 | MB | Embree |\n|---|---|---|---|---|---|");
+    for &count in counts {
+        let scene = spheres(count, Model::Emitter);
+        let before = resident();
+        let mut single = None;
+        let f32 = time(|| single = Some(Tracer::<f32>::new(&scene)));
+        let between = resident();
+        let mut double = None;
+        let f64 = time(|| double = Some(Tracer::<f64>::new(&scene)));
+        let after = resident();
+        let embree = program.map_or(f64::NAN, |program| 1e3 * Embree::new(program, &scene, &[]).build);
+        println!(
+            "| {count} | {f32:.1} | {:.0} | {f64:.1} | {:.0} | {} |",
+            (between - before) / 1024.0,
+            (after - between) / 1024.0,
+            cell(embree)
+        );
+    }
+}
+
+fn main() {
+    let folder = tempfile::tempdir().expect("there is room");
+    let program = folder.path().join("embree");
+    let program = match embree::compile(&program) {
+        Ok(()) => Some(program.as_path()),
+        Err(why) => {
+            eprintln!("without Embree: {why}");
+            None
+        }
+    };
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .build()
+        .expect("one thread");
+    let all = [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000];
+    pool.install(|| {
+        beside_embree_and_lavapipe(program, &all);
+        beside_povray(folder.path());
+        features();
+        println!("\nHow the time grows, a picture of flat colours, milliseconds:");
+        growth(
+            "spheres",
+            all.map(|count| (count as f64, spheres(count, Model::Emitter)))
+                .into(),
+        );
+        let sized = |factor: u32| {
+            let mut scene = spheres(100, Model::Emitter);
+            scene.film.size = [160 * factor, 90 * factor];
+            (f64::from(160 * 90 * factor * factor), scene)
+        };
+        growth("pixels", [1, 2, 4, 8, 16].map(sized).into());
+        let sampled = |samples: u32| {
+            let mut scene = spheres(100, Model::Emitter);
+            (scene.film.samples, scene.film.sampler) = (samples, Sampler::Stratified);
+            (f64::from(samples), scene)
+        };
+        growth("samples", [1, 4, 16, 64].map(sampled).into());
+        building(program, &all[2..]);
+    });
+}

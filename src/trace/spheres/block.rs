@@ -1,0 +1,87 @@
+//! Eight spheres side by side.
+
+use super::super::real::Real;
+use super::formula::unit;
+use super::{EIGHT, Eight, Numbered};
+
+/// Up to eight spheres. Places that are empty hold NaN, which nothing meets.
+#[derive(Debug, Clone)]
+#[repr(align(64))]
+pub(super) struct Block<T> {
+    pub(super) center: [Eight<T>; 3],
+    /// The power of two that lengths are counted in, in scene units, and one over it.
+    pub(super) unit: Eight<T>,
+    pub(super) per_unit: Eight<T>,
+    /// (radius/unit)², in [1, 4)
+    pub(super) radius2: Eight<T>,
+    /// How far from the centre along each axis a ray may pass that [`super::formula`] says meets the sphere: a little more
+    /// than the radius. See [`margin`].
+    pub(super) reach: Eight<T>,
+    pub(super) numbers: [u32; EIGHT],
+    pub(super) count: usize,
+}
+
+/// What is added to boxes, relative to the radius, and to the t's at their sides, relative to these, so that no box
+/// leaves out a ray for which the formula finds a hit.
+///
+/// The formula takes the point P at f·d/a along the ray, and finds a hit where the square that it computes of P's distance from
+/// the centre is at most r². With u half of the epsilon, each component of P − c is off by at most
+/// u (2 |o − c| + 3 r) along its own axis: f is rounded, the product with d and the sum. The square and the sum of squares are off by 4 u of themselves, hence
+/// the distance by 2 u r. So P lies on the ray, and within r + u (2 |o − c| + 5 r) of the centre along each axis. The side of a box
+/// is met at (side − o)/d, off by 4 u of itself, and so the t's of sides must differ by 4 + 2 times u, relative to
+/// themselves, from what they are, and the radius by 5 + 2 + 4 times u. Here both have 32 u.
+pub(super) fn margin<T: Real>() -> T {
+    T::from_f64(16.0) * T::epsilon()
+}
+
+impl<T: Real> Block<T> {
+    /// Of at most eight.
+    pub(super) fn new(spheres: &[Numbered<T>]) -> Self {
+        let nan = [T::nan(); EIGHT];
+        let mut block = Self {
+            center: [nan; 3],
+            unit: nan,
+            per_unit: nan,
+            radius2: nan,
+            reach: nan,
+            numbers: [super::NONE; EIGHT],
+            count: spheres.len(),
+        };
+        for (
+            at,
+            &Numbered {
+                center,
+                radius,
+                number,
+            },
+        ) in spheres.iter().enumerate()
+        {
+            let unit = unit(radius);
+            let scaled = radius / unit;
+            let size = center.iter().fold(T::zero(), |size, c| size.max(c.abs()));
+            for (axis, component) in center.into_iter().enumerate() {
+                block.center[axis][at] = component;
+            }
+            block.unit[at] = unit;
+            block.per_unit[at] = unit.recip();
+            block.radius2[at] = scaled * scaled;
+            // The sides of boxes are rounded as well, by an epsilon of the centre's size.
+            block.reach[at] = radius
+                + (margin::<T>() * radius + (T::epsilon() + T::epsilon()) * size)
+                + T::min_positive_value();
+            block.numbers[at] = number;
+        }
+        block
+    }
+
+    /// Its box: the lowest and the highest corner.
+    pub(super) fn bounds(&self) -> [[T; 3]; 2] {
+        let side = |axis: usize, sign: T| {
+            (0..self.count).map(move |at| self.center[axis][at] + sign * self.reach[at])
+        };
+        [
+            [0, 1, 2].map(|axis| side(axis, -T::one()).fold(T::infinity(), T::min)),
+            [0, 1, 2].map(|axis| side(axis, T::one()).fold(T::neg_infinity(), T::max)),
+        ]
+    }
+}

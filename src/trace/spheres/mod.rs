@@ -1,0 +1,86 @@
+//! All the spheres of a scene, for rays to find the nearest of.
+//!
+//! Eight of them lie side by side in a block. A few blocks are looked through from the first to the last; over many there is
+//! a tree of boxes ([`tree`]), which only leaves out spheres that the ray cannot meet, so that the answer is the same to
+//! the bit. One ray meets eight spheres or boxes at once ([`one`]); the rays of a packet meet one sphere together
+//! ([`packet`]). There is one formula for all of them ([`formula`]).
+
+#![expect(
+    clippy::inline_always,
+    reason = "only what is inlined into a kernel is compiled for its instruction set"
+)]
+
+mod block;
+mod formula;
+mod one;
+mod packet;
+mod slab;
+#[cfg(test)]
+mod tests;
+mod tree;
+
+use self::block::Block;
+use self::tree::Node;
+use super::lanes::Level;
+use super::real::Real;
+
+pub(super) use formula::{Meet, unit};
+pub(super) use one::Query;
+pub(super) use packet::{Found, Origins, PACKET, Packet};
+
+/// Spheres and boxes are looked at in eights.
+const EIGHT: usize = 8;
+type Eight<T> = [T; EIGHT];
+
+/// The number of a surface that is none.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// A sphere: its place, its radius, and its number among the scene's surfaces.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Numbered<T> {
+    pub(super) center: [T; 3],
+    pub(super) radius: T,
+    pub(super) number: u32,
+}
+
+/// The spheres of a scene.
+#[derive(Debug)]
+pub(super) struct Spheres<T> {
+    blocks: Vec<Block<T>>,
+    /// The root first; none where there are only a few blocks.
+    nodes: Vec<Node<T>>,
+    level: Level,
+}
+
+impl<T: Real> Spheres<T> {
+    /// Under a tree or not, for that instruction set.
+    pub(super) fn new(spheres: &[Numbered<T>], tree: bool, level: Level) -> Self {
+        let (blocks, nodes) = if tree && spheres.len() > EIGHT {
+            tree::build(spheres)
+        } else {
+            (spheres.chunks(EIGHT).map(Block::new).collect(), Vec::new())
+        };
+        Self { blocks, nodes, level }
+    }
+
+    /// The smallest t of a sphere, and its number; where several have it, the smallest number.
+    pub(super) fn nearest(&self, query: &Query<T>) -> Option<(T, u32)> {
+        T::run(self.level, one::Nearest { spheres: self, query })
+    }
+
+    /// Whether there is any.
+    pub(super) fn any(&self, query: &Query<T>) -> bool {
+        T::run(self.level, one::Any { spheres: self, query })
+    }
+
+    /// The same as [`Spheres::nearest`] for each ray of a packet.
+    pub(super) fn nearest_of_packet(&self, packet: &Packet<T>) -> Found<T> {
+        T::run(
+            self.level,
+            packet::Nearest {
+                spheres: self,
+                packet,
+            },
+        )
+    }
+}

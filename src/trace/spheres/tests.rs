@@ -1,0 +1,243 @@
+//! However spheres are looked for, the answer is that of one ray and one sphere after the other, to the bit.
+
+use glam::DVec3;
+
+use super::super::lanes::Level;
+use super::super::real::Real;
+use super::*;
+use crate::image::pcg;
+use crate::scene::unit as between_0_and_1;
+
+/// Numbers drawn by hashing, the same in every run.
+struct Random(u32);
+
+impl Random {
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        self.0 = pcg(self.0);
+        low + (high - low) * between_0_and_1(self.0)
+    }
+
+    /// 0, 1, … below a number.
+    fn below(&mut self, number: u32) -> u32 {
+        self.between(0.0, f64::from(number)) as u32
+    }
+
+    fn place(&mut self, size: f64) -> DVec3 {
+        DVec3::from_array([0; 3].map(|_| self.between(-size, size)))
+    }
+
+    fn direction(&mut self) -> DVec3 {
+        loop {
+            let v = self.place(1.0);
+            if (0.01..1.0).contains(&v.length_squared()) {
+                return v.normalize();
+            }
+        }
+    }
+}
+
+/// Spheres of one scene: far apart, overlapping, one in another, twice the same, one as large as a world.
+fn scene(random: &mut Random, count: u32, scale: f64) -> Vec<(DVec3, f64)> {
+    let size = 10.0 * scale;
+    let mut spheres: Vec<(DVec3, f64)> = Vec::new();
+    for _ in 0..count {
+        let radius = scale * 10f64.powf(random.between(-3.0, 0.5));
+        let sphere = match (random.below(12), spheres.last()) {
+            (0, Some(&last)) => last,
+            (1, Some(&(center, radius))) => (center, 0.5 * radius),
+            (2, _) => (DVec3::new(0.0, -1001.0 * size, 0.0), 1000.0 * size),
+            _ => (random.place(size), radius),
+        };
+        spheres.push(sphere);
+    }
+    spheres
+}
+
+/// Where a ray of a packet that starts in `origin` goes: anywhere, along an axis, or closely by an edge of a sphere.
+fn target(random: &mut Random, spheres: &[(DVec3, f64)], origin: DVec3) -> DVec3 {
+    let (center, radius) = spheres[random.below(spheres.len() as u32) as usize];
+    let toward = center - origin;
+    let across = toward.cross(random.direction()).normalize_or(DVec3::X);
+    match random.below(5) {
+        0 => origin + random.direction(),
+        1 => origin + [DVec3::X, DVec3::NEG_Y, DVec3::NEG_Z][random.below(3) as usize],
+        2 => center + across * (radius * (1.0 + random.between(-1e-6, 1e-6))),
+        _ => center + across * (radius * random.between(0.0, 1.5)),
+    }
+}
+
+fn rounded<T: Real>(v: DVec3) -> [T; 3] {
+    v.to_array().map(T::from_f64)
+}
+
+fn toward<T: Real>(origin: DVec3, target: DVec3) -> [T; 3] {
+    // Scaled first, as no square of the smallest numbers is.
+    let away = target - origin;
+    rounded((away / away.abs().max_element()).normalize_or(DVec3::NEG_Z))
+}
+
+/// One after the other.
+fn oracle<T: Real>(spheres: &[Numbered<T>], query: &Query<T>) -> Option<(T, u32)> {
+    let mut nearest: Option<(T, u32)> = None;
+    for sphere in spheres
+        .iter()
+        .filter(|sphere| !query.but.contains(&sphere.number))
+    {
+        let meet = Meet {
+            origin: query.origin,
+            direction: query.direction,
+            center: sphere.center,
+            radius: sphere.radius,
+            t_min: query.t_min,
+        };
+        if let Some(t) = T::run(Level::Base, meet)
+            && t < query.t_max
+            && nearest.is_none_or(|(before, _)| t < before)
+        {
+            nearest = Some((t, sphere.number));
+        }
+    }
+    nearest
+}
+
+/// How many rays were compared, and how many of them met something.
+fn compare<T: Real>(seeds: u32, exponents: f64) -> [u32; 2] {
+    let mut told = [0; 2];
+    for seed in 0..seeds {
+        let random = &mut Random(seed);
+        let scale = 10f64.powf(random.between(-exponents, exponents));
+        let count = [1, 3, 8, 9, 20, 150][random.below(6) as usize];
+        let described = scene(random, count, scale);
+        let spheres: Vec<_> = (0..)
+            .zip(&described)
+            .map(|(number, &(center, radius))| Numbered {
+                center: rounded(center),
+                radius: T::from_f64(radius),
+                // Not in the order of the places.
+                number: number ^ 1,
+            })
+            .collect();
+        let mut sorted = spheres.clone();
+        sorted.sort_by_key(|sphere| sphere.number);
+        let distance = scale * 10f64.powf(random.between(0.0, 3.0));
+        let eye = random.place(distance);
+        let is_narrow = random.below(2) == 0;
+        let aim = target(random, &described, eye);
+        let rays: [_; PACKET] = std::array::from_fn(|_| {
+            let target = if is_narrow {
+                aim + random.place(0.1 * scale)
+            } else {
+                target(random, &described, eye)
+            };
+            let start = eye + random.place(scale);
+            (start, toward::<T>(eye, target), random.below(count))
+        });
+        let query = |at: usize, origin: DVec3| Query {
+            origin: rounded(origin),
+            direction: rays[at].1,
+            t_min: T::zero(),
+            t_max: T::infinity(),
+            but: [NONE; 2],
+        };
+        let directions = [0, 1, 2].map(|axis| std::array::from_fn(|at| rays[at].1[axis]));
+        let packets = [
+            Packet {
+                origins: Origins::One(rounded(eye)),
+                directions,
+            },
+            Packet {
+                origins: Origins::Each(
+                    [0, 1, 2].map(|axis| std::array::from_fn(|at| rounded::<T>(rays[at].0)[axis])),
+                ),
+                directions,
+            },
+        ];
+        let expected = [0, 1].map(|kind| {
+            [(); PACKET]
+                .iter()
+                .enumerate()
+                .map(|(at, ())| {
+                    let origin = if kind == 0 { eye } else { rays[at].0 };
+                    oracle(&sorted, &query(at, origin))
+                })
+                .collect::<Vec<_>>()
+        });
+        for (level, tree) in Level::all().flat_map(|level| [(level, false), (level, true)]) {
+            let way = format!("seed {seed}, {level:?}, tree: {tree}");
+            let all = Spheres::new(&spheres, tree, level);
+            for (packet, expected) in packets.iter().zip(&expected) {
+                let found = all.nearest_of_packet(packet);
+                for (at, expected) in expected.iter().enumerate() {
+                    assert_eq!(found.of(at), *expected, "{way}, ray {at} of a packet");
+                }
+            }
+            for (at, &expected) in expected[1].iter().enumerate() {
+                let (start, _, but) = rays[at];
+                let mut query = query(at, start);
+                assert_eq!(all.nearest(&query), expected, "{way}, ray {at}");
+                assert_eq!(all.any(&query), expected.is_some(), "{way}, ray {at}");
+                told[0] += 1;
+                let Some((t, number)) = expected else { continue };
+                told[1] += 1;
+                // Up to a hit, it is not there; without the sphere, or beyond its t, another may be.
+                query.t_max = t;
+                assert!(!all.any(&query), "{way}, ray {at}");
+                query.t_max = T::infinity();
+                query.but = [but, number];
+                assert_eq!(all.nearest(&query), oracle(&sorted, &query), "{way}, ray {at}");
+                query.but = [NONE; 2];
+                query.t_min = t;
+                assert_eq!(all.nearest(&query), oracle(&sorted, &query), "{way}, ray {at}");
+            }
+        }
+    }
+    told
+}
+
+#[test]
+fn every_way_gives_the_same_bits_at_every_size() {
+    for [rays, hits] in [
+        compare::<f32>(1500, 30.0),
+        compare::<f64>(1500, 30.0),
+        compare::<f64>(300, 150.0),
+    ] {
+        assert!(
+            hits > rays / 4 && hits < rays,
+            "{hits} of {rays} rays meet something"
+        );
+    }
+}
+
+#[test]
+fn one_ray_that_is_no_number_leaves_the_others_alone() {
+    let spheres: Vec<_> = (0..200u32)
+        .map(|number| Numbered {
+            center: [f64::from(number % 20) - 10.0, f64::from(number / 20) - 5.0, -20.0],
+            radius: 0.4,
+            number,
+        })
+        .collect();
+    let grid = |at: usize| f64::from(at as u32) - 4.0;
+    let directions = [
+        std::array::from_fn(|at| grid(at % 8)),
+        std::array::from_fn(|at| grid(at / 8)),
+        [-20.0; PACKET],
+    ];
+    for (level, tree) in Level::all().flat_map(|level| [(level, false), (level, true)]) {
+        let all = Spheres::new(&spheres, tree, level);
+        let found = |directions| {
+            let origins = Origins::One([0.0; 3]);
+            let found = all.nearest_of_packet(&Packet { origins, directions });
+            [0; PACKET - 1]
+                .iter()
+                .enumerate()
+                .map(|(at, _)| found.of(at + 1))
+                .collect::<Vec<_>>()
+        };
+        let before = found(directions);
+        assert!(before.iter().flatten().count() > 10);
+        let mut broken = directions;
+        broken[1][0] = f64::NAN;
+        assert_eq!(found(broken), before);
+    }
+}
