@@ -144,9 +144,14 @@ impl Suspect {
         }
     }
 
-    /// The picture in that frame, painted once: the frame is always the same.
+    /// The picture in that frame, painted once: the frame is always the same. Nobody waits for it: a thread of rayon's that did, while it
+    /// paints another for somebody else, might wait for itself.
     fn picture(&self, frame: &Frame) -> Option<&Image> {
-        self.picture.get_or_init(|| self.paint(frame, None)).as_ref()
+        if self.picture.get().is_none() {
+            // Somebody was faster, with the same picture.
+            let _ = self.picture.set(self.paint(frame, None));
+        }
+        self.picture.get()?.as_ref()
     }
 
     fn paint(&self, frame: &Frame, deadline: Option<Instant>) -> Option<Image> {

@@ -88,7 +88,7 @@ impl Style<f64> for Mixed {
 }
 
 /// Which rays of a shader have one style.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Styles {
     /// All of them.
     Alike,

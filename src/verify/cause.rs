@@ -21,8 +21,8 @@ const NOT_FINITE: &str = "W0603";
 const ASKED: usize = 5;
 
 /// What most of some pixels that differ name as the place where f32 and f64 part; none if there is no time to ask them.
-pub(super) fn cause(program: &Program, case: &Case, asked: &Asked) -> Option<Diagnostic> {
-    let deadline = Instant::now() + case.timeout;
+pub(super) fn cause(program: &Program, case: &Case, until: Instant, asked: &Asked) -> Option<Diagnostic> {
+    let deadline = until.min(Instant::now() + case.timeout);
     let mut named = BTreeMap::<u32, (u64, Diagnostic)>::new();
     for pixel in some(asked, case.frame.size) {
         let explained = explain(program, case.frame, pixel, Some(deadline));
@@ -38,13 +38,18 @@ pub(super) fn cause(program: &Program, case: &Case, asked: &Asked) -> Option<Dia
 }
 
 /// Where the first colour that is no number, or infinite, comes from; none if all are finite.
-pub(super) fn not_finite(program: &Program, case: &Case, actual: &Image) -> Option<Diagnostic> {
+pub(super) fn not_finite(
+    program: &Program,
+    case: &Case,
+    until: Instant,
+    actual: &Image,
+) -> Option<Diagnostic> {
     let is_bad = |pixel: &[f32; 4]| pixel[..3].iter().any(|part| !part.is_finite());
     let count = actual.pixels().iter().filter(|pixel| is_bad(pixel)).count() as u64;
     let first = actual.pixels().iter().position(is_bad)?;
     let width = case.frame.size[0] as usize;
     let [x, y] = [(first % width) as u32, (first / width) as u32];
-    let deadline = Instant::now() + case.timeout;
+    let deadline = until.min(Instant::now() + case.timeout);
     let explained = explain(program, case.frame, [x, y], Some(deadline)).ok()?;
     let step = explained.not_finite.map(|at| &explained.steps[at])?;
     let value = step.single.iter().flatten().find_map(|told| match told {

@@ -6,10 +6,10 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use super::cpu::{Limits, Single};
-use super::{Case, Failure, PATIENCE, join};
+use super::{ALL_PICTURES, Case, Failure, PATIENCE, join};
 use crate::compare::{self, Answer};
 use crate::eval::{self, Program};
 use crate::frame::Frame;
@@ -183,14 +183,15 @@ fn evaluate(
     stop: &AtomicBool,
 ) -> Result<Vec<Single>, eval::Failure> {
     let program = Program::new(checked)?;
-    let limits = Limits {
-        each: timeout * PATIENCE,
-        stop,
-    };
     let single = |frame| {
+        let limits = Limits {
+            each: timeout * PATIENCE,
+            until: Instant::now() + timeout * ALL_PICTURES,
+            stop,
+        };
         let case = Case {
             checked,
-            scene: None,
+            expected: None,
             suspects: None,
             frame,
             float: FloatMode::Strict,

@@ -16,6 +16,8 @@ use crate::image::Image;
 pub(super) struct Limits<'a> {
     /// For each picture.
     pub(super) each: Duration,
+    /// For all of them.
+    pub(super) until: Instant,
     /// Set when nobody wants the pictures any more.
     pub(super) stop: &'a AtomicBool,
 }
@@ -91,11 +93,11 @@ impl Cpu {
 }
 
 /// The picture in f64 with every operation moved by a unit in the last place or none; none if there is no time.
-pub(super) fn shaken(program: &Program, case: &Case, seed: u64) -> Option<Image> {
+pub(super) fn shaken(program: &Program, case: &Case, until: Instant, seed: u64) -> Option<Image> {
     let settings = Settings::<Jittered> {
         variant: Variant::Plain,
         noise: Seed(seed),
-        deadline: Some(Instant::now() + case.timeout),
+        deadline: Some(until.min(Instant::now() + case.timeout)),
         ..Settings::default()
     };
     let painted = program.paint(case.frame, &settings).ok()?;
@@ -154,7 +156,7 @@ fn paint<N: Number>(
 ) -> Result<Painted<N>, Failure> {
     let settings = Settings {
         variant,
-        deadline: Some(Instant::now() + limits.each),
+        deadline: Some(limits.until.min(Instant::now() + limits.each)),
         interrupt: Some(limits.stop),
         ..Settings::default()
     };

@@ -4,15 +4,18 @@
 mod cause;
 pub mod conversion;
 mod cpu;
+mod expected;
 mod notes;
 mod tangent;
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc;
+use std::sync::{Arc, mpsc};
 use std::thread::{self, ScopedJoinHandle};
 use std::time::{Duration, Instant};
 
 use thiserror::Error;
+
+pub use self::expected::Expected;
 
 use self::cpu::{Cpu, Limits};
 use crate::compare::{self, Answer, Answers, Comparison, MAX_UNSTABLE, Standing, Verdict};
@@ -23,17 +26,15 @@ use crate::glsl::Checked;
 use crate::gpu::{self, Drawn, FloatMode, SAFE_ROUNDS, Worker};
 use crate::image::{Image, Mark};
 use crate::mistake::{Named, Suspects};
-use crate::scene::{Moment, Scene};
 use crate::source::Span;
-use crate::trace::Tracer;
 
 /// What is to be verified.
 #[derive(Debug, Clone, Copy)]
 pub struct Case<'a> {
     /// The shader.
     pub checked: &'a Checked,
-    /// What it should paint, if that is known; the film's size is the frame's.
-    pub scene: Option<&'a Scene>,
+    /// What it should paint, if that is known: of that frame, and the film's size is the frame's.
+    pub expected: Option<&'a Expected>,
     /// What a wrong picture is compared with, to tell what went wrong: of that scene and frame.
     pub suspects: Option<&'a Suspects>,
     /// The frame.
@@ -42,15 +43,6 @@ pub struct Case<'a> {
     pub float: FloatMode,
     /// How long a picture may take.
     pub timeout: Duration,
-}
-
-impl Case<'_> {
-    fn moment(&self) -> Moment {
-        Moment {
-            frame: self.frame.frame,
-            time: f64::from(self.frame.time),
-        }
-    }
 }
 
 /// What was found.
@@ -69,7 +61,7 @@ pub struct Findings {
     /// The shader's picture beside the reference's.
     pub picture: Option<(Comparison, Vec<Mark>)>,
     /// What the tracer painted.
-    pub reference: Option<Image>,
+    pub reference: Option<Arc<Image>>,
     /// What the GPU painted, or the evaluator in f32 where there is none.
     pub actual: Image,
     /// What the evaluator painted in f64; none if it could not.
@@ -84,7 +76,7 @@ pub struct Findings {
     pub mistake: Option<Vec<Named>>,
     /// How long the evaluator took, for all its pictures.
     pub eval: Duration,
-    /// How long the tracer took.
+    /// How long the tracer took; next to nothing where the picture was known.
     pub trace: Option<Duration>,
 }
 
@@ -147,26 +139,31 @@ const PATIENCE_FOR_TWO: Duration = Duration::from_secs(4);
 
 /// The evaluator may take so many times as long as the GPU: that it is slow is not the shader's fault.
 const PATIENCE: u32 = 4;
+/// All its pictures may take so many times as long as one may, and whatever is asked of the shader after that has so many times.
+const ALL_PICTURES: u32 = 6;
+const ALL: u32 = 8;
 
-/// Asks the three questions. Without a `worker` the evaluator paints in its stead, and the toolchain question is not asked.
+/// Asks the three questions. Without a `worker` the evaluator paints in its stead, and the toolchain question is not asked. All together takes
+/// no longer than eight times what a picture may take, beside what there is to do once for each scene.
 ///
 /// # Errors
 /// Why there is no picture of the shader.
 pub fn verify(worker: Option<&mut Worker>, case: &Case) -> Result<Findings, Failure> {
-    let tracer = case.scene.map(|scene| Tracer::<f64>::at(scene, case.moment()));
+    let start = Instant::now();
     let program = Program::new(case.checked);
     let stop = AtomicBool::new(false);
     let limits = Limits {
         // Where a GPU paints too, it is the one that must not take long.
         each: case.timeout * if worker.is_some() { PATIENCE } else { 1 },
+        until: start + case.timeout * ALL_PICTURES,
         stop: &stop,
     };
     // They share the cores, but none waits for the others' latencies.
     let (drawn, (cpu, eval), traced) = thread::scope(|scope| {
         let (counted, rounds) = mpsc::channel();
         let cpu = scope.spawn(|| timed(|| Cpu::paint(&program, case, limits, counted)));
-        let trace = |tracer: &Tracer<f64>| timed(|| tracer.picture(|| ()));
-        let traced = tracer.as_ref().map(|tracer| scope.spawn(move || trace(tracer)));
+        let trace = |expected: &Expected| timed(|| expected.picture());
+        let traced = case.expected.map(|expected| scope.spawn(move || trace(expected)));
         let drawn = worker.map(|worker| {
             let lowered = case.float.lower(case.checked);
             // A strict run goes round as often as the evaluator does, who has often counted by now. Otherwise, it is waited for no longer
@@ -227,7 +224,7 @@ pub fn verify(worker: Option<&mut Worker>, case: &Case) -> Result<Findings, Fail
     }
     match (cpu, &program) {
         (Ok((single, cpu)), Ok(program)) => {
-            findings.ask(case, &cpu, single.as_ref(), program, tracer.as_ref());
+            findings.ask(case, start + case.timeout * ALL, &cpu, single.as_ref(), program);
             findings.exact = Some(cpu.double);
         }
         (Err(failure), _) => findings.cannot_ask(&failure),
@@ -238,21 +235,14 @@ pub fn verify(worker: Option<&mut Worker>, case: &Case) -> Result<Findings, Fail
 
 impl Findings {
     /// `single` is the evaluator's picture in f32, where a GPU painted another.
-    fn ask(
-        &mut self,
-        case: &Case,
-        cpu: &Cpu,
-        single: Option<&Image>,
-        program: &Program,
-        tracer: Option<&Tracer<f64>>,
-    ) {
+    fn ask(&mut self, case: &Case, until: Instant, cpu: &Cpu, single: Option<&Image>, program: &Program) {
         let ask = |expected: &Image, actual: &Image, standings| Some(Asked::new(expected, actual, standings));
-        if let (Some(tracer), Some(reference)) = (tracer, &self.reference) {
-            let hull = |x, y, styles| tracer.hull(x, y, styles);
+        if let (Some(expected), Some(reference)) = (case.expected, &self.reference) {
+            let hull = |x, y, styles| expected.hull(x, y, styles);
             let derives = case.checked.takes_derivatives();
-            let edge = |x, y| derives && tracer.is_quad_mixed(x, y);
+            let edge = |x, y| derives && expected.tracer().is_quad_mixed(x, y);
             let (standings, shaking) = timed(|| {
-                let shaken = |seed| cpu::shaken(program, case, seed);
+                let shaken = |seed| cpu::shaken(program, case, until, seed);
                 compare::maths(reference, &cpu.double, &cpu.undefined, hull, edge, shaken)
             });
             self.eval += shaking;
@@ -265,13 +255,11 @@ impl Findings {
             self.toolchain = ask(single, &self.actual, standings);
         }
         self.notes = notes::notes(cpu, &case.checked.warnings);
-        self.notes.extend(cause::not_finite(program, case, &self.actual));
-        if let Some(scene) = case.scene {
-            let traps = tangent::traps(
-                &scene.at(case.moment()),
-                single.unwrap_or(&self.actual),
-                &cpu.double,
-            );
+        self.notes
+            .extend(cause::not_finite(program, case, until, &self.actual));
+        if let Some(expected) = case.expected {
+            let single = single.unwrap_or(&self.actual);
+            let traps = tangent::traps(&expected.stilled(), single, &cpu.double);
             let formula = case.checked.discriminants.first();
             self.notes
                 .extend(formula.and_then(|at| tangent::told(&traps, *at)));
@@ -282,13 +270,14 @@ impl Findings {
             toolchain: self.toolchain.as_ref().map(|asked| &asked.answer),
         });
         if let (Verdict::Wrong, Some(suspects)) = (self.verdict, case.suspects) {
-            self.mistake = suspects.recognise(program, &cpu.double, case.frame, PATIENCE_FOR_TWO);
+            let patience = PATIENCE_FOR_TWO.min(until.saturating_duration_since(Instant::now()));
+            self.mistake = suspects.recognise(program, &cpu.double, case.frame, patience);
         }
         let rounds = |asked: &Asked| asked.answer.share(asked.answer.differing) > MAX_UNSTABLE;
         let loses = self.verdict == Verdict::Ok && self.rounding.as_ref().is_some_and(rounds);
         if self.verdict == Verdict::Unstable || loses {
             let mut questions = [&self.rounding, &self.maths].into_iter().flatten();
-            let cause = questions.find_map(|asked| cause::cause(program, case, asked));
+            let cause = questions.find_map(|asked| cause::cause(program, case, until, asked));
             self.cause = cause.as_ref().and_then(|cause| cause.span);
             let is_foreseen = case
                 .checked

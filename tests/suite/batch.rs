@@ -3,12 +3,12 @@
 use std::fs;
 use std::path::Path;
 use std::process::Stdio;
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 
 use serde_json::Value;
 
-use crate::program::{Run, check_homework, run, toyproof};
-use crate::support::SPHERE;
+use crate::program::{Run, check_homework, command, run, toyproof};
+use crate::support::{MANY_OBJECTS, SPHERE};
 
 /// A folder of submissions: every third is wrong, every seventh does not compile.
 fn homework(count: usize) -> tempfile::TempDir {
@@ -90,6 +90,39 @@ fn shaders_are_told_in_their_order_however_many_are_checked_at_a_time() {
     assert_eq!(named, all);
 }
 
+/// What is known of a scene from one shader to the next changes nothing: shaders of two scenes in turns, and each for itself.
+#[test]
+fn a_shader_is_judged_in_a_batch_as_it_is_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let hw = folder.path().join("hw");
+    fs::create_dir(&hw).unwrap();
+    let faulty = |shader: &str| shader.replace("aspect;", "1.0;");
+    let mut shaders = Vec::new();
+    for (rung, name) in [(&SPHERE, "2"), (&MANY_OBJECTS, "4")] {
+        for (style, text) in [("a", rung.shader.to_owned()), ("b", faulty(rung.shader))] {
+            for time in [1, 2] {
+                let stem = format!("{time}{style}{name}");
+                fs::write(hw.join(format!("{stem}.glsl")), format!("// {stem}\n{text}")).unwrap();
+                fs::write(hw.join(format!("{stem}.toml")), rung.scene).unwrap();
+                shaders.push(stem);
+            }
+        }
+    }
+    let check = |what: &str| {
+        let arguments = ["check", what, "--on", "cpu", "--size", "64x36", "--out", "out"];
+        toyproof(folder.path(), &arguments);
+        records(folder.path())
+    };
+    let together = check("hw");
+    assert_eq!(together.len(), shaders.len());
+    for record in together {
+        let is_wrong = record["verdict"] == "wrong";
+        let shader = record["shader"].as_str().unwrap();
+        assert_eq!(is_wrong, shader.contains('b'), "{record}");
+        assert_eq!(check(shader)[0], record);
+    }
+}
+
 #[test]
 fn what_was_killed_goes_on_and_nothing_is_lost_or_done_twice() {
     const COUNT: usize = 30;
@@ -135,6 +168,61 @@ fn what_was_killed_goes_on_and_nothing_is_lost_or_done_twice() {
     named.dedup();
     assert_eq!(named.len(), COUNT);
     assert_eq!(results(folder.path()).len(), COUNT, "none is there twice");
+}
+
+/// A folder of any shaders, which `TOYPROOF_CORPUS` names, killed ten times at moments that nobody chose.
+#[test]
+#[ignore = "takes minutes, and a folder of shaders that TOYPROOF_CORPUS names"]
+fn a_corpus_that_is_killed_ten_times_comes_out_whole() {
+    let corpus = std::env::var_os("TOYPROOF_CORPUS").expect("TOYPROOF_CORPUS names a folder of shaders");
+    let folder = tempfile::tempdir().unwrap();
+    let check = || {
+        let mut check = command(folder.path());
+        check
+            .arg("check")
+            .arg(&corpus)
+            .args(["--out", "out", "--resume", "--size", "160x90"]);
+        check
+    };
+    let count = fs::read_dir(&corpus).unwrap().count();
+    let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap();
+    let mut seed = now.as_nanos() as u64;
+    for kill in 0..10 {
+        let mut running = check()
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        let moment = Duration::from_millis(500 + (seed >> 33) % 15_000);
+        std::thread::sleep(moment);
+        running.kill().unwrap();
+        running.wait().unwrap();
+        let text = fs::read_to_string(folder.path().join("out/results.jsonl")).unwrap_or_default();
+        let whole = text.lines().filter(|line| line.ends_with('}')).count();
+        eprintln!("kill {kill} after {moment:?}: {whole} of {count} are known");
+    }
+    let last = run(&mut check());
+    let told = records(folder.path());
+    let lines = results(folder.path());
+    eprintln!("{}", last.stderr.lines().next().unwrap_or_default());
+    let named = |records: &mut dyn Iterator<Item = &Value>| {
+        let mut names: Vec<_> = records.map(|record| record["shader"].to_string()).collect();
+        names.sort();
+        names
+    };
+    let (told, kept) = (
+        named(&mut told.iter()),
+        named(&mut lines.iter().map(|line| &line["record"])),
+    );
+    assert_eq!(told, kept, "what is told is what is kept, each once");
+    let mut once = told.clone();
+    once.dedup();
+    assert_eq!(
+        (once.len(), told.len()),
+        (count, count),
+        "nothing lost, nothing twice"
+    );
 }
 
 #[test]

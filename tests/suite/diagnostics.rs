@@ -14,7 +14,7 @@ use toyproof::gpu::FloatMode;
 use toyproof::report::Rubric;
 use toyproof::scene::{self, Scene};
 use toyproof::source::{File, Files};
-use toyproof::verify::{Case, verify};
+use toyproof::verify::{Case, Expected, verify};
 
 /// Codes that no text of an example can give: bytes that are no text, and what toyproof itself gets wrong.
 const WITHOUT_EXAMPLE: [&str; 3] = ["E0500", "E0900", "E0901"];
@@ -95,9 +95,10 @@ fn seen(checked: &Checked, scene: Option<&Scene>) -> Vec<Diagnostic> {
         size: scene.map_or([16, 9], |scene| scene.film.size),
         ..Frame::default()
     };
+    let expected = scene.map(|scene| Expected::new(scene.clone(), &frame));
     let case = Case {
         checked,
-        scene,
+        expected: expected.as_ref(),
         suspects: None,
         frame: &frame,
         float: FloatMode::Strict,

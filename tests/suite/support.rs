@@ -14,7 +14,7 @@ use toyproof::gpu::{Failure, FloatMode, On, Worker};
 use toyproof::scene::{self, Moment, Scene};
 use toyproof::source::{File, Files};
 use toyproof::trace::Tracer;
-use toyproof::verify::{Case, Findings, verify};
+use toyproof::verify::{Case, Expected, Findings, verify};
 
 /// A shader of the course and the scene that it paints.
 #[derive(Debug)]
@@ -190,11 +190,12 @@ pub(crate) fn frame(rung: &Rung, size: [u32; 2]) -> Frame {
 /// # Panics
 /// If anything goes wrong that is not the picture.
 pub(crate) fn judged(worker: &mut Worker, shader: &str, rung: &Rung) -> Findings {
+    let frame = frame(rung, rung.size);
     let case = Case {
         checked: &checked(shader),
-        scene: Some(&scene(rung)),
+        expected: Some(&Expected::new(scene(rung), &frame)),
         suspects: None,
-        frame: &frame(rung, rung.size),
+        frame: &frame,
         float: FloatMode::Strict,
         timeout: Duration::from_secs(60),
     };

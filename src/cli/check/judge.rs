@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
 
 use sha2::{Digest, Sha256};
 
 use super::pictures::PICTURES;
+use super::scenes::Scenes;
 use super::stopped::Stopped;
 use super::{Args, Reference};
 use crate::cli::Terminal;
@@ -16,7 +16,6 @@ use crate::diagnostic::{self, Diagnostic};
 use crate::frame::Frame;
 use crate::gpu::{self, Worker};
 use crate::image;
-use crate::mistake::Suspects;
 use crate::output;
 use crate::report::{Mistake, Record, Seconds};
 use crate::scene::Scene;
@@ -147,8 +146,7 @@ pub(super) struct Judge<'a> {
     frame: Frame,
     /// Whether somebody was told that there is no driver.
     fell_back: AtomicBool,
-    /// The last scene with its suspects.
-    suspects: Mutex<Option<(Scene, Option<Arc<Suspects>>)>>,
+    scenes: Scenes,
 }
 
 impl<'a> Judge<'a> {
@@ -157,7 +155,7 @@ impl<'a> Judge<'a> {
             args,
             frame,
             fell_back: AtomicBool::new(false),
-            suspects: Mutex::new(None),
+            scenes: Scenes::default(),
         }
     }
 
@@ -218,11 +216,11 @@ impl<'a> Judge<'a> {
             Some((Err(unusable), files)) => return Err(Stopped::unusable(unusable, files, Verdict::Error)),
             Some((Ok(scene), _)) => Some(self.sized(scene, &mut frame)),
         };
-        let suspects = scene.as_ref().and_then(|scene| self.suspects(scene, &frame));
+        let known = scene.map(|scene| self.scenes.known(scene, &frame));
         let case = Case {
             checked: &checked,
-            scene: scene.as_ref(),
-            suspects: suspects.as_deref(),
+            expected: known.as_ref().map(|known| &known.expected),
+            suspects: known.as_ref().and_then(|known| known.suspects(&frame)),
             frame: &frame,
             float: self.args.driver.float(),
             timeout: self.args.driver.timeout(),
@@ -247,19 +245,6 @@ impl<'a> Judge<'a> {
         }
         judged.tell(std::mem::take(&mut findings.notes), &files);
         Ok(findings)
-    }
-
-    /// The suspects of a scene: those of the scene before, where it is the same.
-    fn suspects(&self, scene: &Scene, frame: &Frame) -> Option<Arc<Suspects>> {
-        let mut last = self.suspects.lock().unwrap_or_else(PoisonError::into_inner);
-        match &*last {
-            Some((known, suspects)) if known == scene => suspects.clone(),
-            _ => {
-                let suspects = Suspects::of(scene, frame).map(Arc::new);
-                *last = Some((scene.clone(), suspects.clone()));
-                suspects
-            }
-        }
     }
 
     /// The scene in the size of the frame, which is the scene's own unless the arguments tell another.

@@ -6,6 +6,7 @@ mod pictures;
 mod reference;
 mod reports;
 mod results;
+mod scenes;
 mod stopped;
 
 use std::num::NonZero;

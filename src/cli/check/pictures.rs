@@ -22,7 +22,7 @@ pub(super) const PICTURES: [Picture; 6] = [
     },
     Picture {
         suffix: "-reference.png",
-        of: |findings| findings.reference.as_ref().map(Cow::Borrowed),
+        of: |findings| findings.reference.as_deref().map(Cow::Borrowed),
     },
     Picture {
         suffix: "-difference.png",
