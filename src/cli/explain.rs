@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use super::check::Reference;
-use super::inputs::{Format, FrameArgs, LanguageArgs};
+use super::inputs::{Format, FrameArgs, LanguageArgs, deadline};
 use super::run::place;
 use super::shader::{Shader, Unusable, find};
 use super::{Exit, Terminal};
@@ -34,7 +34,7 @@ pub(super) struct Args {
     #[command(flatten)]
     language: LanguageArgs,
     /// Stop after this long (10s, 500ms, 2m)
-    #[arg(long, value_name = "TIME", default_value = "10s", value_parser = humantime::parse_duration)]
+    #[arg(long, value_name = "TIME", default_value = "10s", value_parser = deadline)]
     timeout: Duration,
     #[command(flatten)]
     frame: FrameArgs,

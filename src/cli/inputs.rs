@@ -11,6 +11,9 @@ use crate::glsl;
 use crate::gpu::{FloatMode, On, Worker};
 use crate::image::{self, Image, check_size};
 
+/// A longer deadline is none.
+const LONGEST: Duration = Duration::from_secs(24 * 60 * 60);
+
 /// What ShaderToy's inputs are set to.
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "The frame")]
@@ -104,7 +107,7 @@ pub(super) struct DriverArgs {
     #[arg(long, value_enum)]
     float: Option<Float>,
     /// Stop a shader after this long (10s, 500ms, 2m)
-    #[arg(long, value_name = "TIME", default_value = "10s", value_parser = humantime::parse_duration)]
+    #[arg(long, value_name = "TIME", default_value = "10s", value_parser = deadline)]
     timeout: Duration,
 }
 
@@ -213,6 +216,15 @@ pub(super) fn worker(on: On, timeout: Duration) -> Result<Worker, String> {
     let program = std::env::current_exe()
         .map_err(|error| format!("cannot find the program itself to run it as a worker: {error}"))?;
     Ok(Worker::new(program, vec!["worker".to_owned()], on, timeout))
+}
+
+/// How long something may take.
+pub(super) fn deadline(text: &str) -> Result<Duration, String> {
+    let time = humantime::parse_duration(text).map_err(|error| error.to_string())?;
+    if time > LONGEST {
+        return Err("nobody waits longer than a day".to_owned());
+    }
+    Ok(time)
 }
 
 pub(super) fn size(text: &str) -> Result<[u32; 2], String> {

@@ -39,6 +39,21 @@ impl fmt::Display for Severity {
     }
 }
 
+/// The longest text of a message, in bytes: messages quote shaders, one word of which may be as long as a file.
+const LONGEST: usize = 1000;
+
+/// A text, or its beginning and its end.
+fn shortened(text: impl Into<String>) -> String {
+    let mut text = text.into();
+    if text.len() > LONGEST {
+        let whole = text.len();
+        let boundary = |from: usize| (from..whole).find(|&at| text.is_char_boundary(at));
+        let [start, end] = [LONGEST * 3 / 4, whole - LONGEST / 4].map(|from| boundary(from).unwrap_or(whole));
+        text.replace_range(start..end, " … ");
+    }
+    text
+}
+
 /// One message about an author's text.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Diagnostic {
@@ -64,7 +79,7 @@ impl Diagnostic {
         Self {
             severity,
             code: code.into(),
-            message: message.into(),
+            message: shortened(message),
             span: None,
             label: None,
             related: Vec::new(),
@@ -92,21 +107,40 @@ impl Diagnostic {
     /// The same, with a few words at the caret.
     #[must_use]
     pub fn label(mut self, label: impl Into<String>) -> Self {
-        self.label = Some(label.into());
+        self.label = Some(shortened(label));
         self
     }
 
     /// The same, with another place that matters.
     #[must_use]
     pub fn related(mut self, span: Span, words: impl Into<String>) -> Self {
-        self.related.push((span, words.into()));
+        self.related.push((span, shortened(words)));
         self
     }
 
     /// The same, with a note.
     #[must_use]
     pub fn note(mut self, note: impl Into<String>) -> Self {
-        self.notes.push(note.into());
+        self.notes.push(shortened(note));
         self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_too_long_to_read_is_cut_in_the_middle() {
+        let message = |text: &str| Diagnostic::error("E0000", text).message;
+        assert_eq!(message(&"é".repeat(LONGEST / 2)), "é".repeat(LONGEST / 2));
+        let cut = message(&format!("`{}` is too long", "é".repeat(LONGEST)));
+        assert!(
+            cut.starts_with("`éé") && cut.ends_with("éé` is too long"),
+            "{cut}"
+        );
+        assert!(cut.contains(" … ") && cut.len() < LONGEST + 10, "{cut}");
+        let note = Diagnostic::error("E0000", "").note("x".repeat(1 << 20));
+        assert!(note.notes[0].len() < LONGEST + 10);
     }
 }

@@ -207,6 +207,17 @@ fn sizes_that_cannot_be() {
 }
 
 #[test]
+fn deadlines_that_cannot_be() {
+    for (deadline, words) in [
+        ("500000000000years", "longer than a day"),
+        ("25h", "longer than a day"),
+        ("soon", "--timeout"),
+    ] {
+        expect(&check("", &["--timeout", deadline]), 2, &[words]);
+    }
+}
+
+#[test]
 fn an_output_folder_that_cannot_be_written() {
     if !has_driver() {
         return;

@@ -21,6 +21,8 @@ mod fuzzed;
 mod generate;
 mod generated;
 mod glslang;
+#[cfg(target_os = "linux")]
+mod hostile;
 mod miscompiles;
 mod mistaken;
 mod mistakes;

@@ -33,8 +33,8 @@ use crate::glsl::tree::{ExprId, FunctionId, Item, Place, Tree, Type, VariableId,
 /// The most values that a program may have: more is refused rather than run out of memory.
 const MAX_VALUES: usize = 2_000_000;
 
-/// The most cells.
-const MAX_CELLS: usize = 4_000_000;
+/// The most cells: each thread that paints holds 256 bytes for each of them.
+const MAX_CELLS: usize = 1 << 19;
 
 /// How deep calls, statements and expressions may nest, all together, once calls are inlined.
 const MAX_DEPTH: usize = 10_000;
@@ -311,7 +311,7 @@ impl Builder<'_> {
     fn allocate_type(&mut self, ty: Type) -> Result<Cells> {
         let scalars = self.tree.scalars(ty);
         if self.cells.len() + layout::size(self.tree, ty) > MAX_CELLS {
-            return Err(Refusal::TooLong);
+            return Err(Refusal::NoMemory);
         }
 
         let first = self.cells.len() as u32;
