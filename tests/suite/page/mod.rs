@@ -3,10 +3,13 @@
 mod devtools;
 
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 use std::{env, fs};
 
 use serde_json::{Value, json};
+use toyproof::compare::Verdict;
 use toyproof::image::{self, Image, quantise};
+use toyproof::report::{Exhibit, Gallery, Record, Report, Seconds, html};
 
 use self::devtools::Page;
 use crate::browser::chromium;
@@ -299,4 +302,104 @@ fn without_scripts_there_are_still_the_table_and_the_messages() {
         true
     );
     shot(&mut page, "without-script");
+}
+
+/// A page of 500 shaders takes less than a second of its thread to be read and laid out, whatever else the machine does.
+const OPENS: f64 = 1.0;
+
+/// How many seconds of processor time a page's thread takes to read and lay it out, and how many more until the picture of its first shader that is `ok`
+/// is shown; and how long one waits for both.
+fn opening(page: &mut Page, file: &Path) -> ([f64; 2], Duration) {
+    let spent = |page: &mut Page| {
+        let told = page.call("Performance.getMetrics", &json!({}));
+        let metrics = told["metrics"].as_array().unwrap();
+        let task = metrics.iter().find(|metric| metric["name"] == "TaskDuration");
+        task.unwrap()["value"].as_f64().unwrap()
+    };
+    page.window([1400, 900], false);
+    page.call("Performance.enable", &json!({ "timeDomain": "threadTicks" }));
+    let start = Instant::now();
+    page.open(file);
+    let opened = spent(page);
+    page.value("document.querySelector('#shaders tr[data-verdict=ok] a').click()");
+    page.until("document.querySelector('article.open dl dd') !== null");
+    ([opened, spent(page) - opened], start.elapsed())
+}
+
+/// Noise, which no PNG makes smaller.
+fn noise(seed: u32, width: u32, height: u32) -> Image {
+    let pixel = |at: u32| {
+        let level = |part: u32| {
+            let hash = (seed * 1_000_003 + at * 3 + part).wrapping_mul(2_654_435_761);
+            f64::from((hash ^ hash >> 15).wrapping_mul(0x85eb_ca6b) >> 24) as f32 / 255.0
+        };
+        [level(0), level(1), level(2), 1.0]
+    };
+    Image::new(width, height, (0..width * height).map(pixel).collect())
+}
+
+#[test]
+fn a_page_of_500_shaders_opens_at_once() {
+    let Some(mut page) = page() else { return };
+    let mut gallery = Gallery::new(5);
+    let records = (0..500).map(|at| {
+        let png = image::encode(&noise(at, 124, 69), Path::new("a.png")).unwrap();
+        let actual = Some(gallery.hang(png));
+        gallery.show(Exhibit {
+            source: Some(SPHERE.shader.to_owned()),
+            actual,
+            ..Exhibit::default()
+        });
+        Record {
+            shader: format!("hw/{at:03}.glsl"),
+            scene: None,
+            verdict: Verdict::Ok,
+            reason: "the shader paints".to_owned(),
+            maths: None,
+            rounding: None,
+            toolchain: None,
+            picture: None,
+            mistake: None,
+            diagnostics: Vec::new(),
+            seconds: Seconds::default(),
+        }
+    });
+    let records = records.collect();
+    let text = html(&Report::new(None, records), None, &gallery);
+    assert!((16_000_000..20_000_000).contains(&text.len()), "{}", text.len());
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("out/report.html");
+    fs::create_dir(folder.path().join("out")).unwrap();
+    fs::write(&file, text).unwrap();
+    let ([opened, shown], waited) = opening(&mut page, &file);
+    eprintln!(
+        "500 shaders: {opened:.2} s to open, {shown:.2} s to show a picture; {waited:.2?} until both were there"
+    );
+    assert!(
+        opened > 0.0 && opened < OPENS && shown < OPENS,
+        "{opened:?} {shown:?}"
+    );
+    is_quiet(&mut page);
+}
+
+/// Any page, which `TOYPROOF_PAGE` names.
+#[test]
+#[ignore = "measures a page that TOYPROOF_PAGE names"]
+fn a_page_is_measured() {
+    let Some(mut page) = page() else { return };
+    let file = env::var_os("TOYPROOF_PAGE").expect("TOYPROOF_PAGE names a report.html");
+    let file = fs::canonicalize(file).unwrap();
+    for _ in 0..5 {
+        let ([opened, shown], waited) = opening(&mut page, &file);
+        eprintln!(
+            "{opened:.2} s to open, {shown:.2} s to show a picture; {waited:.2?} until both were there"
+        );
+    }
+    shot(&mut page, "many-first");
+    page.window([1400, 900], true);
+    page.press("Escape");
+    shot(&mut page, "many-dark");
+    page.window([390, 844], false);
+    shot(&mut page, "many-narrow");
+    assert_eq!(page.value(NARROW), true, "nothing sticks out");
 }
