@@ -151,7 +151,7 @@ fn beside_embree_and_lavapipe(program: Option<&Path>, counts: &[usize]) {
         "Milliseconds at 640×360 on one thread. Primary: making the camera rays, meeting what is nearest, storing which."
     );
     println!(
-        "Shuffled: as many rays from what was met in any direction. Lavapipe paints the exported shader in flat colours.\n"
+        "Shuffled: as many rays from what was met in any direction. Lavapipe paints the exported shader, and so does the picture.\n"
     );
     println!(
         "| spheres | f32 | f64 | picture f32 | f64 | Embree 1 | 8 | lavapipe | Embree 8 / f32 | lavapipe / f32 | / f64 \
@@ -159,7 +159,7 @@ fn beside_embree_and_lavapipe(program: Option<&Path>, counts: &[usize]) {
     );
     println!("|{}", "---|".repeat(17));
     for &count in counts {
-        let scene = spheres(count, Model::Emitter);
+        let scene = spheres(count, Model::Facing);
         let [primary, shuffled] = rays(&scene);
         let (single, double) = (Tracer::<f32>::new(&scene), Tracer::<f64>::new(&scene));
         let (shuffled32, shuffled64) = (in_numbers::<f32>(&shuffled), in_numbers::<f64>(&shuffled));
