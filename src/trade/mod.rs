@@ -17,7 +17,7 @@ pub use error::Error;
 pub use statistics::{Times, median};
 pub use table::ERRORS;
 
-use self::schedule::Runner;
+use self::schedule::{Cost, Runner};
 use self::truth::Truth;
 use self::way::{Group, Shader, Way, Workshop};
 use crate::eval;
@@ -142,7 +142,7 @@ pub fn study(subject: Subject, interrupt: &AtomicBool, passed: impl Fn(f64)) -> 
     let samples = scene.map_or(1.0, |scene| f64::from(scene.film.samples));
     let mut ways = scene.map_or_else(Vec::new, way::of_scene);
     ways.extend(workshop.of_shaders(samples));
-    let costs: Vec<f64> = ways.iter().map(|way| way.cost).collect();
+    let costs: Vec<Cost> = ways.iter().map(Way::cost).collect();
     let mut bench = Bench {
         start,
         budget,
@@ -197,12 +197,17 @@ fn background(scene: &Scene) -> Scene {
     empty
 }
 
+/// A way that takes longer is worth its time only if its error is smaller by more than this share.
+const WORTH: f64 = 0.01;
+
 /// Pareto's front, of ways by their time.
 fn mark_best(measured: &mut [Measured]) {
     let mut least = f64::INFINITY;
     for way in measured {
-        way.best = way.error.rmse < least;
-        least = least.min(way.error.rmse);
+        way.best = way.error.rmse < (1.0 - WORTH) * least;
+        if way.best {
+            least = way.error.rmse;
+        }
     }
 }
 

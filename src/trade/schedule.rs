@@ -17,29 +17,59 @@ const MOST_RUNS: usize = 31;
 /// How much longer a warm-up may take than the cheaper ones let think.
 const MARGIN: f64 = 1.5;
 
-/// The measured seconds of each way, its warm-up left out. A way whose warm-up the budget has no room for has none; `costs` are what ways are
-/// thought to cost, in any unit: cheap ones come first, and they tell what the others will need.
+/// What a way is thought to cost.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Cost {
+    /// Of ways of one kind, the cheap ones tell what the others will need.
+    pub(super) kind: usize,
+    /// In any unit.
+    pub(super) size: f64,
+}
+
+/// What the ways of a kind have taken, in seconds.
+#[derive(Debug, Clone, Copy, Default)]
+struct Known {
+    /// A frame, for each unit of cost.
+    per_cost: f64,
+    /// What surrounds a frame: what compiles it, say.
+    around: f64,
+}
+
+impl Known {
+    fn estimate(&self, cost: f64) -> f64 {
+        self.around + MARGIN * self.per_cost * cost
+    }
+
+    /// `took`: the whole run; `frame`: its frame.
+    fn learn(&mut self, cost: f64, took: f64, frame: f64) {
+        // Cheap frames hold more than their samples: the dearer tell better.
+        self.per_cost = (0.5 * self.per_cost).max(frame / cost.max(f64::MIN_POSITIVE));
+        self.around = self.around.max(took - frame);
+    }
+}
+
+/// The measured seconds of each way, its warm-up left out. A way whose warm-up the budget has no room for has none; cheap ones come first.
 pub(super) fn measure<R: Runner>(
     runner: &mut R,
-    costs: &[f64],
+    costs: &[Cost],
     budget: f64,
 ) -> Result<Vec<Vec<f64>>, R::Failure> {
     let mut seconds: Vec<Vec<f64>> = vec![Vec::new(); costs.len()];
     // What a run costs, all that surrounds its frame included; none for ways that are left out.
     let mut needed: Vec<Option<f64>> = vec![None; costs.len()];
     let mut order: Vec<usize> = (0..costs.len()).collect();
-    order.sort_by(|&a, &b| costs[a].total_cmp(&costs[b]));
-    let mut per_cost = 0.0f64;
+    order.sort_by(|&a, &b| costs[a].size.total_cmp(&costs[b].size));
+    let kinds = costs.iter().map(|cost| cost.kind + 1).max().unwrap_or(0);
+    let mut known = vec![Known::default(); kinds];
     for &way in &order {
-        let start = runner.now();
-        if start + MARGIN * per_cost * costs[way] > budget {
+        let (start, Cost { kind, size }) = (runner.now(), costs[way]);
+        if start + known[kind].estimate(size) > budget {
             continue;
         }
-        if runner.run(way, true)?.is_some() {
+        if let Some(frame) = runner.run(way, true)? {
             let took = runner.now() - start;
             needed[way] = Some(took);
-            // As slow as the ways so far that did the least for their cost; cheap ones tell little.
-            per_cost = (0.5 * per_cost).max(took / costs[way].max(f64::MIN_POSITIVE));
+            known[kind].learn(size, took, frame);
         }
     }
     order.retain(|&way| needed[way].is_some());
@@ -96,6 +126,10 @@ mod tests {
         }
     }
 
+    fn costs(sizes: &[f64]) -> Vec<Cost> {
+        sizes.iter().map(|&size| Cost { kind: 0, size }).collect()
+    }
+
     fn mock(takes: &[(f64, f64)]) -> Mock {
         Mock {
             takes: takes.to_vec(),
@@ -106,7 +140,7 @@ mod tests {
     #[test]
     fn every_way_warms_up_once_and_is_then_measured_in_turn() {
         let mut mock = mock(&[(0.01, 0.0), (0.02, 0.01), (0.03, 0.0)]);
-        let seconds = measure(&mut mock, &[1.0, 2.0, 3.0], 1.0).unwrap();
+        let seconds = measure(&mut mock, &costs(&[1.0, 2.0, 3.0]), 1.0).unwrap();
         assert!(seconds.iter().all(|times| times.len() > 8), "{seconds:?}");
         assert_eq!(seconds[1][0], 0.02, "what surrounds a frame is not counted");
         assert_eq!(mock.ran.iter().filter(|(_, first)| *first).count(), 3);
@@ -128,7 +162,7 @@ mod tests {
     fn the_budget_is_kept_and_used() {
         for budget in [0.5, 2.0, 10.0] {
             let mut mock = mock(&[(0.01, 0.002), (0.1, 0.0), (0.3, 0.1), (4.0, 0.0)]);
-            measure(&mut mock, &[1.0, 10.0, 30.0, 400.0], budget).unwrap();
+            measure(&mut mock, &costs(&[1.0, 10.0, 30.0, 400.0]), budget).unwrap();
             assert!(mock.now <= 1.1 * budget, "{} of {budget}", mock.now);
             assert!(mock.now >= 0.5 * budget.min(4.0), "{} of {budget}", mock.now);
         }
@@ -137,15 +171,23 @@ mod tests {
     #[test]
     fn what_the_budget_has_no_room_for_never_starts() {
         let mut mock = mock(&[(0.1, 0.0), (50.0, 0.0)]);
-        let seconds = measure(&mut mock, &[1.0, 500.0], 3.0).unwrap();
+        let seconds = measure(&mut mock, &costs(&[1.0, 500.0]), 3.0).unwrap();
         assert!(seconds[1].is_empty() && seconds[0].len() > 20, "{seconds:?}");
+    }
+
+    #[test]
+    fn what_one_kind_needs_says_nothing_of_another() {
+        let mut mock = mock(&[(0.001, 1.0), (0.01, 0.0), (0.6, 0.0)]);
+        let costs = [(0, 1.0), (1, 1.0), (1, 64.0)].map(|(kind, size)| Cost { kind, size });
+        let seconds = measure(&mut mock, &costs, 10.0).unwrap();
+        assert!(seconds.iter().all(|times| !times.is_empty()), "{seconds:?}");
     }
 
     #[test]
     fn a_way_that_cannot_run_is_left_out() {
         let mut mock = mock(&[(0.1, 0.0), (0.1, 0.0)]);
         mock.broken = Some(1);
-        let seconds = measure(&mut mock, &[1.0, 1.0], 1.0).unwrap();
+        let seconds = measure(&mut mock, &costs(&[1.0, 1.0]), 1.0).unwrap();
         assert!(seconds[1].is_empty() && !seconds[0].is_empty());
         assert_eq!(mock.ran.iter().filter(|(way, _)| *way == 1).count(), 1);
     }
@@ -153,7 +195,7 @@ mod tests {
     #[test]
     fn cheap_ways_are_not_run_for_ever() {
         let mut mock = mock(&[(1e-6, 0.0)]);
-        let seconds = measure(&mut mock, &[1.0], 1e9).unwrap();
+        let seconds = measure(&mut mock, &costs(&[1.0]), 1e9).unwrap();
         assert_eq!(seconds[0].len(), MOST_RUNS);
     }
 }

@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use super::schedule::Cost;
 use crate::eval::{self, Number, Program, Settings, Variant};
 use crate::frame::Frame;
 use crate::glsl::{self, Checked};
@@ -18,9 +19,18 @@ pub(super) struct Way {
     pub(super) name: String,
     /// What it has in common with others.
     pub(super) group: Group,
-    /// What its frame is thought to cost, where one sample of the tracer costs 1.
+    /// What its frame is thought to cost, in samples of its kind.
     pub(super) cost: f64,
     pub(super) how: How,
+}
+
+impl Way {
+    pub(super) fn cost(&self) -> Cost {
+        Cost {
+            kind: self.group as usize,
+            size: self.cost,
+        }
+    }
 }
 
 /// What runs a way.

@@ -38,4 +38,5 @@ mod stories;
 mod stress;
 mod strict;
 mod support;
+mod trade;
 mod unstable;

@@ -3,6 +3,7 @@
 mod mistake;
 mod reading;
 mod replace;
+mod role;
 mod shrink;
 mod signature;
 
@@ -14,7 +15,8 @@ pub use mistake::Mistake;
 pub use reading::Answers;
 pub(super) use reading::clear_misses;
 pub use replace::replacements;
-pub use signature::{Map, Role, Signature};
+pub use role::Role;
+pub use signature::{Map, Signature};
 
 use super::axis::{Case, Kind, Shot, Step, axes};
 use super::cells::Cells;
