@@ -1,28 +1,38 @@
 //! Where rays meet surfaces.
 
+use std::fmt::Write;
+
 use super::parts::Parts;
 use super::quadric;
+use crate::scene::Sampler;
 
 impl Parts<'_> {
-    pub(super) fn intersections(&self) -> Vec<String> {
+    pub(super) fn intersections(&self, sampler: Sampler) -> Vec<String> {
         let mut pieces = Vec::new();
         let mut loops = String::new();
         if self.checkers {
             pieces.push(CHECKERED.to_owned());
         }
-        if !self.spheres.is_empty() {
+        if self.has_spheres() {
             pieces.push(INTERSECT_SPHERE.to_owned());
-            loops += &self.nearest("Sphere", "spheres", "normalize(hit.point - spheres[i].center)");
+        }
+        if !self.spheres.is_empty() {
+            let normal = "normalize(hit.point - spheres[i].center)";
+            loops += &self.nearest("Sphere", "spheres", "spheres[i]", normal);
+        }
+        if !self.grids.is_empty() {
+            pieces.extend(self.grid(sampler));
+            loops += &self.nearest("Grid", "grids", "sphere", "normalize(hit.point - sphere.center)");
         }
         if !self.planes.is_empty() {
             pieces.push(INTERSECT_PLANE.to_owned());
             let normal = "faceforward(planes[i].normal, ray.direction, planes[i].normal)";
-            loops += &self.nearest("Plane", "planes", normal);
+            loops += &self.nearest("Plane", "planes", "planes[i]", normal);
         }
         if !self.quadrics.is_empty() {
             pieces.push(quadric::INTERSECT.to_owned());
             let normal = "normalOf(quadrics[i], hit.point, ray.direction)";
-            loops += &self.nearest("Quadric", "quadrics", normal);
+            loops += &self.nearest("Quadric", "quadrics", "quadrics[i]", normal);
         }
         pieces.push(format!(
             "Intersection nearestHit(Ray ray) {{\n    Intersection hit;\n    hit.t = NO_HIT;\n{loops}    return hit;\n}}\n"
@@ -30,23 +40,30 @@ impl Parts<'_> {
         pieces
     }
 
-    /// The loop over one kind of surfaces, which keeps the nearest hit.
-    fn nearest(&self, kind: &str, all: &str, normal: &str) -> String {
+    /// The loop over one kind of surfaces, which keeps the nearest hit; `own` is the surface that was met.
+    fn nearest(&self, kind: &str, all: &str, own: &str, normal: &str) -> String {
         let count = all.to_uppercase();
         let color = if self.checkers {
-            format!("checkered(hit.point, {all}[i].color, {all}[i].other, {all}[i].side)")
+            format!("checkered(hit.point, {own}.color, {own}.other, {own}.side)")
         } else {
-            format!("{all}[i].color")
+            format!("{own}.color")
         };
-        let model = if self.names_models() {
-            format!("            hit.model = {all}[i].model;\n")
+        let mut taken = String::new();
+        for property in self.properties() {
+            let _ = writeln!(taken, "            hit.{0} = {own}.{0};", property.name);
+        }
+        if self.traces_paths && kind == "Sphere" {
+            taken += "            hit.sphere = i;\n";
+        }
+        let met = if kind == "Grid" {
+            "        Sphere sphere;\n        float t = intersectGrid(ray, grids[i], sphere);\n".to_owned()
         } else {
-            String::new()
+            format!("        float t = intersect{kind}(ray, {own});\n")
         };
         format!(
-            "    for (int i = 0; i < {count}; i++) {{\n        float t = intersect{kind}(ray, {all}[i]);\n        \
-             if (t < hit.t) {{\n            hit.t = t;\n            hit.point = ray.origin + t * ray.direction;\n            \
-             hit.normal = {normal};\n            hit.color = {color};\n{model}        }}\n    }}\n"
+            "    for (int i = 0; i < {count}; i++) {{\n{met}        if (t < hit.t) {{\n            hit.t = t;\n            \
+             hit.point = ray.origin + t * ray.direction;\n            hit.normal = {normal};\n            \
+             hit.color = {color};\n{taken}        }}\n    }}\n"
         )
     }
 }

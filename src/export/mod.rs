@@ -2,40 +2,33 @@
 
 mod background;
 mod camera;
+mod disney;
 mod figure;
 mod film;
+mod grid;
 mod intersection;
 mod light;
+mod material;
+mod motion;
 mod parts;
 mod path;
 mod quadric;
 mod sampler;
 mod structure;
+mod whitted;
 
 use self::parts::Parts;
-use crate::scene::{Integrator, Requirements, Sampler, Scene};
+use crate::scene::{Sampler, Scene};
 
 /// A `ShaderToy` shader that paints the scene.
 ///
 /// # Errors
 /// What the scene uses that cannot be written yet, in the words of the scene file.
 pub fn shader(scene: &Scene) -> Result<String, String> {
-    let requirements = Requirements::of(scene);
-    let film = &scene.film;
-    if requirements.motion {
-        return Err("motion".to_owned());
-    }
-    if film.integrator == Integrator::Path {
-        return Err("the integrator \"path\"".to_owned());
-    }
-    if requirements.soft_shadows {
-        return Err("a light with a radius".to_owned());
-    }
-    if matches!(film.sampler, Sampler::Stratified | Sampler::Sobol) {
+    if matches!(scene.film.sampler, Sampler::Stratified | Sampler::Sobol) {
         return Err("the samplers \"stratified\" and \"sobol\"".to_owned());
     }
-    let parts = Parts::of(scene)?;
-    Ok(parts.text(scene))
+    Ok(Parts::of(scene).text(scene))
 }
 
 fn number(value: f64) -> String {

@@ -2,11 +2,11 @@
 
 use crate::scene::Sampler;
 
-pub(super) fn random(sampler: Sampler) -> &'static str {
+pub(super) fn random(sampler: Sampler) -> String {
     if sampler == Sampler::SineHash {
-        SINE_HASH
+        SINE_HASH.to_owned()
     } else {
-        INDEPENDENT
+        format!("{PCG}\n{INDEPENDENT}")
     }
 }
 
@@ -17,14 +17,15 @@ float random() {
 }
 ";
 
-const INDEPENDENT: &str = "uint state;
-
-// The integer hash pcg (Jarzynski and Olano 2020).
+pub(super) const PCG: &str = "// The integer hash pcg (Jarzynski and Olano 2020).
 uint pcg(uint v) {
     uint s = v * 747796405u + 2891336453u;
     uint word = ((s >> ((s >> 28u) + 4u)) ^ s) * 277803737u;
     return (word >> 22u) ^ word;
 }
+";
+
+const INDEPENDENT: &str = "uint state;
 
 float random() {
     state = pcg(state);
@@ -33,5 +34,16 @@ float random() {
 
 void startSample(vec2 fragCoord, int i) {
     state = pcg(uint(fragCoord.x) + pcg(uint(fragCoord.y) + pcg(uint(i))));
+}
+";
+
+pub(super) const AROUND: &str = "// The direction at an angle to w, given by its cosine, turned about w.
+vec3 around(vec3 w, float cosine, float turn) {
+    vec3 up = abs(w.y) > 0.9 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
+    vec3 a = normalize(cross(up, w));
+    vec3 b = cross(w, a);
+    float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
+    float phi = 6.28318530718 * turn;
+    return sine * cos(phi) * a + sine * sin(phi) * b + cosine * w;
 }
 ";

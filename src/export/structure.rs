@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
-use super::light::{Shadows, shadows};
-use super::parts::{Parts, word};
-use super::{number, quadric, vector};
-use crate::scene::{Object, Scene};
+use super::light::Lights;
+use super::parts::Parts;
+use super::{grid, motion, number, quadric, vector};
+use crate::scene::{Light, Material, Scene};
 
 impl Parts<'_> {
     /// The members that all surfaces have.
@@ -15,20 +15,25 @@ impl Parts<'_> {
         } else {
             ""
         };
-        format!("    vec3 color;\n{checker}{}", self.model_member())
+        format!("    vec3 color;\n{checker}{}", self.own_members())
     }
 
-    fn model_member(&self) -> &'static str {
-        if self.names_models() {
-            "    int model;\n"
-        } else {
-            ""
-        }
+    /// Whether there are any, in grids or not.
+    pub(super) fn has_spheres(&self) -> bool {
+        !self.spheres.is_empty() || !self.grids.is_empty()
+    }
+
+    /// Those that a hit takes over.
+    fn own_members(&self) -> String {
+        let properties = self.properties();
+        let lines = properties
+            .iter()
+            .map(|property| format!("    {} {};\n", property.kind, property.name));
+        lines.collect()
     }
 
     /// Their values.
-    fn values(&self, object: &Object) -> String {
-        let material = &object.material;
+    fn values(&self, material: &Material) -> String {
         let mut text = vector(material.color);
         if self.checkers {
             let (other, side) = material
@@ -36,8 +41,8 @@ impl Parts<'_> {
                 .map_or((material.color, 1.0), |checker| (checker.color, checker.size));
             let _ = write!(text, ", {}, {}", vector(other), number(side));
         }
-        if let (true, Some(word)) = (self.names_models(), word(&material.model)) {
-            let _ = write!(text, ", {word}");
+        for property in self.properties() {
+            let _ = write!(text, ", {}", (property.value)(material));
         }
         text
     }
@@ -45,16 +50,24 @@ impl Parts<'_> {
     pub(super) fn structures(&self, scene: &Scene) -> String {
         let members = self.members();
         let mut text = "struct Ray {\n    vec3 origin;\n    vec3 direction;\n};\n".to_owned();
+        let sphere = if self.traces_paths {
+            "    int sphere;\n"
+        } else {
+            ""
+        };
         let _ = write!(
             text,
-            "\nstruct Intersection {{\n    float t;\n    vec3 point;\n    vec3 normal;\n    vec3 color;\n{}}};\n",
-            self.model_member()
+            "\nstruct Intersection {{\n    float t;\n    vec3 point;\n    vec3 normal;\n    vec3 color;\n{}{sphere}}};\n",
+            self.own_members()
         );
-        if !self.spheres.is_empty() {
+        if self.has_spheres() {
             let _ = write!(
                 text,
-                "\nstruct Sphere {{\n    vec3 center;\n    float radius;\n{members}}};\n\nSphere spheres[SPHERES];\n"
+                "\nstruct Sphere {{\n    vec3 center;\n    float radius;\n{members}}};\n"
             );
+        }
+        if !self.spheres.is_empty() {
+            text.push_str("\nSphere spheres[SPHERES];\n");
         }
         if !self.planes.is_empty() {
             let _ = write!(
@@ -63,18 +76,30 @@ impl Parts<'_> {
             );
         }
         if !self.quadrics.is_empty() {
-            let structure = quadric::STRUCTURE;
-            let _ = write!(text, "\n{structure}{members}}};\n\nQuadric quadrics[QUADRICS];\n");
+            let (form, structure) = (quadric::FORM, quadric::STRUCTURE);
+            let _ = write!(
+                text,
+                "\n{form}\n{structure}{members}}};\n\nQuadric quadrics[QUADRICS];\n"
+            );
+        }
+        if !self.grids.is_empty() {
+            let structure = grid::STRUCTURE;
+            let _ = write!(text, "\n{structure}{members}}};\n\nGrid grids[GRIDS];\n");
         }
         if self.lit() && !scene.lights.is_empty() {
-            let shadow = if shadows(scene) == Shadows::Some {
+            let shadow = if has_shadow(scene) {
                 "    bool shadow;\n"
+            } else {
+                ""
+            };
+            let radius = if has_radius(scene) {
+                "    float radius;\n"
             } else {
                 ""
             };
             let _ = write!(
                 text,
-                "\nstruct Light {{\n    vec3 position;\n    vec3 color;\n{shadow}}};\n\nLight lights[LIGHTS];\n"
+                "\nstruct Light {{\n    vec3 position;\n    vec3 color;\n{shadow}{radius}}};\n\nLight lights[LIGHTS];\n"
             );
         }
         text
@@ -83,36 +108,57 @@ impl Parts<'_> {
     pub(super) fn scene(&self, scene: &Scene) -> String {
         let mut text = "void makeScene() {\n".to_owned();
         for (index, (center, radius, object)) in self.spheres.iter().enumerate() {
-            let (center, radius) = (vector(*center), number(*radius));
-            let values = self.values(object);
+            let (center, radius) = (motion::point(*center, object.motion), number(*radius));
+            let values = self.values(&object.material);
             let _ = writeln!(
                 text,
                 "    spheres[{index}] = Sphere({center}, {radius}, {values});"
             );
         }
         for (index, (point, normal, object)) in self.planes.iter().enumerate() {
-            let [point, normal] = [point, normal].map(|v| vector(*v));
-            let values = self.values(object);
+            let normal = motion::direction(*normal, *point, object.motion);
+            let point = motion::point(*point, object.motion);
+            let values = self.values(&object.material);
             let _ = writeln!(text, "    planes[{index}] = Plane({point}, {normal}, {values});");
         }
         for (index, (one, object)) in self.quadrics.iter().enumerate() {
-            let (own, values) = (quadric::values(one), self.values(object));
+            let (own, values) = (quadric::values(one, object.motion), self.values(&object.material));
             let _ = writeln!(text, "    quadrics[{index}] = Quadric({own}, {values});");
+        }
+        for (index, scatter) in self.grids.iter().enumerate() {
+            let (own, values) = (grid::values(scatter), self.values(&scatter.material));
+            let _ = writeln!(text, "    grids[{index}] = Grid({own}, {values});");
         }
         if self.lit() {
             for (index, light) in scene.lights.iter().enumerate() {
-                let shadow = match shadows(scene) {
-                    Shadows::Some => format!(", {}", light.shadow),
-                    _ => String::new(),
-                };
                 let _ = writeln!(
                     text,
-                    "    lights[{index}] = Light({}, {}{shadow});",
-                    vector(light.position),
-                    vector(light.color)
+                    "    lights[{index}] = Light({});",
+                    light_values(scene, light)
                 );
             }
         }
         text + "}\n"
     }
+}
+
+/// Whether lights say if they cast shadows.
+fn has_shadow(scene: &Scene) -> bool {
+    Lights::which(scene, |light| light.shadow) == Lights::Some
+}
+
+/// Whether lights have a radius.
+fn has_radius(scene: &Scene) -> bool {
+    Lights::which(scene, |light| light.radius > 0.0) != Lights::None
+}
+
+fn light_values(scene: &Scene, light: &Light) -> String {
+    let mut values = vec![motion::point(light.position, light.motion), vector(light.color)];
+    if has_shadow(scene) {
+        values.push(light.shadow.to_string());
+    }
+    if has_radius(scene) {
+        values.push(number(light.radius));
+    }
+    values.join(", ")
 }

@@ -21,7 +21,7 @@ pub use light::{Background, Light};
 pub use material::{Checker, Disney, Fresnel, Material, Model};
 pub use motion::{Moment, Motion, Period};
 pub use requirements::Requirements;
-pub use scatter::{Scatter, unit};
+pub use scatter::{Scatter, Scattered, unit};
 pub use shape::{Equation, Quadric, QuadricKind, Shape};
 
 /// A colour, linear RGB; each component ≥ 0, nominally in [0, 1].
@@ -51,6 +51,8 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// The surfaces.
     pub objects: Vec<Object>,
+    /// Which of them come of a scatter.
+    pub scatters: Vec<Scattered>,
     /// How lights and surfaces move, each within an earlier one or none.
     pub motions: Vec<Motion>,
 }

@@ -1,5 +1,7 @@
 //! Many spheres from a few numbers: one in each cell of a grid, its place, size and colour drawn by hashing.
 
+use std::ops::Range;
+
 use super::{Material, Object, Point, Shape};
 use crate::image::pcg;
 
@@ -20,6 +22,15 @@ pub struct Scatter {
     pub material: Material,
     /// Which of the scene's motions moves them.
     pub motion: Option<usize>,
+}
+
+/// A scatter, and which of the scene's objects are its spheres.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scattered {
+    /// What they come of.
+    pub scatter: Scatter,
+    /// Their places among [`super::Scene::objects`].
+    pub objects: Range<usize>,
 }
 
 impl Scatter {

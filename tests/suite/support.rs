@@ -190,6 +190,14 @@ pub(crate) fn frame(rung: &Rung, size: [u32; 2]) -> Frame {
 /// # Panics
 /// If anything goes wrong that is not the picture.
 pub(crate) fn judged(worker: &mut Worker, shader: &str, rung: &Rung) -> Findings {
+    judged_by(Some(worker), shader, rung)
+}
+
+/// The same, without a worker by the evaluator alone.
+///
+/// # Panics
+/// Likewise.
+pub(crate) fn judged_by(worker: Option<&mut Worker>, shader: &str, rung: &Rung) -> Findings {
     let frame = frame(rung, rung.size);
     let case = Case {
         checked: &checked(shader),
@@ -199,7 +207,7 @@ pub(crate) fn judged(worker: &mut Worker, shader: &str, rung: &Rung) -> Findings
         float: FloatMode::Strict,
         timeout: Duration::from_secs(60),
     };
-    verify(Some(worker), &case).unwrap_or_else(|failure| panic!("{failure}\n{shader}"))
+    verify(worker, &case).unwrap_or_else(|failure| panic!("{failure}\n{shader}"))
 }
 
 fn told(errors: &[Diagnostic], files: &Files) -> String {

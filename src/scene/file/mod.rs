@@ -12,7 +12,7 @@ mod tests;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::{Background, Integrator, Light, Model, Object, Scene, Shape};
+use super::{Background, Integrator, Light, Model, Object, Scattered, Scene, Shape};
 use crate::diagnostic::{self, Diagnostic};
 use crate::source::{FileId, Files};
 
@@ -112,6 +112,7 @@ impl Document {
             names: &names,
             checks,
             objects: Vec::new(),
+            scatters: Vec::new(),
             film,
         };
         surfaces.take(self.sphere);
@@ -121,8 +122,10 @@ impl Document {
         surfaces.take(self.cone);
         surfaces.take(self.paraboloid);
         surfaces.take(self.hyperboloid);
-        surfaces.take(self.scatter);
-        let objects = surfaces.objects;
+        surfaces.take_scatters(self.scatter);
+        let Surfaces {
+            objects, scatters, ..
+        } = surfaces;
         if film.integrator == Integrator::Path
             && let Some(ambient) = ambient
         {
@@ -155,6 +158,7 @@ impl Document {
                 .collect(),
             lights,
             objects,
+            scatters,
             motions,
         }
     }
@@ -180,6 +184,7 @@ struct Surfaces<'a> {
     names: &'a Names,
     checks: &'a mut Checks,
     objects: Vec<Object>,
+    scatters: Vec<Scattered>,
     film: super::Film,
 }
 
@@ -191,6 +196,21 @@ impl Surfaces<'_> {
                 self.suits(object, place);
             }
             self.objects.extend(objects);
+        }
+    }
+
+    fn take_scatters(&mut self, tables: Vec<shape::ScatterTable>) {
+        for table in tables {
+            let (scatter, place) = table.check(self.names, self.checks);
+            let first = self.objects.len();
+            self.objects.extend(scatter.spheres());
+            if let Some(object) = self.objects.get(first).cloned() {
+                self.suits(&object, place);
+            }
+            self.scatters.push(Scattered {
+                scatter,
+                objects: first..self.objects.len(),
+            });
         }
     }
 

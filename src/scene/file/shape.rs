@@ -179,8 +179,9 @@ impl Surface for HyperboloidTable {
     }
 }
 
-impl Surface for ScatterTable {
-    fn check(self, names: &Names, checks: &mut Checks) -> (Vec<Object>, Range<usize>) {
+impl ScatterTable {
+    /// The scatter, and the place in the file where its model is named.
+    pub(super) fn check(self, names: &Names, checks: &mut Checks) -> (Scatter, Range<usize>) {
         let cells = *self.cells.get_ref();
         let number: u64 = cells
             .iter()
@@ -206,6 +207,6 @@ impl Surface for ScatterTable {
             material,
             motion: names.find(self.motion, checks),
         };
-        (scatter.spheres().collect(), place)
+        (scatter, place)
     }
 }
