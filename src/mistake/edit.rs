@@ -5,7 +5,7 @@
 pub(super) type Edit = (&'static str, &'static str);
 
 /// The text after all edits, one after the other; none if one of them finds nothing to change, or too much.
-pub(super) fn edited(text: &str, edits: &[Edit]) -> Option<String> {
+pub(super) fn edited(text: &str, edits: &[(&str, &str)]) -> Option<String> {
     let mut text = text.to_owned();
     for (from, to) in edits {
         let (head, tail) = from.split_once('…').unwrap_or((from, ""));
@@ -32,10 +32,16 @@ pub(super) fn styles(text: &str) -> Vec<String> {
         // Nothing stands between a single sphere and its light.
         rewrite(&mut first, &[NO_SHADOWS]);
     }
-    if !text.contains("Plane") {
+    if ["Plane", "Quadric", "Grid"]
+        .iter()
+        .all(|other| !text.contains(other))
+    {
         rewrite(&mut first, &[ANY_SPHERE]);
+        rewrite(&mut first, &[ANY_SPHERE_SOFT]);
     }
-    let second = edited(&first, LEAST_T);
+    let second = edited(&first, LEAST_T_IN_GLASS)
+        .or_else(|| edited(&first, LEAST_T))
+        .or_else(|| edited(&first, LEAST_T_OF_QUADRICS));
     [Some(first), second].into_iter().flatten().collect()
 }
 
@@ -56,18 +62,43 @@ const ANY_SPHERE: Edit = (
     return false;",
 );
 
+/// The same for lights with a radius.
+const ANY_SPHERE_SOFT: Edit = (
+    "    return nearestHit(Ray(origin, toLight)).t < distance;",
+    "    Ray ray = Ray(origin, toLight);
+    for (int i = 0; i < SPHERES; i++) {
+        if (intersectSphere(ray, spheres[i]) < distance) {
+            return true;
+        }
+    }
+    return false;",
+);
+
 /// Reflected rays start on their surface, and hits nearer than that do not count.
-const LEAST_T: &[Edit] = &[
-    ("ray = Ray(hit.point + 0.001 * side,", "ray = Ray(hit.point,"),
-    (
-        "float t = -b - root;\n        if (t > 0.00001)",
-        "float t = -b - root;\n        if (t > 0.001)",
-    ),
-    (
-        "t = -b + root;\n        if (t > 0.00001)",
-        "t = -b + root;\n        if (t > 0.001)",
-    ),
+const LEAST_T: &[Edit] = &[("Ray(hit.point + 0.001 * side,", "Ray(hit.point,"), NEAR, FAR];
+
+/// The same where there is glass.
+const LEAST_T_IN_GLASS: &[Edit] = &[
+    ("Ray(hit.point + 0.001 * side,", "Ray(hit.point,"),
+    ("Ray(hit.point - 0.001 * side,", "Ray(hit.point,"),
+    NEAR,
+    FAR,
 ];
+
+/// Quadrics that are met at once do not count, either.
+const LEAST_T_OF_QUADRICS: &[Edit] = &[
+    ("if (ahead + near > 0.00001 ", "if (ahead + near > 0.001 "),
+    ("if (ahead + beyond > 0.00001 ", "if (ahead + beyond > 0.001 "),
+];
+
+const NEAR: Edit = (
+    "float t = -b - root;\n        if (t > 0.00001)",
+    "float t = -b - root;\n        if (t > 0.001)",
+);
+const FAR: Edit = (
+    "t = -b + root;\n        if (t > 0.00001)",
+    "t = -b + root;\n        if (t > 0.001)",
+);
 
 #[cfg(test)]
 mod tests {

@@ -1,85 +1,158 @@
-//! What went wrong, by name: a wrong picture is compared with those of the shader that paints the scene, each with one classic
-//! mistake made in it, and with two at once where no single one explains it.
+//! What went wrong, by name: a wrong picture is compared with those of tracers that have one classic mistake in them, and with
+//! two at once where no single one explains it. Mistakes are edits of the shader that paints the scene, changes of the scene, or
+//! a number that is not the scene's.
 
 mod catalogue;
+mod change;
 mod edit;
+mod fit;
+mod look;
+mod suspect;
 
-use std::collections::BTreeSet;
+use std::borrow::Cow;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
-use self::catalogue::{CATALOGUE, Mistake};
-use crate::compare::{MAX_DIFFERING, Pixel, SEEN};
-use crate::eval::{Program, Settings, Variant};
+use self::look::{Looked, differing, left_over, pixels, smaller, work};
+use self::suspect::{Made, Suspect, paint};
+use crate::compare::MAX_DIFFERING;
+use crate::eval::Program;
 use crate::export;
 use crate::frame::Frame;
-use crate::glsl;
 use crate::image::Image;
-use crate::scene::Scene;
-use crate::source::{File, Files};
+use crate::scene::{Moment, Scene};
 
 /// What explains a wrong picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Named {
     /// The mistake.
     pub name: &'static str,
     /// What a tracer does that makes it, to stand after “a tracer that”.
-    pub says: &'static str,
+    pub says: Cow<'static, str>,
 }
 
-/// Pictures are first compared at so many pixels a side at most: a thousand of them take a second.
+/// What else may have led to a picture is told of so many mistakes at most.
+const TOLD: usize = 3;
+
+impl Named {
+    /// The same, with others that paint the same picture.
+    fn or(&self, others: &[&Suspect]) -> Self {
+        let others = others.iter().flat_map(|other| &other.mistakes).take(TOLD);
+        let says: Vec<&str> = std::iter::once(self.says.as_ref())
+            .chain(others.map(|other| other.says.as_ref()))
+            .collect();
+        Self {
+            name: self.name,
+            says: says.join("; or that ").into(),
+        }
+    }
+}
+
+/// Pictures are first compared at so many pixels a side at most, and are no more work than this, so that hundreds of pictures take seconds.
 const SMALL: u32 = 96;
+const SMALL_WORK: u64 = 100_000;
 
-/// A mistake explains a picture if it leaves no more than this share of the pixels that were wrong, and of all pixels, another visible
-/// colour: secondary rays of another style shift the edges of shadows and of what mirrors show.
-const LEFT_OVER: f64 = 0.05;
-const MAX_LEFT_OVER: f64 = 0.005;
+/// What explains a small picture is looked at in one that may be so much work.
+const LARGE_WORK: u64 = 16 * SMALL_WORK;
 
-/// Of mistakes that paint the same picture the first in the catalogue is named; with more than so many others beside it, none: a black
-/// picture has too many explanations.
-const MANY: usize = 2;
+/// Fewer pixels than this tell nothing.
+const FEWEST: u32 = 256;
 
-/// The longest that one picture may take: most take milliseconds.
-const PATIENCE: Duration = Duration::from_secs(10);
+/// Where fewer pixels are wrong, larger pictures are compared: more of them a side, and as much more work.
+const ENOUGH: u64 = 32;
+const FINER: u32 = 3;
 
-/// The shaders that paint a scene with a classic mistake in them. Their pictures are painted once, when they are first asked for.
+/// Fewer wrong pixels than this may be anything, even secondary rays of another style.
+const FEW: u64 = 8;
+
+/// Of mistakes that paint the same picture the first is named; with more than so many others beside it, none: there are too many
+/// explanations.
+const MANY: usize = 3;
+
+/// Two mistakes at once are tried where one of them is among so many that come nearest to the picture.
+const PROMISING: usize = 6;
+
+/// The tracers that have a classic mistake in them. Their pictures are painted once, when they are first asked for.
 #[derive(Debug)]
 pub struct Suspects {
+    scene: Scene,
+    moment: Moment,
     /// Of few pixels.
-    frame: Frame,
-    right: Suspect,
+    small: Frame,
+    /// What paints the scene rightly: the tracer, and the shaders.
+    right: Vec<Suspect>,
+    /// What loses so much of the picture that many mistakes may have led to it.
+    general: Vec<Suspect>,
     wrong: Vec<Suspect>,
-}
-
-/// A shader, with the mistakes that were made in it.
-#[derive(Debug)]
-struct Suspect {
-    mistakes: Vec<&'static Mistake>,
-    text: String,
-    picture: OnceLock<Option<Image>>,
+    /// The shader that paints the scene, as students write it, in each of the styles that matter.
+    styles: Vec<String>,
+    /// The same with larger pictures, made when they are needed; none if these are large.
+    finer: Option<OnceLock<Box<Suspects>>>,
 }
 
 impl Suspects {
-    /// Of a scene, for pictures of that frame; none if the scene cannot be exported.
+    /// Of a scene, for pictures of that frame; none if it takes so long to paint that no picture worth comparing is small enough.
     #[must_use]
     pub fn of(scene: &Scene, frame: &Frame) -> Option<Self> {
-        let styles = edit::styles(&export::shader(scene).ok()?);
-        let right = Suspect::new(Vec::new(), styles.first()?.clone());
-        let wrong = styles.iter().flat_map(|text| {
-            let made = CATALOGUE.iter().map(|mistake| (mistake, mistake.made_in(text)));
-            made.filter_map(|(mistake, text)| Some(Suspect::new(vec![mistake], text?)))
+        let small = smaller(frame, SMALL, SMALL_WORK / work(scene));
+        let is_enough = pixels(&small) >= u64::from(FEWEST).min(pixels(frame));
+        is_enough.then(|| Self::in_size(scene, small, Some(OnceLock::new())))
+    }
+
+    fn in_size(scene: &Scene, small: Frame, finer: Option<OnceLock<Box<Self>>>) -> Self {
+        let moment = Moment {
+            frame: small.frame,
+            time: f64::from(small.time),
+        };
+        let styles = export::shader(scene)
+            .map(|text| edit::styles(&text))
+            .unwrap_or_default();
+        let tracer = Made::Scene(Box::new(scene.clone()), moment);
+        let rights = [tracer]
+            .into_iter()
+            .chain(styles.iter().cloned().map(Made::Shader));
+        let changed = |change: change::Change| {
+            Suspect::new(
+                vec![change.named],
+                Made::Scene(Box::new(change.scene), change.moment),
+            )
+        };
+        let edited = styles.iter().flat_map(|text| {
+            catalogue::all().filter_map(|mistake| {
+                let made = Made::Shader(mistake.made_in(text)?);
+                Some(Suspect::new(vec![mistake.named()], made))
+            })
         });
-        Some(Self {
-            frame: smaller(frame),
-            right,
-            wrong: wrong.collect(),
+        let changes = change::all(scene, moment).into_iter().map(changed);
+        Self {
+            scene: scene.clone(),
+            moment,
+            small,
+            right: rights.map(|made| Suspect::new(Vec::new(), made)).collect(),
+            general: change::general(scene, moment).into_iter().map(changed).collect(),
+            wrong: edited.chain(changes).collect(),
+            styles,
+            finer,
+        }
+    }
+
+    /// The same for pictures large enough to tell one mistake from another where few pixels are wrong.
+    fn finer(&self, frame: &Frame) -> Option<&Self> {
+        let finer = self.finer.as_ref()?;
+        let work = u64::from(FINER * FINER) * SMALL_WORK / work(&self.scene);
+        let large = smaller(frame, FINER * SMALL, work);
+        let is_finer = pixels(&large) > pixels(&self.small);
+        is_finer.then(|| {
+            finer
+                .get_or_init(|| Box::new(Self::in_size(&self.scene, large, None)))
+                .as_ref()
         })
     }
 
     /// The mistake, or the two, that paint what the `student`'s shader does: `wrong`, painted in that frame in f64. Where no single one
-    /// does, two at once are looked for, for as long as `patience` says.
+    /// does, two at once are looked for, for as long as `patience` says at most.
     #[must_use]
     pub fn recognise(
         &self,
@@ -88,121 +161,104 @@ impl Suspects {
         frame: &Frame,
         patience: Duration,
     ) -> Option<Vec<Named>> {
-        let small = paint(student, &self.frame, None)?;
+        let small = paint(student, &self.small)?;
         let pixels = small.pixels().len();
-        let differing = differing(&small, self.right.picture(&self.frame)?);
-        if differing as f64 <= pixels as f64 * MAX_DIFFERING {
+        let rights = self.right.iter().filter_map(|right| right.picture(&self.small));
+        let differing = rights.map(|right| look::differing(&small, right)).min()?;
+        if differing < ENOUGH
+            && let Some(finer) = self.finer(frame)
+        {
+            return finer.recognise(student, wrong, frame, patience);
+        }
+        if differing < FEW || differing as f64 <= pixels as f64 * MAX_DIFFERING {
             return None;
         }
-        let limit = left_over(differing, pixels);
-        let left = |picture: &Image| Some(self::differing(&small, picture)).filter(|&left| left <= limit);
-        let singles = self.wrong.par_iter();
-        let singles = singles.filter_map(|suspect| Some((left(suspect.picture(&self.frame)?)?, suspect)));
-        let singles: Vec<(u64, &Suspect)> = singles.collect();
-        if let Some(least) = singles.iter().map(|&(left, _)| left).min() {
-            let mut best = singles.into_iter().filter(|&(left, _)| left == least);
-            let (_, first) = best.next()?;
-            let others: BTreeSet<_> = best
-                .map(|(_, suspect)| suspect.mistakes[0].named().name)
-                .collect();
-            if others.len() > MANY {
-                return None;
+        let looked_at = Looked {
+            differing,
+            small: &small,
+            frame: &self.small,
+        };
+        let confirmed = |suspect: &Suspect, others: &[&Suspect]| {
+            let mut named = self.confirm(suspect, student, wrong, frame)?;
+            if let [single] = &mut named[..] {
+                *single = single.or(others);
             }
-            return first.confirm(wrong, &self.right.paint(frame, None)?, frame);
+            Some(named)
+        };
+        let generals = looked_at.matching(&self.general);
+        let singles = looked_at.matching(&self.wrong);
+        if let Some(general) = generals.first() {
+            return match singles[..] {
+                [single] => confirmed(single, &[]),
+                _ => confirmed(general, &singles),
+            };
+        }
+        if let Some((first, others)) = singles.split_first() {
+            return (others.len() <= MANY).then(|| confirmed(first, others)).flatten();
+        }
+        let text = self.styles.first().map(String::as_str);
+        let fitted = fit::suspects(&self.scene, self.moment, text, &self.small, &small);
+        if let Some(suspect) = looked_at.matching(&fitted).first() {
+            return confirmed(suspect, &[]);
         }
         let deadline = Instant::now() + patience;
-        let pairs: Vec<Suspect> = self.pairs().collect();
-        let pairs = pairs.into_par_iter().filter_map(|pair| {
-            let picture = pair.paint(&self.frame, Some(deadline))?;
-            Some((left(&picture)?, pair))
-        });
-        let best = pairs
-            .collect::<Vec<_>>()
-            .into_iter()
-            .min_by_key(|(left, _)| *left);
-        best.and_then(|(_, pair)| pair.confirm(wrong, &self.right.paint(frame, None)?, frame))
+        let pairs: Vec<Suspect> = self.pairs(&looked_at).collect();
+        let pairs: Vec<Suspect> = pairs
+            .into_par_iter()
+            .filter(|pair| Instant::now() < deadline && looked_at.left(pair).is_some())
+            .collect();
+        looked_at
+            .matching(&pairs)
+            .first()
+            .and_then(|pair| confirmed(pair, &[]))
     }
 
-    /// Two mistakes at once, where they do not touch the same words.
-    fn pairs(&self) -> impl Iterator<Item = Suspect> {
-        self.wrong.iter().enumerate().flat_map(|(at, first)| {
-            let second = self.wrong[at + 1..].iter().flat_map(|second| &second.mistakes);
-            second.filter_map(|&mistake| {
-                let mistakes = first.mistakes.iter().copied().chain([mistake]).collect();
-                Some(Suspect::new(mistakes, mistake.made_in(&first.text)?))
+    /// Two mistakes at once, one of them promising, where they do not touch the same words.
+    fn pairs<'a>(&'a self, looked_at: &Looked) -> impl Iterator<Item = Suspect> + use<'a> {
+        let mut promising: Vec<(u64, &Suspect)> = self
+            .wrong
+            .iter()
+            .filter_map(|suspect| {
+                Some((
+                    look::differing(looked_at.small, suspect.picture(&self.small)?),
+                    suspect,
+                ))
             })
+            .collect();
+        promising.sort_by_key(|&(left, _)| left);
+        promising.truncate(PROMISING);
+        let texts = promising
+            .into_iter()
+            .filter_map(|(_, first)| Some((first, first.text(self.moment)?)));
+        texts.flat_map(|(first, text)| {
+            let seconds = catalogue::all().filter_map(move |second| {
+                let made = Made::Shader(second.made_in(&text)?);
+                let mistakes = first.mistakes.iter().cloned().chain([second.named()]);
+                Some(Suspect::new(mistakes.collect(), made))
+            });
+            seconds.collect::<Vec<_>>()
         })
     }
-}
 
-impl Suspect {
-    fn new(mistakes: Vec<&'static Mistake>, text: String) -> Self {
-        Self {
-            mistakes,
-            text,
-            picture: OnceLock::new(),
-        }
+    /// The names, if a larger picture is explained as well.
+    fn confirm(
+        &self,
+        suspect: &Suspect,
+        student: &Program,
+        wrong: &Image,
+        frame: &Frame,
+    ) -> Option<Vec<Named>> {
+        let large = smaller(frame, u32::MAX, LARGE_WORK / work(&self.scene));
+        let painted;
+        let wrong = if large.size == frame.size {
+            wrong
+        } else {
+            painted = paint(student, &large)?;
+            &painted
+        };
+        let right = self.right.first()?.made.paint(&large)?;
+        let limit = left_over(differing(wrong, &right), wrong.pixels().len());
+        let left = differing(wrong, &suspect.made.paint(&large)?);
+        (left <= limit).then(|| suspect.mistakes.clone())
     }
-
-    /// The picture in that frame, painted once: the frame is always the same. Nobody waits for it: a thread of rayon's that did, while it
-    /// paints another for somebody else, might wait for itself.
-    fn picture(&self, frame: &Frame) -> Option<&Image> {
-        if self.picture.get().is_none() {
-            // Somebody was faster, with the same picture.
-            let _ = self.picture.set(self.paint(frame, None));
-        }
-        self.picture.get()?.as_ref()
-    }
-
-    fn paint(&self, frame: &Frame, deadline: Option<Instant>) -> Option<Image> {
-        if deadline.is_some_and(|deadline| Instant::now() > deadline) {
-            return None;
-        }
-        let mut files = Files::default();
-        let file = files.add(File::new("<mistake>", self.text.as_str()));
-        let checked = glsl::check(&files, file, &glsl::Options::default()).ok()?;
-        paint(
-            &Program::prepared(&checked, Variant::Plain).ok()?,
-            frame,
-            deadline,
-        )
-    }
-
-    /// The names, if the whole picture is explained as well.
-    fn confirm(&self, wrong: &Image, right: &Image, frame: &Frame) -> Option<Vec<Named>> {
-        let limit = left_over(differing(wrong, right), wrong.pixels().len());
-        let left = differing(wrong, &self.paint(frame, None)?);
-        (left <= limit).then(|| self.mistakes.iter().map(|mistake| mistake.named()).collect())
-    }
-}
-
-/// How many pixels may remain unexplained.
-fn left_over(differing: u64, pixels: usize) -> u64 {
-    let share = (differing as f64 * LEFT_OVER).min(pixels as f64 * MAX_LEFT_OVER);
-    share.floor() as u64
-}
-
-/// The same frame in fewer pixels.
-fn smaller(frame: &Frame) -> Frame {
-    let [width, height] = frame.size;
-    let divisor = width.max(height).div_ceil(SMALL);
-    Frame {
-        size: [width, height].map(|side| (side / divisor).max(1)),
-        ..frame.clone()
-    }
-}
-
-/// In how many pixels two pictures are visibly different.
-fn differing(one: &Image, other: &Image) -> u64 {
-    let differs = |&at: &usize| Pixel::at(at, one, other).difference() > SEEN;
-    (0..one.pixels().len()).filter(differs).count() as u64
-}
-
-fn paint(program: &Program, frame: &Frame, deadline: Option<Instant>) -> Option<Image> {
-    let settings = Settings::<f64> {
-        variant: Variant::Plain,
-        deadline: Some(deadline.unwrap_or_else(|| Instant::now() + PATIENCE)),
-        ..Settings::default()
-    };
-    Some(program.paint(frame, &settings).ok()?.painting.image())
 }

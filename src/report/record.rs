@@ -90,7 +90,10 @@ impl Mistake {
     /// Of the mistakes that were recognised.
     #[must_use]
     pub fn new(named: &[Named]) -> Self {
-        let (ids, says): (Vec<_>, Vec<_>) = named.iter().map(|mistake| (mistake.name, mistake.says)).unzip();
+        let (ids, says): (Vec<_>, Vec<_>) = named
+            .iter()
+            .map(|mistake| (mistake.name, mistake.says.as_ref()))
+            .unzip();
         Self {
             id: ids.join("+"),
             says: format!(

@@ -134,8 +134,8 @@ pub enum Failure {
     CutShort(u64),
 }
 
-/// How long two mistakes at once are looked for in a wrong picture.
-const PATIENCE_FOR_TWO: Duration = Duration::from_secs(4);
+/// The longest that two mistakes at once are looked for in a wrong picture; there are few enough of them that it seldom takes so long.
+const PATIENCE_FOR_TWO: Duration = Duration::from_secs(10);
 
 /// The evaluator may take so many times as long as the GPU: that it is slow is not the shader's fault.
 const PATIENCE: u32 = 4;

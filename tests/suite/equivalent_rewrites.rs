@@ -724,6 +724,18 @@ static REWRITES: &[Rewrite] = &[
     ),
 ];
 
+/// What is said otherwise, the rung, and how: those above and those of the later rungs.
+pub(crate) fn rewrites() -> impl Iterator<Item = (&'static str, &'static Rung, &'static [Edit])> {
+    let early = REWRITES
+        .iter()
+        .flat_map(|&(name, rungs, edits)| rungs.iter().map(move |&rung| (name, rung, edits)));
+    let later = EDITED.iter().flat_map(|edited| {
+        let of_rung = |&(name, edits)| (name, edited.rung, edits);
+        edited.rewrites.iter().copied().flatten().map(of_rung)
+    });
+    early.chain(later)
+}
+
 /// A rewrite and what came of it.
 struct Outcome {
     name: &'static str,
@@ -735,14 +747,7 @@ struct Outcome {
 static OUTCOMES: LazyLock<Option<Vec<Outcome>>> = LazyLock::new(|| {
     let mut worker = crate::support::worker()?;
     let mut outcomes = Vec::new();
-    let early = REWRITES
-        .iter()
-        .flat_map(|&(name, rungs, edits)| rungs.iter().map(move |&rung| (name, rung, edits)));
-    let later = EDITED.iter().flat_map(|edited| {
-        let of_rung = |&(name, edits)| (name, edited.rung, edits);
-        edited.rewrites.iter().copied().flatten().map(of_rung)
-    });
-    for (name, rung, edits) in early.chain(later) {
+    for (name, rung, edits) in rewrites() {
         let findings = judged(&mut worker, &edited(rung, edits), rung);
         eprintln!("{}: {name}: {}", rung.name, numbers(&findings));
         outcomes.push(Outcome { name, rung, findings });

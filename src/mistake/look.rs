@@ -1,0 +1,112 @@
+//! How pictures are compared: in which size, which pixels differ, and how many of them a mistake may leave.
+
+use rayon::prelude::*;
+
+use super::suspect::Suspect;
+use crate::compare::Pixel;
+use crate::frame::Frame;
+use crate::image::Image;
+use crate::scene::{Integrator, Scene};
+
+/// Colours that are farther apart are different. That is less than can be seen: both pictures are painted in double precision.
+const SAME: f64 = 1e-3;
+
+/// A mistake explains a picture if it leaves no more than this share of the pixels that were wrong, and of all pixels, another colour:
+/// secondary rays of another style shift the edges of shadows and of what mirrors show.
+const LEFT_OVER: f64 = 0.05;
+const MAX_LEFT_OVER: f64 = 0.005;
+
+/// A ray meets as many surfaces in the time that one unit of work takes.
+const SURFACES: usize = 8;
+
+/// A wrong picture of few pixels.
+pub(super) struct Looked<'a> {
+    /// How many of them are wrong.
+    pub(super) differing: u64,
+    pub(super) small: &'a Image,
+    pub(super) frame: &'a Frame,
+}
+
+impl Looked<'_> {
+    /// How many pixels a suspect does not explain, if those are few.
+    pub(super) fn left(&self, suspect: &Suspect) -> Option<u64> {
+        let left = differing(self.small, suspect.picture(self.frame)?);
+        (left <= left_over(self.differing, self.small.pixels().len())).then_some(left)
+    }
+
+    /// Those that explain the picture best, one of each name.
+    pub(super) fn matching<'s>(&self, suspects: &'s [Suspect]) -> Vec<&'s Suspect> {
+        let all = suspects.par_iter();
+        let all: Vec<_> = all
+            .filter_map(|suspect| Some((self.left(suspect)?, suspect)))
+            .collect();
+        let least = all.iter().map(|&(left, _)| left).min();
+        let mut best: Vec<&Suspect> = Vec::new();
+        for (left, suspect) in all {
+            let is_new = best.iter().all(|other| other.names().ne(suspect.names()));
+            if Some(left) == least && is_new {
+                best.push(suspect);
+            }
+        }
+        best
+    }
+}
+
+/// How many pixels may remain unexplained.
+pub(super) fn left_over(differing: u64, pixels: usize) -> u64 {
+    let share = (differing as f64 * LEFT_OVER).min(pixels as f64 * MAX_LEFT_OVER);
+    share.floor() as u64
+}
+
+/// How much work a pixel is.
+pub(super) fn work(scene: &Scene) -> u64 {
+    let rays = match scene.film.integrator {
+        Integrator::Path => 2 * u64::from(scene.film.max_depth),
+        Integrator::Whitted => 1,
+    };
+    // Of a grid, a ray meets the spheres along its way.
+    let in_grids: usize = scene
+        .scatters
+        .iter()
+        .map(|scattered| scattered.objects.len())
+        .sum();
+    let cells: u32 = scene
+        .scatters
+        .iter()
+        .flat_map(|scattered| scattered.scatter.cells)
+        .sum();
+    let surfaces = scene.objects.len() - in_grids + cells as usize;
+    let surfaces = surfaces.div_ceil(SURFACES).max(1) as u64;
+    u64::from(scene.film.samples) * rays * surfaces
+}
+
+pub(super) fn pixels(frame: &Frame) -> u64 {
+    frame.size.into_iter().map(u64::from).product()
+}
+
+/// The same frame in fewer pixels: so many a side at most, and so many in all. Their numbers are even, so that no ray runs along the middle
+/// of the picture where none did.
+pub(super) fn smaller(frame: &Frame, side: u32, all: u64) -> Frame {
+    let [width, height] = frame.size;
+    let divided = |divisor: u32| {
+        [width, height].map(|own| match own / divisor {
+            side if divisor == 1 || side < 2 => side.max(1),
+            side => side & !1,
+        })
+    };
+    let is_small = |divisor: &u32| {
+        let [width, height] = divided(*divisor);
+        width.max(height) <= side && u64::from(width) * u64::from(height) <= all
+    };
+    let divisor = (1..=width.max(height)).find(is_small).unwrap_or(u32::MAX);
+    Frame {
+        size: divided(divisor),
+        ..frame.clone()
+    }
+}
+
+/// In how many pixels two pictures are different.
+pub(super) fn differing(one: &Image, other: &Image) -> u64 {
+    let differs = |&at: &usize| Pixel::at(at, one, other).difference() > SAME;
+    (0..one.pixels().len()).filter(differs).count() as u64
+}

@@ -1,0 +1,100 @@
+//! A tracer with a mistake in it, and what it paints.
+
+use std::sync::OnceLock;
+use std::time::{Duration, Instant};
+
+use super::Named;
+use super::edit::styles;
+use crate::eval::{Program, Settings, Variant};
+use crate::export;
+use crate::frame::Frame;
+use crate::glsl;
+use crate::image::Image;
+use crate::scene::{Moment, Scene};
+use crate::source::{File, Files};
+use crate::trace::Tracer;
+
+/// The longest that one picture may take, whatever becomes of it: most take milliseconds, and what is said must not depend on how busy the
+/// machine is.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// What paints a wrong picture.
+#[derive(Debug, Clone)]
+pub(super) enum Made {
+    /// A shader, painted by the evaluator.
+    Shader(String),
+    /// A scene that is not the one asked for, or another moment of it, painted by the reference tracer.
+    Scene(Box<Scene>, Moment),
+}
+
+impl Made {
+    /// None where there is no picture: what was made is no shader, or takes too long.
+    pub(super) fn paint(&self, frame: &Frame) -> Option<Image> {
+        match self {
+            Self::Shader(text) => {
+                let mut files = Files::default();
+                let file = files.add(File::new("<mistake>", text.as_str()));
+                let checked = glsl::check(&files, file, &glsl::Options::default()).ok()?;
+                paint(&Program::prepared(&checked, Variant::Plain).ok()?, frame)
+            }
+            Self::Scene(scene, moment) => {
+                let mut scene = scene.as_ref().clone();
+                scene.film.size = frame.size;
+                Some(Tracer::<f64>::at(&scene, *moment).picture(|| ()))
+            }
+        }
+    }
+}
+
+/// The picture of a shader in f64.
+pub(super) fn paint(program: &Program, frame: &Frame) -> Option<Image> {
+    let settings = Settings::<f64> {
+        variant: Variant::Plain,
+        deadline: Some(Instant::now() + PATIENCE),
+        ..Settings::default()
+    };
+    Some(program.paint(frame, &settings).ok()?.painting.image())
+}
+
+/// A tracer with mistakes in it. Its picture is painted once, when it is first asked for.
+#[derive(Debug)]
+pub(super) struct Suspect {
+    pub(super) mistakes: Vec<Named>,
+    pub(super) made: Made,
+    picture: OnceLock<Option<Image>>,
+}
+
+impl Suspect {
+    pub(super) fn new(mistakes: Vec<Named>, made: Made) -> Self {
+        Self {
+            mistakes,
+            made,
+            picture: OnceLock::new(),
+        }
+    }
+
+    pub(super) fn names(&self) -> impl Iterator<Item = &'static str> {
+        self.mistakes.iter().map(|named| named.name)
+    }
+
+    /// The picture in that frame, which must always be the same. Nobody waits for it: a thread of rayon's that did, while it paints another
+    /// for somebody else, might wait for itself.
+    pub(super) fn picture(&self, frame: &Frame) -> Option<&Image> {
+        if self.picture.get().is_none() {
+            // Somebody may have been faster, with the same picture.
+            let _ = self.picture.set(self.made.paint(frame));
+        }
+        self.picture.get()?.as_ref()
+    }
+
+    /// The shader that paints this, as students write it; none of another moment.
+    pub(super) fn text(&self, moment: Moment) -> Option<String> {
+        match &self.made {
+            Made::Shader(text) => Some(text.clone()),
+            Made::Scene(scene, own) if *own == moment => {
+                styles(&export::shader(scene).ok()?).into_iter().next()
+            }
+            Made::Scene(..) => None,
+        }
+    }
+}
