@@ -70,6 +70,7 @@ pub(crate) fn spheres(count: usize, model: Model) -> Scene {
         figures: Vec::new(),
         lights: Vec::new(),
         objects: objects.collect(),
+        scatters: Vec::new(),
         motions: Vec::new(),
     }
 }
