@@ -132,7 +132,7 @@ mod tests {
 
     #[test]
     fn what_is_too_long_to_read_is_cut_in_the_middle() {
-        let message = |text: &str| Diagnostic::error("E0000", text).message;
+        let message = |text: &str| Diagnostic::error("E0001", text).message;
         assert_eq!(message(&"é".repeat(LONGEST / 2)), "é".repeat(LONGEST / 2));
         let cut = message(&format!("`{}` is too long", "é".repeat(LONGEST)));
         assert!(
@@ -140,7 +140,7 @@ mod tests {
             "{cut}"
         );
         assert!(cut.contains(" … ") && cut.len() < LONGEST + 10, "{cut}");
-        let note = Diagnostic::error("E0000", "").note("x".repeat(1 << 20));
+        let note = Diagnostic::error("E0001", "").note("x".repeat(1 << 20));
         assert!(note.notes[0].len() < LONGEST + 10);
     }
 }

@@ -351,7 +351,16 @@ fn an_interrupt_leaves_nothing_half_written() {
     for arguments in [
         &["stress", "-o", "out", "--on", "cpu", "--cases", "10000"][..],
         &[
-            "trade", "-o", "out", "--on", "cpu", "--budget", "60s", "--size", "320x180", "s.toml",
+            "trade",
+            "-o",
+            "out",
+            "--on",
+            "cpu",
+            "--budget",
+            "60s",
+            "--size",
+            "1920x1080",
+            "s.toml",
         ],
     ] {
         fs::write(folder.path().join("s.toml"), SPHERE.scene).unwrap();
@@ -360,7 +369,7 @@ fn an_interrupt_leaves_nothing_half_written() {
             .stderr(std::process::Stdio::piped())
             .spawn()
             .unwrap();
-        std::thread::sleep(std::time::Duration::from_secs(3));
+        std::thread::sleep(std::time::Duration::from_secs(1));
         kill_process(Pid::from_child(&child), Signal::INT).unwrap();
         assert_eq!(child.wait().unwrap().code(), Some(2), "{arguments:?}");
         assert!(!Path::exists(&folder.path().join("out")), "{arguments:?}");

@@ -34,7 +34,7 @@ use crate::glsl::tree::{ExprId, FunctionId, Item, Place, Tree, Type, VariableId,
 const MAX_VALUES: usize = 2_000_000;
 
 /// The most cells: each thread that paints holds 256 bytes for each of them.
-const MAX_CELLS: usize = 1 << 19;
+const MAX_CELLS: usize = 1 << 17;
 
 /// How deep calls, statements and expressions may nest, all together, once calls are inlined.
 const MAX_DEPTH: usize = 10_000;

@@ -34,7 +34,7 @@ const LONG: &str = "20s";
 /// In so many seconds each shader has its verdict: eight deadlines, and what a loaded machine needs to start.
 const LONGEST: Duration = Duration::from_secs(30);
 /// So many bytes do the program, which paints with two threads, and its worker take at the most, both together.
-const MOST_BYTES: u64 = 512 << 20;
+const MOST_BYTES: u64 = 1536 << 20;
 /// And so many do all reports of one shader.
 const MOST_WRITTEN: usize = 4 << 20;
 
