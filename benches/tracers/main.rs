@@ -1,5 +1,6 @@
-//! The reference tracer beside Embree, lavapipe and POV-Ray, in turns, so that all meet the same noise; in seconds of
-//! processor time, ours on one thread. Who is not installed is left out. `cargo bench --bench tracers`
+//! The reference tracer beside Embree, lavapipe and POV-Ray, in turns, so that all meet the same noise; in
+//! milliseconds of processor time, ours on one thread. Who is not installed is left out.
+//! `cargo bench --bench tracers [-- rays povray threads features growth building]`
 
 #![expect(
     clippy::print_stdout,
@@ -416,6 +417,24 @@ fn growth(name: &str, scenes: Vec<(f64, Scene)>) {
     println!("| exponent | {single:.2} | {double:.2} |");
 }
 
+fn growths(counts: &[usize]) {
+    println!("\nHow the time grows, a picture of flat colours, milliseconds:");
+    let counted = |&count: &usize| (count as f64, spheres(count, Model::Emitter));
+    growth("spheres", counts.iter().map(counted).collect());
+    let sized = |factor: u32| {
+        let mut scene = spheres(100, Model::Emitter);
+        scene.film.size = [160 * factor, 90 * factor];
+        (f64::from(160 * 90 * factor * factor), scene)
+    };
+    growth("pixels", [1, 2, 4, 8, 16].map(sized).into());
+    let sampled = |samples: u32| {
+        let mut scene = spheres(100, Model::Emitter);
+        (scene.film.samples, scene.film.sampler) = (samples, Sampler::Stratified);
+        (f64::from(samples), scene)
+    };
+    growth("samples", [1, 4, 16, 64].map(sampled).into());
+}
+
 /// Kilobytes of this process in memory.
 fn resident() -> f64 {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
@@ -446,6 +465,40 @@ fn building(program: Option<&Path>, counts: &[usize]) {
     }
 }
 
+/// Two threads beside one, by the clock on the wall.
+fn threads(one: &rayon::ThreadPool) {
+    let two = rayon::ThreadPoolBuilder::new()
+        .num_threads(2)
+        .build()
+        .expect("two threads");
+    let mut scene = parse(include_str!("whitted.toml"));
+    scene.film.samples = 4;
+    scene.film.sampler = Sampler::Stratified;
+    let (single, double) = (Tracer::<f32>::new(&scene), Tracer::<f64>::new(&scene));
+    let wall = |pool: &rayon::ThreadPool, picture: &(dyn Fn() + Sync)| {
+        let start = std::time::Instant::now();
+        pool.install(picture);
+        1e3 * start.elapsed().as_secs_f64()
+    };
+    let picture32 = || drop(single.picture(|| ()));
+    let picture64 = || drop(double.picture(|| ()));
+    let [one32, two32, one64, two64] = in_turns(|| {
+        [
+            wall(one, &picture32),
+            wall(&two, &picture32),
+            wall(one, &picture64),
+            wall(&two, &picture64),
+        ]
+    });
+    println!("\nThe seven spheres at four samples, milliseconds by the clock on the wall:\n");
+    println!("| | one thread | two | times as fast |\n|---|---|---|---|");
+    println!("| f32 | {one32:.0} | {two32:.0} | {} |", ratio(one32, two32));
+    println!("| f64 | {one64:.0} | {two64:.0} | {} |", ratio(one64, two64));
+}
+
+/// One of the tables, by the name that asks for it.
+type Part<'a> = (&'static str, &'a (dyn Fn() + Sync));
+
 fn main() {
     let folder = tempfile::tempdir().expect("there is room");
     let program = folder.path().join("embree");
@@ -461,28 +514,22 @@ fn main() {
         .build()
         .expect("one thread");
     let all = [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000];
-    pool.install(|| {
-        beside_embree_and_lavapipe(program, &all);
-        beside_povray(folder.path());
-        features();
-        println!("\nHow the time grows, a picture of flat colours, milliseconds:");
-        growth(
-            "spheres",
-            all.map(|count| (count as f64, spheres(count, Model::Emitter)))
-                .into(),
-        );
-        let sized = |factor: u32| {
-            let mut scene = spheres(100, Model::Emitter);
-            scene.film.size = [160 * factor, 90 * factor];
-            (f64::from(160 * 90 * factor * factor), scene)
-        };
-        growth("pixels", [1, 2, 4, 8, 16].map(sized).into());
-        let sampled = |samples: u32| {
-            let mut scene = spheres(100, Model::Emitter);
-            (scene.film.samples, scene.film.sampler) = (samples, Sampler::Stratified);
-            (f64::from(samples), scene)
-        };
-        growth("samples", [1, 4, 16, 64].map(sampled).into());
-        building(program, &all[2..]);
-    });
+    let parts: [Part<'_>; 6] = [
+        ("rays", &|| beside_embree_and_lavapipe(program, &all)),
+        ("povray", &|| beside_povray(folder.path())),
+        ("threads", &|| threads(&pool)),
+        ("features", &features),
+        ("growth", &|| growths(&all)),
+        ("building", &|| building(program, &all[2..])),
+    ];
+    // Cargo adds options of its own.
+    let asked: Vec<_> = std::env::args()
+        .skip(1)
+        .filter(|word| !word.starts_with('-'))
+        .collect();
+    for (name, print) in parts {
+        if asked.is_empty() || asked.iter().any(|word| word == name) {
+            pool.install(print);
+        }
+    }
 }

@@ -88,7 +88,8 @@ pub trait Vector<T>:
     fn length(self) -> T;
 }
 
-/// The power of two that brings a vector of that size near 1; 1 for what has no size.
+/// The power of two that brings a vector of that size near 1; 1 for what has no size. Its reciprocal is exact.
+#[inline]
 fn scale<T: Real>(size: T) -> T {
     if size.is_normal() {
         size.power_of_two()
@@ -102,34 +103,42 @@ macro_rules! real {
         impl Real for $scalar {
             type Vec3 = $vector;
 
+            #[inline]
             fn from_f64(value: f64) -> Self {
                 value as Self
             }
 
+            #[inline]
             fn to_f64(self) -> f64 {
                 f64::from(self)
             }
 
+            #[inline]
             fn sine_and_cosine(self) -> (Self, Self) {
                 $sine_and_cosine(self)
             }
 
+            #[inline]
             fn power(self, exponent: Self) -> Self {
                 $power(self, exponent)
             }
 
+            #[inline]
             fn logarithm(self) -> Self {
                 $logarithm(self)
             }
 
+            #[inline]
             fn power_of_two(self) -> Self {
                 Self::from_bits(self.to_bits() & Self::INFINITY.to_bits())
             }
 
+            #[inline]
             fn tag(number: u32) -> Self {
                 Self::from_bits(number.into())
             }
 
+            #[inline]
             fn untag(self) -> u32 {
                 self.to_bits() as u32
             }
@@ -138,38 +147,46 @@ macro_rules! real {
         impl Vector<$scalar> for $vector {
             const ZERO: Self = Self::ZERO;
 
+            #[inline]
             fn from_f64(components: [f64; 3]) -> Self {
                 Self::from_array(components.map(<$scalar>::from_f64))
             }
 
+            #[inline]
             fn new(x: $scalar, y: $scalar, z: $scalar) -> Self {
                 Self::new(x, y, z)
             }
 
+            #[inline]
             fn to_array(self) -> [$scalar; 3] {
                 Self::to_array(&self)
             }
 
+            #[inline]
             fn dot(self, other: Self) -> $scalar {
                 Self::dot(self, other)
             }
 
+            #[inline]
             fn cross(self, other: Self) -> Self {
                 Self::cross(self, other)
             }
 
+            #[inline]
             fn size(self) -> $scalar {
                 self.abs().max_element()
             }
 
+            #[inline]
             fn normalize(self) -> Self {
-                let scaled = self / scale(self.size());
+                let scaled = self * scale(self.size()).recip();
                 scaled / Self::length(scaled)
             }
 
+            #[inline]
             fn length(self) -> $scalar {
                 let scale = scale(self.size());
-                Self::length(self / scale) * scale
+                Self::length(self * scale.recip()) * scale
             }
         }
     };

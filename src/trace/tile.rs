@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::real::{Real, Vector};
 use super::sampler::{Draws, Sample};
 use super::seen::Seen;
-use super::spheres::{PACKET, Packet};
+use super::spheres::{Found, PACKET, Packet};
 use super::style::Exact;
 use super::world::First;
 use super::{Kernel, Tracer, figure, film};
@@ -22,17 +22,22 @@ struct Tile {
 }
 
 impl Tile {
-    fn count(&self) -> usize {
-        (self.size[0] * self.size[1]) as usize
+    /// Goes through those of its pixels that are in the picture: their places in a packet, and in the band, whose rows
+    /// have that many pixels.
+    #[inline]
+    fn each(&self, width: u32, mut with: impl FnMut(usize, usize)) {
+        for row in 0..self.size[1] {
+            for column in 0..self.size[0] {
+                let in_band = row * width + self.corner[0] + column;
+                with((row * SIDE + column) as usize, in_band as usize);
+            }
+        }
     }
 
-    /// Row by row; beyond the last, the first again, so that every ray of a packet is some pixel's.
+    /// Row by row; beyond the picture's edge those at the edge again, so that every ray of a packet is some pixel's.
     fn pixel(&self, at: usize) -> [u32; 2] {
-        let at = if at < self.count() { at as u32 } else { 0 };
-        [
-            self.corner[0] + at % self.size[0],
-            self.corner[1] + at / self.size[0],
-        ]
+        let within = [at as u32 % SIDE, at as u32 / SIDE];
+        [0, 1].map(|axis| self.corner[axis] + within[axis].min(self.size[axis] - 1))
     }
 }
 
@@ -46,64 +51,67 @@ impl<T: Real> Tracer<T> {
         })
     }
 
-    /// The place of a tile's pixel in its band.
-    fn in_band(&self, tile: Tile, at: usize) -> usize {
-        let [x, y] = tile.pixel(at);
-        ((y - tile.corner[1]) * self.film.size[0] + x) as usize
-    }
-
     /// Paints a band.
     pub(super) fn band(&self, bottom: u32, pixels: &mut [[f32; 4]]) {
+        let count = T::from_f64(f64::from(self.film.samples));
         for tile in self.tiles(bottom) {
-            for (at, color) in self.paint(tile).into_iter().enumerate().take(tile.count()) {
-                let [r, g, b] = color.map(|c| c.to_f64() as f32);
-                pixels[self.in_band(tile, at)] = [r, g, b, 1.0];
-            }
+            let sums = self.sums(tile);
+            tile.each(self.film.size[0], |at, in_band| {
+                let mean = (sums[at] / count).to_array();
+                let [r, g, b] = mean.map(|c| film::develop(&self.film, c).to_f64() as f32);
+                pixels[in_band] = [r, g, b, 1.0];
+            });
         }
     }
 
-    /// The developed means of a tile's pixels.
-    fn paint(&self, tile: Tile) -> [[T; 3]; PACKET] {
+    /// The sums of the samples of a tile's pixels.
+    fn sums(&self, tile: Tile) -> [T::Vec3; PACKET] {
         let mut sums = [T::Vec3::ZERO; PACKET];
         let count = self.film.samples;
         for index in 0..count {
-            let sample = |at| Sample {
-                pixel: tile.pixel(at),
-                index,
-                count,
-                set: 0,
-            };
-            let mut draws: [Draws; PACKET] =
-                std::array::from_fn(|at| Draws::new(self.film.sampler, sample(at)));
+            let mut draws = [const { Draws::Center }; PACKET];
             let screen = if self.film.sampler == Sampler::Center {
                 self.middles(tile)
             } else {
-                let place = |at: usize| Self::place(sample(at), &mut draws[at]);
-                self.places(place)
+                self.places(|at| {
+                    let sample = Sample {
+                        pixel: tile.pixel(at),
+                        index,
+                        count,
+                        set: 0,
+                    };
+                    draws[at] = Draws::new(self.film.sampler, sample);
+                    Self::place(sample, &mut draws[at])
+                })
             };
-            let seen = self.look_together(&screen);
-            for ((sum, seen), draws) in sums.iter_mut().zip(seen).zip(&mut draws).take(tile.count()) {
-                *sum = *sum + self.radiance(seen, draws, &Exact);
-            }
+            let packet = self.camera.packet(&screen, self.level);
+            let found = self.find(&packet);
+            tile.each(self.film.size[0], |at, _| {
+                let seen = match figure::topmost(&self.figures, [screen[0][at], screen[1][at]]) {
+                    Some(figure) => Seen::Figure(figure),
+                    None => Seen::Scene(packet.ray(at), self.first(&packet, &found, at)),
+                };
+                sums[at] = sums[at] + self.radiance(seen, &mut draws[at], &Exact);
+            });
         }
-        let count = T::from_f64(f64::from(count));
-        sums.map(|sum| (sum / count).to_array().map(|c| film::develop(&self.film, c)))
+        sums
     }
 
     /// The middles of a tile's pixels on the screen. Those of a column have one x, those of a row one y.
     fn middles(&self, tile: Tile) -> [[T; PACKET]; 2] {
+        const SIDES: usize = SIDE as usize;
         let half = T::from_f64(0.5);
-        let diagonal: [[T; 2]; SIDE as usize] = std::array::from_fn(|at| {
-            let pixel = tile.corner.map(|first| first + at as u32);
+        let diagonal: [[T; 2]; SIDES] = std::array::from_fn(|at| {
+            let pixel = tile.pixel(at * (SIDES + 1));
             self.camera
                 .screen(pixel.map(|along| T::from_f64(f64::from(along)) + half))
         });
-        [0, 1].map(|axis| {
-            std::array::from_fn(|at| {
-                let along = tile.pixel(at)[axis] - tile.corner[axis];
-                diagonal[along as usize][axis]
-            })
-        })
+        let mut middles = [[T::zero(); PACKET]; 2];
+        for at in 0..PACKET {
+            middles[0][at] = diagonal[at % SIDES][0];
+            middles[1][at] = diagonal[at / SIDES][1];
+        }
+        middles
     }
 
     /// Where on the screen these places of the picture are.
@@ -112,22 +120,19 @@ impl<T: Real> Tracer<T> {
         [0, 1].map(|axis| places.map(|place| place[axis]))
     }
 
-    /// What lies at these places.
-    fn look_together(&self, screen: &[[T; PACKET]; 2]) -> [Seen<T>; PACKET] {
-        let packet = self.camera.packet(screen, self.level);
-        let first = self.nearest_of_packet(&packet);
-        std::array::from_fn(
-            |at| match figure::topmost(&self.figures, [screen[0][at], screen[1][at]]) {
-                Some(figure) => Seen::Figure(figure),
-                None => Seen::Scene(packet.ray(at), first[at]),
-            },
-        )
+    /// The spheres that the rays of a packet meet first.
+    fn find(&self, packet: &Packet<T>) -> Found<T> {
+        match &self.kernel {
+            Kernel::Spheres(world) => world.spheres.nearest_of_packet(packet),
+            Kernel::Shapes(world) => world.spheres.nearest_of_packet(packet),
+        }
     }
 
-    fn nearest_of_packet(&self, packet: &Packet<T>) -> [First<T>; PACKET] {
+    /// What one of the rays of a packet meets first, with the other shapes.
+    fn first(&self, packet: &Packet<T>, found: &Found<T>, at: usize) -> First<T> {
         match &self.kernel {
-            Kernel::Spheres(world) => world.nearest_of_packet(packet),
-            Kernel::Shapes(world) => world.nearest_of_packet(packet),
+            Kernel::Spheres(world) => world.first(packet, found, at),
+            Kernel::Shapes(world) => world.first(packet, found, at),
         }
     }
 
@@ -140,10 +145,11 @@ impl<T: Real> Tracer<T> {
         bands.enumerate().for_each(|(band, surfaces)| {
             for tile in self.tiles(band as u32 * SIDE) {
                 let packet = self.camera.packet(&self.middles(tile), self.level);
-                let first = self.nearest_of_packet(&packet);
-                for (at, first) in first.into_iter().enumerate().take(tile.count()) {
-                    surfaces[self.in_band(tile, at)] = first.map(|(_, surface)| surface as u32);
-                }
+                let found = self.find(&packet);
+                tile.each(width, |at, in_band| {
+                    let first = self.first(&packet, &found, at);
+                    surfaces[in_band] = first.map(|(_, surface)| surface as u32);
+                });
             }
         });
         surfaces

@@ -42,6 +42,7 @@ pub(super) enum Draws {
 const DIMENSIONS: u32 = sobol_burley::NUM_DIMENSIONS;
 
 impl Draws {
+    #[inline]
     pub(super) fn new(sampler: Sampler, sample: Sample) -> Self {
         let Sample {
             pixel: [x, y],

@@ -4,20 +4,26 @@ use super::super::real::Real;
 use super::formula::unit;
 use super::{EIGHT, Eight, Numbered};
 
-/// Up to eight spheres. Places that are empty hold NaN, which nothing meets.
+/// Up to eight spheres: what a ray needs to meet them, in three lines of the cache in f32. Places that are empty hold
+/// NaN, which nothing meets.
 #[derive(Debug, Clone)]
 #[repr(align(64))]
 pub(super) struct Block<T> {
     pub(super) center: [Eight<T>; 3],
-    /// The power of two that lengths are counted in, in scene units, and one over it.
-    pub(super) unit: Eight<T>,
+    /// One over the unit that lengths are counted in, a power of two in scene units.
     pub(super) per_unit: Eight<T>,
     /// (radius/unit)², in [1, 4)
     pub(super) radius2: Eight<T>,
+    pub(super) numbers: [u32; EIGHT],
+}
+
+/// How far the spheres of a block reach.
+#[derive(Debug, Clone)]
+#[repr(align(64))]
+pub(super) struct Reach<T> {
     /// How far from the centre along each axis a ray may pass that [`super::formula`] says meets the sphere: a little more
     /// than the radius. See [`margin`].
     pub(super) reach: Eight<T>,
-    pub(super) numbers: [u32; EIGHT],
     pub(super) count: usize,
 }
 
@@ -34,50 +40,43 @@ pub(super) fn margin<T: Real>() -> T {
     T::from_f64(16.0) * T::epsilon()
 }
 
-impl<T: Real> Block<T> {
-    /// Of at most eight.
-    pub(super) fn new(spheres: &[Numbered<T>]) -> Self {
-        let nan = [T::nan(); EIGHT];
-        let mut block = Self {
-            center: [nan; 3],
-            unit: nan,
-            per_unit: nan,
-            radius2: nan,
-            reach: nan,
-            numbers: [super::NONE; EIGHT],
-            count: spheres.len(),
-        };
-        for (
-            at,
-            &Numbered {
-                center,
-                radius,
-                number,
-            },
-        ) in spheres.iter().enumerate()
-        {
-            let unit = unit(radius);
-            let scaled = radius / unit;
-            let size = center.iter().fold(T::zero(), |size, c| size.max(c.abs()));
-            for (axis, component) in center.into_iter().enumerate() {
-                block.center[axis][at] = component;
-            }
-            block.unit[at] = unit;
-            block.per_unit[at] = unit.recip();
-            block.radius2[at] = scaled * scaled;
-            // The sides of boxes are rounded as well, by an epsilon of the centre's size.
-            block.reach[at] = radius
-                + (margin::<T>() * radius + (T::epsilon() + T::epsilon()) * size)
-                + T::min_positive_value();
-            block.numbers[at] = number;
+/// A block of at most eight, and how far they reach.
+pub(super) fn block<T: Real>(spheres: &[Numbered<T>]) -> (Block<T>, Reach<T>) {
+    let nan = [T::nan(); EIGHT];
+    let mut block = Block {
+        center: [nan; 3],
+        per_unit: nan,
+        radius2: nan,
+        numbers: [super::NONE; EIGHT],
+    };
+    let mut reach = Reach {
+        reach: nan,
+        count: spheres.len(),
+    };
+    for (at, sphere) in spheres.iter().enumerate() {
+        let radius = sphere.radius;
+        let per_unit = unit(radius).recip();
+        let scaled = radius * per_unit;
+        let size = sphere.center.iter().fold(T::zero(), |size, c| size.max(c.abs()));
+        for (axis, component) in sphere.center.into_iter().enumerate() {
+            block.center[axis][at] = component;
         }
-        block
+        block.per_unit[at] = per_unit;
+        block.radius2[at] = scaled * scaled;
+        block.numbers[at] = sphere.number;
+        // The sides of boxes are rounded as well, by an epsilon of the centre's size.
+        reach.reach[at] = radius
+            + (margin::<T>() * radius + (T::epsilon() + T::epsilon()) * size)
+            + T::min_positive_value();
     }
+    (block, reach)
+}
 
-    /// Its box: the lowest and the highest corner.
-    pub(super) fn bounds(&self) -> [[T; 3]; 2] {
+impl<T: Real> Reach<T> {
+    /// The box of a block: the lowest and the highest corner.
+    pub(super) fn bounds(&self, block: &Block<T>) -> [[T; 3]; 2] {
         let side = |axis: usize, sign: T| {
-            (0..self.count).map(move |at| self.center[axis][at] + sign * self.reach[at])
+            (0..self.count).map(move |at| block.center[axis][at] + sign * self.reach[at])
         };
         [
             [0, 1, 2].map(|axis| side(axis, -T::one()).fold(T::infinity(), T::min)),

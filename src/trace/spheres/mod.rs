@@ -19,7 +19,7 @@ mod slab;
 mod tests;
 mod tree;
 
-use self::block::Block;
+use self::block::{Block, Reach};
 use self::tree::Node;
 use super::lanes::Level;
 use super::real::Real;
@@ -47,6 +47,8 @@ pub(super) struct Numbered<T> {
 #[derive(Debug)]
 pub(super) struct Spheres<T> {
     blocks: Vec<Block<T>>,
+    /// One for each block.
+    reaches: Vec<Reach<T>>,
     /// The root first; none where there are only a few blocks.
     nodes: Vec<Node<T>>,
     level: Level,
@@ -55,12 +57,17 @@ pub(super) struct Spheres<T> {
 impl<T: Real> Spheres<T> {
     /// Under a tree or not, for that instruction set.
     pub(super) fn new(spheres: &[Numbered<T>], tree: bool, level: Level) -> Self {
-        let (blocks, nodes) = if tree && spheres.len() > EIGHT {
+        let ((blocks, reaches), nodes) = if tree && spheres.len() > EIGHT {
             tree::build(spheres)
         } else {
-            (spheres.chunks(EIGHT).map(Block::new).collect(), Vec::new())
+            (spheres.chunks(EIGHT).map(block::block).unzip(), Vec::new())
         };
-        Self { blocks, nodes, level }
+        Self {
+            blocks,
+            reaches,
+            nodes,
+            level,
+        }
     }
 
     /// The smallest t of a sphere, and its number; where several have it, the smallest number.

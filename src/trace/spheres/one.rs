@@ -66,34 +66,30 @@ fn walk<T: Real, S: Lanes<T>, const ANY: bool>(
         }
         return ray.hit();
     }
+    let sides = Sides::new(simd, query.direction);
     // Nodes and blocks that are still to be seen, with the t's at which the ray comes to them, farther ones first.
     let mut open: SmallVec<[(T, Child); 64]> = SmallVec::new();
     let mut next = Child::ROOT;
     loop {
-        match next.get() {
-            Ok(node) => {
-                let node = &spheres.nodes[node];
-                let (mut hits, nears) = ray.cross(node);
-                let base = open.len();
-                while hits != 0 {
-                    let at = hits.trailing_zeros() as usize % EIGHT;
-                    hits &= hits - 1;
-                    push(&mut open, base, (nears[at], node.children[at]));
-                }
-            }
+        let nearest = match next.get() {
+            Ok(node) => ray.open(&sides, &spheres.nodes[node], &mut open),
             Err(block) => {
                 ray.meet(&spheres.blocks[block]);
                 if ANY && ray.is_stopped() {
                     return ray.hit();
                 }
+                None
             }
-        }
-        next = loop {
-            match open.pop() {
-                None => return ray.hit(),
-                Some((near, _)) if near > ray.t => {}
-                Some((_, child)) => break child,
-            }
+        };
+        next = match nearest {
+            Some(child) => child,
+            None => loop {
+                match open.pop() {
+                    None => return ray.hit(),
+                    Some((near, _)) if near > ray.t => {}
+                    Some((_, child)) => break child,
+                }
+            },
         };
     }
 }
@@ -118,10 +114,6 @@ struct Walker<'a, T, S: Lanes<T>> {
     a: Wide<T, S>,
     per_a: Wide<T, S>,
     t_min: Wide<T, S>,
-    is_negative: [bool; 3],
-    /// One over the direction, for the sides of boxes that are met first and last, farther apart than they are.
-    per_near: Wide3<T, S>,
-    per_far: Wide3<T, S>,
     /// Of the nearest hit so far, or the query's largest.
     t: T,
     number: u32,
@@ -132,9 +124,6 @@ impl<'a, T: Real, S: Lanes<T>> Walker<'a, T, S> {
     fn new(simd: S, query: &'a Query<T>) -> Self {
         let direction = Wide3::splat(simd, query.direction);
         let a = direction.dot(direction);
-        let [x, y, z] = query.direction;
-        let [x, y, z] = [away_from_zero(x), away_from_zero(y), away_from_zero(z)];
-        let per = Wide3::splat(simd, [x.recip(), y.recip(), z.recip()]);
         Self {
             simd,
             query,
@@ -143,9 +132,6 @@ impl<'a, T: Real, S: Lanes<T>> Walker<'a, T, S> {
             a,
             per_a: Wide::splat(simd, T::one()) / a,
             t_min: Wide::splat(simd, query.t_min),
-            is_negative: [x < T::zero(), y < T::zero(), z < T::zero()],
-            per_near: per * Wide::splat(simd, T::one() - margin()),
-            per_far: per * Wide::splat(simd, T::one() + margin()),
             t: query.t_max,
             // No number is smaller, so that nothing takes this one's place at the same t.
             number: 0,
@@ -168,8 +154,8 @@ impl<'a, T: Real, S: Lanes<T>> Walker<'a, T, S> {
         let simd = self.simd;
         let mut at = 0;
         while at < EIGHT {
-            let f = (self.origin - Wide3::load(simd, &block.center, at))
-                * Wide::load(simd, &block.per_unit[at..]);
+            let per_unit = Wide::load(simd, &block.per_unit[at..]);
+            let f = (self.origin - Wide3::load(simd, &block.center, at)) * per_unit;
             let radius2 = Wide::load(simd, &block.radius2[at..]);
             let [along, disc] = discriminant(f, self.direction, self.per_a, radius2);
             let may = simd.bits(Wide::splat(simd, T::zero()).less_or_equal(disc));
@@ -179,7 +165,7 @@ impl<'a, T: Real, S: Lanes<T>> Walker<'a, T, S> {
                     disc,
                     a: self.a,
                     c: f.dot(f) - radius2,
-                    unit: Wide::load(simd, &block.unit[at..]),
+                    unit: Wide::splat(simd, T::one()) / per_unit,
                 };
                 let t = roots.beyond(simd, self.t_min);
                 let between = [self.t_min.less(t), t.less_or_equal(Wide::splat(simd, self.t))];
@@ -208,17 +194,45 @@ impl<'a, T: Real, S: Lanes<T>> Walker<'a, T, S> {
         }
     }
 
+    /// The child of a node whose box the ray comes to first; the others that it crosses are left for later.
+    #[inline(always)]
+    fn open(
+        &self,
+        sides: &Sides<T, S>,
+        node: &Node<T>,
+        open: &mut SmallVec<[(T, Child); 64]>,
+    ) -> Option<Child> {
+        let (mut hits, nears) = self.cross(sides, node);
+        if hits == 0 {
+            return None;
+        }
+        let mut next = || {
+            let at = hits.trailing_zeros() as usize % EIGHT;
+            hits &= hits - 1;
+            ((nears[at], node.children[at]), hits == 0)
+        };
+        let (mut nearest, mut is_last) = next();
+        while !is_last {
+            let other;
+            (other, is_last) = next();
+            let is_nearer = other.0 < nearest.0;
+            open.push(if is_nearer { nearest } else { other });
+            nearest = if is_nearer { other } else { nearest };
+        }
+        Some(nearest.1)
+    }
+
     /// Which boxes of a node the ray crosses, and where it comes to each.
     #[inline(always)]
-    fn cross(&self, node: &Node<T>) -> (u32, Eight<T>) {
+    fn cross(&self, sides: &Sides<T, S>, node: &Node<T>) -> (u32, Eight<T>) {
         let simd = self.simd;
         let mut nears = [T::zero(); EIGHT];
         let mut misses = 0;
         let mut at = 0;
         while at < EIGHT {
-            let [near_x, far_x] = self.axis(node, 0, at, self.origin.0, self.per_near.0, self.per_far.0);
-            let [near_y, far_y] = self.axis(node, 1, at, self.origin.1, self.per_near.1, self.per_far.1);
-            let [near_z, far_z] = self.axis(node, 2, at, self.origin.2, self.per_near.2, self.per_far.2);
+            let [near_x, far_x] = sides.axis(node, 0, at, self.origin.0, sides.per_near.0, sides.per_far.0);
+            let [near_y, far_y] = sides.axis(node, 1, at, self.origin.1, sides.per_near.1, sides.per_far.1);
+            let [near_z, far_z] = sides.axis(node, 2, at, self.origin.2, sides.per_near.2, sides.per_far.2);
             let near = near_x.max(near_y).max(near_z.max(Wide::splat(simd, T::zero())));
             let far = far_x.min(far_y).min(far_z.min(Wide::splat(simd, self.t)));
             near.store(&mut nears[at..]);
@@ -227,6 +241,29 @@ impl<'a, T: Real, S: Lanes<T>> Walker<'a, T, S> {
             at += S::COUNT;
         }
         (!misses & ((1 << node.count) - 1), nears)
+    }
+}
+
+/// The sides of boxes, as one ray comes to them.
+struct Sides<T, S: Lanes<T>> {
+    simd: S,
+    is_negative: [bool; 3],
+    /// One over the direction, for the sides that are met first and last, farther apart than they are.
+    per_near: Wide3<T, S>,
+    per_far: Wide3<T, S>,
+}
+
+impl<T: Real, S: Lanes<T>> Sides<T, S> {
+    #[inline(always)]
+    fn new(simd: S, direction: [T; 3]) -> Self {
+        let [x, y, z] = direction.map(away_from_zero);
+        let per = Wide3::splat(simd, [x.recip(), y.recip(), z.recip()]);
+        Self {
+            simd,
+            is_negative: [x < T::zero(), y < T::zero(), z < T::zero()],
+            per_near: per * Wide::splat(simd, T::one() - margin()),
+            per_far: per * Wide::splat(simd, T::one() + margin()),
+        }
     }
 
     #[inline(always)]

@@ -5,7 +5,7 @@ use smallvec::SmallVec;
 use super::super::lanes::{Kernel, Lanes, MOST_LANES, Wide, Wide3};
 use super::super::ray::Ray;
 use super::super::real::{Real, Vector};
-use super::block::Block;
+use super::block::{Block, Reach};
 use super::formula::{Roots, discriminant};
 use super::one::push;
 use super::slab::{Slab, Slabs};
@@ -88,8 +88,8 @@ impl<T: Real> Kernel<T> for Nearest<'_, T> {
         let Self { spheres, packet } = self;
         let mut rays = Walkers::new(simd, packet);
         if spheres.nodes.is_empty() {
-            for block in &spheres.blocks {
-                rays.meet(block);
+            for (block, reach) in spheres.blocks.iter().zip(&spheres.reaches) {
+                rays.meet(block, reach);
             }
             return rays.found;
         }
@@ -98,7 +98,7 @@ impl<T: Real> Kernel<T> for Nearest<'_, T> {
         loop {
             match next.get() {
                 Ok(node) => rays.cross(&spheres.nodes[node], &mut open),
-                Err(block) => rays.meet(&spheres.blocks[block]),
+                Err(block) => rays.meet(&spheres.blocks[block], &spheres.reaches[block]),
             }
             next = loop {
                 match open.pop() {
@@ -215,12 +215,12 @@ impl<'a, T: Real, S: Lanes<T>> Walkers<'a, T, S> {
 
     /// Meets those spheres of a block that any ray may meet.
     #[inline(always)]
-    fn meet(&mut self, block: &Block<T>) {
+    fn meet(&mut self, block: &Block<T>, reaches: &Reach<T>) {
         let simd = self.simd.eight();
         let mut misses = 0;
         let mut at = 0;
         while at < EIGHT {
-            let reach = Wide::load(simd, &block.reach[at..]);
+            let reach = Wide::load(simd, &reaches.reach[at..]);
             let Wide3(x, y, z) = Wide3::load(simd, &block.center, at);
             let limit = Wide::splat(simd, self.limit);
             let lows = [x - reach, y - reach, z - reach];
@@ -230,7 +230,7 @@ impl<'a, T: Real, S: Lanes<T>> Walkers<'a, T, S> {
             misses |= missed << at;
             at += S::Eight::COUNT;
         }
-        let mut hits = !misses & ((1 << block.count) - 1);
+        let mut hits = !misses & ((1 << reaches.count) - 1);
         let mut is_changed = false;
         while hits != 0 {
             let at = hits.trailing_zeros() as usize % EIGHT;
@@ -298,7 +298,7 @@ impl<'a, T: Real, S: Lanes<T>> Walkers<'a, T, S> {
             disc,
             a: Wide::load(simd, &self.a[at..]),
             c,
-            unit: Wide::splat(simd, block.unit[place]),
+            unit: Wide::splat(simd, block.per_unit[place].recip()),
         };
         let t = roots.beyond(simd, zero);
         let infinity = Wide::splat(simd, T::infinity());

@@ -11,7 +11,7 @@ use obvhs::bvh2::builder::build_bvh2;
 use obvhs::{Boundable, BvhBuildParams};
 
 use super::super::real::Real;
-use super::block::Block;
+use super::block::{Block, Reach, block};
 use super::{EIGHT, Eight, Numbered};
 
 /// Up to eight boxes. Places that are empty hold boxes that are inside out.
@@ -102,32 +102,37 @@ fn boxes<T: Real>(spheres: &[Numbered<T>]) -> Vec<Box32> {
         .collect()
 }
 
-/// The blocks, and the nodes over them, the root first.
-pub(super) fn build<T: Real>(spheres: &[Numbered<T>]) -> (Vec<Block<T>>, Vec<Node<T>>) {
+/// Blocks, and how far each reaches.
+pub(super) type Blocks<T> = (Vec<Block<T>>, Vec<Reach<T>>);
+
+/// The blocks, how far they reach, and the nodes over them, the root first.
+pub(super) fn build<T: Real>(spheres: &[Numbered<T>]) -> (Blocks<T>, Vec<Node<T>>) {
     let parameters = BvhBuildParams {
         max_prims_per_leaf: 1,
         ..BvhBuildParams::medium_build()
     };
     let binary = build_bvh2(&boxes(spheres), parameters, &mut std::time::Duration::default());
-    let counts = counts(&binary);
-    let (mut blocks, mut nodes) = (Vec::new(), vec![Node::empty()]);
+    let ways = ways(&binary);
+    let (mut blocks, mut reaches): Blocks<T> = (Vec::new(), Vec::new());
+    let mut nodes = vec![Node::empty()];
     // Each node once its number is known; their roots in the binary tree.
     let mut roots = vec![0];
     let mut at = 0;
     while at < roots.len() {
-        let members = members(&binary, &counts, roots[at]);
+        let members = members(&binary, &ways, roots[at]);
         nodes[at].count = members.len();
         for (place, member) in members.into_iter().enumerate() {
-            if counts[member] > EIGHT as u32 {
+            if ways[member].count <= EIGHT as u32 {
+                let below: Vec<_> = below(&binary, member).into_iter().map(|at| spheres[at]).collect();
+                let (block, reach) = block(&below);
+                nodes[at].set(place, reach.bounds(&block));
+                nodes[at].children[place] = Child::block(blocks.len());
+                blocks.push(block);
+                reaches.push(reach);
+            } else {
                 nodes[at].children[place] = Child::node(nodes.len());
                 nodes.push(Node::empty());
                 roots.push(member);
-            } else {
-                let below: Vec<_> = below(&binary, member).into_iter().map(|at| spheres[at]).collect();
-                let block = Block::new(&below);
-                nodes[at].set(place, block.bounds());
-                nodes[at].children[place] = Child::block(blocks.len());
-                blocks.push(block);
             }
         }
         at += 1;
@@ -141,7 +146,7 @@ pub(super) fn build<T: Real>(spheres: &[Numbered<T>]) -> (Vec<Block<T>>, Vec<Nod
             }
         }
     }
-    (blocks, nodes)
+    ((blocks, reaches), nodes)
 }
 
 fn children(binary: &Bvh2, node: usize) -> Option<[usize; 2]> {
@@ -150,39 +155,96 @@ fn children(binary: &Bvh2, node: usize) -> Option<[usize; 2]> {
     (node.prim_count == 0).then_some([first, first + 1])
 }
 
-/// How many spheres are below each node of the binary tree.
-fn counts(binary: &Bvh2) -> Vec<u32> {
+/// The cheapest ways to make a subtree of the binary tree into children of a node, by the surface area heuristic: H. Ylitie,
+/// T. Karras and S. Laine, “Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs”, 2017, section 3. A node
+/// and a block cost the same, however full they are, and what fits into a block is one.
+#[derive(Debug, Clone, Copy, Default)]
+struct Ways {
+    /// How many spheres there are.
+    count: u32,
+    /// What it costs as at most 1, 2, … children.
+    costs: [f32; EIGHT - 1],
+    /// How many of them come from each half; none where it is one child.
+    halves: [[u8; 2]; EIGHT - 1],
+    /// The same for the children of the node that it is.
+    of_node: [u8; 2],
+}
+
+impl Ways {
+    fn block(count: u32, area: f32) -> Self {
+        Self {
+            count,
+            costs: [area; EIGHT - 1],
+            ..Self::default()
+        }
+    }
+
+    fn of(area: f32, [one, other]: [&Self; 2]) -> Self {
+        let parted = |children: usize| {
+            (1..children)
+                .map(|k| {
+                    (
+                        one.costs[k - 1] + other.costs[children - k - 1],
+                        [k as u8, (children - k) as u8],
+                    )
+                })
+                .min_by(|(a, _), (b, _)| a.total_cmp(b))
+        };
+        let count = one.count + other.count;
+        if count <= EIGHT as u32 {
+            return Self::block(count, area);
+        }
+        let (below, of_node) = parted(EIGHT).unwrap_or_default();
+        let mut ways = Self {
+            count,
+            of_node,
+            ..Self::default()
+        };
+        let mut best = (area + below, [0; 2]);
+        for at in 0..EIGHT - 1 {
+            if let Some(more) = parted(at + 1)
+                && more.0 < best.0
+            {
+                best = more;
+            }
+            (ways.costs[at], ways.halves[at]) = best;
+        }
+        ways
+    }
+}
+
+/// Those of each node of the binary tree.
+fn ways(binary: &Bvh2) -> Vec<Ways> {
     let mut order = vec![0];
     let mut at = 0;
     while at < order.len() {
         order.extend(children(binary, order[at]).into_iter().flatten());
         at += 1;
     }
-    let mut counts = vec![0; binary.nodes.len()];
+    let mut ways = vec![Ways::default(); binary.nodes.len()];
     for node in order.into_iter().rev() {
-        counts[node] = match children(binary, node) {
-            Some([one, other]) => counts[one] + counts[other],
-            None => binary.nodes[node].prim_count,
+        let area = binary.nodes[node].aabb.half_area();
+        ways[node] = match children(binary, node) {
+            Some(two) => Ways::of(area, two.map(|child| &ways[child])),
+            None => Ways::block(binary.nodes[node].prim_count, area),
         };
     }
-    counts
+    ways
 }
 
-/// The children of a node with eight: the largest of those that do not fit into a block is opened until they are eight.
-fn members(binary: &Bvh2, counts: &[u32], root: usize) -> Vec<usize> {
-    let area = |member: usize| binary.nodes[member].aabb.half_area();
-    let mut members = vec![root];
-    while members.len() < EIGHT {
-        let largest = (0..members.len())
-            .filter(|&place| counts[members[place]] > EIGHT as u32)
-            .max_by(|&a, &b| area(members[a]).total_cmp(&area(members[b])));
-        let Some((place, [one, other])) =
-            largest.and_then(|place| Some((place, children(binary, members[place])?)))
-        else {
-            break;
-        };
-        members[place] = one;
-        members.push(other);
+/// The children of a node.
+fn members(binary: &Bvh2, ways: &[Ways], root: usize) -> Vec<usize> {
+    let mut members = Vec::new();
+    let mut open = vec![(root, ways[root].of_node)];
+    while let Some((node, halves)) = open.pop() {
+        match (children(binary, node), halves) {
+            (Some([one, other]), [left, right]) if left > 0 => {
+                for (child, share) in [(other, right), (one, left)] {
+                    open.push((child, ways[child].halves[usize::from(share) - 1]));
+                }
+            }
+            _ => members.push(node),
+        }
     }
     members
 }

@@ -10,7 +10,7 @@ use super::ray::{Hit, Ray};
 use super::real::{Real, Vector};
 use super::sampler::Draws;
 use super::shape::Primitive;
-use super::spheres::{Found, NONE, Numbered, PACKET, Packet, Query, Spheres};
+use super::spheres::{Found, NONE, Numbered, Packet, Query, Spheres};
 use super::style::{Exact, Style};
 use crate::scene::{Integrator, Object, Requirements, Scene, Shape};
 
@@ -27,7 +27,7 @@ pub(super) struct World<T: Real, P> {
     lights: Vec<Light<T>>,
     shapes: Vec<P>,
     /// Those of them that are spheres, once more.
-    spheres: Spheres<T>,
+    pub(super) spheres: Spheres<T>,
     /// The numbers of the others.
     others: Vec<usize>,
     /// One for each shape.
@@ -99,7 +99,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         style: &impl Style<T>,
     ) -> T::Vec3 {
         match self.integrator {
-            Integrator::Whitted => self.whitted(ray, Some(first), 0, draws, style),
+            Integrator::Whitted => self.whitted(ray, first, 0, draws, style),
             Integrator::Path => self.path(ray, first, draws, style),
         }
     }
@@ -149,16 +149,13 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         }
     }
 
-    /// The surfaces that the rays of a packet meet first.
-    pub(super) fn nearest_of_packet(&self, packet: &Packet<T>) -> [First<T>; PACKET] {
-        let found: Found<T> = self.spheres.nearest_of_packet(packet);
-        std::array::from_fn(|at| {
-            let mut first = found.of(at).map(|(t, number)| (t, number as usize));
-            if !self.others.is_empty() {
-                self.nearest_other(&packet.ray(at), &mut first, &Exact);
-            }
-            first
-        })
+    /// The surface that one of the rays of a packet meets first, which found those spheres.
+    pub(super) fn first(&self, packet: &Packet<T>, found: &Found<T>, at: usize) -> First<T> {
+        let mut first = found.of(at).map(|(t, number)| (t, number as usize));
+        if !self.others.is_empty() {
+            self.nearest_other(&packet.ray(at), &mut first, &Exact);
+        }
+        first
     }
 
     /// The point where a ray meets a surface first.

@@ -20,17 +20,15 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
     pub(super) fn path(
         &self,
         mut ray: Ray<T>,
-        first: First<T>,
+        mut first: First<T>,
         draws: &mut Draws,
         style: &impl Style<T>,
     ) -> T::Vec3 {
-        let mut first = Some(first);
         let mut sum = T::Vec3::ZERO;
         let mut throughput = T::Vec3::from_f64([1.0; 3]);
         // None where no emitter could have been drawn: at the camera and at mirrors.
         let mut drawn: Option<Drawn<T>> = None;
         for segment in 1..=self.max_depth {
-            let first = first.take().unwrap_or_else(|| self.nearest(&ray, style));
             let Some(hit) = self.hit(&ray, first) else {
                 return sum + throughput * self.background.color(ray.direction);
             };
@@ -64,6 +62,9 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
                 }
                 // Refused when the scene is read.
                 Model::Facing | Model::Glass(_) => return sum,
+            }
+            if segment < self.max_depth {
+                first = self.nearest(&ray, style);
             }
         }
         sum

@@ -11,19 +11,18 @@ use super::super::style::Style;
 use super::{First, World};
 
 impl<T: Real, P: Primitive<T>> World<T, P> {
-    /// The radiance along a ray whose path has `depth` segments before it; what it meets first may be known.
+    /// The radiance along a ray whose path has `depth` segments before it, and which meets that first.
     pub(super) fn whitted(
         &self,
         mut ray: Ray<T>,
-        mut first: Option<First<T>>,
+        mut first: First<T>,
         depth: u32,
         draws: &mut Draws,
         style: &impl Style<T>,
     ) -> T::Vec3 {
         let mut sum = T::Vec3::ZERO;
         let mut throughput = T::Vec3::from_f64([1.0; 3]);
-        for depth in depth..self.max_depth {
-            let first = first.take().unwrap_or_else(|| self.nearest(&ray, style));
+        for after in depth + 1..=self.max_depth {
             let Some(hit) = self.hit(&ray, first) else {
                 return sum + throughput * self.background.color(ray.direction);
             };
@@ -46,16 +45,22 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
                 Model::Glass(glass) => {
                     let parted = glass.part(ray.direction, hit.normal, facing);
                     let mirrored = hit.leave(reflected(), style);
-                    let Some(refracted) = parted.refracted else {
+                    if let Some(refracted) = parted.refracted {
+                        if after < self.max_depth {
+                            let first = self.nearest(&mirrored, style);
+                            let seen = self.whitted(mirrored, first, after, draws, style);
+                            sum = sum + color * parted.share * seen;
+                        }
+                        throughput = color * (T::one() - parted.share);
+                        ray = hit.leave(refracted, style);
+                    } else {
                         throughput = color;
                         ray = mirrored;
-                        continue;
-                    };
-                    let seen = self.whitted(mirrored, None, depth + 1, draws, style);
-                    sum = sum + color * parted.share * seen;
-                    throughput = color * (T::one() - parted.share);
-                    ray = hit.leave(refracted, style);
+                    }
                 }
+            }
+            if after < self.max_depth {
+                first = self.nearest(&ray, style);
             }
         }
         sum
