@@ -46,10 +46,17 @@ impl<T: Real> Camera<T> {
     /// The place on the screen of the fragment coordinates (fx, fy), in pixels from the bottom left:
     /// `x = 2 fx / width − 1`, `y = (2 fy / height − 1) / aspect`.
     pub(super) fn screen(&self, [fx, fy]: [T; 2]) -> [T; 2] {
-        let two = T::from_f64(2.0);
-        let x = fx / self.width * two - T::one();
-        let y = (fy / self.height * two - T::one()) / (self.width / self.height);
-        [x, y]
+        [self.screen_x(fx), self.screen_y(fy)]
+    }
+
+    #[inline]
+    pub(super) fn screen_x(&self, fx: T) -> T {
+        fx / self.width * T::from_f64(2.0) - T::one()
+    }
+
+    #[inline]
+    pub(super) fn screen_y(&self, fy: T) -> T {
+        (fy / self.height * T::from_f64(2.0) - T::one()) / (self.width / self.height)
     }
 
     /// The ray through a place on the screen.

@@ -101,17 +101,20 @@ impl<T: Real> Tracer<T> {
     fn middles(&self, tile: Tile) -> [[T; PACKET]; 2] {
         const SIDES: usize = SIDE as usize;
         let half = T::from_f64(0.5);
-        let diagonal: [[T; 2]; SIDES] = std::array::from_fn(|at| {
-            let pixel = tile.pixel(at * (SIDES + 1));
-            self.camera
-                .screen(pixel.map(|along| T::from_f64(f64::from(along)) + half))
+        let [x, y]: [[T; SIDES]; 2] = [0, 1].map(|axis| {
+            std::array::from_fn(|at| {
+                let along = tile.pixel(at * (SIDES + 1))[axis];
+                T::from_f64(f64::from(along)) + half
+            })
         });
-        let mut middles = [[T::zero(); PACKET]; 2];
-        for at in 0..PACKET {
-            middles[0][at] = diagonal[at % SIDES][0];
-            middles[1][at] = diagonal[at / SIDES][1];
-        }
-        middles
+        let (x, y) = (
+            x.map(|x| self.camera.screen_x(x)),
+            y.map(|y| self.camera.screen_y(y)),
+        );
+        [
+            std::array::from_fn(|at| x[at % SIDES]),
+            std::array::from_fn(|at| y[at / SIDES]),
+        ]
     }
 
     /// Where on the screen these places of the picture are.
@@ -129,6 +132,7 @@ impl<T: Real> Tracer<T> {
     }
 
     /// What one of the rays of a packet meets first, with the other shapes.
+    #[inline]
     fn first(&self, packet: &Packet<T>, found: &Found<T>, at: usize) -> First<T> {
         match &self.kernel {
             Kernel::Spheres(world) => world.first(packet, found, at),

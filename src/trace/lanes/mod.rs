@@ -62,6 +62,12 @@ pub trait Lanes<T>: Copy + Debug {
     fn less_or_equal(self, a: Self::Numbers, b: Self::Numbers) -> Self::Mask;
     /// Lane by lane.
     fn select(self, mask: Self::Mask, yes: Self::Numbers, no: Self::Numbers) -> Self::Numbers;
+    /// The smallest of all lanes; any of them where one is NaN.
+    fn least(self, a: Self::Numbers) -> T;
+    /// The largest, likewise.
+    fn greatest(self, a: Self::Numbers) -> T;
+    /// The sum, in an order that depends on the instruction set: to be asked only whether it is 0.
+    fn sum(self, a: Self::Numbers) -> T;
     /// Bit i tells of lane i.
     fn bits(self, mask: Self::Mask) -> u32;
 }

@@ -123,7 +123,8 @@ mod aarch64 {
 macro_rules! lanes {
     ($number:ty, $numbers:ident, $mask:ident, $count:ident, $eight_type:ident, $eight:ident, $bits:ident,
      $splat:ident, $load:ident, $store:ident, $add:ident, $sub:ident, $mul:ident, $div:ident, $neg:ident,
-     $sqrt:ident, $and:ident, $or:ident, $min:ident, $max:ident, $less:ident, $less_or_equal:ident, $select:ident) => {
+     $sqrt:ident, $and:ident, $or:ident, $min:ident, $max:ident, $less:ident, $less_or_equal:ident, $select:ident,
+     $least:ident, $greatest:ident, $sum:ident) => {
         impl<S: Set> Lanes<$number> for S {
             type Numbers = S::$numbers;
             type Mask = S::$mask;
@@ -147,6 +148,7 @@ macro_rules! lanes {
             }
             lanes!(binary $numbers, add $add, sub $sub, mul $mul, div $div, and $and, or $or, min $min, max $max);
             lanes!(unary $numbers, neg $neg, sqrt $sqrt);
+            lanes!(reduction $number, $numbers, least $least, greatest $greatest, sum $sum);
             #[inline(always)]
             fn less(self, a: S::$numbers, b: S::$numbers) -> S::$mask {
                 Simd::$less(self, a, b)
@@ -169,6 +171,12 @@ macro_rules! lanes {
         $(#[inline(always)]
         fn $name(self, a: S::$numbers, b: S::$numbers) -> S::$numbers {
             Simd::$of_pulp(self, a, b)
+        })*
+    };
+    (reduction $number:ty, $numbers:ident, $($name:ident $of_pulp:ident),*) => {
+        $(#[inline(always)]
+        fn $name(self, a: S::$numbers) -> $number {
+            Simd::$of_pulp(self, a)
         })*
     };
     (unary $numbers:ident, $($name:ident $of_pulp:ident),*) => {
@@ -202,7 +210,10 @@ lanes!(
     max_f32s,
     less_than_f32s,
     less_than_or_equal_f32s,
-    select_f32s
+    select_f32s,
+    reduce_min_f32s,
+    reduce_max_f32s,
+    reduce_sum_f32s
 );
 lanes!(
     f64,
@@ -227,5 +238,8 @@ lanes!(
     max_f64s,
     less_than_f64s,
     less_than_or_equal_f64s,
-    select_f64s
+    select_f64s,
+    reduce_min_f64s,
+    reduce_max_f64s,
+    reduce_sum_f64s
 );

@@ -46,6 +46,21 @@ impl<T, S: Lanes<T>> Wide<T, S> {
     pub(in super::super) fn store(self, to: &mut [T]) {
         self.simd.store(self.numbers, to);
     }
+    /// The smallest of all lanes; any of them where one is NaN.
+    #[inline(always)]
+    pub(in super::super) fn least(self) -> T {
+        self.simd.least(self.numbers)
+    }
+    /// The largest, likewise.
+    #[inline(always)]
+    pub(in super::super) fn greatest(self) -> T {
+        self.simd.greatest(self.numbers)
+    }
+    /// The sum, to be asked only whether it is 0.
+    #[inline(always)]
+    pub(in super::super) fn sum(self) -> T {
+        self.simd.sum(self.numbers)
+    }
     #[inline(always)]
     pub(in super::super) fn sqrt(self) -> Self {
         self.of(self.simd.sqrt(self.numbers))

@@ -2,7 +2,7 @@
 
 use smallvec::SmallVec;
 
-use super::super::lanes::{Kernel, Lanes, MOST_LANES, Wide, Wide3};
+use super::super::lanes::{Kernel, Lanes, Wide, Wide3};
 use super::super::ray::Ray;
 use super::super::real::{Real, Vector};
 use super::block::{Block, Reach};
@@ -28,6 +28,7 @@ pub(in super::super) struct Packet<T> {
 
 impl<T: Real> Packet<T> {
     /// One of its rays.
+    #[inline]
     pub(in super::super) fn ray(&self, at: usize) -> Ray<T> {
         let vector = |[x, y, z]: [T; 3]| T::Vec3::new(x, y, z);
         let of = |components: &[Each<T>; 3]| vector([0, 1, 2].map(|axis| components[axis][at]));
@@ -69,6 +70,7 @@ impl<T: Real> Found<T> {
     }
 
     /// What one ray found.
+    #[inline]
     pub(in super::super) fn of(&self, ray: usize) -> Option<(T, u32)> {
         let t = self.t[ray];
         (t < T::infinity()).then(|| (t, self.tags[ray].untag()))
@@ -136,24 +138,9 @@ fn range<T: Real, S: Lanes<T>>(simd: S, numbers: &Each<T>) -> [T; 2] {
         (low, high, none) = (low.min(more), high.max(more), none + more * zero);
         at += S::COUNT;
     }
-    let mut lanes = [[T::zero(); MOST_LANES]; 3];
-    low.store(&mut lanes[0]);
-    high.store(&mut lanes[1]);
-    none.store(&mut lanes[2]);
-    let [mut low, mut high, mut none] = [lanes[0][0], lanes[1][0], lanes[2][0]];
-    let mut lane = 1;
-    while lane < S::COUNT {
-        low = if lanes[0][lane] < low { lanes[0][lane] } else { low };
-        high = if lanes[1][lane] > high {
-            lanes[1][lane]
-        } else {
-            high
-        };
-        none = none + lanes[2][lane];
-        lane += 1;
-    }
+    let none = none.sum();
     if none == T::zero() {
-        [low, high]
+        [low.least(), high.greatest()]
     } else {
         [T::min_value(), T::max_value()]
     }
@@ -168,14 +155,7 @@ fn largest<T: Real, S: Lanes<T>>(simd: S, numbers: &Each<T>) -> T {
         high = high.max(Wide::load(simd, &numbers[at..]));
         at += S::COUNT;
     }
-    let mut lanes = [T::zero(); MOST_LANES];
-    high.store(&mut lanes);
-    let (mut high, mut lane) = (lanes[0], 1);
-    while lane < S::COUNT {
-        high = if lanes[lane] > high { lanes[lane] } else { high };
-        lane += 1;
-    }
-    high
+    high.greatest()
 }
 
 impl<'a, T: Real, S: Lanes<T>> Walkers<'a, T, S> {

@@ -150,6 +150,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
     }
 
     /// The surface that one of the rays of a packet meets first, which found those spheres.
+    #[inline]
     pub(super) fn first(&self, packet: &Packet<T>, found: &Found<T>, at: usize) -> First<T> {
         let mut first = found.of(at).map(|(t, number)| (t, number as usize));
         if !self.others.is_empty() {
