@@ -1,5 +1,7 @@
 //! One frame's inputs: what ShaderToy feeds a shader, and the uniform block that carries it.
 
+use std::ops::Range;
+
 use bytemuck::bytes_of;
 use serde::{Deserialize, Serialize};
 
@@ -36,6 +38,12 @@ impl Default for Frame {
     }
 }
 
+/// So many pixels of a frame are painted and compared at once: a picture of 640×360 in one go, a larger one in bands of rows,
+/// so that it takes little more memory.
+const BAND_PIXELS: u32 = 1 << 18;
+/// Bands begin at multiples of this: the evaluator's tiles, and the quads of derivatives, do not reach across two.
+const BAND_ROWS: u32 = 32;
+
 /// `iFrameRate`, in frames a second; `iTimeDelta` is one of them.
 pub(crate) const FRAME_RATE: f32 = 60.0;
 /// `iSampleRate`, in samples a second.
@@ -62,6 +70,21 @@ struct Block {
 pub const BLOCK_BYTES: usize = size_of::<Block>();
 
 impl Frame {
+    /// All its rows.
+    #[must_use]
+    pub fn rows(&self) -> Range<u32> {
+        0..self.size[1]
+    }
+
+    /// Its rows in bands, from the bottom up.
+    pub fn bands(&self) -> impl Iterator<Item = Range<u32>> + use<> {
+        let [width, height] = self.size;
+        let rows = (BAND_PIXELS / width.max(1) / BAND_ROWS * BAND_ROWS).max(BAND_ROWS);
+        (0..height)
+            .step_by(rows as usize)
+            .map(move |first| first..(first + rows).min(height))
+    }
+
     /// The uniform block's bytes, laid out as a translated shader reads them.
     #[must_use]
     pub fn block(&self) -> [u8; BLOCK_BYTES] {
@@ -94,6 +117,23 @@ impl Frame {
 mod tests {
     use super::*;
     use std::mem::offset_of;
+
+    #[test]
+    fn bands_cover_the_picture_and_small_pictures_are_one() {
+        let bands = |width, height| {
+            let frame = Frame {
+                size: [width, height],
+                ..Frame::default()
+            };
+            let bands = frame.bands().map(|rows| (rows.start, rows.end));
+            bands.collect::<Vec<_>>()
+        };
+        assert_eq!(bands(640, 360), [(0, 360)]);
+        assert_eq!(bands(1, 1), [(0, 1)]);
+        assert_eq!(bands(16_384, 70), [(0, 32), (32, 64), (64, 70)]);
+        assert_eq!(bands(3840, 2160).len(), 34);
+        assert_eq!(bands(3840, 2160).last(), Some(&(2112, 2160)));
+    }
 
     #[test]
     fn the_block_has_the_offsets_that_other_hosts_rely_on() {

@@ -47,7 +47,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
                 tolerance: TOLERANCE as f32,
             },
         );
-        match image::encode(&picture, path) {
+        match image::encode_shown(&picture, path) {
             Ok(bytes) if terminal.write(path, &bytes) => {}
             Ok(_) => return Exit::Trouble,
             Err(error) => {

@@ -17,6 +17,11 @@ pub(super) struct Args {
 /// Loading every driver of a machine takes longer than one shader.
 const PATIENCE: Duration = Duration::from_secs(60);
 
+/// What there is without a driver.
+const WITHOUT: &str = "\nChosen: none. `check`, `run` and `explain` work all the same, on the CPU. `check` then tells whether a shader's \
+                       mathematics is the scene's and whether float32 is enough for it; the toolchain question, whether a GPU paints what \
+                       the shader says, is not asked.";
+
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let manifests = manifests();
     terminal.result("Vulkan drivers installed:");
@@ -56,6 +61,9 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             Exit::Good
         }
         Err(error) => {
+            if args.on == On::Auto {
+                terminal.result(WITHOUT);
+            }
             terminal.error(error);
             Exit::Trouble
         }

@@ -193,7 +193,7 @@ impl Runner<'_> {
             }
             Ok(drawn) => {
                 self.painted(&shader.name, drawn.draw.as_secs_f64(), &drawn.device);
-                Ok(drawn.image)
+                Ok(drawn.image())
             }
             Err(Failure::Invalid(diagnostics)) => {
                 self.terminal.diagnostics(&diagnostics, &shader.files);
@@ -220,12 +220,12 @@ impl Runner<'_> {
         };
         let painted = Program::new(checked)
             .map_err(eval::Failure::from)
-            .and_then(|program| program.paint(&self.frame, &settings));
+            .and_then(|program| program.picture(&self.frame, self.frame.rows(), &settings));
         match painted {
             Ok(painted) => {
                 let device = format!("the CPU, in {}", std::any::type_name::<N>());
                 self.painted(&shader.name, start.elapsed().as_secs_f64(), &device);
-                Ok(painted.painting.image())
+                Ok(painted.image)
             }
             Err(failure) => {
                 let place = place(&failure, &shader.files);

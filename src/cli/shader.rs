@@ -62,7 +62,7 @@ impl Shader {
 }
 
 /// Takes out the warnings that count as errors.
-fn denied(warnings: &mut Vec<Diagnostic>, denied: &[Deny]) -> Vec<Diagnostic> {
+pub(super) fn denied(warnings: &mut Vec<Diagnostic>, denied: &[Deny]) -> Vec<Diagnostic> {
     let (mut errors, rest): (Vec<_>, Vec<_>) = std::mem::take(warnings)
         .into_iter()
         .partition(|warning| denied.iter().any(|denied| denied.includes(&warning.code)));

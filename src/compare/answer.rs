@@ -19,7 +19,7 @@ pub enum Standing {
 }
 
 /// The answer to a question, over the whole picture.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Answer {
     /// Pixels in the picture.
     pub pixels: u64,
@@ -81,6 +81,25 @@ impl Answer {
         }
     }
 
+    /// Adds the answer for the rows above the first `height`, which this one is for.
+    pub fn extend(&mut self, above: &Self, height: u32) {
+        let raised = |pixel: Option<Pixel>| pixel.map(|pixel| pixel.raised(height));
+        let (first, worst) = (raised(above.first), raised(above.worst));
+        match (self.differing > 0, above.differing > 0) {
+            (true, false) => {}
+            (false, true) => (self.first, self.worst) = (first, worst),
+            _ => {
+                self.first = self.first.or(first);
+                self.worst = Pixel::worse(self.worst, worst);
+            }
+        }
+        self.pixels += above.pixels;
+        self.differing += above.differing;
+        self.undecided += above.undecided;
+        self.undefined += above.undefined;
+        self.max_abs = self.max_abs.max(above.max_abs);
+    }
+
     /// What share of the pixels `count` is, in [0, 1].
     #[must_use]
     pub fn share(&self, count: u64) -> f64 {
@@ -98,10 +117,10 @@ impl Answer {
 #[must_use]
 pub fn marks(expected: &Image, actual: &Image, standings: &[Standing]) -> Vec<Mark> {
     let mark = |(index, standing): (usize, &Standing)| match standing {
-        Standing::Undecided => Mark::Undecided,
-        Standing::Undefined => Mark::Undefined,
+        Standing::Undecided => Mark::UNDECIDED,
+        Standing::Undefined => Mark::UNDEFINED,
         Standing::Agrees | Standing::Differs => {
-            Mark::By(Pixel::at(index, expected, actual).difference() as f32)
+            Mark::by(Pixel::at(index, expected, actual).difference() as f32)
         }
     };
     standings.iter().enumerate().map(mark).collect()
@@ -137,6 +156,27 @@ mod tests {
         assert_eq!(answer.first.map(|pixel| pixel.x), Some(2));
         assert_eq!(answer.worst.map(|pixel| pixel.x), Some(3));
         assert!(!answer.is_same());
+    }
+
+    #[test]
+    fn an_answer_in_bands_is_that_of_the_whole() {
+        use Standing::{Agrees, Differs, Undecided, Undefined};
+        let column = |reds: &[f32]| Image::new(1, reds.len() as u32, row(reds).pixels().to_vec());
+        let reds = [0.9, 0.5, 0.2, 0.7, 0.7, 0.0];
+        let all = [Undecided, Undefined, Differs, Undecided, Differs, Agrees];
+        // One that differs is told rather than those below it that are undecided; without it, they are.
+        for standings in [all, all.map(|own| if own == Differs { Undecided } else { own })] {
+            let whole = Answer::new(&column(&[0.0; 6]), &column(&reds), &standings);
+            for height in 0..=reds.len() {
+                let part = |rows: std::ops::Range<usize>| {
+                    let black = column(&[0.0; 6][rows.clone()]);
+                    Answer::new(&black, &column(&reds[rows.clone()]), &standings[rows])
+                };
+                let mut answer = part(0..height);
+                answer.extend(&part(height..reds.len()), height as u32);
+                assert_eq!(answer, whole, "{height}");
+            }
+        }
     }
 
     #[test]

@@ -100,12 +100,10 @@ pub fn judge(answers: Answers) -> (Verdict, String) {
         );
     };
     if maths.share(maths.differing) > MAX_DIFFERING {
-        let reason = format!(
-            "{} {} from the scene even in exact arithmetic: it is the mathematics",
-            count(maths, maths.differing),
-            plural(maths.differing, "differs", "differ")
+        return (
+            Verdict::Wrong,
+            format!("{}: it is the mathematics", differing(maths)),
         );
-        return (Verdict::Wrong, reason);
     }
     if maths.share(maths.undefined) > MAX_UNDEFINED {
         let reason = format!(
@@ -144,6 +142,16 @@ pub fn judge(answers: Answers) -> (Verdict, String) {
         ),
     };
     (Verdict::Correct, reason)
+}
+
+/// How many pixels differ from the scene.
+#[must_use]
+pub fn differing(maths: &Answer) -> String {
+    format!(
+        "{} {} from the scene even in exact arithmetic",
+        count(maths, maths.differing),
+        plural(maths.differing, "differs", "differ")
+    )
 }
 
 fn count(answer: &Answer, count: u64) -> String {

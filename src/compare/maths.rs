@@ -14,14 +14,39 @@ pub const SHAKES: u64 = 8;
 /// differ, it is not a matter of style: of the correct rewrites, the one whose rays differ most differs in 0.2 %.
 const MAX_MIXED: f64 = 0.01;
 
-/// Compares the shader in f64, `actual`, with the tracer in f64, `expected`, bottom row first.
+/// How many pixels of a picture may still be asked that.
+#[derive(Debug, Clone, Copy)]
+pub struct Mixed {
+    left: f64,
+}
+
+impl Mixed {
+    /// Of a picture of so many pixels.
+    #[must_use]
+    pub fn of(pixels: u64) -> Self {
+        Self {
+            left: MAX_MIXED * pixels as f64,
+        }
+    }
+
+    /// Whether so many more may be asked.
+    fn take(&mut self, pixels: usize) -> bool {
+        let is_enough = pixels as f64 <= self.left;
+        if is_enough {
+            self.left -= pixels as f64;
+        }
+        is_enough
+    }
+}
+
+/// Compares a band of the shader in f64, `actual`, with the tracer in f64, `expected`, bottom row first; places are in the band.
 ///
 /// A pixel agrees if no component is farther than [`EXACT_TOLERANCE`] from the hull of the answers that the tracer gives in
-/// the legal styles of secondary rays; `hull` is asked only where the exact answer does not agree, and for mixed styles
+/// the legal styles of secondary rays; `hull` is asked only where the exact answer does not agree, and for `mixed` styles
 /// only if few pixels differ still. A pixel outside of it is left
 /// out if it lies on an `edge` across which the shader takes derivatives: what they are there, GLSL leaves to the driver. Else it
 /// is undecided if the shader's own answer moves by more than that in one of the pictures that `shaken` paints, given a
-/// seed, with every operation perturbed (Vignes, "A stochastic arithmetic for reliable scientific computation", 1993);
+/// seed and which pixels are wanted, with every operation perturbed (Vignes, "A stochastic arithmetic for reliable scientific computation", 1993);
 /// it is asked only if something differs, and may give up.
 ///
 /// # Panics
@@ -32,7 +57,8 @@ pub fn maths(
     undefined: &[bool],
     hull: impl Fn(u32, u32, Styles) -> Hull + Sync,
     edge: impl Fn(u32, u32) -> bool,
-    mut shaken: impl FnMut(u64) -> Option<Image>,
+    mixed: &mut Mixed,
+    mut shaken: impl FnMut(u64, &[bool]) -> Option<Image>,
 ) -> Vec<Standing> {
     assert_eq!(expected.size(), actual.size());
     let is_within = |pixel: &Pixel, styles| {
@@ -58,7 +84,7 @@ pub fn maths(
         .iter()
         .filter(|&&standing| standing == Standing::Differs)
         .count();
-    if differing as f64 <= MAX_MIXED * standings.len() as f64 {
+    if mixed.take(differing) {
         standings
             .par_iter_mut()
             .enumerate()
@@ -79,10 +105,13 @@ pub fn maths(
     // Two pictures in which no differing pixel moves say that what is left is decided.
     let mut in_vain = 0;
     for seed in 0..SHAKES {
-        if in_vain == 2 || !standings.contains(&Standing::Differs) {
+        let wanted: Vec<_> = standings.iter().map(|&own| own == Standing::Differs).collect();
+        if in_vain == 2 || !wanted.contains(&true) {
             break;
         }
-        let Some(shaken) = shaken(seed) else { break };
+        let Some(shaken) = shaken(seed, &wanted) else {
+            break;
+        };
         let mut moved = false;
         for (index, standing) in standings.iter_mut().enumerate() {
             if *standing == Standing::Differs
@@ -131,7 +160,8 @@ mod tests {
             &[false; 3],
             |_, _, _| point(0.0),
             edge,
-            |_| None,
+            &mut Mixed::of(3),
+            |_, _| None,
         );
         assert_eq!(
             standings,
@@ -148,8 +178,10 @@ mod tests {
             ..point(0.0)
         };
         let undefined = [false, false, false, false, true];
-        let moving = |seed| Some(row(&[0.0, 0.0, if seed == 1 { 0.0 } else { 0.3 }, 0.30005, 0.3]));
-        let standings = maths(&expected, &actual, &undefined, hull, inside, moving);
+        let moving =
+            |seed, _: &[bool]| Some(row(&[0.0, 0.0, if seed == 1 { 0.0 } else { 0.3 }, 0.30005, 0.3]));
+        let mixed = &mut Mixed::of(5);
+        let standings = maths(&expected, &actual, &undefined, hull, inside, mixed, moving);
         assert_eq!(
             standings,
             [
@@ -164,7 +196,8 @@ mod tests {
 
     #[test]
     fn mixed_styles_are_asked_for_where_few_pixels_differ() {
-        let judged = |differing: usize| {
+        let mut mixed = Mixed::of(2000);
+        let mut judged = |differing: usize| {
             let black = row(&[0.0; 1000]);
             let mut reds = [0.0; 1000];
             reds[..differing].fill(0.3);
@@ -172,37 +205,36 @@ mod tests {
                 Styles::Alike => point(0.0),
                 Styles::Mixed => point(0.3),
             };
-            let standings = maths(&black, &row(&reds), &[false; 1000], hull, inside, |_| None);
+            let (actual, undefined) = (row(&reds), [false; 1000]);
+            let standings = maths(&black, &actual, &undefined, hull, inside, &mut mixed, |_, _| None);
             let differs = |standing: &&Standing| **standing == Standing::Differs;
             standings.iter().filter(differs).count()
         };
-        assert_eq!(judged(10), 0);
-        assert_eq!(judged(11), 11, "so many are no matter of style");
+        assert_eq!(judged(21), 21, "so many are no matter of style");
+        assert_eq!(judged(15), 0);
+        assert_eq!(judged(6), 6, "nor are they with those of another band");
+        assert_eq!(judged(5), 0);
     }
 
     #[test]
     fn nothing_is_shaken_without_need_nor_for_ever() {
         let black = row(&[0.0]);
         let mut asked = 0;
-        let mut count = |_| {
+        let mut count = |_, _: &[bool]| {
             asked += 1;
             Some(row(&[1.0]))
         };
-        maths(&black, &black, &[false], |_, _, _| point(0.0), inside, &mut count);
+        let mixed = &mut Mixed::of(1);
+        let hull = |_, _, _| point(0.0);
+        maths(&black, &black, &[false], hull, inside, mixed, &mut count);
         assert_eq!(asked, 0, "nothing differs");
         let mut asked = 0;
-        let still = |_| {
+        let still = |_, wanted: &[bool]| {
+            assert_eq!(wanted, [true]);
             asked += 1;
             Some(row(&[1.0]))
         };
-        let standings = maths(
-            &black,
-            &row(&[1.0]),
-            &[false],
-            |_, _, _| point(0.0),
-            inside,
-            still,
-        );
+        let standings = maths(&black, &row(&[1.0]), &[false], hull, inside, mixed, still);
         assert_eq!((asked, standings), (2, vec![Standing::Differs]));
     }
 
@@ -214,7 +246,8 @@ mod tests {
             &[false],
             |_, _, _| point(0.0),
             inside,
-            |_| None,
+            &mut Mixed::of(1),
+            |_, _| None,
         );
         assert_eq!(standings, [Standing::Differs]);
     }

@@ -15,8 +15,10 @@ mod tolerance;
 mod toolchain;
 
 pub use answer::{Answer, Standing, marks};
-pub use judge::{Answers, MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABLE, Verdict, grouped, judge, plural};
-pub use maths::{SHAKES, maths};
+pub use judge::{
+    Answers, MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABLE, Verdict, differing, grouped, judge, plural,
+};
+pub use maths::{Mixed, SHAKES, maths};
 pub use picture::{Comparison, Pixel, compare};
 pub use rounding::{SEEN, rounding};
 pub use tolerance::{EXACT_TOLERANCE, IN_BITS, SEEN_BY_EYE, TOLERANCE};

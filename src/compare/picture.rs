@@ -64,6 +64,20 @@ impl Pixel {
         }
     }
 
+    /// The same in a picture that has so many rows more below it.
+    pub(super) fn raised(mut self, rows: u32) -> Self {
+        self.y += rows;
+        self
+    }
+
+    /// The one with the larger difference; of equals, the first.
+    pub(super) fn worse(first: Option<Self>, second: Option<Self>) -> Option<Self> {
+        match (first, second) {
+            (Some(first), Some(second)) if second.difference() > first.difference() => Some(second),
+            (first, second) => first.or(second),
+        }
+    }
+
     /// The largest difference of a component, clamped to [0, 1]; 1 where one is NaN and the other is not.
     #[must_use]
     pub fn difference(&self) -> f64 {
@@ -82,6 +96,22 @@ impl Pixel {
     fn levels(&self) -> u8 {
         let level = |i: usize| quantise(self.expected[i]).abs_diff(quantise(self.actual[i]));
         (0..3).map(level).fold(0, u8::max)
+    }
+}
+
+impl Comparison {
+    /// Adds that of the rows above the first `height`, which this one is of.
+    pub fn extend(&mut self, above: &Self, height: u32) {
+        let raised = |pixel: Option<Pixel>| pixel.map(|pixel| pixel.raised(height));
+        let sums = [&*self, above].map(|part| part.mean_abs * part.pixels as f64);
+        self.pixels += above.pixels;
+        self.mean_abs = (sums[0] + sums[1]) / self.pixels.max(1) as f64;
+        self.differing += above.differing;
+        self.differing_8bit += above.differing_8bit;
+        self.max_8bit = self.max_8bit.max(above.max_8bit);
+        self.max_abs = self.max_abs.max(above.max_abs);
+        self.first = self.first.or(raised(above.first));
+        self.worst = Pixel::worse(self.worst, raised(above.worst));
     }
 }
 
@@ -119,7 +149,7 @@ pub fn compare(reference: &Image, actual: &Image) -> (Comparison, Vec<Mark>) {
             }
         }
         comparison.max_abs = comparison.max_abs.max(difference);
-        marks.push(Mark::By(difference as f32));
+        marks.push(Mark::by(difference as f32));
     }
     comparison.mean_abs = sum / (3 * pixels.max(1)) as f64;
     (comparison, marks)
@@ -161,7 +191,23 @@ mod tests {
         assert_eq!(at(comparison.worst), Some((0, 1)), "the first of equals");
         assert_eq!(comparison.max_8bit, 230);
         assert!((comparison.mean_abs - 1.9 / 12.0).abs() < 1e-7);
-        assert_eq!(marks[0], Mark::By(0.0));
+        assert_eq!(marks[0], Mark::by(0.0));
+    }
+
+    #[test]
+    fn a_comparison_in_bands_is_that_of_the_whole() {
+        let row = |greens: [f32; 2]| Image::new(2, 1, greens.map(|green| [0.0, green, 0.0, 1.0]).to_vec());
+        let whole = Image::new(
+            2,
+            2,
+            [0.0, 0.25, 0.0, 0.75]
+                .map(|green| [0.0, green, 0.0, 1.0])
+                .to_vec(),
+        );
+        let black = row([0.0; 2]);
+        let (mut bands, _) = compare(&black, &row([0.0, 0.25]));
+        bands.extend(&compare(&black, &row([0.0, 0.75])).0, 1);
+        assert_eq!(bands, compare(&image(&[[0.0; 3]; 4]), &whole).0);
     }
 
     #[test]

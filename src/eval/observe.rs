@@ -164,7 +164,7 @@ pub struct Observed {
 /// What a run noted.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Observations {
-    /// What was wrong, in the order of the sites.
+    /// What was wrong, in the order of its places in the text.
     pub faults: Vec<Observed>,
     /// The most rounds that a pixel ran in all loops together.
     pub most_rounds: u32,
@@ -177,12 +177,16 @@ pub const MESA_CAP: u32 = 65_535;
 
 impl Observations {
     /// Adds what another part of the picture noted.
-    pub(super) fn merge(&mut self, other: Self) {
+    pub fn merge(&mut self, other: &Self) {
         self.most_rounds = self.most_rounds.max(other.most_rounds);
         self.beyond_cap += other.beyond_cap;
-        for new in other.faults {
+        for &new in &other.faults {
             match self.faults.iter_mut().find(|old| old.site == new.site) {
-                None => self.faults.push(new),
+                None => {
+                    let place = |observed: &Observed| (observed.site.at.span.start, observed.site.fault);
+                    let after = self.faults.partition_point(|old| place(old) <= place(&new));
+                    self.faults.insert(after, new);
+                }
                 Some(old) => {
                     old.pixels += new.pixels;
                     old.first = earlier(old.first, new.first);

@@ -1,5 +1,6 @@
 //! Painting a frame: tiles of pixels on all cores, a batch for each.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
@@ -11,12 +12,13 @@ use super::batch::Watch;
 use super::compile::Refusal;
 use super::number::Number;
 use super::observe::Observations;
-use super::painting::Painting;
+use super::painting::{Painting, UNDEFINED, shown};
 use super::program::Program;
 use super::texture::Texture;
 use super::tile::Job;
 use crate::frame::Frame;
 use crate::glsl::tree::Place;
+use crate::image::Image;
 
 /// What is made of operations that GLSL leaves undefined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,6 +44,8 @@ pub struct Settings<'a, N: Number> {
     pub deadline: Option<Instant>,
     /// Set from elsewhere to give up.
     pub interrupt: Option<&'a AtomicBool>,
+    /// Which of the painting's pixels are wanted, bottom row first; others may stay black. All, if none.
+    pub wanted: Option<&'a [bool]>,
 }
 
 impl<N: Number> Default for Settings<'_, N> {
@@ -53,6 +57,7 @@ impl<N: Number> Default for Settings<'_, N> {
             rounds: 1 << 26,
             deadline: None,
             interrupt: None,
+            wanted: None,
         }
     }
 }
@@ -126,30 +131,88 @@ impl Watch for Limits<'_> {
     }
 }
 
+/// The same in f32, where no more is wanted.
+#[derive(Debug, Clone)]
+pub struct Pictured {
+    /// The picture, as the GPU's target holds it.
+    pub image: Image,
+    /// Which pixels met an operation that GLSL leaves undefined, bottom row first.
+    pub undefined: Vec<bool>,
+    /// What was noted.
+    pub observations: Observations,
+}
+
 impl Program {
     /// Paints a frame.
     ///
     /// # Errors
     /// Why there is no picture: limits, or a shader that is too large.
     pub fn paint<N: Number>(&self, frame: &Frame, settings: &Settings<'_, N>) -> Result<Painted<N>, Failure> {
+        let mut painting = Painting::new(frame.size);
+        let (pixels, marks) = painting.parts_mut();
+        let observations = self.fill(frame, frame.rows(), settings, pixels, marks, |colour, _| colour)?;
+        Ok(Painted {
+            painting,
+            observations,
+        })
+    }
+
+    /// Paints some rows of a frame, as of [`Frame::bands`], rounded to f32. What is noted tells of places in the frame; the picture's
+    /// own are in the band.
+    ///
+    /// # Errors
+    /// As [`Self::paint`].
+    pub fn picture<N: Number>(
+        &self,
+        frame: &Frame,
+        rows: Range<u32>,
+        settings: &Settings<'_, N>,
+    ) -> Result<Pictured, Failure> {
+        let size = [frame.size[0], rows.len() as u32];
+        let mut pixels = vec![[0.0; 4]; size[0] as usize * size[1] as usize];
+        let mut marks = vec![0; pixels.len()];
+        let observations = self.fill(frame, rows, settings, &mut pixels, &mut marks, shown)?;
+        Ok(Pictured {
+            image: Image::new(size[0], size[1], pixels),
+            undefined: marks.into_iter().map(|mark| mark & UNDEFINED != 0).collect(),
+            observations,
+        })
+    }
+
+    /// Paints rows, of whose pixels what `keep` makes of colours and marks is kept.
+    fn fill<N: Number, P: Send>(
+        &self,
+        frame: &Frame,
+        rows: Range<u32>,
+        settings: &Settings<'_, N>,
+        pixels: &mut [P],
+        marks: &mut [u8],
+        keep: impl Fn([N; 3], u8) -> P + Sync,
+    ) -> Result<Observations, Failure> {
         let compiled = self.code(settings.variant)?;
         let prepared = N::prepare(compiled, frame);
         let textures = frame.channels.each_ref().map(|image| image.as_ref().map(Texture));
         let limits = Limits::of(settings);
-        let job = Job::new(compiled, &prepared, &textures, &limits, settings, frame.size);
-        let mut painting = Painting::new(frame.size);
+        let size = [frame.size[0], rows.end];
+        let job = Job::new(compiled, &prepared, &textures, &limits, settings, size);
         let failure = Mutex::new(None);
-        let observations = {
-            let (pixels, marks) = painting.parts_mut();
-            let band = frame.size[0] as usize * job.rows();
-            let bands = pixels
-                .par_chunks_mut(band)
-                .zip(marks.par_chunks_mut(band))
-                .enumerate();
-            let noted = bands.map_init(
-                || job.batch(),
-                |batch, (row, (pixels, marks))| match job.band(batch, row, pixels, marks) {
-                    Ok(observations) => observations,
+        let band = frame.size[0] as usize * job.rows();
+        let bands = pixels.par_chunks_mut(band).zip(marks.par_chunks_mut(band));
+        let noted = bands.enumerate().map_init(
+            || (job.batch(), vec![[N::default(); 3]; band]),
+            |(batch, colours), (tiles, (pixels, marks))| {
+                let first = rows.start + (tiles * job.rows()) as u32;
+                let wanted = settings
+                    .wanted
+                    .map(|wanted| &wanted[tiles * band..][..pixels.len()]);
+                let colours = &mut colours[..pixels.len()];
+                match job.band(batch, first, (colours, marks), wanted) {
+                    Ok(observations) => {
+                        for ((pixel, &colour), &mark) in pixels.iter_mut().zip(&*colours).zip(&*marks) {
+                            *pixel = keep(colour, mark);
+                        }
+                        observations
+                    }
                     Err(why) => {
                         limits.failed.store(true, Ordering::Relaxed);
                         failure
@@ -158,23 +221,16 @@ impl Program {
                             .get_or_insert(why);
                         Observations::default()
                     }
-                },
-            );
-            noted.reduce(Observations::default, |mut all, part| {
-                all.merge(part);
-                all
-            })
-        };
-        if let Some(end) = failure.into_inner().unwrap_or_else(PoisonError::into_inner) {
-            return Err(end.failure(compiled, &limits, settings.rounds));
+                }
+            },
+        );
+        let observations = noted.reduce(Observations::default, |mut all, part| {
+            all.merge(&part);
+            all
+        });
+        match failure.into_inner().unwrap_or_else(PoisonError::into_inner) {
+            Some(end) => Err(end.failure(compiled, &limits, settings.rounds)),
+            None => Ok(observations),
         }
-        let mut observations = observations;
-        observations
-            .faults
-            .sort_by_key(|fault| (fault.site.at.span.start, fault.site.fault));
-        Ok(Painted {
-            painting,
-            observations,
-        })
     }
 }

@@ -71,13 +71,20 @@ impl<N: Number> Painting<N> {
     #[must_use]
     pub fn image(&self) -> Image {
         let [width, height] = self.size;
-        let pixels = self.pixels.iter().zip(&self.marks).map(|(&[r, g, b], &mark)| {
-            if mark & DISCARDED != 0 {
-                UNPAINTED
-            } else {
-                [r.to_f32(), g.to_f32(), b.to_f32(), 1.0]
-            }
-        });
-        Image::new(width, height, pixels.collect())
+        let pixels = self.pixels.iter().zip(&self.marks);
+        Image::new(
+            width,
+            height,
+            pixels.map(|(&colour, &mark)| shown(colour, mark)).collect(),
+        )
     }
+}
+
+/// A pixel as the GPU's target holds it.
+pub(super) fn shown<N: Number>(colour: [N; 3], mark: u8) -> [f32; 4] {
+    if mark & DISCARDED != 0 {
+        return UNPAINTED;
+    }
+    let [r, g, b] = colour.map(N::to_f32);
+    [r, g, b, 1.0]
 }

@@ -113,20 +113,23 @@ impl<'a, N: Number> Job<'a, N> {
         }
     }
 
-    /// Paints a row of tiles.
+    /// Paints the row of tiles that begins at that row of the frame.
     pub(super) fn band(
         &self,
         batch: &mut Batch<'_, N>,
-        row: usize,
-        pixels: &mut [[N; 3]],
-        marks: &mut [u8],
+        first: u32,
+        (pixels, marks): (&mut [[N; 3]], &mut [u8]),
+        wanted: Option<&[bool]>,
     ) -> Result<Observations, End> {
         let mut observations = Observations::default();
         for left in (0..self.size[0]).step_by(COLUMNS) {
             if self.limits.is_over() {
                 return Err(End::Late);
             }
-            let corner = [left, (row * self.rows()) as u32];
+            if wanted.is_some_and(|wanted| !self.is_wanted(left, wanted)) {
+                continue;
+            }
+            let corner = [left, first];
             self.begin(batch, corner);
             run(batch, &self.prepared.code);
             if let Some(stop) = batch.stopped.take() {
@@ -135,6 +138,14 @@ impl<'a, N: Number> Job<'a, N> {
             self.end(batch, corner, pixels, marks, &mut observations);
         }
         Ok(observations)
+    }
+
+    /// Whether any pixel of the tile is, in a row of tiles.
+    fn is_wanted(&self, left: u32, wanted: &[bool]) -> bool {
+        let width = self.size[0] as usize;
+        let columns = left as usize..(left as usize + COLUMNS).min(width);
+        let mut rows = wanted.chunks(width);
+        rows.any(|row| row[columns.clone()].contains(&true))
     }
 
     /// Runs the tile of a pixel, and takes down what that one does, led by another story.
@@ -249,7 +260,7 @@ impl<'a, N: Number> Job<'a, N> {
                 }
             }
         }
-        observations.merge(Observations {
+        observations.merge(&Observations {
             faults: noted.into_values().collect(),
             ..Observations::default()
         });

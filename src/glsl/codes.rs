@@ -101,6 +101,12 @@ codes! {
     BadAllow "W0014" "An `allow` that is not understood",
     UnusedAllow "W0015" "An `allow` that nothing needs",
     MissingReturn "W0016" "A function that on some way ends without a `return`",
+    // What is seen while a shader runs.
+    UndefinedOperation "W0600" "An operation whose value GLSL leaves open",
+    LongRun "W0601" "Loops that older drivers cut short",
+    LostDigits "W0602" "Digits that float32 loses",
+    NotFinite "W0603" "A colour that is NaN or infinite",
+    NeverWritten "W0604" "A read of what was never written",
 }
 
 /// How many errors of one file are told, and how many warnings; more would help nobody.
@@ -121,6 +127,11 @@ impl Code {
     /// Whether `// toyproof: allow(…)` may silence it.
     pub(crate) fn can_be_allowed(self) -> bool {
         self.as_str().starts_with('W') && !matches!(self, Self::BadAllow | Self::UnusedAllow)
+    }
+
+    /// Whether it is told of what a shader does, rather than of its text.
+    pub(crate) fn is_of_runs(self) -> bool {
+        self.as_str().starts_with("W06")
     }
 
     /// An error of this kind, told of that place: where the author used it, and, for what comes out of a macro, where it is spelled.

@@ -51,9 +51,22 @@ pub struct Checked {
     pub warnings: Vec<Diagnostic>,
     /// Discriminants of spheres that lose digits, as textbooks write them, and not allowed by the author.
     pub discriminants: Vec<Span>,
+    /// What the author allows of what is seen while the shader runs, and where.
+    pub allowed: Vec<(Code, Span)>,
 }
 
 impl Checked {
+    /// Whether the author allows this, which was seen while the shader ran. What is told of no line is allowed anywhere.
+    #[must_use]
+    pub fn allows(&self, seen: &Diagnostic) -> bool {
+        let holds = |over: &Span| {
+            seen.span
+                .is_none_or(|at| at.file == over.file && (over.start..over.end).contains(&at.start))
+        };
+        let mut allowed = self.allowed.iter();
+        allowed.any(|(code, over)| code.as_str() == seen.code && holds(over))
+    }
+
     /// Whether `dFdx`, `dFdy` or `fwidth` occur in it.
     #[must_use]
     pub fn takes_derivatives(&self) -> bool {
@@ -116,6 +129,7 @@ pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, 
                     channels: channels.shapes,
                     warnings: warned.warnings,
                     discriminants: warned.discriminants,
+                    allowed: warned.allowed,
                 })
             }
             _ => {

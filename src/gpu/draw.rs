@@ -1,5 +1,6 @@
 //! Painting one frame and reading it back.
 
+use std::ops::Range;
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
@@ -17,11 +18,13 @@ use crate::{emit, source};
 /// A picture that a shader painted.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Drawn {
-    /// The picture, as the float target holds it.
-    pub image: Image,
+    /// The picture, as the float target holds it, in bands of rows from the bottom up, as of [`Frame::bands`]; none where they
+    /// were handed over before.
+    #[serde(skip)]
+    pub bands: Vec<Image>,
     /// Adapter and driver.
     pub device: String,
-    /// Whether the shader has loops and the driver is of a kind that ends loops by force.
+    /// Whether the shader has loops, and the driver is of a kind that ends loops by force.
     pub(super) may_be_cut_short: bool,
     /// Pixels in which the driver ended a loop by force, whose colours mean nothing; none if that could not be
     /// found out in time. Zero where nobody looked.
@@ -34,13 +37,32 @@ pub struct Drawn {
     pub draw: Duration,
 }
 
+impl Drawn {
+    /// Whether there is something to be watched.
+    #[must_use]
+    pub fn may_be_cut_short(&self) -> bool {
+        self.may_be_cut_short
+    }
+
+    /// The whole picture.
+    ///
+    /// # Panics
+    /// If its bands were taken.
+    #[must_use]
+    pub fn image(self) -> Image {
+        Image::of_bands(self.bands)
+    }
+}
+
 /// A shader that is compiled and ready to paint.
 #[derive(Debug)]
 pub(super) struct Scene {
-    size: [u32; 2],
+    width: u32,
+    bands: Vec<Range<u32>>,
     pipeline: RenderPipeline,
     bindings: BindGroup,
     target: Texture,
+    /// Holds one band.
     readback: Buffer,
     bytes_per_row: u32,
 }
@@ -164,14 +186,17 @@ impl Device {
                 view_formats: &[],
             });
             let bytes_per_row = (16 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+            let bands: Vec<_> = frame.bands().collect();
+            let highest = bands.iter().map(Range::len).max().unwrap_or(0);
             let readback = self.gpu.create_buffer(&wgpu::BufferDescriptor {
                 label: None,
-                size: u64::from(bytes_per_row) * u64::from(height),
+                size: u64::from(bytes_per_row) * highest as u64,
                 usage: BufferUsages::MAP_READ | BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             });
             let scene = Scene {
-                size: frame.size,
+                width,
+                bands,
                 pipeline: compiled.pipeline.clone(),
                 bindings: compiled.layout.bind(&self.gpu, &self.queue, frame),
                 target,
@@ -183,29 +208,58 @@ impl Device {
         })
     }
 
-    /// Paints and reads back. The target's first row has the smallest fragment coordinates: it is the bottom.
-    pub(super) fn paint(&self, scene: &Scene) -> Result<Image, Failure> {
+    /// Paints, and hands on one band of rows after the other, from the bottom up.
+    pub(super) fn paint(
+        &self,
+        scene: &Scene,
+        mut each: impl FnMut(Image) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
         self.checked(|| {
             self.submit(scene, 0..3)?;
-            let slice = scene.readback.slice(..);
-            slice.map_async(wgpu::MapMode::Read, |_| {});
-            self.wait()?;
-            let view = slice
-                .get_mapped_range()
-                .map_err(|error| Failure::Device(error.to_string()))?;
-            let [width, height] = scene.size;
-            let pixels = view
-                .chunks(scene.bytes_per_row as usize)
-                .flat_map(|row| row[..16 * width as usize].chunks_exact(16))
-                .map(bytemuck::pod_read_unaligned)
-                .collect();
-            drop(view);
-            scene.readback.unmap();
-            Ok(Image::new(width, height, pixels))
+            for (number, rows) in scene.bands.iter().enumerate() {
+                // The first has come with the painting.
+                if number > 0 {
+                    let mut commands = self.gpu.create_command_encoder(&Default::default());
+                    scene.copy(&mut commands, rows);
+                    self.queue.submit([commands.finish()]);
+                    self.wait()?;
+                }
+                each(self.read(scene, rows)?)?;
+            }
+            Ok(())
         })
     }
 
-    fn submit(&self, scene: &Scene, vertices: std::ops::Range<u32>) -> Result<(), Failure> {
+    /// The whole picture.
+    pub(super) fn picture(&self, scene: &Scene) -> Result<Image, Failure> {
+        let mut bands = Vec::new();
+        self.paint(scene, |band| {
+            bands.push(band);
+            Ok(())
+        })?;
+        Ok(Image::of_bands(bands))
+    }
+
+    /// What lies in the buffer. The target's first row has the smallest fragment coordinates: it is the bottom.
+    fn read(&self, scene: &Scene, rows: &Range<u32>) -> Result<Image, Failure> {
+        let slice = scene.readback.slice(..);
+        slice.map_async(wgpu::MapMode::Read, |_| {});
+        self.wait()?;
+        let view = slice
+            .get_mapped_range()
+            .map_err(|error| Failure::Device(error.to_string()))?;
+        let pixels = view
+            .chunks(scene.bytes_per_row as usize)
+            .take(rows.len())
+            .flat_map(|row| row[..16 * scene.width as usize].chunks_exact(16))
+            .map(bytemuck::pod_read_unaligned)
+            .collect();
+        drop(view);
+        scene.readback.unmap();
+        Ok(Image::new(scene.width, rows.len() as u32, pixels))
+    }
+
+    fn submit(&self, scene: &Scene, vertices: Range<u32>) -> Result<(), Failure> {
         let view = scene.target.create_view(&Default::default());
         let mut commands = self.gpu.create_command_encoder(&Default::default());
         {
@@ -225,23 +279,9 @@ impl Device {
             pass.set_bind_group(0, &scene.bindings, &[]);
             pass.draw(vertices, 0..1);
         }
-        let [width, height] = scene.size;
-        commands.copy_texture_to_buffer(
-            scene.target.as_image_copy(),
-            wgpu::TexelCopyBufferInfo {
-                buffer: &scene.readback,
-                layout: wgpu::TexelCopyBufferLayout {
-                    offset: 0,
-                    bytes_per_row: Some(scene.bytes_per_row),
-                    rows_per_image: None,
-                },
-            },
-            wgpu::Extent3d {
-                width,
-                height,
-                depth_or_array_layers: 1,
-            },
-        );
+        if let Some(rows) = scene.bands.first() {
+            scene.copy(&mut commands, rows);
+        }
         self.queue.submit([commands.finish()]);
         self.wait()
     }
@@ -284,6 +324,34 @@ fn one_line(words: &str) -> String {
         .join(": ")
 }
 
+impl Scene {
+    /// Copies rows of the target into the buffer.
+    fn copy(&self, commands: &mut wgpu::CommandEncoder, rows: &Range<u32>) {
+        let target = wgpu::TexelCopyTextureInfo {
+            origin: wgpu::Origin3d {
+                x: 0,
+                y: rows.start,
+                z: 0,
+            },
+            ..self.target.as_image_copy()
+        };
+        let buffer = wgpu::TexelCopyBufferInfo {
+            buffer: &self.readback,
+            layout: wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(self.bytes_per_row),
+                rows_per_image: None,
+            },
+        };
+        let size = wgpu::Extent3d {
+            width: self.width,
+            height: rows.len() as u32,
+            depth_or_array_layers: 1,
+        };
+        commands.copy_texture_to_buffer(target, buffer, size);
+    }
+}
+
 /// A shader compiled on a device of this process: for measuring, where the worker's protection is not wanted.
 #[derive(Debug)]
 pub struct Painter {
@@ -308,7 +376,7 @@ impl Painter {
     /// # Errors
     /// If the device is lost.
     pub fn paint(&mut self) -> Result<Image, Failure> {
-        self.device.paint(&self.scene)
+        self.device.picture(&self.scene)
     }
 }
 
@@ -332,7 +400,7 @@ pub(super) fn measure_cap(device: &Device) -> Result<LoopCap, Failure> {
         frame: PROBED_ITERATIONS as i32,
         ..Frame::default()
     };
-    let count = device.paint(&device.prepare(&program, &frame)?)?.get(0, 0)[0] as u32;
+    let count = device.picture(&device.prepare(&program, &frame)?)?.get(0, 0)[0] as u32;
     Ok(if count < PROBED_ITERATIONS {
         LoopCap::After(count)
     } else {

@@ -56,10 +56,11 @@ pub enum Written {
     Lowered(Lowered),
 }
 
-/// What the worker says, any number of phases and then the end.
+/// What the worker says: any number of phases, the bands of a picture from the bottom up, and then the end.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Reply {
     Phase(Phase),
+    Band(Image),
     Done(Result<Output, Failure>),
 }
 
@@ -69,12 +70,12 @@ pub(super) enum Output {
     Drivers(Vec<Driver>),
     Translated(Vec<u8>),
     Drawn(Box<Drawn>),
-    Ran(Image),
+    Ran,
     Painted(Vec<Image>, String),
     CutShort(u64),
 }
 
-/// The longest message: a frame of the largest size and its surroundings.
+/// The longest message: the text of a shader and the pictures that it reads.
 const MAX_MESSAGE: u64 = 1 << 30;
 
 pub(super) fn send(mut to: impl Write, message: &impl Serialize) -> io::Result<()> {

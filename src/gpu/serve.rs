@@ -7,7 +7,7 @@ use std::thread;
 use std::time::Instant;
 
 use super::device::{self, Device};
-use super::draw::Program;
+use super::draw::{Program, Scene};
 use super::protocol::{Foreign, Job, Output, Reply, Shot, Written, receive, send};
 use super::{Failure, FloatMode, On, Phase, draw};
 use crate::emit::{self, Target};
@@ -89,7 +89,7 @@ impl<W: Write> Server<W> {
     }
 
     fn phase(&mut self, phase: Phase) -> Result<(), Failure> {
-        send(&mut self.output, &Reply::Phase(phase)).map_err(|error| Failure::Worker(error.to_string()))
+        say(&mut self.output, &Reply::Phase(phase))
     }
 
     fn probe(&mut self, on: &On) -> Result<Output, Failure> {
@@ -130,10 +130,10 @@ impl<W: Write> Server<W> {
         let compile = start.elapsed();
         self.phase(Phase::Drawing)?;
         let start = Instant::now();
+        self.send_painted(&scene)?;
         let device = self.device()?;
-        let image = device.paint(&scene)?;
         Ok(Output::Drawn(Box::new(draw::Drawn {
-            image,
+            bands: Vec::new(),
             device: device.name(),
             may_be_cut_short: loops && device.may_end_loops(),
             cut_short: Some(0),
@@ -155,7 +155,17 @@ impl<W: Write> Server<W> {
         let program = Program::foreign(words, float);
         let scene = self.device()?.prepare(&program, &frame)?;
         self.phase(Phase::Drawing)?;
-        Ok(Output::Ran(self.device()?.paint(&scene)?))
+        self.send_painted(&scene)?;
+        Ok(Output::Ran)
+    }
+
+    /// Paints, and sends what comes.
+    fn send_painted(&mut self, scene: &Scene) -> Result<(), Failure> {
+        let Some((_, device)) = &self.device else {
+            return Err(gone());
+        };
+        let output = &mut self.output;
+        device.paint(scene, |band| say(&mut *output, &Reply::Band(band)))
     }
 
     fn paint(&mut self, written: Written, frames: &[Frame], on: &On) -> Result<Output, Failure> {
@@ -176,7 +186,7 @@ impl<W: Write> Server<W> {
             self.phase(Phase::Compiling)?;
             let scene = self.device()?.stage(&compiled, frame)?;
             self.phase(Phase::Drawing)?;
-            let image = self.device()?.paint(&scene)?;
+            let image = self.device()?.picture(&scene)?;
             painted.push(if upside_down { image.upside_down() } else { image });
         }
         let name = self.device()?.name();
@@ -203,17 +213,25 @@ impl<W: Write> Server<W> {
         };
         // What follows an endless loop may say anything, also that there were few iterations.
         if !module.has_endless_loop() {
-            let iterations = device.paint(&device.prepare(&iterations, &frame)?)?;
-            let reached = draw::reached(&iterations, cap);
-            if reached > 0 || !draw::may_reach(&iterations, cap) {
+            let (mut reached, mut may_reach) = (0, false);
+            device.paint(&device.prepare(&iterations, &frame)?, |band| {
+                reached += draw::reached(&band, cap);
+                may_reach |= draw::may_reach(&band, cap);
+                Ok(())
+            })?;
+            if reached > 0 || !may_reach {
                 return Ok(Output::CutShort(reached));
             }
         }
         let discards = module.discards();
         let open = apart(move || probed(&module, Probe::OpenLoops, float))?;
         let device = self.device()?;
-        let open = device.paint(&device.prepare(&open, &frame)?)?;
-        Ok(Output::CutShort(draw::cut_short(&open, discards)))
+        let mut cut_short = 0;
+        device.paint(&device.prepare(&open, &frame)?, |band| {
+            cut_short += draw::cut_short(&band, discards);
+            Ok(())
+        })?;
+        Ok(Output::CutShort(cut_short))
     }
 
     fn open(&mut self, on: &On) -> Result<(), Failure> {
@@ -227,9 +245,17 @@ impl<W: Write> Server<W> {
     fn device(&mut self) -> Result<&mut Device, Failure> {
         match &mut self.device {
             Some((_, device)) => Ok(device),
-            None => Err(Failure::Device("the device is gone".to_owned())),
+            None => Err(gone()),
         }
     }
+}
+
+fn gone() -> Failure {
+    Failure::Device("the device is gone".to_owned())
+}
+
+fn say(output: impl Write, reply: &Reply) -> Result<(), Failure> {
+    send(output, reply).map_err(|error| Failure::Worker(error.to_string()))
 }
 
 fn probed(module: &ValidModule, probe: Probe, float: FloatMode) -> Result<Program, Failure> {

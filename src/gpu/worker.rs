@@ -30,6 +30,8 @@ pub struct Worker {
 
 /// How long a worker that closed its pipe may take to end.
 const GRACE: Duration = Duration::from_millis(500);
+/// So many replies may wait to be heard: bands are large.
+const WAITING: usize = 1;
 /// How much of a worker's last words is kept, in bytes.
 const LAST_WORDS: usize = 4096;
 
@@ -95,20 +97,48 @@ impl Worker {
     /// # Errors
     /// Why there is none.
     pub fn draw(&mut self, lowered: Lowered, frame: Frame, float: FloatMode) -> Result<Drawn, Failure> {
-        self.draw_and_watch(lowered, frame, float, |_| true)
+        self.draw_whole(lowered, frame, float, true)
     }
 
-    /// The same, but the frame is painted again only if `watch` says so, told how long the first time took: somebody else may know
-    /// that no pixel runs more than [`SAFE_ROUNDS`](super::SAFE_ROUNDS).
+    /// The same without a look at its loops: somebody else knows that they are short.
     ///
     /// # Errors
-    /// Why there is no picture.
-    pub fn draw_and_watch(
+    /// Why there is none.
+    pub fn draw_unwatched(
         &mut self,
         lowered: Lowered,
         frame: Frame,
         float: FloatMode,
-        watch: impl FnOnce(Duration) -> bool,
+    ) -> Result<Drawn, Failure> {
+        self.draw_whole(lowered, frame, float, false)
+    }
+
+    fn draw_whole(
+        &mut self,
+        lowered: Lowered,
+        frame: Frame,
+        float: FloatMode,
+        watch: bool,
+    ) -> Result<Drawn, Failure> {
+        let mut bands = Vec::new();
+        let each = |band| bands.push(band);
+        let drawn = self.draw_in_bands(lowered, frame, float, each, |_, _| watch)?;
+        Ok(Drawn { bands, ..drawn })
+    }
+
+    /// The same as [`Self::draw`] without a picture: `each` is given one band of it after the other, as of [`Frame::bands`], and may take its time. And the
+    /// frame is painted again only if `watch` says so, shown what was drawn and told how long that took: somebody else may
+    /// know that no pixel runs more than [`SAFE_ROUNDS`](super::SAFE_ROUNDS).
+    ///
+    /// # Errors
+    /// Why there is no picture.
+    pub fn draw_in_bands(
+        &mut self,
+        lowered: Lowered,
+        frame: Frame,
+        float: FloatMode,
+        mut each: impl FnMut(Image),
+        watch: impl FnOnce(&Drawn, Duration) -> bool,
     ) -> Result<Drawn, Failure> {
         let shot = Box::new(Shot {
             lowered,
@@ -118,13 +148,18 @@ impl Worker {
         });
         let job = Job::Draw(shot);
         let start = Instant::now();
-        let mut drawn = match self.run(&job)? {
+        let mut waited = Duration::ZERO;
+        let output = self.run_in_bands(&job, |band| {
+            let start = Instant::now();
+            each(band);
+            waited += start.elapsed();
+        });
+        let mut drawn = match output? {
             Output::Drawn(drawn) => *drawn,
             _ => return Err(out_of_turn()),
         };
-        if let (true, Job::Draw(shot)) = (drawn.may_be_cut_short, job)
-            && watch(start.elapsed())
-        {
+        let is_to_be_watched = watch(&drawn, start.elapsed().saturating_sub(waited));
+        if let (true, Job::Draw(shot)) = (drawn.may_be_cut_short && is_to_be_watched, job) {
             // Whatever stops this, the picture stands.
             drawn.cut_short = match self.run(&Job::WatchLoops(shot)) {
                 Ok(Output::CutShort(pixels)) => Some(pixels),
@@ -146,8 +181,9 @@ impl Worker {
             float,
             on: self.on.clone(),
         };
-        match self.run(&Job::Run(Box::new(foreign)))? {
-            Output::Ran(image) => Ok(image),
+        let mut bands = Vec::new();
+        match self.run_in_bands(&Job::Run(Box::new(foreign)), |band| bands.push(band))? {
+            Output::Ran => Ok(Image::of_bands(bands)),
             _ => Err(out_of_turn()),
         }
     }
@@ -164,8 +200,14 @@ impl Worker {
         }
     }
 
+    /// Has a job done that gives no picture.
     fn run(&mut self, job: &Job) -> Result<Output, Failure> {
-        let deadline = Instant::now() + self.timeout;
+        self.run_in_bands(job, |_| ())
+    }
+
+    /// Has a job done, under a deadline that does not pass while `each` works.
+    fn run_in_bands(&mut self, job: &Job, mut each: impl FnMut(Image)) -> Result<Output, Failure> {
+        let mut deadline = Instant::now() + self.timeout;
         let mut live = match self.live.take() {
             Some(live) => live,
             None => self.start()?,
@@ -179,9 +221,14 @@ impl Worker {
                 .recv_timeout(deadline.saturating_duration_since(Instant::now()))
             {
                 Ok(Reply::Phase(now)) => phase = now,
+                Ok(Reply::Band(band)) => {
+                    let start = Instant::now();
+                    each(band);
+                    deadline += start.elapsed();
+                }
                 Ok(Reply::Done(result)) => {
                     self.live = Some(live);
-                    return result;
+                    return result.map_err(told_of_pins);
                 }
                 Err(RecvTimeoutError::Timeout) => {
                     live.end();
@@ -232,7 +279,7 @@ impl Worker {
         let requests = child.stdin.take().ok_or_else(missing)?;
         let mut output = child.stdout.take().ok_or_else(missing)?;
         let errors = child.stderr.take().ok_or_else(missing)?;
-        let (sender, replies) = mpsc::channel();
+        let (sender, replies) = mpsc::sync_channel(WAITING);
         thread::spawn(move || {
             while let Ok(reply) = receive(&mut output) {
                 if sender.send(reply).is_err() {
@@ -313,6 +360,17 @@ fn classify(phase: Phase, status: Option<ExitStatus>, words: &str) -> Failure {
         None => end,
     };
     Failure::Crash { phase, how }
+}
+
+/// A driver that is missing may only be hidden.
+fn told_of_pins(failure: Failure) -> Failure {
+    match failure {
+        Failure::NoDriver(why) if driver::is_pinned_by_user() => Failure::NoDriver(format!(
+            "{why}; {} is set, and hides all drivers but those that it names",
+            driver::PINS.join(" or ")
+        )),
+        failure => failure,
+    }
 }
 
 fn out_of_turn() -> Failure {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use image::{DynamicImage, ExtendedColorType, ImageEncoder, ImageFormat, ImageReader, Limits, Rgba32FImage};
 use thiserror::Error;
 
-use super::{Image, MAX_SIDE, check_size, quantise};
+use super::{Image, MAX_SIDE, Shown, check_size, quantise};
 
 /// Why a picture could not be read or written.
 #[derive(Debug, Error)]
@@ -38,32 +38,78 @@ pub enum ImageError {
 /// # Errors
 /// [`ImageError::Extension`] for other endings, [`ImageError::Unwritable`] if the encoder fails.
 pub fn encode(image: &Image, path: &Path) -> Result<Vec<u8>, ImageError> {
-    let format = path.extension().and_then(|extension| extension.to_str());
     let [width, height] = image.size();
     let top_down = image.rows().rev().flatten();
-    let mut bytes = Cursor::new(Vec::new());
-    let written = match format.map(str::to_ascii_lowercase).as_deref() {
-        Some("png") => {
-            let rgb: Vec<u8> = top_down.flat_map(|p| [p[0], p[1], p[2]].map(quantise)).collect();
-            image::codecs::png::PngEncoder::new_with_quality(
-                &mut bytes,
-                image::codecs::png::CompressionType::Fast,
-                image::codecs::png::FilterType::Adaptive,
-            )
-            .write_image(&rgb, width, height, ExtendedColorType::Rgb8)
-        }
-        Some("exr") => {
+    match Format::of(path)? {
+        Format::Png => png(
+            [width, height],
+            top_down.flat_map(|p| [p[0], p[1], p[2]].map(quantise)),
+            path,
+        ),
+        Format::Exr => {
             let rgba: Vec<f32> = top_down.flatten().copied().collect();
-            image::codecs::openexr::OpenExrEncoder::new(&mut bytes).write_image(
-                bytemuck::cast_slice(&rgba),
-                width,
-                height,
-                ExtendedColorType::Rgba32F,
-            )
+            written(path, |bytes| {
+                image::codecs::openexr::OpenExrEncoder::new(bytes).write_image(
+                    bytemuck::cast_slice(&rgba),
+                    width,
+                    height,
+                    ExtendedColorType::Rgba32F,
+                )
+            })
         }
-        _ => return Err(ImageError::Extension(path.to_owned())),
-    };
-    match written {
+    }
+}
+
+/// The same of a picture of 8 bits.
+///
+/// # Errors
+/// As [`encode`].
+pub fn encode_shown(shown: &Shown, path: &Path) -> Result<Vec<u8>, ImageError> {
+    match Format::of(path)? {
+        Format::Png => png(
+            shown.size(),
+            shown.rows().rev().flatten().flatten().copied(),
+            path,
+        ),
+        Format::Exr => encode(&Image::from(shown), path),
+    }
+}
+
+enum Format {
+    Png,
+    Exr,
+}
+
+impl Format {
+    fn of(path: &Path) -> Result<Self, ImageError> {
+        let format = path.extension().and_then(|extension| extension.to_str());
+        match format.map(str::to_ascii_lowercase).as_deref() {
+            Some("png") => Ok(Self::Png),
+            Some("exr") => Ok(Self::Exr),
+            _ => Err(ImageError::Extension(path.to_owned())),
+        }
+    }
+}
+
+/// A PNG of bytes from the top down.
+fn png([width, height]: [u32; 2], rgb: impl Iterator<Item = u8>, path: &Path) -> Result<Vec<u8>, ImageError> {
+    let rgb: Vec<u8> = rgb.collect();
+    written(path, |bytes| {
+        image::codecs::png::PngEncoder::new_with_quality(
+            bytes,
+            image::codecs::png::CompressionType::Fast,
+            image::codecs::png::FilterType::Adaptive,
+        )
+        .write_image(&rgb, width, height, ExtendedColorType::Rgb8)
+    })
+}
+
+fn written(
+    path: &Path,
+    write: impl FnOnce(&mut Cursor<Vec<u8>>) -> image::ImageResult<()>,
+) -> Result<Vec<u8>, ImageError> {
+    let mut bytes = Cursor::new(Vec::new());
+    match write(&mut bytes) {
         Ok(()) => Ok(bytes.into_inner()),
         Err(error) => Err(ImageError::Unwritable {
             path: path.to_owned(),
@@ -77,6 +123,31 @@ pub fn encode(image: &Image, path: &Path) -> Result<Vec<u8>, ImageError> {
 /// # Errors
 /// [`ImageError::Unreadable`], also for pictures over the size limit.
 pub fn read(path: &Path) -> Result<Image, ImageError> {
+    let decoded = decoded(path)?;
+    let [width, height] = [decoded.width(), decoded.height()];
+    let rgba: Rgba32FImage = match decoded {
+        DynamicImage::ImageRgba32F(floats) => floats,
+        other => other.into_rgba32f(),
+    };
+    let pixels = rgba
+        .rows()
+        .rev()
+        .flat_map(|row| row.map(|pixel| pixel.0))
+        .collect();
+    Ok(Image::new(width, height, pixels))
+}
+
+/// Reads a picture as it is shown.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_shown(path: &Path) -> Result<Shown, ImageError> {
+    let rgb = decoded(path)?.into_rgb8();
+    let pixels = rgb.rows().rev().flat_map(|row| row.map(|pixel| pixel.0));
+    Ok(Shown::new(rgb.width(), rgb.height(), pixels.collect()))
+}
+
+fn decoded(path: &Path) -> Result<DynamicImage, ImageError> {
     let unreadable = |error: String| ImageError::Unreadable {
         path: path.to_owned(),
         error,
@@ -93,17 +164,8 @@ pub fn read(path: &Path) -> Result<Image, ImageError> {
     limits.max_alloc = Some(1 << 30);
     reader.limits(limits);
     let decoded = reader.decode().map_err(|error| unreadable(error.to_string()))?;
-    let [width, height] = check_size(decoded.width().into(), decoded.height().into()).map_err(unreadable)?;
-    let rgba: Rgba32FImage = match decoded {
-        DynamicImage::ImageRgba32F(floats) => floats,
-        other => other.into_rgba32f(),
-    };
-    let pixels = rgba
-        .rows()
-        .rev()
-        .flat_map(|row| row.map(|pixel| pixel.0))
-        .collect();
-    Ok(Image::new(width, height, pixels))
+    check_size(decoded.width().into(), decoded.height().into()).map_err(unreadable)?;
+    Ok(decoded)
 }
 
 #[cfg(test)]

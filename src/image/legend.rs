@@ -2,7 +2,7 @@
 
 use font8x8::{BASIC_FONTS, UnicodeFonts};
 
-use super::Image;
+use super::{Shown, quantise};
 
 /// Colours of the decades below the tolerance, from 1e−7 up: rounding, in cool colours.
 const COOL: [[f32; 3]; 4] = [
@@ -20,28 +20,44 @@ const UNDEFINED: [f32; 3] = [0.3, 0.3, 0.3];
 const INK: [f32; 3] = [0.85, 0.85, 0.85];
 const GLYPH: u32 = 8;
 
-/// How a pixel of the difference picture is shown.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Mark {
-    /// By the size of its difference, ≥ 0; NaN counts as 1.
-    By(f32),
+/// The smallest decade that a difference is told of, as a power of ten; the largest is 0.1 to 1.
+const LOWEST: i32 = -10;
+
+/// How a pixel of the difference picture is shown. Small, since there are millions of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Mark(u8);
+
+impl Mark {
     /// As one that differs, but hangs by a hair.
-    Undecided,
+    pub const UNDECIDED: Self = Self(u8::MAX);
     /// As one that is left out.
-    Undefined,
+    pub const UNDEFINED: Self = Self(u8::MAX - 1);
+
+    /// By the size of its difference, ≥ 0; NaN counts as 1.
+    #[must_use]
+    pub fn by(difference: f32) -> Self {
+        let difference = if difference.is_nan() { 1.0 } else { difference };
+        let exceeded = (LOWEST..0).take_while(|&decade| difference > 10f32.powi(decade));
+        Self(exceeded.count() as u8)
+    }
+
+    /// Whether the difference is larger than that power of ten.
+    fn is_beyond(self, decade: i32) -> bool {
+        i32::from(self.0) > decade - LOWEST
+    }
 }
 
 /// What the legend tells.
 #[derive(Debug, Clone, Copy)]
 pub struct Legend {
-    /// Differences up to this are shown in cool colours; a power of ten in [1e−6, 1e−1].
+    /// Differences up to this are shown in cool colours; a power of ten in [1e−6, 1e−3].
     pub tolerance: f32,
 }
 
 /// The difference picture of `size`, one mark a pixel (bottom row first), with the legend in a strip below
 /// it. The picture is at least as wide as the legend needs.
 #[must_use]
-pub fn difference(size: [u32; 2], marks: &[Mark], legend: Legend) -> Image {
+pub fn difference(size: [u32; 2], marks: &[Mark], legend: Legend) -> Shown {
     let entries = legend.entries();
     let columns = entries
         .iter()
@@ -56,41 +72,37 @@ pub fn difference(size: [u32; 2], marks: &[Mark], legend: Legend) -> Image {
     let line = GLYPH + 4;
     let strip = rows * line + 4;
     let mut canvas = Canvas::new(wide, height + strip);
-    let bands: Vec<_> = legend.bands().collect();
+    let colours: [_; 256] = std::array::from_fn(|byte| legend.colour(Mark(byte as u8)).map(quantise));
     for (row, y) in marks.chunks(width as usize).zip(strip..) {
         for (mark, x) in row.iter().zip(0..) {
-            canvas.set(x, y, colour(&bands, *mark));
+            canvas.set(x, y, colours[usize::from(mark.0)]);
         }
     }
     for (index, (words, colour)) in entries.iter().enumerate() {
         let index = index as u32;
         let x = (index % per_row) * cell + 4;
         let top = strip - 4 - (index / per_row) * line;
-        canvas.fill(x, top - GLYPH, GLYPH, *colour);
+        canvas.fill(x, top - GLYPH, GLYPH, colour.map(quantise));
         canvas.write(x + GLYPH + 4, top, words);
     }
     canvas.finish()
 }
 
-/// What a mark is shown as, given [`Legend::bands`].
-fn colour(bands: &[(f32, [f32; 3])], mark: Mark) -> [f32; 3] {
-    match mark {
-        Mark::Undecided => UNDECIDED,
-        Mark::Undefined => UNDEFINED,
-        Mark::By(difference) => {
-            let difference = if difference.is_nan() { 1.0 } else { difference };
-            bands
-                .iter()
-                .rev()
-                .find(|&&(from, _)| difference > from)
-                .map_or([0.0; 3], |&(_, colour)| colour)
+impl Legend {
+    /// What a mark is shown as.
+    fn colour(self, mark: Mark) -> [f32; 3] {
+        match mark {
+            Mark::UNDECIDED => UNDECIDED,
+            Mark::UNDEFINED => UNDEFINED,
+            _ => {
+                let mut reached = self.decades().rev().filter(|&(decade, _)| mark.is_beyond(decade));
+                reached.next().map_or([0.0; 3], |(_, colour)| colour)
+            }
         }
     }
-}
 
-impl Legend {
-    /// The lower bound and the colour of each decade, upwards.
-    fn bands(self) -> impl DoubleEndedIterator<Item = (f32, [f32; 3])> {
+    /// The lower bound of each decade, as a power of ten, and its colour; upwards.
+    fn decades(self) -> impl DoubleEndedIterator<Item = (i32, [f32; 3])> {
         let decades = self.tolerance.log10().round() as i32;
         let cool = COOL
             .into_iter()
@@ -101,15 +113,14 @@ impl Legend {
             .enumerate()
             .map(move |(i, colour)| (decades + i as i32, colour));
         cool.chain(warm)
-            .map(|(decade, colour)| (10f32.powi(decade), colour))
     }
 
     /// What stands beside the picture: words, and their colour; sizes upwards.
     #[must_use]
     pub fn entries(self) -> Vec<(String, [f32; 3])> {
         let mut entries: Vec<_> = self
-            .bands()
-            .map(|(from, colour)| (format!("> {from:.0e}"), colour))
+            .decades()
+            .map(|(decade, colour)| (format!("> 1e{decade}"), colour))
             .collect();
         entries.push(("undecided".to_owned(), UNDECIDED));
         entries.push(("undefined".to_owned(), UNDEFINED));
@@ -121,12 +132,12 @@ impl Legend {
 struct Canvas {
     width: u32,
     height: u32,
-    pixels: Vec<[f32; 4]>,
+    pixels: Vec<[u8; 3]>,
 }
 
 impl Canvas {
     fn new(width: u32, height: u32) -> Self {
-        let pixels = vec![[0.0, 0.0, 0.0, 1.0]; width as usize * height as usize];
+        let pixels = vec![[0; 3]; width as usize * height as usize];
         Self {
             width,
             height,
@@ -134,14 +145,14 @@ impl Canvas {
         }
     }
 
-    fn set(&mut self, x: u32, y: u32, [r, g, b]: [f32; 3]) {
+    fn set(&mut self, x: u32, y: u32, colour: [u8; 3]) {
         if x < self.width && y < self.height {
-            self.pixels[y as usize * self.width as usize + x as usize] = [r, g, b, 1.0];
+            self.pixels[y as usize * self.width as usize + x as usize] = colour;
         }
     }
 
     /// A square with its lower left corner at (x, y).
-    fn fill(&mut self, x: u32, y: u32, side: u32, colour: [f32; 3]) {
+    fn fill(&mut self, x: u32, y: u32, side: u32, colour: [u8; 3]) {
         for dy in 0..side {
             for dx in 0..side {
                 self.set(x + dx, y + dy, colour);
@@ -155,14 +166,18 @@ impl Canvas {
             let rows = BASIC_FONTS.get(character).unwrap_or_default();
             for (row, bits) in rows.iter().enumerate() {
                 for bit in (0..GLYPH).filter(|bit| bits & (1 << bit) != 0) {
-                    self.set(x + column as u32 * GLYPH + bit, top - 1 - row as u32, INK);
+                    self.set(
+                        x + column as u32 * GLYPH + bit,
+                        top - 1 - row as u32,
+                        INK.map(quantise),
+                    );
                 }
             }
         }
     }
 
-    fn finish(self) -> Image {
-        Image::new(self.width, self.height, self.pixels)
+    fn finish(self) -> Shown {
+        Shown::new(self.width, self.height, self.pixels)
     }
 }
 
@@ -174,29 +189,33 @@ mod tests {
 
     #[test]
     fn each_decade_has_its_colour_and_equal_pixels_are_black() {
-        let bands: Vec<_> = LEGEND.bands().collect();
-        assert_eq!(colour(&bands, Mark::By(0.0)), [0.0; 3]);
-        assert_eq!(colour(&bands, Mark::By(0.9e-3)), COOL[3]);
-        assert_eq!(colour(&bands, Mark::By(1.1e-3)), WARM[0]);
-        assert_eq!(colour(&bands, Mark::By(0.5)), WARM[2]);
-        assert_eq!(colour(&bands, Mark::By(f32::NAN)), WARM[2]);
+        let colour = |difference| LEGEND.colour(Mark::by(difference));
+        assert_eq!(colour(0.0), [0.0; 3]);
+        assert_eq!(colour(1e-7), [0.0; 3]);
+        assert_eq!(colour(1.1e-7), COOL[0]);
+        assert_eq!(colour(1e-3), COOL[3], "what is the tolerance agrees");
+        assert_eq!(colour(1.1e-3), WARM[0]);
+        assert_eq!(colour(0.5), WARM[2]);
+        assert_eq!(colour(7.0), WARM[2]);
+        assert_eq!(colour(f32::NAN), WARM[2]);
+        assert_eq!(LEGEND.colour(Mark::UNDECIDED), UNDECIDED);
+        let in_bits = Legend { tolerance: 1e-6 };
+        assert_eq!(in_bits.colour(Mark::by(1.1e-10)), COOL[0]);
+        assert_eq!(in_bits.colour(Mark::by(1.0)), WARM[2]);
     }
 
     #[test]
     fn the_picture_stands_above_a_legend_that_names_the_scale() {
-        let marks = vec![Mark::By(1.0); 4];
+        let marks = vec![Mark::by(1.0); 4];
         let picture = difference([2, 2], &marks, LEGEND);
         let [width, height] = picture.size();
         assert!(width >= 64 && height > 2 + GLYPH);
         assert_eq!(
             picture.get(0, height - 1),
-            [1.0, 0.1, 0.1, 1.0],
+            WARM[2].map(quantise),
             "the upper left pixel"
         );
-        assert!(
-            picture.pixels().iter().any(|p| p[..3] == INK),
-            "words are written"
-        );
+        assert!(picture.pixels().contains(&INK.map(quantise)), "words are written");
         let names: Vec<_> = LEGEND.entries().into_iter().map(|(name, _)| name).collect();
         assert!(names.contains(&"> 1e-3".to_owned()), "{names:?}");
     }

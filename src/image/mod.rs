@@ -1,4 +1,4 @@
-//! Pictures: linear f32 RGBA in memory, PNG and EXR in files.
+//! Pictures: linear f32 RGBA in memory, PNG and EXR in files; and as they are shown, in 8 bits.
 //!
 //! Rows run upwards, as fragment coordinates do: row 0 is the bottom. [`file`] is the one place that
 //! flips rows and quantises.
@@ -6,11 +6,13 @@
 mod file;
 mod legend;
 mod noise;
+mod shown;
 
-pub use file::{ImageError, encode, read};
+pub use file::{ImageError, encode, encode_shown, read, read_shown};
 pub use legend::{Legend, Mark, difference};
 pub use noise::noise;
 pub(crate) use noise::pcg;
+pub use shown::Shown;
 
 use serde::{Deserialize, Serialize};
 
@@ -42,6 +44,25 @@ impl Image {
             height,
             pixels,
         }
+    }
+
+    /// A picture of bands of rows of one width, from the bottom up. Each is given up once it is taken over.
+    ///
+    /// # Panics
+    /// If there is none, or the widths differ.
+    #[must_use]
+    pub fn of_bands(bands: Vec<Self>) -> Self {
+        let height: u32 = bands.iter().map(|band| band.height).sum();
+        let mut bands = bands.into_iter();
+        let mut whole = bands.next().expect("a picture has a band");
+        let more = (height - whole.height) as usize * whole.width as usize;
+        whole.pixels.reserve_exact(more);
+        for band in bands {
+            assert_eq!(band.width, whole.width);
+            whole.pixels.extend_from_slice(&band.pixels);
+        }
+        whole.height = height;
+        whole
     }
 
     /// Width and height in pixels.

@@ -21,7 +21,6 @@ use crate::compare::MAX_DIFFERING;
 use crate::eval::Program;
 use crate::export;
 use crate::frame::Frame;
-use crate::image::Image;
 use crate::scene::{Moment, Scene};
 
 /// What explains a wrong picture.
@@ -151,16 +150,10 @@ impl Suspects {
         })
     }
 
-    /// The mistake, or the two, that paint what the `student`'s shader does: `wrong`, painted in that frame in f64. Where no single one
+    /// The mistake, or the two, that paint what the `student`'s shader does in that frame, in f64. Where no single one
     /// does, two at once are looked for, for as long as `patience` says at most.
     #[must_use]
-    pub fn recognise(
-        &self,
-        student: &Program,
-        wrong: &Image,
-        frame: &Frame,
-        patience: Duration,
-    ) -> Option<Vec<Named>> {
+    pub fn recognise(&self, student: &Program, frame: &Frame, patience: Duration) -> Option<Vec<Named>> {
         let small = paint(student, &self.small)?;
         let pixels = small.pixels().len();
         let rights = self.right.iter().filter_map(|right| right.picture(&self.small));
@@ -168,7 +161,7 @@ impl Suspects {
         if differing < ENOUGH
             && let Some(finer) = self.finer(frame)
         {
-            return finer.recognise(student, wrong, frame, patience);
+            return finer.recognise(student, frame, patience);
         }
         if differing < FEW || differing as f64 <= pixels as f64 * MAX_DIFFERING {
             return None;
@@ -179,7 +172,7 @@ impl Suspects {
             frame: &self.small,
         };
         let confirmed = |suspect: &Suspect, others: &[&Suspect]| {
-            let mut named = self.confirm(suspect, student, wrong, frame)?;
+            let mut named = self.confirm(suspect, student, frame)?;
             if let [single] = &mut named[..] {
                 *single = single.or(others);
             }
@@ -241,24 +234,13 @@ impl Suspects {
     }
 
     /// The names, if a larger picture is explained as well.
-    fn confirm(
-        &self,
-        suspect: &Suspect,
-        student: &Program,
-        wrong: &Image,
-        frame: &Frame,
-    ) -> Option<Vec<Named>> {
+    fn confirm(&self, suspect: &Suspect, student: &Program, frame: &Frame) -> Option<Vec<Named>> {
         let large = smaller(frame, u32::MAX, LARGE_WORK / work(&self.scene));
-        let painted;
-        let wrong = if large.size == frame.size {
-            wrong
-        } else {
-            painted = paint(student, &large)?;
-            &painted
-        };
+        let wrong = paint(student, &large)?;
         let right = self.right.first()?.made.paint(&large)?;
-        let limit = left_over(differing(wrong, &right), wrong.pixels().len());
-        let left = differing(wrong, &suspect.made.paint(&large)?);
+        let limit = left_over(differing(&wrong, &right), wrong.pixels().len());
+        drop(right);
+        let left = differing(&wrong, &suspect.made.paint(&large)?);
         (left <= limit).then(|| suspect.mistakes.clone())
     }
 }

@@ -53,7 +53,7 @@ pub(super) fn paint(program: &Program, frame: &Frame) -> Option<Image> {
         deadline: Some(Instant::now() + PATIENCE),
         ..Settings::default()
     };
-    Some(program.paint(frame, &settings).ok()?.painting.image())
+    Some(program.picture(frame, frame.rows(), &settings).ok()?.image)
 }
 
 /// A tracer with mistakes in it. Its picture is painted once, when it is first asked for.

@@ -77,6 +77,18 @@ pub struct Record {
     pub seconds: Seconds,
 }
 
+impl Record {
+    /// Why the toolchain question was not asked where others were.
+    pub(super) fn toolchain_unasked(&self) -> Option<&'static str> {
+        let others = self.maths.is_some() || self.rounding.is_some();
+        (others && self.toolchain.is_none()).then_some(if self.seconds.gpu.is_some() {
+            "since the driver was free to rearrange arithmetic"
+        } else {
+            "since the shader ran on the CPU and on no GPU"
+        })
+    }
+}
+
 /// What explains a wrong picture.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Mistake {

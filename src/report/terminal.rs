@@ -39,6 +39,9 @@ pub fn line(record: &Record) -> String {
     if !same.is_empty() {
         lines.push(format!("{}: no difference", list(&same)));
     }
+    if let Some(why) = record.toolchain_unasked() {
+        lines.push(format!("toolchain: not asked, {why}"));
+    }
     if let Some(picture) = &record.picture {
         lines.push(format!("picture: {}", numbers(picture)));
     }

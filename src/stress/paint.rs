@@ -80,8 +80,10 @@ pub(super) fn on_gpu(
     frame: &Frame,
     float: FloatMode,
 ) -> Result<(Vec<[f64; 3]>, String), Failure> {
-    let drawn = worker.draw_and_watch(float.lower(checked), frame.clone(), float, |_| false)?;
-    let colors = drawn.image.pixels().iter();
+    let drawn = worker.draw_unwatched(float.lower(checked), frame.clone(), float)?;
+    let device = drawn.device.clone();
+    let picture = drawn.image();
+    let colors = picture.pixels().iter();
     let colors = colors.map(|&[r, g, b, _]| [r, g, b].map(f64::from));
-    Ok((colors.collect(), drawn.device))
+    Ok((colors.collect(), device))
 }

@@ -15,6 +15,7 @@ mod light;
 mod material;
 mod ray;
 mod real;
+mod redraw;
 mod sampler;
 mod seen;
 mod shape;
@@ -24,6 +25,8 @@ mod style;
 mod tests;
 mod tile;
 mod world;
+
+use std::ops::Range;
 
 use rayon::prelude::*;
 
@@ -97,11 +100,16 @@ impl<T: Real> Tracer<T> {
 
     /// The whole picture, unclamped; `row_done` is called once for each row, from any thread.
     pub fn picture(&self, row_done: impl Fn() + Sync) -> Image {
-        let [width, height] = self.film.size;
+        self.rows(0..self.film.size[1], row_done)
+    }
+
+    /// These rows of it; `row_done` as for all.
+    pub fn rows(&self, rows: Range<u32>, row_done: impl Fn() + Sync) -> Image {
+        let (width, height) = (self.film.size[0], rows.len() as u32);
         let mut pixels = vec![[0.0, 0.0, 0.0, 1.0]; width as usize * height as usize];
         let bands = pixels.par_chunks_mut(width as usize * tile::SIDE as usize);
         bands.enumerate().for_each(|(band, pixels)| {
-            self.band(band as u32 * tile::SIDE, pixels);
+            self.band(rows.start + band as u32 * tile::SIDE, pixels);
             (0..pixels.len() / width as usize).for_each(|_| row_done());
         });
         Image::new(width, height, pixels)

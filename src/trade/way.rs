@@ -154,9 +154,10 @@ impl Workshop<'_> {
             } => {
                 let lowered = float.lower(&self.shaders[*shader].checked);
                 let worker = &mut self.workers[*worker].1;
-                let drawn = worker.draw_and_watch(lowered, self.frame.clone(), *float, |_| false);
+                let drawn = worker.draw_unwatched(lowered, self.frame.clone(), *float);
                 let drawn = drawn.ok()?;
-                Some((drawn.image, drawn.draw))
+                let painting = drawn.draw;
+                Some((drawn.image(), painting))
             }
         }
     }

@@ -8,14 +8,9 @@ use crate::compare::{Standing, grouped};
 use crate::diagnostic::Diagnostic;
 use crate::eval::{Program, Told, What};
 use crate::explain::{Explanation, digits, explain};
+use crate::glsl::Code;
 use crate::image::Image;
 use crate::source::Span;
-
-/// Float32 is not enough, and this is where.
-const LOST: &str = "W0602";
-
-/// A colour is NaN or infinite.
-const NOT_FINITE: &str = "W0603";
 
 /// So many of the pixels that differ are asked for their cause.
 const ASKED: usize = 5;
@@ -24,7 +19,7 @@ const ASKED: usize = 5;
 pub(super) fn cause(program: &Program, case: &Case, until: Instant, asked: &Asked) -> Option<Diagnostic> {
     let deadline = until.min(Instant::now() + case.timeout);
     let mut named = BTreeMap::<u32, (u64, Diagnostic)>::new();
-    for pixel in some(asked, case.frame.size) {
+    for pixel in some(asked, case.frame.size, ASKED) {
         let explained = explain(program, case.frame, pixel, Some(deadline));
         let told = explained
             .ok()
@@ -37,62 +32,82 @@ pub(super) fn cause(program: &Program, case: &Case, until: Instant, asked: &Aske
     most.map(|(_, diagnostic)| diagnostic)
 }
 
-/// Where the first colour that is no number, or infinite, comes from; none if all are finite.
-pub(super) fn not_finite(
-    program: &Program,
-    case: &Case,
-    until: Instant,
-    actual: &Image,
-) -> Option<Diagnostic> {
-    let is_bad = |pixel: &[f32; 4]| pixel[..3].iter().any(|part| !part.is_finite());
-    let count = actual.pixels().iter().filter(|pixel| is_bad(pixel)).count() as u64;
-    let first = actual.pixels().iter().position(is_bad)?;
-    let width = case.frame.size[0] as usize;
-    let [x, y] = [(first % width) as u32, (first / width) as u32];
-    let deadline = until.min(Instant::now() + case.timeout);
-    let explained = explain(program, case.frame, [x, y], Some(deadline)).ok()?;
-    let step = explained.not_finite.map(|at| &explained.steps[at])?;
-    let value = step.single.iter().flatten().find_map(|told| match told {
-        Told::Float(value) if !value.is_finite() => Some(digits(*value, true)),
-        _ => None,
-    });
-    let message = format!(
-        "{} in {} {}, first at ({x}, {y}), where {} comes of this",
-        if count == 1 {
-            "a colour that is not finite"
-        } else {
-            "colours that are not finite"
-        },
-        grouped(count),
-        if count == 1 { "pixel" } else { "pixels" },
-        value.unwrap_or_default(),
-    );
-    let span = explained.plot.event(step.event).at.span;
-    Some(
-        Diagnostic::warning(NOT_FINITE, message)
-            .at(span)
-            .note(hint([x, y])),
-    )
+/// Colours that are no numbers, or infinite.
+#[derive(Debug, Default)]
+pub(super) struct NotFinite {
+    /// In how many pixels.
+    count: u64,
+    /// The first of them.
+    first: Option<[u32; 2]>,
 }
 
-/// Some of the pixels that differ, or that hang by a hair where none does, from all over the picture.
-fn some(asked: &Asked, size: [u32; 2]) -> Vec<[u32; 2]> {
+impl NotFinite {
+    /// Looks at a band that begins at that row.
+    pub(super) fn look(&mut self, band: &Image, row: u32) {
+        let is_bad = |pixel: &[f32; 4]| pixel[..3].iter().any(|part| !part.is_finite());
+        let bad = band.pixels().iter().enumerate();
+        let mut bad = bad.filter(|(_, pixel)| is_bad(pixel)).map(|(at, _)| at as u32);
+        if let Some(at) = bad.next() {
+            let width = band.size()[0];
+            self.first.get_or_insert([at % width, row + at / width]);
+            self.count += 1 + bad.count() as u64;
+        }
+    }
+
+    /// Where the first comes from; none if all are finite, or that could not be found.
+    pub(super) fn told(&self, program: &Program, case: &Case, until: Instant) -> Option<Diagnostic> {
+        let [x, y] = self.first?;
+        let count = self.count;
+        let deadline = until.min(Instant::now() + case.timeout);
+        let explained = explain(program, case.frame, [x, y], Some(deadline)).ok()?;
+        let step = explained.not_finite.map(|at| &explained.steps[at])?;
+        let value = step.single.iter().flatten().find_map(|told| match told {
+            Told::Float(value) if !value.is_finite() => Some(digits(*value, true)),
+            _ => None,
+        });
+        let message = format!(
+            "{} in {} {}, first at ({x}, {y}), where {} comes of this",
+            if count == 1 {
+                "a colour that is not finite"
+            } else {
+                "colours that are not finite"
+            },
+            grouped(count),
+            if count == 1 { "pixel" } else { "pixels" },
+            value.unwrap_or_default(),
+        );
+        let span = explained.plot.event(step.event).at.span;
+        Some(
+            Diagnostic::warning(Code::NotFinite.as_str(), message)
+                .at(span)
+                .note(hint([x, y])),
+        )
+    }
+}
+
+/// At most so many of the pixels that differ, or that hang by a hair where none does, from all over the picture.
+pub(super) fn some(asked: &Asked, size: [u32; 2], most: usize) -> Vec<[u32; 2]> {
     let width = size[0] as usize;
-    let of = |standing| -> Vec<usize> {
+    let of = |standing| {
         let standings = asked.standings.iter().enumerate();
         standings
-            .filter(|&(_, &own)| own == standing)
+            .filter(move |&(_, &own)| own == standing)
             .map(|(at, _)| at)
-            .collect()
     };
-    let mut pixels = of(Standing::Differs);
-    if pixels.is_empty() {
-        pixels = of(Standing::Undecided);
-    }
-    let count = pixels.len().min(ASKED);
-    let chosen = (0..count).map(|at| pixels[(2 * at + 1) * pixels.len() / (2 * count)]);
+    let told = [Standing::Differs, Standing::Undecided];
+    let told = told.into_iter().find(|&standing| of(standing).next().is_some());
+    let Some(told) = told else {
+        return Vec::new();
+    };
+    let all = of(told).count();
+    let count = all.min(most);
+    let mut left = of(told).enumerate();
+    let chosen = (0..count).filter_map(|at| {
+        let chosen = (2 * at + 1) * all / (2 * count);
+        left.find(|&(number, _)| number == chosen)
+    });
     chosen
-        .map(|at| [(at % width) as u32, (at / width) as u32])
+        .map(|(_, at)| [(at % width) as u32, (at / width) as u32])
         .collect()
 }
 
@@ -119,7 +134,9 @@ fn diagnostic(explanation: &Explanation<'_>, [x, y]: [u32; 2]) -> Option<(Span, 
     let span = event.at.span;
     Some((
         span,
-        Diagnostic::warning(LOST, message).at(span).note(hint([x, y])),
+        Diagnostic::warning(Code::LostDigits.as_str(), message)
+            .at(span)
+            .note(hint([x, y])),
     ))
 }
 

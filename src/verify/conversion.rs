@@ -8,8 +8,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::cpu::{Limits, Single};
-use super::{ALL_PICTURES, Case, Failure, PATIENCE, join};
+use super::cpu::{Evaluator, Single};
+use super::{ALL, Case, Failure, PATIENCE, join};
 use crate::compare::{self, Answer};
 use crate::eval::{self, Program};
 use crate::frame::Frame;
@@ -162,8 +162,8 @@ pub fn prove(
             Against::StrictRun => {
                 let lowered = FloatMode::Strict.lower(checked);
                 worker
-                    .draw_and_watch(lowered, frame.clone(), FloatMode::Strict, |_| false)?
-                    .image
+                    .draw_unwatched(lowered, frame.clone(), FloatMode::Strict)?
+                    .image()
             }
         };
         let standings = compare::toolchain(&expected, painted, &single.undefined);
@@ -183,12 +183,7 @@ fn evaluate(
     stop: &AtomicBool,
 ) -> Result<Vec<Single>, eval::Failure> {
     let program = Program::new(checked)?;
-    let single = |frame| {
-        let limits = Limits {
-            each: timeout * PATIENCE,
-            until: Instant::now() + timeout * ALL_PICTURES,
-            stop,
-        };
+    let single = |frame: &Frame| {
         let case = Case {
             checked,
             expected: None,
@@ -197,7 +192,8 @@ fn evaluate(
             float: FloatMode::Strict,
             timeout,
         };
-        Single::paint(&program, &case, limits)
+        let until = Instant::now() + timeout * ALL;
+        Evaluator::new(&program, &case, timeout * PATIENCE, until, stop).single(&frame.rows())
     };
     frames.iter().map(single).collect()
 }

@@ -1,40 +1,44 @@
 //! What the evaluator says of a shader: its picture in f32 and in f64, and which pixels do what GLSL leaves undefined.
 
+use std::cell::Cell;
+use std::ops::Range;
 use std::sync::atomic::AtomicBool;
-use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 
-use super::Case;
+use super::{Case, PATIENCE};
 use crate::eval::{
-    Failure, Fault, Jittered, Number, Observations, Observed, Painted, Program, Refusal, Seed, Settings,
-    Variant,
+    Failure, Fault, Jittered, Number, Observations, Observed, Pictured, Program, Seed, Settings, Variant,
 };
 use crate::image::Image;
 
-/// When to give up.
-#[derive(Clone, Copy)]
-pub(super) struct Limits<'a> {
-    /// For each picture.
-    pub(super) each: Duration,
-    /// For all of them.
-    pub(super) until: Instant,
+/// Paints a shader, one band of rows after the other.
+pub(super) struct Evaluator<'a> {
+    program: &'a Program,
+    case: &'a Case<'a>,
     /// Set when nobody wants the pictures any more.
-    pub(super) stop: &'a AtomicBool,
+    stop: &'a AtomicBool,
+    /// When all of them must be there.
+    until: Instant,
+    /// For the pictures in f32 and in f64, each with the usual choices and others.
+    single: [Allowance; 2],
+    double: [Allowance; 2],
+    /// For all that are shaken.
+    shaken: Allowance,
 }
 
-/// Told the most rounds of loops that a pixel ran in f32, as soon as they are known.
-pub(super) type Counted = Sender<u32>;
+/// How long a picture may still take, all bands together.
+struct Allowance(Cell<Duration>);
 
-/// What is known of a shader, beside its picture in f32.
-pub(super) struct Cpu {
+/// What the evaluator painted of a band.
+pub(super) struct Band {
+    /// In f32, with the bits of a strict GPU run.
+    pub(super) single: Image,
     /// In f64, rounded once at the end.
     pub(super) double: Image,
     /// Pixels whose colour hangs on what GLSL leaves undefined, in either.
     pub(super) undefined: Vec<bool>,
     /// What was noted in f32.
-    pub(super) faults: Vec<Observed>,
-    /// In how many pixels Mesa before 23 would end the loops.
-    pub(super) beyond_cap: u64,
+    pub(super) noted: Observations,
 }
 
 /// A picture in f32, and what is known of it.
@@ -46,124 +50,123 @@ pub(super) struct Single {
     pub(super) beyond_cap: u64,
 }
 
-impl Single {
-    /// Paints until `limits` end it, with the bits of a strict GPU run.
-    pub(super) fn paint(program: &Program, case: &Case, limits: Limits) -> Result<Self, Failure> {
-        let painted = paint::<f32>(program, case, limits, Variant::Observed)?;
-        let beyond_cap = painted.observations.beyond_cap;
-        let (image, undefined) = settled(program, case, limits, painted);
-        Ok(Self {
-            image,
+impl<'a> Evaluator<'a> {
+    /// Each picture may take that long, but all must be there by `until`.
+    pub(super) fn new(
+        program: &'a Program,
+        case: &'a Case<'a>,
+        each: Duration,
+        until: Instant,
+        stop: &'a AtomicBool,
+    ) -> Self {
+        let pair = || [Allowance::new(each), Allowance::new(each)];
+        Self {
+            program,
+            case,
+            stop,
+            until,
+            single: pair(),
+            double: pair(),
+            shaken: Allowance::new(case.timeout * PATIENCE),
+        }
+    }
+
+    pub(super) fn program(&self) -> &'a Program {
+        self.program
+    }
+
+    /// Paints some rows in f32 alone.
+    pub(super) fn single(&self, rows: &Range<u32>) -> Result<Single, Failure> {
+        let painted = self.picture::<f32>(rows, Variant::Observed, &self.single[0])?;
+        let undefined = self.dependent::<f32>(rows, &painted, &self.single[1]);
+        Ok(Single {
+            image: painted.image,
             undefined,
-            beyond_cap,
+            beyond_cap: painted.observations.beyond_cap,
+        })
+    }
+
+    /// Paints some rows; `counted` is told the most rounds of loops that a pixel ran in f32, as soon as they are known.
+    pub(super) fn paint(&self, rows: &Range<u32>, counted: impl FnOnce(u32)) -> Result<Band, Failure> {
+        let single = self.picture::<f32>(rows, Variant::Observed, &self.single[0])?;
+        counted(single.observations.most_rounds);
+        let mut undefined = self.dependent::<f32>(rows, &single, &self.single[1]);
+        let double = self.picture::<f64>(rows, Variant::Observed, &self.double[0])?;
+        let also = self.dependent::<f64>(rows, &double, &self.double[1]);
+        for (undefined, also) in undefined.iter_mut().zip(also) {
+            *undefined |= also;
+        }
+        Ok(Band {
+            single: single.image,
+            double: double.image,
+            undefined,
+            noted: single.observations,
+        })
+    }
+
+    /// The picture in f64 with every operation moved by a unit in the last place or none, at least where it is wanted; none if there is no
+    /// time.
+    pub(super) fn shaken(&self, rows: &Range<u32>, seed: u64, wanted: &[bool]) -> Option<Image> {
+        self.shaken.spend(self.until, |deadline| {
+            let settings = Settings::<Jittered> {
+                variant: Variant::Plain,
+                noise: Seed(seed),
+                deadline: Some(deadline),
+                wanted: Some(wanted),
+                ..Settings::default()
+            };
+            let painted = self.program.picture(self.case.frame, rows.clone(), &settings);
+            painted.ok().map(|painted| painted.image)
+        })
+    }
+
+    /// Of the pixels that met what GLSL leaves undefined, those that are painted otherwise where another choice is taken. Where there is no
+    /// time to find out, they all may.
+    fn dependent<N: Number>(&self, rows: &Range<u32>, usual: &Pictured, allowance: &Allowance) -> Vec<bool> {
+        let mut undefined = usual.undefined.clone();
+        let is_lonely = |observed: &Observed| observed.site.fault == Fault::LonelyDerivative;
+        // No choice stands for what a derivative might be.
+        if !undefined.contains(&true) || usual.observations.faults.iter().any(is_lonely) {
+            return undefined;
+        }
+        let Ok(other) = self.picture::<N>(rows, Variant::Otherwise, allowance) else {
+            return undefined;
+        };
+        let pairs = usual.image.pixels().iter().zip(other.image.pixels());
+        for (undefined, (usual, other)) in undefined.iter_mut().zip(pairs) {
+            *undefined &= usual.map(f32::to_bits) != other.map(f32::to_bits);
+        }
+        undefined
+    }
+
+    fn picture<N: Number>(
+        &self,
+        rows: &Range<u32>,
+        variant: Variant,
+        allowance: &Allowance,
+    ) -> Result<Pictured, Failure> {
+        allowance.spend(self.until, |deadline| {
+            let settings = Settings::<N> {
+                variant,
+                deadline: Some(deadline),
+                interrupt: Some(self.stop),
+                ..Settings::default()
+            };
+            self.program.picture(self.case.frame, rows.clone(), &settings)
         })
     }
 }
 
-impl Cpu {
-    /// Paints until `limits` end it. The picture in f32 has the bits of a strict GPU run.
-    pub(super) fn paint(
-        program: &Result<Program, Refusal>,
-        case: &Case,
-        limits: Limits,
-        counted: Counted,
-    ) -> Result<(Image, Self), Failure> {
-        let program = program.as_ref().map_err(|&refusal| refusal)?;
-        let single = paint::<f32>(program, case, limits, Variant::Observed)?;
-        // Perhaps nobody asks.
-        let _ = counted.send(single.observations.most_rounds);
-        drop(counted);
-        let Observations {
-            faults, beyond_cap, ..
-        } = single.observations.clone();
-        let (single, mut undefined) = settled(program, case, limits, single);
-        let double = paint::<f64>(program, case, limits, Variant::Observed)?;
-        let (double, also) = settled(program, case, limits, double);
-        for (undefined, also) in undefined.iter_mut().zip(also) {
-            *undefined |= also;
-        }
-        let cpu = Self {
-            double,
-            undefined,
-            faults,
-            beyond_cap,
-        };
-        Ok((single, cpu))
+impl Allowance {
+    fn new(time: Duration) -> Self {
+        Self(Cell::new(time))
     }
-}
 
-/// The picture in f64 with every operation moved by a unit in the last place or none; none if there is no time.
-pub(super) fn shaken(program: &Program, case: &Case, until: Instant, seed: u64) -> Option<Image> {
-    let settings = Settings::<Jittered> {
-        variant: Variant::Plain,
-        noise: Seed(seed),
-        deadline: Some(until.min(Instant::now() + case.timeout)),
-        ..Settings::default()
-    };
-    let painted = program.paint(case.frame, &settings).ok()?;
-    Some(painted.painting.image())
-}
-
-/// A picture, and the pixels whose colour depends on what GLSL leaves undefined. Where it is met and there is no time to find out, they
-/// all may. The painting itself is larger, and given up here.
-fn settled<N: Number>(
-    program: &Program,
-    case: &Case,
-    limits: Limits,
-    painted: Painted<N>,
-) -> (Image, Vec<bool>) {
-    let image = painted.painting.image();
-    let undefined = dependent(program, case, limits, &painted, &image);
-    drop(painted);
-    (image, undefined)
-}
-
-/// Of the pixels that are marked, those that are painted otherwise where another choice is taken.
-fn dependent<N: Number>(
-    program: &Program,
-    case: &Case,
-    limits: Limits,
-    painted: &Painted<N>,
-    usual: &Image,
-) -> Vec<bool> {
-    let marks: Vec<bool> = marks(painted).collect();
-    if !marks.contains(&true) {
-        return marks;
+    /// Does something that ends at a deadline, which is `until` at the latest; what it took is gone.
+    fn spend<T>(&self, until: Instant, work: impl FnOnce(Instant) -> T) -> T {
+        let start = Instant::now();
+        let done = work(until.min(start + self.0.get()));
+        self.0.set(self.0.get().saturating_sub(start.elapsed()));
+        done
     }
-    let Ok(other) = paint::<N>(program, case, limits, Variant::Otherwise) else {
-        return marks;
-    };
-    let is_lonely = |observed: &Observed| observed.site.fault == Fault::LonelyDerivative;
-    if painted.observations.faults.iter().any(is_lonely) {
-        // No choice stands for what a derivative might be.
-        return marks;
-    }
-    let other = other.painting.image();
-    let pairs = usual.pixels().iter().zip(other.pixels());
-    let moved = pairs.map(|(usual, other)| usual.map(f32::to_bits) != other.map(f32::to_bits));
-    marks
-        .into_iter()
-        .zip(moved)
-        .map(|(marked, moved)| marked && moved)
-        .collect()
-}
-
-fn paint<N: Number>(
-    program: &Program,
-    case: &Case,
-    limits: Limits,
-    variant: Variant,
-) -> Result<Painted<N>, Failure> {
-    let settings = Settings {
-        variant,
-        deadline: Some(limits.until.min(Instant::now() + limits.each)),
-        interrupt: Some(limits.stop),
-        ..Settings::default()
-    };
-    program.paint(case.frame, &settings)
-}
-
-fn marks<N: Number>(painted: &Painted<N>) -> impl Iterator<Item = bool> {
-    let [width, height] = painted.painting.size();
-    (0..height).flat_map(move |y| (0..width).map(move |x| painted.painting.is_undefined(x, y)))
 }

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 use std::mem::size_of;
+use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
@@ -10,6 +11,9 @@ use crate::image::Image;
 use crate::scene::{Moment, Scene};
 use crate::trace::{Hull, Styles, Tracer};
 
+/// Of pictures of more pixels nothing is kept, for they are many times this: one of 1920×1080 takes 32 MB.
+const MOST_PIXELS: u32 = 1 << 21;
+
 /// So many hulls of a scene are kept: one for each pixel of a picture of 640×360 in either style, and room to spare.
 const MOST_HULLS: usize = 1 << 19;
 
@@ -17,30 +21,42 @@ const MOST_HULLS: usize = 1 << 19;
 type Row = HashMap<(u32, Styles), Hull>;
 
 /// The answers of the tracer to a scene in one frame. They are worked out when they are first asked for, and any thread may ask: what many
-/// shaders are compared with is traced once.
+/// shaders are compared with is traced once, unless it is too large to be kept.
 #[derive(Debug)]
 pub struct Expected {
     scene: Scene,
     moment: Moment,
     tracer: Tracer<f64>,
-    picture: OnceLock<Arc<Image>>,
+    /// Bands of the picture, by their first rows; none if it is too large.
+    bands: HashMap<u32, OnceLock<Arc<Image>>>,
+    /// How many hulls may be kept.
+    room: usize,
     /// By rows from the bottom, so that threads seldom wait for each other.
     hulls: Box<[Mutex<Row>]>,
     kept: AtomicUsize,
 }
 
 impl Expected {
-    /// Of a scene at the moment of that frame, in the size of its film.
+    /// Of a scene at the moment and in the size of that frame.
     #[must_use]
-    pub fn new(scene: Scene, frame: &Frame) -> Self {
+    pub fn new(mut scene: Scene, frame: &Frame) -> Self {
+        scene.film.size = frame.size;
         let moment = Moment {
             frame: frame.frame,
             time: f64::from(frame.time),
         };
+        let [width, height] = frame.size;
+        let is_kept = width.saturating_mul(height) <= MOST_PIXELS;
+        let bands = frame
+            .bands()
+            .filter(|_| is_kept)
+            .map(|rows| (rows.start, OnceLock::new()))
+            .collect();
         Self {
             tracer: Tracer::at(&scene, moment),
-            picture: OnceLock::new(),
-            hulls: (0..scene.film.size[1]).map(|_| Mutex::default()).collect(),
+            bands,
+            room: if is_kept { MOST_HULLS } else { 0 },
+            hulls: (0..height).map(|_| Mutex::default()).collect(),
             kept: AtomicUsize::new(0),
             scene,
             moment,
@@ -56,10 +72,11 @@ impl Expected {
     /// How much memory its answers take so far, in bytes, roughly.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        let picture = self.picture.get().map_or(0, |image| image.pixels().len());
+        let bands = self.bands.values().filter_map(OnceLock::get);
+        let pixels: usize = bands.map(|band| band.pixels().len()).sum();
         // A table is between half and seven eighths full.
         let hulls = 2 * self.kept.load(Ordering::Relaxed);
-        picture * size_of::<[f32; 4]>() + hulls * size_of::<((u32, Styles), Hull)>()
+        pixels * size_of::<[f32; 4]>() + hulls * size_of::<((u32, Styles), Hull)>()
     }
 
     /// The scene with everything where it is at the moment.
@@ -71,10 +88,13 @@ impl Expected {
         &self.tracer
     }
 
-    /// The reference picture. Who comes while it is traced waits for it, which no thread of rayon's may do.
-    pub(super) fn picture(&self) -> Arc<Image> {
-        let traced = self.picture.get_or_init(|| Arc::new(self.tracer.picture(|| ())));
-        Arc::clone(traced)
+    /// A band of the reference picture. Who comes while it is traced waits for it, which no thread of rayon's may do.
+    pub(super) fn rows(&self, rows: &Range<u32>) -> Arc<Image> {
+        let trace = || Arc::new(self.tracer.rows(rows.clone(), || ()));
+        match self.bands.get(&rows.start) {
+            Some(band) => Arc::clone(band.get_or_init(trace)),
+            None => trace(),
+        }
     }
 
     /// [`Tracer::hull`]
@@ -87,7 +107,7 @@ impl Expected {
             return hull;
         }
         let hull = self.tracer.hull(x, y, styles);
-        if self.kept.load(Ordering::Relaxed) < MOST_HULLS && row().insert((x, styles), hull).is_none() {
+        if self.kept.load(Ordering::Relaxed) < self.room && row().insert((x, styles), hull).is_none() {
             self.kept.fetch_add(1, Ordering::Relaxed);
         }
         hull
@@ -106,26 +126,38 @@ mod tests {
                     [[sphere]]\ncenter = [0.0, 0.0, -6.0]\nradius = 1.5\n\
                     material = { model = \"lambert\", color = [1.0, 1.0, 0.0] }\n";
         let file = files.add(File::new("s", text));
-        let mut scene = scene::parse(&files, file).unwrap();
-        scene.film.size = size;
-        Expected::new(scene, &Frame::default())
+        let frame = Frame {
+            size,
+            ..Frame::default()
+        };
+        Expected::new(scene::parse(&files, file).unwrap(), &frame)
     }
 
     #[test]
-    fn a_picture_is_traced_once_for_all_who_ask() {
+    fn a_band_is_traced_once_for_all_who_ask() {
         let expected = expected([64, 36]);
         assert_eq!(expected.bytes(), 0);
-        let pictures: Vec<_> = std::thread::scope(|scope| {
-            let asking: Vec<_> = (0..4).map(|_| scope.spawn(|| expected.picture())).collect();
+        let rows = 0..36;
+        let bands: Vec<_> = std::thread::scope(|scope| {
+            let asking: Vec<_> = (0..4).map(|_| scope.spawn(|| expected.rows(&rows))).collect();
             asking.into_iter().map(|asked| asked.join().unwrap()).collect()
         });
-        assert!(
-            pictures
-                .iter()
-                .all(|picture| Arc::ptr_eq(picture, &expected.picture()))
-        );
-        assert_eq!(*expected.picture(), expected.tracer.picture(|| ()));
+        let band = expected.rows(&rows);
+        assert!(bands.iter().all(|other| Arc::ptr_eq(other, &band)));
+        assert_eq!(*band, expected.tracer.picture(|| ()));
         assert_eq!(expected.bytes(), 64 * 36 * 16);
+    }
+
+    #[test]
+    fn nothing_is_kept_of_a_large_picture() {
+        let expected = expected([1 << 15, 65]);
+        let rows = 64..65;
+        assert_eq!(expected.rows(&rows), expected.rows(&rows));
+        assert_eq!(
+            expected.hull(0, 64, Styles::Alike),
+            expected.tracer.hull(0, 64, Styles::Alike)
+        );
+        assert_eq!(expected.bytes(), 0);
     }
 
     #[test]

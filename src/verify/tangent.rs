@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use crate::diagnostic::Diagnostic;
 use crate::glsl::Code;
-use crate::image::{Image, quantise};
+use crate::image::Shown;
 use crate::scene::{Projection, Scene, Shape};
 use crate::source::Span;
 
@@ -33,9 +33,8 @@ pub(super) struct Trap {
     width: f64,
 }
 
-/// The spheres of a scene that stands still whose edge is on the screen, and wrong there: as reckoned, and as the shader paints it in f32 and
-/// in f64. The widest band comes first.
-pub(super) fn traps(scene: &Scene, single: &Image, double: &Image) -> Vec<Trap> {
+/// The spheres of a scene that stands still whose edge may come out wrong, as reckoned. The widest band comes first.
+pub(super) fn suspected(scene: &Scene) -> Vec<Trap> {
     let view = View::new(scene);
     let spheres = scene.objects.iter().filter_map(|object| match object.shape {
         Shape::Sphere { center, radius } => Some((DVec3::from_array(center), radius)),
@@ -43,9 +42,16 @@ pub(super) fn traps(scene: &Scene, single: &Image, double: &Image) -> Vec<Trap> 
     });
     let mut traps: Vec<_> = spheres
         .filter_map(|(center, radius)| view.trap(center, radius))
-        .filter(|trap| trap.width >= NARROWEST && view.shows(trap, single, double))
+        .filter(|trap| trap.width >= NARROWEST)
         .collect();
     traps.sort_by(|a, b| b.width.total_cmp(&a.width));
+    traps
+}
+
+/// Those of them whose edge is on the screen, and wrong there, as the shader paints it in f32 and in f64.
+pub(super) fn shown(mut traps: Vec<Trap>, scene: &Scene, single: &Shown, double: &Shown) -> Vec<Trap> {
+    let view = View::new(scene);
+    traps.retain(|trap| view.shows(trap, single, double));
     traps
 }
 
@@ -119,13 +125,13 @@ impl View {
     }
 
     /// Whether the two pictures differ visibly within the band.
-    fn shows(&self, trap: &Trap, single: &Image, double: &Image) -> bool {
+    fn shows(&self, trap: &Trap, single: &Shown, double: &Shown) -> bool {
         let [width, height] = single.size();
         let reach = trap.width.ceil().min(f64::from(width)) as i64;
         let differs = |x: i64, y: i64| {
             let inside = (0..i64::from(width)).contains(&x) && (0..i64::from(height)).contains(&y);
             inside && {
-                let [a, b] = [single, double].map(|image| image.get(x as u32, y as u32).map(quantise));
+                let [a, b] = [single, double].map(|picture| picture.get(x as u32, y as u32));
                 a.iter().zip(b).any(|(a, b)| a.abs_diff(b) > 1)
             }
         };
@@ -169,6 +175,7 @@ mod tests {
     use crate::eval::{Number, Program, Settings};
     use crate::frame::Frame;
     use crate::glsl::{Checked, Options, check};
+    use crate::image::Image;
     use crate::scene;
     use crate::source::{File, Files};
 
@@ -208,6 +215,10 @@ mod tests {
         let settings = Settings::<N>::default();
         let painted = Program::new(checked).unwrap().paint(&frame, &settings).unwrap();
         painted.painting.image()
+    }
+
+    fn traps(scene: &Scene, single: &Image, double: &Image) -> Vec<Trap> {
+        shown(suspected(scene), scene, &single.into(), &double.into())
     }
 
     /// How far from the edge, in pixels, the farthest pixel lies that is another in f32 than in f64; none if all are the same.

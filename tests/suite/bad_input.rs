@@ -266,6 +266,8 @@ fn no_vulkan_driver() {
     let hint = [
         "no Vulkan driver found",
         "apt-get install mesa-vulkan-drivers libvulkan1",
+        // It is no use to install what stays hidden.
+        "VK_DRIVER_FILES or VK_ICD_FILENAMES is set",
     ];
     for (arguments, code) in [
         // The evaluator takes its place, unless a driver is asked for.
@@ -280,7 +282,12 @@ fn no_vulkan_driver() {
             .args(arguments)
             .env("VK_DRIVER_FILES", "/nowhere.json")
             .env("VK_ICD_FILENAMES", "/nowhere.json");
-        expect(&run(&mut command), code, &hint);
+        let run = run(&mut command);
+        expect(&run, code, &hint);
+        if let ["check", _] | ["doctor"] = arguments {
+            let told = run.stdout.contains("toolchain") && run.stdout.contains("not asked");
+            assert!(told, "{arguments:?}: {}", run.stdout);
+        }
     }
 }
 

@@ -61,6 +61,58 @@ fn the_course_is_correct_and_its_json_follows_the_schema() {
 }
 
 #[test]
+fn what_is_seen_while_a_shader_runs_can_be_allowed_and_denied() {
+    let folder = tempfile::tempdir().unwrap();
+    // Each pixel divides an integer by zero, and is NaN.
+    let odd = |divides: &str, is_nan: &str| {
+        format!(
+            "void mainImage(out vec4 c, in vec2 f) {{\n  int i = int(f.x);\n  int j = 7 / (i - i); {divides}\n  \
+             float x = sqrt(-f.x); {is_nan}\n  c = vec4(x + float(j));\n}}\n"
+        )
+    };
+    let allow = ["// toyproof: allow(W0600)", "// toyproof: allow(W0603)"];
+    for (name, text) in [
+        ("odd.glsl", odd("", "")),
+        ("known.glsl", odd(allow[0], allow[1])),
+        ("elsewhere.glsl", odd(allow[1], allow[0])),
+        (
+            "whole.glsl",
+            format!("// toyproof: allow(W0600, W0603)\n{}", odd("", "")),
+        ),
+    ] {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    let check = |arguments: &[&str]| {
+        let all = [&["check", "--on", "cpu", "--size", "16x9"], arguments].concat();
+        toyproof(folder.path(), &all)
+    };
+    for (name, is_told) in [
+        ("odd.glsl", true),
+        ("known.glsl", false),
+        ("elsewhere.glsl", true),
+        ("whole.glsl", false),
+    ] {
+        let told = check(&[name]);
+        assert_eq!(told.code, 0, "{name}: {}", told.stderr);
+        for code in ["W0600", "W0603"] {
+            assert_eq!(
+                told.stderr.contains(&format!("warning[{code}]")),
+                is_told,
+                "{name}: {}",
+                told.stderr
+            );
+        }
+        assert!(!told.stderr.contains("W0015"), "{name}: {}", told.stderr);
+        let denied = check(&[name, "--deny", "warnings"]);
+        assert_eq!(denied.code, i32::from(is_told), "{name}: {}", denied.stderr);
+        assert_eq!(denied.stdout.contains("invalid"), is_told, "{}", denied.stdout);
+    }
+    let denied = check(&["odd.glsl", "--deny", "W0603"]);
+    assert!(denied.stderr.contains("error[W0603]") && denied.stderr.contains("warning[W0600]"));
+    assert_eq!(check(&["odd.glsl", "--deny", "W0601"]).code, 0);
+}
+
+#[test]
 fn denied_warnings_are_errors() {
     let folder = tempfile::tempdir().unwrap();
     let noise = |words| {

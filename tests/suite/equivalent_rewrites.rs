@@ -6,10 +6,11 @@ use std::sync::LazyLock;
 
 use crate::rungs::{EDITED, Edited};
 use crate::support::{
-    COMPLEX_SCENE, DISNEY, Edit, MANY_OBJECTS, REFLECTIONS, RUNGS, Rung, SHADING, SPHERE, edited, judged,
-    maths, numbers, tracer,
+    COMPLEX_SCENE, DISNEY, Edit, MANY_OBJECTS, REFLECTIONS, RUNGS, Rung, SHADING, SPHERE, checked, edited,
+    frame, judged, maths, numbers, tracer,
 };
 use toyproof::compare::{EXACT_TOLERANCE, Verdict};
+use toyproof::eval::{Program, Settings};
 use toyproof::trace::{Hull, Styles};
 use toyproof::verify::Findings;
 
@@ -740,6 +741,7 @@ pub(crate) fn rewrites() -> impl Iterator<Item = (&'static str, &'static Rung, &
 struct Outcome {
     name: &'static str,
     rung: &'static Rung,
+    shader: String,
     findings: Findings,
 }
 
@@ -748,9 +750,15 @@ static OUTCOMES: LazyLock<Option<Vec<Outcome>>> = LazyLock::new(|| {
     let mut worker = crate::support::worker()?;
     let mut outcomes = Vec::new();
     for (name, rung, edits) in rewrites() {
-        let findings = judged(&mut worker, &edited(rung, edits), rung);
+        let shader = edited(rung, edits);
+        let findings = judged(&mut worker, &shader, rung);
         eprintln!("{}: {name}: {}", rung.name, numbers(&findings));
-        outcomes.push(Outcome { name, rung, findings });
+        outcomes.push(Outcome {
+            name,
+            rung,
+            shader,
+            findings,
+        });
     }
     Some(outcomes)
 });
@@ -773,7 +781,14 @@ fn every_rewrite_stays_correct() {
     let failed: Vec<_> = outcomes
         .iter()
         .filter(|outcome| outcome.findings.verdict != Verdict::Correct)
-        .map(|Outcome { name, rung, findings }| format!("{}: {name}: {}", rung.name, numbers(findings)))
+        .map(|outcome| {
+            format!(
+                "{}: {}: {}",
+                outcome.rung.name,
+                outcome.name,
+                numbers(&outcome.findings)
+            )
+        })
         .collect();
     assert!(failed.is_empty(), "not correct:\n{}", failed.join("\n"));
 }
@@ -822,10 +837,18 @@ fn the_tolerance_is_no_larger_than_needed() {
     for rung in RUNGS {
         let hulls = hulls(rung);
         for outcome in outcomes.iter().filter(|outcome| std::ptr::eq(outcome.rung, rung)) {
-            let exact = outcome.findings.exact.as_ref().expect("it was evaluated");
+            let (program, frame) = (
+                Program::new(&checked(&outcome.shader)).unwrap(),
+                frame(rung, rung.size),
+            );
+            let exact = program.paint::<f64>(&frame, &Settings::default()).unwrap();
             let outside =
                 |(hull, [r, g, b, _]): (&Hull, &[f32; 4])| hull.distance([r, g, b].map(|&c| f64::from(c)));
-            let excess = hulls.iter().zip(exact.pixels()).map(outside).fold(0.0, f64::max);
+            let excess = hulls
+                .iter()
+                .zip(exact.painting.image().pixels())
+                .map(outside)
+                .fold(0.0, f64::max);
             if maths(&outcome.findings).is_same() {
                 needed.see(excess, outcome);
             }

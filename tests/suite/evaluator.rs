@@ -36,7 +36,7 @@ fn both(worker: &mut Worker, checked: &Checked, frame: &Frame) -> (Painted<f32>,
     let drawn = worker
         .draw(lower_strict(checked), frame.clone(), FloatMode::Strict)
         .unwrap();
-    (painted, drawn.image)
+    (painted, drawn.image())
 }
 
 #[test]
@@ -128,7 +128,7 @@ fn the_corpus_has_the_same_bits_on_the_cpu() {
                 }
             };
             let drawn = match worker.draw(lower_strict(&checked), frame.clone(), FloatMode::Strict) {
-                Ok(drawn) => drawn.image,
+                Ok(drawn) => drawn.image(),
                 Err(failure) => {
                     eprintln!("{name}: gpu: {failure}");
                     continue;

@@ -351,11 +351,10 @@ fn small_programs_paint_the_same_on_the_gpu() {
     for &(before, body, expected) in PROGRAMS {
         let checked = checked(before, body).unwrap();
         match worker.draw(lower_strict(&checked), frame(), FloatMode::Strict) {
-            Ok(drawn) if f64::from(drawn.image.get(0, 0)[0]) == expected => {}
-            Ok(drawn) => wrong.push(format!(
-                "{before} {body}: {expected}: {}",
-                drawn.image.get(0, 0)[0]
-            )),
+            Ok(drawn) => match f64::from(drawn.image().get(0, 0)[0]) {
+                right if right == expected => {}
+                painted => wrong.push(format!("{before} {body}: {expected}: {painted}")),
+            },
             Err(failure) => wrong.push(format!("{before} {body}: {failure}")),
         }
     }
@@ -507,15 +506,16 @@ fn divergent_pixels_paint_the_same_bits_as_on_the_gpu() {
             .unwrap();
         let drawn = worker
             .draw(lower_strict(&checked), frame.clone(), FloatMode::Strict)
-            .unwrap();
+            .unwrap()
+            .image();
         let image = painted.painting.image();
         let places = (0..11).flat_map(|y| (0..37).map(move |x| (x, y)));
         let bits = |image: &Image, (x, y)| image.get(x, y).map(f32::to_bits);
         if let Some((x, y)) = places
             .into_iter()
-            .find(|&at| bits(&image, at) != bits(&drawn.image, at))
+            .find(|&at| bits(&image, at) != bits(&drawn, at))
         {
-            let (ours, theirs) = (image.get(x, y), drawn.image.get(x, y));
+            let (ours, theirs) = (image.get(x, y), drawn.get(x, y));
             wrong.push(format!("({x}, {y}) of {body}: {ours:?} and {theirs:?}"));
         }
     }

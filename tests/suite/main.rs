@@ -30,6 +30,7 @@ mod page;
 mod planted_faults;
 mod povray;
 mod program;
+mod random_draws;
 mod reports;
 mod rules;
 mod rungs;

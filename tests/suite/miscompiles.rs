@@ -137,7 +137,7 @@ fn paint(worker: &mut Worker, (pass, before, body, _): &Case, passes: Passes) ->
     worker
         .draw(lower_with(&checked, passes), frame, FloatMode::Strict)
         .unwrap_or_else(|failure| panic!("{pass:?}: {failure}"))
-        .image
+        .image()
         .get(0, 0)[0]
 }
 

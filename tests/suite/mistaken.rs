@@ -2,10 +2,9 @@
 
 use std::time::Duration;
 
-use toyproof::eval::{Program, Settings};
+use toyproof::eval::Program;
 use toyproof::frame::Frame;
 use toyproof::glsl;
-use toyproof::image::Image;
 use toyproof::mistake::Suspects;
 use toyproof::source::{File, Files};
 
@@ -28,16 +27,10 @@ fn frame(rung: &Rung) -> Frame {
     }
 }
 
-fn painted(program: &Program, frame: &Frame) -> Image {
-    let painted = program.paint::<f64>(frame, &Settings::default()).unwrap();
-    painted.painting.image()
-}
-
 /// What a shader is told that is judged by a rung's scene; two mistakes at once are looked for for so many seconds.
 fn named(rung: &Rung, suspects: &Suspects, shader: &str, patience: u64) -> String {
     let (program, frame) = (program(shader), frame(rung));
-    let wrong = painted(&program, &frame);
-    let named = suspects.recognise(&program, &wrong, &frame, Duration::from_secs(patience));
+    let named = suspects.recognise(&program, &frame, Duration::from_secs(patience));
     let names: Vec<_> = named.into_iter().flatten().map(|named| named.name).collect();
     names.join("+")
 }

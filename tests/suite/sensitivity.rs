@@ -1,6 +1,6 @@
 //! How small an error may be and is still found: a rung's shader stays as it is, and its scene is falsified.
 
-use toyproof::compare::{Answer, Answers, SHAKES, Verdict, judge, maths};
+use toyproof::compare::{Answer, Answers, Mixed, SHAKES, Verdict, judge, maths};
 use toyproof::eval::{Jittered, Number, Program, Seed, Settings};
 use toyproof::frame::Frame;
 use toyproof::image::Image;
@@ -101,7 +101,7 @@ fn length(v: Point) -> f64 {
 }
 
 fn painted<N: Number>(program: &Program, frame: &Frame, settings: Settings<N>) -> Image {
-    program.paint(frame, &settings).unwrap().painting.image()
+    program.picture(frame, frame.rows(), &settings).unwrap().image
 }
 
 /// The spheres, the one that looks largest first.
@@ -162,7 +162,8 @@ impl Subject {
             |x, y, styles| tracer.hull(x, y, styles),
             // The rungs take no derivatives.
             |_, _| false,
-            |seed| self.shaken.get(seed as usize).cloned(),
+            &mut Mixed::of(self.exact.pixels().len() as u64),
+            |seed, _| self.shaken.get(seed as usize).cloned(),
         );
         let answer = Answer::new(&expected, &self.exact, &standings);
         let (verdict, _) = judge(Answers {

@@ -33,13 +33,13 @@ fn draw(worker: &mut Worker, float: FloatMode) -> Drawn {
 }
 
 fn differing_pixels(drawn: &Drawn) -> usize {
-    let width = drawn.image.size()[0] as usize;
+    let picture = drawn.clone().image();
+    let width = picture.size()[0] as usize;
     let differs = |(index, pixel): (usize, &[f32; 4])| {
         let (x, y) = ((index % width) as f32 + 0.5, (index / width) as f32 + 0.5);
         as_written(x, y).map(f32::to_bits) != [pixel[0], pixel[1], pixel[2]].map(f32::to_bits)
     };
-    drawn
-        .image
+    picture
         .pixels()
         .iter()
         .enumerate()

@@ -50,7 +50,7 @@ fn exhibit(submission: &Submission, step: u32, gallery: &mut Gallery) -> Exhibit
     let size = if step == 1 {
         None
     } else {
-        image::read(&actual).ok().map(|picture| picture.size())
+        image::read_shown(&actual).ok().map(|picture| picture.size())
     };
     let mut hang = |path: &Path| {
         let png = match size {
@@ -66,5 +66,5 @@ fn exhibit(submission: &Submission, step: u32, gallery: &mut Gallery) -> Exhibit
 }
 
 fn thin(path: &Path, step: u32, size: [u32; 2]) -> Result<Vec<u8>, ImageError> {
-    image::encode(&every(step, &image::read(path)?, size), path)
+    image::encode_shown(&every(step, &image::read_shown(path)?, size), path)
 }

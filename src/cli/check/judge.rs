@@ -10,7 +10,7 @@ use super::scenes::Scenes;
 use super::stopped::Stopped;
 use super::{Args, Reference};
 use crate::cli::Terminal;
-use crate::cli::shader::{Names, Shader, with_suffix};
+use crate::cli::shader::{Names, Shader, Unusable, denied, with_suffix};
 use crate::compare::Verdict;
 use crate::diagnostic::{self, Diagnostic};
 use crate::frame::Frame;
@@ -243,8 +243,15 @@ impl<'a> Judge<'a> {
             let place = format!("; it is lost in line {}, column {}", at.line, at.column);
             findings.reason.push_str(&place);
         }
-        judged.tell(std::mem::take(&mut findings.notes), &files);
-        Ok(findings)
+        let mut notes = std::mem::take(&mut findings.notes);
+        let denied = denied(&mut notes, self.args.language.denied());
+        judged.tell(notes, &files);
+        if denied.is_empty() {
+            Ok(findings)
+        } else {
+            let denied = Unusable::Invalid(denied);
+            Err(Stopped::unusable(denied, files, Verdict::Invalid))
+        }
     }
 
     /// The scene in the size of the frame, which is the scene's own unless the arguments tell another.
@@ -295,7 +302,7 @@ fn keep(place: &Path, findings: Option<&Findings>, judged: &mut Judged) {
             let _ = std::fs::remove_file(&path);
             continue;
         };
-        match image::encode(&picture, &path) {
+        match image::encode_shown(&picture, &path) {
             Ok(bytes) => {
                 if let Err(error) = output::write(&path, &bytes) {
                     judged.failed(format!("cannot write {error}"));

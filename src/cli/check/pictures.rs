@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use crate::compare::{IN_BITS, SEEN_BY_EYE};
-use crate::image::{self, Image, Legend, Mark};
+use crate::image::{self, Legend, Mark, Shown};
 use crate::verify::{Asked, Findings};
 
 /// A picture that there may be.
@@ -11,7 +11,7 @@ pub(super) struct Picture {
     /// The end of its file's name.
     pub(super) suffix: &'static str,
     /// It itself, if there is one. Pictures are large: they are made one at a time, when they are written.
-    pub(super) of: fn(&Findings) -> Option<Cow<'_, Image>>,
+    pub(super) of: fn(&Findings) -> Option<Cow<'_, Shown>>,
 }
 
 /// What was expected, what came, how they differ, and one for each question whose answer is not “the same”.
@@ -22,7 +22,7 @@ pub(super) const PICTURES: [Picture; 6] = [
     },
     Picture {
         suffix: "-reference.png",
-        of: |findings| findings.reference.as_deref().map(Cow::Borrowed),
+        of: |findings| findings.reference.as_ref().map(Cow::Borrowed),
     },
     Picture {
         suffix: "-difference.png",
@@ -45,11 +45,11 @@ pub(super) const PICTURES: [Picture; 6] = [
     },
 ];
 
-fn asked<'a>(findings: &Findings, asked: Option<&Asked>, legend: Legend) -> Option<Cow<'a, Image>> {
+fn asked<'a>(findings: &Findings, asked: Option<&Asked>, legend: Legend) -> Option<Cow<'a, Shown>> {
     let asked = asked.filter(|asked| !asked.answer.is_same())?;
     Some(difference(findings, &asked.marks, legend))
 }
 
-fn difference<'a>(findings: &Findings, marks: &[Mark], legend: Legend) -> Cow<'a, Image> {
+fn difference<'a>(findings: &Findings, marks: &[Mark], legend: Legend) -> Cow<'a, Shown> {
     Cow::Owned(image::difference(findings.actual.size(), marks, legend))
 }

@@ -72,7 +72,11 @@ mod tests {
     #[test]
     fn a_scene_is_known_while_it_is_among_the_last() {
         let scenes = Scenes::default();
-        let known = |title: &str| scenes.known(scene(title), &Frame::default());
+        let frame = Frame {
+            size: [64, 36],
+            ..Frame::default()
+        };
+        let known = |title: &str| scenes.known(scene(title), &frame);
         let first = known("0");
         for at in 1..MOST {
             known(&at.to_string());

@@ -52,11 +52,18 @@ impl Allows {
         Self { all }
     }
 
-    /// What is left of these warnings, each `allow` that none of them needed told beside them.
+    /// What they allow of what is seen while the shader runs, and where.
+    pub(super) fn of_runs(&self) -> Vec<(Code, Span)> {
+        let of_runs = self.all.iter().filter(|allow| allow.code.is_of_runs());
+        of_runs.map(|allow| (allow.code, allow.over)).collect()
+    }
+
+    /// What is left of these warnings, each `allow` that none of them needed told beside them; whether a run needs one, a run tells.
     pub(super) fn sift(&self, found: Vec<Diagnostic>) -> Vec<Diagnostic> {
         let mut used = vec![false; self.all.len()];
         let allowed = self.allowed(&found, &mut used);
-        let unused = self.all.iter().zip(&used).filter(|(_, used)| !**used);
+        let unused = self.all.iter().zip(&used);
+        let unused = unused.filter(|(allow, used)| !**used && !allow.code.is_of_runs());
         let unused = unused.map(|(allow, _)| {
             let message = format!("nothing here needs `allow({})`", allow.code.as_str());
             Diagnostic::warning(Code::UnusedAllow.as_str(), message).at(allow.name)

@@ -32,6 +32,8 @@ pub(super) struct Warned {
     pub(super) warnings: Vec<Diagnostic>,
     /// Where discriminants of spheres stand that lose digits, but for those that its author allows: whether it shows, a scene tells.
     pub(super) discriminants: Vec<Span>,
+    /// What its author allows of what is seen while it runs, and where.
+    pub(super) allowed: Vec<(Code, Span)>,
 }
 
 /// Looks for all that is worth a word, `told` before among it.
@@ -71,6 +73,7 @@ pub(super) fn warn(
     Warned {
         warnings,
         discriminants: seeds.into_iter().filter_map(|seed| seed.span).collect(),
+        allowed: allows.of_runs(),
     }
 }
 

@@ -49,8 +49,10 @@ fn questions(record: &Record) -> String {
     let rows: Vec<_> = questions
         .into_iter()
         .map(|(name, answer)| {
+            let why = record.toolchain_unasked().filter(|_| name == "toolchain");
+            let why = why.map(|why| format!(", {why}")).unwrap_or_default();
             let cells = answer.as_ref().map_or_else(
-                || "<td class=\"none\" colspan=\"5\">not asked</td>".to_owned(),
+                || format!("<td class=\"none\" colspan=\"5\">not asked{why}</td>"),
                 answered,
             );
             format!("<tr data-question=\"{name}\"><th scope=\"row\">{name}</th>{cells}</tr>\n")

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use sha2::{Digest, Sha256};
 
-use crate::image::Image;
+use crate::image::Shown;
 
 /// How many bytes of PNGs a page may hold. As text they are a third longer, and the rest of a page for 500 shaders is about 2 MB: so
 /// the whole stays below 20 MB.
@@ -86,13 +86,13 @@ impl Gallery {
 /// Every `step`th pixel of every `step`th row of the picture's upper left part of that size, from that part's bottom left: pixels as they are, not
 /// means of several.
 #[must_use]
-pub fn every(step: u32, picture: &Image, [width, height]: [u32; 2]) -> Image {
+pub fn every(step: u32, picture: &Shown, [width, height]: [u32; 2]) -> Shown {
     let [whole_width, whole_height] = picture.size();
     let (width, height) = (width.min(whole_width), height.min(whole_height));
     let below = whole_height - height;
     let steps = |side| (0..side).step_by(step as usize);
     let pixels = steps(height).flat_map(|y| steps(width).map(move |x| picture.get(x, below + y)));
-    Image::new(width.div_ceil(step), height.div_ceil(step), pixels.collect())
+    Shown::new(width.div_ceil(step), height.div_ceil(step), pixels.collect())
 }
 
 #[cfg(test)]
@@ -109,11 +109,11 @@ mod tests {
     #[test]
     fn thinned_pictures_begin_at_the_bottom_left_of_what_is_no_legend() {
         // Red is x, green is y; the lowest row is a legend.
-        let pixels = (0..4).flat_map(|y| (0..5).map(move |x| [x as f32, y as f32, 0.0, 1.0]));
-        let picture = Image::new(5, 4, pixels.collect());
+        let pixels = (0..4).flat_map(|y| (0..5).map(move |x| [x, y, 0]));
+        let picture = Shown::new(5, 4, pixels.collect());
         let thin = every(2, &picture, [4, 3]);
         assert_eq!(thin.size(), [2, 2]);
         let places: Vec<_> = thin.pixels().iter().map(|p| (p[0], p[1])).collect();
-        assert_eq!(places, [(0.0, 1.0), (2.0, 1.0), (0.0, 3.0), (2.0, 3.0)]);
+        assert_eq!(places, [(0, 1), (2, 1), (0, 3), (2, 3)]);
     }
 }

@@ -108,7 +108,7 @@ fn ours(worker: &mut Worker, shader: &str) -> Result<Pixels, String> {
         let drawn = worker
             .draw(lowered.clone(), frame, FloatMode::Fast)
             .map_err(|failure| failure.to_string())?;
-        pixels.extend_from_slice(drawn.image.pixels());
+        pixels.extend_from_slice(drawn.image().pixels());
     }
     Ok(pixels)
 }

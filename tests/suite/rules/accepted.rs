@@ -38,7 +38,7 @@ fn paint(worker: &mut Worker, program: &Program) -> Result<(), String> {
     let drawn = worker
         .draw(lowered, frame(), FloatMode::Strict)
         .map_err(|failure| format!("{failure:?}\n{text}"))?;
-    is_red(&drawn.image).map_err(|why| format!("{why}\n{text}"))
+    is_red(&drawn.image()).map_err(|why| format!("{why}\n{text}"))
 }
 
 fn evaluate(program: &Program) -> Result<(), String> {

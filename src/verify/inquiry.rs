@@ -1,0 +1,305 @@
+//! The questions while they are asked, one band of rows after the other: whole pictures are kept only as they are shown.
+
+use std::ops::Range;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use super::cause::{self, NotFinite};
+use super::cpu::{Band, Evaluator};
+use super::drawn;
+use super::tangent::{self, Trap};
+use super::{Asked, Case, Expected, Failure, Findings, PATIENCE_FOR_TWO, Painter, join, notes, timed};
+use crate::compare::{self, Answers, Comparison, MAX_UNSTABLE, Mixed, Verdict};
+use crate::eval::{self, Observations, Program};
+use crate::gpu::FloatMode;
+use crate::image::{Image, Mark, Shown};
+use crate::scene::Scene;
+
+/// Told after each band.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Counted {
+    /// The most rounds of loops that a pixel of it ran in f32.
+    pub(super) most: u32,
+    pub(super) is_last: bool,
+}
+
+/// What is known so far.
+pub(super) struct Inquiry<'a> {
+    case: &'a Case<'a>,
+    /// Why it gave up, if it did.
+    pub(super) evaluator: Result<Evaluator<'a>, eval::Failure>,
+    /// When all must be answered.
+    until: Instant,
+    counted: Option<Sender<Counted>>,
+    /// What was noted in f32.
+    pub(super) noted: Observations,
+    leaves_out: bool,
+    maths: Asked,
+    mixed: Mixed,
+    rounding: Asked,
+    toolchain: Option<Asked>,
+    picture: Option<(Comparison, Vec<Mark>)>,
+    actual: Shown,
+    reference: Option<Shown>,
+    not_finite: NotFinite,
+    /// Spheres whose edge may come out wrong, and the picture in f64, if there are any.
+    traps: Option<(Scene, Vec<Trap>, Shown)>,
+    eval: Duration,
+    trace: Duration,
+}
+
+impl<'a> Inquiry<'a> {
+    pub(super) fn new(
+        case: &'a Case<'a>,
+        evaluator: Result<Evaluator<'a>, eval::Failure>,
+        until: Instant,
+        counted: Sender<Counted>,
+    ) -> Self {
+        let [width, height] = case.frame.size;
+        let empty = || Shown::empty(width, height);
+        let traps = case
+            .expected
+            .filter(|_| !case.checked.discriminants.is_empty())
+            .map(|expected| {
+                let scene = expected.stilled();
+                let suspected = tangent::suspected(&scene);
+                (scene, suspected, empty())
+            });
+        Self {
+            case,
+            until,
+            counted: evaluator.is_ok().then_some(counted),
+            evaluator,
+            noted: Observations::default(),
+            leaves_out: false,
+            maths: Asked::default(),
+            mixed: Mixed::of(u64::from(width) * u64::from(height)),
+            rounding: Asked::default(),
+            toolchain: None,
+            picture: None,
+            actual: empty(),
+            reference: case.expected.map(|_| empty()),
+            not_finite: NotFinite::default(),
+            traps: traps.filter(|(_, suspected, _)| !suspected.is_empty()),
+            eval: Duration::ZERO,
+            trace: Duration::ZERO,
+        }
+    }
+
+    /// Asks of all bands. A GPU paints all of them before it hands them over, one by one; if it fails, it tells so itself.
+    ///
+    /// # Errors
+    /// Why there is no picture, where no GPU paints.
+    pub(super) fn bands(&mut self, gpu: Option<&Receiver<Image>>) -> Result<(), Failure> {
+        for rows in self.case.frame.bands() {
+            let (band, reference) = self.paint(&rows);
+            let actual = match gpu {
+                None => None,
+                Some(gpu) => match gpu.recv() {
+                    Ok(band) => Some(band),
+                    Err(_) => return Ok(()),
+                },
+            };
+            if let (None, Err(failure)) = (gpu, &self.evaluator) {
+                return Err(failure.clone().into());
+            }
+            self.compare(&rows, band.as_ref(), reference.as_deref(), actual.as_ref());
+        }
+        self.counted = None;
+        Ok(())
+    }
+
+    /// What the evaluator and the tracer paint of a band, at once.
+    fn paint(&mut self, rows: &Range<u32>) -> (Option<Band>, Option<Arc<Image>>) {
+        let height = self.case.frame.size[1];
+        let counted = |most| {
+            let is_last = rows.end == height;
+            if let Some(sender) = &self.counted {
+                // Perhaps nobody asks.
+                let _ = sender.send(Counted { most, is_last });
+            }
+        };
+        let evaluator = &self.evaluator;
+        let ((band, eval), traced) = thread::scope(|scope| {
+            let trace = |expected: &Expected| timed(|| expected.rows(rows));
+            let traced = self
+                .case
+                .expected
+                .map(|expected| scope.spawn(move || trace(expected)));
+            let evaluated = timed(|| match evaluator {
+                Ok(evaluator) => evaluator.paint(rows, counted).map(Some),
+                Err(_) => Ok(None),
+            });
+            (evaluated, traced.map(join))
+        });
+        self.eval += eval;
+        let band = band.unwrap_or_else(|failure| {
+            self.evaluator = Err(failure);
+            // Nobody waits for more.
+            self.counted = None;
+            None
+        });
+        let reference = traced.map(|(reference, trace)| {
+            self.trace += trace;
+            reference
+        });
+        (band, reference)
+    }
+
+    /// Compares a band; `drawn` is what a GPU painted of it.
+    fn compare(
+        &mut self,
+        rows: &Range<u32>,
+        band: Option<&Band>,
+        reference: Option<&Image>,
+        drawn: Option<&Image>,
+    ) {
+        let below = rows.start;
+        if let Some(actual) = drawn.or(band.map(|band| &band.single)) {
+            self.actual.extend(actual);
+            self.not_finite.look(actual, below);
+            if let (Some(reference), Some(shown)) = (reference, &mut self.reference) {
+                shown.extend(reference);
+                let (comparison, marks) = compare::compare(reference, actual);
+                match &mut self.picture {
+                    None => self.picture = Some((comparison, marks)),
+                    Some((whole, all)) => {
+                        whole.extend(&comparison, below);
+                        all.extend(marks);
+                    }
+                }
+            }
+        }
+        let Some(band) = band else {
+            return;
+        };
+        let actual = drawn.unwrap_or(&band.single);
+        if let Some(reference) = reference {
+            self.ask_maths(rows, band, reference);
+        }
+        let standings = compare::rounding(&band.double, actual, &band.undefined);
+        self.rounding.extend(&band.double, actual, &standings, below);
+        if let (Some(drawn), FloatMode::Strict) = (drawn, self.case.float) {
+            let standings = compare::toolchain(&band.single, drawn, &band.undefined);
+            let asked = self.toolchain.get_or_insert_default();
+            asked.extend(&band.single, drawn, &standings, below);
+        }
+        if let Some((_, _, double)) = &mut self.traps {
+            double.extend(&band.double);
+        }
+        self.leaves_out |= band.undefined.contains(&true);
+        self.noted.merge(&band.noted);
+    }
+
+    fn ask_maths(&mut self, rows: &Range<u32>, band: &Band, reference: &Image) {
+        let (Some(expected), Ok(evaluator)) = (self.case.expected, &self.evaluator) else {
+            return;
+        };
+        let below = rows.start;
+        let hull = |x, y, styles| expected.hull(x, below + y, styles);
+        let derives = self.case.checked.takes_derivatives();
+        let edge = |x, y| derives && expected.tracer().is_quad_mixed(x, below + y);
+        let (standings, shaking) = timed(|| {
+            let shaken = |seed, wanted: &[bool]| evaluator.shaken(rows, seed, wanted);
+            let mixed = &mut self.mixed;
+            compare::maths(
+                reference,
+                &band.double,
+                &band.undefined,
+                hull,
+                edge,
+                mixed,
+                shaken,
+            )
+        });
+        self.eval += shaking;
+        self.maths.extend(reference, &band.double, &standings, below);
+    }
+
+    /// What was found, where `painter` painted.
+    pub(super) fn findings(self, painter: Option<Painter>) -> Findings {
+        let mut findings = Findings {
+            verdict: Verdict::Ok,
+            reason: String::new(),
+            maths: None,
+            rounding: None,
+            toolchain: None,
+            picture: self.picture,
+            reference: self.reference,
+            actual: self.actual,
+            painter,
+            notes: Vec::new(),
+            cause: None,
+            mistake: None,
+            eval: self.eval,
+            trace: self.case.expected.map(|_| self.trace),
+        };
+        match self.evaluator {
+            Err(failure) => findings.cannot_ask(&failure),
+            Ok(evaluator) => {
+                findings.maths = self.case.expected.map(|_| self.maths);
+                findings.rounding = Some(self.rounding);
+                findings.toolchain = self.toolchain;
+                let (case, program) = (self.case, evaluator.program());
+                findings.notes = notes::notes(&self.noted, self.leaves_out, &case.checked.warnings);
+                findings
+                    .notes
+                    .extend(self.not_finite.told(program, case, self.until));
+                if let (Some((scene, traps, double)), Some(&at)) =
+                    (self.traps, case.checked.discriminants.first())
+                {
+                    let traps = tangent::shown(traps, &scene, &findings.actual, &double);
+                    findings.notes.extend(tangent::told(&traps, at));
+                }
+                findings.judge(case, program, self.until);
+                findings.notes.retain(|note| !case.checked.allows(note));
+            }
+        }
+        findings
+    }
+}
+
+impl Findings {
+    fn judge(&mut self, case: &Case, program: &Program, until: Instant) {
+        (self.verdict, self.reason) = compare::judge(Answers {
+            maths: self.maths.as_ref().map(|asked| &asked.answer),
+            rounding: self.rounding.as_ref().map(|asked| &asked.answer),
+            toolchain: self.toolchain.as_ref().map(|asked| &asked.answer),
+        });
+        if let (Verdict::Wrong, Some(suspects)) = (self.verdict, case.suspects) {
+            let patience = PATIENCE_FOR_TWO.min(until.saturating_duration_since(Instant::now()));
+            self.mistake = suspects.recognise(program, case.frame, patience);
+        }
+        if let (Verdict::Wrong, None, Some(expected), Some(maths)) =
+            (self.verdict, &self.mistake, case.expected, &self.maths)
+            && let Some(why) = drawn::told(expected.tracer(), maths, case.frame.size)
+        {
+            self.reason = format!("{}, {why}", compare::differing(&maths.answer));
+        }
+        let rounds = |asked: &Asked| asked.answer.share(asked.answer.differing) > MAX_UNSTABLE;
+        let loses = self.verdict == Verdict::Ok && self.rounding.as_ref().is_some_and(rounds);
+        if self.verdict == Verdict::Unstable || loses {
+            let mut questions = [&self.rounding, &self.maths].into_iter().flatten();
+            let cause = questions.find_map(|asked| cause::cause(program, case, until, asked));
+            self.cause = cause.as_ref().and_then(|cause| cause.span);
+            let is_foreseen = case
+                .checked
+                .warnings
+                .iter()
+                .any(|warning| warning.span == self.cause);
+            self.notes.extend(cause.filter(|_| !is_foreseen));
+        }
+    }
+
+    /// Without the evaluator nothing can be said of a shader but that it paints.
+    fn cannot_ask(&mut self, failure: &eval::Failure) {
+        if self.reference.is_some() {
+            self.verdict = Verdict::Inconclusive;
+            self.reason = format!("the shader could not be evaluated on the CPU: {failure}");
+        } else {
+            self.reason = format!("the shader paints; it could not be evaluated on the CPU: {failure}");
+        }
+    }
+}
