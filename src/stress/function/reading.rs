@@ -76,6 +76,11 @@ impl Answers {
         }
     }
 
+    /// What it says of a miss: t, flag and second t.
+    pub(in super::super) fn miss(&self) -> Option<[f64; 3]> {
+        self.misses.first().copied()
+    }
+
     /// The positive number that it returns for a miss, if it has one.
     #[must_use]
     pub fn positive_miss(&self) -> Option<f64> {

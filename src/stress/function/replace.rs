@@ -3,15 +3,16 @@
 use std::ops::Range;
 
 use super::super::axis::Shot;
-use super::super::formula::FORMULAS;
+use super::super::formula::{FORMULAS, Formula, RECENTRED};
 use super::super::tally::Outcome;
 use super::super::{Failure, paint};
 use super::{Answers, Asked, Role, Signature, subject};
 use crate::eval::{self, Program, Variant};
+use crate::glsl::tree::{Scalar, Type};
 use crate::glsl::{self, Checked};
 
 /// The shader with each of the formulas in the place of the one that it meets spheres with, under the formula's name; none of them where that
-/// function cannot be recognised, or gives more than t.
+/// function cannot be recognised, or answers ordinary rays otherwise than the formulas do.
 ///
 /// # Errors
 /// If the function cannot be asked how it says no.
@@ -37,7 +38,7 @@ pub fn replacements(
     let Some(new) = asked.body()? else {
         return Ok(Vec::new());
     };
-    let made = FORMULAS.iter().map(|formula| {
+    let with = |formula: &Formula| {
         let (function, helper) = (own_name(formula.function()), own_name("powerOfTwo"));
         let words = formula
             .text
@@ -45,8 +46,12 @@ pub fn replacements(
             .replace("powerOfTwo", &helper);
         let (before, after) = (&text[..body.start], &text[body.end..]);
         let new = new.replace("FORMULA", &function);
-        (formula.name, format!("{words}\n{before}{new}{after}"))
-    });
+        format!("{words}\n{before}{new}{after}")
+    };
+    if !asked.agrees(&with(&RECENTRED), signature, options)? {
+        return Ok(Vec::new());
+    }
+    let made = FORMULAS.iter().map(|formula| (formula.name, with(formula)));
     Ok(made.collect())
 }
 
@@ -56,6 +61,28 @@ fn own_name(name: &str) -> String {
 }
 
 impl Asked<'_> {
+    /// Whether a shader's function of the same signature says the same of ordinary rays.
+    fn agrees(&self, text: &str, signature: &Signature, options: &glsl::Options) -> Result<bool, Failure> {
+        let Ok(checked) = paint::checked(&subject(text, signature, options.clone())) else {
+            return Ok(false);
+        };
+        let program = Program::prepared(&checked, Variant::Plain).map_err(eval::Failure::from)?;
+        let other = Asked {
+            program: &program,
+            signature,
+        };
+        let shots = super::ordinary(true);
+        let ours = self.ask::<f64>(&shots, &self.answers::<f64>()?)?;
+        let theirs = other.ask::<f64>(&shots, &other.answers::<f64>()?)?;
+        let same = |(one, other): (&Outcome, &Outcome)| match (one, other) {
+            (Outcome::Hit(one), Outcome::Hit(other)) => (one - other).abs() < 1e-6 * one.abs(),
+            (one, other) => one == other,
+        };
+        let agreeing = ours.iter().zip(&theirs).filter(|pair| same(*pair)).count();
+        // The author's may be wrong in its own way about some: rays from inside, say, or spheres behind.
+        Ok(agreeing * 2 > shots.len())
+    }
+
     /// The body that calls `FORMULA` and answers as the function does; none where that is not simple.
     fn body(&self) -> Result<Option<String>, Failure> {
         let answers: Answers = self.answers::<f32>()?;
@@ -65,13 +92,7 @@ impl Asked<'_> {
                 .find(|(_, found)| *found == role)
                 .map(|(path, _)| path.clone())
         };
-        let returns_t = matches!(&self.signature.outputs[..], [(path, Role::T, ty)] if path == "return" && *ty == glsl::tree::Type::FLOAT);
-        let miss = match answers.positive_miss() {
-            Some(miss) => format!("{:?}", miss as f32),
-            None if answers.behind_is_miss() => "-1.0".to_owned(),
-            None => return Ok(None),
-        };
-        let (Some(o), Some(d), true) = (path(Role::Origin), path(Role::Direction), returns_t) else {
+        let (Some(o), Some(d)) = (path(Role::Origin), path(Role::Direction)) else {
             return Ok(None);
         };
         let (c, r) = match (path(Role::Center), path(Role::Radius), path(Role::Sphere)) {
@@ -81,26 +102,67 @@ impl Asked<'_> {
         };
         let t_min = match path(Role::TMin) {
             Some(path) => path,
-            None => format!("{:?}", self.smallest_t(&answers)? as f32),
+            None => number(self.smallest_t(&answers)?),
         };
-        let miss = if miss.contains(['.', 'e']) {
-            miss
-        } else {
-            miss + ".0"
+        let call = |t_min: &str| format!("FORMULA({o}, {d}, {c}, {r}, {t_min})");
+        let pair = Type::vector(Scalar::Float, 2);
+        let statements = match &self.signature.outputs[..] {
+            [(path, Role::T, ty)] if path == "return" && *ty == Type::FLOAT => {
+                let miss = match answers.positive_miss() {
+                    Some(miss) => number(miss),
+                    None if answers.behind_is_miss() => "-1.0".to_owned(),
+                    None => return Ok(None),
+                };
+                vec![
+                    format!("float toyproof_t = {};", call(&t_min)),
+                    format!("return toyproof_t > {t_min} ? toyproof_t : {miss};"),
+                ]
+            }
+            [(path, Role::T, ty)] if path == "return" && *ty == pair => {
+                let Some([near, _, far]) = answers.miss() else {
+                    return Ok(None);
+                };
+                vec![
+                    format!("float toyproof_near = {};", call("-1.0e30")),
+                    format!("float toyproof_far = {};", call("toyproof_near")),
+                    // What the formulas say of a miss; a ray that only touches a sphere behind it is none to anybody.
+                    "bool toyproof_miss = toyproof_near == -1.0 && toyproof_far == -1.0;".to_owned(),
+                    format!(
+                        "return toyproof_miss ? vec2({}, {}) : vec2(toyproof_near, toyproof_far);",
+                        number(near),
+                        number(far)
+                    ),
+                ]
+            }
+            [(t, Role::T, Type::FLOAT), (flag, Role::Flag, Type::BOOL)]
+            | [(flag, Role::Flag, Type::BOOL), (t, Role::T, Type::FLOAT)]
+                if flag == "return" =>
+            {
+                // What is 0 was most likely never written.
+                let miss = answers.miss().map_or(0.0, |[t, ..]| t);
+                let otherwise = if miss == 0.0 {
+                    String::new()
+                } else {
+                    format!(" else {t} = {};", number(miss))
+                };
+                vec![
+                    format!("float toyproof_t = {};", call(&t_min)),
+                    format!("if (toyproof_t > {t_min}) {t} = toyproof_t;{otherwise}"),
+                    format!("return toyproof_t > {t_min};"),
+                ]
+            }
+            _ => return Ok(None),
         };
-        Ok(Some(format!(
-            "{{\n    float toyproof_t = FORMULA({o}, {d}, {c}, {r}, {t_min});\n    \
-             return toyproof_t > {t_min} ? toyproof_t : {miss};\n}}"
-        )))
+        Ok(Some(format!("{{\n    {}\n}}", statements.join("\n    "))))
     }
 
     /// What t must be larger than to count, of 0 and 1, 2 and 5 times the powers of ten.
     fn smallest_t(&self, answers: &Answers) -> Result<f64, Failure> {
-        let decades = (1..=9).rev().map(|decade| 10f64.powi(-decade));
+        let decades = (1..=8).rev().map(|decade| 10f64.powi(-decade));
         let steps: Vec<f64> = decades
             .flat_map(|ten| [1.0, 2.0, 5.0].map(|step| step * ten))
             .collect();
-        // A sphere so small that where it begins can be told to nine digits.
+        // A sphere so small that f32 tells where it begins to a hundredth of the smallest step.
         let r = 2f64.powi(-10);
         let shots: Vec<Shot> = steps
             .iter()
@@ -118,6 +180,16 @@ impl Asked<'_> {
             Some(0) | None => 0.0,
             Some(at) => steps[at],
         })
+    }
+}
+
+/// A literal of float.
+fn number(value: f64) -> String {
+    let text = format!("{:?}", value as f32);
+    if text.contains(['.', 'e']) {
+        text
+    } else {
+        text + ".0"
     }
 }
 
@@ -183,6 +255,73 @@ mod tests {
             );
             checked(&text);
         }
+    }
+
+    /// The ground of a shader that meets spheres by that function.
+    fn shader(function: &str, call: &str) -> String {
+        format!(
+            "{function}\nvoid mainImage(out vec4 c, in vec2 p) {{\n    vec3 ro = vec3(0.0, 0.0, 2.0);\n    \
+             vec3 rd = normalize(vec3(p / iResolution.xy - 0.5, -1.0));\n    float t;\n    {call}\n}}\n"
+        )
+    }
+
+    #[test]
+    fn both_roots_and_a_yes_with_a_t_are_replaced_too() {
+        let pair = shader(
+            "vec2 sphere(vec3 ro, vec3 rd, vec3 center, float radius) {
+                vec3 oc = ro - center;
+                float b = dot(oc, rd);
+                float h = b * b - (dot(oc, oc) - radius * radius);
+                if (h < 0.0) return vec2(-1.0, -2.0);
+                h = sqrt(h);
+                return vec2(-b - h, -b + h);
+            }",
+            "c = vec4(sphere(ro, rd, vec3(0.0), 1.0), 0.0, 1.0);",
+        );
+        let flag = shader(
+            "bool sphere(vec3 ro, vec3 rd, vec3 center, float radius, out float t) {
+                vec3 oc = ro - center;
+                float b = dot(oc, rd);
+                float h = b * b - (dot(oc, oc) - radius * radius);
+                t = 1e6;
+                if (h < 0.0) return false;
+                t = -b - sqrt(h);
+                if (t < 0.0) t = -b + sqrt(h);
+                return t > 0.0;
+            }",
+            "c = vec4(sphere(ro, rd, vec3(0.0), 1.0, t) ? t : 0.0);",
+        );
+        for (text, line) in [
+            (pair, "toyproof_miss ? vec2(-1.0, -2.0)"),
+            (flag, "if (toyproof_t > 0.0) t = toyproof_t; else t = 1000000.0;"),
+        ] {
+            let made = replacements(&text, &checked(&text), &glsl::Options::default()).unwrap();
+            assert_eq!(made.len(), FORMULAS.len(), "{text}");
+            for (name, text) in made {
+                assert!(text.contains(line), "{name}: {text}");
+                checked(&text);
+            }
+        }
+    }
+
+    #[test]
+    fn what_answers_otherwise_is_left_alone() {
+        // It keeps what is nearer already, and nothing is in a fresh variable.
+        let text = shader(
+            "bool sphere(vec3 ro, vec3 rd, vec3 center, float radius, inout float t) {
+                vec3 oc = ro - center;
+                float b = dot(oc, rd);
+                float h = b * b - (dot(oc, oc) - radius * radius);
+                if (h < 0.0) return false;
+                float near = -b - sqrt(h);
+                if (near < 0.0 || near > t) return false;
+                t = near;
+                return true;
+            }",
+            "t = 100.0; c = vec4(sphere(ro, rd, vec3(0.0), 1.0, t) ? t : 0.0);",
+        );
+        let made = replacements(&text, &checked(&text), &glsl::Options::default()).unwrap();
+        assert_eq!(made, []);
     }
 
     #[test]
