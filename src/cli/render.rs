@@ -104,13 +104,14 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         return Exit::Trouble;
     }
     terminal.detail(&format!("the scene requires {requirements}"));
+    let mut before = Before::default();
     let made = match args.frames {
         None => {
             let moment = Moment {
                 frame: args.frame,
                 time: args.time,
             };
-            picture(&scene, moment, (args, &args.output), terminal)
+            picture(&scene, moment, &mut before, (args, &args.output), terminal)
         }
         Some(_) if args.output == Path::new("-") => {
             terminal.error(sequence::NO_FILE);
@@ -125,19 +126,32 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
                     frame: one.frame,
                     time: one.time,
                 };
-                picture(&scene, moment, (args, &one.path), terminal)
+                picture(&scene, moment, &mut before, (args, &one.path), terminal)
             })
         }
     };
     if made { Exit::Good } else { Exit::Trouble }
 }
 
+/// The tracer of the frame before, in the type that is asked for.
+#[derive(Default)]
+struct Before {
+    single: Option<Tracer<f32>>,
+    double: Option<Tracer<f64>>,
+}
+
 /// Traces the scene at a moment and keeps the picture; tells whether it could.
-fn picture(scene: &Scene, moment: Moment, (args, path): (&Args, &Path), terminal: &Terminal) -> bool {
+fn picture(
+    scene: &Scene,
+    moment: Moment,
+    before: &mut Before,
+    (args, path): (&Args, &Path),
+    terminal: &Terminal,
+) -> bool {
     let start = Instant::now();
     let picture = match args.precision {
-        Precision::F32 => trace::<f32>(scene, moment, args, terminal),
-        Precision::F64 => trace::<f64>(scene, moment, args, terminal),
+        Precision::F32 => trace(scene, moment, &mut before.single, args, terminal),
+        Precision::F64 => trace(scene, moment, &mut before.double, args, terminal),
     };
     terminal.detail(&format!("traced in {:.3} s", start.elapsed().as_secs_f64()));
     match image::encode(&picture, path) {
@@ -172,8 +186,18 @@ pub(super) fn load(path: &Path, terminal: &Terminal) -> Option<Scene> {
 }
 
 /// The picture, with a bar that shows its rows.
-fn trace<T: Real>(scene: &Scene, moment: Moment, args: &Args, terminal: &Terminal) -> Image {
-    let tracer = Tracer::<T>::at(scene, moment);
+fn trace<T: Real>(
+    scene: &Scene,
+    moment: Moment,
+    before: &mut Option<Tracer<T>>,
+    args: &Args,
+    terminal: &Terminal,
+) -> Image {
+    let tracer = match before.take() {
+        Some(before) => before.moved(scene, moment),
+        None => Tracer::at(scene, moment),
+    };
+    let tracer = &*before.insert(tracer);
     let rows = u64::from(scene.film.size[1]);
     let bar = match args.frames {
         None => terminal.bar(rows, "tracing"),

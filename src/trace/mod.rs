@@ -40,6 +40,7 @@ use self::lanes::Level;
 use self::sampler::{Draws, Sample};
 use self::seen::Seen;
 use self::shape::{Shape, Sphere};
+use self::spheres::Spheres;
 use self::style::{Exact, Style};
 use self::world::World;
 use crate::image::Image;
@@ -75,10 +76,20 @@ impl<T: Real> Tracer<T> {
     /// A tracer of `scene` at that moment.
     #[must_use]
     pub fn at(scene: &Scene, moment: Moment) -> Self {
-        Self::with_level(scene, moment, Level::best())
+        Self::with_level(scene, moment, Level::best(), None)
     }
 
-    fn with_level(scene: &Scene, moment: Moment, level: Level) -> Self {
+    /// A tracer of the same scene at another moment. It takes over what does not change: the shape of the tree.
+    #[must_use]
+    pub fn moved(self, scene: &Scene, moment: Moment) -> Self {
+        let spheres = match self.kernel {
+            Kernel::Spheres(world) => world.spheres,
+            Kernel::Shapes(world) => world.spheres,
+        };
+        Self::with_level(scene, moment, self.level, Some(spheres))
+    }
+
+    fn with_level(scene: &Scene, moment: Moment, level: Level, before: Option<Spheres<T>>) -> Self {
         let requirements = Requirements::of(scene);
         let scene = &scene.at(moment);
         Self {
@@ -87,9 +98,11 @@ impl<T: Real> Tracer<T> {
             camera: Camera::new(scene),
             figures: scene.figures.iter().map(Figure::new).collect(),
             kernel: if requirements.shapes {
-                Kernel::Shapes(World::new(scene, level, |object| Shape::new(&object.shape)))
+                Kernel::Shapes(World::new(scene, level, before, |object| {
+                    Shape::new(&object.shape)
+                }))
             } else {
-                Kernel::Spheres(World::new(scene, level, |object| match object.shape {
+                Kernel::Spheres(World::new(scene, level, before, |object| match object.shape {
                     scene::Shape::Sphere { center, radius } => Sphere::new(center, radius),
                     _ => unreachable!("a scene that requires other shapes has the other kernel"),
                 }))

@@ -1,5 +1,6 @@
 //! Pictures whose pixels are known.
 
+use std::fmt::Write as _;
 use std::fs;
 use std::path::PathBuf;
 
@@ -415,7 +416,7 @@ fn same_bits_however_it_is_traced<T: Real>(name: &str) {
     let mut scene = rung(name, [45, 27]);
     scene.film.samples = scene.film.samples.min(2);
     let tracers: Vec<_> = Level::all()
-        .map(|level| Tracer::<T>::with_level(&scene, Moment::default(), level))
+        .map(|level| Tracer::<T>::with_level(&scene, Moment::default(), level, None))
         .collect();
     let expected = bits(&tracers[0].picture(|| ()));
     for tracer in &tracers {
@@ -452,4 +453,39 @@ fn every_instruction_set_and_number_of_threads_paints_the_same_bits() {
         same_bits_however_it_is_traced::<f32>(&name);
         same_bits_however_it_is_traced::<f64>(&name);
     }
+}
+
+#[test]
+fn a_tree_that_moves_along_shows_what_a_new_one_does() {
+    let mut text = String::from(
+        "[film]\nsize = [48, 32]\nmax_depth = 2\n[[motion]]\nname = \"turn\"\npivot = [0, 0, -9]\naxis = [0, 1, 0]\nframes = 40\n\
+         [[motion]]\nname = \"roll\"\npivot = [0, 1, -9]\naxis = [1, 0, 0]\nframes = 7\n",
+    );
+    for at in 0..300 {
+        let (x, y, z) = (at % 10, at / 10 % 6, at / 60);
+        // Those that turn, those that roll and those that stay are neighbours at first and are not later.
+        let motion = ["", "motion = \"turn\"\n", "motion = \"roll\"\n"][at % 3];
+        let model = if at % 7 == 0 { "mirror" } else { "facing" };
+        let _ = write!(
+            text,
+            "[[sphere]]\ncenter = [{}, {}, {}]\nradius = 0.3\nmaterial = {{ model = \"{model}\", color = [0.{}, 0.5, 0.{}] }}\n{motion}",
+            x as f64 - 4.5,
+            y as f64 - 2.5,
+            -7.0 - z as f64,
+            1 + at % 9,
+            1 + at % 8,
+        );
+    }
+    let scene = scene(&text);
+    let at = |frame| Moment { frame, time: 0.0 };
+    let mut moved = Tracer::<f64>::at(&scene, at(0));
+    let mut pictures = Vec::new();
+    for frame in [1, 2, 9, 20, 21, 0] {
+        moved = moved.moved(&scene, at(frame));
+        let picture = moved.picture(|| ());
+        let anew = Tracer::<f64>::at(&scene, at(frame)).picture(|| ());
+        assert_eq!(picture.pixels(), anew.pixels(), "frame {frame}");
+        pictures.push(anew);
+    }
+    assert_ne!(pictures[0].pixels(), pictures[3].pixels());
 }

@@ -11,6 +11,7 @@
 )]
 
 mod block;
+mod collapse;
 mod formula;
 mod one;
 mod packet;
@@ -19,8 +20,7 @@ mod slab;
 mod tests;
 mod tree;
 
-use self::block::{Block, Reach};
-use self::tree::Node;
+use self::tree::Tree;
 use super::lanes::Level;
 use super::real::Real;
 
@@ -46,28 +46,28 @@ pub(super) struct Numbered<T> {
 /// The spheres of a scene.
 #[derive(Debug)]
 pub(super) struct Spheres<T> {
-    blocks: Vec<Block<T>>,
-    /// One for each block.
-    reaches: Vec<Reach<T>>,
-    /// The root first; none where there are only a few blocks.
-    nodes: Vec<Node<T>>,
+    tree: Tree<T>,
     level: Level,
 }
 
 impl<T: Real> Spheres<T> {
     /// Under a tree or not, for that instruction set.
     pub(super) fn new(spheres: &[Numbered<T>], tree: bool, level: Level) -> Self {
-        let ((blocks, reaches), nodes) = if tree && spheres.len() > EIGHT {
-            tree::build(spheres)
+        let tree = if tree && spheres.len() > EIGHT {
+            Tree::build(spheres)
         } else {
-            (spheres.chunks(EIGHT).map(block::block).unzip(), Vec::new())
+            Tree::without_nodes(spheres)
         };
-        Self {
-            blocks,
-            reaches,
-            nodes,
-            level,
+        Self { tree, level }
+    }
+
+    /// The same spheres elsewhere, in the order of their numbers: a tree that is there is kept, if it still serves.
+    pub(super) fn moved(mut self, spheres: &[Numbered<T>]) -> Self {
+        let has_tree = !self.tree.nodes.is_empty();
+        if has_tree && self.tree.move_to(spheres) {
+            return self;
         }
+        Self::new(spheres, has_tree, self.level)
     }
 
     /// The smallest t of a sphere, and its number; where several have it, the smallest number.

@@ -57,8 +57,8 @@ fn walk<T: Real, S: Lanes<T>, const ANY: bool>(
     query: &Query<T>,
 ) -> Option<(T, u32)> {
     let mut ray = Walker::new(simd, query);
-    if spheres.nodes.is_empty() {
-        for block in &spheres.blocks {
+    if spheres.tree.nodes.is_empty() {
+        for block in &spheres.tree.blocks {
             ray.meet(block);
             if ANY && ray.is_stopped() {
                 break;
@@ -72,9 +72,9 @@ fn walk<T: Real, S: Lanes<T>, const ANY: bool>(
     let mut next = Child::ROOT;
     loop {
         let nearest = match next.get() {
-            Ok(node) => ray.open(&sides, &spheres.nodes[node], &mut open),
+            Ok(node) => ray.open(&sides, &spheres.tree.nodes[node], &mut open),
             Err(block) => {
-                ray.meet(&spheres.blocks[block]);
+                ray.meet(&spheres.tree.blocks[block]);
                 if ANY && ray.is_stopped() {
                     return ray.hit();
                 }

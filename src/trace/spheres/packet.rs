@@ -89,8 +89,8 @@ impl<T: Real> Kernel<T> for Nearest<'_, T> {
     fn run<S: Lanes<T>>(self, simd: S) -> Found<T> {
         let Self { spheres, packet } = self;
         let mut rays = Walkers::new(simd, packet);
-        if spheres.nodes.is_empty() {
-            for (block, reach) in spheres.blocks.iter().zip(&spheres.reaches) {
+        if spheres.tree.nodes.is_empty() {
+            for (block, reach) in spheres.tree.blocks.iter().zip(&spheres.tree.reaches) {
                 rays.meet(block, reach);
             }
             return rays.found;
@@ -99,8 +99,8 @@ impl<T: Real> Kernel<T> for Nearest<'_, T> {
         let mut next = Child::ROOT;
         loop {
             match next.get() {
-                Ok(node) => rays.cross(&spheres.nodes[node], &mut open),
-                Err(block) => rays.meet(&spheres.blocks[block], &spheres.reaches[block]),
+                Ok(node) => rays.cross(&spheres.tree.nodes[node], &mut open),
+                Err(block) => rays.meet(&spheres.tree.blocks[block], &spheres.tree.reaches[block]),
             }
             next = loop {
                 match open.pop() {

@@ -1,17 +1,18 @@
 //! A tree of boxes over blocks of spheres, eight to a node.
 //!
 //! obvhs builds a binary tree in f32 (D. Meister and J. Bittner, “Parallel Locally-Ordered Clustering for Bounding Volume
-//! Hierarchy Construction”, 2018), of which only the shape is kept: nodes take in their largest descendants until they
-//! have eight children, and the boxes are made anew, in the tracer's number type, from the spheres.
+//! Hierarchy Construction”, 2018), of which only the shape is kept: [`super::collapse`] makes it one of eights, and the boxes are
+//! made anew, in the tracer's number type, from the spheres. Where these move, the tree keeps its shape and takes new boxes, as
+//! long as they do not become much larger.
 
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
-use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
 use obvhs::{Boundable, BvhBuildParams};
 
 use super::super::real::Real;
 use super::block::{Block, Reach, block};
+use super::collapse::Collapse;
 use super::{EIGHT, Eight, Numbered};
 
 /// Up to eight boxes. Places that are empty hold boxes that are inside out.
@@ -102,166 +103,113 @@ fn boxes<T: Real>(spheres: &[Numbered<T>]) -> Vec<Box32> {
         .collect()
 }
 
-/// Blocks, and how far each reaches.
-pub(super) type Blocks<T> = (Vec<Block<T>>, Vec<Reach<T>>);
-
-/// The blocks, how far they reach, and the nodes over them, the root first.
-pub(super) fn build<T: Real>(spheres: &[Numbered<T>]) -> (Blocks<T>, Vec<Node<T>>) {
-    let parameters = BvhBuildParams {
-        max_prims_per_leaf: 1,
-        ..BvhBuildParams::medium_build()
-    };
-    let binary = build_bvh2(&boxes(spheres), parameters, &mut std::time::Duration::default());
-    let ways = ways(&binary);
-    let (mut blocks, mut reaches): Blocks<T> = (Vec::new(), Vec::new());
-    let mut nodes = vec![Node::empty()];
-    // Each node once its number is known; their roots in the binary tree.
-    let mut roots = vec![0];
-    let mut at = 0;
-    while at < roots.len() {
-        let members = members(&binary, &ways, roots[at]);
-        nodes[at].count = members.len();
-        for (place, member) in members.into_iter().enumerate() {
-            if ways[member].count <= EIGHT as u32 {
-                let below: Vec<_> = below(&binary, member).into_iter().map(|at| spheres[at]).collect();
-                let (block, reach) = block(&below);
-                nodes[at].set(place, reach.bounds(&block));
-                nodes[at].children[place] = Child::block(blocks.len());
-                blocks.push(block);
-                reaches.push(reach);
-            } else {
-                nodes[at].children[place] = Child::node(nodes.len());
-                nodes.push(Node::empty());
-                roots.push(member);
-            }
-        }
-        at += 1;
-    }
-    // Children have larger numbers than their parents.
-    for at in (0..nodes.len()).rev() {
-        for place in 0..nodes[at].count {
-            if let Ok(child) = nodes[at].children[place].get() {
-                let bounds = nodes[child].bounds();
-                nodes[at].set(place, bounds);
-            }
-        }
-    }
-    ((blocks, reaches), nodes)
+/// Blocks, how far each reaches, and the nodes over them, the root first; none over a few.
+#[derive(Debug)]
+pub(super) struct Tree<T> {
+    pub(super) blocks: Vec<Block<T>>,
+    pub(super) reaches: Vec<Reach<T>>,
+    pub(super) nodes: Vec<Node<T>>,
+    /// What it cost to walk when it was built.
+    cost: f64,
 }
 
-fn children(binary: &Bvh2, node: usize) -> Option<[usize; 2]> {
-    let node = &binary.nodes[node];
-    let first = node.first_index as usize;
-    (node.prim_count == 0).then_some([first, first + 1])
-}
+/// How many times as much as when it was built a tree may cost before it is built anew.
+const WORN: f64 = 2.0;
 
-/// The cheapest ways to make a subtree of the binary tree into children of a node, by the surface area heuristic: H. Ylitie,
-/// T. Karras and S. Laine, “Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs”, 2017, section 3. A node
-/// and a block cost the same, however full they are, and what fits into a block is one.
-#[derive(Debug, Clone, Copy, Default)]
-struct Ways {
-    /// How many spheres there are.
-    count: u32,
-    /// What it costs as at most 1, 2, … children.
-    costs: [f32; EIGHT - 1],
-    /// How many of them come from each half; none where it is one child.
-    halves: [[u8; 2]; EIGHT - 1],
-    /// The same for the children of the node that it is.
-    of_node: [u8; 2],
-}
-
-impl Ways {
-    fn block(count: u32, area: f32) -> Self {
+impl<T: Real> Tree<T> {
+    /// Blocks in the order of the spheres, and no nodes.
+    pub(super) fn without_nodes(spheres: &[Numbered<T>]) -> Self {
+        let (blocks, reaches) = spheres.chunks(EIGHT).map(block).unzip();
         Self {
-            count,
-            costs: [area; EIGHT - 1],
-            ..Self::default()
+            blocks,
+            reaches,
+            nodes: Vec::new(),
+            cost: 0.0,
         }
     }
 
-    fn of(area: f32, [one, other]: [&Self; 2]) -> Self {
-        let parted = |children: usize| {
-            (1..children)
-                .map(|k| {
-                    (
-                        one.costs[k - 1] + other.costs[children - k - 1],
-                        [k as u8, (children - k) as u8],
-                    )
-                })
-                .min_by(|(a, _), (b, _)| a.total_cmp(b))
+    pub(super) fn build(spheres: &[Numbered<T>]) -> Self {
+        let parameters = BvhBuildParams {
+            max_prims_per_leaf: 1,
+            ..BvhBuildParams::medium_build()
         };
-        let count = one.count + other.count;
-        if count <= EIGHT as u32 {
-            return Self::block(count, area);
-        }
-        let (below, of_node) = parted(EIGHT).unwrap_or_default();
-        let mut ways = Self {
-            count,
-            of_node,
-            ..Self::default()
+        let binary = build_bvh2(&boxes(spheres), parameters, &mut std::time::Duration::default());
+        let collapse = Collapse::new(&binary);
+        let mut tree = Self {
+            nodes: vec![Node::empty()],
+            ..Self::without_nodes(&[])
         };
-        let mut best = (area + below, [0; 2]);
-        for at in 0..EIGHT - 1 {
-            if let Some(more) = parted(at + 1)
-                && more.0 < best.0
-            {
-                best = more;
-            }
-            (ways.costs[at], ways.halves[at]) = best;
-        }
-        ways
-    }
-}
-
-/// Those of each node of the binary tree.
-fn ways(binary: &Bvh2) -> Vec<Ways> {
-    let mut order = vec![0];
-    let mut at = 0;
-    while at < order.len() {
-        order.extend(children(binary, order[at]).into_iter().flatten());
-        at += 1;
-    }
-    let mut ways = vec![Ways::default(); binary.nodes.len()];
-    for node in order.into_iter().rev() {
-        let area = binary.nodes[node].aabb.half_area();
-        ways[node] = match children(binary, node) {
-            Some(two) => Ways::of(area, two.map(|child| &ways[child])),
-            None => Ways::block(binary.nodes[node].prim_count, area),
-        };
-    }
-    ways
-}
-
-/// The children of a node.
-fn members(binary: &Bvh2, ways: &[Ways], root: usize) -> Vec<usize> {
-    let mut members = Vec::new();
-    let mut open = vec![(root, ways[root].of_node)];
-    while let Some((node, halves)) = open.pop() {
-        match (children(binary, node), halves) {
-            (Some([one, other]), [left, right]) if left > 0 => {
-                for (child, share) in [(other, right), (one, left)] {
-                    open.push((child, ways[child].halves[usize::from(share) - 1]));
+        // Each node once its number is known; their roots in the binary tree.
+        let mut roots = vec![0];
+        let (mut below, mut at) = (Vec::new(), 0);
+        while at < roots.len() {
+            let members = collapse.members(roots[at]);
+            tree.nodes[at].count = members.len();
+            for (place, member) in members.into_iter().enumerate() {
+                if collapse.is_block(member) {
+                    below.clear();
+                    below.extend(collapse.spheres(member).into_iter().map(|at| spheres[at]));
+                    tree.nodes[at].children[place] = Child::block(tree.blocks.len());
+                    let (block, reach) = block(&below);
+                    tree.blocks.push(block);
+                    tree.reaches.push(reach);
+                } else {
+                    tree.nodes[at].children[place] = Child::node(tree.nodes.len());
+                    tree.nodes.push(Node::empty());
+                    roots.push(member);
                 }
             }
-            _ => members.push(node),
+            at += 1;
         }
+        tree.fit();
+        tree.cost = tree.cost();
+        tree
     }
-    members
-}
 
-/// The spheres below a node of the binary tree.
-fn below(binary: &Bvh2, root: usize) -> Vec<usize> {
-    let mut spheres = Vec::new();
-    let mut open = vec![root];
-    while let Some(node) = open.pop() {
-        if let Some(two) = children(binary, node) {
-            open.extend(two);
-        } else {
-            let node = &binary.nodes[node];
-            let first = node.first_index as usize;
-            let indices = &binary.primitive_indices[first..first + node.prim_count as usize];
-            spheres.extend(indices.iter().map(|&index| index as usize));
+    /// The same spheres, elsewhere, by their numbers in rising order: false where the tree has become too loose to keep.
+    pub(super) fn move_to(&mut self, spheres: &[Numbered<T>]) -> bool {
+        let mut below = Vec::with_capacity(EIGHT);
+        for (old, reach) in self.blocks.iter_mut().zip(&mut self.reaches) {
+            below.clear();
+            for number in &old.numbers[..reach.count] {
+                let Ok(at) = spheres.binary_search_by_key(number, |sphere| sphere.number) else {
+                    return false;
+                };
+                below.push(spheres[at]);
+            }
+            (*old, *reach) = block(&below);
+        }
+        self.fit();
+        // What is NaN is not kept.
+        self.cost() <= WORN * self.cost
+    }
+
+    /// Brings the boxes to where the spheres are.
+    fn fit(&mut self) {
+        // Children have larger numbers than their parents.
+        for at in (0..self.nodes.len()).rev() {
+            for place in 0..self.nodes[at].count {
+                let bounds = match self.nodes[at].children[place].get() {
+                    Ok(child) => self.nodes[child].bounds(),
+                    Err(block) => self.reaches[block].bounds(&self.blocks[block]),
+                };
+                self.nodes[at].set(place, bounds);
+            }
         }
     }
-    spheres
+
+    /// What a ray through the whole is expected to meet, by the surface area heuristic: the boxes' areas over the largest's.
+    fn cost(&self) -> f64 {
+        let area = |[low, high]: [[T; 3]; 2]| {
+            let [x, y, z] = [0, 1, 2].map(|axis| (high[axis] - low[axis]).to_f64());
+            x * y + y * z + z * x
+        };
+        let all = self.nodes.first().map_or(1.0, |root| area(root.bounds()));
+        let areas = self.nodes.iter().map(|node| {
+            let corner = |of: &[Eight<T>; 3], place: usize| [0, 1, 2].map(|axis| of[axis][place]);
+            let boxes = (0..node.count).map(|place| [&node.low, &node.high].map(|of| corner(of, place)));
+            boxes.map(area).sum::<f64>()
+        });
+        areas.sum::<f64>() / all
+    }
 }

@@ -44,7 +44,13 @@ struct Emitter<T: Real> {
 }
 
 impl<T: Real, P: Primitive<T>> World<T, P> {
-    pub(super) fn new(scene: &Scene, level: Level, shape: impl Fn(&Object) -> P) -> Self {
+    /// `before`: the same scene's spheres at another moment, which their tree may serve again.
+    pub(super) fn new(
+        scene: &Scene,
+        level: Level,
+        before: Option<Spheres<T>>,
+        shape: impl Fn(&Object) -> P,
+    ) -> Self {
         let materials: Vec<_> = scene
             .objects
             .iter()
@@ -70,7 +76,10 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
             background: Background::new(&scene.background),
             lights: scene.lights.iter().map(Light::new).collect(),
             shapes: scene.objects.iter().map(shape).collect(),
-            spheres: Spheres::new(&spheres, Requirements::of(scene).many_spheres, level),
+            spheres: match before {
+                Some(before) => before.moved(&spheres),
+                None => Spheres::new(&spheres, Requirements::of(scene).many_spheres, level),
+            },
             others: (0..scene.objects.len())
                 .filter(|&at| is_other(&scene.objects[at]))
                 .collect(),
