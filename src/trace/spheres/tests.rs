@@ -100,8 +100,9 @@ fn oracle<T: Real>(spheres: &[Numbered<T>], query: &Query<T>) -> Option<(T, u32)
     nearest
 }
 
-/// How many rays were compared, and how many of them met something.
-fn compare<T: Real>(seeds: u32, exponents: f64) -> [u32; 2] {
+/// How many rays were compared, and how many of them met something. The scene's size has an exponent between those, the rays
+/// start up to ten to the `away` times that from its middle.
+fn compare<T: Real>(seeds: u32, exponents: f64, away: f64) -> [u32; 2] {
     let mut told = [0; 2];
     for seed in 0..seeds {
         let random = &mut Random(seed);
@@ -119,7 +120,7 @@ fn compare<T: Real>(seeds: u32, exponents: f64) -> [u32; 2] {
             .collect();
         let mut sorted = spheres.clone();
         sorted.sort_by_key(|sphere| sphere.number);
-        let distance = scale * 10f64.powf(random.between(0.0, 3.0));
+        let distance = scale * 10f64.powf(random.between(0.0, away));
         let eye = random.place(distance);
         let is_narrow = random.below(2) == 0;
         let aim = target(random, &described, eye);
@@ -197,14 +198,22 @@ fn compare<T: Real>(seeds: u32, exponents: f64) -> [u32; 2] {
 #[test]
 fn every_way_gives_the_same_bits_at_every_size() {
     for [rays, hits] in [
-        compare::<f32>(1500, 30.0),
-        compare::<f64>(1500, 30.0),
-        compare::<f64>(300, 150.0),
+        compare::<f32>(1500, 30.0, 3.0),
+        compare::<f64>(1500, 30.0, 3.0),
+        compare::<f64>(300, 150.0, 3.0),
     ] {
         assert!(
             hits > rays / 4 && hits < rays,
             "{hits} of {rays} rays meet something"
         );
+    }
+}
+
+/// From so far away, rounding takes rays past spheres that they meet and into others: the margins of boxes are for that.
+#[test]
+fn every_way_gives_the_same_bits_from_far_away() {
+    for [_, hits] in [compare::<f32>(300, 3.0, 8.0), compare::<f64>(100, 3.0, 16.0)] {
+        assert!(hits > 300, "{hits}");
     }
 }
 
