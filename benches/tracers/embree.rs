@@ -99,16 +99,14 @@ impl Embree {
         self.seconds()
     }
 
-    /// The number of each ray's sphere.
-    pub(crate) fn numbers(&mut self) -> Vec<Option<u32>> {
+    /// The number of each ray's sphere, `u32::MAX` for none.
+    pub(crate) fn numbers(&mut self) -> Vec<u32> {
         self.command(b'i');
         let mut bytes = vec![0; 4 * self.rays];
         self.from.read_exact(&mut bytes).expect("it answers");
-        let numbers = bytes
+        bytes
             .chunks_exact(4)
-            .map(|four| u32::from_ne_bytes([four[0], four[1], four[2], four[3]]));
-        numbers
-            .map(|number| (number != u32::MAX).then_some(number))
+            .map(|four| u32::from_ne_bytes([four[0], four[1], four[2], four[3]]))
             .collect()
     }
 }

@@ -202,7 +202,7 @@ fn beside_embree_and_lavapipe(program: Option<&Path>, counts: &[usize]) {
             other,
         ] = times;
         let exact = double.surfaces();
-        let wrong = |numbers: &[Option<u32>]| numbers.iter().zip(&exact).filter(|(a, b)| a != b).count();
+        let wrong = |numbers: &[u32]| numbers.iter().zip(&exact).filter(|(a, b)| a != b).count();
         let theirs = embree.as_mut().map_or("–".to_owned(), |[primary, _]| {
             wrong(&primary.numbers()).to_string()
         });

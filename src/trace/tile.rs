@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::real::{Real, Vector};
 use super::sampler::{Draws, Sample};
 use super::seen::Seen;
-use super::spheres::{Found, PACKET, Packet};
+use super::spheres::{Found, NONE, PACKET, Packet};
 use super::style::Exact;
 use super::world::First;
 use super::{Kernel, Tracer, figure, film};
@@ -35,6 +35,7 @@ impl Tile {
     }
 
     /// Row by row; beyond the picture's edge those at the edge again, so that every ray of a packet is some pixel's.
+    #[inline]
     fn pixel(&self, at: usize) -> [u32; 2] {
         let within = [at as u32 % SIDE, at as u32 / SIDE];
         [0, 1].map(|axis| self.corner[axis] + within[axis].min(self.size[axis] - 1))
@@ -140,19 +141,21 @@ impl<T: Real> Tracer<T> {
         }
     }
 
-    /// The surfaces behind the middles of the pixels, by their numbers in the scene, bottom row first.
+    /// The surfaces behind the middles of the pixels, by their numbers in the scene, bottom row first; [`u32::MAX`] where there is
+    /// none.
     #[must_use]
-    pub fn surfaces(&self) -> Vec<Option<u32>> {
+    pub fn surfaces(&self) -> Vec<u32> {
         let [width, height] = self.film.size;
-        let mut surfaces = vec![None; width as usize * height as usize];
+        let mut surfaces = vec![NONE; width as usize * height as usize];
         let bands = surfaces.par_chunks_mut(width as usize * SIDE as usize);
         bands.enumerate().for_each(|(band, surfaces)| {
             for tile in self.tiles(band as u32 * SIDE) {
                 let packet = self.camera.packet(&self.middles(tile), self.level);
                 let found = self.find(&packet);
                 tile.each(width, |at, in_band| {
-                    let first = self.first(&packet, &found, at);
-                    surfaces[in_band] = first.map(|(_, surface)| surface as u32);
+                    if let Some((_, surface)) = self.first(&packet, &found, at) {
+                        surfaces[in_band] = surface as u32;
+                    }
                 });
             }
         });

@@ -161,10 +161,17 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
     /// The surface that one of the rays of a packet meets first, which found those spheres.
     #[inline]
     pub(super) fn first(&self, packet: &Packet<T>, found: &Found<T>, at: usize) -> First<T> {
-        let mut first = found.of(at).map(|(t, number)| (t, number as usize));
-        if !self.others.is_empty() {
-            self.nearest_other(&packet.ray(at), &mut first, &Exact);
+        let first = found.of(at).map(|(t, number)| (t, number as usize));
+        if self.others.is_empty() {
+            return first;
         }
+        self.nearest_with_others(&packet.ray(at), first)
+    }
+
+    /// Apart, so that who has no others keeps what is first in registers.
+    #[inline(never)]
+    fn nearest_with_others(&self, ray: &Ray<T>, mut first: First<T>) -> First<T> {
+        self.nearest_other(ray, &mut first, &Exact);
         first
     }
 
