@@ -40,6 +40,8 @@ pub enum Fault {
     ArcDomain,
     /// `atan(0, 0)`.
     ArcOfNothing,
+    /// A lookup in a texture at coordinates that are infinite, NaN, or so large that no texel's number can be told of them.
+    NoPlace,
     /// A derivative where a neighbour in the quad does not run the same.
     LonelyDerivative,
     /// A variable that nothing was written to: zero, as WebGL has it.
@@ -80,6 +82,7 @@ impl Fault {
             Self::LogDomain => "the logarithm of zero or less",
             Self::ArcDomain => "an inverse function beyond its domain",
             Self::ArcOfNothing => "`atan(0, 0)`",
+            Self::NoPlace => "a texture looked up at infinite, NaN or far too large coordinates",
             Self::LonelyDerivative => "a derivative where a neighbouring pixel runs something else",
             Self::NeverWritten => "the value of a variable that was never written",
         }

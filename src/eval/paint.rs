@@ -27,8 +27,18 @@ pub enum Variant {
     Observed,
     /// The same without notes.
     Plain,
-    /// Something else: a pixel that is painted the same does not depend on them.
-    Otherwise,
+    /// Something else: a pixel that is painted the same whatever it is does not depend on them.
+    Otherwise(Other),
+}
+
+/// What else may come of an operation that GLSL leaves undefined. It takes both to see what depends on it: a number may be hidden by zeros that it
+/// is multiplied with, and NaN by comparisons, which are all false.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Other {
+    /// A number.
+    Number,
+    /// NaN.
+    NotANumber,
 }
 
 /// How a frame is painted.

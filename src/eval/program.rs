@@ -10,7 +10,7 @@ use super::forward::forward;
 use super::group::Groups;
 use super::number::{Jittered, Number};
 use super::observe::Site;
-use super::paint::Variant;
+use super::paint::{Other, Variant};
 use super::prepare::Prepared;
 use super::prune::prune;
 use super::story::Plot;
@@ -25,8 +25,8 @@ pub struct Program {
     checked: Arc<Checked>,
     /// With notes of undefined operations.
     observing: OnceLock<Result<Compiled, Refusal>>,
-    /// With other values where GLSL leaves them open; made when it is first asked for.
-    otherwise: OnceLock<Result<Compiled, Refusal>>,
+    /// With another number where GLSL leaves open what comes, or with NaN; made when it is first asked for.
+    otherwise: [OnceLock<Result<Compiled, Refusal>>; 2],
     /// Without; made when it is first asked for.
     plain: OnceLock<Result<Compiled, Refusal>>,
     /// With what each pixel does; made when it is first asked for.
@@ -50,7 +50,7 @@ impl Program {
         let program = Self {
             checked: Arc::new(checked.clone()),
             observing: OnceLock::new(),
-            otherwise: OnceLock::new(),
+            otherwise: Default::default(),
             plain: OnceLock::new(),
             telling: OnceLock::new(),
         };
@@ -69,10 +69,10 @@ impl Program {
                 },
             ),
             Variant::Plain => self.made(&self.plain, Extras::default()),
-            Variant::Otherwise => self.made(
-                &self.otherwise,
+            Variant::Otherwise(other) => self.made(
+                &self.otherwise[usize::from(other == Other::NotANumber)],
                 Extras {
-                    choice: Choice::Other,
+                    choice: Choice::Other(other),
                     ..Extras::default()
                 },
             ),

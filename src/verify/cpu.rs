@@ -7,7 +7,8 @@ use std::time::{Duration, Instant};
 
 use super::{Case, PATIENCE};
 use crate::eval::{
-    Failure, Fault, Jittered, Number, Observations, Observed, Pictured, Program, Seed, Settings, Variant,
+    Failure, Fault, Jittered, Number, Observations, Observed, Other, Pictured, Program, Seed, Settings,
+    Variant,
 };
 use crate::image::Image;
 
@@ -123,18 +124,24 @@ impl<'a> Evaluator<'a> {
     /// Of the pixels that met what GLSL leaves undefined, those that are painted otherwise where another choice is taken. Where there is no
     /// time to find out, they all may.
     fn dependent<N: Number>(&self, rows: &Range<u32>, usual: &Pictured, allowance: &Allowance) -> Vec<bool> {
-        let mut undefined = usual.undefined.clone();
+        let met = usual.undefined.clone();
         let is_lonely = |observed: &Observed| observed.site.fault == Fault::LonelyDerivative;
         // No choice stands for what a derivative might be.
-        if !undefined.contains(&true) || usual.observations.faults.iter().any(is_lonely) {
-            return undefined;
+        if !met.contains(&true) || usual.observations.faults.iter().any(is_lonely) {
+            return met;
         }
-        let Ok(other) = self.picture::<N>(rows, Variant::Otherwise, allowance) else {
-            return undefined;
-        };
-        let pairs = usual.image.pixels().iter().zip(other.image.pixels());
-        for (undefined, (usual, other)) in undefined.iter_mut().zip(pairs) {
-            *undefined &= usual.map(f32::to_bits) != other.map(f32::to_bits);
+        let mut undefined = vec![false; met.len()];
+        for other in [Other::Number, Other::NotANumber] {
+            if undefined == met {
+                break;
+            }
+            let Ok(other) = self.picture::<N>(rows, Variant::Otherwise(other), allowance) else {
+                return met;
+            };
+            let pairs = usual.image.pixels().iter().zip(other.image.pixels());
+            for ((undefined, met), (usual, other)) in undefined.iter_mut().zip(&met).zip(pairs) {
+                *undefined |= *met && usual.map(f32::to_bits) != other.map(f32::to_bits);
+            }
         }
         undefined
     }

@@ -1,6 +1,6 @@
 //! Small programs with what they must paint: what GLSL says, told of the evaluator in f32 and f64, and of the GPU.
 
-use toyproof::eval::{Fault, Jittered, Number, Program, Settings, Variant};
+use toyproof::eval::{Fault, Jittered, Number, Other, Program, Settings, Variant};
 use toyproof::frame::Frame;
 use toyproof::glsl::{Checked, Options, check, lower_strict};
 use toyproof::gpu::FloatMode;
@@ -55,6 +55,7 @@ static PROGRAMS: &[(&str, &str, f64)] = &[
         -6.0,
     ),
     ("", "o.x = 7.0; if (p.x < 9.0) return; o.x = 1.0;", 7.0),
+    ("", "while (o.w++ < 3.0) o.x += 1.0;", 3.0),
     // Evaluation: once, from left to right, and only what is needed.
     (
         "float t = 1.0; bool hit() { t = 9.0; return true; }",
@@ -544,6 +545,12 @@ static OPEN: &[(&str, bool)] = &[
     ("o.x = max(p.x, sqrt(p.x - 1.0));", true),
     ("o.x = max(p.x, sqrt(p.x - 1.0)) > 9.0 ? 1.0 : 0.0;", false),
     ("o.x = clamp(1.0, p.x, 0.0);", true),
+    ("o.x = mix(0.0, 0.0, smoothstep(p.x, p.y, 1.0));", true),
+    ("o.x = max(0.0, log(-p.x)) < 9.0 ? 1.0 : 0.0;", true),
+    ("o.x = texture(iChannel0, p / (p - 0.5)).x;", true),
+    ("o.x = texture(iChannel0, log(-p)).x;", true),
+    ("o.x = textureLod(iChannel0, p * 1e20, 0.0).x;", true),
+    ("o.x = texture(iChannel0, log(-p)).x > 9.0 ? 1.0 : 0.0;", false),
 ];
 
 #[test]
@@ -564,9 +571,11 @@ fn another_choice_shows_which_pixels_hang_on_what_is_undefined() {
         };
         let usual = paint(Variant::Observed);
         assert!(usual.is_undefined(0, 0), "{body}");
-        let [usual, other] = [usual, paint(Variant::Otherwise)].map(|painting| painting.get(0, 0)[0]);
-        if (usual.to_bits() != other.to_bits()) != hangs {
-            wrong.push(format!("{body}: {usual} {other}"));
+        let usual = usual.get(0, 0)[0];
+        let others =
+            [Other::Number, Other::NotANumber].map(|other| paint(Variant::Otherwise(other)).get(0, 0)[0]);
+        if others.iter().any(|other| usual.to_bits() != other.to_bits()) != hangs {
+            wrong.push(format!("{body}: {usual} {others:?}"));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));

@@ -148,7 +148,6 @@ impl Builder<'_> {
         let tree = self.tree;
         let coordinates = self.frag_coord();
         if let &[out, position] = tree[function].parameters.as_slice() {
-            // The colour begins black and opaque, where other `out` parameters begin with zeros.
             self.homes.insert(out, Home::Cells(colour));
             let cells = self.allocate_type(tree[position].ty)?;
             self.store_all(cells, &coordinates);

@@ -24,11 +24,12 @@ use self::written::Written;
 use super::flow::{Block, Cell, Cells, Flow, LoopId, NONE, Node, Origin, Scope, Value};
 use super::observe::{Predicate, Site, SiteId};
 use super::operation::{Kind, Operation};
+use super::paint::Other;
 use super::story::{CallId, EventId, Plot};
 use crate::glsl::Checked;
 use thiserror::Error;
 
-use crate::glsl::tree::{ExprId, FunctionId, Item, Place, Tree, Type, VariableId, VariableKind};
+use crate::glsl::tree::{Direction, ExprId, FunctionId, Item, Place, Tree, Type, VariableId, VariableKind};
 
 /// The most values that a program may have: more is refused rather than run out of memory.
 const MAX_VALUES: usize = 2_000_000;
@@ -65,7 +66,7 @@ pub(super) enum Choice {
     /// The same, and it is noted.
     Noted,
     /// Something else.
-    Other,
+    Other(Other),
 }
 
 /// What is compiled besides the picture.
@@ -229,7 +230,11 @@ impl Builder<'_> {
             first: self.cells.len() as u32,
             count: 4,
         };
-        for value in [0.0, 0.0, 0.0, 1.0] {
+        // Black, and what a shader adds to is opaque, as ShaderToy's own `main` has it; but `out` brings nothing in.
+        let colour_parameter = self.tree[main_image].parameters.first();
+        let added_to = colour_parameter
+            .is_some_and(|&parameter| call::direction(self.tree[parameter].kind) == Direction::InOut);
+        for value in [0.0, 0.0, 0.0, f64::from(u8::from(added_to))] {
             let cell = self.allocate(Kind::Float);
             let value = self.float(value);
             self.store(cell, value);

@@ -1,7 +1,8 @@
 //! Lookups of channels (§8.8). Channels have one level, repeat, and are filtered between texels; volumes and cubes are black.
 
 use super::{Builder, Result, layout};
-use crate::eval::flow::{Lookup, Origin, Value};
+use crate::eval::flow::{Lookup, NONE, Origin, Value};
+use crate::eval::observe::{Fault, Predicate};
 use crate::eval::operation::Operation;
 use crate::glsl::tree::{BuiltIn, ExprId, Input, Sampler, Scalar, Type};
 
@@ -39,13 +40,16 @@ impl Builder<'_> {
             if function == B::TexelFetchOffset {
                 at = [0, 1].map(|axis| self.binary(Operation::AddWord, at[axis], values[2][axis]));
             }
-            return Ok(self.texels(channel, Lookup::Fetched, at));
+            return Ok(self.texels(channel, Lookup::Fetched, at).to_vec());
         }
         let coordinates = &values[0];
         let mut at = [coordinates[0], coordinates[1]];
         if is_projected(function) {
             let by = coordinates[coordinates.len() - 1];
             at = at.map(|x| self.binary(Operation::Div, x, by));
+        }
+        for x in at {
+            self.check(Fault::NoPlace, self.at(call), Predicate::NoInt, [x, NONE]);
         }
         let mut offset = [0; 2];
         if let Some(position) = offset_position(function)
@@ -57,20 +61,19 @@ impl Builder<'_> {
                 }
             }
         }
-        Ok(self.texels(channel, Lookup::Filtered { offset }, at))
+        let texels = self.texels(channel, Lookup::Filtered { offset }, at);
+        Ok(self.settle_all(texels).to_vec())
     }
 
-    fn texels(&self, channel: u8, lookup: Lookup, at: [Value; 2]) -> Vec<Value> {
-        (0..4)
-            .map(|component| {
-                self.value(Origin::Texel {
-                    channel,
-                    lookup,
-                    component,
-                    at,
-                })
+    fn texels(&self, channel: u8, lookup: Lookup, at: [Value; 2]) -> [Value; 4] {
+        [0, 1, 2, 3].map(|component| {
+            self.value(Origin::Texel {
+                channel,
+                lookup,
+                component,
+                at,
             })
-            .collect()
+        })
     }
 
     /// What a texture gives that is not there: black, of one texel if it is a channel.

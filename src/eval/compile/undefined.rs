@@ -4,10 +4,11 @@ use super::{Builder, Choice};
 use crate::eval::flow::{Node, Origin, Value};
 use crate::eval::observe::{Fault, Predicate, Site, SiteId};
 use crate::eval::operation::{Kind, Operation};
+use crate::eval::paint::Other;
 use crate::glsl::tree::Place;
 
-/// What stands where the usual choice is not taken: in range of every index, and hardly ever what an operation gives by itself.
-const OTHER_FLOAT: f64 = 0.5;
+/// The number that stands where the usual choice is not taken: in range of every index, and hardly ever what an operation gives by itself.
+const OTHER_NUMBER: f64 = 0.5;
 
 impl Builder<'_> {
     /// Notes pixels for which a predicate holds. What comes of it, if it is undefined, must be given to [`Builder::settle`].
@@ -26,25 +27,37 @@ impl Builder<'_> {
                     site: id,
                 });
             }
-            Choice::Other if fault.is_undefined() => self.open.push((predicate, values)),
-            Choice::Other | Choice::Usual => {}
+            Choice::Other(_) if fault.is_undefined() => self.open.push((predicate, values)),
+            Choice::Other(_) | Choice::Usual => {}
         }
     }
 
     /// The value of an operation that was checked: another one where GLSL leaves it open, if so chosen.
     pub(super) fn settle(&mut self, value: Value) -> Value {
+        let [settled] = self.settle_all([value]);
+        settled
+    }
+
+    /// The same of an operation that has several values.
+    pub(super) fn settle_all<const N: usize>(&mut self, values: [Value; N]) -> [Value; N] {
+        let other = match self.extras.choice {
+            Choice::Other(Other::NotANumber) => f64::NAN,
+            _ => OTHER_NUMBER,
+        };
         let open = std::mem::take(&mut self.open);
         let held = open
             .into_iter()
             .filter_map(|(predicate, values)| self.holds(predicate, values));
         let Some(any) = held.reduce(|a, b| self.binary(Operation::Or, a, b)) else {
-            return value;
+            return values;
         };
-        let (kind, other) = match self.kind(value) {
-            Kind::Float => (Kind::Float, self.float(OTHER_FLOAT)),
-            Kind::Word => (Kind::Word, self.word(0)),
-        };
-        self.select(any, other, value, kind)
+        values.map(|value| {
+            let (kind, other) = match self.kind(value) {
+                Kind::Float => (Kind::Float, self.float(other)),
+                Kind::Word => (Kind::Word, self.word(0)),
+            };
+            self.select(any, other, value, kind)
+        })
     }
 
     /// Whether a predicate of what is undefined holds, as a word; none of those that no value tells.
