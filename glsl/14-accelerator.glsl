@@ -92,8 +92,10 @@ Intersection hitScene(Ray ray) {
     vec3 place = (ray.origin + enter * ray.direction - CORNER) / SPACING;
     ivec3 cell = clamp(ivec3(floor(place)), ivec3(0), CELLS - 1);
     ivec3 stride = ivec3(sign(ray.direction));
-    // t at which the ray leaves the cell along each axis, and how much later it leaves the one after.
+    // t at which the ray leaves the cell along each axis, which it never does along one that it is perpendicular to, and how much later it
+    // leaves the one after.
     vec3 next = (CORNER + SPACING * vec3(cell + max(stride, 0)) - ray.origin) / ray.direction;
+    next = mix(next, vec3(NO_HIT), equal(stride, ivec3(0)));
     vec3 step = SPACING / abs(ray.direction);
     for (int i = 0; i < CELLS.x + CELLS.y + CELLS.z; i++) {
         float t = intersectSphere(ray, sphereIn(cell));

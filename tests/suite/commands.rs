@@ -24,6 +24,13 @@ fn the_help_of_each_command_shows_an_example() {
     }
 }
 
+/// In the middle of an odd size stands a ray along each axis of the screen.
+#[test]
+fn the_course_is_correct_at_odd_sizes() {
+    let run = toyproof(root(), &["check", "glsl", "--size", "97x55", "--on", "cpu"]);
+    assert_eq!(run.code, 0, "{}{}", run.stdout, run.stderr);
+}
+
 #[test]
 fn the_course_is_correct_and_its_json_follows_the_schema() {
     if !has_driver() {
