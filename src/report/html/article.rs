@@ -61,7 +61,7 @@ fn questions(record: &Record) -> String {
     let rows = rows.concat();
     format!(
         r#"<div class="scroll">
-<table class="questions">
+<table class="questions" aria-label="The three questions">
 <thead>
 <tr><th scope="col">Question</th><th scope="col" class="number">Differ</th><th scope="col" class="number">Undecided</th><th scope="col" class="number">Undefined</th><th scope="col" class="number">At most by</th><th scope="col">Look at</th></tr>
 </thead>

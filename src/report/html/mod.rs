@@ -19,6 +19,8 @@ use crate::image::{Legend, quantise};
 
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
+/// Runs before anything is laid out, so that all articles need not be.
+const FIRST: &str = "document.documentElement.classList.add('script')";
 /// What the script puts into the article that is open.
 const VIEWER: &str = include_str!("viewer.html");
 
@@ -43,6 +45,7 @@ pub fn html(report: &Report, rubric: Option<&Rubric>, gallery: &Gallery) -> Stri
 <meta name="color-scheme" content="light dark">
 <title>toyproof: {summary}</title>
 <style>{STYLE}</style>
+<script>{FIRST}</script>
 </head>
 <body>
 <header>
@@ -69,8 +72,9 @@ pub fn html(report: &Report, rubric: Option<&Rubric>, gallery: &Gallery) -> Stri
 fn policy() -> String {
     let hash = |text: &str| format!("'sha256-{}'", STANDARD.encode(Sha256::digest(text)));
     format!(
-        "default-src 'none'; base-uri 'none'; form-action 'none'; img-src data:; style-src {}; script-src {}",
+        "default-src 'none'; base-uri 'none'; form-action 'none'; img-src data:; style-src {}; script-src {} {}",
         hash(STYLE),
+        hash(FIRST),
         hash(SCRIPT)
     )
 }
@@ -144,7 +148,7 @@ mod tests {
         let page = page(vec![record], &gallery);
         assert!(!page.contains("<script>hacked") && !page.contains("<img") && !page.contains("<device>"));
         assert!(page.matches("&lt;img src=x").count() >= 8, "it is there, as text");
-        assert_eq!(page.matches("<script").count(), 2, "settings and our own");
+        assert_eq!(page.matches("<script").count(), 3, "settings and our own two");
     }
 
     #[test]

@@ -10,7 +10,6 @@
   };
   const settings = JSON.parse($('#settings').textContent);
   const STEP = settings.step;
-  document.documentElement.classList.add('script');
 
   // The table: sorted by a click on a column's head, narrowed by words and verdicts.
 
@@ -191,7 +190,9 @@
       if (current === 'pictures' && pictures.reference) {
         context.putImageData(pictures.reference, 0, 0, 0, 0, Math.round((width * slider.value) / slider.max), height);
       }
-      edge.style.left = `${(100 * slider.value) / slider.max}%`;
+      const percent = (100 * slider.value) / slider.max;
+      edge.style.left = `${percent}%`;
+      slider.ariaValueText = `${Math.round(percent)} % reference`;
       const legend = $('ul.legend', root);
       const entries = current === 'pictures' ? [] : legendOf(current);
       const used = entries.filter(([name]) => current !== 'difference' || name.startsWith('>'));

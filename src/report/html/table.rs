@@ -25,7 +25,7 @@ pub(super) fn table(records: &[Record], rubric: Option<&Rubric>) -> String {
     let rows: String = rows.map(|(index, record)| row(index, record, rubric)).collect();
     format!(
         r#"<section id="overview" aria-label="All shaders">
-<form id="filter" hidden>
+<form id="filter" aria-label="Filter" hidden>
 <label>Search <input type="search" name="words" autocomplete="off"></label>
 <fieldset>
 <legend>Verdicts</legend>
@@ -33,7 +33,7 @@ pub(super) fn table(records: &[Record], rubric: Option<&Rubric>) -> String {
 <p id="shown" role="status"></p>
 </form>
 <div class="scroll">
-<table id="shaders">
+<table id="shaders" aria-label="Shaders">
 <thead>
 <tr><th scope="col">Shader</th><th scope="col">Verdict</th>{points}<th scope="col" class="number wide">Maths</th><th scope="col" class="number wide">Rounding</th><th scope="col" class="why">Why</th><th scope="col" class="number wide">Seconds</th></tr>
 </thead>
@@ -54,10 +54,10 @@ fn row(index: usize, record: &Record, rubric: Option<&Rubric>) -> String {
         let of = rounded(marks.iter().map(|mark| mark.of).sum());
         format!("<td class=\"number\" data-by=\"{points}\">{points} of {of}</td>")
     });
-    let seconds = record.seconds.total();
+    let seconds = seconds(record.seconds.total());
     format!(
         "<tr data-verdict=\"{}\"><th scope=\"row\"><a href=\"#s{index}\">{}</a></th><td data-by=\"{}\">{}</td>{}{}{}\
-         <td class=\"why\">{}</td><td class=\"number wide\" data-by=\"{seconds}\">{seconds:.1}</td></tr>\n",
+         <td class=\"why\">{}</td>{seconds}</tr>\n",
         record.verdict,
         Text(&record.shader),
         record.verdict as u8,
@@ -80,6 +80,16 @@ fn share(answer: Option<&Answer>) -> String {
     };
     let by = percent.unwrap_or(-1.0);
     format!("<td class=\"number wide\" data-by=\"{by}\">{shown}</td>")
+}
+
+/// How long it took; nothing where it got no further than to be stopped.
+fn seconds(seconds: f64) -> String {
+    let shown = if seconds > 0.0 {
+        format!("{seconds:.1}")
+    } else {
+        "<span class=\"none\" title=\"not measured\">–</span>".to_owned()
+    };
+    format!("<td class=\"number wide\" data-by=\"{seconds}\">{shown}</td>")
 }
 
 fn rounded(points: f64) -> f64 {

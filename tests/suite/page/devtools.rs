@@ -138,13 +138,17 @@ impl Page {
         }
     }
 
-    /// Presses and lets go of a key that writes nothing.
+    /// Presses and lets go of a key.
     pub(crate) fn press(&mut self, key: &str) {
-        for kind in ["rawKeyDown", "keyUp"] {
-            self.call(
-                "Input.dispatchKeyEvent",
-                &json!({ "type": kind, "key": key, "code": key }),
-            );
+        // Some do their work by number, or by what they would write.
+        let (number, text) = match key {
+            "Tab" => (9, ""),
+            "Enter" => (13, "\r"),
+            _ => (0, ""),
+        };
+        for kind in ["keyDown", "keyUp"] {
+            let press = json!({ "type": kind, "key": key, "code": key, "windowsVirtualKeyCode": number, "text": text });
+            self.call("Input.dispatchKeyEvent", &press);
         }
     }
 
