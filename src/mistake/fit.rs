@@ -4,8 +4,8 @@ use rayon::prelude::*;
 
 use super::Named;
 use super::edit::edited;
+use super::look::{Looked, differs, left_over};
 use super::suspect::{Made, Suspect};
-use crate::frame::Frame;
 use crate::image::Image;
 use crate::scene::{Model, Moment, Projection, Scene, Shape};
 
@@ -41,18 +41,15 @@ pub(super) fn suspects(
     scene: &Scene,
     moment: Moment,
     text: Option<&str>,
-    frame: &Frame,
-    wrong: &Image,
+    looked_at: &Looked,
+    right: &Image,
 ) -> Vec<Suspect> {
     let mut knobs = of_scene(scene, moment);
     if let Some(text) = text {
         knobs.extend(of_shader(text));
     }
     let fitted = knobs.par_iter().filter_map(|knob| {
-        let value = best(knob.usual, |value| {
-            let picture = (knob.made)(value)?.paint(frame)?;
-            Some(distance(&picture, wrong))
-        })?;
+        let value = best(knob, looked_at, right)?;
         let named = Named {
             name: knob.name,
             says: (knob.says)(value).into(),
@@ -93,10 +90,24 @@ fn distance(one: &Image, other: &Image) -> f64 {
         .sum()
 }
 
-/// Where `distance` is smallest: among the multiples first, then between the neighbours of the best.
-fn best(usual: f64, distance: impl Fn(f64) -> Option<f64>) -> Option<f64> {
-    let values = MULTIPLES.map(|multiple| usual * multiple);
-    let tried = values.map(|value| distance(value).unwrap_or(f64::INFINITY));
+/// The value that comes nearest to the picture: among the multiples first, then between the neighbours of the best. None where the number has
+/// nothing to do with too many of the wrong pixels: none of the multiples changes them.
+fn best(knob: &Knob, looked_at: &Looked, right: &Image) -> Option<f64> {
+    let painted = |value| (knob.made)(value)?.paint(looked_at.frame);
+    let values = MULTIPLES.map(|multiple| knob.usual * multiple);
+    let pictures = values.map(painted);
+    let is_out_of_reach = |&at: &usize| {
+        let mut pictures = pictures.iter().flatten();
+        differs(at, looked_at.small, right) && !pictures.any(|picture| differs(at, picture, right))
+    };
+    let pixels = right.pixels().len();
+    let out_of_reach = (0..pixels).filter(is_out_of_reach).count() as u64;
+    if out_of_reach > left_over(looked_at.differing, pixels) {
+        return None;
+    }
+    let from = |picture: &Image| distance(picture, looked_at.small);
+    let tried = pictures.map(|picture| picture.as_ref().map_or(f64::INFINITY, from));
+    let distance = |value| Some(from(&painted(value)?));
     let (at, _) = tried
         .iter()
         .enumerate()

@@ -2,8 +2,9 @@
 
 use rayon::prelude::*;
 
-use super::suspect::Suspect;
+use super::suspect::{Suspect, paint};
 use crate::compare::Pixel;
+use crate::eval::Program;
 use crate::frame::Frame;
 use crate::image::Image;
 use crate::scene::{Integrator, Scene};
@@ -49,6 +50,40 @@ impl Looked<'_> {
             }
         }
         best
+    }
+}
+
+/// A picture of still fewer pixels, in which most suspects are seen not to be it.
+pub(super) struct Glance {
+    picture: Image,
+    frame: Frame,
+    /// How many pixels may be left unexplained.
+    limit: u64,
+}
+
+/// A glance is so many pixels a side at most, and this share of those that are wrong in it, and a few, may be left unexplained.
+const GLANCE: u32 = 24;
+const GLANCED_OVER: f64 = 0.2;
+const A_FEW: u64 = 2;
+
+impl Glance {
+    /// None if the shader cannot be painted.
+    pub(super) fn at(student: &Program, rights: &[Suspect], frame: &Frame) -> Option<Self> {
+        let frame = smaller(frame, GLANCE, u64::MAX);
+        let picture = paint(student, &frame)?;
+        let right = rights.first()?.made.paint(&frame)?;
+        let wrong = differing(&picture, &right);
+        Some(Self {
+            limit: (wrong as f64 * GLANCED_OVER) as u64 + A_FEW,
+            picture,
+            frame,
+        })
+    }
+
+    /// Whether a suspect may explain the picture.
+    pub(super) fn is_worth_a_look(&self, suspect: &Suspect) -> bool {
+        let painted = suspect.made.paint(&self.frame);
+        painted.is_some_and(|painted| differing(&self.picture, &painted) <= self.limit)
     }
 }
 
@@ -105,8 +140,13 @@ pub(super) fn smaller(frame: &Frame, side: u32, all: u64) -> Frame {
     }
 }
 
+/// Whether two pictures are different in a pixel.
+pub(super) fn differs(at: usize, one: &Image, other: &Image) -> bool {
+    Pixel::at(at, one, other).difference() > SAME
+}
+
 /// In how many pixels two pictures are different.
 pub(super) fn differing(one: &Image, other: &Image) -> u64 {
-    let differs = |&at: &usize| Pixel::at(at, one, other).difference() > SAME;
-    (0..one.pixels().len()).filter(differs).count() as u64
+    let count = one.pixels().len();
+    (0..count).filter(|&at| differs(at, one, other)).count() as u64
 }

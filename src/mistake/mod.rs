@@ -7,6 +7,7 @@ mod change;
 mod edit;
 mod fit;
 mod look;
+mod pair;
 mod suspect;
 
 use std::borrow::Cow;
@@ -15,7 +16,7 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
-use self::look::{Looked, differing, left_over, pixels, smaller, work};
+use self::look::{Glance, Looked, differing, left_over, pixels, smaller, work};
 use self::suspect::{Made, Suspect, paint};
 use crate::compare::MAX_DIFFERING;
 use crate::eval::Program;
@@ -39,9 +40,13 @@ impl Named {
     /// The same, with others that paint the same picture.
     fn or(&self, others: &[&Suspect]) -> Self {
         let others = others.iter().flat_map(|other| &other.mistakes).take(TOLD);
-        let says: Vec<&str> = std::iter::once(self.says.as_ref())
-            .chain(others.map(|other| other.says.as_ref()))
-            .collect();
+        let mut says = vec![self.says.as_ref()];
+        for other in others {
+            // A change of the scene may be what an edit of the shader is.
+            if !says.contains(&other.says.as_ref()) {
+                says.push(&other.says);
+            }
+        }
         Self {
             name: self.name,
             says: says.join("; or that ").into(),
@@ -70,8 +75,8 @@ const FEW: u64 = 8;
 /// explanations.
 const MANY: usize = 3;
 
-/// Two mistakes at once are tried where one of them is among so many that come nearest to the picture.
-const PROMISING: usize = 6;
+/// So many pairs of mistakes are painted before it is asked whether one of them explains the picture.
+const AT_ONCE: usize = 32;
 
 /// The tracers that have a classic mistake in them. Their pictures are painted once, when they are first asked for.
 #[derive(Debug)]
@@ -118,12 +123,9 @@ impl Suspects {
                 Made::Scene(Box::new(change.scene), change.moment),
             )
         };
-        let edited = styles.iter().flat_map(|text| {
-            catalogue::all().filter_map(|mistake| {
-                let made = Made::Shader(mistake.made_in(text)?);
-                Some(Suspect::new(vec![mistake.named()], made))
-            })
-        });
+        let edited = styles
+            .iter()
+            .flat_map(|text| catalogue::all().filter_map(|mistake| Suspect::edited(text, mistake)));
         let changes = change::all(scene, moment).into_iter().map(changed);
         Self {
             scene: scene.clone(),
@@ -157,7 +159,9 @@ impl Suspects {
         let small = paint(student, &self.small)?;
         let pixels = small.pixels().len();
         let rights = self.right.iter().filter_map(|right| right.picture(&self.small));
-        let differing = rights.map(|right| look::differing(&small, right)).min()?;
+        let (differing, right) = rights
+            .map(|right| (look::differing(&small, right), right))
+            .min_by_key(|&(differing, _)| differing)?;
         if differing < ENOUGH
             && let Some(finer) = self.finer(frame)
         {
@@ -190,46 +194,25 @@ impl Suspects {
             return (others.len() <= MANY).then(|| confirmed(first, others)).flatten();
         }
         let text = self.styles.first().map(String::as_str);
-        let fitted = fit::suspects(&self.scene, self.moment, text, &self.small, &small);
+        let fitted = fit::suspects(&self.scene, self.moment, text, &looked_at, right);
         if let Some(suspect) = looked_at.matching(&fitted).first() {
             return confirmed(suspect, &[]);
         }
         let deadline = Instant::now() + patience;
-        let pairs: Vec<Suspect> = self.pairs(&looked_at).collect();
-        let pairs: Vec<Suspect> = pairs
-            .into_par_iter()
-            .filter(|pair| Instant::now() < deadline && looked_at.left(pair).is_some())
-            .collect();
-        looked_at
-            .matching(&pairs)
-            .first()
-            .and_then(|pair| confirmed(pair, &[]))
-    }
-
-    /// Two mistakes at once, one of them promising, where they do not touch the same words.
-    fn pairs<'a>(&'a self, looked_at: &Looked) -> impl Iterator<Item = Suspect> + use<'a> {
-        let mut promising: Vec<(u64, &Suspect)> = self
-            .wrong
-            .iter()
-            .filter_map(|suspect| {
-                Some((
-                    look::differing(looked_at.small, suspect.picture(&self.small)?),
-                    suspect,
-                ))
-            })
-            .collect();
-        promising.sort_by_key(|&(left, _)| left);
-        promising.truncate(PROMISING);
-        let texts = promising
-            .into_iter()
-            .filter_map(|(_, first)| Some((first, first.text(self.moment)?)));
-        texts.flat_map(|(first, text)| {
-            let seconds = catalogue::all().filter_map(move |second| {
-                let made = Made::Shader(second.made_in(&text)?);
-                let mistakes = first.mistakes.iter().cloned().chain([second.named()]);
-                Some(Suspect::new(mistakes.collect(), made))
-            });
-            seconds.collect::<Vec<_>>()
+        // What is general comes first: of what paints the same picture, it says least that may not be so.
+        let glance = Glance::at(student, &self.right, &self.small)?;
+        let pairs = pair::likely(self.general.iter().chain(&self.wrong), &looked_at, right);
+        pairs.chunks(AT_ONCE).find_map(|pairs| {
+            let painted: Vec<Suspect> = pairs
+                .par_iter()
+                .filter(|_| Instant::now() < deadline)
+                .filter_map(|&pair| pair::both(pair, self.moment))
+                .filter(|pair| glance.is_worth_a_look(pair) && looked_at.left(pair).is_some())
+                .collect();
+            looked_at
+                .matching(&painted)
+                .first()
+                .and_then(|pair| confirmed(pair, &[]))
         })
     }
 

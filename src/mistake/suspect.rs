@@ -4,6 +4,7 @@ use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use super::Named;
+use super::catalogue::Mistake;
 use super::edit::styles;
 use crate::eval::{Program, Settings, Variant};
 use crate::export;
@@ -61,6 +62,8 @@ pub(super) fn paint(program: &Program, frame: &Frame) -> Option<Image> {
 pub(super) struct Suspect {
     pub(super) mistakes: Vec<Named>,
     pub(super) made: Made,
+    /// The mistake, where it is one alone, and an edit.
+    pub(super) edit: Option<&'static Mistake>,
     picture: OnceLock<Option<Image>>,
 }
 
@@ -69,8 +72,18 @@ impl Suspect {
         Self {
             mistakes,
             made,
+            edit: None,
             picture: OnceLock::new(),
         }
+    }
+
+    /// With one mistake of the catalogue in that shader; none where it cannot be made.
+    pub(super) fn edited(text: &str, mistake: &'static Mistake) -> Option<Self> {
+        let made = Made::Shader(mistake.made_in(text)?);
+        Some(Self {
+            edit: Some(mistake),
+            ..Self::new(vec![mistake.named()], made)
+        })
     }
 
     pub(super) fn names(&self) -> impl Iterator<Item = &'static str> {

@@ -10,7 +10,7 @@ use toyproof::source::{File, Files};
 
 use crate::equivalent_rewrites::rewrites;
 use crate::planted_faults::faults;
-use crate::support::{EVERY_RUNG, Rung, SPHERE, edited, scene};
+use crate::support::{EVERY_RUNG, Rung, SPHERE, edited, scene, try_edit};
 
 fn program(shader: &str) -> Program {
     let mut files = Files::default();
@@ -84,7 +84,7 @@ fn two_mistakes_at_once_are_named() {
         &[(" / aspect", ""), ("vec4(color, 1.0)", "vec4(color.bgr, 1.0)")],
     );
     assert_eq!(named(&SPHERE, &suspects, &shader, 0), "");
-    assert_eq!(named(&SPHERE, &suspects, &shader, 300), "no-aspect+blue-is-red");
+    assert_eq!(named(&SPHERE, &suspects, &shader, 300), "blue-is-red+no-aspect");
 }
 
 /// `cargo test --release --test suite -- --ignored every_fault --nocapture`: what each planted fault is called, as `mistaken.txt` has it.
@@ -99,6 +99,48 @@ fn every_fault_and_its_name() {
         }
         eprintln!("# {:?}", start.elapsed());
     }
+}
+
+/// Of all pairs of a rung's faults every so many are tried.
+const STEP: usize = 23;
+
+/// `cargo test --release --test suite -- --ignored pairs_of_faults --nocapture`: two planted faults at once, how they are named, and in
+/// how much time. `RUNG` chooses rungs.
+#[test]
+#[ignore = "prints a table"]
+fn pairs_of_faults_and_their_names() {
+    let only = std::env::var("RUNG").unwrap_or_default();
+    let (mut all, mut explained, mut right) = (0, 0, 0);
+    let (mut longest, mut spent) = (Duration::ZERO, Duration::ZERO);
+    for rung in EVERY_RUNG.into_iter().filter(|rung| rung.name.contains(&only)) {
+        let suspects = Suspects::of(&scene(rung), &frame(rung)).unwrap();
+        let own: Vec<_> = faults().filter(|fault| std::ptr::eq(fault.1, rung)).collect();
+        let alone: Vec<String> = own
+            .iter()
+            .map(|(_, _, edits)| named(rung, &suspects, &edited(rung, edits), 0))
+            .collect();
+        let pairs = (0..own.len()).flat_map(|one| (one + 1..own.len()).map(move |other| (one, other)));
+        for (one, other) in pairs.step_by(STEP) {
+            let Ok(both) = try_edit(&edited(rung, own[one].2), own[other].2) else {
+                continue;
+            };
+            let start = std::time::Instant::now();
+            let name = named(rung, &suspects, &both, 60);
+            let took = start.elapsed();
+            (longest, spent) = (longest.max(took), spent + took);
+            let mut names: Vec<_> = name.split('+').collect();
+            names.sort_unstable();
+            let mut own_names = [alone[one].as_str(), &alone[other]];
+            own_names.sort_unstable();
+            all += 1;
+            explained += usize::from(!name.is_empty());
+            right += usize::from(names == own_names);
+            eprintln!("{took:5.2?} {}: {own_names:?}: {name}", rung.name);
+        }
+    }
+    eprintln!(
+        "{explained} of {all} pairs are explained, {right} by their own names; {spent:.1?} in all, {longest:.1?} at most"
+    );
 }
 
 /// Not even those of which a few pixels are others, since their secondary rays start in another style; the verdict is not asked here.

@@ -231,12 +231,17 @@ pub(crate) fn edited(rung: &Rung, edits: &[Edit]) -> String {
 /// # Panics
 /// If there is nothing to edit, or it is not clear where.
 pub(crate) fn edit(text: &str, edits: &[Edit], name: &str) -> String {
+    try_edit(text, edits).unwrap_or_else(|why| panic!("{name}: {why}\n{text}"))
+}
+
+/// The same, or why it cannot be.
+pub(crate) fn try_edit(text: &str, edits: &[Edit]) -> Result<String, String> {
     let mut text = text.to_owned();
     for (from, to) in edits {
-        let range = place(&text, from).unwrap_or_else(|why| panic!("{name}: `{from}` {why}\n{text}"));
+        let range = place(&text, from).map_err(|why| format!("`{from}` {why}"))?;
         text.replace_range(range, to);
     }
-    text
+    Ok(text)
 }
 
 fn place(text: &str, from: &str) -> Result<Range<usize>, String> {

@@ -26,7 +26,10 @@ pub(super) fn changes(changes: &mut Changes) {
                 }
             });
         }
-        let says = format!("has no shadows of the {} light", ordinal(index));
+        let says = match lights.len() {
+            1 => "has no shadows".to_owned(),
+            _ => format!("has no shadows of the {} light", ordinal(index)),
+        };
         changes.add("light-without-shadow", says, |scene| {
             scene.lights[index].shadow = false;
         });
