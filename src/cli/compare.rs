@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::{Exit, Terminal};
-use crate::compare::{TOLERANCE, compare};
+use crate::compare::{TOLERANCE, compare, grouped};
 use crate::image::{self, Legend};
 
 /// Compare two pictures: exit code 0 if they agree, 1 if they differ
@@ -56,15 +56,17 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             }
         }
     }
-    let pixels = comparison.pixels;
+    let pixels = grouped(comparison.pixels);
     match comparison.differing {
         0 => terminal.result(&format!(
             "all {pixels} pixels agree, to {:.1e}",
             comparison.max_abs
         )),
         differing => terminal.result(&format!(
-            "{differing} of {pixels} pixels differ by more than {TOLERANCE}, by at most {:.4} ({} in 8 bits)",
-            comparison.max_abs, comparison.max_8bit
+            "{} of {pixels} pixels differ by more than {TOLERANCE}, by at most {:.4} ({} in 8 bits)",
+            grouped(differing),
+            comparison.max_abs,
+            comparison.max_8bit
         )),
     }
     for (name, pixel) in [("first", comparison.first), ("worst", comparison.worst)] {

@@ -52,13 +52,13 @@ pub fn line(record: &Record) -> String {
 fn errors(record: &Record) -> Option<String> {
     let places: Vec<_> = record.diagnostics.iter().filter_map(Json::error_place).collect();
     let first = places.iter().flatten().next();
-    let count = match places.len() {
+    let (count, which) = match places.len() {
         0 => return None,
-        1 => "1 error".to_owned(),
-        count => format!("{count} errors"),
+        1 => ("1 error".to_owned(), "in"),
+        count => (format!("{count} errors"), "the first in"),
     };
     Some(match first {
-        Some((line, column)) => format!("{count}, the first in line {line}, column {column}"),
+        Some((line, column)) => format!("{count}, {which} line {line}, column {column}"),
         None => count,
     })
 }
