@@ -34,13 +34,13 @@ macro_rules! cases {
     };
 }
 
-/// The largest errors among every 97th float where the function is neither constant nor its argument; all floats may
-/// have slightly larger ones, and the limits leave a few hundredths for them.
+/// The largest errors among every 97th float where the function is neither constant nor its argument, and among every 97th of all from
+/// the 48th on; all floats may have slightly larger ones, and the limits leave a few hundredths for them.
 fn cases() -> [Case; 16] {
     cases! {
         sin = libm::sin, 0.82, 0x73C3_51C2;
         cos = libm::cos, 0.83, 0x5D2A_15B6;
-        tan = libm::tan, 1.02, 0x659E_652C;
+        tan = libm::tan, 1.05, 0x690C_E90A;
         asin = libm::asin, 0.76, 0x3F06_CAB0;
         acos = libm::acos, 0.69, 0x3F0B_54A0;
         atan = libm::atan, 1.26, 0x3F83_1B16;
@@ -49,7 +49,7 @@ fn cases() -> [Case; 16] {
         tanh = libm::tanh, 0.64, 0x3EFC_8F0A;
         asinh = libm::asinh, 1.21, 0x3F05_1C29;
         acosh = acosh, 0.84, 0x3F87_A5A0;
-        atanh = libm::atanh, 0.85, 0x3E2D_7A44;
+        atanh = libm::atanh, 0.88, 0x3E2D_5777;
         exp = libm::exp, 0.72, 0x41DB_5663;
         exp2 = libm::exp2, 0.82, 0xBFB9_39F4;
         log = libm::log, 0.84, 0x3F33_58AB;
@@ -100,10 +100,11 @@ impl Case {
         error(computed, (self.exact)(f64::from(x)))
     }
 
-    fn largest_error(&self, stride: usize) -> (f64, f32) {
+    /// Among every `stride`th float, from that one on.
+    fn largest_error(&self, stride: usize, first: usize) -> (f64, f32) {
         let arguments = (0..(1_usize << 32) / stride).into_par_iter();
         let errors = arguments.map(|index| {
-            let x = f32::from_bits((index * stride) as u32);
+            let x = f32::from_bits((index * stride + first) as u32);
             (self.error(x), x)
         });
         errors.reduce(|| (0.0, 0.0), |a, b| if b.0 > a.0 { b } else { a })
@@ -111,9 +112,11 @@ impl Case {
 }
 
 #[test]
+#[expect(clippy::print_stderr, reason = "a sweep tells what it found")]
 fn no_error_is_larger_than_its_limit_and_no_limit_than_its_error() {
-    // TOYPROOF_STRIDE=1 tries all floats, in an hour of a core for each function (with `cargo test --release`).
-    let stride = std::env::var("TOYPROOF_STRIDE").map_or(8191, |stride| stride.parse().unwrap());
+    // TOYPROOF_STRIDE=1 tries all floats, in twenty minutes of a core for each function (with `cargo test --release`).
+    let number = |name, usual| std::env::var(name).map_or(usual, |number| number.parse().unwrap());
+    let (stride, start) = (number("TOYPROOF_STRIDE", 8191), number("TOYPROOF_FIRST", 0));
     for case in &cases() {
         let at_worst = case.error(f32::from_bits(case.worst));
         let Case { name, limit, .. } = case;
@@ -121,7 +124,8 @@ fn no_error_is_larger_than_its_limit_and_no_limit_than_its_error() {
             at_worst > limit - 0.05,
             "{name}: {limit} is more than {at_worst}, the error where it is largest"
         );
-        let (error, x) = case.largest_error(stride);
+        let (error, x) = case.largest_error(stride, start);
+        eprintln!("{name}: {error:.4} at {x:e} ({:08x})", x.to_bits());
         assert!(
             error <= *limit,
             "{name}: the error is {error} at {x:e} ({:08x})",
