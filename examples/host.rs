@@ -1,4 +1,4 @@
-//! A host for converted shaders: paints one frame of a WGSL file into a PNG.
+//! A host for converted shaders: paints one frame of a WGSL or SPIR-V file into a PNG.
 //!
 //!     toyproof convert glsl/02-sphere.glsl -o sphere.wgsl --verify
 //!     cargo run --example host -- sphere.wgsl sphere.png
@@ -18,12 +18,28 @@ const VERTICES: &str = "@vertex fn main(@builtin(vertex_index) i: u32) -> @built
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let (Some(shader), Some(picture)) = (arguments.next(), arguments.next()) else {
-        return Err("say: host SHADER.wgsl PICTURE.png".into());
+        return Err("say: host SHADER.wgsl|SHADER.spv PICTURE.png".into());
     };
-    let text = std::fs::read_to_string(shader)?;
-    let pixels = pollster::block_on(paint(&text))?;
+    let file = std::fs::read(&shader)?;
+    let shader = if shader.ends_with(".spv") {
+        let words = file.chunks_exact(4);
+        Shader::Spirv(
+            words
+                .map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]))
+                .collect(),
+        )
+    } else {
+        Shader::Wgsl(String::from_utf8(file)?)
+    };
+    let pixels = pollster::block_on(paint(&shader))?;
     image::save_buffer(picture, &pixels, SIZE[0], SIZE[1], image::ColorType::Rgba8)?;
     Ok(())
+}
+
+/// What a file holds.
+enum Shader {
+    Wgsl(String),
+    Spirv(Vec<u32>),
 }
 
 /// The inputs, where the shader looks for them; all others are zero.
@@ -41,19 +57,33 @@ fn inputs() -> [u8; 208] {
     block
 }
 
-async fn paint(shader: &str) -> Result<Vec<u8>, Box<dyn Error>> {
+async fn paint(shader: &Shader) -> Result<Vec<u8>, Box<dyn Error>> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     let adapter = instance
         .request_adapter(&wgpu::RequestAdapterOptions::default())
         .await?;
-    let (device, queue) = adapter.request_device(&wgpu::DeviceDescriptor::default()).await?;
+    // Words go to the driver as they are, which wgpu has a feature for.
+    let required_features = match shader {
+        Shader::Wgsl(_) => wgpu::Features::empty(),
+        Shader::Spirv(_) => wgpu::Features::PASSTHROUGH_SHADERS,
+    };
+    let (device, queue) = adapter
+        .request_device(&wgpu::DeviceDescriptor {
+            required_features,
+            ..Default::default()
+        })
+        .await?;
     let module = |text: &str| {
         device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: None,
             source: wgpu::ShaderSource::Wgsl(text.into()),
         })
     };
-    let (vertices, fragment) = (module(VERTICES), module(shader));
+    let vertices = module(VERTICES);
+    let fragment = match shader {
+        Shader::Wgsl(text) => module(text),
+        Shader::Spirv(words) => passed_through(&device, words),
+    };
 
     // Group 0, binding 0 is the block of inputs. A shader that reads channels has textures at 1 + 2K and samplers at 2 + 2K.
     let group = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
@@ -85,7 +115,7 @@ async fn paint(shader: &str) -> Result<Vec<u8>, Box<dyn Error>> {
         },
         fragment: Some(wgpu::FragmentState {
             module: &fragment,
-            entry_point: None,
+            entry_point: Some("main"),
             compilation_options: Default::default(),
             targets: &[Some(format.into())],
         }),
@@ -168,4 +198,19 @@ async fn paint(shader: &str) -> Result<Vec<u8>, Box<dyn Error>> {
     let mapped = rows.slice(..).get_mapped_range()?;
     // The target's first row is the bottom of the picture: y of GLSL points up.
     Ok(mapped.chunks(stride as usize).rev().flatten().copied().collect())
+}
+
+#[expect(unsafe_code, reason = "wgpu has no other way to run words as they are")]
+fn passed_through(device: &wgpu::Device, words: &[u32]) -> wgpu::ShaderModule {
+    let entry = wgpu::PassthroughShaderEntryPoint {
+        name: "main".into(),
+        workgroup_size: (0, 0, 0),
+    };
+    let descriptor = wgpu::ShaderModuleDescriptorPassthrough {
+        entry_points: std::slice::from_ref(&entry).into(),
+        spirv: Some(words.into()),
+        ..Default::default()
+    };
+    // SAFETY: the words are what `toyproof convert --verify` proved; wgpu does not look at them.
+    unsafe { device.create_shader_module_passthrough(descriptor) }
 }

@@ -1,5 +1,6 @@
 //! toyproof checks, renders and converts ShaderToy shaders, and says how far each picture can be trusted.
 
+pub mod browser;
 pub mod chart;
 pub mod cli;
 pub mod compare;

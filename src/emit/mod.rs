@@ -3,6 +3,7 @@
 mod glsl;
 mod hlsl;
 mod msl;
+pub mod reread;
 pub mod spirv;
 mod wgsl;
 

@@ -1,12 +1,17 @@
 //! SPIR-V, and the decorations that hold a driver to the arithmetic as written.
 
+mod link;
+mod spell;
+
 use std::collections::HashSet;
 
+use ::spirv::{Decoration, Op};
 use naga::ShaderStage;
 use naga::back::spv::{BindingInfo, Options, PipelineOptions, WriterFlags, write_vec};
 
 use super::{BOUNDS, ENTRY_POINT, bindings};
 use crate::module::ValidModule;
+pub use spell::spelled;
 
 /// naga's words: names kept, no flipping of coordinates, indices clamped, loops as they are.
 ///
@@ -43,27 +48,6 @@ pub fn bytes(words: &[u32]) -> Vec<u8> {
     words.iter().flat_map(|word| word.to_le_bytes()).collect()
 }
 
-/// Opcodes and operands of the SPIR-V specification, section 3.
-mod op {
-    pub(super) const EXT_INST: u32 = 12;
-    pub(super) const TYPE_FLOAT: u32 = 22;
-    pub(super) const TYPE_VECTOR: u32 = 23;
-    pub(super) const TYPE_MATRIX: u32 = 24;
-    /// `OpTypeVoid` to `OpConstantNull`.
-    pub(super) const TYPES_AND_CONSTANTS: std::ops::RangeInclusive<u32> = 19..=46;
-    pub(super) const DECORATE: u32 = 71;
-    pub(super) const F_NEGATE: u32 = 127;
-    pub(super) const F_ADD: u32 = 129;
-    pub(super) const F_SUB: u32 = 131;
-    pub(super) const F_MUL: u32 = 133;
-    pub(super) const F_DIV: u32 = 136;
-    pub(super) const F_REM: u32 = 140;
-    pub(super) const F_MOD: u32 = 141;
-    /// `OpVectorTimesScalar` to `OpDot`: products of vectors and matrices.
-    pub(super) const PRODUCTS: std::ops::RangeInclusive<u32> = 142..=148;
-    pub(super) const NO_CONTRACTION: u32 = 42;
-}
-
 const HEADER_WORDS: usize = 5;
 
 /// The same module with `NoContraction` on every float arithmetic result and on every extended instruction
@@ -74,29 +58,43 @@ pub fn strict(words: &[u32]) -> Vec<u32> {
     let mut arithmetic = Vec::new();
     let mut first_type = words.len();
     for (at, instruction) in instructions(words) {
-        let opcode = instruction[0] & 0xffff;
+        let Some(op) = opcode(instruction) else { continue };
         // Decorations stand before the first type or constant.
-        if op::TYPES_AND_CONSTANTS.contains(&opcode) {
+        if is_type(op) || op == Op::ConstantTrue || op == Op::Constant {
             first_type = first_type.min(at);
         }
-        match opcode {
-            op::TYPE_FLOAT => {
+        match op {
+            Op::TypeFloat => {
                 floats.insert(instruction[1]);
             }
-            op::TYPE_VECTOR | op::TYPE_MATRIX if floats.contains(&instruction[2]) => {
+            Op::TypeVector | Op::TypeMatrix if floats.contains(&instruction[2]) => {
                 floats.insert(instruction[1]);
             }
-            op::F_NEGATE | op::F_ADD | op::F_SUB | op::F_MUL | op::F_DIV | op::F_REM | op::F_MOD => {
-                arithmetic.push(instruction[2]);
-            }
-            op::EXT_INST if floats.contains(&instruction[1]) => arithmetic.push(instruction[2]),
-            opcode if op::PRODUCTS.contains(&opcode) => arithmetic.push(instruction[2]),
+            Op::ExtInst if floats.contains(&instruction[1]) => arithmetic.push(instruction[2]),
+            Op::FNegate
+            | Op::FAdd
+            | Op::FSub
+            | Op::FMul
+            | Op::FDiv
+            | Op::FRem
+            | Op::FMod
+            | Op::VectorTimesScalar
+            | Op::MatrixTimesScalar
+            | Op::VectorTimesMatrix
+            | Op::MatrixTimesVector
+            | Op::MatrixTimesMatrix
+            | Op::OuterProduct
+            | Op::Dot => arithmetic.push(instruction[2]),
             _ => {}
         }
     }
-    let decorations = arithmetic
-        .into_iter()
-        .flat_map(|result| [3 << 16 | op::DECORATE, result, op::NO_CONTRACTION]);
+    let decorations = arithmetic.into_iter().flat_map(|result| {
+        [
+            3 << 16 | Op::Decorate as u32,
+            result,
+            Decoration::NoContraction as u32,
+        ]
+    });
     let (head, tail) = words.split_at(first_type);
     head.iter()
         .copied()
@@ -114,6 +112,93 @@ fn instructions(words: &[u32]) -> impl Iterator<Item = (usize, &[u32])> {
         at += count.max(1);
         Some((start, words.get(start..at)?))
     })
+}
+
+/// The same module with a text in it that nothing refers to: `OpString`, before all names.
+#[must_use]
+pub fn with_note(words: &[u32], note: &str) -> Vec<u32> {
+    let Some((&bound, text)) = words.get(BOUND).zip(literal(note)) else {
+        return words.to_vec();
+    };
+    let is_before = |instruction: &[u32]| {
+        matches!(
+            opcode(instruction),
+            Some(
+                Op::Capability
+                    | Op::Extension
+                    | Op::ExtInstImport
+                    | Op::MemoryModel
+                    | Op::EntryPoint
+                    | Op::ExecutionMode
+            )
+        )
+    };
+    let first = instructions(words).find(|(_, instruction)| !is_before(instruction));
+    let (head, tail) = words.split_at(first.map_or(words.len(), |(at, _)| at));
+    let string = [(2 + text.len() as u32) << 16 | Op::String as u32, bound];
+    let mut noted = [head, &string, &text, tail].concat();
+    noted[BOUND] = bound + 1;
+    noted
+}
+
+/// The index of the header's word that all ids are below.
+const BOUND: usize = 3;
+
+/// A string as an instruction holds it: bytes up to a zero, filled up with zeros; nothing if it is too long for one.
+fn literal(text: &str) -> Option<Vec<u32>> {
+    let mut bytes: Vec<u8> = text.bytes().filter(|&byte| byte != 0).collect();
+    bytes.resize((bytes.len() + 1).next_multiple_of(4), 0);
+    let words = bytes
+        .chunks_exact(4)
+        .map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]));
+    (bytes.len() / 4 + 2 < 1 << 16).then(|| words.collect())
+}
+
+/// The words of a `.spv` file; nothing if they are not whole.
+#[must_use]
+pub fn of_bytes(bytes: &[u8]) -> Option<Vec<u32>> {
+    let words = bytes.chunks_exact(4);
+    let whole = words.remainder().is_empty();
+    whole.then(|| {
+        words
+            .map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]))
+            .collect()
+    })
+}
+
+/// What an instruction is, if that is known.
+fn opcode(instruction: &[u32]) -> Option<Op> {
+    Op::from_u32(instruction[0] & 0xffff)
+}
+
+/// Whether the first two operands of an instruction are its type and itself: so it is for all that have a value, and no others begin
+/// with an id of a type.
+fn has_type(op: Op) -> bool {
+    let names_and_decorations = matches!(
+        op,
+        Op::Source | Op::Name | Op::MemberName | Op::Line | Op::Decorate | Op::MemberDecorate
+    );
+    let structure = matches!(
+        op,
+        Op::EntryPoint | Op::ExecutionMode | Op::MemoryModel | Op::ExtInstImport
+    );
+    let flow = matches!(
+        op,
+        Op::Store
+            | Op::CopyMemory
+            | Op::LoopMerge
+            | Op::SelectionMerge
+            | Op::Label
+            | Op::Branch
+            | Op::BranchConditional
+            | Op::Switch
+            | Op::ReturnValue
+    );
+    !(names_and_decorations || structure || flow || is_type(op))
+}
+
+fn is_type(op: Op) -> bool {
+    (Op::TypeVoid as u32..=Op::TypeForwardPointer as u32).contains(&(op as u32))
 }
 
 #[cfg(test)]
@@ -137,8 +222,8 @@ mod tests {
 
     fn is_no_contraction(instruction: &[u32]) -> bool {
         instruction.len() == 3
-            && instruction[0] & 0xffff == op::DECORATE
-            && instruction[2] == op::NO_CONTRACTION
+            && opcode(instruction) == Some(Op::Decorate)
+            && instruction[2] == Decoration::NoContraction as u32
     }
 
     #[test]
@@ -155,26 +240,25 @@ mod tests {
 
     #[test]
     fn every_float_operation_is_decorated_and_no_integer_one() {
-        const I_MUL: u32 = 132;
         let strict = strict(&plain());
         let decorated: HashSet<u32> = instructions(&strict)
             .filter(|(_, instruction)| is_no_contraction(instruction))
             .map(|(_, instruction)| instruction[1])
             .collect();
-        let results = |opcode: u32| -> Vec<u32> {
+        let results = |op: Op| -> Vec<u32> {
             instructions(&strict)
-                .filter(|(_, instruction)| instruction[0] & 0xffff == opcode)
+                .filter(|(_, instruction)| opcode(instruction) == Some(op))
                 .map(|(_, instruction)| instruction[2])
                 .collect()
         };
         // m · p, the dot product, the subtraction, sin and the quotient.
-        for opcode in [145, 148, op::F_SUB, op::EXT_INST, op::F_DIV] {
-            let results = results(opcode);
+        for op in [Op::MatrixTimesVector, Op::Dot, Op::FSub, Op::ExtInst, Op::FDiv] {
+            let results = results(op);
             assert!(
                 !results.is_empty() && results.iter().all(|id| decorated.contains(id)),
-                "{opcode}"
+                "{op:?}"
             );
         }
-        assert!(results(I_MUL).iter().all(|id| !decorated.contains(id)) && !results(I_MUL).is_empty());
+        assert!(results(Op::IMul).iter().all(|id| !decorated.contains(id)) && !results(Op::IMul).is_empty());
     }
 }

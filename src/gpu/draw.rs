@@ -85,10 +85,10 @@ impl Program {
     }
 
     /// Another compiler's words.
-    pub(super) fn foreign(words: Vec<u32>, float: FloatMode) -> Self {
+    pub(super) fn foreign(words: Vec<u32>, channels: [Shape; 4], float: FloatMode) -> Self {
         Self {
             words: held_to(words, float),
-            channels: [Shape::D2; 4],
+            channels,
         }
     }
 

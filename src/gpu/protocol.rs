@@ -11,6 +11,7 @@ use crate::frame::Frame;
 use crate::glsl::Lowered;
 use crate::glsl::wgsl::Hosted;
 use crate::image::Image;
+use crate::module::Shape;
 
 /// What the parent asks for.
 #[derive(Debug, Serialize, Deserialize)]
@@ -52,8 +53,10 @@ pub(super) struct Foreign {
 pub enum Written {
     /// A WGSL file, within what stands for its host.
     Wgsl(Hosted),
-    /// What naga was fed to write a file that it does not read.
+    /// GLSL: what naga was fed to write a file, or a file that was read again.
     Lowered(Lowered),
+    /// The words of a SPIR-V file, or what another compiler made of a file, and the shapes of channels 0 to 3.
+    Words(Vec<u32>, [Shape; 4]),
 }
 
 /// What the worker says: any number of phases, the bands of a picture from the bottom up, and then the end.

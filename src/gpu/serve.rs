@@ -13,7 +13,7 @@ use super::{Failure, FloatMode, On, Phase, draw};
 use crate::emit::{self, Target};
 use crate::frame::Frame;
 use crate::glsl::Lowered;
-use crate::module::{Probe, ValidModule};
+use crate::module::{Probe, Shape, ValidModule};
 
 /// The most memory that a worker may map, in bytes.
 pub const MEMORY_BYTES: u64 = 6 << 30;
@@ -152,7 +152,7 @@ impl<W: Write> Server<W> {
         } = foreign;
         self.open(&on)?;
         self.phase(Phase::Compiling)?;
-        let program = Program::foreign(words, float);
+        let program = Program::foreign(words, [Shape::D2; 4], float);
         let scene = self.device()?.prepare(&program, &frame)?;
         self.phase(Phase::Drawing)?;
         self.send_painted(&scene)?;
@@ -173,8 +173,15 @@ impl<W: Write> Server<W> {
         let upside_down = matches!(&written, Written::Wgsl(hosted) if hosted.upside_down);
         let program = apart(move || {
             let module = match written {
-                Written::Wgsl(hosted) => ValidModule::of_wgsl(&hosted.text).map_err(Failure::Reread)?,
+                Written::Wgsl(hosted) => {
+                    let module = ValidModule::of_wgsl(&hosted.text).map_err(Failure::Reread)?;
+                    module.with_steps_last().map_err(Failure::Naga)?
+                }
                 Written::Lowered(lowered) => ValidModule::parse(&lowered).map_err(Failure::Refused)?,
+                Written::Words(words, channels) => {
+                    let words = emit::spirv::spelled(&words).map_err(Failure::Naga)?;
+                    return Ok(Program::foreign(words, channels, FloatMode::Strict));
+                }
             };
             Program::new(&module.spelled().map_err(Failure::Naga)?, FloatMode::Strict)
         })?;

@@ -1,19 +1,22 @@
 //! naga's module: parsed from what `glsl` lowered, and validated.
 
+pub(crate) mod library;
 mod loops;
 mod spell;
+mod step;
 
 pub use loops::Probe;
 
 use naga::front::glsl::{Frontend, Options};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{Module, ShaderStage};
+use serde::{Deserialize, Serialize};
 
 use crate::diagnostic::Diagnostic;
 use crate::glsl::Lowered;
 
 /// The shape of a texture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Shape {
     /// Flat.
     D2,

@@ -1,29 +1,17 @@
 //! The same module with what drivers differ in spelled in operations that they agree on: `sin` and the like, products of
 //! matrices. A module whose text keeps the author's functions can so be compared to the bit with what the evaluator paints.
 //!
-//! The functions are those of strict shaders (`glsl::lower_strict`), made by a shader that calls each; they are put before the
-//! module's own, and each expression that they stand for becomes a call.
+//! The functions are put before the module's own, and each expression that they stand for becomes a call.
 
 use std::collections::HashMap;
-use std::fmt::Write as _;
 
-use naga::front::glsl::{Frontend, Options};
 use naga::{
-    BinaryOperator, Block, Expression, Function, Handle, MathFunction, Module, Range, ScalarKind,
-    ShaderStage, Span, Statement, Type, TypeInner,
+    BinaryOperator, Block, Expression, Function, Handle, MathFunction, Module, Range, ScalarKind, Span,
+    Statement, Type, TypeInner,
 };
 
 use super::ValidModule;
-use crate::glsl;
-use crate::source::{File, Files};
-
-/// What stands for an expression: GLSL that computes it of `a`, `b` and `c`, with the types of those and of its value.
-#[derive(Debug, Clone, PartialEq, Eq)]
-struct Need {
-    value: String,
-    types: Vec<String>,
-    result: String,
-}
+use super::library::{self, Need, library};
 
 /// An expression that is spelled: where it stands, what it needs, and its operands.
 struct Site {
@@ -123,13 +111,9 @@ fn sites<'a>(
             continue;
         }
         let need = Need { value, types, result };
-        let index = needs.iter().position(|known| *known == need).unwrap_or_else(|| {
-            needs.push(need);
-            needs.len() - 1
-        });
         sites.push(Site {
             at,
-            need: index,
+            need: need.among(needs),
             arguments,
         });
     }
@@ -200,6 +184,7 @@ fn name(ty: &TypeInner) -> Option<String> {
 /// Puts the functions that are needed before all others; says which stands for which need.
 fn link(module: &mut Module, needs: &[Need]) -> Result<Vec<Handle<Function>>, String> {
     let library = library(needs)?;
+    let library = library.module();
     let mut types = HashMap::new();
     for (handle, ty) in library.types.iter() {
         // Its functions are of plain values; structures are the surroundings of the shader that they were made with.
@@ -214,18 +199,12 @@ fn link(module: &mut Module, needs: &[Need]) -> Result<Vec<Handle<Function>>, St
     let mut calls = vec![None; needs.len()];
     for (handle, function) in library.functions.iter() {
         let mut function = function.clone();
-        if function
-            .name
-            .as_deref()
-            .is_some_and(|name| name == MAIN_IMAGE || name == "main")
-        {
+        let name = function.name.as_deref().unwrap_or_default();
+        if library::is_surroundings(name) {
             break;
         }
+        let need = library::need(name);
         retype(&mut function, &types)?;
-        let need = function
-            .name
-            .as_deref()
-            .and_then(|name| name.strip_prefix(PREFIX)?.parse::<usize>().ok());
         let placed = module.functions.append(function, Span::UNDEFINED);
         if placed.index() != handle.index() {
             return Err("the functions of the library are out of order".to_owned());
@@ -236,55 +215,6 @@ fn link(module: &mut Module, needs: &[Need]) -> Result<Vec<Handle<Function>>, St
     }
     let calls: Option<Vec<_>> = calls.into_iter().collect();
     calls.ok_or_else(|| "a function of the library is missing".to_owned())
-}
-
-const MAIN_IMAGE: &str = "mainImage";
-const PREFIX: &str = "toyproof_need_";
-
-/// A shader that computes all that is needed, as naga reads it in strict form.
-fn library(needs: &[Need]) -> Result<Module, String> {
-    let mut text = String::new();
-    let mut uses = String::new();
-    for (index, need) in needs.iter().enumerate() {
-        let parameters: Vec<_> = need
-            .types
-            .iter()
-            .zip(["a", "b", "c"])
-            .map(|(ty, name)| format!("{ty} {name}"))
-            .collect();
-        let arguments: Vec<_> = need.types.iter().map(|ty| format!("{ty}(p.x)")).collect();
-        let Need { value, result, .. } = need;
-        let _ = writeln!(
-            text,
-            "{result} {PREFIX}{index}({}) {{ return {value}; }}",
-            parameters.join(", ")
-        );
-        let _ = writeln!(
-            uses,
-            "{result} v{index} = {PREFIX}{index}({});",
-            arguments.join(", ")
-        );
-    }
-    let _ = writeln!(text, "void {MAIN_IMAGE}(out vec4 c, in vec2 p) {{\n{uses}}}");
-    let mut files = Files::default();
-    let file = files.add(File::new("<library>", &text));
-    let checked = glsl::check(&files, file, &glsl::Options::default()).map_err(|errors| {
-        errors
-            .first()
-            .map_or_else(String::new, |error| error.message.clone())
-    })?;
-    let lowered = glsl::lower_strict(&checked);
-    let mut module = Frontend::default()
-        .parse(&Options::from(ShaderStage::Fragment), lowered.text())
-        .map_err(|errors| {
-            errors
-                .errors
-                .first()
-                .map_or_else(String::new, |error| error.kind.to_string())
-        })?;
-    // naga names every global in every function.
-    naga::compact::compact(&mut module, naga::compact::KeepUnused::No);
-    Ok(module)
 }
 
 /// Makes a function of one module one of another, which has its types under other handles.
@@ -427,7 +357,7 @@ mod tests {
         }
         assert!(!text[text.find("fn twice").unwrap()..].contains("sin("), "{text}");
         // The product, the normal, the number of an unsigned one, the power; the author's call stays.
-        assert_eq!(main.matches(PREFIX).count(), 4, "{main}");
+        assert_eq!(main.matches(library::PREFIX).count(), 4, "{main}");
         assert!(main.contains("twice(") && main.contains("dot("), "{main}");
     }
 

@@ -15,8 +15,8 @@ use crate::eval::{self, Program};
 use crate::frame::Frame;
 use crate::glsl::Checked;
 use crate::glsl::tree::SamplerShape;
-use crate::gpu::{FloatMode, Worker, Written};
-use crate::image;
+use crate::gpu::{self, FloatMode, Worker, Written};
+use crate::image::{self, Image};
 
 /// What came of running a converted shader.
 #[derive(Debug, Clone)]
@@ -27,6 +27,8 @@ pub struct Proof {
     pub device: String,
     /// What it was compared with.
     pub against: Against,
+    /// For each frame, which pixels hang on what GLSL leaves undefined.
+    pub undefined_at: Vec<Vec<bool>>,
 }
 
 /// What a conversion is compared with.
@@ -127,53 +129,101 @@ pub fn frames(checked: &Checked) -> Vec<Frame> {
     FRAMES.map(of).to_vec()
 }
 
-/// Runs what was written in each of the frames and compares it with the shader.
+/// Runs each reading of what was written in each of the frames and compares it with the shader: a proof for each.
 ///
 /// # Errors
-/// Why one of both has no pictures.
+/// Why one of them, or the shader itself, has no pictures.
 pub fn prove(
     worker: &mut Worker,
     checked: &Checked,
-    written: Written,
+    readings: Vec<Written>,
     frames: &[Frame],
     timeout: Duration,
-) -> Result<Proof, Failure> {
+) -> Result<Vec<Proof>, Failure> {
     let stop = AtomicBool::new(false);
     let (painted, singles) = thread::scope(|scope| {
         let cpu = scope.spawn(|| evaluate(checked, frames, timeout, &stop));
-        let painted = worker.paint(written, frames.to_vec());
+        let paint = |written| worker.paint(written, frames.to_vec());
+        let painted: Result<Vec<_>, _> = readings.into_iter().map(paint).collect();
         stop.store(painted.is_err(), Ordering::Relaxed);
         (painted, join(cpu))
     });
-    let (mut painted, device) = painted?;
+    let painted = painted?;
     let singles = singles?;
     if let pixels @ 1.. = singles.iter().map(|single| single.beyond_cap).sum::<u64>() {
         return Err(Failure::CutShort(pixels));
     }
-    let against = if checked.reads_textures() {
-        Against::StrictRun
-    } else {
-        Against::Evaluator
-    };
-    let mut answers = Vec::new();
-    for ((frame, single), painted) in frames.iter().zip(singles).zip(&mut painted) {
-        let expected = match against {
-            Against::Evaluator => single.image,
-            Against::StrictRun => {
-                let lowered = FloatMode::Strict.lower(checked);
-                worker
-                    .draw_unwatched(lowered, frame.clone(), FloatMode::Strict)?
-                    .image()
-            }
+    let (against, expected) = if checked.reads_textures() {
+        let mut run = |frame: &Frame| {
+            let lowered = FloatMode::Strict.lower(checked);
+            let drawn = worker.draw_unwatched(lowered, frame.clone(), FloatMode::Strict)?;
+            Ok(drawn.image())
         };
-        let standings = compare::toolchain(&expected, painted, &single.undefined);
-        answers.push(Answer::new(&expected, painted, &standings));
+        let images: Result<Vec<Image>, gpu::Failure> = frames.iter().map(&mut run).collect();
+        (Against::StrictRun, images?)
+    } else {
+        let images = singles.iter().map(|single| single.image.clone());
+        (Against::Evaluator, images.collect())
+    };
+    let proof = |(images, device): (Vec<Image>, String)| {
+        let pictures = expected.iter().zip(&images).zip(&singles);
+        let answers = pictures.map(|((expected, painted), single)| {
+            let standings = compare::toolchain(expected, painted, &single.undefined);
+            Answer::new(expected, painted, &standings)
+        });
+        Proof {
+            answers: answers.collect(),
+            device,
+            against,
+            undefined_at: singles.iter().map(|single| single.undefined.clone()).collect(),
+        }
+    };
+    Ok(painted.into_iter().map(proof).collect())
+}
+
+/// What came of painting a conversion and its original by the same means, whose functions have last bits of their own.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shown {
+    /// Pixels that were compared.
+    pub pixels: u64,
+    /// Pixels in which a colour, as shown, differs by more than 1/255.
+    pub differing: u64,
+    /// The largest difference of a colour as shown, between 0 and 1.
+    pub max: f32,
+}
+
+impl Shown {
+    /// Compares pictures of the same frames, but for the pixels that are left out.
+    #[must_use]
+    pub fn of(original: &[Image], converted: &[Image], left_out: &[Vec<bool>]) -> Self {
+        let mut shown = Self {
+            pixels: 0,
+            differing: 0,
+            max: 0.0,
+        };
+        for ((original, converted), left_out) in original.iter().zip(converted).zip(left_out) {
+            let pixels = original.pixels().iter().zip(converted.pixels()).zip(left_out);
+            for ((a, b), _) in pixels.filter(|(_, left_out)| !**left_out) {
+                let apart = (0..3).map(|i| apart(a[i], b[i])).fold(0.0, f32::max);
+                shown.pixels += 1;
+                shown.differing += u64::from(apart > STEP);
+                shown.max = shown.max.max(apart);
+            }
+        }
+        shown
     }
-    Ok(Proof {
-        answers,
-        device,
-        against,
-    })
+}
+
+/// The smallest difference that a screen shows, and as far as the last bits of two right programs may take a colour.
+const STEP: f32 = 1.0 / 255.0;
+
+/// How far two components are apart on a screen. One that is no number is like another, and as far from all others as can be.
+fn apart(a: f32, b: f32) -> f32 {
+    match (a.is_nan(), b.is_nan()) {
+        (true, true) => 0.0,
+        (false, false) => (a.clamp(0.0, 1.0) - b.clamp(0.0, 1.0)).abs(),
+        _ => 1.0,
+    }
 }
 
 fn evaluate(

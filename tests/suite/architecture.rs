@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The stages in the order of the flow.
-const STAGES: [&str; 23] = [
+const STAGES: [&str; 24] = [
     "source",
     "diagnostic",
     "output",
@@ -17,6 +17,7 @@ const STAGES: [&str; 23] = [
     "module",
     "emit",
     "gpu",
+    "browser",
     "scene",
     "export",
     "trace",

@@ -1,16 +1,23 @@
 //! Conversions and their proofs: what is right is proved, in every style, and what is wrong is not.
 
+use std::env;
 use std::fs;
 use std::path::Path;
-use std::time::Duration;
+use std::process::{Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
 
+use ::spirv::Op;
+use toyproof::emit::{Target, emit, reread, spirv};
 use toyproof::glsl::wgsl::{Style, wgsl};
-use toyproof::glsl::{Options, check};
+use toyproof::glsl::{Checked, Options, check, lower};
 use toyproof::gpu::{Worker, Written};
+use toyproof::module::{Shape, ValidModule};
 use toyproof::source::{File, Files};
+use toyproof::verify::Failure;
 use toyproof::verify::conversion::{Proof, frames, prove};
 
-use crate::program::toyproof;
+use crate::program::{command, run, toyproof};
 use crate::support::{ANIMATION, EVERY_RUNG, REFLECTIONS, Rung, worker};
 
 const TIMEOUT: Duration = Duration::from_secs(60);
@@ -23,14 +30,19 @@ fn proof(worker: &mut Worker, shader: &str, style: Style, edit: impl Fn(String) 
     let text = wgsl(&checked, &files, style).unwrap_or_else(|why| panic!("{why}\n{shader}"));
     let hosted = style.hosted(&edit(text));
     let whole = hosted.text.clone();
-    prove(
-        worker,
-        &checked,
-        Written::Wgsl(hosted),
-        &frames(&checked),
-        TIMEOUT,
-    )
-    .unwrap_or_else(|failure| panic!("{failure}\n{whole}"))
+    proof_of(worker, &checked, Written::Wgsl(hosted)).unwrap_or_else(|failure| panic!("{failure}\n{whole}"))
+}
+
+/// What was written, compared with the shader.
+fn proof_of(worker: &mut Worker, checked: &Checked, written: Written) -> Result<Proof, Failure> {
+    let proofs = prove(worker, checked, vec![written], &frames(checked), TIMEOUT)?;
+    Ok(proofs.into_iter().next().expect("a proof for each reading"))
+}
+
+fn checked(shader: &str) -> Checked {
+    let mut files = Files::default();
+    let file = files.add(File::new("shader", shader));
+    check(&files, file, &Options::default()).expect("it is valid")
 }
 
 /// That conversion holds.
@@ -79,6 +91,56 @@ fn what_is_not_the_shader_is_not_proved() {
         };
         let proof = proof(&mut worker, REFLECTIONS.shader, Style::Plain, edit);
         assert!(!proof.holds(), "{from} as {to}: {proof:?}");
+    }
+}
+
+/// A shader in that language, as its file holds it.
+fn emitted(checked: &Checked, target: Target) -> Vec<u8> {
+    let module = ValidModule::parse(&lower(checked)).expect("naga takes it");
+    emit(&module, target).expect("naga writes it")
+}
+
+/// The words as a driver gets them, each `from` an operation that becomes `to`; there is one at least.
+fn words(checked: &Checked, from: Op, to: Op) -> Written {
+    let mut words = spirv::of_bytes(&emitted(checked, Target::Spirv)).expect("whole words");
+    let mut at = 5;
+    let mut changed = 0;
+    while at < words.len() {
+        if words[at] & 0xffff == from as u32 {
+            words[at] = words[at] & 0xffff_0000 | to as u32;
+            changed += 1;
+        }
+        at += (words[at] >> 16) as usize;
+    }
+    assert!(changed > 0, "{from:?}");
+    Written::Words(words, [Shape::D2; 4])
+}
+
+#[test]
+fn the_very_words_of_spirv_are_proved_and_others_are_not() {
+    let Some(mut worker) = worker() else { return };
+    for shader in [REFLECTIONS.shader, CONSTRUCTS] {
+        let checked = checked(shader);
+        let as_written = words(&checked, Op::FAdd, Op::FAdd);
+        let proof = proof_of(&mut worker, &checked, as_written).unwrap();
+        assert!(proof.holds(), "{proof:?}");
+        let wrong = words(&checked, Op::FAdd, Op::FSub);
+        let proof = proof_of(&mut worker, &checked, wrong).unwrap();
+        assert!(!proof.holds(), "{proof:?}");
+    }
+}
+
+#[test]
+fn glsl_that_is_read_again_is_proved_and_other_is_not() {
+    let Some(mut worker) = worker() else { return };
+    let checked_shader = checked(REFLECTIONS.shader);
+    let text = String::from_utf8(emitted(&checked_shader, Target::Glsl)).unwrap();
+    for (from, to, holds) in [("", "", true), ("reflect(", "-reflect(", false)] {
+        assert!(text.contains(from));
+        let again = checked(&reread::as_shadertoy(&text.replacen(from, to, 1)));
+        let written = Written::Lowered(lower(&again));
+        let proof = proof_of(&mut worker, &checked_shader, written).unwrap();
+        assert_eq!(proof.holds(), holds, "{from}: {proof:?}");
     }
 }
 
@@ -156,7 +218,7 @@ fn a_file_is_written_if_it_is_proved_and_says_so() {
     );
     let text = fs::read_to_string(&out).unwrap();
     assert!(
-        text.contains("// Proved: this text, read again by naga and run on llvmpipe"),
+        text.contains("// Proved: this file, read again by naga and run on llvmpipe"),
         "{text}"
     );
 
@@ -217,5 +279,160 @@ fn a_folder_has_a_table_of_what_was_proved() {
             run.stdout
         );
         assert!(to.join(format!("c.{ending}")).exists() && !to.join(format!("b.{ending}")).exists());
+    }
+}
+
+/// What each language's file says of its proof.
+#[test]
+fn files_in_every_language_say_what_was_proved() {
+    if worker().is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let textured = "void mainImage(out vec4 c, in vec2 p) {
+        vec2 uv = p / iResolution.xy;
+        c = texture(iChannel2, uv) * fract(sin(iTime)) + iMouse.x * 0.001 + texture(iChannel0, uv.yx) + iDate.w;
+        c.xy *= mat2(0.8, 0.6, -0.6, 0.8);
+    }";
+    let shader = folder.path().join("textured.glsl");
+    fs::write(&shader, textured).unwrap();
+    let glslang = Command::new("glslangValidator").arg("--version").output().is_ok();
+    for (ending, words) in [
+        ("wgsl", "read again by naga and run on"),
+        ("spv", "read again by the driver and run on"),
+        (
+            "frag",
+            if glslang {
+                "read again by toyproof's GLSL front end and by glslangValidator (Glslang Version"
+            } else {
+                "read again by toyproof's GLSL front end and run on"
+            },
+        ),
+        (
+            "hlsl",
+            if glslang {
+                "read again by glslangValidator (Glslang Version"
+            } else {
+                "nothing here reads it"
+            },
+        ),
+        ("metal", "nothing here reads it"),
+    ] {
+        let out = folder.path().join(format!("out.{ending}"));
+        let arguments = [
+            "convert",
+            shader.to_str().unwrap(),
+            "-o",
+            out.to_str().unwrap(),
+            "--verify",
+        ];
+        let run = toyproof(folder.path(), &arguments);
+        assert_eq!(run.code, 0, "{ending}: {}{}", run.stdout, run.stderr);
+        let bytes = fs::read(&out).unwrap();
+        let text = String::from_utf8_lossy(&bytes);
+        assert!(text.contains(words), "{ending}: {}", &text[..text.len().min(900)]);
+        if ending == "spv"
+            && let Ok(judged) = Command::new("spirv-val").arg(&out).output()
+        {
+            assert!(judged.status.success(), "{judged:?}");
+        }
+    }
+}
+
+#[test]
+fn a_file_is_written_while_others_are_still_at_work() {
+    if worker().is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let from = folder.path().join("in");
+    fs::create_dir(&from).unwrap();
+    // It comes first, and is at work until its time is over.
+    let slow = "void mainImage(out vec4 c, in vec2 p) { c = vec4(0); for (int i = 0; i < 2000000000; i++) c += sin(c + p.x); }";
+    fs::write(from.join("a.glsl"), slow).unwrap();
+    let quick = "void mainImage(out vec4 c, in vec2 p) { c = vec4(1); }";
+    fs::write(from.join("b.glsl"), quick).unwrap();
+    let mut running = command(folder.path())
+        .args(["convert", "in", "-o", "out", "--to", "wgsl", "--verify"])
+        .args(["--jobs", "2", "--timeout", "10m"])
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let written = folder.path().join("out/b.wgsl");
+    let deadline = Instant::now() + TIMEOUT;
+    while !written.exists() && Instant::now() < deadline {
+        thread::sleep(Duration::from_millis(20));
+    }
+    let ended = running.try_wait().unwrap();
+    running.kill().unwrap();
+    running.wait().unwrap();
+    assert!(ended.is_none(), "the other is still at work");
+    let text = fs::read_to_string(&written).expect("it is written as soon as it is proved");
+    assert!(text.contains("// Proved: "), "{text}");
+}
+
+#[test]
+fn a_browser_is_asked_where_it_is_wanted_and_leaves_nothing_behind() {
+    if worker().is_none() || toyproof::browser::find().is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let temporary = folder.path().join("tmp");
+    fs::create_dir(&temporary).unwrap();
+    for (ending, style) in [("wgsl", "plain"), ("wgsl", "compute-toys"), ("frag", "plain")] {
+        let out = folder.path().join(format!("out.{ending}"));
+        let mut convert = command(Path::new(env!("CARGO_MANIFEST_DIR")));
+        convert
+            .env("TMPDIR", &temporary)
+            .args(["convert", "glsl/06-reflections.glsl", "--verify", "--browser"])
+            .args(["--timeout", "1m", "-o", out.to_str().unwrap()]);
+        if style != "plain" {
+            convert.args(["--style", style]);
+        }
+        let run = run(&mut convert);
+        assert_eq!(run.code, 0, "{ending} {style}: {}{}", run.stdout, run.stderr);
+        let text = fs::read_to_string(&out).unwrap();
+        assert!(text.contains(" on SwiftShader paints in these frames"), "{text}");
+        let left: Vec<_> = fs::read_dir(&temporary)
+            .unwrap()
+            .filter_map(|entry| Some(entry.ok()?.file_name().to_string_lossy().into_owned()))
+            .filter(|name| name.starts_with("toyproof-browser-"))
+            .collect();
+        assert!(left.is_empty(), "{left:?}");
+    }
+    let refused = toyproof(
+        folder.path(),
+        &["convert", "a.glsl", "-o", "a.spv", "--verify", "--browser"],
+    );
+    assert_eq!(refused.code, 2, "browsers run no SPIR-V: {}", refused.stderr);
+}
+
+/// Somebody else's conversions: `TOYPROOF_CONVERTED` is a folder of WGSL with our bindings, `TOYPROOF_SHADERS` one of the shaders that
+/// they were made of, with the same names. A line for each goes to standard error; nothing is demanded of them.
+#[test]
+fn conversions_by_others_are_judged() {
+    let folders = ["TOYPROOF_SHADERS", "TOYPROOF_CONVERTED"].map(env::var_os);
+    let [Some(shaders), Some(others)] = folders else {
+        eprintln!("skipped: TOYPROOF_SHADERS and TOYPROOF_CONVERTED name no folders");
+        return;
+    };
+    let Some(mut worker) = worker() else { return };
+    for entry in fs::read_dir(shaders).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
+        let Ok(text) = fs::read_to_string(Path::new(&others).join(format!("{name}.wgsl"))) else {
+            continue;
+        };
+        let original = checked(&fs::read_to_string(&path).unwrap());
+        match proof_of(&mut worker, &original, Written::Wgsl(Style::Plain.hosted(&text))) {
+            Ok(proof) if proof.holds() => eprintln!("{name}: proved"),
+            Ok(proof) => eprintln!("{name}: {} of {} differ", proof.differing(), proof.pixels()),
+            Err(failure) => eprintln!("{name}: {failure}"),
+        }
     }
 }

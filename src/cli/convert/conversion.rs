@@ -1,12 +1,15 @@
 //! One shader: translated, and proved where that is asked for.
 
+use std::path::PathBuf;
 use std::thread;
 
 use super::super::Exit;
 use super::super::inputs::{DriverArgs, LanguageArgs};
 use super::super::shader::{Shader, Unusable, is_invalid};
-use super::{To, header, tool};
-use crate::compare::plural;
+use super::args::To;
+use super::proof::{NAGA, Standing, in_browser};
+use super::{header, tool};
+use crate::browser::{Chromium, Text};
 use crate::diagnostic::Diagnostic;
 use crate::emit::Target;
 use crate::glsl::Checked;
@@ -14,8 +17,7 @@ use crate::glsl::wgsl::{self, Style};
 use crate::gpu::{Failure, FloatMode, Worker, Written};
 use crate::module::ValidModule;
 use crate::source::{Found, ReadError};
-use crate::verify;
-use crate::verify::conversion::{Against, FRAMES, Proof, frames, prove};
+use crate::verify::conversion::FRAMES;
 
 /// What is to be made of every shader.
 pub(super) struct Converter<'a> {
@@ -23,6 +25,8 @@ pub(super) struct Converter<'a> {
     pub(super) float: FloatMode,
     pub(super) style: Style,
     pub(super) verify: bool,
+    /// Where a browser is, if it is asked too.
+    pub(super) browser: Option<PathBuf>,
     pub(super) language: &'a LanguageArgs,
     pub(super) driver: &'a DriverArgs,
 }
@@ -31,7 +35,8 @@ pub(super) struct Converter<'a> {
 pub(super) struct Hand {
     translator: Result<Worker, String>,
     /// What runs what was converted; none where the evaluator is asked to.
-    runner: Result<Option<Worker>, String>,
+    pub(super) runner: Result<Option<Worker>, String>,
+    pub(super) browser: Option<Chromium>,
 }
 
 /// A converted shader.
@@ -42,16 +47,11 @@ pub(super) struct Made {
     pub(super) instead: Option<String>,
 }
 
-/// How far a conversion is proved.
-pub(super) enum Standing {
-    /// Nobody asked.
-    Unasked,
-    /// What was written was read again, and paints the same.
-    Proved(Proof),
-    /// What naga wrote it from paints the same; the text itself was not run, but judged by that tool, if there is one.
-    Meant(Proof, Option<String>),
-    /// It is not proved, for that reason.
-    Unproved(String),
+impl Made {
+    /// Whether it is proved, or nobody asked.
+    pub(super) fn is_proved(&self) -> bool {
+        !matches!(self.standing, Standing::Unproved(_))
+    }
 }
 
 /// Why there is no conversion.
@@ -78,6 +78,10 @@ impl Converter<'_> {
         Hand {
             translator: self.driver.translator(),
             runner: self.driver.worker_for(FRAMES.len() as u32),
+            browser: self.browser.as_ref().map(|program| {
+                let patience = self.driver.timeout() * FRAMES.len() as u32;
+                Chromium::new(program.clone(), patience)
+            }),
         }
     }
 
@@ -100,8 +104,8 @@ impl Converter<'_> {
             let lowered = self.float.lower(checked);
             let bytes = lowered.text().as_bytes().to_vec();
             let standing = if self.verify {
-                self.run(hand, checked, Written::Lowered(lowered))
-                    .map_or_else(Standing::Unproved, Standing::Proved)
+                let readings = vec![(NAGA.to_owned(), Written::Lowered(lowered))];
+                self.run(hand, checked, readings, None)
             } else {
                 Standing::Unasked
             };
@@ -124,7 +128,7 @@ impl Converter<'_> {
             if self.style != Style::Plain {
                 return made.map_err(|why| Trouble::Said(why, Exit::Trouble));
             }
-            let other = self.by_naga(hand, checked, target, &shader.name);
+            let other = self.by_naga(hand, checked, target, shader);
             return match (made, other) {
                 // Neither is proved: the one that people can read.
                 (
@@ -141,7 +145,7 @@ impl Converter<'_> {
                 }),
             };
         }
-        self.by_naga(hand, checked, target, &shader.name)
+        self.by_naga(hand, checked, target, shader)
     }
 
     /// WGSL with the author's words; or why there is none.
@@ -152,15 +156,19 @@ impl Converter<'_> {
         is_read(&hosted.text)?;
         let mut bytes = text.into_bytes();
         let standing = if self.verify {
+            // The other styles are whole only within their hosts.
             let judged = match self.style {
-                Style::Plain => tool::judge(Target::Wgsl, &bytes).err(),
-                _ => None,
+                Style::Plain => tool::judge(Target::Wgsl, &bytes),
+                _ => Ok(None),
             };
             match judged {
-                Some(why) => Standing::Unproved(why),
-                None => self
-                    .run(hand, checked, Written::Wgsl(hosted))
-                    .map_or_else(Standing::Unproved, Standing::Proved),
+                Err(why) => Standing::Unproved(why),
+                Ok(judge) => {
+                    let readings = vec![(NAGA.to_owned(), Written::Wgsl(hosted.clone()))];
+                    let standing = self.run(hand, checked, readings, judge);
+                    let text = Text::Wgsl(&hosted.text);
+                    in_browser(hand, checked, shader, standing, text, hosted.upside_down)
+                }
             }
         } else {
             Standing::Unasked
@@ -179,7 +187,7 @@ impl Converter<'_> {
         hand: &mut Hand,
         checked: &Checked,
         target: Target,
-        name: &str,
+        shader: &Shader,
     ) -> Result<Made, Trouble> {
         let lowered = self.float.lower(checked);
         let translator = hand
@@ -190,83 +198,23 @@ impl Converter<'_> {
             .translate(lowered.clone(), target, self.float)
             .map_err(trouble)?;
         let standing = if self.verify {
-            let written = match target {
-                Target::Wgsl => Written::Wgsl(Style::Plain.hosted(&String::from_utf8_lossy(&bytes))),
-                _ => Written::Lowered(lowered),
+            let standing = self.judge(hand, checked, lowered, target, &bytes);
+            let standing = standing.unwrap_or_else(Standing::Unproved);
+            let text = String::from_utf8_lossy(&bytes);
+            let text = match target {
+                Target::Glsl => Text::Glsl(&text),
+                _ => Text::Wgsl(&text),
             };
-            self.judge(hand, checked, written, target, &bytes)
+            in_browser(hand, checked, shader, standing, text, false)
         } else {
             Standing::Unasked
         };
-        header::put(&mut bytes, target, name, &standing);
+        header::put(&mut bytes, target, &shader.name, &standing);
         Ok(Made {
             bytes,
             standing,
             instead: None,
         })
-    }
-
-    fn judge(
-        &self,
-        hand: &mut Hand,
-        checked: &Checked,
-        written: Written,
-        target: Target,
-        bytes: &[u8],
-    ) -> Standing {
-        let read = match tool::judge(target, bytes) {
-            Ok(read) => read,
-            Err(why) => return Standing::Unproved(why),
-        };
-        match self.run(hand, checked, written) {
-            Ok(proof) if target == Target::Wgsl => Standing::Proved(proof),
-            Ok(proof) => Standing::Meant(proof, read),
-            Err(why) => Standing::Unproved(why),
-        }
-    }
-
-    /// Runs what was written; the proof holds, or there is a reason why not.
-    fn run(&self, hand: &mut Hand, checked: &Checked, written: Written) -> Result<Proof, String> {
-        let runner = match &mut hand.runner {
-            Ok(Some(runner)) => runner,
-            Ok(None) => {
-                return Err(
-                    "to prove a conversion takes a Vulkan driver, and --on cpu asks for none".to_owned(),
-                );
-            }
-            Err(error) => return Err(error.clone()),
-        };
-        let frames = frames(checked);
-        let proof =
-            prove(runner, checked, written, &frames, self.driver.timeout()).map_err(
-                |failure| match failure {
-                    verify::Failure::Gpu(Failure::NoDriver(why)) => {
-                        format!("to prove a conversion takes a Vulkan driver: {why}")
-                    }
-                    failure => failure.to_string(),
-                },
-            )?;
-        if proof.holds() {
-            return Ok(proof);
-        }
-        let differing = proof.differing();
-        if differing == 0 {
-            return Err("every pixel hangs on what GLSL leaves undefined".to_owned());
-        }
-        let worst = proof
-            .answers
-            .iter()
-            .map(|answer| answer.max_abs)
-            .fold(0.0, f64::max);
-        let against = match proof.against {
-            Against::Evaluator => "the evaluator's",
-            Against::StrictRun => "the shader's own",
-        };
-        Err(format!(
-            "{differing} of {} pixels {} not to the bit {against}, by up to {worst:.1e}",
-            proof.pixels(),
-            plural(differing, "is", "are")
-        ))
     }
 }
 

@@ -2,18 +2,23 @@
 
 use std::fmt::Write as _;
 
-use super::conversion::Standing;
+use super::proof::Standing;
 use crate::compare::grouped;
-use crate::emit::Target;
-use crate::verify::conversion::{Against, FRAMES, Proof};
+use crate::emit::{Target, spirv};
+use crate::verify::conversion::{Against, FRAMES, Proof, Shown};
 
 /// The version of naga that translates.
 const NAGA: &str = "30.0.1";
 
-/// Puts the comment before a text, or behind the `#version` that must come first. SPIR-V has no room for one.
+/// Puts the comment before a text, or behind the `#version` that must come first. In SPIR-V it is a string that nothing refers to.
 pub(super) fn put(bytes: &mut Vec<u8>, target: Target, name: &str, standing: &Standing) {
     let at = match target {
-        Target::Spirv => return,
+        Target::Spirv => {
+            if let Some(words) = spirv::of_bytes(bytes) {
+                *bytes = spirv::bytes(&spirv::with_note(&words, &head(name, standing)));
+            }
+            return;
+        }
         Target::Glsl => bytes
             .iter()
             .position(|&byte| byte == b'\n')
@@ -34,19 +39,28 @@ fn head(name: &str, standing: &Standing) -> String {
     let mut head = format!("// {name}, converted by toyproof {version} (naga {NAGA}).\n");
     match standing {
         Standing::Unasked => {}
-        Standing::Proved(proof) => {
+        Standing::Proved(proof, readers) => {
             let _ = writeln!(
                 head,
-                "// Proved: this text, read again by naga and run on {},",
+                "// Proved: this file, read again by {} and run on {},",
+                readers.ran.join(" and by "),
                 proof.device
             );
             settings(&mut head, proof);
+            if let Some(judge) = &readers.judge {
+                let _ = writeln!(head, "// {judge}.");
+            }
+            if let Some((name, shown)) = &readers.browser {
+                let _ = writeln!(
+                    head,
+                    "// {name} on SwiftShader paints in these frames what it paints of the original with WebGL 2: {}.",
+                    told(*shown)
+                );
+            }
         }
-        Standing::Meant(proof, read) => {
-            let read = read.as_deref().unwrap_or("Nothing read it");
-            let _ = writeln!(
-                head,
-                "// Proved is what this text was written from, not the text itself. {read}."
+        Standing::Meant(proof) => {
+            head.push_str(
+                "// Proved is what this text was written from, not the text itself: nothing here reads it.\n",
             );
             let _ = writeln!(head, "// That, run on {},", proof.device);
             settings(&mut head, proof);
@@ -80,6 +94,15 @@ fn settings(head: &mut String, proof: &Proof) {
     };
     let _ = writeln!(head, "// Frames: {}{channels}.", frames.join(", "));
     head.push_str("// Functions whose last bits the target leaves open, sin and the like, were the evaluator's own for that.\n");
+}
+
+/// How far a browser's pictures are apart.
+pub(super) fn told(shown: Shown) -> String {
+    format!(
+        "no colour of {} pixels, as shown, differs by more than {:.2}/255",
+        grouped(shown.pixels),
+        shown.max * 255.0
+    )
 }
 
 /// How many pixels are equal.
@@ -119,8 +142,12 @@ mod tests {
             text.starts_with("#version 300 es\n// a?b.glsl, converted by toyproof "),
             "{text}"
         );
-        let mut words = vec![3, 2, 35, 7];
+        // A header of SPIR-V, and `OpCapability Shader`.
+        let mut words = spirv::bytes(&[0x0723_0203, 0x0001_0000, 0, 7, 0, 0x0002_0011, 1]);
         put(&mut words, Target::Spirv, "a", &Standing::Unasked);
-        assert_eq!(words, [3, 2, 35, 7]);
+        let words = spirv::of_bytes(&words).unwrap();
+        // The string has the next id, and stands behind the capability.
+        assert_eq!((words[3], words[7] & 0xffff, words[8]), (8, 7, 7));
+        assert_eq!(7 + (words[7] >> 16) as usize, words.len());
     }
 }

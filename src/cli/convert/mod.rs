@@ -1,128 +1,27 @@
 //! `toyproof convert`
 
+mod args;
 mod conversion;
 mod header;
+mod proof;
 mod tool;
 
+use std::fmt::Write as _;
 use std::num::NonZero;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
-use clap::ValueEnum;
-
-use self::conversion::{Converter, Made, Standing, Trouble};
-use super::inputs::{DriverArgs, LanguageArgs};
+pub(super) use self::args::Args;
+use self::args::{StyleName, To};
+use self::conversion::{Converter, Made, Trouble};
+use self::proof::Standing;
 use super::pool::{self, InOrder};
 use super::shader::{Names, Shader, find, with_suffix};
 use super::{Exit, Terminal, interrupt};
+use crate::browser;
 use crate::compare::{grouped, plural};
-use crate::emit::Target;
-use crate::glsl::wgsl::Style;
 use crate::gpu::FloatMode;
 use crate::source::{Found, ReadError};
-
-const HOSTS: &str = "\
-Examples:
-  toyproof convert glsl/02-sphere.glsl -o sphere.wgsl --verify
-  toyproof convert glsl -o converted --to spv
-
-What a host feeds the result: entry point `main`, colour at location 0. Group 0, binding 0 is a block of
-208 bytes (std140): iResolution at byte 0, iTime 12, iTimeDelta 16, iFrame 20, iFrameRate 24, iChannelTime[4]
-32 and iChannelResolution[4] 96 (16 bytes each), iMouse 160, iDate 176, iSampleRate 192. The texture of channel
-K is binding 1+2K, its sampler 2+2K; only those that the shader uses are declared.
-
-Exit code: 0 if every shader was written (and proved, with --verify), 1 if one is at fault, 2 if there was other
-trouble, as where a conversion is not proved.";
-
-/// Translate shaders to WGSL, SPIR-V, Metal, HLSL or GLSL ES
-#[derive(Debug, clap::Args)]
-#[command(after_help = HOSTS)]
-pub(super) struct Args {
-    /// Shaders: files, folders, or - for standard input
-    #[arg(required = true)]
-    shaders: Vec<PathBuf>,
-    /// A file (.wgsl .spv .metal .hlsl .frag), a folder for several, or - for standard output
-    #[arg(short, long, value_name = "FILE|DIR")]
-    output: PathBuf,
-    /// The language; needed with a folder and with -
-    #[arg(long, value_enum)]
-    to: Option<To>,
-    /// Run what was converted and compare it with the shader, pixel by pixel; write it only if they are equal to the bit
-    #[arg(long)]
-    verify: bool,
-    /// The kind of host that WGSL is for: entry point, bindings, direction of y
-    #[arg(long, value_enum, default_value_t = StyleName::Plain)]
-    style: StyleName,
-    /// Write also what could not be proved; its header says so
-    #[arg(long, requires = "verify")]
-    force: bool,
-    /// Convert so many shaders at a time [default: as many as there are cores]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
-    jobs: Option<u16>,
-    #[command(flatten)]
-    language: LanguageArgs,
-    #[command(flatten)]
-    driver: DriverArgs,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum To {
-    Wgsl,
-    Spv,
-    Metal,
-    Hlsl,
-    Glsl,
-    /// The GLSL that naga is fed
-    Lowered,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum StyleName {
-    /// A fragment shader with the bindings below; row 0 of its target is the bottom
-    Plain,
-    /// `shader_main` for the Python package of that name
-    WgpuShadertoy,
-    /// A compute shader for compute.toys
-    ComputeToys,
-    /// A Material2d of Bevy
-    Bevy,
-}
-
-impl From<StyleName> for Style {
-    fn from(name: StyleName) -> Self {
-        match name {
-            StyleName::Plain => Self::Plain,
-            StyleName::WgpuShadertoy => Self::WgpuShadertoy,
-            StyleName::ComputeToys => Self::ComputeToys,
-            StyleName::Bevy => Self::Bevy,
-        }
-    }
-}
-
-impl To {
-    fn target(self) -> Option<Target> {
-        match self {
-            Self::Wgsl => Some(Target::Wgsl),
-            Self::Spv => Some(Target::Spirv),
-            Self::Metal => Some(Target::Msl),
-            Self::Hlsl => Some(Target::Hlsl),
-            Self::Glsl => Some(Target::Glsl),
-            Self::Lowered => None,
-        }
-    }
-
-    fn extension(self) -> &'static str {
-        self.target().map_or("lowered.glsl", Target::extension)
-    }
-
-    fn of(path: &Path) -> Option<Self> {
-        let target = Target::of(path)?;
-        Self::value_variants()
-            .iter()
-            .copied()
-            .find(|to| to.target() == Some(target))
-    }
-}
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let inputs = find(&args.shaders);
@@ -149,6 +48,15 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         terminal.error("--style is for WGSL");
         return Exit::Trouble;
     }
+    if args.browser && !matches!(to, To::Wgsl | To::Glsl) {
+        terminal.error("--browser is for WGSL and GLSL, which browsers run");
+        return Exit::Trouble;
+    }
+    let browser = args.browser.then(browser::find).flatten();
+    if args.browser && browser.is_none() {
+        terminal.error("--browser needs Chromium, and none is installed here (apt-get install chromium)");
+        return Exit::Trouble;
+    }
     // People read what is converted: it keeps the author's functions unless told otherwise.
     let float = args.driver.asked_float().unwrap_or(FloatMode::Fast);
     let workers = args.driver.translator().and_then(|_| args.driver.worker());
@@ -158,6 +66,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             float,
             style: args.style.into(),
             verify: args.verify,
+            browser,
             language: &args.language,
             driver: &args.driver,
         },
@@ -213,8 +122,8 @@ struct Batch<'a> {
     tally: Tally,
 }
 
-/// What came of a shader.
-type Done = (Shader, Result<Made, Trouble>);
+/// What came of a shader, and whether its file was written.
+type Done = (Shader, Result<Made, Trouble>, bool);
 
 impl Batch<'_> {
     fn convert(mut self, jobs: &[Job], converter: &Converter) -> Exit {
@@ -235,11 +144,12 @@ impl Batch<'_> {
             &stop,
             || converter.hand(),
             |hand, index| converter.convert(hand, &jobs[index].input),
-            |index, done| {
+            |index, (shader, mut made)| {
                 bar.inc(1);
-                let ready = order.take(index, (index, done));
                 bar.suspend(|| {
-                    for (index, done) in ready {
+                    // A file is there as soon as it can be; what is said of it waits for its turn.
+                    let written = self.write(&jobs[index], &mut made);
+                    for (index, done) in order.take(index, (index, (shader, made, written))) {
                         self.finish(&jobs[index], done);
                     }
                 });
@@ -259,11 +169,23 @@ impl Batch<'_> {
         self.exit
     }
 
-    /// Says what came of one, and writes it if it may be written.
-    fn finish(&mut self, job: &Job, (shader, made): Done) {
+    /// Writes one if it may be written; says whether it is.
+    fn write(&self, job: &Job, made: &mut Result<Made, Trouble>) -> bool {
+        match made {
+            Ok(made) if made.is_proved() || self.args.force => {
+                let bytes = std::mem::take(&mut made.bytes);
+                self.terminal.write(&job.path, &bytes)
+            }
+            _ => false,
+        }
+    }
+
+    /// Says what came of one.
+    fn finish(&mut self, job: &Job, (shader, made, written): Done) {
         self.terminal.diagnostics(&shader.warnings, &shader.files);
+        self.tally.written += usize::from(written);
         let exit = match made {
-            Ok(made) => self.write(job, &made),
+            Ok(made) => self.tell_standing(job, &made, written),
             Err(trouble) => {
                 self.tally.refused += 1;
                 let exit = trouble.exit();
@@ -287,22 +209,28 @@ impl Batch<'_> {
         self.exit = self.exit.max(exit);
     }
 
-    fn write(&mut self, job: &Job, made: &Made) -> Exit {
-        let proved = !matches!(made.standing, Standing::Unproved(_));
-        let written = (proved || self.args.force) && self.terminal.write(&job.path, &made.bytes);
-        self.tally.written += usize::from(written);
+    fn tell_standing(&mut self, job: &Job, made: &Made, written: bool) -> Exit {
         match &made.standing {
             Standing::Unasked => {}
-            Standing::Proved(proof) => {
+            Standing::Proved(proof, readers) => {
                 self.tally.proved += 1;
-                let instead = made.instead.as_ref();
-                let instead = instead.map_or_else(String::new, |why| format!("; in naga's words: {why}"));
-                self.tell("proved", job, &format!("{}{instead}", header::sum(proof)));
+                let mut words = header::sum(proof);
+                if let Some((_, shown)) = readers.browser {
+                    let _ = write!(words, "; in Chromium {}", header::told(shown));
+                }
+                if let Some(why) = &made.instead {
+                    let _ = write!(words, "; in naga's words: {why}");
+                }
+                self.tell("proved", job, &words);
             }
-            Standing::Meant(proof, read) => {
+            Standing::Meant(proof) => {
                 self.tally.proved += 1;
-                let read = read.as_deref().unwrap_or("nothing here reads the text itself");
-                self.tell("meaning proved", job, &format!("{}; {read}", header::sum(proof)));
+                let sum = header::sum(proof);
+                self.tell(
+                    "meaning proved",
+                    job,
+                    &format!("{sum}; nothing here reads the text itself"),
+                );
             }
             Standing::Unproved(why) => {
                 self.tally.unproved += 1;
@@ -314,9 +242,10 @@ impl Batch<'_> {
                 self.tell("not proved", job, &format!("{why}; {kept}"));
             }
         }
-        match (written, proved) {
-            (true, true) => Exit::Good,
-            _ => Exit::Trouble,
+        if written && made.is_proved() {
+            Exit::Good
+        } else {
+            Exit::Trouble
         }
     }
 

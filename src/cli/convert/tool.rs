@@ -1,11 +1,16 @@
-//! Other people's judges of what was written, where they are installed: tint, spirv-val, glslang.
+//! Other people's tools that read what was written, where they are installed: tint, spirv-val, glslang.
 
-use std::io::Write;
-use std::process::{Command, Stdio};
+use std::fs::File;
+use std::io::{self, Read, Seek, Write};
+use std::process::{Command, Output, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
 
-use crate::emit::Target;
+use tempfile::{NamedTempFile, tempfile};
 
-/// A judge of a language: its program and arguments; the file's name follows.
+use crate::emit::{Target, reread, spirv};
+
+/// A tool that judges a language: its program and arguments; the file's name follows.
 struct Tool {
     name: &'static str,
     arguments: &'static [&'static str],
@@ -13,18 +18,14 @@ struct Tool {
     version: Option<&'static str>,
 }
 
-fn tool(target: Target) -> Option<Tool> {
+/// Who says whether a file in that language is valid.
+fn judge_of(target: Target) -> Option<Tool> {
     let (name, arguments, version): (_, &[&str], _) = match target {
         Target::Wgsl => ("tint", &["--format", "wgsl"], None),
         Target::Spirv => ("spirv-val", &["--target-env", "vulkan1.0"], Some("--version")),
-        Target::Glsl => ("glslangValidator", &["-S", "frag"], Some("--version")),
-        Target::Hlsl => (
-            "glslangValidator",
-            &["-D", "-V", "-S", "frag", "-e", "main", "-o", "-"],
-            Some("--version"),
-        ),
-        // Only Apple's compiler reads Metal.
-        Target::Msl => return None,
+        Target::Glsl => (GLSLANG, &["-S", "frag"], Some("--version")),
+        // What compiles HLSL judges it too, and only Apple's compiler reads Metal.
+        Target::Hlsl | Target::Msl => return None,
     };
     Some(Tool {
         name,
@@ -33,48 +34,143 @@ fn tool(target: Target) -> Option<Tool> {
     })
 }
 
+const GLSLANG: &str = "glslangValidator";
+
+/// glslang, as what compiles a language for Vulkan.
+fn compiler_of(target: Target) -> Option<Tool> {
+    let arguments: &[&str] = match target {
+        Target::Glsl => &["-V", "-S", "frag"],
+        Target::Hlsl => &["-D", "-V", "--hlsl-offsets", "-S", "frag", "-e", "main"],
+        Target::Wgsl | Target::Spirv | Target::Msl => return None,
+    };
+    Some(Tool {
+        name: GLSLANG,
+        arguments,
+        version: Some("--version"),
+    })
+}
+
 /// Which tool accepts the file, in words; nothing if there is none.
 ///
 /// # Errors
 /// What the tool says against it.
 pub(super) fn judge(target: Target, bytes: &[u8]) -> Result<Option<String>, String> {
-    let Some(tool) = tool(target) else { return Ok(None) };
-    let suffix = format!(".{}", target.extension());
-    let written = tempfile::Builder::new()
-        .suffix(&suffix)
-        .tempfile()
-        .and_then(|mut file| {
-            file.write_all(bytes)?;
-            file.flush()?;
-            Ok(file)
-        });
-    let file = written.map_err(|error| format!("{} has no file to read: {error}", tool.name))?;
-    let output = Command::new(tool.name)
-        .args(tool.arguments)
-        .arg(file.path())
-        .stdin(Stdio::null())
-        .output();
-    // It is not installed.
-    let Ok(output) = output else { return Ok(None) };
-    if !output.status.success() {
+    let Some(tool) = judge_of(target) else {
+        return Ok(None);
+    };
+    let file = tool.file(target, bytes)?;
+    let read = tool.read(&file, &[])?;
+    Ok(read.map(|()| format!("{} accepts it", tool.told())))
+}
+
+/// What glslang makes of a file for Vulkan, and its name and version; nothing if it is not installed or reads no such language.
+///
+/// # Errors
+/// What it says against the file.
+pub(super) fn compile(target: Target, bytes: &[u8]) -> Result<Option<(Vec<u32>, String)>, String> {
+    let text = String::from_utf8_lossy(bytes);
+    let (Some(tool), Some(text)) = (compiler_of(target), reread::for_glslang(target, &text)) else {
+        return Ok(None);
+    };
+    let file = tool.file(target, text.as_bytes())?;
+    let made = tool.file(Target::Spirv, &[])?;
+    let to = made.path().to_string_lossy().into_owned();
+    if tool.read(&file, &["-o", &to])?.is_none() {
+        return Ok(None);
+    }
+    let bytes = std::fs::read(made.path()).map_err(|error| format!("{}: {error}", tool.name))?;
+    let words = spirv::of_bytes(&bytes).ok_or_else(|| format!("{} wrote half a word", tool.name))?;
+    Ok(Some((words, tool.told())))
+}
+
+impl Tool {
+    fn file(&self, target: Target, bytes: &[u8]) -> Result<NamedTempFile, String> {
+        let suffix = format!(".{}", target.extension());
+        let written = tempfile::Builder::new()
+            .suffix(&suffix)
+            .tempfile()
+            .and_then(|mut file| {
+                file.write_all(bytes)?;
+                file.flush()?;
+                Ok(file)
+            });
+        written.map_err(|error| format!("{} has no file to read: {error}", self.name))
+    }
+
+    /// Lets it read a file; nothing if it is not installed.
+    fn read(&self, file: &NamedTempFile, more: &[&str]) -> Result<Option<()>, String> {
+        let output = run(Command::new(self.name)
+            .args(self.arguments)
+            .args(more)
+            .arg(file.path()));
+        let output = match output {
+            Ok(output) => output,
+            // It is not installed.
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(format!("{}: {error}", self.name)),
+        };
+        if output.status.success() {
+            return Ok(Some(()));
+        }
         let said = [output.stderr, output.stdout].concat();
         let said = String::from_utf8_lossy(&said).replace(&*file.path().to_string_lossy(), "");
         let first = said
             .lines()
             .find(|line| line.contains("error") || line.contains("ERROR"));
         let first = first.or_else(|| said.lines().next()).unwrap_or("it says nothing");
-        return Err(format!("{} refuses it: {}", tool.name, first.trim()));
+        Err(format!("{} refuses it: {}", self.name, first.trim()))
     }
-    let version = tool
-        .version
-        .and_then(|flag| Command::new(tool.name).arg(flag).output().ok());
-    let version = version.and_then(|output| {
-        let text = String::from_utf8_lossy(&output.stdout).into_owned();
-        text.lines().next().map(|line| format!(" ({})", line.trim()))
-    });
-    Ok(Some(format!(
-        "{}{} accepts it",
-        tool.name,
-        version.unwrap_or_default()
-    )))
+
+    /// Its name, with its version if it tells one.
+    fn told(&self) -> String {
+        let version = self
+            .version
+            .and_then(|flag| run(Command::new(self.name).arg(flag)).ok());
+        let version = version.and_then(|output| {
+            let text = String::from_utf8_lossy(&output.stdout).into_owned();
+            let first = text.lines().find(|line| !line.trim().is_empty())?;
+            Some(format!(" ({})", first.trim()))
+        });
+        format!("{}{}", self.name, version.unwrap_or_default())
+    }
+}
+
+/// How long a tool may take.
+const PATIENCE: Duration = Duration::from_secs(60);
+const NAP: Duration = Duration::from_millis(1);
+
+/// Runs a tool to its end, or to that of its time.
+fn run(command: &mut Command) -> io::Result<Output> {
+    let (mut stdout, mut stderr) = (tempfile()?, tempfile()?);
+    let mut child = command
+        .stdin(Stdio::null())
+        .stdout(stdout.try_clone()?)
+        .stderr(stderr.try_clone()?)
+        .spawn()?;
+    let deadline = Instant::now() + PATIENCE;
+    let status = loop {
+        if let Some(status) = child.try_wait()? {
+            break status;
+        }
+        if Instant::now() > deadline {
+            child.kill()?;
+            child.wait()?;
+            return Err(io::Error::new(
+                io::ErrorKind::TimedOut,
+                "it did not end within a minute",
+            ));
+        }
+        thread::sleep(NAP);
+    };
+    let said = |file: &mut File| {
+        let mut bytes = Vec::new();
+        file.rewind()?;
+        file.read_to_end(&mut bytes)?;
+        Ok::<_, io::Error>(bytes)
+    };
+    Ok(Output {
+        status,
+        stdout: said(&mut stdout)?,
+        stderr: said(&mut stderr)?,
+    })
 }

@@ -3,8 +3,8 @@
 
 use super::super::lower::walk;
 use super::super::tree::{
-    BinaryOp, BuiltInVariable, ExprId, ExprKind, FunctionId, Scalar, StepOp, Type, UnaryOp, VariableId,
-    VariableKind,
+    BinaryOp, BuiltInVariable, Direction, ExprId, ExprKind, FunctionId, Scalar, StepOp, Type, UnaryOp,
+    VariableId, VariableKind,
 };
 use super::Unprintable;
 use super::facts::is_out;
@@ -57,6 +57,20 @@ impl Text {
     pub(super) fn operand(self) -> String {
         self.within(&[Class::Primary])
     }
+}
+
+/// The comparison that holds of two scalars where another does not.
+fn opposite(op: BinaryOp, scalar: Scalar) -> Option<BinaryOp> {
+    Some(match op {
+        BinaryOp::Equal => BinaryOp::NotEqual,
+        BinaryOp::NotEqual => BinaryOp::Equal,
+        _ if scalar == Scalar::Float => return None,
+        BinaryOp::Less => BinaryOp::GreaterEqual,
+        BinaryOp::Greater => BinaryOp::LessEqual,
+        BinaryOp::LessEqual => BinaryOp::Greater,
+        BinaryOp::GreaterEqual => BinaryOp::Less,
+        _ => return None,
+    })
 }
 
 impl Writer<'_> {
@@ -123,7 +137,7 @@ impl Writer<'_> {
         for &id in ids {
             if self.hoists(id) {
                 for (text, &earlier) in texts.iter_mut().zip(ids) {
-                    if !self.draft.tree[earlier].constant {
+                    if !self.is_settled(earlier) {
                         *text = self.keep(text);
                     }
                 }
@@ -167,6 +181,42 @@ impl Writer<'_> {
         self.temporaries = temporaries;
         self.hoisting.insert(id, hoists);
         hoists
+    }
+
+    /// Whether a value is the same before and after whatever else is done: it is made of what is never written.
+    fn is_settled(&self, id: ExprId) -> bool {
+        let tree = &self.draft.tree;
+        let may_change = |kind: &ExprKind| match kind {
+            ExprKind::Variable(variable) => match tree[*variable].kind {
+                VariableKind::Const | VariableKind::Input(_) => false,
+                VariableKind::Local | VariableKind::Parameter(Direction::In) => {
+                    self.facts.is_memory(*variable)
+                }
+                _ => true,
+            },
+            ExprKind::Literal(_)
+            | ExprKind::Unary { .. }
+            | ExprKind::Binary { .. }
+            | ExprKind::Swizzle { .. }
+            | ExprKind::Construct { .. }
+            | ExprKind::Member { .. }
+            | ExprKind::Index { .. } => false,
+            _ => true,
+        };
+        tree[id].constant || !walk::any(tree, id, may_change)
+    }
+
+    /// What a condition comes to if it does not hold. Comparisons of floats are turned round only where they ask whether both are equal: none
+    /// holds of what is no number.
+    pub(super) fn negated(&mut self, id: ExprId) -> Result<String, Unprintable> {
+        let tree = &self.draft.tree;
+        if let ExprKind::Binary { op, left, right } = tree[id].kind
+            && let Type::Scalar(scalar) = tree[left].ty
+            && let Some(other) = opposite(op, scalar)
+        {
+            return Ok(self.binary(other, left, right)?.words);
+        }
+        Ok(format!("!{}", self.value(id)?.operand()))
     }
 
     /// A value under a name, as it is now.

@@ -147,6 +147,7 @@ impl Style {
                     });
                 let text: String = lines.collect();
                 text.replace(BEVY_ENTRY, "fn fragment(in: VertexOutput) -> vec4f {")
+                    .replace(BEVY_RETURN, "return vec4f(color.xyz, 1.0);")
             }
         }
     }
@@ -157,6 +158,8 @@ pub(super) const COMPUTE_ENTRY: &str =
     "@compute @workgroup_size(16, 16)\nfn main_image(@builtin(global_invocation_id) id: vec3u) {";
 /// How it writes a pixel: the screen holds linear colours, `ShaderToy` shows its values as they are.
 pub(super) const COMPUTE_STORE: &str =
-    "textureStore(screen, vec2i(id.xy), vec4f(pow(color.xyz, vec3f(2.2)), 1.0));";
+    "textureStore(screen, vec2i(id.xy), vec4f(pow(saturate(color.xyz), vec3f(2.2)), 1.0));";
 /// The entry point for Bevy.
 pub(super) const BEVY_ENTRY: &str = "@fragment\nfn fragment(in: VertexOutput) -> @location(0) vec4f {";
+/// How it gives a pixel: the view's texture is `Rgba8UnormSrgb`, which takes linear colours.
+pub(super) const BEVY_RETURN: &str = "return vec4f(pow(saturate(color.xyz), vec3f(2.2)), 1.0);";

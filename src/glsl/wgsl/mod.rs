@@ -57,6 +57,7 @@ fn passes() -> Passes {
         Pass::Inequality,
         Pass::Members,
         Pass::Uninitialised,
+        Pass::Steps,
         Pass::DoWhile,
         Pass::MissingReturns,
     ]

@@ -303,8 +303,8 @@ impl Writer<'_> {
             writer.line("}");
             writer.line("continuing {");
             writer.inset(|writer| {
-                let condition = writer.value(condition)?.operand();
-                writer.line(&format!("break if !{condition};"));
+                let condition = writer.negated(condition)?;
+                writer.line(&format!("break if {condition};"));
                 Ok(())
             })?;
             writer.line("}");
@@ -315,8 +315,8 @@ impl Writer<'_> {
     }
 
     fn leave_unless(&mut self, condition: ExprId) -> Done {
-        let condition = self.value(condition)?.operand();
-        self.line(&format!("if !{condition} {{"));
+        let condition = self.negated(condition)?;
+        self.line(&format!("if {condition} {{"));
         self.inset(|writer| writer.line("break;"));
         self.line("}");
         Ok(())
@@ -391,8 +391,14 @@ fn is_constant(writer: &Writer<'_>, id: ExprId) -> bool {
         | ExprKind::Binary { .. }
         | ExprKind::Swizzle { .. }
         | ExprKind::Construct { .. } => false,
+        // One of another that is computed by a call is printed with `let`.
         ExprKind::Variable(variable) => {
-            tree[*variable].kind != VariableKind::Const || tree[*variable].value.is_none()
+            let variable = &tree[*variable];
+            variable.kind != VariableKind::Const
+                || variable.value.is_none()
+                || variable
+                    .initialiser
+                    .is_none_or(|value| !is_constant(writer, value))
         }
         _ => true,
     }) && matches!(tree[id].ty, Type::Scalar(_) | Type::Vector(..))

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::super::print::Order;
 use super::super::tree::{Input, SamplerShape, Type, VariableKind};
 use super::Unprintable;
-use super::host::{BEVY_ENTRY, COMPUTE_ENTRY, COMPUTE_STORE};
+use super::host::{BEVY_ENTRY, BEVY_RETURN, COMPUTE_ENTRY, COMPUTE_STORE};
 use super::writer::Writer;
 
 /// The kind of host that WGSL is for.
@@ -321,7 +321,8 @@ impl Writer<'_> {
                 self.line("    let frag_coord = vec2f(pixel.x, view.viewport.w - pixel.y);");
                 position(self, "vec4f(frag_coord, in.position.zw)");
                 self.body(begin, &format!("{main_image}(&color, frag_coord);"));
-                self.line("    return vec4f(color.xyz, 1.0);");
+                self.line("    // The view takes linear colours; ShaderToy shows its values as they are.");
+                self.line(&format!("    {BEVY_RETURN}"));
             }
         }
         self.line("}");

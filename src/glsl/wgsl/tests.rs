@@ -108,12 +108,16 @@ fn loops_are_those_of_the_author_where_wgsl_has_them() {
                     var i = 0;
                     var j = 9;
                     loop {
-                        if !(i < j) {
+                        if i >= j {
                             break;
                         }
-                        s += p.x;
-                        i++;
-                        j--;
+                        {
+                            s += p.x;
+                        }
+                        continuing {
+                            i++;
+                            j--;
+                        }
                     }
                 }
                 while s < 3.0 {
@@ -128,6 +132,40 @@ fn loops_are_those_of_the_author_where_wgsl_has_them() {
                     }
                 }
                 return s;
+            }
+        "]],
+    );
+}
+
+#[test]
+fn what_is_never_written_is_not_kept_and_conditions_are_turned_round() {
+    function(
+        "float f(vec2 p) {
+            const int most = max(3, 4), last = most - 1;
+            float b = p.x;
+            for (int i = 0; i++ < last;) b = mix(p.y, b, b++);
+            return b;
+        }",
+        &expect![[r"
+            fn f(p: vec2f) -> f32 {
+                let most = max(3i, 4i);
+                let last = most - 1;
+                var b = p.x;
+                {
+                    var i = 0;
+                    loop {
+                        let kept = i;
+                        i++;
+                        if kept >= last {
+                            break;
+                        }
+                        let kept_1 = b;
+                        let kept_2 = b;
+                        b += 1.0;
+                        b = mix(p.y, kept_1, kept_2);
+                    }
+                }
+                return b;
             }
         "]],
     );

@@ -11,7 +11,6 @@ use toyproof::image::{self, Image, quantise};
 use toyproof::report::{Exhibit, Gallery, Record, Report, Seconds, html};
 
 use self::devtools::Page;
-use crate::browser::chromium;
 use crate::program::toyproof;
 use crate::support::SPHERE;
 
@@ -59,7 +58,7 @@ fn report(folder: &Path, rest: &[&str]) -> Vec<Value> {
 }
 
 fn page() -> Option<Page> {
-    let Some((program, _)) = chromium::find() else {
+    let Some(program) = toyproof::browser::find() else {
         eprintln!("skipped: no Chromium here");
         return None;
     };

@@ -4,19 +4,20 @@
 //! By itself the course is compared. `TOYPROOF_SHADERS` names a folder of other shaders, of which `TOYPROOF_COUNT` (500) are drawn by
 //! `TOYPROOF_SEED` (0) among those that read no channel; a line for each goes to standard error.
 
-pub(crate) mod chromium;
-
 use std::ffi::OsStr;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
+use std::process::Command;
 use std::time::Duration;
 use std::{env, fs};
 
-use chromium::{Chromium, Failure, Pixels};
+use toyproof::browser::{Chromium, Failure, Text, as_shadertoy, find};
+use toyproof::emit::{Target, emit};
 use toyproof::frame::Frame;
 use toyproof::glsl::wgsl::{Style, wgsl};
 use toyproof::glsl::{Options, check, lower};
 use toyproof::gpu::{FloatMode, On, Worker};
+use toyproof::module::ValidModule;
 use toyproof::source::{File, Files};
 
 use crate::support::{RUNGS, setting};
@@ -25,29 +26,25 @@ const SIZE: [u32; 2] = [64, 36];
 /// `iTime` and `iFrame`.
 const SHOTS: [(f32, i32); 2] = [(1.0, 60), (7.3, 438)];
 
-/// A shader between what ShaderToy puts before and behind it.
-fn wrapped(shader: &str) -> String {
-    format!(
-        "#version 300 es
-#define HW_PERFORMANCE 1
-precision highp float;
-precision highp int;
-uniform vec3 iResolution;
-uniform float iTime, iTimeDelta, iFrameRate, iSampleRate;
-uniform int iFrame;
-uniform float iChannelTime[4];
-uniform vec3 iChannelResolution[4];
-uniform vec4 iMouse, iDate;
-out vec4 shadertoy_out_color;
-#line 1
-{shader}
-void main() {{
-    vec4 color = vec4(0.0, 0.0, 0.0, 1.0);
-    mainImage(color, gl_FragCoord.xy);
-    shadertoy_out_color = vec4(color.xyz, 1.0);
-}}
-"
-    )
+/// A shader's pixels in all frames, one after the other, bottom rows first.
+type Pixels = Vec<[f32; 4]>;
+
+/// How long a browser may take for one shader.
+const PATIENCE: Duration = Duration::from_secs(90);
+
+fn frames() -> Vec<Frame> {
+    let frame = |(time, number)| Frame {
+        size: SIZE,
+        time,
+        frame: number,
+        ..Frame::default()
+    };
+    SHOTS.map(frame).to_vec()
+}
+
+fn in_browser(browser: &mut Chromium, text: Text) -> Result<Pixels, Failure> {
+    let images = browser.paint(text, &frames())?;
+    Ok(images.iter().flat_map(|image| image.pixels().to_vec()).collect())
 }
 
 /// A shader's WGSL, in our own words.
@@ -61,20 +58,16 @@ fn converted(shader: &str) -> Result<String, String> {
 
 /// The author's shader with WebGL 2 beside its conversion with WebGPU.
 fn judge_conversion(browser: &mut Chromium, shader: &str) -> (Outcome, String) {
-    let told = |failure: Failure| match failure {
-        Failure::Refused(words) => words,
-        Failure::Silent => "the browser is silent".to_owned(),
-    };
     let text = match converted(shader) {
         Ok(text) => text,
         Err(why) => return (Outcome::Unpainted, format!("not converted: {why}")),
     };
-    let original = browser.paint(&wrapped(shader), SIZE, &SHOTS);
-    let conversion = browser.paint_wgsl(&text, SIZE, &SHOTS);
+    let original = in_browser(browser, Text::Glsl(&as_shadertoy(shader)));
+    let conversion = in_browser(browser, Text::Wgsl(&text));
     match (original, conversion) {
         (Ok(original), Ok(conversion)) => compare(&conversion, &original),
-        (Err(failure), _) => (Outcome::Unpainted, format!("WebGL 2: {}", told(failure))),
-        (_, Err(failure)) => (Outcome::Unpainted, format!("WebGPU: {}", told(failure))),
+        (Err(failure), _) => (Outcome::Unpainted, format!("WebGL 2: {failure}")),
+        (_, Err(failure)) => (Outcome::Unpainted, format!("WebGPU: {failure}")),
     }
 }
 
@@ -98,13 +91,7 @@ fn ours(worker: &mut Worker, shader: &str) -> Result<Pixels, String> {
         .map_err(|errors| toyproof::diagnostic::short(&errors[0], &files))?;
     let lowered = lower(&checked);
     let mut pixels = Vec::new();
-    for (time, number) in SHOTS {
-        let frame = Frame {
-            size: SIZE,
-            time,
-            frame: number,
-            ..Frame::default()
-        };
+    for frame in frames() {
         let drawn = worker
             .draw(lowered.clone(), frame, FloatMode::Fast)
             .map_err(|failure| failure.to_string())?;
@@ -146,23 +133,31 @@ fn judge(browser: &mut Chromium, worker: &mut Worker, shader: &str) -> (Outcome,
         Ok(pixels) => pixels,
         Err(why) => return (Outcome::Unpainted, format!("ours: {why}")),
     };
-    match browser.paint(&wrapped(shader), SIZE, &SHOTS) {
+    match in_browser(browser, Text::Glsl(&as_shadertoy(shader))) {
         Ok(theirs) => compare(&ours, &theirs),
-        Err(Failure::Refused(words)) => (Outcome::Unpainted, format!("the browser refuses: {words}")),
-        Err(Failure::Silent) => (Outcome::Unpainted, "the browser is silent".to_owned()),
+        Err(failure) => (Outcome::Unpainted, failure.to_string()),
     }
 }
 
 /// A browser and a worker on the driver that it brings; none where there is no Chromium.
 fn both() -> Option<(Chromium, Worker)> {
-    let Some((program, manifest)) = chromium::find() else {
+    let manifest = [
+        "/usr/lib/chromium",
+        "/usr/lib/chromium-browser",
+        "/usr/lib64/chromium-browser",
+        "/opt/google/chrome",
+    ]
+    .map(|folder| Path::new(folder).join("vk_swiftshader_icd.json"))
+    .into_iter()
+    .find(|path| path.exists());
+    let Some((program, manifest)) = find().zip(manifest) else {
         eprintln!("skipped: no Chromium with SwiftShader here");
         return None;
     };
     let toyproof = PathBuf::from(env!("CARGO_BIN_EXE_toyproof"));
     let on = On::Named("SwiftShader".into());
     let worker = Worker::new(toyproof, vec!["worker".into()], on, Duration::from_secs(60));
-    Some((Chromium::new(program), worker.with_manifest(manifest)))
+    Some((Chromium::new(program, PATIENCE), worker.with_manifest(manifest)))
 }
 
 #[test]
@@ -247,4 +242,80 @@ fn tally(folder: &OsStr, mut judge: impl FnMut(&str) -> (Outcome, String)) {
     let told = format!("{equal} equal, {close} within 1/255, {differ} differ, {others} not painted by both");
     eprintln!("{told}");
     assert!(equal + close > 0 && 49 * differ <= equal + close, "{told}");
+}
+
+/// A page of `examples` with the text that it is a host for in the place of its own.
+fn hosting(page: &str, text: &str) -> String {
+    let page = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples").join(page)).unwrap();
+    let (head, rest) = page.split_once("<script type=\"x-shader/").unwrap();
+    let (language, rest) = rest.split_once("\">").unwrap();
+    let (_, rest) = rest.split_once("</script>").unwrap();
+    format!("{head}<script type=\"x-shader/{language}\">{text}</script>{rest}")
+}
+
+#[test]
+fn the_hosts_that_are_shown_paint_what_was_converted() {
+    const SHADER: &str = "void mainImage(out vec4 c, in vec2 p) {
+        c = vec4(p / iResolution.xy, 0.25 + 0.0 * sin(iTime) + 0.5 * float(iFrame < 0), 1.0);
+    }";
+    let Some(program) = find() else {
+        eprintln!("skipped: no Chromium here");
+        return;
+    };
+    let mut files = Files::default();
+    let file = files.add(File::new("shader", SHADER));
+    let checked = check(&files, file, &Options::default()).unwrap();
+    let glsl = emit(&ValidModule::parse(&lower(&checked)).unwrap(), Target::Glsl).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    for (page, text) in [
+        ("host.html", converted(SHADER).unwrap()),
+        ("host-webgl2.html", String::from_utf8(glsl).unwrap()),
+    ] {
+        let file = folder.path().join(page);
+        fs::write(&file, hosting(page, &text)).unwrap();
+        let shot = folder.path().join("shot.png");
+        let run = Command::new("timeout")
+            .arg("90")
+            .arg(&program)
+            .args([
+                "--headless=new",
+                "--no-sandbox",
+                "--hide-scrollbars",
+                "--window-size=700,420",
+            ])
+            .args([
+                "--use-gl=angle",
+                "--use-angle=swiftshader",
+                "--enable-unsafe-swiftshader",
+            ])
+            // Without the third, the canvas of a page with WebGPU stays empty on a machine without a GPU.
+            .args(["--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader"])
+            .args(["--use-vulkan=swiftshader", "--enable-features=Vulkan"])
+            .arg(format!(
+                "--user-data-dir={}",
+                folder.path().join("profile").display()
+            ))
+            .args([
+                "--virtual-time-budget=3000",
+                &format!("--screenshot={}", shot.display()),
+            ])
+            .arg(format!("file://{}", file.display()))
+            .output()
+            .unwrap();
+        assert!(shot.exists(), "{page}: {run:?}");
+        let shown = toyproof::image::read(&shot).unwrap();
+        // The canvas stands 8 pixels from the top left of the window, and is 640 by 360.
+        let from_bottom = shown.size()[1] - 8 - 360;
+        for [x, y] in [[0, 0], [639, 0], [0, 359], [400, 100]] {
+            let [r, g, b, _] = shown.get(8 + x, from_bottom + y);
+            let expected = [(x as f32 + 0.5) / 640.0, (y as f32 + 0.5) / 360.0, 0.25];
+            let apart = [r - expected[0], g - expected[1], b - expected[2]].map(f32::abs);
+            assert!(
+                apart.iter().all(|&apart| apart <= 1.0 / 255.0),
+                "{page} at {x}, {y}: {:?}",
+                [r, g, b]
+            );
+        }
+        fs::remove_file(&shot).unwrap();
+    }
 }

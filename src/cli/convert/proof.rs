@@ -1,0 +1,230 @@
+//! What is proved of a conversion: who reads again what was written, and what comes of running what they read.
+
+use super::super::shader::Shader;
+use super::conversion::{Converter, Hand};
+use super::tool;
+use crate::browser::{self, Text};
+use crate::compare::plural;
+use crate::diagnostic::short;
+use crate::emit::{Target, reread, spirv};
+use crate::glsl::tree::SamplerShape;
+use crate::glsl::wgsl::Style;
+use crate::glsl::{self, Checked, Lowered};
+use crate::gpu::{Failure, FloatMode, Written};
+use crate::image::Image;
+use crate::module::Shape;
+use crate::source::{File, Files};
+use crate::verify;
+use crate::verify::conversion::{Against, Proof, Shown, frames, prove};
+
+/// Who reads WGSL, and what is fed to naga.
+pub(super) const NAGA: &str = "naga";
+
+/// How far a conversion is proved.
+pub(super) enum Standing {
+    /// Nobody asked.
+    Unasked,
+    /// What was written was read again, and paints the same.
+    Proved(Proof, Readers),
+    /// What naga wrote it from paints the same; the text itself was read by nobody.
+    Meant(Proof),
+    /// It is not proved, for that reason.
+    Unproved(String),
+}
+
+/// Who read what was written.
+pub(super) struct Readers {
+    /// Who read it so that it could be run, each by itself.
+    pub(super) ran: Vec<String>,
+    /// Who accepts it beside, in words.
+    pub(super) judge: Option<String>,
+    /// The browser that paints it as it paints the original, if it was asked.
+    pub(super) browser: Option<(String, Shown)>,
+}
+
+impl Converter<'_> {
+    /// Lets all that can read it read what was written, and runs what they read.
+    pub(super) fn judge(
+        &self,
+        hand: &mut Hand,
+        checked: &Checked,
+        lowered: Lowered,
+        target: Target,
+        bytes: &[u8],
+    ) -> Result<Standing, String> {
+        let judge = tool::judge(target, bytes)?;
+        let channels = checked.channels.map(|shape| match shape {
+            SamplerShape::D2 | SamplerShape::D2Array => Shape::D2,
+            SamplerShape::D3 => Shape::D3,
+            SamplerShape::Cube => Shape::Cube,
+        });
+        let mut readings = match target {
+            Target::Wgsl => {
+                let text = String::from_utf8_lossy(bytes);
+                vec![(NAGA.to_owned(), Written::Wgsl(Style::Plain.hosted(&text)))]
+            }
+            Target::Spirv => {
+                let words = spirv::of_bytes(bytes).ok_or("half a word was written")?;
+                vec![("the driver".to_owned(), Written::Words(words, channels))]
+            }
+            Target::Glsl => vec![("toyproof's GLSL front end".to_owned(), reread_glsl(bytes)?)],
+            Target::Hlsl | Target::Msl => Vec::new(),
+        };
+        if let Some((words, who)) = tool::compile(target, bytes)? {
+            readings.push((who, Written::Words(words, channels)));
+        }
+        if !readings.is_empty() {
+            return Ok(self.run(hand, checked, readings, judge));
+        }
+        let meaning = vec![(String::new(), Written::Lowered(lowered))];
+        Ok(match self.run(hand, checked, meaning, None) {
+            Standing::Proved(proof, _) => Standing::Meant(proof),
+            other => other,
+        })
+    }
+
+    /// Runs what was read again, by each who read it; all proofs hold, or there is a reason why not.
+    pub(super) fn run(
+        &self,
+        hand: &mut Hand,
+        checked: &Checked,
+        readings: Vec<(String, Written)>,
+        judge: Option<String>,
+    ) -> Standing {
+        let (ran, written): (Vec<_>, Vec<_>) = readings.into_iter().unzip();
+        let proofs = self.proofs(hand, checked, written);
+        let held = proofs.and_then(|proofs| {
+            let several = proofs.len() > 1;
+            let mut first = None;
+            for (proof, who) in proofs.into_iter().zip(&ran) {
+                let held = held(proof).map_err(|why| {
+                    if several {
+                        format!("as {who} reads it, {why}")
+                    } else {
+                        why
+                    }
+                })?;
+                first.get_or_insert(held);
+            }
+            first.ok_or_else(|| "nothing read it".to_owned())
+        });
+        held.map_or_else(Standing::Unproved, |proof| {
+            let browser = None;
+            Standing::Proved(proof, Readers { ran, judge, browser })
+        })
+    }
+
+    fn proofs(
+        &self,
+        hand: &mut Hand,
+        checked: &Checked,
+        readings: Vec<Written>,
+    ) -> Result<Vec<Proof>, String> {
+        let runner = match &mut hand.runner {
+            Ok(Some(runner)) => runner,
+            Ok(None) => {
+                return Err(
+                    "to prove a conversion takes a Vulkan driver, and --on cpu asks for none".to_owned(),
+                );
+            }
+            Err(error) => return Err(error.clone()),
+        };
+        let frames = frames(checked);
+        prove(runner, checked, readings, &frames, self.driver.timeout()).map_err(|failure| match failure {
+            verify::Failure::Gpu(Failure::NoDriver(why)) => {
+                format!("to prove a conversion takes a Vulkan driver: {why}")
+            }
+            failure => failure.to_string(),
+        })
+    }
+}
+
+/// Lets a browser, if there is one, paint what is proved beside the original: as shown, they must be the same.
+pub(super) fn in_browser(
+    hand: &mut Hand,
+    checked: &Checked,
+    shader: &Shader,
+    standing: Standing,
+    text: Text,
+    upside_down: bool,
+) -> Standing {
+    let Some(browser) = &mut hand.browser else {
+        return standing;
+    };
+    let (proof, mut readers) = match standing {
+        Standing::Proved(proof, readers) => (proof, readers),
+        other => return other,
+    };
+    let is_flat = |shape: &SamplerShape| *shape == SamplerShape::D2;
+    if checked.reads_textures() && !checked.channels.iter().all(is_flat) {
+        return Standing::Unproved("a channel that is not flat cannot be fed to Chromium yet".to_owned());
+    }
+    let frames = frames(checked);
+    let original = browser::as_shadertoy(shader.text(checked));
+    let painted = browser
+        .paint(Text::Glsl(&original), &frames)
+        .map_err(|failure| format!("the original: {failure}"))
+        .and_then(|original| {
+            let converted = browser
+                .paint(text, &frames)
+                .map_err(|failure| failure.to_string())?;
+            Ok((original, converted))
+        });
+    let (original, mut converted) = match painted {
+        Ok(painted) => painted,
+        Err(why) => return Standing::Unproved(why),
+    };
+    if upside_down {
+        converted = converted.iter().map(Image::upside_down).collect();
+    }
+    let shown = Shown::of(&original, &converted, &proof.undefined_at);
+    if shown.differing > 0 {
+        return Standing::Unproved(format!(
+            "in Chromium {} of {} pixels {} not as with WebGL 2 of the original, by up to {:.1}/255",
+            shown.differing,
+            shown.pixels,
+            plural(shown.differing, "is", "are"),
+            shown.max * 255.0
+        ));
+    }
+    let name = browser.name().unwrap_or("Chromium").to_owned();
+    readers.browser = Some((name, shown));
+    Standing::Proved(proof, readers)
+}
+
+/// The proof if it holds, or why it does not.
+fn held(proof: Proof) -> Result<Proof, String> {
+    if proof.holds() {
+        return Ok(proof);
+    }
+    let differing = proof.differing();
+    if differing == 0 {
+        return Err("every pixel hangs on what GLSL leaves undefined".to_owned());
+    }
+    let worst = proof
+        .answers
+        .iter()
+        .map(|answer| answer.max_abs)
+        .fold(0.0, f64::max);
+    let against = match proof.against {
+        Against::Evaluator => "the evaluator's",
+        Against::StrictRun => "the shader's own",
+    };
+    Err(format!(
+        "{differing} of {} pixels {} not to the bit {against}, by up to {worst:.1e}",
+        proof.pixels(),
+        plural(differing, "is", "are")
+    ))
+}
+
+/// GLSL that was written, read again by our own front end.
+fn reread_glsl(bytes: &[u8]) -> Result<Written, String> {
+    let mut files = Files::default();
+    let text = reread::as_shadertoy(&String::from_utf8_lossy(bytes));
+    let file = files.add(File::new("written", &text));
+    let checked = glsl::check(&files, file, &glsl::Options::default()).map_err(|errors| {
+        let first = errors.first().map(|error| short(error, &files));
+        format!("our own front end refuses it: {}", first.unwrap_or_default())
+    })?;
+    Ok(Written::Lowered(FloatMode::Fast.lower(&checked)))
+}
