@@ -49,7 +49,7 @@ pub struct Chromium {
 }
 
 /// How long a browser may take to start, beside what a shader may take.
-const START: Duration = Duration::from_secs(20);
+const START: Duration = Duration::from_secs(60);
 const PAGE: &str = include_str!("page.html");
 
 /// Where the browser is, if it is installed.
