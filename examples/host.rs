@@ -6,6 +6,7 @@
 #![expect(clippy::too_many_lines, reason = "a host is read from top to bottom")]
 
 use std::error::Error;
+use std::path::Path;
 
 const SIZE: [u32; 2] = [640, 360];
 const TIME: f32 = 1.5;
@@ -21,7 +22,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Err("say: host SHADER.wgsl|SHADER.spv PICTURE.png".into());
     };
     let file = std::fs::read(&shader)?;
-    let shader = if shader.ends_with(".spv") {
+    let shader = if Path::new(&shader)
+        .extension()
+        .is_some_and(|ending| ending == "spv")
+    {
         let words = file.chunks_exact(4);
         Shader::Spirv(
             words
