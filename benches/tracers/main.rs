@@ -18,6 +18,7 @@ use std::path::Path;
 use std::process::Command;
 
 use rustix::time::{ClockId, clock_gettime};
+use toyproof::chart::{Point, Scatter};
 use toyproof::export;
 use toyproof::frame::Frame;
 use toyproof::glsl::{Options, check, lower_strict};
@@ -402,7 +403,8 @@ fn exponent(points: &[(f64, f64)]) -> f64 {
     over / logs.iter().map(|p| (p.0 - x).powi(2)).sum::<f64>()
 }
 
-fn growth(name: &str, scenes: Vec<(f64, Scene)>) {
+/// Prints how the time grows, and adds it to the chart.
+fn growth(chart: &mut Scatter, name: &str, scenes: Vec<(f64, Scene)>) {
     println!("\n| {name} | f32 | f64 |\n|---|---|---|");
     let mut points = [Vec::new(), Vec::new()];
     for (at, scene) in scenes {
@@ -413,26 +415,50 @@ fn growth(name: &str, scenes: Vec<(f64, Scene)>) {
             points.push((at, time));
         }
     }
+    for (number, points) in ["f32", "f64"].into_iter().zip(&points) {
+        let group = chart.groups.len();
+        chart
+            .groups
+            .push(format!("{name}, {number}: exponent {:.2}", exponent(points)));
+        chart.points.extend(points.iter().map(|&(x, y)| Point {
+            x,
+            y,
+            name: String::new(),
+            group,
+            best: false,
+        }));
+    }
     let [single, double] = points.map(|points| exponent(&points));
     println!("| exponent | {single:.2} | {double:.2} |");
 }
 
 fn growths(counts: &[usize]) {
     println!("\nHow the time grows, a picture of flat colours, milliseconds:");
+    let mut chart = Scatter {
+        title: "Time of a picture of flat colours".to_owned(),
+        x: "how many".to_owned(),
+        y: "milliseconds of processor time".to_owned(),
+        groups: Vec::new(),
+        points: Vec::new(),
+        lines: Vec::new(),
+    };
     let counted = |&count: &usize| (count as f64, spheres(count, Model::Emitter));
-    growth("spheres", counts.iter().map(counted).collect());
+    growth(&mut chart, "spheres", counts.iter().map(counted).collect());
     let sized = |factor: u32| {
         let mut scene = spheres(100, Model::Emitter);
         scene.film.size = [160 * factor, 90 * factor];
         (f64::from(160 * 90 * factor * factor), scene)
     };
-    growth("pixels", [1, 2, 4, 8, 16].map(sized).into());
+    growth(&mut chart, "pixels", [1, 2, 4, 8, 16].map(sized).into());
     let sampled = |samples: u32| {
         let mut scene = spheres(100, Model::Emitter);
         (scene.film.samples, scene.film.sampler) = (samples, Sampler::Stratified);
         (f64::from(samples), scene)
     };
-    growth("samples", [1, 4, 16, 64].map(sampled).into());
+    growth(&mut chart, "samples", [1, 4, 16, 64].map(sampled).into());
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("growth.svg");
+    fs::write(&path, chart.svg()).expect("there is room");
+    println!("\nDrawn in {}", path.display());
 }
 
 /// Kilobytes of this process in memory.
