@@ -120,7 +120,9 @@ impl<T: Real> Tracer<T> {
     pub fn rows(&self, rows: Range<u32>, row_done: impl Fn() + Sync) -> Image {
         let (width, height) = (self.film.size[0], rows.len() as u32);
         let mut pixels = vec![[0.0, 0.0, 0.0, 1.0]; width as usize * height as usize];
-        let bands = pixels.par_chunks_mut(width as usize * tile::SIDE as usize);
+        let bands = pixels
+            .par_chunks_mut(width as usize * tile::SIDE as usize)
+            .with_max_len(1);
         bands.enumerate().for_each(|(band, pixels)| {
             self.band(rows.start + band as u32 * tile::SIDE, pixels);
             (0..pixels.len() / width as usize).for_each(|_| row_done());

@@ -147,7 +147,9 @@ impl<T: Real> Tracer<T> {
     pub fn surfaces(&self) -> Vec<u32> {
         let [width, height] = self.film.size;
         let mut surfaces = vec![NONE; width as usize * height as usize];
-        let bands = surfaces.par_chunks_mut(width as usize * SIDE as usize);
+        let bands = surfaces
+            .par_chunks_mut(width as usize * SIDE as usize)
+            .with_max_len(1);
         bands.enumerate().for_each(|(band, surfaces)| {
             for tile in self.tiles(band as u32 * SIDE) {
                 let packet = self.camera.packet(&self.middles(tile), self.level);
