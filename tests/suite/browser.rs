@@ -7,8 +7,7 @@
 use std::ffi::OsStr;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
-use std::process::Command;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use std::{env, fs};
 
 use toyproof::browser::{Chromium, Failure, Text, as_shadertoy, find};
@@ -20,6 +19,7 @@ use toyproof::gpu::{FloatMode, On, Worker};
 use toyproof::module::ValidModule;
 use toyproof::source::{File, Files};
 
+use crate::page::devtools::Page;
 use crate::support::{RUNGS, setting};
 
 const SIZE: [u32; 2] = [64, 36];
@@ -267,55 +267,46 @@ fn the_hosts_that_are_shown_paint_what_was_converted() {
     let checked = check(&files, file, &Options::default()).unwrap();
     let glsl = emit(&ValidModule::parse(&lower(&checked)).unwrap(), Target::Glsl).unwrap();
     let folder = tempfile::tempdir().unwrap();
+    let mut window = Page::with(
+        &program,
+        &[
+            "--hide-scrollbars",
+            "--use-gl=angle",
+            "--use-angle=swiftshader",
+            "--enable-unsafe-swiftshader",
+            // Without the last two, the canvas of a page with WebGPU stays empty on a machine without a GPU.
+            "--enable-unsafe-webgpu",
+            "--use-webgpu-adapter=swiftshader",
+            "--use-vulkan=swiftshader",
+            "--enable-features=Vulkan",
+        ],
+    );
+    window.window([700, 420], false);
     for (page, text) in [
         ("host.html", converted(SHADER).unwrap()),
         ("host-webgl2.html", String::from_utf8(glsl).unwrap()),
     ] {
         let file = folder.path().join(page);
         fs::write(&file, hosting(page, &text)).unwrap();
-        let shot = folder.path().join("shot.png");
-        let run = Command::new("timeout")
-            .arg("90")
-            .arg(&program)
-            .args([
-                "--headless=new",
-                "--no-sandbox",
-                "--hide-scrollbars",
-                "--window-size=700,420",
-            ])
-            .args([
-                "--use-gl=angle",
-                "--use-angle=swiftshader",
-                "--enable-unsafe-swiftshader",
-            ])
-            // Without the third, the canvas of a page with WebGPU stays empty on a machine without a GPU.
-            .args(["--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader"])
-            .args(["--use-vulkan=swiftshader", "--enable-features=Vulkan"])
-            .arg(format!(
-                "--user-data-dir={}",
-                folder.path().join("profile").display()
-            ))
-            .args([
-                "--virtual-time-budget=3000",
-                &format!("--screenshot={}", shot.display()),
-            ])
-            .arg(format!("file://{}", file.display()))
-            .output()
-            .unwrap();
-        assert!(shot.exists(), "{page}: {run:?}");
-        let shown = toyproof::image::read(&shot).unwrap();
-        // The canvas stands 8 pixels from the top left of the window, and is 640 by 360.
-        let from_bottom = shown.size()[1] - 8 - 360;
-        for [x, y] in [[0, 0], [639, 0], [0, 359], [400, 100]] {
-            let [r, g, b, _] = shown.get(8 + x, from_bottom + y);
-            let expected = [(x as f32 + 0.5) / 640.0, (y as f32 + 0.5) / 360.0, 0.25];
-            let apart = [r - expected[0], g - expected[1], b - expected[2]].map(f32::abs);
-            assert!(
-                apart.iter().all(|&apart| apart <= 1.0 / 255.0),
-                "{page} at {x}, {y}: {:?}",
-                [r, g, b]
-            );
+        window.open(&file);
+        // A page has loaded before its canvas is painted, and nothing tells when that has reached the window.
+        let start = Instant::now();
+        while let Err(unlike) = shows_the_ramps(&window.screenshot()) {
+            assert!(start.elapsed() < PATIENCE, "{page} {unlike}");
         }
-        fs::remove_file(&shot).unwrap();
     }
+}
+
+/// Whether a window shows red that grows to the right and green that grows upwards, on a canvas of 640 by 360 that stands 8 pixels from its top left.
+fn shows_the_ramps(shot: &[u8]) -> Result<(), String> {
+    let shown = image::load_from_memory(shot).unwrap().into_rgb8();
+    for [x, y] in [[0, 0], [639, 0], [0, 359], [400, 100]] {
+        let found = shown.get_pixel(8 + x, 8 + 359 - y).0;
+        let expected = [(x as f32 + 0.5) / 640.0, (y as f32 + 0.5) / 360.0, 0.25];
+        let near = |(found, expected): (u8, f32)| (f32::from(found) - 255.0 * expected).abs() <= 1.0;
+        if !found.into_iter().zip(expected).all(near) {
+            return Err(format!("at {x}, {y}: {found:?}"));
+        }
+    }
+    Ok(())
 }

@@ -29,8 +29,13 @@ pub(crate) struct Page {
 }
 
 impl Page {
-    /// A page that shows nothing yet.
+    /// A page that shows nothing yet, in a browser without a GPU.
     pub(crate) fn new(program: &Path) -> Self {
+        Self::with(program, &["--disable-gpu"])
+    }
+
+    /// A page that shows nothing yet, in a browser with those switches.
+    pub(crate) fn with(program: &Path, switches: &[&str]) -> Self {
         let profile = tempfile::tempdir().unwrap();
         let mut browser = Command::new("sh")
             // The protocol is spoken on descriptors 3 and 4.
@@ -43,11 +48,8 @@ impl Page {
                 "--no-first-run",
                 "--disable-extensions",
             ])
-            .args([
-                "--disable-background-networking",
-                "--disable-component-update",
-                "--disable-gpu",
-            ])
+            .args(["--disable-background-networking", "--disable-component-update"])
+            .args(switches)
             .arg("--remote-debugging-pipe")
             .arg(format!("--user-data-dir={}", profile.path().display()))
             .stdin(Stdio::piped())

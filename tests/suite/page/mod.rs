@@ -1,6 +1,6 @@
 //! `report.html` in a real browser. `TOYPROOF_SCREENSHOTS` names a folder for pictures of it.
 
-mod devtools;
+pub(crate) mod devtools;
 
 use std::path::{Path, PathBuf};
 use std::{env, fs};
