@@ -73,6 +73,7 @@ impl Scatter {
 
 /// The upper 24 bits as a number in [0, 1), which float32 holds exactly.
 #[must_use]
+#[inline]
 pub fn unit(hash: u32) -> f64 {
     f64::from(hash >> 8) / f64::from(1 << 24)
 }

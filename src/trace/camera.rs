@@ -102,7 +102,7 @@ impl<T: Real> Camera<T> {
                 Origins::Each([0, 1, 2].map(|axis| std::array::from_fn(|at| start(at, axis))))
             }
         };
-        Packet { origins, directions }
+        Packet::full(origins, directions)
     }
 
     /// Where a parallel ray starts.
@@ -118,8 +118,7 @@ impl<T: Real> Camera<T> {
 /// Where parallel rays go.
 const AHEAD: [f64; 3] = [0.0, 0.0, -1.0];
 
-/// Directions from a pinhole to places on the screen, of length 1: (x, y, −`screen_distance`) is scaled by a power of two
-/// first, so that no square overflows.
+/// Directions from a pinhole to places on the screen, (x, y, −`screen_distance`), of length 1.
 struct Towards<'a, T> {
     x: &'a [T],
     y: &'a [T],
@@ -132,26 +131,14 @@ impl<T: Real> Kernel<T> for Towards<'_, T> {
 
     #[inline(always)]
     fn run<S: Lanes<T>>(self, simd: S) {
-        let [one, least, infinity, distance] = [
-            T::one(),
-            T::min_positive_value(),
-            T::infinity(),
-            self.screen_distance,
-        ]
-        .map(|number| Wide::splat(simd, number));
+        let distance = Wide::splat(simd, self.screen_distance);
         let mut at = 0;
         while at < self.x.len() {
             let (x, y) = (Wide::load(simd, &self.x[at..]), Wide::load(simd, &self.y[at..]));
-            let size = x.max(-x).max(y.max(-y)).max(distance);
-            // The exponent alone.
-            let power = size.and(infinity);
-            let power = power.select(least.less_or_equal(size), one);
-            let power = power.select(size.less(infinity), one);
-            let scaled = Wide3(x, y, -distance) * (one / power);
-            let length = scaled.dot(scaled).sqrt();
-            (scaled.0 / length).store(&mut self.directions[0][at..]);
-            (scaled.1 / length).store(&mut self.directions[1][at..]);
-            (scaled.2 / length).store(&mut self.directions[2][at..]);
+            let Wide3(x, y, z) = Wide3(x, y, -distance).normalize(simd);
+            x.store(&mut self.directions[0][at..]);
+            y.store(&mut self.directions[1][at..]);
+            z.store(&mut self.directions[2][at..]);
             at += S::COUNT;
         }
     }

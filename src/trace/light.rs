@@ -1,5 +1,11 @@
 //! Where light comes from.
 
+#![expect(
+    clippy::inline_always,
+    reason = "only what is inlined into a kernel is compiled for its instruction set"
+)]
+
+use super::lanes::{Columns, Kernel, Lanes, MOST_LANES, Wide, Wide3};
 use super::ray::around;
 use super::real::{Real, Vector};
 use crate::scene;
@@ -20,6 +26,71 @@ impl<T: Real> Light<T> {
             color: T::Vec3::from_f64(light.color),
             shadow: light.shadow,
             radius: T::from_f64(light.radius),
+        }
+    }
+}
+
+/// The ways from the first `count` of some points, where the normals are these, to a light that is a point.
+#[derive(Debug)]
+pub(super) struct Toward<'a, T> {
+    pub(super) count: usize,
+    pub(super) points: &'a Columns<T>,
+    pub(super) normals: &'a Columns<T>,
+    pub(super) light: [T; 3],
+    /// How far off the surface rays start.
+    pub(super) offset: T,
+    /// They are put here.
+    pub(super) ways: &'a mut Ways<T>,
+}
+
+/// Ways to a light.
+#[derive(Debug)]
+pub(super) struct Ways<T> {
+    /// From the points, of length 1.
+    pub(super) directions: Columns<T>,
+    /// Where shadow rays start, and where they go.
+    pub(super) rays: [Columns<T>; 2],
+    /// From there.
+    pub(super) distances: [T; MOST_LANES],
+    /// Between normal and direction.
+    pub(super) cosines: [T; MOST_LANES],
+}
+
+impl<T: Real> Ways<T> {
+    pub(super) fn nowhere() -> Self {
+        let zeros = || Columns::splat([T::zero(); 3]);
+        Self {
+            directions: zeros(),
+            rays: [zeros(), zeros()],
+            distances: [T::zero(); MOST_LANES],
+            cosines: [T::zero(); MOST_LANES],
+        }
+    }
+}
+
+impl<T: Real> Kernel<T> for Toward<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Lanes<T>>(self, simd: S) {
+        let ways = self.ways;
+        let light = Wide3::splat(simd, self.light);
+        let [zero, offset] = [T::zero(), self.offset].map(|number| Wide::splat(simd, number));
+        let mut at = 0;
+        while at < self.count {
+            let (point, normal) = (self.points.load(simd, at), self.normals.load(simd, at));
+            let direction = (light - point).normalize(simd);
+            let cosine = normal.dot(direction);
+            let offset = (-offset).select(cosine.less(zero), offset);
+            let origin = point + normal * offset;
+            let to_light = light - origin;
+            let distance = to_light.length(simd);
+            ways.directions.store(direction, at);
+            ways.rays[0].store(origin, at);
+            ways.rays[1].store(to_light / distance, at);
+            distance.store(&mut ways.distances[at..]);
+            cosine.store(&mut ways.cosines[at..]);
+            at += S::COUNT;
         }
     }
 }

@@ -150,20 +150,19 @@ impl<T: Real> Tracer<T> {
 
     fn sample(&self, sample: Sample, style: &impl Style<T>) -> T::Vec3 {
         let mut draws = Draws::new(self.film.sampler, sample);
-        let place = Self::place(sample, &mut draws);
+        let place = Self::place(sample.pixel, draws.jitter());
         let seen = self.look(self.camera.screen(place));
-        self.radiance(seen, &mut draws, style)
+        self.radiance(seen, draws, style)
     }
 
-    /// Where a sample lies in the picture, in pixels from the bottom left: the first that is drawn for it.
-    fn place(sample: Sample, draws: &mut Draws) -> [T; 2] {
-        let jitter = draws.jitter();
+    /// Where a sample lies in the picture, in pixels from the bottom left: its jitter is the first that is drawn for it.
+    fn place(pixel: [u32; 2], jitter: [T; 2]) -> [T; 2] {
         let half = T::from_f64(0.5);
-        [0, 1].map(|axis| T::from_f64(f64::from(sample.pixel[axis])) + half + jitter[axis])
+        [0, 1].map(|axis| T::from_f64(f64::from(pixel[axis])) + half + jitter[axis])
     }
 
     /// What comes from a place on the screen.
-    fn radiance(&self, seen: Seen<T>, draws: &mut Draws, style: &impl Style<T>) -> T::Vec3 {
+    fn radiance(&self, seen: Seen<T>, draws: Draws, style: &impl Style<T>) -> T::Vec3 {
         match (seen, &self.kernel) {
             (Seen::Figure(figure), _) => self.figures[figure].color,
             (Seen::Scene(ray, first), Kernel::Spheres(world)) => world.radiance(ray, first, draws, style),

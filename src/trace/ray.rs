@@ -1,6 +1,7 @@
 //! Rays and the points where they meet surfaces.
 
 use super::real::{Real, Vector};
+use super::spheres::NONE;
 use super::style::Style;
 
 /// A ray o + t·d, t > 0.
@@ -11,6 +12,42 @@ pub(super) struct Ray<T: Real> {
     pub(super) direction: T::Vec3,
     /// The surface that the origin lies on.
     pub(super) from: Option<usize>,
+}
+
+/// What a ray meets first.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct First<T> {
+    /// Infinite where nothing is met.
+    t: T,
+    /// The number of the surface.
+    surface: u32,
+}
+
+impl<T: Real> First<T> {
+    /// That surface at t; nothing where t is infinite.
+    #[inline]
+    pub(super) fn new(t: T, surface: u32) -> Self {
+        Self { t, surface }
+    }
+
+    pub(super) fn nothing() -> Self {
+        Self::new(T::infinity(), NONE)
+    }
+
+    /// At which t, and which surface.
+    #[inline]
+    pub(super) fn get(self) -> Option<(T, usize)> {
+        (self.t < T::infinity()).then_some((self.t, self.surface as usize))
+    }
+
+    /// Takes a surface that is met at t where it comes before; of equal t's the smaller number wins.
+    pub(super) fn take(&mut self, t: Option<T>, surface: usize) {
+        if let Some(t) = t
+            && (t < self.t || (t == self.t && t < T::infinity() && surface < self.surface as usize))
+        {
+            *self = Self::new(t, surface as u32);
+        }
+    }
 }
 
 /// A point on a surface.

@@ -26,9 +26,9 @@ impl Tracer<f64> {
                 set,
             };
             let mut draws = Draws::new(Sampler::Independent, sample);
-            let place = Self::place(sample, &mut draws);
+            let place = Self::place(sample.pixel, draws.jitter());
             let seen = self.look(self.camera.screen(place));
-            sum += self.radiance(seen, &mut draws, &Exact);
+            sum += self.radiance(seen, draws, &Exact);
         }
         let mean = sum / f64::from(count);
         mean.to_array().map(|c| film::develop(&self.film, c))

@@ -1,10 +1,9 @@
 //! What places on the screen show, and what the pixels of a quad see.
 
-use super::ray::Ray;
+use super::ray::{First, Ray};
 use super::real::{Real, Vector};
 use super::sampler::{Draws, Sample};
 use super::style::Exact;
-use super::world::First;
 use super::{Kernel, Tracer, figure};
 
 /// What lies at a place of the screen.
@@ -21,7 +20,7 @@ impl<T: Real> Seen<T> {
     fn what(&self) -> [Option<usize>; 2] {
         match self {
             Self::Figure(figure) => [Some(*figure), None],
-            Self::Scene(_, first) => [None, first.map(|(_, surface)| surface)],
+            Self::Scene(_, first) => [None, first.get().map(|(_, surface)| surface)],
         }
     }
 }
@@ -44,7 +43,7 @@ impl<T: Real> Tracer<T> {
             })
         });
         let mut seen = samples.map(|sample| {
-            let place = Self::place(sample, &mut Draws::new(self.film.sampler, sample));
+            let place = Self::place(sample.pixel, Draws::new(self.film.sampler, sample).jitter());
             self.look(self.camera.screen(place)).what()
         });
         let first = seen.next();
@@ -65,11 +64,12 @@ impl<T: Real> Tracer<T> {
     #[must_use]
     pub fn meet(&self, origin: [T; 3], direction: [T; 3], from: Option<usize>) -> Option<(T, usize)> {
         let vector = |[x, y, z]: [T; 3]| T::Vec3::new(x, y, z);
-        self.nearest(&Ray {
+        let ray = Ray {
             origin: vector(origin),
             direction: vector(direction),
             from,
-        })
+        };
+        self.nearest(&ray).get()
     }
 
     /// What lies at a place of the screen.

@@ -157,17 +157,17 @@ impl Tracer<f64> {
             };
             // What the camera sees does not depend on the style.
             let mut draws = Draws::new(self.film.sampler, sample);
-            let place = Self::place(sample, &mut draws);
+            let place = Self::place(sample.pixel, draws.jitter());
             let seen = self.look(self.camera.screen(place));
             let mut hull = Hull::EMPTY;
             for other in legal() {
                 if styles == Styles::Alike {
-                    hull.take(self.radiance(seen, &mut draws.clone(), &other).to_array());
+                    hull.take(self.radiance(seen, draws.clone(), &other).to_array());
                     continue;
                 }
                 for light in legal() {
                     let style = Mixed { light, other };
-                    hull.take(self.radiance(seen, &mut draws.clone(), &style).to_array());
+                    hull.take(self.radiance(seen, draws.clone(), &style).to_array());
                 }
             }
             for i in 0..3 {

@@ -1,13 +1,14 @@
 //! Eight by eight pixels at a time, whose camera rays are traced together.
 
 use rayon::prelude::*;
+use smallvec::SmallVec;
 
+use super::ray::First;
 use super::real::{Real, Vector};
-use super::sampler::{Draws, Sample};
-use super::seen::Seen;
+use super::sampler::{Draws, Sample, Strata, offset};
 use super::spheres::{Found, NONE, PACKET, Packet};
 use super::style::Exact;
-use super::world::First;
+use super::world::Walk;
 use super::{Kernel, Tracer, figure, film};
 use crate::scene::Sampler;
 
@@ -71,10 +72,15 @@ impl<T: Real> Tracer<T> {
         let count = self.film.samples;
         for index in 0..count {
             let mut draws = [const { Draws::Center }; PACKET];
-            let screen = if self.film.sampler == Sampler::Center {
-                self.middles(tile)
-            } else {
-                self.places(|at| {
+            let screen = match self.film.sampler {
+                Sampler::Center => self.middles(tile),
+                Sampler::Stratified => {
+                    let pixels = [0, 1].map(|axis| std::array::from_fn(|at| tile.pixel(at)[axis]));
+                    let (strata, pairs) = Strata::first_pairs(self.level, [index, count, 0], &pixels);
+                    draws = strata.map(Draws::Stratified);
+                    self.places(|at| Self::place(tile.pixel(at), offset([pairs[0][at], pairs[1][at]])))
+                }
+                _ => self.places(|at| {
                     let sample = Sample {
                         pixel: tile.pixel(at),
                         index,
@@ -82,18 +88,34 @@ impl<T: Real> Tracer<T> {
                         set: 0,
                     };
                     draws[at] = Draws::new(self.film.sampler, sample);
-                    Self::place(sample, &mut draws[at])
-                })
+                    Self::place(sample.pixel, draws[at].jitter())
+                }),
             };
             let packet = self.camera.packet(&screen, self.level);
             let found = self.find(&packet);
+            let mut walks: SmallVec<[Walk<T>; PACKET]> = SmallVec::new();
+            let mut places: SmallVec<[usize; PACKET]> = SmallVec::new();
             tile.each(self.film.size[0], |at, _| {
-                let seen = match figure::topmost(&self.figures, [screen[0][at], screen[1][at]]) {
-                    Some(figure) => Seen::Figure(figure),
-                    None => Seen::Scene(packet.ray(at), self.first(&packet, &found, at)),
-                };
-                sums[at] = sums[at] + self.radiance(seen, &mut draws[at], &Exact);
+                let figure = figure::topmost(&self.figures, [screen[0][at], screen[1][at]]);
+                let first = self.first(&packet, &found, at);
+                match (figure, first.get()) {
+                    (Some(figure), _) => sums[at] = sums[at] + self.figures[figure].color,
+                    // Much of many pictures, and quickly told.
+                    (None, None) => sums[at] = sums[at] + self.background(packet.ray(at).direction),
+                    (None, Some(_)) => {
+                        let draws = std::mem::replace(&mut draws[at], Draws::Center);
+                        walks.push(Walk::new(packet.ray(at), first, draws));
+                        places.push(at);
+                    }
+                }
             });
+            match &self.kernel {
+                Kernel::Spheres(world) => world.walk(&mut walks, &Exact),
+                Kernel::Shapes(world) => world.walk(&mut walks, &Exact),
+            }
+            for (walk, at) in walks.iter().zip(places) {
+                sums[at] = sums[at] + walk.sum;
+            }
         }
         sums
     }
@@ -126,9 +148,20 @@ impl<T: Real> Tracer<T> {
 
     /// The spheres that the rays of a packet meet first.
     fn find(&self, packet: &Packet<T>) -> Found<T> {
+        let mut found = Found::nothing();
         match &self.kernel {
-            Kernel::Spheres(world) => world.spheres.nearest_of_packet(packet),
-            Kernel::Shapes(world) => world.spheres.nearest_of_packet(packet),
+            Kernel::Spheres(world) => world.spheres.nearest_of_packet(packet, &mut found),
+            Kernel::Shapes(world) => world.spheres.nearest_of_packet(packet, &mut found),
+        }
+        found
+    }
+
+    /// What comes along a ray that meets nothing.
+    #[inline]
+    fn background(&self, direction: T::Vec3) -> T::Vec3 {
+        match &self.kernel {
+            Kernel::Spheres(world) => world.background.color(direction),
+            Kernel::Shapes(world) => world.background.color(direction),
         }
     }
 
@@ -155,7 +188,7 @@ impl<T: Real> Tracer<T> {
                 let packet = self.camera.packet(&self.middles(tile), self.level);
                 let found = self.find(&packet);
                 tile.each(width, |at, in_band| {
-                    if let Some((_, surface)) = self.first(&packet, &found, at) {
+                    if let Some((_, surface)) = self.first(&packet, &found, at).get() {
                         surfaces[in_band] = surface as u32;
                     }
                 });

@@ -6,6 +6,8 @@
     reason = "only what is inlined into a kernel is compiled for its instruction set"
 )]
 
+mod columns;
+mod length;
 mod set;
 mod wide;
 
@@ -14,6 +16,7 @@ use std::marker::PhantomData;
 
 use pulp::Scalar;
 
+pub(super) use columns::Columns;
 pub(super) use wide::{Wide, Wide3};
 
 /// Instructions on several numbers of one type at once.
@@ -60,6 +63,8 @@ pub trait Lanes<T>: Copy + Debug {
     fn less(self, a: Self::Numbers, b: Self::Numbers) -> Self::Mask;
     /// a ≤ b
     fn less_or_equal(self, a: Self::Numbers, b: Self::Numbers) -> Self::Mask;
+    /// a = b
+    fn equal(self, a: Self::Numbers, b: Self::Numbers) -> Self::Mask;
     /// Lane by lane.
     fn select(self, mask: Self::Mask, yes: Self::Numbers, no: Self::Numbers) -> Self::Numbers;
     /// The smallest of all lanes; any of them where one is NaN.

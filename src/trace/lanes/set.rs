@@ -123,7 +123,7 @@ mod aarch64 {
 macro_rules! lanes {
     ($number:ty, $numbers:ident, $mask:ident, $count:ident, $eight_type:ident, $eight:ident, $bits:ident,
      $splat:ident, $load:ident, $store:ident, $add:ident, $sub:ident, $mul:ident, $div:ident, $neg:ident,
-     $sqrt:ident, $and:ident, $or:ident, $min:ident, $max:ident, $less:ident, $less_or_equal:ident, $select:ident,
+     $sqrt:ident, $and:ident, $or:ident, $min:ident, $max:ident, $less:ident, $less_or_equal:ident, $equal:ident, $select:ident,
      $least:ident, $greatest:ident, $sum:ident) => {
         impl<S: Set> Lanes<$number> for S {
             type Numbers = S::$numbers;
@@ -149,14 +149,7 @@ macro_rules! lanes {
             lanes!(binary $numbers, add $add, sub $sub, mul $mul, div $div, and $and, or $or, min $min, max $max);
             lanes!(unary $numbers, neg $neg, sqrt $sqrt);
             lanes!(reduction $number, $numbers, least $least, greatest $greatest, sum $sum);
-            #[inline(always)]
-            fn less(self, a: S::$numbers, b: S::$numbers) -> S::$mask {
-                Simd::$less(self, a, b)
-            }
-            #[inline(always)]
-            fn less_or_equal(self, a: S::$numbers, b: S::$numbers) -> S::$mask {
-                Simd::$less_or_equal(self, a, b)
-            }
+            lanes!(comparison $numbers, $mask, less $less, less_or_equal $less_or_equal, equal $equal);
             #[inline(always)]
             fn select(self, mask: S::$mask, yes: S::$numbers, no: S::$numbers) -> S::$numbers {
                 Simd::$select(self, mask, yes, no)
@@ -170,6 +163,12 @@ macro_rules! lanes {
     (binary $numbers:ident, $($name:ident $of_pulp:ident),*) => {
         $(#[inline(always)]
         fn $name(self, a: S::$numbers, b: S::$numbers) -> S::$numbers {
+            Simd::$of_pulp(self, a, b)
+        })*
+    };
+    (comparison $numbers:ident, $mask:ident, $($name:ident $of_pulp:ident),*) => {
+        $(#[inline(always)]
+        fn $name(self, a: S::$numbers, b: S::$numbers) -> S::$mask {
             Simd::$of_pulp(self, a, b)
         })*
     };
@@ -210,6 +209,7 @@ lanes!(
     max_f32s,
     less_than_f32s,
     less_than_or_equal_f32s,
+    equal_f32s,
     select_f32s,
     reduce_min_f32s,
     reduce_max_f32s,
@@ -238,6 +238,7 @@ lanes!(
     max_f64s,
     less_than_f64s,
     less_than_or_equal_f64s,
+    equal_f64s,
     select_f64s,
     reduce_min_f64s,
     reduce_max_f64s,

@@ -90,6 +90,10 @@ impl<T, S: Lanes<T>> Wide<T, S> {
         self.simd.less_or_equal(self.numbers, other.numbers)
     }
     #[inline(always)]
+    pub(in super::super) fn equal(self, other: Self) -> S::Mask {
+        self.simd.equal(self.numbers, other.numbers)
+    }
+    #[inline(always)]
     pub(in super::super) fn select(self, mask: S::Mask, no: Self) -> Self {
         self.of(self.simd.select(mask, self.numbers, no.numbers))
     }
@@ -138,6 +142,14 @@ impl<T: Copy, S: Lanes<T>> Wide3<T, S> {
             Wide::load(simd, &z[at..]),
         )
     }
+    #[inline(always)]
+    pub(in super::super) fn select(self, mask: S::Mask, no: Self) -> Self {
+        Self(
+            self.0.select(mask, no.0),
+            self.1.select(mask, no.1),
+            self.2.select(mask, no.2),
+        )
+    }
     /// (x·x + y·y) + z·z, as glam's.
     #[inline(always)]
     pub(in super::super) fn dot(self, other: Self) -> Wide<T, S> {
@@ -145,17 +157,36 @@ impl<T: Copy, S: Lanes<T>> Wide3<T, S> {
     }
 }
 
-impl<T, S: Lanes<T>> Sub for Wide3<T, S> {
+impl<T, S: Lanes<T>> Neg for Wide3<T, S> {
     type Output = Self;
     #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        Self(self.0 - other.0, self.1 - other.1, self.2 - other.2)
+    fn neg(self) -> Self {
+        Self(-self.0, -self.1, -self.2)
     }
 }
-impl<T, S: Lanes<T>> Mul<Wide<T, S>> for Wide3<T, S> {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, factor: Wide<T, S>) -> Self {
-        Self(self.0 * factor, self.1 * factor, self.2 * factor)
-    }
+
+macro_rules! of_vectors {
+    ($($operator:ident $name:ident),*) => {
+        $(impl<T, S: Lanes<T>> $operator for Wide3<T, S> {
+            type Output = Self;
+            #[inline(always)]
+            fn $name(self, other: Self) -> Self {
+                Self(self.0.$name(other.0), self.1.$name(other.1), self.2.$name(other.2))
+            }
+        })*
+    };
 }
+of_vectors!(Add add, Sub sub);
+
+macro_rules! of_vectors_and_numbers {
+    ($($operator:ident $name:ident),*) => {
+        $(impl<T, S: Lanes<T>> $operator<Wide<T, S>> for Wide3<T, S> {
+            type Output = Self;
+            #[inline(always)]
+            fn $name(self, other: Wide<T, S>) -> Self {
+                Self(self.0.$name(other), self.1.$name(other), self.2.$name(other))
+            }
+        })*
+    };
+}
+of_vectors_and_numbers!(Mul mul, Div div);

@@ -1,6 +1,12 @@
 //! Glass: reflection and refraction at a smooth surface.
 
-use super::super::real::Real;
+#![expect(
+    clippy::inline_always,
+    reason = "only what is inlined into a kernel is compiled for its instruction set"
+)]
+
+use super::super::lanes::{Columns, Kernel, Lanes, MOST_LANES, Wide};
+use super::super::real::{Real, Vector};
 use crate::scene::Fresnel;
 
 #[derive(Debug, Clone, Copy)]
@@ -10,62 +16,133 @@ pub(in super::super) struct Glass<T> {
     pub(super) fresnel: Fresnel,
 }
 
-/// Where a ray goes that meets glass.
+/// Rays that meet glass: the first `count` are looked at.
 #[derive(Debug)]
-pub(in super::super) struct Parted<T: Real> {
-    /// The share of light that is reflected.
-    pub(in super::super) share: T,
-    /// The refracted direction; none where reflection is total.
-    pub(in super::super) refracted: Option<T::Vec3>,
+pub(in super::super) struct Meeting<T> {
+    pub(in super::super) count: usize,
+    directions: Columns<T>,
+    /// Outward.
+    normals: Columns<T>,
+    /// Direction · normal.
+    facing: Each<T>,
+    ior: Each<T>,
+    /// 1 for Schlick's formula, 0 for Fresnel's.
+    is_schlick: Each<T>,
 }
 
-impl<T: Real> Glass<T> {
-    /// By Snell's law; `facing` is d·N with the outward normal.
-    pub(in super::super) fn part(&self, direction: T::Vec3, normal: T::Vec3, facing: T) -> Parted<T> {
-        let one = T::one();
-        // From the side that the ray is on: its index over the other's, and its normal.
-        let entering = facing < T::zero();
-        let (eta, normal, cosine) = if entering {
-            (self.ior.recip(), normal, -facing)
-        } else {
-            (self.ior, -normal, facing)
-        };
-        let sine2 = eta * eta * (one - cosine * cosine);
-        if sine2 >= one {
-            return Parted {
-                share: one,
-                refracted: None,
-            };
+type Each<T> = [T; MOST_LANES];
+
+/// Where they go.
+#[derive(Debug)]
+pub(in super::super) struct Parted<T> {
+    /// The shares of light that are reflected.
+    pub(in super::super) shares: Each<T>,
+    /// The refracted directions.
+    refracted: Columns<T>,
+    /// Bit i tells of ray i: reflection is total.
+    totals: u32,
+}
+
+impl<T: Real> Meeting<T> {
+    pub(in super::super) fn none() -> Self {
+        Self {
+            count: 0,
+            directions: Columns::splat([T::zero(); 3]),
+            normals: Columns::splat([T::zero(); 3]),
+            facing: [T::zero(); MOST_LANES],
+            ior: [T::one(); MOST_LANES],
+            is_schlick: [T::zero(); MOST_LANES],
         }
-        let beyond = (one - sine2).sqrt();
-        let half = T::from_f64(0.5);
-        let share = match self.fresnel {
-            Fresnel::Exact => {
-                let across = (eta * cosine - beyond) / (eta * cosine + beyond);
-                let along = (cosine - eta * beyond) / (cosine + eta * beyond);
-                half * (across * across + along * along)
-            }
-            Fresnel::Schlick => {
-                let normal_share = (one - self.ior) / (one + self.ior);
-                let f0 = normal_share * normal_share;
-                let m = one - if eta < one { cosine } else { beyond };
-                f0 + (one - f0) * (m * m * m * m * m)
-            }
-        };
-        Parted {
-            share,
-            refracted: Some(direction * eta + normal * (eta * cosine - beyond)),
+    }
+
+    /// One more; at most [`MOST_LANES`].
+    pub(in super::super) fn add(&mut self, glass: &Glass<T>, direction: T::Vec3, normal: T::Vec3, facing: T) {
+        let at = self.count;
+        self.directions.set(at, direction.to_array());
+        self.normals.set(at, normal.to_array());
+        self.facing[at] = facing;
+        self.ior[at] = glass.ior;
+        if glass.fresnel == Fresnel::Schlick {
+            self.is_schlick[at] = T::one();
         }
+        self.count += 1;
+    }
+}
+
+impl<T: Real> Parted<T> {
+    /// The refracted direction of one; none where reflection is total.
+    pub(in super::super) fn refracted(&self, at: usize) -> Option<T::Vec3> {
+        let [x, y, z] = self.refracted.get(at);
+        (self.totals >> at & 1 == 0).then(|| T::Vec3::new(x, y, z))
+    }
+}
+
+impl<T: Real> Kernel<T> for &Meeting<T> {
+    type Output = Parted<T>;
+
+    /// By Snell's law.
+    #[inline(always)]
+    fn run<S: Lanes<T>>(self, simd: S) -> Parted<T> {
+        let [zero, half, one] = [0.0, 0.5, 1.0].map(|number| Wide::splat(simd, T::from_f64(number)));
+        let mut parted = Parted {
+            shares: [T::zero(); MOST_LANES],
+            refracted: Columns::splat([T::zero(); 3]),
+            totals: 0,
+        };
+        let mut at = 0;
+        while at < self.count {
+            let (direction, outward) = (self.directions.load(simd, at), self.normals.load(simd, at));
+            let (facing, ior) = (
+                Wide::load(simd, &self.facing[at..]),
+                Wide::load(simd, &self.ior[at..]),
+            );
+            // From the side that the ray is on: its index over the other's, and its normal.
+            let entering = facing.less(zero);
+            let eta = (one / ior).select(entering, ior);
+            let normal = outward.select(entering, -outward);
+            let cosine = (-facing).select(entering, facing);
+            let sine2 = eta * eta * (one - cosine * cosine);
+            let total = one.less_or_equal(sine2);
+            let beyond = (one - sine2).sqrt();
+            let across = (eta * cosine - beyond) / (eta * cosine + beyond);
+            let along = (cosine - eta * beyond) / (cosine + eta * beyond);
+            let fresnel = half * (across * across + along * along);
+            let normal_share = (one - ior) / (one + ior);
+            let f0 = normal_share * normal_share;
+            let m = one - cosine.select(eta.less(one), beyond);
+            let schlick = f0 + (one - f0) * (m * m * m * m * m);
+            let is_schlick = zero.less(Wide::load(simd, &self.is_schlick[at..]));
+            let share = schlick.select(is_schlick, fresnel);
+            one.select(total, share).store(&mut parted.shares[at..]);
+            let refracted = direction * eta + normal * (eta * cosine - beyond);
+            parted.refracted.store(refracted, at);
+            parted.totals |= simd.bits(total) << at;
+            at += S::COUNT;
+        }
+        parted
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::super::lanes::{Level, Vectorised};
     use super::*;
     use glam::DVec3;
 
-    fn part(ior: f64, fresnel: Fresnel, direction: DVec3) -> Parted<f64> {
-        Glass { ior, fresnel }.part(direction, DVec3::Y, direction.y)
+    /// What becomes of a ray that comes to the plane y = 0.
+    struct One {
+        share: f64,
+        refracted: Option<DVec3>,
+    }
+
+    fn part(ior: f64, fresnel: Fresnel, direction: DVec3) -> One {
+        let mut meeting = Meeting::none();
+        meeting.add(&Glass { ior, fresnel }, direction, DVec3::Y, direction.y);
+        let parted = f64::run(Level::Base, &meeting);
+        One {
+            share: parted.shares[0],
+            refracted: parted.refracted(0),
+        }
     }
 
     fn down(angle: f64) -> DVec3 {

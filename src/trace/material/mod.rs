@@ -8,7 +8,7 @@ use super::real::{Real, Vector};
 use crate::scene;
 
 pub(super) use brdf::{Brdf, Frame};
-pub(super) use glass::Glass;
+pub(super) use glass::{Glass, Meeting};
 
 #[derive(Debug)]
 pub(super) struct Material<T: Real> {

@@ -3,7 +3,7 @@
 mod sine_hash;
 mod stratified;
 
-use self::stratified::Strata;
+pub(super) use self::stratified::Strata;
 use super::real::Real;
 use crate::image::pcg;
 use crate::scene::{Sampler, unit};
@@ -41,6 +41,18 @@ pub(super) enum Draws {
 /// seed.
 const DIMENSIONS: u32 = sobol_burley::NUM_DIMENSIONS;
 
+/// What the draws of all samples of a pixel are made of, for each set of samples.
+#[inline]
+fn seed([x, y]: [u32; 2], set: u32) -> u32 {
+    pcg(x.wrapping_add(pcg(y.wrapping_add(pcg(set)))))
+}
+
+/// From the middle of a square to a place in it.
+#[inline]
+pub(super) fn offset<T: Real>(place: [f64; 2]) -> [T; 2] {
+    place.map(|along| T::from_f64(along) - T::from_f64(0.5))
+}
+
 impl Draws {
     #[inline]
     pub(super) fn new(sampler: Sampler, sample: Sample) -> Self {
@@ -50,7 +62,7 @@ impl Draws {
             count,
             set,
         } = sample;
-        let seed = || pcg(x.wrapping_add(pcg(y.wrapping_add(pcg(set)))));
+        let seed = || seed([x, y], set);
         match sampler {
             Sampler::Center => Self::Center,
             Sampler::SineHash => Self::SineHash(index),
@@ -72,7 +84,7 @@ impl Draws {
         match self {
             Self::Center => [T::zero(); 2],
             Self::SineHash(sample) => sine_hash::jitter(*sample),
-            _ => self.pair().map(|draw: T| draw - T::from_f64(0.5)),
+            _ => offset(self.pair()),
         }
     }
 

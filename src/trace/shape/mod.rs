@@ -15,7 +15,7 @@ use crate::scene;
 
 pub(super) use plane::Plane;
 pub(super) use quadric::Quadric;
-pub(super) use sphere::Sphere;
+pub(super) use sphere::{Sphere, Surfaces};
 
 /// What a ray can meet.
 pub(super) trait Primitive<T: Real>: Debug + Send + Sync {
@@ -27,6 +27,11 @@ pub(super) trait Primitive<T: Real>: Debug + Send + Sync {
 
     /// The point at t, and the normal there.
     fn surface(&self, ray: &Ray<T>, t: T) -> [T::Vec3; 2];
+
+    /// Itself, if it is a sphere.
+    fn sphere(&self) -> Option<&Sphere<T>> {
+        None
+    }
 }
 
 /// Any shape, where a scene has several kinds.
@@ -69,6 +74,13 @@ impl<T: Real> Primitive<T> for Shape<T> {
             Self::Sphere(sphere) => sphere.surface(ray, t),
             Self::Quadric(quadric) => quadric.surface(ray, t),
             Self::Plane(plane) => plane.surface(ray, t),
+        }
+    }
+
+    fn sphere(&self) -> Option<&Sphere<T>> {
+        match self {
+            Self::Sphere(sphere) => Some(sphere),
+            Self::Quadric(_) | Self::Plane(_) => None,
         }
     }
 }

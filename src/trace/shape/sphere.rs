@@ -1,9 +1,14 @@
-//! A sphere by itself.
+//! A sphere by itself, and where rays meet several.
 
-use super::super::lanes::Level;
+#![expect(
+    clippy::inline_always,
+    reason = "only what is inlined into a kernel is compiled for its instruction set"
+)]
+
+use super::super::lanes::{Columns, Kernel, Lanes, Level, MOST_LANES, Wide};
 use super::super::ray::Ray;
 use super::super::real::{Real, Vector};
-use super::super::spheres::{Meet, unit};
+use super::super::spheres::Meet;
 use super::super::style::Style;
 use super::Primitive;
 
@@ -23,32 +28,66 @@ impl<T: Real> Sphere<T> {
     }
 }
 
-impl<T: Real> Primitive<T> for Sphere<T> {
-    fn intersect(&self, ray: &Ray<T>, style: &impl Style<T>) -> Option<T> {
+impl<T: Real> Sphere<T> {
+    fn meet(&self, ray: &Ray<T>, t_min: T, is_own: bool) -> Option<T> {
         let meet = Meet {
             origin: ray.origin.to_array(),
             direction: ray.direction.to_array(),
             center: self.center.to_array(),
             radius: self.radius,
-            t_min: style.t_min(ray.from.is_some()),
+            t_min,
+            is_own,
         };
         T::run(Level::Base, meet)
     }
+}
 
-    /// A ray that leaves the sphere (d·N > 0) meets it no more, one that goes in meets its far side at
-    /// t = −2 d·(P − c) / a.
+impl<T: Real> Primitive<T> for Sphere<T> {
+    fn intersect(&self, ray: &Ray<T>, style: &impl Style<T>) -> Option<T> {
+        self.meet(ray, style.t_min(ray.from.is_some()), false)
+    }
+
+    /// A ray that leaves the sphere meets it no more, one that goes in meets its far side.
     fn intersect_own(&self, ray: &Ray<T>, style: &impl Style<T>) -> Option<T> {
-        let unit = unit(self.radius);
-        let f = (ray.origin - self.center) * unit.recip();
-        let outward = ray.direction.dot(f);
-        let a = ray.direction.dot(ray.direction);
-        let t = T::from_f64(-2.0) * outward / a * unit;
-        (t > style.t_min(true)).then_some(t)
+        self.meet(ray, style.t_min(true), true)
     }
 
     fn surface(&self, ray: &Ray<T>, t: T) -> [T::Vec3; 2] {
         let point = ray.origin + ray.direction * t;
         let normal = (point - self.center).normalize();
         [point, normal]
+    }
+
+    fn sphere(&self) -> Option<&Self> {
+        Some(self)
+    }
+}
+
+/// Where rays meet spheres of those centres: [`Primitive::surface`] of the first `count` of them.
+#[derive(Debug)]
+pub(in super::super) struct Surfaces<'a, T> {
+    pub(in super::super) count: usize,
+    pub(in super::super) origins: &'a Columns<T>,
+    pub(in super::super) directions: &'a Columns<T>,
+    pub(in super::super) t: &'a [T; MOST_LANES],
+    pub(in super::super) centers: &'a Columns<T>,
+    /// Where the points and the normals there are put.
+    pub(in super::super) out: &'a mut [Columns<T>; 2],
+}
+
+impl<T: Real> Kernel<T> for Surfaces<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Lanes<T>>(self, simd: S) {
+        let [points, normals] = self.out;
+        let mut at = 0;
+        while at < self.count {
+            let t = Wide::load(simd, &self.t[at..]);
+            let point = self.origins.load(simd, at) + self.directions.load(simd, at) * t;
+            points.store(point, at);
+            normals.store((point - self.centers.load(simd, at)).normalize(simd), at);
+            at += S::COUNT;
+        }
     }
 }

@@ -11,7 +11,7 @@ use super::super::lanes::{Kernel, Lanes, MOST_LANES, Wide, Wide3};
 use super::super::real::Real;
 
 /// The power of two that lengths of a sphere are counted in; 1 where the radius is none that is normal.
-pub(in super::super) fn unit<T: Real>(radius: T) -> T {
+pub(super) fn unit<T: Real>(radius: T) -> T {
     if radius.is_normal() {
         radius.power_of_two()
     } else {
@@ -59,6 +59,17 @@ impl<T: Real, S: Lanes<T>> Roots<T, S> {
     }
 }
 
+/// Where a ray that starts on a sphere meets it again, at t = −2 d·(o − c) / a, which is not above 0 where the ray leaves it.
+#[inline(always)]
+pub(super) fn other_root<T: Real, S: Lanes<T>>(
+    simd: S,
+    along: Wide<T, S>,
+    a: Wide<T, S>,
+    unit: Wide<T, S>,
+) -> Wide<T, S> {
+    Wide::splat(simd, T::from_f64(-2.0)) * along / a * unit
+}
+
 /// One ray and one sphere.
 #[derive(Debug)]
 pub(in super::super) struct Meet<T> {
@@ -67,6 +78,8 @@ pub(in super::super) struct Meet<T> {
     pub(in super::super) center: [T; 3],
     pub(in super::super) radius: T,
     pub(in super::super) t_min: T,
+    /// Whether the ray starts on the sphere: that start is no hit.
+    pub(in super::super) is_own: bool,
 }
 
 impl<T: Real> Kernel<T> for Meet<T> {
@@ -82,6 +95,11 @@ impl<T: Real> Kernel<T> for Meet<T> {
         let d = Wide3::splat(simd, self.direction);
         let f = (Wide3::splat(simd, self.origin) - Wide3::splat(simd, self.center)) * per_unit;
         let a = d.dot(d);
+        let mut t = [T::zero(); MOST_LANES];
+        if self.is_own {
+            other_root(simd, f.dot(d), a, unit).store(&mut t);
+            return (t[0] > self.t_min).then_some(t[0]);
+        }
         let [along, disc] = discriminant(f, d, Wide::splat(simd, T::one()) / a, radius2);
         if simd.bits(Wide::splat(simd, T::zero()).less_or_equal(disc)) == 0 {
             return None;
@@ -93,7 +111,6 @@ impl<T: Real> Kernel<T> for Meet<T> {
             c: f.dot(f) - radius2,
             unit,
         };
-        let mut t = [T::zero(); MOST_LANES];
         roots.beyond(simd, t_min).store(&mut t);
         (t[0] > self.t_min).then_some(t[0])
     }

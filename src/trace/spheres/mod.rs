@@ -3,7 +3,7 @@
 //! Eight of them lie side by side in a block. A few blocks are looked through from the first to the last; over many there is
 //! a tree of boxes ([`tree`]), which only leaves out spheres that the ray cannot meet, so that the answer is the same to
 //! the bit. One ray meets eight spheres or boxes at once ([`one`]); the rays of a packet meet one sphere together
-//! ([`packet`]). There is one formula for all of them ([`formula`]).
+//! ([`together`]). There is one formula for all of them ([`formula`]).
 
 #![expect(
     clippy::inline_always,
@@ -18,13 +18,14 @@ mod packet;
 mod slab;
 #[cfg(test)]
 mod tests;
+mod together;
 mod tree;
 
 use self::tree::Tree;
 use super::lanes::Level;
 use super::real::Real;
 
-pub(super) use formula::{Meet, unit};
+pub(super) use formula::Meet;
 pub(super) use one::Query;
 pub(super) use packet::{Found, Origins, PACKET, Packet};
 
@@ -63,11 +64,10 @@ impl<T: Real> Spheres<T> {
 
     /// The same spheres elsewhere, in the order of their numbers: a tree that is there is kept, if it still serves.
     pub(super) fn moved(mut self, spheres: &[Numbered<T>]) -> Self {
-        let has_tree = !self.tree.nodes.is_empty();
-        if has_tree && self.tree.move_to(spheres) {
+        if self.has_tree() && self.tree.move_to(spheres) {
             return self;
         }
-        Self::new(spheres, has_tree, self.level)
+        Self::new(spheres, self.has_tree(), self.level)
     }
 
     /// The smallest t of a sphere, and its number; where several have it, the smallest number.
@@ -80,14 +80,18 @@ impl<T: Real> Spheres<T> {
         T::run(self.level, one::Any { spheres: self, query })
     }
 
-    /// The same as [`Spheres::nearest`] for each ray of a packet.
-    pub(super) fn nearest_of_packet(&self, packet: &Packet<T>) -> Found<T> {
-        T::run(
-            self.level,
-            packet::Nearest {
-                spheres: self,
-                packet,
-            },
-        )
+    /// The same as [`Spheres::nearest`] for each ray of a packet; only what comes before what has been found is.
+    pub(super) fn nearest_of_packet(&self, packet: &Packet<T>, found: &mut Found<T>) {
+        let nearest = together::Nearest {
+            spheres: self,
+            packet,
+            found,
+        };
+        T::run(self.level, nearest);
+    }
+
+    /// Whether rays that have nothing to do with each other are to be sent one by one.
+    pub(super) fn has_tree(&self) -> bool {
+        !self.tree.nodes.is_empty()
     }
 }

@@ -3,7 +3,8 @@
 use glam::DVec3;
 
 use super::super::lanes::Level;
-use super::super::real::Real;
+use super::super::ray::Ray;
+use super::super::real::{Real, Vector};
 use super::*;
 use crate::image::pcg;
 use crate::scene::unit as between_0_and_1;
@@ -76,8 +77,8 @@ fn toward<T: Real>(origin: DVec3, target: DVec3) -> [T; 3] {
     rounded((away / away.abs().max_element()).normalize_or(DVec3::NEG_Z))
 }
 
-/// One after the other.
-fn oracle<T: Real>(spheres: &[Numbered<T>], query: &Query<T>) -> Option<(T, u32)> {
+/// One after the other; the ray starts on the sphere `own`.
+fn oracle<T: Real>(spheres: &[Numbered<T>], query: &Query<T>, own: u32) -> Option<(T, u32)> {
     let mut nearest: Option<(T, u32)> = None;
     for sphere in spheres
         .iter()
@@ -89,6 +90,7 @@ fn oracle<T: Real>(spheres: &[Numbered<T>], query: &Query<T>) -> Option<(T, u32)
             center: sphere.center,
             radius: sphere.radius,
             t_min: query.t_min,
+            is_own: sphere.number == own,
         };
         if let Some(t) = T::run(Level::Base, meet)
             && t < query.t_max
@@ -98,6 +100,10 @@ fn oracle<T: Real>(spheres: &[Numbered<T>], query: &Query<T>) -> Option<(T, u32)
         }
     }
     nearest
+}
+
+fn of<T: Real>(found: &Found<T>, ray: usize) -> Option<(T, u32)> {
+    found.of(ray).get().map(|(t, surface)| (t, surface as u32))
 }
 
 /// How many rays were compared, and how many of them met something. The scene's size has an exponent between those, the rays
@@ -142,16 +148,11 @@ fn compare<T: Real>(seeds: u32, exponents: f64, away: f64) -> [u32; 2] {
         };
         let directions = [0, 1, 2].map(|axis| std::array::from_fn(|at| rays[at].1[axis]));
         let packets = [
-            Packet {
-                origins: Origins::One(rounded(eye)),
+            Packet::full(Origins::One(rounded(eye)), directions),
+            Packet::full(
+                Origins::Each([0, 1, 2].map(|axis| std::array::from_fn(|at| rounded::<T>(rays[at].0)[axis]))),
                 directions,
-            },
-            Packet {
-                origins: Origins::Each(
-                    [0, 1, 2].map(|axis| std::array::from_fn(|at| rounded::<T>(rays[at].0)[axis])),
-                ),
-                directions,
-            },
+            ),
         ];
         let expected = [0, 1].map(|kind| {
             [(); PACKET]
@@ -159,7 +160,7 @@ fn compare<T: Real>(seeds: u32, exponents: f64, away: f64) -> [u32; 2] {
                 .enumerate()
                 .map(|(at, ())| {
                     let origin = if kind == 0 { eye } else { rays[at].0 };
-                    oracle(&sorted, &query(at, origin))
+                    oracle(&sorted, &query(at, origin), NONE)
                 })
                 .collect::<Vec<_>>()
         });
@@ -167,9 +168,10 @@ fn compare<T: Real>(seeds: u32, exponents: f64, away: f64) -> [u32; 2] {
             let way = format!("seed {seed}, {level:?}, tree: {tree}");
             let all = Spheres::new(&spheres, tree, level);
             for (packet, expected) in packets.iter().zip(&expected) {
-                let found = all.nearest_of_packet(packet);
+                let mut found = Found::nothing();
+                all.nearest_of_packet(packet, &mut found);
                 for (at, expected) in expected.iter().enumerate() {
-                    assert_eq!(found.of(at), *expected, "{way}, ray {at} of a packet");
+                    assert_eq!(of(&found, at), *expected, "{way}, ray {at} of a packet");
                 }
             }
             for (at, &expected) in expected[1].iter().enumerate() {
@@ -185,14 +187,103 @@ fn compare<T: Real>(seeds: u32, exponents: f64, away: f64) -> [u32; 2] {
                 assert!(!all.any(&query), "{way}, ray {at}");
                 query.t_max = T::infinity();
                 query.but = [but, number];
-                assert_eq!(all.nearest(&query), oracle(&sorted, &query), "{way}, ray {at}");
+                assert_eq!(
+                    all.nearest(&query),
+                    oracle(&sorted, &query, NONE),
+                    "{way}, ray {at}"
+                );
                 query.but = [NONE; 2];
                 query.t_min = t;
-                assert_eq!(all.nearest(&query), oracle(&sorted, &query), "{way}, ray {at}");
+                assert_eq!(
+                    all.nearest(&query),
+                    oracle(&sorted, &query, NONE),
+                    "{way}, ray {at}"
+                );
             }
         }
     }
     told
+}
+
+/// The same of rays that leave spheres, beyond some t, and of what lies before another t: as many as the numbers told.
+fn compare_secondary<T: Real>(seeds: u32, exponents: f64) -> [u32; 2] {
+    let mut told = [0; 2];
+    for seed in 0..seeds {
+        let random = &mut Random(seed);
+        let scale = 10f64.powf(random.between(-exponents, exponents));
+        let count = [1, 3, 8, 9, 20, 100][random.below(6) as usize];
+        let described = scene(random, count, scale);
+        let spheres: Vec<_> = (0..)
+            .zip(&described)
+            .map(|(number, &(center, radius))| Numbered {
+                center: rounded(center),
+                radius: T::from_f64(radius),
+                number,
+            })
+            .collect();
+        let t_min = T::from_f64([0.0, scale * random.between(0.0, 1.0)][random.below(2) as usize]);
+        let vector = |[x, y, z]: [T; 3]| T::Vec3::new(x, y, z);
+        let rays: Vec<(Ray<T>, Option<u32>)> = (0..=random.below(PACKET as u32))
+            .map(|at| {
+                let own = random.below(count);
+                let (center, radius) = described[own as usize];
+                let start = center + random.direction() * radius;
+                let ray = Ray {
+                    origin: vector(rounded(start)),
+                    direction: vector(toward::<T>(start, target(random, &described, start))),
+                    from: None,
+                };
+                (ray, (at % 4 != 3).then_some(own))
+            })
+            .collect();
+        let expected: Vec<_> = rays
+            .iter()
+            .map(|(ray, own)| {
+                let query = Query {
+                    origin: ray.origin.to_array(),
+                    direction: ray.direction.to_array(),
+                    t_min,
+                    t_max: T::infinity(),
+                    but: [NONE; 2],
+                };
+                oracle(&spheres, &query, own.unwrap_or(NONE))
+            })
+            .collect();
+        let factors = [0.5, 1.0, 1.5].map(T::from_f64);
+        let limits: Vec<_> = (expected.iter().enumerate())
+            .map(|(at, expected)| expected.map_or(T::one(), |(t, _)| t) * factors[at % 3])
+            .collect();
+        let owned = rays.iter().map(|(ray, own)| (ray, own.map(|own| own as usize)));
+        let packet = Packet::some(owned, t_min);
+        for level in Level::all() {
+            let all = Spheres::new(&spheres, false, level);
+            let (mut found, mut limited) = (Found::nothing(), Found::before(limits.iter().copied()));
+            all.nearest_of_packet(&packet, &mut found);
+            all.nearest_of_packet(&packet, &mut limited);
+            for (at, (&expected, &limit)) in expected.iter().zip(&limits).enumerate() {
+                let way = format!("seed {seed}, {level:?}, ray {at}");
+                assert_eq!(of(&found, at), expected, "{way}");
+                let is_before = expected.is_some_and(|(t, _)| t < limit);
+                assert_eq!(limited.is_before(at, limit), is_before, "{way}");
+                told[0] += 1;
+                told[1] += u32::from(expected.is_some_and(|(_, number)| Some(number) == rays[at].1));
+            }
+        }
+    }
+    told
+}
+
+#[test]
+fn rays_that_leave_spheres_find_the_same_together() {
+    for [rays, own] in [
+        compare_secondary::<f32>(1500, 15.0),
+        compare_secondary::<f64>(1500, 30.0),
+    ] {
+        assert!(
+            own > rays / 50,
+            "{own} of {rays} rays meet their own sphere again"
+        );
+    }
 }
 
 #[test]
@@ -236,12 +327,9 @@ fn one_ray_that_is_no_number_leaves_the_others_alone() {
         let all = Spheres::new(&spheres, tree, level);
         let found = |directions| {
             let origins = Origins::One([0.0; 3]);
-            let found = all.nearest_of_packet(&Packet { origins, directions });
-            [0; PACKET - 1]
-                .iter()
-                .enumerate()
-                .map(|(at, _)| found.of(at + 1))
-                .collect::<Vec<_>>()
+            let mut found = Found::nothing();
+            all.nearest_of_packet(&Packet::full(origins, directions), &mut found);
+            (1..PACKET).map(|at| of(&found, at)).collect::<Vec<_>>()
         };
         let before = found(directions);
         assert!(before.iter().flatten().count() > 10);

@@ -1,12 +1,14 @@
 //! The scene in the number type of the tracer, and what its rays meet.
 
 mod path;
+mod several;
+mod walk;
 mod whitted;
 
 use super::lanes::Level;
 use super::light::{Background, Light};
 use super::material::{Material, Model};
-use super::ray::{Hit, Ray};
+use super::ray::{First, Hit, Ray};
 use super::real::{Real, Vector};
 use super::sampler::Draws;
 use super::shape::Primitive;
@@ -14,8 +16,7 @@ use super::spheres::{Found, NONE, Numbered, Packet, Query, Spheres};
 use super::style::{Exact, Style};
 use crate::scene::{Integrator, Object, Requirements, Scene, Shape};
 
-/// What a ray meets first: its t, and the number of the surface.
-pub(super) type First<T> = Option<(T, usize)>;
+pub(super) use walk::Walk;
 
 /// Surfaces and lights. `P` is the one shape that a scene requires, so that what is asked of each knows it.
 #[derive(Debug)]
@@ -23,7 +24,7 @@ pub(super) struct World<T: Real, P> {
     integrator: Integrator,
     max_depth: u32,
     ambient: T::Vec3,
-    background: Background<T>,
+    pub(super) background: Background<T>,
     lights: Vec<Light<T>>,
     shapes: Vec<P>,
     /// Those of them that are spheres, once more.
@@ -34,6 +35,7 @@ pub(super) struct World<T: Real, P> {
     materials: Vec<Material<T>>,
     /// The spheres that shine.
     emitters: Vec<Emitter<T>>,
+    level: Level,
 }
 
 #[derive(Debug)]
@@ -96,6 +98,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
                 )
                 .collect(),
             materials,
+            level,
         }
     }
 
@@ -104,12 +107,23 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         &self,
         ray: Ray<T>,
         first: First<T>,
-        draws: &mut Draws,
+        draws: Draws,
         style: &impl Style<T>,
     ) -> T::Vec3 {
+        let mut walk = [Walk::new(ray, first, draws)];
+        self.walk(&mut walk, style);
+        walk[0].sum
+    }
+
+    /// Sums the radiance along several, no more than a packet has.
+    pub(super) fn walk(&self, walks: &mut [Walk<T>], style: &impl Style<T>) {
         match self.integrator {
-            Integrator::Whitted => self.whitted(ray, first, 0, draws, style),
-            Integrator::Path => self.path(ray, first, draws, style),
+            Integrator::Whitted => self.whitted(walks, style),
+            Integrator::Path => {
+                for walk in walks {
+                    walk.sum = self.path(walk.branch.ray, walk.first, &mut walk.draws, style);
+                }
+            }
         }
     }
 
@@ -140,9 +154,9 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         let own = Self::own(ray, style);
         let query = Self::query(ray, style, own, None, T::infinity());
         let first = self.spheres.nearest(&query);
-        let mut first = first.map(|(t, number)| (t, number as usize));
+        let mut first = first.map_or_else(First::nothing, |(t, number)| First::new(t, number));
         if let Some(own) = own {
-            nearer(&mut first, self.shapes[own].intersect_own(ray, style), own);
+            first.take(self.shapes[own].intersect_own(ray, style), own);
         }
         self.nearest_other(ray, &mut first, style);
         first
@@ -153,7 +167,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         let own = Self::own(ray, style);
         for &other in &self.others {
             if own != Some(other) {
-                nearer(first, self.shapes[other].intersect(ray, style), other);
+                first.take(self.shapes[other].intersect(ray, style), other);
             }
         }
     }
@@ -161,7 +175,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
     /// The surface that one of the rays of a packet meets first, which found those spheres.
     #[inline]
     pub(super) fn first(&self, packet: &Packet<T>, found: &Found<T>, at: usize) -> First<T> {
-        let first = found.of(at).map(|(t, number)| (t, number as usize));
+        let first = found.of(at);
         if self.others.is_empty() {
             return first;
         }
@@ -177,7 +191,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
 
     /// The point where a ray meets a surface first.
     fn hit(&self, ray: &Ray<T>, first: First<T>) -> Option<Hit<T>> {
-        let (t, surface) = first?;
+        let (t, surface) = first.get()?;
         let [point, normal] = self.shapes[surface].surface(ray, t);
         Some(Hit {
             point,
@@ -189,23 +203,32 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
     /// Whether anything but the surface `light` lies strictly between the ray's origin and `distance`.
     fn occluded(&self, ray: &Ray<T>, distance: T, light: Option<usize>, style: &impl Style<T>) -> bool {
         let own = Self::own(ray, style);
-        let hides = |t: Option<T>| t.is_some_and(|t| t < distance);
-        let own_hides = |own: usize| light != Some(own) && hides(self.shapes[own].intersect_own(ray, style));
-        let other_hides = |&other: &usize| {
-            own != Some(other) && light != Some(other) && hides(self.shapes[other].intersect(ray, style))
+        let own_hides = |own: usize| {
+            let t = self.shapes[own].intersect_own(ray, style);
+            light != Some(own) && t.is_some_and(|t| t < distance)
         };
-        own.is_some_and(own_hides)
+        let own_sphere = own.filter(|&own| self.shapes[own].sphere().is_some());
+        own_sphere.is_some_and(own_hides)
             || self.spheres.any(&Self::query(ray, style, own, light, distance))
-            || self.others.iter().any(other_hides)
+            || self.occluded_by_other(ray, distance, light, style)
     }
-}
 
-/// Takes a surface that is met at t where it comes before the first so far.
-fn nearer<T: Real>(first: &mut First<T>, t: Option<T>, surface: usize) {
-    if let Some(t) = t
-        && t < T::infinity()
-        && first.is_none_or(|(nearest, before)| t < nearest || (t == nearest && surface < before))
-    {
-        *first = Some((t, surface));
+    /// The same of those that are no spheres.
+    fn occluded_by_other(
+        &self,
+        ray: &Ray<T>,
+        distance: T,
+        light: Option<usize>,
+        style: &impl Style<T>,
+    ) -> bool {
+        let own = Self::own(ray, style);
+        self.others.iter().any(|&other| {
+            let t = if own == Some(other) {
+                self.shapes[other].intersect_own(ray, style)
+            } else {
+                self.shapes[other].intersect(ray, style)
+            };
+            light != Some(other) && t.is_some_and(|t| t < distance)
+        })
     }
 }

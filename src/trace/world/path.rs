@@ -4,12 +4,12 @@
 
 use super::super::light::Cone;
 use super::super::material::{Brdf, Frame, Model};
-use super::super::ray::{Hit, Ray};
+use super::super::ray::{First, Hit, Ray};
 use super::super::real::{Real, Vector};
 use super::super::sampler::Draws;
 use super::super::shape::Primitive;
 use super::super::style::Style;
-use super::{First, World};
+use super::World;
 
 /// The last direction that was drawn for a BRDF: its density, and where its ray starts.
 type Drawn<T> = (T, <T as Real>::Vec3);
