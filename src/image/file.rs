@@ -41,16 +41,15 @@ pub fn encode(image: &Image, path: &Path) -> Result<Vec<u8>, ImageError> {
     let [width, height] = image.size();
     let top_down = image.rows().rev().flatten();
     match Format::of(path)? {
-        Format::Png => png(
-            [width, height],
-            top_down.flat_map(|p| [p[0], p[1], p[2]].map(quantise)),
-            path,
-        ),
+        Format::Png => {
+            let rgb: Vec<_> = top_down.map(|&[r, g, b, _]| [r, g, b].map(quantise)).collect();
+            png([width, height], &rgb, path)
+        }
         Format::Exr => {
-            let rgba: Vec<f32> = top_down.flatten().copied().collect();
+            let rgba: Vec<[f32; 4]> = top_down.copied().collect();
             written(path, |bytes| {
                 image::codecs::openexr::OpenExrEncoder::new(bytes).write_image(
-                    bytemuck::cast_slice(&rgba),
+                    bytemuck::cast_slice(rgba.as_flattened()),
                     width,
                     height,
                     ExtendedColorType::Rgba32F,
@@ -66,11 +65,10 @@ pub fn encode(image: &Image, path: &Path) -> Result<Vec<u8>, ImageError> {
 /// As [`encode`].
 pub fn encode_shown(shown: &Shown, path: &Path) -> Result<Vec<u8>, ImageError> {
     match Format::of(path)? {
-        Format::Png => png(
-            shown.size(),
-            shown.rows().rev().flatten().flatten().copied(),
-            path,
-        ),
+        Format::Png => {
+            let rgb: Vec<_> = shown.rows().rev().flatten().copied().collect();
+            png(shown.size(), &rgb, path)
+        }
         Format::Exr => encode(&Image::from(shown), path),
     }
 }
@@ -91,16 +89,15 @@ impl Format {
     }
 }
 
-/// A PNG of bytes from the top down.
-fn png([width, height]: [u32; 2], rgb: impl Iterator<Item = u8>, path: &Path) -> Result<Vec<u8>, ImageError> {
-    let rgb: Vec<u8> = rgb.collect();
+/// A PNG of pixels from the top down.
+fn png([width, height]: [u32; 2], rgb: &[[u8; 3]], path: &Path) -> Result<Vec<u8>, ImageError> {
     written(path, |bytes| {
         image::codecs::png::PngEncoder::new_with_quality(
             bytes,
             image::codecs::png::CompressionType::Fast,
             image::codecs::png::FilterType::Adaptive,
         )
-        .write_image(&rgb, width, height, ExtendedColorType::Rgb8)
+        .write_image(rgb.as_flattened(), width, height, ExtendedColorType::Rgb8)
     })
 }
 

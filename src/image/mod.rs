@@ -99,8 +99,12 @@ impl Image {
 
 /// The 8-bit value of a colour component: `round_ties_even(255 · clamp(c, 0, 1))`; NaN becomes 0.
 #[must_use]
+#[inline]
 pub fn quantise(component: f32) -> u8 {
-    (component.clamp(0.0, 1.0) * 255.0).round_ties_even() as u8
+    let clamped = if component > 0.0 { component.min(1.0) } else { 0.0 };
+    // From 2²³ on floats are the whole numbers, so that the sum is rounded to one, whose last bits are the value. Not all processors
+    // have an instruction that rounds, and a call takes ten times as long.
+    (clamped * 255.0 + 8_388_608.0).to_bits() as u8
 }
 
 /// Whether a picture of that size can be made; says what is wrong otherwise.
@@ -135,6 +139,11 @@ mod tests {
         assert_eq!(quantise(f32::NAN), 0);
         assert_eq!(quantise(0.5), 128, "127.5 rounds to even");
         assert_eq!(quantise(126.5 / 255.0), 126, "126.5 rounds to even");
+        for at in 0..=1 << 16 {
+            let component = at as f32 / (1 << 16) as f32;
+            let rounded = (component * 255.0).round_ties_even();
+            assert_eq!(f32::from(quantise(component)), rounded, "{component}");
+        }
     }
 
     #[test]
