@@ -1,5 +1,7 @@
 //! Points on two logarithmic scales, with the front of those that no other beats.
 
+use std::ops::Range;
+
 use plotters::prelude::*;
 use plotters_backend::text_anchor::{HPos, Pos, VPos};
 
@@ -13,7 +15,7 @@ pub struct Point {
     pub x: f64,
     /// > 0
     pub y: f64,
-    /// What stands beside it.
+    /// What stands beside it; may be empty.
     pub name: String,
     /// Which of the groups it belongs to.
     pub group: usize,
@@ -73,7 +75,7 @@ impl Scatter {
     }
 
     /// Powers of ten around all values.
-    fn range(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
+    fn range(values: impl Iterator<Item = f64>) -> Range<f64> {
         let (low, high) = values.fold((f64::INFINITY, 0.0f64), |(low, high), value| {
             (low.min(value), high.max(value))
         });
@@ -89,10 +91,11 @@ impl Scatter {
         let area = backend.into_drawing_area();
         area.fill(&PAPER)?;
         let lines = self.lines.iter().map(|line| line.0);
-        let [x, y] = [
-            Self::range(self.points.iter().map(|point| point.x)),
-            Self::range(self.points.iter().map(|point| point.y).chain(lines)),
-        ];
+        let x = Self::range(self.points.iter().map(|point| point.x));
+        let mut y = Self::range(self.points.iter().map(|point| point.y).chain(lines));
+        if self.is_any_under_legend(&x, &y) {
+            y.end *= 10.0;
+        }
         let mut chart = ChartBuilder::on(&area)
             .margin(20)
             .margin_right(40)
@@ -166,6 +169,28 @@ impl Scatter {
         SIZE.0 as i32 - 80 - LETTERS * letters.unwrap_or(0)
     }
 
+    /// Where it ends.
+    fn legend_bottom(&self) -> i32 {
+        80 + LETTERS * 3 / 2 * self.groups.len() as i32
+    }
+
+    /// Whether a point would be hidden, roughly: the axes and their words take so much of the picture's sides.
+    fn is_any_under_legend(&self, x: &Range<f64>, y: &Range<f64>) -> bool {
+        const LEFT: f64 = 130.0;
+        const RIGHT: f64 = 40.0;
+        const TOP: f64 = 50.0;
+        const BOTTOM: f64 = 80.0;
+        let share = |value: f64, range: &Range<f64>| {
+            libm::log10(value / range.start) / libm::log10(range.end / range.start)
+        };
+        let [width, height] = [f64::from(SIZE.0), f64::from(SIZE.1)];
+        self.points.iter().any(|point| {
+            let across = LEFT + share(point.x, x) * (width - LEFT - RIGHT);
+            let down = height - BOTTOM - share(point.y, y) * (height - TOP - BOTTOM);
+            across > f64::from(self.legend_left()) && down < f64::from(self.legend_bottom())
+        })
+    }
+
     /// Names beside their points, as many as have room, the best first: none covers another, or a point.
     fn labels(&self, place: &impl Fn(f64, f64) -> (i32, i32)) -> Vec<Label> {
         let mut taken: Vec<[i32; 4]> = self
@@ -177,15 +202,9 @@ impl Scatter {
             })
             .collect();
         // The legend's corner.
-        let words = self.groups.iter().map(|name| name.chars().count() as i32).max();
-        let legend = SIZE.0 as i32 - 70 - LETTERS * words.unwrap_or(0);
-        taken.push([
-            legend,
-            0,
-            SIZE.0 as i32,
-            80 + LETTERS * 3 / 2 * self.groups.len() as i32,
-        ]);
-        let mut points: Vec<_> = self.points.iter().collect();
+        taken.push([self.legend_left(), 0, SIZE.0 as i32, self.legend_bottom()]);
+        let named = self.points.iter().filter(|point| !point.name.is_empty());
+        let mut points: Vec<_> = named.collect();
         points.sort_by(|a, b| b.best.cmp(&a.best).then(a.y.total_cmp(&b.y)));
         let mut labels = Vec::new();
         for point in points {
@@ -281,6 +300,29 @@ mod tests {
         }
         assert_eq!(labels[0].0, "way 30", "the best has its name");
         assert!((5..30).contains(&labels.len()), "{}", labels.len());
+    }
+
+    #[test]
+    fn no_point_is_under_the_legend() {
+        let mut scatter = scatter();
+        let range = |of: fn(&Point) -> f64| Scatter::range(scatter.points.iter().map(of));
+        let (x, y) = (range(|point| point.x), range(|point| point.y));
+        assert!(!scatter.is_any_under_legend(&x, &y));
+        (scatter.points[0].x, scatter.points[0].y) = (x.end, y.end);
+        assert!(scatter.is_any_under_legend(&x, &y));
+        assert!(!scatter.is_any_under_legend(&x, &(y.start..10.0 * y.end)));
+    }
+
+    #[test]
+    fn points_without_names_have_no_labels() {
+        let mut scatter = scatter();
+        scatter
+            .points
+            .iter_mut()
+            .skip(2)
+            .for_each(|point| point.name.clear());
+        let labels = scatter.labels(&|x, y| ((x * 400.0) as i32, (-libm::log10(y) * 200.0) as i32));
+        assert_eq!(labels.len(), 2);
     }
 
     #[test]
