@@ -1,5 +1,7 @@
 //! HLSL: the block at `b0`, the texture of binding K at `tK`, the sampler of binding K at `sK`.
 
+use std::collections::HashSet;
+
 use naga::back::hlsl::{BindTarget, Options, PipelineOptions, Writer};
 
 use super::bindings;
@@ -22,10 +24,68 @@ pub(super) fn write(module: &ValidModule) -> Result<String, String> {
     };
     let pipeline = PipelineOptions::default();
     let mut text = String::new();
+    let named = with_free_names(module.module());
     Writer::new(&mut text, &options, &pipeline)
-        .write(module.module(), module.info(), None)
+        .write(&named, module.info(), None)
         .map_err(|error| error.to_string())?;
     Ok(with_samplers(&text))
+}
+
+/// The same module, in which nothing has a name like those of naga's functions that make structures, which it does not keep free.
+fn with_free_names(module: &naga::Module) -> naga::Module {
+    let mut module = module.clone();
+    let free = |name: &mut Option<String>| {
+        if let Some(rest) = name.as_deref().and_then(|name| name.strip_prefix("Construct")) {
+            *name = Some(format!("construct{rest}"));
+        }
+    };
+    let of_function = |function: &mut naga::Function| {
+        free(&mut function.name);
+        function
+            .arguments
+            .iter_mut()
+            .for_each(|argument| free(&mut argument.name));
+        function
+            .local_variables
+            .iter_mut()
+            .for_each(|(_, local)| free(&mut local.name));
+    };
+    module
+        .functions
+        .iter_mut()
+        .for_each(|(_, function)| of_function(function));
+    module
+        .entry_points
+        .iter_mut()
+        .for_each(|entry| of_function(&mut entry.function));
+    module
+        .constants
+        .iter_mut()
+        .for_each(|(_, constant)| free(&mut constant.name));
+    module
+        .global_variables
+        .iter_mut()
+        .for_each(|(_, global)| free(&mut global.name));
+    let types: Vec<_> = module
+        .types
+        .iter()
+        .map(|(handle, ty)| (handle, ty.clone()))
+        .collect();
+    let mut names: HashSet<_> = types.iter().filter_map(|(_, ty)| ty.name.clone()).collect();
+    for (handle, ty) in types {
+        let mut name = ty.name.clone();
+        free(&mut name);
+        if name == ty.name {
+            continue;
+        }
+        // Two types that are alike in all may not have one name.
+        while let Some(name) = name.as_mut().filter(|name| names.contains(*name)) {
+            name.push('n');
+        }
+        names.extend(name.clone());
+        module.types.replace(handle, naga::Type { name, ..ty });
+    }
+    module
 }
 
 /// naga keeps all samplers in one heap, looked up through a buffer; a host of one shader would rather bind them one by one.

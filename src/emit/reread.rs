@@ -14,6 +14,7 @@ pub fn for_glslang(target: Target, text: &str) -> Option<String> {
     match target {
         Target::Glsl => {
             let mut adapted = String::new();
+            let own = unused(text);
             for line in text.lines() {
                 let _ = match part(line) {
                     Part::Version => writeln!(adapted, "#version 310 es"),
@@ -22,9 +23,9 @@ pub fn for_glslang(target: Target, text: &str) -> Option<String> {
                     }
                     Part::Channel(shape, binding, name) => writeln!(
                         adapted,
-                        "layout(set = 0, binding = {binding}) uniform highp texture{shape} toyproof_t{binding};\n\
-                         layout(set = 0, binding = {}) uniform highp sampler toyproof_s{binding};\n\
-                         #define {name} sampler{shape}(toyproof_t{binding}, toyproof_s{binding})",
+                        "layout(set = 0, binding = {binding}) uniform highp texture{shape} {own}_t{binding};\n\
+                         layout(set = 0, binding = {}) uniform highp sampler {own}_s{binding};\n\
+                         #define {name} sampler{shape}({own}_t{binding}, {own}_s{binding})",
                         binding + 1
                     ),
                     Part::Precision | Part::Output(_) | Part::Main | Part::Other => {
@@ -62,11 +63,9 @@ fn with_elements(line: &str) -> String {
 /// GLSL that was written, as a `ShaderToy` shader: its block and channels are `ShaderToy`'s inputs again.
 #[must_use]
 pub fn as_shadertoy(text: &str) -> String {
-    // It has a `mainImage` already, that `main` calls, and names that a lowered shader has for its own.
-    let text = text
-        .replace("mainImage", "written_image")
-        .replace("toyproof_", "written_")
-        .replace("ToyproofFrame", "WrittenFrame");
+    let own = unused(text);
+    // It has a `mainImage` already, that `main` calls.
+    let text = text.replace("mainImage", &format!("{own}_image"));
     let mut adapted = String::new();
     let mut before = String::new();
     let mut after = String::new();
@@ -87,21 +86,30 @@ pub fn as_shadertoy(text: &str) -> String {
             Part::Channel(_, binding, name) => writeln!(adapted, "#define {name} iChannel{}", binding / 2),
             Part::Output(rest) => {
                 let name = rest.trim_end_matches(';').rsplit(' ').next().unwrap_or_default();
-                let _ = writeln!(after, "    written_color = {name};");
+                let _ = writeln!(after, "    {own}_color = {name};");
                 writeln!(adapted, "{rest}")
             }
-            Part::Main => writeln!(adapted, "void written_main() {{"),
+            Part::Main => writeln!(adapted, "void {own}_main() {{"),
             Part::Other => writeln!(adapted, "{line}"),
         };
     }
     let _ = writeln!(
         adapted,
-        "void mainImage(out vec4 written_color, in vec2 written_at) {{\n{before}    written_main();\n{after}}}"
+        "void mainImage(out vec4 {own}_color, in vec2 {own}_at) {{\n{before}    {own}_main();\n{after}}}"
     );
     adapted
 }
 
-const BLOCK: &str = "WrittenFrame(iResolution, iTime, iTimeDelta, iFrame, iFrameRate, \
+/// A word that is no part of any name in the text.
+fn unused(text: &str) -> String {
+    let mut word = "written".to_owned();
+    while text.contains(&word) {
+        word.push('n');
+    }
+    word
+}
+
+const BLOCK: &str = "ToyproofFrame(iResolution, iTime, iTimeDelta, iFrame, iFrameRate, \
     vec4[4](vec4(iChannelTime[0]), vec4(iChannelTime[1]), vec4(iChannelTime[2]), vec4(iChannelTime[3])), \
     iChannelResolution, iMouse, iDate, iSampleRate)";
 
@@ -188,8 +196,10 @@ mod tests {
         }
         let vulkan = for_glslang(Target::Glsl, text).unwrap();
         assert!(
-            vulkan.contains("binding = 6) uniform highp sampler toyproof_s5;"),
+            vulkan.contains("binding = 6) uniform highp sampler written_s5;"),
             "{vulkan}"
         );
+        let named = as_shadertoy(&text.replace("void main()", "float written_main, writtenn;\nvoid main()"));
+        assert!(named.contains("    writtennn_main();\n"), "{named}");
     }
 }

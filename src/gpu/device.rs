@@ -6,7 +6,8 @@ use std::sync::Mutex;
 use serde::{Deserialize, Serialize};
 use wgpu::{Adapter, Backends, DeviceType, Features, Instance, InstanceDescriptor};
 
-use super::{Failure, INSTALL_HINT, On};
+use super::pipeline::Block;
+use super::{Failure, FloatMode, INSTALL_HINT, On};
 
 /// What is worth knowing of a Vulkan driver.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -194,8 +195,21 @@ impl Device {
         format!("{}, {}", info.name, version(&info))
     }
 
+    /// How a program sees the frame's block: Mesa's compiler must not take what strict ones spell out for made of uniforms
+    /// ([`crate::emit::spirv::with_blocks_stored`]).
+    pub(super) fn block_of(&self, float: FloatMode) -> Block {
+        match float {
+            FloatMode::Strict if self.is_lavapipe() => Block::Stored,
+            _ => Block::Uniform,
+        }
+    }
+
     /// Whether this driver is of a kind that is known to end loops by force: some versions of Mesa's software rasteriser are.
     pub(super) fn may_end_loops(&self) -> bool {
+        self.is_lavapipe()
+    }
+
+    fn is_lavapipe(&self) -> bool {
         self.adapter.get_info().name.contains(LAVAPIPE)
     }
 

@@ -8,6 +8,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use rayon::ThreadPool;
+
 use super::cpu::{Evaluator, Single};
 use super::{ALL, Case, Failure, PATIENCE, join};
 use crate::compare::{self, Answer};
@@ -129,7 +131,8 @@ pub fn frames(checked: &Checked) -> Vec<Frame> {
     FRAMES.map(of).to_vec()
 }
 
-/// Runs each reading of what was written in each of the frames and compares it with the shader: a proof for each.
+/// Runs each reading of what was written in each of the frames and compares it with the shader: a proof for each. The evaluator runs in
+/// `pool`, if there is one: in the pool that all share, a slow shader's evaluator would have all of its rows painted before another's.
 ///
 /// # Errors
 /// Why one of them, or the shader itself, has no pictures.
@@ -139,10 +142,15 @@ pub fn prove(
     readings: Vec<Written>,
     frames: &[Frame],
     timeout: Duration,
+    pool: Option<&ThreadPool>,
 ) -> Result<Vec<Proof>, Failure> {
     let stop = AtomicBool::new(false);
+    let singles = || evaluate(checked, frames, timeout, &stop);
     let (painted, singles) = thread::scope(|scope| {
-        let cpu = scope.spawn(|| evaluate(checked, frames, timeout, &stop));
+        let cpu = scope.spawn(|| match pool {
+            Some(pool) => pool.install(singles),
+            None => singles(),
+        });
         let paint = |written| worker.paint(written, frames.to_vec());
         let painted: Result<Vec<_>, _> = readings.into_iter().map(paint).collect();
         stop.store(painted.is_err(), Ordering::Relaxed);

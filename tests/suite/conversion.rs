@@ -34,7 +34,7 @@ fn proof(worker: &mut Worker, shader: &str, style: Style, edit: impl Fn(String) 
 
 /// What was written, compared with the shader.
 fn proof_of(worker: &mut Worker, checked: &Checked, written: Written) -> Result<Proof, Failure> {
-    let proofs = prove(worker, checked, vec![written], &frames(checked), TIMEOUT)?;
+    let proofs = prove(worker, checked, vec![written], &frames(checked), TIMEOUT, None)?;
     Ok(proofs.into_iter().next().expect("a proof for each reading"))
 }
 
@@ -65,6 +65,76 @@ fn every_style_is_proved() {
         for rung in [&REFLECTIONS, &ANIMATION] {
             holds(&mut worker, rung, style);
         }
+    }
+}
+
+/// What compute.toys puts before a shader, as far as one can read it: its names and types, from the bind.rs of its renderer.
+const COMPUTE_TOYS: &str = "
+    alias int = i32; alias uint = u32; alias float = f32;
+    alias float2 = vec2<f32>; alias float3 = vec3<f32>; alias float4 = vec4<f32>;
+    struct Time { frame: uint, elapsed: float, delta: float }
+    struct Mouse { pos: vec2u, click: int }
+    struct DispatchInfo { id: uint }
+    struct Custom { _dummy: float }
+    struct Data { _dummy: array<u32, 1> }
+    @group(0) @binding(2) var<uniform> time: Time;
+    @group(0) @binding(3) var<uniform> mouse: Mouse;
+    @group(0) @binding(5) var<uniform> custom: Custom;
+    @group(0) @binding(6) var<storage, read> data: Data;
+    @group(0) @binding(8) var<uniform> dispatch: DispatchInfo;
+    @group(0) @binding(9) var screen: texture_storage_2d<rgba16float, write>;
+    @group(0) @binding(10) var pass_in: texture_2d_array<f32>;
+    @group(0) @binding(11) var pass_out: texture_storage_2d_array<rgba16float, write>;
+    @group(0) @binding(12) var channel0: texture_2d<f32>;
+    @group(0) @binding(13) var channel1: texture_2d<f32>;
+    @group(0) @binding(14) var nearest: sampler;
+    @group(0) @binding(15) var bilinear: sampler;
+    @group(0) @binding(16) var trilinear: sampler;
+    @group(0) @binding(17) var nearest_repeat: sampler;
+    @group(0) @binding(18) var bilinear_repeat: sampler;
+    @group(0) @binding(19) var trilinear_repeat: sampler;
+    ";
+
+/// What the modules hold that a shader for Bevy imports, as far as one can read it, in the place of each import.
+const BEVY: [(&str, &str); 3] = [
+    (
+        "#import bevy_sprite::mesh2d_vertex_output::VertexOutput",
+        "struct VertexOutput {
+            @builtin(position) position: vec4<f32>,
+            @location(0) world_position: vec4<f32>,
+            @location(1) world_normal: vec3<f32>,
+            @location(2) uv: vec2<f32>,
+        }",
+    ),
+    (
+        "#import bevy_sprite::mesh2d_view_bindings::{globals, view}",
+        "struct View { clip_from_world: mat4x4<f32>, viewport: vec4<f32> }
+        struct Globals { time: f32, delta_time: f32, frame_count: u32 }
+        @group(0) @binding(0) var<uniform> view: View;
+        @group(0) @binding(1) var<uniform> globals: Globals;",
+    ),
+    ("#{MATERIAL_BIND_GROUP}", "2"),
+];
+
+#[test]
+fn texts_are_valid_as_they_stand_in_the_modules_that_their_hosts_make() {
+    let with_channels = "const float data = 2.0;
+        void mainImage(out vec4 c, in vec2 p) {
+            c = texture(iChannel0, p / iResolution.xy) * data + texture(iChannel1, p / iResolution.xy) * fract(iTime);
+            c.x += float(iFrame % 3) * iTimeDelta + gl_FragCoord.x;
+        }";
+    for shader in [with_channels, REFLECTIONS.shader, ANIMATION.shader] {
+        let mut files = Files::default();
+        let file = files.add(File::new("shader", shader));
+        let checked = check(&files, file, &Options::default()).expect("it is valid");
+        let valid = |text: &str| ValidModule::of_wgsl(text).unwrap_or_else(|why| panic!("{why}\n{text}"));
+        let text = wgsl(&checked, &files, Style::ComputeToys).unwrap();
+        let compute = valid(&format!("{COMPUTE_TOYS}{text}"));
+        assert_eq!(compute.module().entry_points[0].name, "main_image");
+        assert_eq!(compute.module().entry_points[0].workgroup_size, [16, 16, 1]);
+        let text = wgsl(&checked, &files, Style::Bevy).unwrap();
+        let composed = BEVY.iter().fold(text, |text, (from, to)| text.replace(from, to));
+        assert_eq!(valid(&composed).module().entry_points[0].name, "fragment");
     }
 }
 
@@ -336,6 +406,111 @@ fn files_in_every_language_say_what_was_proved() {
             assert!(judged.status.success(), "{judged:?}");
         }
     }
+}
+
+/// Words that stand around a shader in some language: ours, naga's, those of hosts and of the frames that stand for them.
+const SURROUNDINGS: &str = "toyproof_colour toyproof_result toyproof_frame ToyproofFrame toyproof_color toyproof_size \
+    toyproof_need_0 toyproof_sin toyproof_start toyproof_remainder toyproof_t1 toyproof_s1 main_1 global inputs Inputs \
+    position color saturate screen time view View globals Globals fragment VertexOutput kept written_main written_color \
+    writtenn_at written_image FragmentInput_main FragmentOutput ConstructRay constructRay naga_mod naga_div i_time \
+    frag_coord shader_main main_image f32 vec3f lerp frac mul tex2D Texture2D SamplerState float4 main_ kernel size id \
+    pixel iChannel0_sampler sampler0 channel0 Varyings";
+
+/// A shader in which all of them are names of its author's.
+fn named(declared: impl Fn(&str) -> String, used: impl Fn(&str) -> String) -> String {
+    let names = SURROUNDINGS.split_whitespace();
+    let declarations: String = names.clone().map(declared).collect();
+    let uses: String = names.map(used).collect();
+    format!(
+        "struct Ray {{ float x; }};
+        {declarations}
+        void mainImage(out vec4 c, in vec2 p) {{
+            float s = sin(iTime) + float(int(p.x) % 3) + Ray(p.x).x + texture(iChannel0, p / iResolution.xy).x;
+            {uses}
+            c = vec4(fract(s), sin(s), cos(p.y), 1.0);
+        }}"
+    )
+}
+
+#[test]
+fn names_of_an_author_may_be_those_of_what_stands_around_his_text() {
+    if worker().is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let shaders = [
+        named(
+            |name| format!("float {name} = 0.5;\n"),
+            |name| format!("{name} += p.x * 0.01; s += {name};\n"),
+        ),
+        named(
+            |name| format!("const float {name} = 0.5;\n"),
+            |name| format!("s += {name} * p.y;\n"),
+        ),
+        named(
+            |name| format!("float {name}(float x) {{ return x * 0.25; }}\n"),
+            |name| format!("s += {name}(p.x);\n"),
+        ),
+        named(
+            |name| format!("struct {name} {{ float x; float y; }};\n"),
+            |name| format!("s += {name}(p.x, 1.0).x;\n"),
+        ),
+        named(
+            |_| String::new(),
+            |name| format!("float {name} = s * 0.5; s += float(int({name}) % 3) + Ray({name}).x * 0.01;\n"),
+        ),
+    ];
+    for (number, text) in shaders.iter().enumerate() {
+        let shader = folder.path().join(format!("{number}.glsl"));
+        fs::write(&shader, text).unwrap();
+        let targets = ["wgsl", "spv", "frag", "hlsl", "metal"].map(|ending| (ending, "plain"));
+        let styles = ["wgpu-shadertoy", "compute-toys", "bevy"].map(|style| ("wgsl", style));
+        for (ending, style) in targets.into_iter().chain(styles) {
+            let out = folder.path().join(format!("out.{ending}"));
+            let arguments = [
+                "convert",
+                shader.to_str().unwrap(),
+                "-o",
+                out.to_str().unwrap(),
+                "--verify",
+                "--style",
+                style,
+            ];
+            let run = toyproof(folder.path(), &arguments);
+            assert_eq!(
+                run.code, 0,
+                "{ending} {style}: {}{}\n{text}",
+                run.stdout, run.stderr
+            );
+            assert!(
+                !run.stdout.contains("in naga's words"),
+                "{style}: {}\n{text}",
+                run.stdout
+            );
+        }
+    }
+}
+
+#[test]
+fn hlsl_is_read_as_it_is_written() {
+    if worker().is_none()
+        || Command::new("glslangValidator")
+            .arg("--version")
+            .output()
+            .is_err()
+    {
+        return;
+    }
+    // An optimiser makes one product of these two, and `fma` of what is added.
+    let folder = tempfile::tempdir().unwrap();
+    let text = "void mainImage(out vec4 c, in vec2 p) {
+        float angle = 6.28318530718 * p.x / 240.0;
+        c = vec4(angle, p.x / 2.8 + 0.1 * p.y, 0.1 * p.x / 0.3 * 0.7, 1.0);
+    }";
+    fs::write(folder.path().join("shader.glsl"), text).unwrap();
+    let arguments = ["convert", "shader.glsl", "-o", "shader.hlsl", "--verify"];
+    let run = toyproof(folder.path(), &arguments);
+    assert_eq!(run.code, 0, "{}{}", run.stdout, run.stderr);
 }
 
 #[test]

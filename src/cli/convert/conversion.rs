@@ -3,6 +3,8 @@
 use std::path::PathBuf;
 use std::thread;
 
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
 use super::super::Exit;
 use super::super::inputs::{DriverArgs, LanguageArgs};
 use super::super::shader::{Shader, Unusable, is_invalid};
@@ -37,6 +39,8 @@ pub(super) struct Hand {
     /// What runs what was converted; none where the evaluator is asked to.
     pub(super) runner: Result<Option<Worker>, String>,
     pub(super) browser: Option<Chromium>,
+    /// Where the evaluator runs, if others are at work beside it.
+    pub(super) pool: Option<ThreadPool>,
 }
 
 /// A converted shader.
@@ -50,7 +54,7 @@ pub(super) struct Made {
 impl Made {
     /// Whether it is proved, or nobody asked.
     pub(super) fn is_proved(&self) -> bool {
-        !matches!(self.standing, Standing::Unproved(_))
+        !matches!(self.standing, Standing::Unproved(_) | Standing::Untried(_))
     }
 }
 
@@ -74,10 +78,17 @@ impl Trouble {
 }
 
 impl Converter<'_> {
-    pub(super) fn hand(&self) -> Hand {
+    /// What one of so many threads works with.
+    pub(super) fn hand(&self, threads: usize) -> Hand {
+        let runner = self.driver.worker_for(FRAMES.len() as u32);
+        let pool = || {
+            let share = (rayon::current_num_threads() / threads).max(1);
+            ThreadPoolBuilder::new().num_threads(share).build().ok()
+        };
         Hand {
             translator: self.driver.translator(),
-            runner: self.driver.worker_for(FRAMES.len() as u32),
+            runner: runner.map(|runner| runner.map(Worker::with_plain_code)),
+            pool: (self.verify && threads > 1).then(pool).flatten(),
             browser: self.browser.as_ref().map(|program| {
                 let patience = self.driver.timeout() * FRAMES.len() as u32;
                 Chromium::new(program.clone(), patience)
@@ -135,7 +146,7 @@ impl Converter<'_> {
                     Ok(made),
                     Err(_)
                     | Ok(Made {
-                        standing: Standing::Unproved(_),
+                        standing: Standing::Unproved(_) | Standing::Untried(_),
                         ..
                     }),
                 ) => Ok(made),

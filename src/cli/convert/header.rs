@@ -65,7 +65,7 @@ fn head(name: &str, standing: &Standing) -> String {
             let _ = writeln!(head, "// That, run on {},", proof.device);
             settings(&mut head, proof);
         }
-        Standing::Unproved(why) => {
+        Standing::Unproved(why) | Standing::Untried(why) => {
             let why: String = why
                 .chars()
                 .map(|c| if c.is_control() { ' ' } else { c })

@@ -75,6 +75,10 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             return Exit::Trouble;
         }
     };
+    let threads = args
+        .jobs
+        .map_or_else(cores, usize::from)
+        .clamp(1, inputs.len().max(1));
     let mut names = Names::default();
     let one = standard || (!several && !args.output.is_dir());
     let jobs = inputs.into_iter().map(|input| {
@@ -92,6 +96,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         args,
         terminal,
         several,
+        threads,
         exit: Exit::Good,
         tally: Tally::default(),
     }
@@ -102,6 +107,10 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
 struct Job {
     input: Result<Found, ReadError>,
     path: PathBuf,
+}
+
+fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, NonZero::get)
 }
 
 /// How many came to what.
@@ -118,6 +127,8 @@ struct Batch<'a> {
     args: &'a Args,
     terminal: &'a Terminal,
     several: bool,
+    /// So many at a time.
+    threads: usize,
     exit: Exit,
     tally: Tally,
 }
@@ -128,10 +139,7 @@ type Done = (Shader, Result<Made, Trouble>, bool);
 impl Batch<'_> {
     fn convert(mut self, jobs: &[Job], converter: &Converter) -> Exit {
         let stop = interrupt::watch("finishing the shaders in hand");
-        let threads = match self.args.jobs {
-            Some(jobs) => usize::from(jobs),
-            None => std::thread::available_parallelism().map_or(1, NonZero::get),
-        };
+        let threads = self.threads;
         let bar = match jobs {
             [one] => self.terminal.spinner(&one.path.display().to_string()),
             several => self.terminal.bar(several.len() as u64, "converting"),
@@ -142,7 +150,7 @@ impl Batch<'_> {
             &todo,
             threads,
             &stop,
-            || converter.hand(),
+            || converter.hand(threads),
             |hand, index| converter.convert(hand, &jobs[index].input),
             |index, (shader, mut made)| {
                 bar.inc(1);
@@ -232,7 +240,7 @@ impl Batch<'_> {
                     &format!("{sum}; nothing here reads the text itself"),
                 );
             }
-            Standing::Unproved(why) => {
+            Standing::Unproved(why) | Standing::Untried(why) => {
                 self.tally.unproved += 1;
                 let kept = if written {
                     "written all the same"

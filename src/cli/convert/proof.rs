@@ -30,6 +30,8 @@ pub(super) enum Standing {
     Meant(Proof),
     /// It is not proved, for that reason.
     Unproved(String),
+    /// It could not be put to the proof, for a reason that no other text would change.
+    Untried(String),
 }
 
 /// Who read what was written.
@@ -93,7 +95,11 @@ impl Converter<'_> {
     ) -> Standing {
         let (ran, written): (Vec<_>, Vec<_>) = readings.into_iter().unzip();
         let proofs = self.proofs(hand, checked, written);
-        let held = proofs.and_then(|proofs| {
+        let proofs = match proofs {
+            Ok(proofs) => proofs,
+            Err(untold) => return untold,
+        };
+        let held = || {
             let several = proofs.len() > 1;
             let mut first = None;
             for (proof, who) in proofs.into_iter().zip(&ran) {
@@ -107,8 +113,8 @@ impl Converter<'_> {
                 first.get_or_insert(held);
             }
             first.ok_or_else(|| "nothing read it".to_owned())
-        });
-        held.map_or_else(Standing::Unproved, |proof| {
+        };
+        held().map_or_else(Standing::Unproved, |proof| {
             let browser = None;
             Standing::Proved(proof, Readers { ran, judge, browser })
         })
@@ -119,23 +125,33 @@ impl Converter<'_> {
         hand: &mut Hand,
         checked: &Checked,
         readings: Vec<Written>,
-    ) -> Result<Vec<Proof>, String> {
+    ) -> Result<Vec<Proof>, Standing> {
         let runner = match &mut hand.runner {
             Ok(Some(runner)) => runner,
             Ok(None) => {
-                return Err(
-                    "to prove a conversion takes a Vulkan driver, and --on cpu asks for none".to_owned(),
-                );
+                let why = "to prove a conversion takes a Vulkan driver, and --on cpu asks for none";
+                return Err(Standing::Untried(why.to_owned()));
             }
-            Err(error) => return Err(error.clone()),
+            Err(error) => return Err(Standing::Untried(error.clone())),
         };
         let frames = frames(checked);
-        prove(runner, checked, readings, &frames, self.driver.timeout()).map_err(|failure| match failure {
-            verify::Failure::Gpu(Failure::NoDriver(why)) => {
-                format!("to prove a conversion takes a Vulkan driver: {why}")
-            }
-            failure => failure.to_string(),
-        })
+        let pool = hand.pool.as_ref();
+        prove(runner, checked, readings, &frames, self.driver.timeout(), pool).map_err(unproved)
+    }
+}
+
+/// What stands of a conversion that has no pictures. Another text has them only if this one is at fault, not where the shader itself
+/// takes too long or cannot be run.
+fn unproved(failure: verify::Failure) -> Standing {
+    use Failure::{Device, NoDriver, Timeout};
+    match failure {
+        verify::Failure::Gpu(NoDriver(why)) => {
+            Standing::Untried(format!("to prove a conversion takes a Vulkan driver: {why}"))
+        }
+        verify::Failure::Cpu(_)
+        | verify::Failure::CutShort(_)
+        | verify::Failure::Gpu(Timeout { .. } | Device(_)) => Standing::Untried(failure.to_string()),
+        verify::Failure::Gpu(_) => Standing::Unproved(failure.to_string()),
     }
 }
 

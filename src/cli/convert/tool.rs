@@ -40,7 +40,8 @@ const GLSLANG: &str = "glslangValidator";
 fn compiler_of(target: Target) -> Option<Tool> {
     let arguments: &[&str] = match target {
         Target::Glsl => &["-V", "-S", "frag"],
-        Target::Hlsl => &["-D", "-V", "--hlsl-offsets", "-S", "frag", "-e", "main"],
+        // Without `-Od`, its optimiser does algebra: of `2.0 * x / 240.0` it makes one product, of products and sums `fma`.
+        Target::Hlsl => &["-D", "-V", "-Od", "--hlsl-offsets", "-S", "frag", "-e", "main"],
         Target::Wgsl | Target::Spirv | Target::Msl => return None,
     };
     Some(Tool {

@@ -24,6 +24,12 @@ pub(super) const BLOCK: [(&str, &str); 10] = [
     ("float", "iSampleRate"),
 ];
 
+/// What the shader's output, its colour in `main` and its block are called. naga takes a name for a type wherever there is such a type.
+const SURROUNDINGS: [&str; 3] = ["toyproof_colour", "toyproof_result", "ToyproofFrame"];
+
+/// How names begin that lowering gives.
+const OWN: &str = "toyproof_";
+
 /// Whether naga knows that variable under its own name.
 pub(super) fn is_known(variable: BuiltInVariable) -> bool {
     variable == BuiltInVariable::FragCoord
@@ -47,6 +53,8 @@ impl Names {
         for channel in 0..4 {
             taken.extend([format!("iChannel{channel}"), format!("iChannel{channel}_sampler")]);
         }
+        taken.extend(SURROUNDINGS.map(str::to_owned));
+        let mut surroundings = taken.clone();
         for &input in &order.inputs {
             names.variables.insert(input, draft.tree[input].name.clone());
         }
@@ -89,9 +97,11 @@ impl Names {
             }
         }
         names.name_functions(draft, order, &taken);
+        let own = names.functions.values().filter(|name| name.starts_with(OWN));
+        surroundings.extend(own.cloned());
         for item in &order.items {
             if let Item::Function(id) = *item {
-                names.name_locals(draft, id, &types);
+                names.name_locals(draft, id, &types, &surroundings);
             }
         }
         names
@@ -154,7 +164,14 @@ impl Names {
         alike
     }
 
-    fn name_locals(&mut self, draft: &Draft, function: FunctionId, types: &HashSet<String>) {
+    /// No local may hide what lowering or the printer says within its scope: `surroundings`.
+    fn name_locals(
+        &mut self,
+        draft: &Draft,
+        function: FunctionId,
+        types: &HashSet<String>,
+        surroundings: &HashSet<String>,
+    ) {
         let tree = &draft.tree;
         let mut locals = tree[function].parameters.clone();
         let mut globals = HashSet::new();
@@ -169,7 +186,12 @@ impl Names {
                 }
             }
         }
-        let clashes = |name: &str| word::is_reserved(name) || types.contains(name) || globals.contains(name);
+        let clashes = |name: &str| {
+            word::is_reserved(name)
+                || types.contains(name)
+                || globals.contains(name)
+                || surroundings.contains(name)
+        };
         let mut taken: HashSet<String> = locals.iter().map(|&id| tree[id].name.clone()).collect();
         let mut counts: HashMap<&str, usize> = HashMap::new();
         for &id in &locals {

@@ -45,19 +45,21 @@ const MEMBERS: [(&str, &str, Input, u32, u32); 10] = [
     ("iSampleRate", "f32", Input::SampleRate, 192, 4),
 ];
 
-// What the hosts declare.
+// What the hosts declare, and what stands for them (`host.rs`).
 const PLAIN_WORDS: &str = "Inputs inputs main gl_FragCoord iChannel0 iChannel1 iChannel2 iChannel3 iChannel0_sampler \
     iChannel1_sampler iChannel2_sampler iChannel3_sampler";
 const WGPU_SHADERTOY_WORDS: &str = "Varyings ShadertoyInput input main shader_main gl_FragCoord i_mouse i_date i_resolution i_time \
     i_channel_resolution i_time_delta i_frame i_framerate i_channel0 i_channel1 i_channel2 \
-    i_channel3 sampler0 sampler1 sampler2 sampler3";
+    i_channel3 sampler0 sampler1 sampler2 sampler3 ToyproofFrame toyproof_frame";
 const COMPUTE_TOYS_WORDS: &str = "main_image gl_FragCoord screen time mouse custom dispatch channel0 channel1 pass_in pass_out \
     nearest bilinear trilinear nearest_repeat bilinear_repeat trilinear_repeat Time Mouse Custom \
     DispatchInfo keyDown assert passStore passLoad passSampleLevelBilinearRepeat int uint float \
     int2 int3 int4 uint2 uint3 uint4 float2 float3 float4 bool2 bool3 bool4 float2x2 float3x3 \
-    float4x4";
+    float4x4 data Data ToyproofFrame toyproof_frame toyproof_color \
+    toyproof_size";
 const BEVY_WORDS: &str = "view globals fragment VertexOutput gl_FragCoord iChannel0 iChannel1 iChannel2 iChannel3 \
-    iChannel0_sampler iChannel1_sampler iChannel2_sampler iChannel3_sampler";
+    iChannel0_sampler iChannel1_sampler iChannel2_sampler iChannel3_sampler View Globals main ToyproofFrame \
+    toyproof_frame";
 
 impl Style {
     /// Every style.
