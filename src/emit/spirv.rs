@@ -1,7 +1,8 @@
-//! SPIR-V, and the decorations that hold a driver to the arithmetic as written.
+//! SPIR-V, and what holds a driver to the arithmetic as written.
 
 mod link;
 mod spell;
+mod strict;
 
 use std::collections::{HashMap, HashSet};
 
@@ -12,6 +13,7 @@ use naga::back::spv::{BindingInfo, Options, PipelineOptions, WriterFlags, write_
 use super::{BOUNDS, ENTRY_POINT, bindings};
 use crate::module::ValidModule;
 pub use spell::spelled;
+pub use strict::strict;
 
 /// naga's words: names kept, no flipping of coordinates, indices clamped, loops as they are.
 ///
@@ -49,59 +51,6 @@ pub fn bytes(words: &[u32]) -> Vec<u8> {
 }
 
 const HEADER_WORDS: usize = 5;
-
-/// The same module with `NoContraction` on every float arithmetic result and on every extended instruction
-/// with a float result, so that the driver neither fuses nor rearranges them. Only decorations are added.
-#[must_use]
-pub fn strict(words: &[u32]) -> Vec<u32> {
-    let mut floats = HashSet::new();
-    let mut arithmetic = Vec::new();
-    let mut first_type = words.len();
-    for (at, instruction) in instructions(words) {
-        let Some(op) = opcode(instruction) else { continue };
-        // Decorations stand before the first type or constant.
-        if is_type(op) || op == Op::ConstantTrue || op == Op::Constant {
-            first_type = first_type.min(at);
-        }
-        match op {
-            Op::TypeFloat => {
-                floats.insert(instruction[1]);
-            }
-            Op::TypeVector | Op::TypeMatrix if floats.contains(&instruction[2]) => {
-                floats.insert(instruction[1]);
-            }
-            Op::ExtInst if floats.contains(&instruction[1]) => arithmetic.push(instruction[2]),
-            Op::FNegate
-            | Op::FAdd
-            | Op::FSub
-            | Op::FMul
-            | Op::FDiv
-            | Op::FRem
-            | Op::FMod
-            | Op::VectorTimesScalar
-            | Op::MatrixTimesScalar
-            | Op::VectorTimesMatrix
-            | Op::MatrixTimesVector
-            | Op::MatrixTimesMatrix
-            | Op::OuterProduct
-            | Op::Dot => arithmetic.push(instruction[2]),
-            _ => {}
-        }
-    }
-    let decorations = arithmetic.into_iter().flat_map(|result| {
-        [
-            3 << 16 | Op::Decorate as u32,
-            result,
-            Decoration::NoContraction as u32,
-        ]
-    });
-    let (head, tail) = words.split_at(first_type);
-    head.iter()
-        .copied()
-        .chain(decorations)
-        .chain(tail.iter().copied())
-        .collect()
-}
 
 /// The same module with its uniform blocks as storage buffers that nobody writes, laid out as before.
 ///
@@ -248,16 +197,6 @@ mod tests {
     use crate::glsl::{Options as Language, check, lower};
     use crate::source::{File, Files};
 
-    const SHADER: &str = "void mainImage(out vec4 c, in vec2 p) {
-        int i = int(p.x) * 3;
-        mat2 m = mat2(p, p);
-        c = vec4(m * p, dot(p, p) - 0.5, sin(p.x) / float(i));
-    }";
-
-    fn plain() -> Vec<u32> {
-        words_of(SHADER)
-    }
-
     fn words_of(shader: &str) -> Vec<u32> {
         let mut files = Files::default();
         let file = files.add(File::new("s", shader));
@@ -265,30 +204,9 @@ mod tests {
         words(&ValidModule::parse(&lower(&checked)).unwrap()).unwrap()
     }
 
-    fn is_no_contraction(instruction: &[u32]) -> bool {
-        instruction.len() == 3
-            && opcode(instruction) == Some(Op::Decorate)
-            && instruction[2] == Decoration::NoContraction as u32
-    }
-
-    #[test]
-    fn only_decorations_are_added() {
-        let plain = plain();
-        let strict = strict(&plain);
-        let kept: Vec<u32> = instructions(&strict)
-            .filter(|(_, instruction)| !is_no_contraction(instruction))
-            .flat_map(|(_, instruction)| instruction.to_vec())
-            .collect();
-        assert_eq!(kept, plain[HEADER_WORDS..]);
-        assert_eq!(strict[..HEADER_WORDS], plain[..HEADER_WORDS]);
-    }
-
     #[test]
     fn a_block_becomes_one_that_is_stored_and_only_read() {
-        let (plain, shader) = (
-            plain(),
-            "void mainImage(out vec4 c, in vec2 p) { c = vec4(iTime); }",
-        );
+        let shader = "void mainImage(out vec4 c, in vec2 p) { c = vec4(iTime); }";
         let uniform = words_of(shader);
         let stored = with_blocks_stored(&uniform);
         let decorated = |words: &[u32], decoration: Decoration| -> Vec<u32> {
@@ -305,30 +223,7 @@ mod tests {
         let binding = decorated(&stored, Decoration::Binding);
         assert_eq!(decorated(&stored, Decoration::NonWritable), binding);
         assert_eq!(stored.len(), uniform.len() + 3, "nothing else");
+        let plain = words_of("void mainImage(out vec4 c, in vec2 p) { c = vec4(p, p); }");
         assert_eq!(with_blocks_stored(&plain), plain, "a shader that reads no block");
-    }
-
-    #[test]
-    fn every_float_operation_is_decorated_and_no_integer_one() {
-        let strict = strict(&plain());
-        let decorated: HashSet<u32> = instructions(&strict)
-            .filter(|(_, instruction)| is_no_contraction(instruction))
-            .map(|(_, instruction)| instruction[1])
-            .collect();
-        let results = |op: Op| -> Vec<u32> {
-            instructions(&strict)
-                .filter(|(_, instruction)| opcode(instruction) == Some(op))
-                .map(|(_, instruction)| instruction[2])
-                .collect()
-        };
-        // m · p, the dot product, the subtraction, sin and the quotient.
-        for op in [Op::MatrixTimesVector, Op::Dot, Op::FSub, Op::ExtInst, Op::FDiv] {
-            let results = results(op);
-            assert!(
-                !results.is_empty() && results.iter().all(|id| decorated.contains(id)),
-                "{op:?}"
-            );
-        }
-        assert!(results(Op::IMul).iter().all(|id| !decorated.contains(id)) && !results(Op::IMul).is_empty());
     }
 }

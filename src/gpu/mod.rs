@@ -42,7 +42,8 @@ pub enum On {
 /// How far the driver may rearrange arithmetic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum FloatMode {
-    /// As written: every operation carries `NoContraction`, and `sin` and the like are spelled out.
+    /// As written: operations carry `NoContraction`, derivatives are those of a pixel's own row and column, and `sin` and the like are
+    /// spelled out.
     #[default]
     Strict,
     /// As the driver likes.

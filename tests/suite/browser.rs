@@ -15,12 +15,12 @@ use toyproof::emit::{Target, emit};
 use toyproof::frame::Frame;
 use toyproof::glsl::wgsl::{Style, wgsl};
 use toyproof::glsl::{Options, check, lower};
-use toyproof::gpu::{FloatMode, On, Worker};
+use toyproof::gpu::{FloatMode, Worker};
 use toyproof::module::ValidModule;
 use toyproof::source::{File, Files};
 
 use crate::page::devtools::Page;
-use crate::support::{RUNGS, setting};
+use crate::support::{RUNGS, setting, swiftshader};
 
 const SIZE: [u32; 2] = [64, 36];
 /// `iTime` and `iFrame`.
@@ -141,23 +141,12 @@ fn judge(browser: &mut Chromium, worker: &mut Worker, shader: &str) -> (Outcome,
 
 /// A browser and a worker on the driver that it brings; none where there is no Chromium.
 fn both() -> Option<(Chromium, Worker)> {
-    let manifest = [
-        "/usr/lib/chromium",
-        "/usr/lib/chromium-browser",
-        "/usr/lib64/chromium-browser",
-        "/opt/google/chrome",
-    ]
-    .map(|folder| Path::new(folder).join("vk_swiftshader_icd.json"))
-    .into_iter()
-    .find(|path| path.exists());
-    let Some((program, manifest)) = find().zip(manifest) else {
-        eprintln!("skipped: no Chromium with SwiftShader here");
+    let worker = swiftshader()?;
+    let Some(program) = find() else {
+        eprintln!("skipped: no Chromium here");
         return None;
     };
-    let toyproof = PathBuf::from(env!("CARGO_BIN_EXE_toyproof"));
-    let on = On::Named("SwiftShader".into());
-    let worker = Worker::new(toyproof, vec!["worker".into()], on, Duration::from_secs(60));
-    Some((Chromium::new(program, PATIENCE), worker.with_manifest(manifest)))
+    Some((Chromium::new(program, PATIENCE), worker))
 }
 
 #[test]

@@ -64,6 +64,32 @@ fn the_course_has_the_same_bits_on_the_cpu() {
     }
 }
 
+/// What drivers have been seen to differ in though it was to be strict.
+static DIFFERED: &[&str] = &[
+    // A derivative of a quad's first row and column, or of the pixel's own.
+    "c = vec4(dFdx(p.x * p.y), dFdy(p.x * p.y), fwidth(p.x * p.y * p.y), 1.0);",
+    // Exact functions of what is constant after propagation, in one branch of two.
+    "vec3 g = vec3(14, 63, 240) / 255.0; float m = max(g.x, g.z); c = vec4(m == 0.0 ? 0.25 : 0.5 / m);",
+    "vec3 g = vec3(14, 63, 240) / 255.0; float m = min(g.x, g.z); c = vec4(m == 0.0 ? 0.25 : 0.5 / m);",
+    "vec3 g = vec3(14, 63, 240) / 255.0; float m = sqrt(g.x); c = vec4(m == 0.0 ? 0.25 : 0.5 / m);",
+];
+
+#[test]
+fn drivers_agree_in_what_they_differed_in() {
+    let frame = Frame {
+        size: [16, 8],
+        ..Frame::default()
+    };
+    for mut worker in [support::worker(), support::swiftshader()].into_iter().flatten() {
+        for body in DIFFERED {
+            let shader = format!("void mainImage(out vec4 c, in vec2 p) {{ {body} }}");
+            let (painted, drawn) = both(&mut worker, &checked(&shader), &frame);
+            let (count, first) = differences(&painted.painting.image(), &drawn, |_, _| false);
+            assert_eq!(count, 0, "{body}: {first}");
+        }
+    }
+}
+
 /// `TOYPROOF_CORPUS=DIR cargo test --release --test suite -- --ignored corpus --nocapture`: every shader below a folder that reads no
 /// channel, at two times; `TOYPROOF_CORPUS_LIMIT` takes so many of them.
 #[test]

@@ -2,7 +2,7 @@
 
 use std::env;
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::time::Duration;
 
@@ -144,6 +144,27 @@ pub(crate) fn worker() -> Option<Worker> {
         }
         Err(failure) => panic!("{failure}"),
     }
+}
+
+/// A worker on `SwiftShader`, the software driver that Chromium brings, or none where there is no Chromium.
+pub(crate) fn swiftshader() -> Option<Worker> {
+    let manifest = [
+        "/usr/lib/chromium",
+        "/usr/lib/chromium-browser",
+        "/usr/lib64/chromium-browser",
+        "/opt/google/chrome",
+    ]
+    .map(|folder| Path::new(folder).join("vk_swiftshader_icd.json"))
+    .into_iter()
+    .find(|path| path.exists());
+    let Some(manifest) = manifest else {
+        eprintln!("skipped: no Chromium with SwiftShader here");
+        return None;
+    };
+    let program = PathBuf::from(env!("CARGO_BIN_EXE_toyproof"));
+    let on = On::Named("SwiftShader".into());
+    let worker = Worker::new(program, vec!["worker".into()], on, Duration::from_secs(60));
+    Some(worker.with_manifest(manifest))
 }
 
 /// A rung's scene.
