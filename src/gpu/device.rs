@@ -8,6 +8,7 @@ use wgpu::{Adapter, Backends, DeviceType, Features, Instance, InstanceDescriptor
 
 use super::pipeline::Block;
 use super::{Failure, FloatMode, INSTALL_HINT, On};
+use crate::emit::spirv;
 
 /// What is worth knowing of a Vulkan driver.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -195,11 +196,11 @@ impl Device {
         format!("{}, {}", info.name, version(&info))
     }
 
-    /// How a program sees the frame's block: Mesa's compiler must not take what strict ones spell out for made of uniforms
-    /// ([`crate::emit::spirv::with_blocks_stored`]).
-    pub(super) fn block_of(&self, float: FloatMode) -> Block {
+    /// How a program of these words sees the frame's block: Mesa's compiler must not take what strict ones spell out for made of uniforms
+    /// ([`spirv::with_blocks_stored`]).
+    pub(super) fn block_of(&self, words: &[u32], float: FloatMode) -> Block {
         match float {
-            FloatMode::Strict if self.is_lavapipe() => Block::Stored,
+            FloatMode::Strict if self.is_lavapipe() && !spirv::takes_derivatives(words) => Block::Stored,
             _ => Block::Uniform,
         }
     }

@@ -164,7 +164,7 @@ impl Device {
     /// The pipeline; the driver may do its work when it first draws.
     pub(super) fn compile(&self, program: &Program) -> Result<Compiled, Failure> {
         self.checked(|| {
-            let block = self.block_of(program.float);
+            let block = self.block_of(&program.words, program.float);
             let layout = Layout::new(&self.gpu, self.filterable, program.channels, block);
             let pipeline = match block {
                 Block::Uniform => layout.pipeline(&self.gpu, &program.words),
