@@ -25,7 +25,7 @@ pub(super) const BLOCK: [(&str, &str); 10] = [
 ];
 
 /// What the shader's output, its colour in `main` and its block are called. naga takes a name for a type wherever there is such a type.
-const SURROUNDINGS: [&str; 3] = ["toyproof_colour", "toyproof_result", "ToyproofFrame"];
+const SURROUNDINGS: [&str; 3] = ["toyproof_colour", "toyproof_painted", "ToyproofFrame"];
 
 /// How names begin that lowering gives.
 const OWN: &str = "toyproof_";

@@ -67,9 +67,9 @@ impl Printer<'_> {
         self.plain(&format!(
             "
 void main() {{
-{begin}    vec4 toyproof_result = vec4(0.0, 0.0, 0.0, 1.0);
-    {main_image}(toyproof_result, gl_FragCoord.xy);
-    toyproof_colour = vec4(toyproof_result.xyz, 1.0);
+{begin}    vec4 toyproof_painted = vec4(0.0, 0.0, 0.0, 1.0);
+    {main_image}(toyproof_painted, gl_FragCoord.xy);
+    toyproof_colour = vec4(toyproof_painted.xyz, 1.0);
 }}
 "
         ));
