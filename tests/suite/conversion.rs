@@ -245,6 +245,12 @@ void mainImage(out vec4 c, in vec2 p) {
     ivec2 k = ivec2(p) >> 1 & 7;
     c = vec4(d + walk(uv.y), lessThan(uv, v.xy).x ? q.y : seed, dot(r * uv, pair.a) + pair.b[1], 1.0);
     c.rg += uv.x > 0.3 ? vec2(k) / 8.0 : vec2(pick(n), ~n) * 0.01;
+    uvec2 bits = uvec2(p);
+    bits ^= uint(n);
+    bits &= 63u;
+    vec2 steps = p;
+    float last = (--steps.yx).x + (steps.yx++).y;
+    c.g += float(bits.x | bits.y) * 0.01 + (last + steps.x) * 0.001;
     c.b = v.xy == uv ? 1.0 : (c.b += 0.25, c.b) + atan(uv.y, uv.x - 0.5) + float(uint(p.x) << 3u);
 }";
 

@@ -59,7 +59,10 @@ impl Writer<'_> {
         };
         let is_matrix = matches!(types.0, Type::Matrix { .. }) || matches!(types.1, Type::Matrix { .. });
         let shifts = matches!(op, BinaryOp::ShiftLeft | BinaryOp::ShiftRight);
-        if is_swizzle || is_matrix || shifts || self.hoists(value) {
+        let of_bits = matches!(op, BinaryOp::BitAnd | BinaryOp::BitOr | BinaryOp::BitXor);
+        // WGSL shifts by unsigned numbers, and takes no bits of a vector and a number.
+        let needs_types = shifts || (of_bits && types.0 != types.1);
+        if is_swizzle || is_matrix || needs_types || self.hoists(value) {
             // GLSL leaves open when the target is read; WebGL's translators read it last.
             let value = self.value(value)?;
             let before = self.value(target)?;

@@ -519,6 +519,13 @@ impl Writer<'_> {
                 if matches!(ty, Type::Matrix { .. }) {
                     return Err(Unprintable("a matrix that is counted up"));
                 }
+                if matches!(self.draft.tree[target].kind, ExprKind::Swizzle { .. }) {
+                    let after = Text {
+                        words: format!("{target_text} {sign} {one}"),
+                        class: Class::Sum,
+                    };
+                    return self.set(target, &after);
+                }
                 self.line(&format!("{target_text} {sign}= {one};"));
             }
         }
