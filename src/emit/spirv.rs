@@ -2,7 +2,6 @@
 
 mod link;
 mod spell;
-mod stored;
 mod strict;
 
 use ::spirv::Op;
@@ -12,7 +11,6 @@ use naga::back::spv::{BindingInfo, Options, PipelineOptions, WriterFlags, write_
 use super::{BOUNDS, ENTRY_POINT, bindings};
 use crate::module::ValidModule;
 pub use spell::spelled;
-pub use stored::{takes_derivatives, with_blocks_stored};
 pub use strict::strict;
 
 /// naga's words: names kept, no flipping of coordinates, indices clamped, loops as they are.

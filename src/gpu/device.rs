@@ -6,9 +6,7 @@ use std::sync::Mutex;
 use serde::{Deserialize, Serialize};
 use wgpu::{Adapter, Backends, DeviceType, Features, Instance, InstanceDescriptor};
 
-use super::pipeline::Block;
-use super::{Failure, FloatMode, INSTALL_HINT, On};
-use crate::emit::spirv;
+use super::{Failure, INSTALL_HINT, On};
 
 /// What is worth knowing of a Vulkan driver.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -196,21 +194,8 @@ impl Device {
         format!("{}, {}", info.name, version(&info))
     }
 
-    /// How a program of these words sees the frame's block: Mesa's compiler must not take what strict ones spell out for made of uniforms
-    /// ([`spirv::with_blocks_stored`]).
-    pub(super) fn block_of(&self, words: &[u32], float: FloatMode) -> Block {
-        match float {
-            FloatMode::Strict if self.is_lavapipe() && !spirv::takes_derivatives(words) => Block::Stored,
-            _ => Block::Uniform,
-        }
-    }
-
     /// Whether this driver is of a kind that is known to end loops by force: some versions of Mesa's software rasteriser are.
     pub(super) fn may_end_loops(&self) -> bool {
-        self.is_lavapipe()
-    }
-
-    fn is_lavapipe(&self) -> bool {
         self.adapter.get_info().name.contains(LAVAPIPE)
     }
 

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use wgpu::{BindGroup, Buffer, BufferUsages, PollType, RenderPipeline, Texture, TextureUsages};
 
 use super::device::{Device, LoopCap, PROBED_ITERATIONS};
-use super::pipeline::{Block, FORMAT, Layout};
+use super::pipeline::{FORMAT, Layout};
 use super::{Failure, FloatMode, On};
 use crate::frame::Frame;
 use crate::glsl::{self, Lowered};
@@ -72,7 +72,6 @@ pub(super) struct Scene {
 pub(super) struct Program {
     words: Vec<u32>,
     channels: [Shape; 4],
-    float: FloatMode,
 }
 
 impl Program {
@@ -82,7 +81,6 @@ impl Program {
         Ok(Self {
             words: held_to(words, float),
             channels: module.channels(),
-            float,
         })
     }
 
@@ -91,7 +89,6 @@ impl Program {
         Self {
             words: held_to(words, float),
             channels,
-            float,
         }
     }
 
@@ -164,12 +161,8 @@ impl Device {
     /// The pipeline; the driver may do its work when it first draws.
     pub(super) fn compile(&self, program: &Program) -> Result<Compiled, Failure> {
         self.checked(|| {
-            let block = self.block_of(&program.words, program.float);
-            let layout = Layout::new(&self.gpu, self.filterable, program.channels, block);
-            let pipeline = match block {
-                Block::Uniform => layout.pipeline(&self.gpu, &program.words),
-                Block::Stored => layout.pipeline(&self.gpu, &emit::spirv::with_blocks_stored(&program.words)),
-            };
+            let layout = Layout::new(&self.gpu, self.filterable, program.channels);
+            let pipeline = layout.pipeline(&self.gpu, &program.words);
             Ok(Compiled { layout, pipeline })
         })
     }

@@ -24,15 +24,6 @@ const VERTICES: &str = "
     return vec4f(f32(corner & 1u) * 4.0 - 1.0 + outside, f32(corner >> 1u) * 4.0 - 1.0, 0.0, 1.0);
 }";
 
-/// How a program sees the frame's block.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Block {
-    /// As a uniform buffer, as everywhere else.
-    Uniform,
-    /// As a storage buffer that it only reads.
-    Stored,
-}
-
 /// The bindings of a program.
 #[derive(Debug)]
 pub(super) struct Layout {
@@ -45,12 +36,9 @@ pub(super) struct Layout {
 
 impl Layout {
     /// All nine bindings of the contract; wgpu numbers them anew without gaps, so none may be left out.
-    pub(super) fn new(device: &Device, filterable: bool, channels: [Shape; 4], block: Block) -> Self {
+    pub(super) fn new(device: &Device, filterable: bool, channels: [Shape; 4]) -> Self {
         let block = BindingType::Buffer {
-            ty: match block {
-                Block::Uniform => wgpu::BufferBindingType::Uniform,
-                Block::Stored => wgpu::BufferBindingType::Storage { read_only: true },
-            },
+            ty: wgpu::BufferBindingType::Uniform,
             has_dynamic_offset: false,
             min_binding_size: NonZeroU64::new(BLOCK_BYTES as u64),
         };
@@ -125,7 +113,7 @@ impl Layout {
 
     /// The frame's block and channels, bound.
     pub(super) fn bind(&self, device: &Device, queue: &wgpu::Queue, frame: &Frame) -> BindGroup {
-        let block = buffer(device, queue, &frame.block());
+        let block = uniform(device, queue, &frame.block());
         let filter = if self.filterable {
             wgpu::FilterMode::Linear
         } else {
@@ -185,11 +173,11 @@ fn module(device: &Device, words: &[u32]) -> ShaderModule {
     unsafe { device.create_shader_module_passthrough(descriptor) }
 }
 
-fn buffer(device: &Device, queue: &wgpu::Queue, bytes: &[u8]) -> Buffer {
+fn uniform(device: &Device, queue: &wgpu::Queue, bytes: &[u8]) -> Buffer {
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
         size: bytes.len() as u64,
-        usage: BufferUsages::UNIFORM | BufferUsages::STORAGE | BufferUsages::COPY_DST,
+        usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST,
         mapped_at_creation: false,
     });
     queue.write_buffer(&buffer, 0, bytes);

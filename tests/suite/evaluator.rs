@@ -66,10 +66,12 @@ fn the_course_has_the_same_bits_on_the_cpu() {
 
 /// What drivers have been seen to differ in though it was to be strict.
 static DIFFERED: &[&str] = &[
-    // Derivatives where a quad lies half in each of the two triangles that lavapipe's clipping makes of ours.
+    // Derivatives where a quad lies half in each of two triangles, as which lavapipe fills a frame: the other half must know the frame's block as well.
     "c = vec4(dFdx(iResolution.x), dFdy(iResolution.y), fwidth(sin(iTime) * p.x), 1.0);",
     // A derivative of a quad's first row and column, or of the pixel's own.
     "c = vec4(dFdx(p.x * p.y), dFdy(p.x * p.y), fwidth(p.x * p.y * p.y), 1.0);",
+    // What was loaded in a loop that some pixels have left before.
+    "float k = 0.; for (int i = 0; i < 9; i++) { k += iResolution.x; if (k > p.x * 9.) break; } c = vec4(k, k / iResolution.x, iTime, 1.0);",
     // Exact functions of what is constant after propagation, in one branch of two.
     "vec3 g = vec3(14, 63, 240) / 255.0; float m = max(g.x, g.z); c = vec4(m == 0.0 ? 0.25 : 0.5 / m);",
     "vec3 g = vec3(14, 63, 240) / 255.0; float m = min(g.x, g.z); c = vec4(m == 0.0 ? 0.25 : 0.5 / m);",
