@@ -59,35 +59,3 @@ fn strict_shaders_compute_the_same_bits_as_rust() {
         assert!(differing_pixels(&draw(&mut worker, FloatMode::Fast)) > 0);
     }
 }
-
-#[test]
-fn numbers_made_of_uniforms_by_long_ways_are_compiled() {
-    let Some(mut worker) = crate::support::worker() else {
-        return;
-    };
-    // Mesa would walk every path from the step of the loop to iTime, and there are more than it comes to an end with.
-    let shader = "void mainImage(out vec4 c, in vec2 p) {
-        float d = 0.0;
-        for (int i = 0; i < 100; i++) {
-            d += 0.25 + 0.05 * (sin(8.0 * cos(iTime)) + p.x);
-            if (d > 40.0) break;
-        }
-        c = vec4(d, iTime, 0.0, 1.0);
-    }";
-    let mut files = Files::default();
-    let file = files.add(File::new("s", shader));
-    let checked = check(&files, file, &Options::default()).unwrap();
-    let frame = Frame {
-        size: [4, 4],
-        time: 1.25,
-        ..Frame::default()
-    };
-    let drawn = worker.draw(FloatMode::Strict.lower(&checked), frame, FloatMode::Strict);
-    let picture = drawn.unwrap().image();
-    assert!(
-        picture
-            .pixels()
-            .iter()
-            .all(|pixel| pixel[0] > 20.0 && pixel[1] == 1.25)
-    );
-}
