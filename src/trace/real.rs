@@ -66,6 +66,9 @@ pub trait Vector<T>:
     /// From components.
     fn new(x: T, y: T, z: T) -> Self;
 
+    /// From components.
+    fn from_array(components: [T; 3]) -> Self;
+
     /// The components.
     fn to_array(self) -> [T; 3];
 
@@ -155,6 +158,11 @@ macro_rules! real {
             #[inline]
             fn new(x: $scalar, y: $scalar, z: $scalar) -> Self {
                 Self::new(x, y, z)
+            }
+
+            #[inline]
+            fn from_array(components: [$scalar; 3]) -> Self {
+                Self::from_array(components)
             }
 
             #[inline]

@@ -63,10 +63,9 @@ impl<T: Real> Tracer<T> {
     /// If it starts on a surface, that one is only met elsewhere.
     #[must_use]
     pub fn meet(&self, origin: [T; 3], direction: [T; 3], from: Option<usize>) -> Option<(T, usize)> {
-        let vector = |[x, y, z]: [T; 3]| T::Vec3::new(x, y, z);
         let ray = Ray {
-            origin: vector(origin),
-            direction: vector(direction),
+            origin: T::Vec3::from_array(origin),
+            direction: T::Vec3::from_array(direction),
             from,
         };
         self.nearest(&ray).get()

@@ -412,11 +412,10 @@ fn bits(image: &Image) -> Vec<[u32; 4]> {
         .collect()
 }
 
-fn same_bits_however_it_is_traced<T: Real>(name: &str) {
-    let mut scene = rung(name, [45, 27]);
-    scene.film.samples = scene.film.samples.min(2);
+/// Of a scene of 45 by 27 pixels.
+fn same_bits_however_it_is_traced<T: Real>(name: &str, scene: &Scene) {
     let tracers: Vec<_> = Level::all()
-        .map(|level| Tracer::<T>::with_level(&scene, Moment::default(), level, None))
+        .map(|level| Tracer::<T>::with_level(scene, Moment::default(), level, None))
         .collect();
     let expected = bits(&tracers[0].picture(|| ()));
     for tracer in &tracers {
@@ -446,12 +445,60 @@ fn same_bits_however_it_is_traced<T: Real>(name: &str) {
     }
 }
 
+/// Mirrors and glass of every shape, which leave and meet themselves and each other, and more samples than cells in a row.
+const MIXED: &str = r#"
+ambient = [0.1, 0.1, 0.1]
+[film]
+size = [45, 27]
+max_depth = 6
+samples = 6
+sampler = "stratified"
+[background]
+bottom = [0.9, 0.8, 0.7]
+top = [0.2, 0.4, 0.8]
+[[light]]
+position = [-3.0, 4.0, 1.0]
+color = [0.5, 0.5, 0.5]
+[[light]]
+position = [2.0, 5.0, -4.0]
+color = [0.4, 0.3, 0.3]
+radius = 0.5
+[[plane]]
+point = [0.0, -1.0, 0.0]
+normal = [0.0, 1.0, 0.0]
+material = { model = "mirror", color = [0.8, 0.9, 0.9] }
+[[ellipsoid]]
+center = [0.9, 0.0, -4.0]
+radii = [0.5, 0.8, 0.4]
+material = { model = "glass", color = [1.0, 0.9, 1.0], ior = 1.5, fresnel = "schlick" }
+[[sphere]]
+center = [-0.8, -0.1, -4.0]
+radius = 0.9
+material = { model = "glass", color = [1.0, 1.0, 1.0], ior = 1.5, fresnel = "exact" }
+[[sphere]]
+center = [-0.8, -0.1, -4.0]
+radius = 0.4
+material = { model = "mirror", color = [0.9, 0.9, 0.9] }
+[[sphere]]
+center = [0.3, 0.6, -6.0]
+radius = 0.9
+material = { model = "glossy", color = [0.9, 0.3, 0.2], exponent = 20.0 }
+"#;
+
 #[test]
 fn every_instruction_set_and_number_of_threads_paints_the_same_bits() {
-    for rung in 1..=15 {
-        let name = format!("{rung:02}");
-        same_bits_however_it_is_traced::<f32>(&name);
-        same_bits_however_it_is_traced::<f64>(&name);
+    let mut scenes: Vec<_> = (1..=15)
+        .map(|rung| {
+            let name = format!("{rung:02}");
+            let mut scene = self::rung(&name, [45, 27]);
+            scene.film.samples = scene.film.samples.min(2);
+            (name, scene)
+        })
+        .collect();
+    scenes.push(("mixed".to_owned(), scene(MIXED)));
+    for (name, scene) in &scenes {
+        same_bits_however_it_is_traced::<f32>(name, scene);
+        same_bits_however_it_is_traced::<f64>(name, scene);
     }
 }
 

@@ -209,4 +209,29 @@ mod tests {
             assert!(ones.into_iter().eq(0..count));
         }
     }
+
+    #[test]
+    fn the_first_pairs_of_many_pixels_are_those_of_each() {
+        let pixels = [
+            std::array::from_fn(|at| at as u32 % 8),
+            std::array::from_fn(|at| at as u32 / 8),
+        ];
+        for (count, level) in [1u32, 6, 7, 16, 37]
+            .into_iter()
+            .flat_map(|count| Level::all().map(move |level| (count, level)))
+        {
+            for index in [0, count / 2, count - 1] {
+                let (mut strata, pairs) = Strata::first_pairs(level, [index, count, 3], &pixels);
+                for at in 0..PACKET {
+                    let mut alone = Strata::new(index, count, seed([pixels[0][at], pixels[1][at]], 3));
+                    assert_eq!(
+                        [pairs[0][at], pairs[1][at]],
+                        alone.pair(),
+                        "{count} {index} {level:?}"
+                    );
+                    assert_eq!(strata[at].number(), alone.number(), "what is drawn next");
+                }
+            }
+        }
+    }
 }

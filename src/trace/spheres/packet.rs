@@ -73,11 +73,10 @@ impl<T: Real> Packet<T> {
     /// One of its rays.
     #[inline]
     pub(in super::super) fn ray(&self, at: usize) -> Ray<T> {
-        let vector = |[x, y, z]: [T; 3]| T::Vec3::new(x, y, z);
-        let of = |components: &[Each<T>; 3]| vector([0, 1, 2].map(|axis| components[axis][at]));
+        let of = |components: &[Each<T>; 3]| T::Vec3::from_array([0, 1, 2].map(|axis| components[axis][at]));
         Ray {
             origin: match &self.origins {
-                Origins::One(origin) => vector(*origin),
+                Origins::One(origin) => T::Vec3::from_array(*origin),
                 Origins::Each(origins) => of(origins),
             },
             direction: of(&self.directions),

@@ -106,6 +106,17 @@ fn of<T: Real>(found: &Found<T>, ray: usize) -> Option<(T, u32)> {
     found.of(ray).get().map(|(t, surface)| (t, surface as u32))
 }
 
+fn numbered<T: Real>(described: &[(DVec3, f64)], number: impl Fn(u32) -> u32) -> Vec<Numbered<T>> {
+    (0..)
+        .zip(described)
+        .map(|(at, &(center, radius))| Numbered {
+            center: rounded(center),
+            radius: T::from_f64(radius),
+            number: number(at),
+        })
+        .collect()
+}
+
 /// How many rays were compared, and how many of them met something. The scene's size has an exponent between those, the rays
 /// start up to ten to the `away` times that from its middle.
 fn compare<T: Real>(seeds: u32, exponents: f64, away: f64) -> [u32; 2] {
@@ -115,15 +126,8 @@ fn compare<T: Real>(seeds: u32, exponents: f64, away: f64) -> [u32; 2] {
         let scale = 10f64.powf(random.between(-exponents, exponents));
         let count = [1, 3, 8, 9, 20, 150][random.below(6) as usize];
         let described = scene(random, count, scale);
-        let spheres: Vec<_> = (0..)
-            .zip(&described)
-            .map(|(number, &(center, radius))| Numbered {
-                center: rounded(center),
-                radius: T::from_f64(radius),
-                // Not in the order of the places.
-                number: number ^ 1,
-            })
-            .collect();
+        // Not in the order of the places.
+        let spheres = numbered::<T>(&described, |number| number ^ 1);
         let mut sorted = spheres.clone();
         sorted.sort_by_key(|sphere| sphere.number);
         let distance = scale * 10f64.powf(random.between(0.0, away));
@@ -213,24 +217,16 @@ fn compare_secondary<T: Real>(seeds: u32, exponents: f64) -> [u32; 2] {
         let scale = 10f64.powf(random.between(-exponents, exponents));
         let count = [1, 3, 8, 9, 20, 100][random.below(6) as usize];
         let described = scene(random, count, scale);
-        let spheres: Vec<_> = (0..)
-            .zip(&described)
-            .map(|(number, &(center, radius))| Numbered {
-                center: rounded(center),
-                radius: T::from_f64(radius),
-                number,
-            })
-            .collect();
+        let spheres = numbered::<T>(&described, |number| number);
         let t_min = T::from_f64([0.0, scale * random.between(0.0, 1.0)][random.below(2) as usize]);
-        let vector = |[x, y, z]: [T; 3]| T::Vec3::new(x, y, z);
         let rays: Vec<(Ray<T>, Option<u32>)> = (0..=random.below(PACKET as u32))
             .map(|at| {
                 let own = random.below(count);
                 let (center, radius) = described[own as usize];
                 let start = center + random.direction() * radius;
                 let ray = Ray {
-                    origin: vector(rounded(start)),
-                    direction: vector(toward::<T>(start, target(random, &described, start))),
+                    origin: T::Vec3::from_array(rounded(start)),
+                    direction: T::Vec3::from_array(toward::<T>(start, target(random, &described, start))),
                     from: None,
                 };
                 (ray, (at % 4 != 3).then_some(own))

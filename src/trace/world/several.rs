@@ -109,10 +109,9 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         if self.shapes[surface].sphere().is_none() {
             return self.hit(&walk.branch.ray, walk.first);
         }
-        let vector = |[x, y, z]: [T; 3]| T::Vec3::new(x, y, z);
         Some(Hit {
-            point: vector(points.get(lane)),
-            normal: vector(normals.get(lane)),
+            point: T::Vec3::from_array(points.get(lane)),
+            normal: T::Vec3::from_array(normals.get(lane)),
             surface,
         })
     }

@@ -270,14 +270,13 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
             ways: &mut ways,
         };
         T::run(self.level(from.len()), toward);
-        let vector = |[x, y, z]: [T; 3]| T::Vec3::new(x, y, z);
         for (at, point) in from.iter().enumerate() {
             let ray = Ray {
-                origin: vector(ways.rays[0].get(at)),
-                direction: vector(ways.rays[1].get(at)),
+                origin: T::Vec3::from_array(ways.rays[0].get(at)),
+                direction: T::Vec3::from_array(ways.rays[1].get(at)),
                 from: Some(point.hit.surface),
             };
-            let direction = vector(ways.directions.get(at));
+            let direction = T::Vec3::from_array(ways.directions.get(at));
             take(at, direction, ways.cosines[at], (ray, ways.distances[at]));
         }
     }
