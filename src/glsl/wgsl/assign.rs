@@ -1,8 +1,8 @@
 //! What expressions do: assignments, steps, calls. WGSL assigns to no swizzle of several components.
 
-use super::super::tree::{BinaryOp, ExprId, ExprKind, Swizzle, Type, VariableKind};
+use super::super::tree::{BinaryOp, ExprId, ExprKind, Scalar, StepOp, Swizzle, Type, VariableKind};
 use super::Unprintable;
-use super::expression::Text;
+use super::text::{Class, Text};
 use super::writer::Writer;
 
 impl Writer<'_> {
@@ -134,6 +134,37 @@ impl Writer<'_> {
         }
         let ty = self.type_name(self.draft.tree[vector].ty);
         self.line(&format!("{target} = {ty}({});", parts.join(", ")));
+        Ok(())
+    }
+
+    /// `x++` or `x -= 1.0`.
+    pub(super) fn step(&mut self, op: StepOp, target: ExprId) -> Result<(), Unprintable> {
+        let target_text = self.value(target)?;
+        let sign = if op == StepOp::Increment { '+' } else { '-' };
+        let ty = self.draft.tree[target].ty;
+        let target_text = target_text.words;
+        match ty {
+            Type::Scalar(Scalar::Int | Scalar::Uint) => self.line(&format!("{target_text}{sign}{sign};")),
+            Type::Scalar(_) => self.line(&format!("{target_text} {sign}= 1.0;")),
+            _ => {
+                let one = match ty.scalar() {
+                    Some(Scalar::Float) => "1.0",
+                    Some(Scalar::Uint) => "1u",
+                    _ => "1",
+                };
+                if matches!(ty, Type::Matrix { .. }) {
+                    return Err(Unprintable("a matrix that is counted up"));
+                }
+                if matches!(self.draft.tree[target].kind, ExprKind::Swizzle { .. }) {
+                    let after = Text {
+                        words: format!("{target_text} {sign} {one}"),
+                        class: Class::Sum,
+                    };
+                    return self.set(target, &after);
+                }
+                self.line(&format!("{target_text} {sign}= {one};"));
+            }
+        }
         Ok(())
     }
 }

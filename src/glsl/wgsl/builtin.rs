@@ -2,7 +2,7 @@
 
 use super::super::tree::{BinaryOp, BuiltIn, ExprId, Scalar, Type};
 use super::Unprintable;
-use super::expression::{Class, Printed, Text};
+use super::text::{Class, Printed, Text};
 use super::writer::Writer;
 
 impl Writer<'_> {

@@ -3,7 +3,7 @@
 
 use super::super::tree::{Constructor, ExprId, Scalar, Type};
 use super::Unprintable;
-use super::expression::{Class, Printed, Text};
+use super::text::{Class, Printed, Text};
 use super::writer::{Writer, scalar_name};
 
 impl Writer<'_> {

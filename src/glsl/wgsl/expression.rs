@@ -3,61 +3,13 @@
 
 use super::super::lower::walk;
 use super::super::tree::{
-    BinaryOp, BuiltInVariable, Direction, ExprId, ExprKind, FunctionId, Scalar, StepOp, Type, UnaryOp,
-    VariableId, VariableKind,
+    BinaryOp, BuiltInVariable, Direction, ExprId, ExprKind, FunctionId, Scalar, Type, UnaryOp, VariableId,
+    VariableKind,
 };
 use super::Unprintable;
 use super::facts::is_out;
+use super::text::{Class, Printed, Text};
 use super::writer::Writer;
-
-/// What an expression is at its top: what may take it as an operand without parentheses.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Class {
-    Primary,
-    Unary,
-    Product,
-    Sum,
-    Relation,
-    /// One of the operators that only chains of itself need no parentheses for.
-    Chain(BinaryOp),
-}
-
-/// A value in words.
-#[derive(Debug, Clone)]
-pub(super) struct Text {
-    pub(super) words: String,
-    pub(super) class: Class,
-}
-
-pub(super) type Printed = Result<Text, Unprintable>;
-
-impl Text {
-    pub(super) fn primary(words: impl Into<String>) -> Self {
-        Self {
-            words: words.into(),
-            class: Class::Primary,
-        }
-    }
-
-    /// The same in parentheses, unless it is of one of those classes.
-    fn within(self, bare: &[Class]) -> String {
-        if bare.contains(&self.class) {
-            self.words
-        } else {
-            format!("({})", self.words)
-        }
-    }
-
-    /// As a side of a comparison.
-    pub(super) fn term(self) -> String {
-        self.within(&[Class::Primary, Class::Unary, Class::Product, Class::Sum])
-    }
-
-    /// As what a `.`, `[` or unary operator is put to.
-    pub(super) fn operand(self) -> String {
-        self.within(&[Class::Primary])
-    }
-}
 
 /// The comparison that holds of two scalars where another does not.
 fn opposite(op: BinaryOp, scalar: Scalar) -> Option<BinaryOp> {
@@ -499,36 +451,5 @@ impl Writer<'_> {
             self.set(argument, &Text::primary(name))?;
         }
         Ok(result)
-    }
-
-    /// `x++` or `x -= 1.0`.
-    pub(super) fn step(&mut self, op: StepOp, target: ExprId) -> Result<(), Unprintable> {
-        let target_text = self.value(target)?;
-        let sign = if op == StepOp::Increment { '+' } else { '-' };
-        let ty = self.draft.tree[target].ty;
-        let target_text = target_text.words;
-        match ty {
-            Type::Scalar(Scalar::Int | Scalar::Uint) => self.line(&format!("{target_text}{sign}{sign};")),
-            Type::Scalar(_) => self.line(&format!("{target_text} {sign}= 1.0;")),
-            _ => {
-                let one = match ty.scalar() {
-                    Some(Scalar::Float) => "1.0",
-                    Some(Scalar::Uint) => "1u",
-                    _ => "1",
-                };
-                if matches!(ty, Type::Matrix { .. }) {
-                    return Err(Unprintable("a matrix that is counted up"));
-                }
-                if matches!(self.draft.tree[target].kind, ExprKind::Swizzle { .. }) {
-                    let after = Text {
-                        words: format!("{target_text} {sign} {one}"),
-                        class: Class::Sum,
-                    };
-                    return self.set(target, &after);
-                }
-                self.line(&format!("{target_text} {sign}= {one};"));
-            }
-        }
-        Ok(())
     }
 }

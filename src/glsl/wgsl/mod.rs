@@ -16,6 +16,7 @@ mod literal;
 mod names;
 mod statement;
 mod style;
+mod text;
 mod texture;
 mod word;
 mod writer;

@@ -2,8 +2,8 @@
 
 use super::super::tree::{BuiltIn, ExprId, ExprKind, Input, SamplerShape, Type, VariableKind};
 use super::Unprintable;
-use super::expression::{Printed, Text};
 use super::style::Style;
+use super::text::{Printed, Text};
 use super::writer::Writer;
 
 impl Writer<'_> {
