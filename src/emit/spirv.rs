@@ -1,6 +1,7 @@
 //! SPIR-V, and what holds a driver to the arithmetic as written.
 
 mod link;
+mod opaque;
 mod spell;
 mod strict;
 
@@ -10,6 +11,7 @@ use naga::back::spv::{BindingInfo, Options, PipelineOptions, WriterFlags, write_
 
 use super::{BOUNDS, ENTRY_POINT, bindings};
 use crate::module::ValidModule;
+pub use opaque::with_opaque_uniforms;
 pub use spell::spelled;
 pub use strict::strict;
 

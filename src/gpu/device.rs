@@ -196,6 +196,10 @@ impl Device {
 
     /// Whether this driver is of a kind that is known to end loops by force: some versions of Mesa's software rasteriser are.
     pub(super) fn may_end_loops(&self) -> bool {
+        self.is_lavapipe()
+    }
+
+    pub(super) fn is_lavapipe(&self) -> bool {
         self.adapter.get_info().name.contains(LAVAPIPE)
     }
 

@@ -1,5 +1,6 @@
 //! Painting one frame and reading it back.
 
+use std::borrow::Cow;
 use std::ops::Range;
 use std::time::Duration;
 
@@ -72,6 +73,7 @@ pub(super) struct Scene {
 pub(super) struct Program {
     words: Vec<u32>,
     channels: [Shape; 4],
+    float: FloatMode,
 }
 
 impl Program {
@@ -81,6 +83,7 @@ impl Program {
         Ok(Self {
             words: held_to(words, float),
             channels: module.channels(),
+            float,
         })
     }
 
@@ -89,6 +92,7 @@ impl Program {
         Self {
             words: held_to(words, float),
             channels,
+            float,
         }
     }
 
@@ -162,9 +166,19 @@ impl Device {
     pub(super) fn compile(&self, program: &Program) -> Result<Compiled, Failure> {
         self.checked(|| {
             let layout = Layout::new(&self.gpu, self.filterable, program.channels);
-            let pipeline = layout.pipeline(&self.gpu, &program.words);
+            let pipeline = layout.pipeline(&self.gpu, &self.run_words(program));
             Ok(Compiled { layout, pipeline })
         })
+    }
+
+    /// A program's words as this driver gets them: Mesa's compiler must not take what strict ones spell out for made of uniforms.
+    fn run_words<'a>(&self, program: &'a Program) -> Cow<'a, [u32]> {
+        match program.float {
+            FloatMode::Strict if self.is_lavapipe() => {
+                emit::spirv::with_opaque_uniforms(&program.words).into()
+            }
+            _ => (&program.words).into(),
+        }
     }
 
     /// What a frame is painted with and into, and a draw that covers no pixel.

@@ -72,6 +72,8 @@ static DIFFERED: &[&str] = &[
     "c = vec4(dFdx(p.x * p.y), dFdy(p.x * p.y), fwidth(p.x * p.y * p.y), 1.0);",
     // What was loaded in a loop that some pixels have left before.
     "float k = 0.; for (int i = 0; i < 9; i++) { k += iResolution.x; if (k > p.x * 9.) break; } c = vec4(k, k / iResolution.x, iTime, 1.0);",
+    // A loop that hangs on uniforms alone, by more paths than a compiler can walk.
+    "float k = sin(8. * cos(iTime)), s = 0.; for (int i = 0; i < 8; i++) { if (k < float(i) * .1) break; s += .1; } c = vec4(s, k, p);",
     // Exact functions of what is constant after propagation, in one branch of two.
     "vec3 g = vec3(14, 63, 240) / 255.0; float m = max(g.x, g.z); c = vec4(m == 0.0 ? 0.25 : 0.5 / m);",
     "vec3 g = vec3(14, 63, 240) / 255.0; float m = min(g.x, g.z); c = vec4(m == 0.0 ? 0.25 : 0.5 / m);",
