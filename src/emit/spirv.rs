@@ -11,7 +11,7 @@ use naga::back::spv::{BindingInfo, Options, PipelineOptions, WriterFlags, write_
 
 use super::{BOUNDS, ENTRY_POINT, bindings};
 use crate::module::ValidModule;
-pub use opaque::with_opaque_uniforms;
+pub use opaque::with_opaque_numbers;
 pub use spell::spelled;
 pub use strict::strict;
 

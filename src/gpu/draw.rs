@@ -175,7 +175,7 @@ impl Device {
     fn run_words<'a>(&self, program: &'a Program) -> Cow<'a, [u32]> {
         match program.float {
             FloatMode::Strict if self.is_lavapipe() => {
-                emit::spirv::with_opaque_uniforms(&program.words).into()
+                emit::spirv::with_opaque_numbers(&program.words).into()
             }
             _ => (&program.words).into(),
         }

@@ -1,4 +1,4 @@
-//! Uniforms that a driver's compiler cannot tell from what differs from pixel to pixel.
+//! Numbers that a driver's compiler cannot tell from what differs from pixel to pixel.
 
 use std::collections::HashMap;
 
@@ -6,26 +6,48 @@ use ::spirv::{BuiltIn, Decoration, Op, StorageClass};
 
 use super::{BOUND, has_type, instructions, opcode};
 
-/// The same module with each number that is loaded of a uniform block put through an exclusive or with the bits of `gl_FragCoord.z`,
-/// which are 0 where a picture is painted by triangles at depth 0. Its values are the same. A module that has no
-/// `gl_FragCoord` stays as it is, and so does what is loaded as an array or a structure.
+/// The same module with some numbers put through an exclusive or with the bits of `gl_FragCoord.z`, which are 0 where a picture is
+/// painted by triangles at depth 0. Their values are the same. A module that has no `gl_FragCoord` stays as it is. The numbers are:
 ///
-/// Mesa asks of a number that a loop or a branch hangs on whether it is made of uniforms and constants only, and walks the expression
-/// as a tree, though it is none: `sin(iTime)`, spelled out, has some hundred operations and more paths through them than can be walked.
-/// Where the first operand that it meets hangs on the pixel, the walk has ended.
+/// - What is loaded of a uniform block, but for arrays and structures. Mesa asks of a number that a loop or a branch hangs on whether it is
+///   made of uniforms and constants only, and walks the expression as a tree, though it is none: `sin(iTime)`, spelled out, has
+///   some hundred operations and more paths through them than can be walked. Where the first operand that it meets hangs on the
+///   pixel, the walk has ended.
+/// - Zeros that are multiplied, divided or made parts of what may be. Mesa's llvmpipe takes the product of a constant zero and anything, and its quotient,
+///   for zero, also where it is NaN, whatever decorations say.
 #[must_use]
-pub fn with_opaque_uniforms(words: &[u32]) -> Vec<u32> {
+pub fn with_opaque_numbers(words: &[u32]) -> Vec<u32> {
     let Some(mut opaque) = Opaque::of(words) else {
         return words.to_vec();
     };
     let mut code = Vec::new();
     let mut first_function = words.len();
     for (at, instruction) in instructions(words) {
-        if opcode(instruction) == Some(Op::Function) {
+        let op = opcode(instruction);
+        if op == Some(Op::Function) {
             first_function = first_function.min(at);
         }
-        if first_function <= at && !opaque.hide(instruction, &mut code) {
-            code.extend(instruction);
+        if at < first_function {
+            continue;
+        }
+        match (op, instruction) {
+            (Some(Op::Load), &[_, ty, result, pointer, ..]) if opaque.is_in_block(pointer) => {
+                match opaque.shapes.get(&ty).copied() {
+                    Some(shape) => {
+                        let loaded = opaque.value(&mut code, Op::Load, ty, &instruction[3..]);
+                        opaque.hide(&mut code, shape, result, loaded);
+                    }
+                    None => code.extend(instruction),
+                }
+            }
+            (Some(op), _) if takes_zero_for_zero(op) => {
+                let mut instruction = instruction.to_vec();
+                for operand in instruction.iter_mut().skip(3) {
+                    *operand = opaque.without_zero(&mut code, *operand);
+                }
+                code.extend(instruction);
+            }
+            _ => code.extend(instruction),
         }
     }
     let mut whole = [&words[..first_function], &opaque.declared, &code].concat();
@@ -33,11 +55,36 @@ pub fn with_opaque_uniforms(words: &[u32]) -> Vec<u32> {
     whole
 }
 
+/// Whether it multiplies or divides, or makes a vector or matrix for that; all its operands are values.
+fn takes_zero_for_zero(op: Op) -> bool {
+    matches!(
+        op,
+        Op::FMul
+            | Op::FDiv
+            | Op::VectorTimesScalar
+            | Op::MatrixTimesScalar
+            | Op::VectorTimesMatrix
+            | Op::MatrixTimesVector
+            | Op::MatrixTimesMatrix
+            | Op::OuterProduct
+            | Op::Dot
+            | Op::CompositeConstruct
+    )
+}
+
 /// A number, or a vector of them.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 struct Shape {
+    ty: u32,
     is_float: bool,
     components: u32,
+}
+
+#[derive(Clone)]
+enum Zero {
+    Number(Shape),
+    /// A matrix of that type and those columns.
+    Matrix(u32, Vec<u32>),
 }
 
 struct Opaque {
@@ -52,6 +99,8 @@ struct Opaque {
     into_blocks: Vec<u32>,
     /// The type of each value.
     types: HashMap<u32, u32>,
+    /// Constants that hold a zero.
+    zeros: HashMap<u32, Zero>,
     bound: u32,
     /// Types that the module did not have.
     declared: Vec<u32>,
@@ -63,6 +112,7 @@ impl Opaque {
         let mut coordinates = Vec::new();
         let mut found = None;
         let mut pointees = HashMap::new();
+        let mut matrices = Vec::new();
         let mut opaque = Self {
             coordinate: (0, 0),
             float: 0,
@@ -70,6 +120,7 @@ impl Opaque {
             whole: HashMap::new(),
             into_blocks: Vec::new(),
             types: HashMap::new(),
+            zeros: HashMap::new(),
             bound: *words.get(BOUND)?,
             declared: Vec::new(),
         };
@@ -84,6 +135,7 @@ impl Opaque {
                 (Op::TypeFloat, &[id, 32]) => {
                     opaque.float = id;
                     let shape = Shape {
+                        ty: id,
                         is_float: true,
                         components: 1,
                     };
@@ -92,6 +144,7 @@ impl Opaque {
                 (Op::TypeInt, &[id, 32, _]) => {
                     opaque.whole.entry(1).or_insert(id);
                     let shape = Shape {
+                        ty: id,
                         is_float: false,
                         components: 1,
                     };
@@ -102,7 +155,14 @@ impl Opaque {
                         if opaque.whole.get(&1) == Some(&of) {
                             opaque.whole.insert(components, id);
                         }
-                        opaque.shapes.insert(id, Shape { is_float, components });
+                        opaque.shapes.insert(
+                            id,
+                            Shape {
+                                ty: id,
+                                is_float,
+                                components,
+                            },
+                        );
                     }
                 }
                 (Op::TypePointer, &[id, class, pointee]) => {
@@ -114,6 +174,17 @@ impl Opaque {
                 (Op::Variable, &[ty, id, ..]) if coordinates.contains(&id) => {
                     found = Some((id, *pointees.get(&ty)?));
                 }
+                (Op::TypeMatrix, &[id, ..]) => matrices.push(id),
+                (Op::Constant, &[ty, id, bits]) if bits << 1 == 0 => opaque.know_zero(id, ty),
+                (Op::ConstantNull, &[ty, id]) => opaque.know_zero(id, ty),
+                (Op::ConstantComposite, [ty, id, parts @ ..])
+                    if parts.iter().any(|part| opaque.zeros.contains_key(part)) =>
+                {
+                    opaque.know_zero(*id, *ty);
+                    if matrices.contains(ty) {
+                        opaque.zeros.insert(*id, Zero::Matrix(*ty, parts.to_vec()));
+                    }
+                }
                 (_, &[ty, id, ..]) if has_type(op) => {
                     opaque.types.insert(id, ty);
                 }
@@ -124,21 +195,43 @@ impl Opaque {
         Some(opaque)
     }
 
-    /// Loads what the instruction loads and hides it, if that is a number of a block.
-    fn hide(&mut self, load: &[u32], code: &mut Vec<u32>) -> bool {
-        let (Some(Op::Load), &[_, ty, result, pointer, ..]) = (opcode(load), load) else {
-            return false;
-        };
-        let Some(&Shape { is_float, components }) = self.shapes.get(&ty) else {
-            return false;
-        };
-        if !self
-            .types
-            .get(&pointer)
-            .is_some_and(|ty| self.into_blocks.contains(ty))
-        {
-            return false;
+    /// Takes note of a constant of that type with a zero, if they are floats.
+    fn know_zero(&mut self, constant: u32, ty: u32) {
+        if let Some(&shape) = self.shapes.get(&ty).filter(|shape| shape.is_float) {
+            self.zeros.insert(constant, Zero::Number(shape));
         }
+    }
+
+    /// Whether a pointer points into a uniform block.
+    fn is_in_block(&self, pointer: u32) -> bool {
+        let ty = self.types.get(&pointer);
+        ty.is_some_and(|ty| self.into_blocks.contains(ty))
+    }
+
+    /// An operand without a zero that is known for one.
+    fn without_zero(&mut self, code: &mut Vec<u32>, operand: u32) -> u32 {
+        match self.zeros.get(&operand).cloned() {
+            None => operand,
+            Some(Zero::Number(shape)) => {
+                let hidden = self.fresh();
+                self.hide(code, shape, hidden, operand);
+                hidden
+            }
+            Some(Zero::Matrix(ty, columns)) => {
+                let columns = columns.iter().map(|&column| self.without_zero(code, column));
+                let columns: Vec<u32> = columns.collect();
+                self.value(code, Op::CompositeConstruct, ty, &columns)
+            }
+        }
+    }
+
+    /// Appends what makes `hidden` of a number or vector that is known.
+    fn hide(&mut self, code: &mut Vec<u32>, shape: Shape, hidden: u32, known: u32) {
+        let Shape {
+            ty,
+            is_float,
+            components,
+        } = shape;
         let one = self.whole_type(1);
         let whole = self.whole_type(components);
         let (coordinate, at) = self.coordinate;
@@ -153,15 +246,13 @@ impl Opaque {
                 &vec![zero; components as usize],
             );
         }
-        let loaded = self.value(code, Op::Load, ty, &load[3..]);
         if is_float {
-            let bits = self.value(code, Op::Bitcast, whole, &[loaded]);
-            let hidden = self.value(code, Op::BitwiseXor, whole, &[bits, zero]);
-            push(code, Op::Bitcast, &[ty, result, hidden]);
+            let bits = self.value(code, Op::Bitcast, whole, &[known]);
+            let bits = self.value(code, Op::BitwiseXor, whole, &[bits, zero]);
+            push(code, Op::Bitcast, &[ty, hidden, bits]);
         } else {
-            push(code, Op::BitwiseXor, &[ty, result, loaded, zero]);
+            push(code, Op::BitwiseXor, &[ty, hidden, known, zero]);
         }
-        true
     }
 
     /// Appends an operation with a value of its own.
@@ -230,7 +321,7 @@ mod tests {
             "float late() { return iTime; }
             void mainImage(out vec4 c, in vec2 p) { c = vec4(late(), p / iResolution.xy, iMouse.x + float(iFrame)); }",
         );
-        let opaque = with_opaque_uniforms(&plain);
+        let opaque = with_opaque_numbers(&plain);
         // The time, the resolution, the mouse and the frame.
         let hidden = all(&opaque, Op::BitwiseXor);
         assert_eq!((all(&plain, Op::BitwiseXor).len(), hidden.len()), (0, 4));
@@ -257,15 +348,36 @@ mod tests {
     }
 
     #[test]
+    fn zeros_are_hidden_where_they_are_multiplied_and_stay_where_they_are_not() {
+        let hidden = |body: &str| {
+            let shader = format!("void mainImage(out vec4 c, in vec2 p) {{ c = vec4(p, p); {body} }}");
+            all(&with_opaque_numbers(&words_of(&shader)), Op::BitwiseXor).len()
+        };
+        assert_eq!(hidden("c *= vec4(1, 0.5, 2, 1);"), 0);
+        assert_eq!(hidden("c = max(c, 0.0) - vec4(0, 1, 2, 3);"), 0);
+        for body in [
+            "c.x *= 0.0;",
+            "c *= vec4(1, 0.5, 0, 1);",
+            "c *= -0.0;",
+            "c.x = 0.0 / c.y;",
+            "c.x = dot(c, vec4(1, 0, 1, 1));",
+            "c = vec4(p.x, 1, 0, 1);",
+        ] {
+            assert_eq!(hidden(body), 1, "{body}");
+        }
+        assert_eq!(hidden("c.xy = mat2(1, 0, 2, 3) * c.xy;"), 1, "one of the columns");
+    }
+
+    #[test]
     fn a_module_that_does_not_know_where_it_paints_stays_as_it_is() {
         let mut words = words_of("void mainImage(out vec4 c, in vec2 p) { c = vec4(iTime); }");
         let built_in = instructions(&words).find(|(_, instruction)| {
             opcode(instruction) == Some(Op::Decorate) && instruction[2] == Decoration::BuiltIn as u32
         });
         let at = built_in.unwrap().0;
-        assert_ne!(with_opaque_uniforms(&words), words);
+        assert_ne!(with_opaque_numbers(&words), words);
         words[at + 3] = BuiltIn::FrontFacing as u32;
-        assert_eq!(with_opaque_uniforms(&words), words);
-        assert!(with_opaque_uniforms(&[]).is_empty());
+        assert_eq!(with_opaque_numbers(&words), words);
+        assert!(with_opaque_numbers(&[]).is_empty());
     }
 }
