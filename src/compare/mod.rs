@@ -9,6 +9,7 @@
 mod answer;
 mod judge;
 mod maths;
+mod mean;
 mod picture;
 mod rounding;
 mod tolerance;
@@ -19,6 +20,7 @@ pub use judge::{
     Answers, MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABLE, Verdict, differing, grouped, judge, plural,
 };
 pub use maths::{Mixed, SHAKES, maths};
+pub use mean::{DrawnPixel, Means, means};
 pub use picture::{Comparison, Pixel, compare};
 pub use rounding::{SEEN, rounding};
 pub use tolerance::{EXACT_TOLERANCE, IN_BITS, SEEN_BY_EYE, TOLERANCE};

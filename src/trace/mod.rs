@@ -32,6 +32,7 @@ use rayon::prelude::*;
 
 pub use adaptive::Spent;
 pub use real::{Real, Vector};
+pub use redraw::REDRAWN_ROWS;
 pub use style::{Hull, Styles};
 
 use self::camera::Camera;

@@ -1,9 +1,9 @@
-//! What a pixel is when other numbers are drawn for its samples.
+//! What pixels are when other numbers are drawn for their samples.
 
 use super::sampler::{Draws, Sample};
 use super::style::Exact;
-use super::{Tracer, film};
-use crate::scene::Sampler;
+use super::{Kernel, Tracer, film, tile};
+use crate::scene::{Integrator, Sampler};
 
 impl Tracer<f64> {
     /// The sampler by which the scene's samples are drawn; none if they lie where nothing is drawn.
@@ -12,10 +12,26 @@ impl Tracer<f64> {
         Some(self.film.sampler).filter(|&sampler| sampler != Sampler::Center)
     }
 
-    /// The colour of the pixel at (x, y), y upwards, with as many samples as the scene asks for, drawn by the `independent` sampler: other
-    /// ones for each `set`, of which 0 is the scene's own.
+    /// How many samples a pixel takes.
     #[must_use]
-    pub fn redrawn(&self, x: u32, y: u32, set: u32) -> [f64; 3] {
+    pub fn samples(&self) -> u32 {
+        self.film.samples
+    }
+
+    /// Whether each sample is a path of many rays.
+    #[must_use]
+    pub fn traces_paths(&self) -> bool {
+        let integrator = match &self.kernel {
+            Kernel::Spheres(world) => world.integrator,
+            Kernel::Shapes(world) => world.integrator,
+        };
+        integrator == Integrator::Path
+    }
+
+    /// The colour of the pixel at (x, y), y upwards, with as many samples as the scene asks for, drawn by the `independent` sampler: other
+    /// ones for each `set`, of which 0 is the scene's own. Components lie in [0, 1].
+    #[must_use]
+    pub fn redrawn(&self, [x, y]: [u32; 2], set: u32) -> [f64; 3] {
         let count = self.film.samples;
         let mut sum = glam::DVec3::ZERO;
         for index in 0..count {
@@ -30,7 +46,22 @@ impl Tracer<f64> {
             let seen = self.look(self.camera.screen(place));
             sum += self.radiance(seen, draws, &Exact);
         }
-        let mean = sum / f64::from(count);
-        mean.to_array().map(|c| film::develop(&self.film, c))
+        self.developed((sum / f64::from(count)).to_array())
+    }
+
+    /// The same of all pixels of [`REDRAWN_ROWS`] rows, or what is left of them, row by row; yet to be [developed](Self::developed).
+    #[must_use]
+    pub fn redrawn_rows(&self, bottom: u32, set: u32) -> Vec<[f64; 3]> {
+        let means = self.means(bottom, Sampler::Independent, set);
+        means.into_iter().map(|mean| mean.to_array()).collect()
+    }
+
+    /// The colour of a pixel from the mean of its samples, in [0, 1].
+    #[must_use]
+    pub fn developed(&self, mean: [f64; 3]) -> [f64; 3] {
+        mean.map(|component| film::develop(&self.film, component).clamp(0.0, 1.0))
     }
 }
+
+/// So many rows are drawn again at once.
+pub const REDRAWN_ROWS: u32 = tile::SIDE;

@@ -57,7 +57,7 @@ impl<T: Real> Tracer<T> {
     pub(super) fn band(&self, bottom: u32, pixels: &mut [[f32; 4]]) {
         let count = T::from_f64(f64::from(self.film.samples));
         for tile in self.tiles(bottom) {
-            let sums = self.sums(tile);
+            let sums = self.sums(tile, self.film.sampler, 0);
             tile.each(self.film.size[0], |at, in_band| {
                 let mean = (sums[at] / count).to_array();
                 let [r, g, b] = mean.map(|c| film::develop(&self.film, c).to_f64() as f32);
@@ -66,17 +66,29 @@ impl<T: Real> Tracer<T> {
         }
     }
 
-    /// The sums of the samples of a tile's pixels.
-    fn sums(&self, tile: Tile) -> [T::Vec3; PACKET] {
+    /// The means of a band's pixels over one set of samples that another sampler draws, row by row: yet to be developed.
+    pub(super) fn means(&self, bottom: u32, sampler: Sampler, set: u32) -> Vec<T::Vec3> {
+        let [width, height] = self.film.size;
+        let count = T::from_f64(f64::from(self.film.samples));
+        let mut means = vec![T::Vec3::ZERO; (SIDE.min(height - bottom) * width) as usize];
+        for tile in self.tiles(bottom) {
+            let sums = self.sums(tile, sampler, set);
+            tile.each(width, |at, in_band| means[in_band] = sums[at] / count);
+        }
+        means
+    }
+
+    /// The sums of one set of samples of a tile's pixels.
+    fn sums(&self, tile: Tile, sampler: Sampler, set: u32) -> [T::Vec3; PACKET] {
         let mut sums = [T::Vec3::ZERO; PACKET];
         let count = self.film.samples;
         for index in 0..count {
             let mut draws = [const { Draws::Center }; PACKET];
-            let screen = match self.film.sampler {
+            let screen = match sampler {
                 Sampler::Center => self.middles(tile),
                 Sampler::Stratified => {
                     let pixels = [0, 1].map(|axis| std::array::from_fn(|at| tile.pixel(at)[axis]));
-                    let (strata, pairs) = Strata::first_pairs(self.level, [index, count, 0], &pixels);
+                    let (strata, pairs) = Strata::first_pairs(self.level, [index, count, set], &pixels);
                     draws = strata.map(Draws::Stratified);
                     self.places(|at| Self::place(tile.pixel(at), offset([pairs[0][at], pairs[1][at]])))
                 }
@@ -85,9 +97,9 @@ impl<T: Real> Tracer<T> {
                         pixel: tile.pixel(at),
                         index,
                         count,
-                        set: 0,
+                        set,
                     };
-                    draws[at] = Draws::new(self.film.sampler, sample);
+                    draws[at] = Draws::new(sampler, sample);
                     Self::place(sample.pixel, draws[at].jitter())
                 }),
             };

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use super::cause::{self, NotFinite};
 use super::cpu::{Band, Evaluator};
-use super::drawn;
+use super::drawn::{Found, Painted};
 use super::tangent::{self, Trap};
 use super::{Asked, Case, Expected, Failure, Findings, PATIENCE_FOR_TWO, Painter, join, notes, timed};
 use crate::compare::{self, Answers, Comparison, MAX_UNSTABLE, Mixed, Verdict};
@@ -46,6 +46,8 @@ pub(super) struct Inquiry<'a> {
     not_finite: NotFinite,
     /// Spheres whose edge may come out wrong, and the picture in f64, if there are any.
     traps: Option<(Scene, Vec<Trap>, Shown)>,
+    /// What may hang on what is drawn, where the scene draws its samples.
+    painted: Option<Painted<'a>>,
     eval: Duration,
     trace: Duration,
 }
@@ -83,6 +85,9 @@ impl<'a> Inquiry<'a> {
             reference: case.expected.map(|_| empty()),
             not_finite: NotFinite::default(),
             traps: traps.filter(|(_, suspected, _)| !suspected.is_empty()),
+            painted: case
+                .expected
+                .and_then(|expected| Painted::new(expected.tracer(), case.frame.size)),
             eval: Duration::ZERO,
             trace: Duration::ZERO,
         }
@@ -178,6 +183,9 @@ impl<'a> Inquiry<'a> {
         let actual = drawn.unwrap_or(&band.single);
         if let Some(reference) = reference {
             self.ask_maths(rows, band, reference);
+            if let Some(painted) = &mut self.painted {
+                painted.look(&band.double, reference, below);
+            }
         }
         let standings = compare::rounding(&band.double, actual, &band.undefined);
         self.rounding.extend(&band.double, actual, &standings, below);
@@ -253,7 +261,7 @@ impl<'a> Inquiry<'a> {
                     let traps = tangent::shown(traps, &scene, &findings.actual, &double);
                     findings.notes.extend(tangent::told(&traps, at));
                 }
-                findings.judge(case, program, self.until);
+                findings.judge(case, program, self.until, self.painted.as_ref());
                 findings.notes.retain(|note| !case.checked.allows(note));
             }
         }
@@ -262,7 +270,7 @@ impl<'a> Inquiry<'a> {
 }
 
 impl Findings {
-    fn judge(&mut self, case: &Case, program: &Program, until: Instant) {
+    fn judge(&mut self, case: &Case, program: &Program, until: Instant, painted: Option<&Painted>) {
         (self.verdict, self.reason) = compare::judge(Answers {
             maths: self.maths.as_ref().map(|asked| &asked.answer),
             rounding: self.rounding.as_ref().map(|asked| &asked.answer),
@@ -272,11 +280,17 @@ impl Findings {
             let patience = PATIENCE_FOR_TWO.min(until.saturating_duration_since(Instant::now()));
             self.mistake = suspects.recognise(program, case.frame, patience);
         }
-        if let (Verdict::Wrong, None, Some(expected), Some(maths)) =
-            (self.verdict, &self.mistake, case.expected, &self.maths)
-            && let Some(why) = drawn::told(expected.tracer(), maths, case.frame.size)
+        if let (Verdict::Wrong, None, Some(painted), Some(maths)) =
+            (self.verdict, &self.mistake, painted, &self.maths)
         {
-            self.reason = format!("{}, {why}", compare::differing(&maths.answer));
+            let found = Found {
+                maths,
+                rounding: self.rounding.as_ref(),
+                toolchain: self.toolchain.as_ref(),
+            };
+            if let Some(judged) = painted.judged(found) {
+                (self.verdict, self.reason) = judged;
+            }
         }
         let rounds = |asked: &Asked| asked.answer.share(asked.answer.differing) > MAX_UNSTABLE;
         let loses = self.verdict == Verdict::Ok && self.rounding.as_ref().is_some_and(rounds);

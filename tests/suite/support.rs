@@ -11,6 +11,7 @@ use toyproof::diagnostic::{self, Diagnostic};
 use toyproof::frame::Frame;
 use toyproof::glsl::{self, Checked};
 use toyproof::gpu::{Failure, FloatMode, On, Worker};
+use toyproof::mistake::Suspects;
 use toyproof::scene::{self, Moment, Scene};
 use toyproof::source::{File, Files};
 use toyproof::trace::Tracer;
@@ -219,11 +220,29 @@ pub(crate) fn judged(worker: &mut Worker, shader: &str, rung: &Rung) -> Findings
 /// # Panics
 /// Likewise.
 pub(crate) fn judged_by(worker: Option<&mut Worker>, shader: &str, rung: &Rung) -> Findings {
+    judged_beside(None, worker, shader, rung)
+}
+
+/// The same, as `toyproof check` does it, which compares what is wrong with classic mistakes.
+///
+/// # Panics
+/// Likewise.
+pub(crate) fn judged_and_named(worker: &mut Worker, shader: &str, rung: &Rung) -> Findings {
+    let suspects = Suspects::of(&scene(rung), &frame(rung, rung.size)).unwrap();
+    judged_beside(Some(&suspects), Some(worker), shader, rung)
+}
+
+fn judged_beside(
+    suspects: Option<&Suspects>,
+    worker: Option<&mut Worker>,
+    shader: &str,
+    rung: &Rung,
+) -> Findings {
     let frame = frame(rung, rung.size);
     let case = Case {
         checked: &checked(shader),
         expected: Some(&Expected::new(scene(rung), &frame)),
-        suspects: None,
+        suspects,
         frame: &frame,
         float: FloatMode::Strict,
         timeout: Duration::from_secs(60),

@@ -21,7 +21,7 @@ pub(super) use walk::Walk;
 /// Surfaces and lights. `P` is the one shape that a scene requires, so that what is asked of each knows it.
 #[derive(Debug)]
 pub(super) struct World<T: Real, P> {
-    integrator: Integrator,
+    pub(super) integrator: Integrator,
     max_depth: u32,
     ambient: T::Vec3,
     pub(super) background: Background<T>,
