@@ -6,7 +6,7 @@
 use std::collections::HashSet;
 
 use super::super::lower::{Draft, walk};
-use super::super::tree::{ExprId, ExprKind, Function, Item, Type, VariableId, VariableKind};
+use super::super::tree::{ExprId, ExprKind, Function, Item, StatementKind, Type, VariableId, VariableKind};
 
 /// Everything that a picture needs, definitions before uses.
 pub(in crate::glsl) struct Order {
@@ -16,9 +16,20 @@ pub(in crate::glsl) struct Order {
 }
 
 impl Order {
+    /// Where labels of `case`s are printed as their values.
     pub(in crate::glsl) fn of(draft: &Draft) -> Self {
+        Self::found(draft, false)
+    }
+
+    /// Where they are printed as written, with the constants that they name.
+    pub(in crate::glsl) fn with_labels(draft: &Draft) -> Self {
+        Self::found(draft, true)
+    }
+
+    fn found(draft: &Draft, labels: bool) -> Self {
         let mut finder = Finder {
             draft,
+            labels,
             locals: locals(draft),
             inputs: Vec::new(),
         };
@@ -61,6 +72,8 @@ fn locals(draft: &Draft) -> HashSet<VariableId> {
 
 struct Finder<'a> {
     draft: &'a Draft,
+    /// Whether labels name things, too.
+    labels: bool,
     locals: HashSet<VariableId>,
     inputs: Vec<VariableId>,
 }
@@ -131,6 +144,10 @@ impl Finder<'_> {
                     self.of_type(draft.tree[variable].ty, needs);
                 }
                 self.of_expressions(walk::own_expressions(&draft.tree, statement), needs);
+                if let (true, StatementKind::Switch { cases, .. }) = (self.labels, &statement.kind) {
+                    let labels = cases.iter().flat_map(|case| walk::values(&case.labels));
+                    self.of_expressions(labels, needs);
+                }
             });
         }
     }

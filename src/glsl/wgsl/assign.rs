@@ -1,8 +1,10 @@
 //! What expressions do: assignments, steps, calls. WGSL assigns to no swizzle of several components.
 
+use super::super::lower::walk;
 use super::super::tree::{BinaryOp, ExprId, ExprKind, Scalar, StepOp, Swizzle, Type, VariableKind};
 use super::Unprintable;
-use super::text::{Class, Text};
+use super::facts::is_out;
+use super::text::{Class, Printed, Text};
 use super::writer::Writer;
 
 impl Writer<'_> {
@@ -51,6 +53,9 @@ impl Writer<'_> {
     fn assign(&mut self, op: Option<BinaryOp>, target: ExprId, value: ExprId) -> Result<(), Unprintable> {
         let tree = &self.draft.tree;
         let types = (tree[target].ty, tree[value].ty);
+        if self.branching(value).is_some() && !walk::acts(tree, target) {
+            return self.choose(value, &mut |writer, value| writer.assign(op, target, value));
+        }
         let is_swizzle =
             matches!(tree[target].kind, ExprKind::Swizzle { components, .. } if components.size() > 1);
         let Some(op) = op else {
@@ -62,24 +67,52 @@ impl Writer<'_> {
         let of_bits = matches!(op, BinaryOp::BitAnd | BinaryOp::BitOr | BinaryOp::BitXor);
         // WGSL shifts by unsigned numbers, and takes no bits of a vector and a number.
         let needs_types = shifts || (of_bits && types.0 != types.1);
-        if is_swizzle || is_matrix || needs_types || self.hoists(value) {
+        if is_swizzle || is_matrix || needs_types {
             // GLSL leaves open when the target is read; WebGL's translators read it last.
-            let value = self.value(value)?;
+            let value = self.added(target, value)?;
             let before = self.value(target)?;
             let after = self.operation(op, (before, types.0), (value, types.1))?;
             return self.set(target, &after);
         }
-        let value = self.value(value)?;
+        let value = self.added(target, value)?;
         let target = self.value(target)?.words;
         self.line(&format!("{target} {}= {};", op.symbol(), value.words));
         Ok(())
+    }
+
+    /// The right side of a compound assignment, set aside if a call in it may change the target: WGSL reads that first.
+    fn added(&mut self, target: ExprId, value: ExprId) -> Printed {
+        let text = self.value(value)?;
+        if text.words.contains('(') && self.may_change(target, value) {
+            return Ok(self.keep_as("value", &text));
+        }
+        Ok(text)
+    }
+
+    fn may_change(&self, target: ExprId, value: ExprId) -> bool {
+        let tree = &self.draft.tree;
+        let Some(root) = tree.root_variable(target) else {
+            return true;
+        };
+        let is_global = tree[root].kind == VariableKind::Global;
+        walk::any(tree, value, |kind| match kind {
+            ExprKind::Call { function, arguments } => {
+                let mut given = arguments.iter().zip(&tree[*function].parameters);
+                is_global
+                    || given.any(|(&argument, &parameter)| {
+                        is_out(self.draft, parameter) && tree.root_variable(argument) == Some(root)
+                    })
+            }
+            _ => false,
+        })
     }
 
     /// Prints an assignment of words.
     pub(super) fn set(&mut self, target: ExprId, value: &Text) -> Result<(), Unprintable> {
         match self.draft.tree[target].kind {
             ExprKind::Swizzle { vector, components } if components.size() > 1 => {
-                self.set_components(vector, components, value)
+                let letters = self.comments.letters(components, self.draft.tree[target].at);
+                self.set_components(vector, components, &letters, value)
             }
             _ => {
                 let target = self.value(target)?.words;
@@ -94,6 +127,7 @@ impl Writer<'_> {
         &mut self,
         vector: ExprId,
         components: Swizzle,
+        letters: &str,
         value: &Text,
     ) -> Result<(), Unprintable> {
         let Type::Vector(_, size) = self.draft.tree[vector].ty else {
@@ -108,7 +142,12 @@ impl Writer<'_> {
             self.line(&format!("{target} = {};", value.words));
             return Ok(());
         }
-        let letter = |index: usize| "xyzw".get(index..=index).unwrap_or("x");
+        let all = if letters.contains(['r', 'g', 'b', 'a']) {
+            "rgba"
+        } else {
+            "xyzw"
+        };
+        let letter = |index: usize| all.get(index..=index).unwrap_or("x");
         let mut parts = Vec::new();
         // A call may change the vector that the rest is read from.
         let root = self.draft.tree.root_variable(vector);
@@ -117,7 +156,7 @@ impl Writer<'_> {
         let whole = if ascending && !may_change {
             value.clone()
         } else {
-            self.keep(value)
+            self.keep_as(letters, value)
         };
         let mut at = 0;
         while at < usize::from(size) {

@@ -39,7 +39,7 @@ impl Writer<'_> {
         }
         self.derives |= function.is_derivative();
         let name = match function {
-            B::Mod => return self.modulo(texts),
+            B::Mod => return self.modulo(texts, ty, types.last().copied().unwrap_or(ty)),
             B::Not => {
                 let operand = texts.pop().ok_or(Unprintable("a call"))?.operand();
                 return Ok(Text {
@@ -93,19 +93,35 @@ impl Writer<'_> {
         Ok(Text::primary(format!("{name}({})", Self::list(texts))))
     }
 
-    /// `x - y * floor(x / y)`, which is what GLSL says `mod` is.
-    fn modulo(&mut self, texts: Vec<Text>) -> Printed {
-        let is_short =
-            |text: &Text| text.class == Class::Primary && text.words.len() < 24 && !text.words.contains('(');
-        let texts: Vec<Text> = texts
-            .into_iter()
-            .map(|text| if is_short(&text) { text } else { self.keep(&text) })
-            .collect();
-        let [x, y] = <[Text; 2]>::try_from(texts).map_err(|_| Unprintable("a call"))?;
-        let words = format!("{x} - {y} * floor({x} / {y})", x = x.words, y = y.words);
-        Ok(Text {
-            words,
-            class: Class::Sum,
-        })
+    /// `mod`, by a function of our own: WGSL's `%` rounds towards zero.
+    fn modulo(&mut self, texts: Vec<Text>, ty: Type, divisor: Type) -> Printed {
+        let [x, mut y] = <[Text; 2]>::try_from(texts).map_err(|_| Unprintable("a call"))?;
+        if self.indent == 0 {
+            // No function is called where constants begin.
+            let [x, y] = [x.operand(), y.operand()];
+            return Ok(Text {
+                words: format!("{x} - {y} * floor({x} / {y})"),
+                class: Class::Sum,
+            });
+        }
+        let name = self.type_name(ty);
+        if ty != divisor {
+            y = Text::primary(format!("{name}({})", y.words));
+        }
+        let stem = match ty {
+            Type::Vector(..) => format!("modulo_{name}"),
+            _ => "modulo".to_owned(),
+        };
+        let is_taken = |word: &str| self.names.all.contains(word);
+        let function = super::word::free(&stem, is_taken);
+        let call = format!("{function}({})", Self::list(vec![x, y]));
+        self.helpers.insert(
+            function.clone(),
+            format!(
+                "// `mod` of GLSL: WGSL's `%` rounds towards zero.\n\
+                 fn {function}(x: {name}, y: {name}) -> {name} {{\n    return x - y * floor(x / y);\n}}\n"
+            ),
+        );
+        Ok(Text::primary(call))
     }
 }

@@ -43,7 +43,12 @@ impl Writer<'_> {
                     .words
                     .chars()
                     .all(|c| c.is_ascii_alphanumeric() || c == '.' || c == '_');
-                let number = if is_short { number } else { self.keep(&number) }.words;
+                let number = if is_short {
+                    number
+                } else {
+                    self.keep_as("diagonal", &number)
+                }
+                .words;
                 let cells = (0..columns).flat_map(|column| (0..rows).map(move |row| column == row));
                 let cells = cells.map(|diagonal| if diagonal { number.as_str() } else { "0.0" });
                 cells.collect::<Vec<_>>().join(", ")
@@ -126,7 +131,12 @@ impl Writer<'_> {
                             .words
                             .chars()
                             .all(|c| c.is_ascii_alphanumeric() || c == '.' || c == '_');
-                    let base = if is_name { text } else { self.keep(&text) }.words;
+                    let base = if is_name {
+                        text
+                    } else {
+                        self.keep_as("column", &text)
+                    }
+                    .words;
                     for letter in ["x", "y", "z", "w"].into_iter().take(size.into()) {
                         let cell = Text::primary(format!("{base}.{letter}"));
                         cells.push(as_scalar(cell, Type::Scalar(own), Type::FLOAT)?.words);
@@ -159,7 +169,7 @@ impl Writer<'_> {
         let base = if text.class == Class::Primary && !text.words.contains('(') {
             text
         } else {
-            self.keep(&text)
+            self.keep_as("matrix", &text)
         }
         .words;
         let identity = |column: u8, row: u8| if column == row { "1.0" } else { "0.0" };
@@ -185,7 +195,7 @@ impl Writer<'_> {
 }
 
 /// The first component of a value, as a scalar of another type.
-fn as_scalar(text: Text, from: Type, to: Type) -> Printed {
+pub(super) fn as_scalar(text: Text, from: Type, to: Type) -> Printed {
     let text = match from {
         Type::Vector(..) => Text::primary(format!("{}.x", text.operand())),
         Type::Matrix { .. } => Text::primary(format!("{}[0].x", text.operand())),
@@ -197,9 +207,11 @@ fn as_scalar(text: Text, from: Type, to: Type) -> Printed {
     if from == scalar {
         return Ok(text);
     }
-    if let (Scalar::Int, Ok(number)) = (from, text.words.parse::<i64>()) {
+    // A number of its own with the suffix of 32 bits, or without.
+    let suffixed = text.words.strip_suffix('i');
+    if let (Scalar::Int, Ok(number)) = (from, suffixed.unwrap_or(&text.words).parse::<i64>()) {
         match scalar {
-            Scalar::Float => {
+            Scalar::Float if suffixed.is_none() => {
                 let words = format!("{number}.0");
                 return Ok(Text { words, ..text });
             }

@@ -3,10 +3,10 @@
 
 use super::super::lower::walk;
 use super::super::tree::{
-    BinaryOp, BuiltInVariable, Direction, ExprId, ExprKind, FunctionId, Scalar, Type, UnaryOp, VariableId,
-    VariableKind,
+    BinaryOp, BuiltInVariable, Direction, ExprId, ExprKind, Scalar, Type, UnaryOp, VariableId, VariableKind,
 };
 use super::Unprintable;
+use super::construct::as_scalar;
 use super::facts::is_out;
 use super::text::{Class, Printed, Text};
 use super::writer::Writer;
@@ -46,13 +46,14 @@ impl Writer<'_> {
                 };
                 self.value(target)
             }
+            &ExprKind::Step { target, .. } if self.waiting.contains(&id) => self.value(target),
             &ExprKind::Step { op, target, .. } => {
                 let before = self.value(target)?;
                 let before = self.keep(&before);
                 self.step(op, target)?;
                 Ok(before)
             }
-            &ExprKind::Conditional { condition, yes, no } => self.conditional(id, condition, yes, no),
+            ExprKind::Conditional { .. } => self.conditional(id),
             &ExprKind::Sequence { first, second } => {
                 self.effect(first)?;
                 self.value(second)
@@ -64,8 +65,12 @@ impl Writer<'_> {
                 arguments,
             } => self.construct(*constructor, arguments, expr.ty),
             &ExprKind::Swizzle { vector, components } => {
+                if let Some(text) = self.resolution(vector, components) {
+                    return Ok(text);
+                }
                 let vector = self.value(vector)?.operand();
-                Ok(Text::primary(format!("{vector}.{}", components.name())))
+                let letters = self.comments.letters(components, expr.at);
+                Ok(Text::primary(format!("{vector}.{letters}")))
             }
             &ExprKind::Member { structure, member } => {
                 let name = match tree[structure].ty {
@@ -87,7 +92,7 @@ impl Writer<'_> {
     pub(super) fn values(&mut self, ids: &[ExprId]) -> Result<Vec<Text>, Unprintable> {
         let mut texts: Vec<Text> = Vec::new();
         for &id in ids {
-            if self.hoists(id) {
+            if self.hoists(id) && walk::acts(&self.draft.tree, id) {
                 for (text, &earlier) in texts.iter_mut().zip(ids) {
                     if !self.is_settled(earlier) {
                         *text = self.keep(text);
@@ -136,7 +141,7 @@ impl Writer<'_> {
     }
 
     /// Whether a value is the same before and after whatever else is done: it is made of what is never written.
-    fn is_settled(&self, id: ExprId) -> bool {
+    pub(super) fn is_settled(&self, id: ExprId) -> bool {
         let tree = &self.draft.tree;
         let may_change = |kind: &ExprKind| match kind {
             ExprKind::Variable(variable) => match tree[*variable].kind {
@@ -173,7 +178,18 @@ impl Writer<'_> {
 
     /// A value under a name, as it is now.
     pub(super) fn keep(&mut self, text: &Text) -> Text {
-        let name = self.temporary("kept");
+        let name = text.words.trim_start_matches('*');
+        let stem = if self.names.all.contains(name) {
+            format!("old_{name}")
+        } else {
+            "value".to_owned()
+        };
+        self.keep_as(&stem, text)
+    }
+
+    /// The same under a name like that.
+    pub(super) fn keep_as(&mut self, stem: &str, text: &Text) -> Text {
+        let name = self.temporary(stem);
         self.line(&format!("let {name} = {};", text.words));
         Text::primary(name)
     }
@@ -260,10 +276,8 @@ impl Writer<'_> {
             ),
             BinaryOp::ShiftLeft | BinaryOp::ShiftRight => {
                 let right = match right_type {
-                    Type::Scalar(Scalar::Int) | Type::Vector(Scalar::Int, _) => {
-                        let unsigned = right_type.with_scalar(Scalar::Uint).unwrap_or(Type::UINT);
-                        format!("{}({})", self.type_name(unsigned), right.words)
-                    }
+                    Type::Scalar(Scalar::Int) => as_scalar(right, right_type, Type::UINT)?.words,
+                    Type::Vector(Scalar::Int, size) => format!("vec{size}u({})", right.words),
                     _ => right.within(&[Primary, Unary]),
                 };
                 let right = match (left_type, right_type) {
@@ -313,65 +327,6 @@ impl Writer<'_> {
         })
     }
 
-    /// `&&` and `||` whose right side does something.
-    fn either(&mut self, op: BinaryOp, left: ExprId, right: ExprId) -> Printed {
-        let left = self.value(left)?;
-        let name = self.temporary("holds");
-        self.line(&format!("var {name} = {};", left.words));
-        let not = if op == BinaryOp::Or { "!" } else { "" };
-        self.line(&format!("if {not}{name} {{"));
-        self.inset(|writer| {
-            let right = writer.value(right)?;
-            writer.line(&format!("{name} = {};", right.words));
-            Ok(())
-        })?;
-        self.line("}");
-        Ok(Text::primary(name))
-    }
-
-    /// Whether an expression may be evaluated whether or not it is wanted: it is cheap, and does nothing.
-    pub(super) fn is_selectable(&mut self, id: ExprId) -> bool {
-        let tree = &self.draft.tree;
-        let is_plain = matches!(tree[id].ty, Type::Scalar(_) | Type::Vector(..))
-            && !walk::any(tree, id, |kind| match kind {
-                ExprKind::Call { .. } => true,
-                ExprKind::BuiltIn { function, .. } => function.is_texture(),
-                _ => false,
-            });
-        is_plain && !self.hoists(id)
-    }
-
-    fn conditional(&mut self, id: ExprId, condition: ExprId, yes: ExprId, no: ExprId) -> Printed {
-        if self.is_selectable(yes) && self.is_selectable(no) {
-            let acts = walk::acts(&self.draft.tree, condition);
-            let condition = self.value(condition)?;
-            // The sides stand before the condition, and would be evaluated first.
-            let condition = if acts { self.keep(&condition) } else { condition };
-            let [no, yes] = [self.value(no)?, self.value(yes)?];
-            return Ok(Text::primary(format!(
-                "select({})",
-                Self::list(vec![no, yes, condition])
-            )));
-        }
-        let condition = self.value(condition)?;
-        let name = self.temporary("chosen");
-        self.line(&format!(
-            "var {name}: {};",
-            self.type_name(self.draft.tree[id].ty)
-        ));
-        self.line(&format!("if {} {{", condition.words));
-        let set = |writer: &mut Self, id| {
-            let value = writer.value(id)?;
-            writer.line(&format!("{name} = {};", value.words));
-            Ok(())
-        };
-        self.inset(|writer| set(writer, yes))?;
-        self.line("} else {");
-        self.inset(|writer| set(writer, no))?;
-        self.line("}");
-        Ok(Text::primary(name))
-    }
-
     pub(super) fn index(&mut self, base: ExprId, index: ExprId) -> Printed {
         let tree = &self.draft.tree;
         let in_memory = tree.root_variable(base).is_some() || matches!(tree[base].ty, Type::Vector(..));
@@ -391,65 +346,5 @@ impl Writer<'_> {
             name
         };
         Ok(Text::primary(format!("{base}[{}]", index.words)))
-    }
-
-    /// The pointer that an `out` argument is passed as, if it is a variable that a function may be given one of.
-    pub(super) fn pointer(&self, argument: ExprId) -> Option<String> {
-        let ExprKind::Variable(id) = self.draft.tree[argument].kind else {
-            return None;
-        };
-        match self.draft.tree[id].kind {
-            _ if is_out(self.draft, id) => Some(self.variable(id).to_owned()),
-            VariableKind::Local | VariableKind::Parameter(_) => Some(format!("&{}", self.variable(id))),
-            _ => None,
-        }
-    }
-
-    /// A call of a function of the author's.
-    fn call(&mut self, function: FunctionId, arguments: &[ExprId], ty: Type) -> Printed {
-        let parameters = &self.draft.tree[function].parameters;
-        let mut plain = Vec::new();
-        let mut back = Vec::new();
-        for (&argument, &parameter) in arguments.iter().zip(parameters) {
-            if !is_out(self.draft, parameter) {
-                plain.push(argument);
-            } else if self.pointer(argument).is_none() {
-                back.push(argument);
-            }
-        }
-        let mut values = self.values(&plain)?.into_iter();
-        let mut copies = Vec::new();
-        for &argument in &back {
-            let name = self.temporary("copied");
-            let value = self.value(argument)?;
-            self.line(&format!("var {name} = {};", value.words));
-            copies.push((argument, name));
-        }
-        let mut names = copies.iter();
-        let mut texts = Vec::new();
-        for (&argument, &parameter) in arguments.iter().zip(parameters) {
-            texts.push(if !is_out(self.draft, parameter) {
-                values.next().ok_or(Unprintable("a call"))?
-            } else if let Some(pointer) = self.pointer(argument) {
-                Text::primary(pointer)
-            } else {
-                let (_, name) = names.next().ok_or(Unprintable("a call"))?;
-                Text::primary(format!("&{name}"))
-            });
-        }
-        let call = format!("{}({})", self.function(function), Self::list(texts));
-        if copies.is_empty() {
-            return Ok(Text::primary(call));
-        }
-        let result = if ty == Type::Void {
-            self.line(&format!("{call};"));
-            Text::primary("")
-        } else {
-            self.keep(&Text::primary(call))
-        };
-        for (argument, name) in copies {
-            self.set(argument, &Text::primary(name))?;
-        }
-        Ok(result)
     }
 }

@@ -12,6 +12,8 @@ pub(super) struct Facts {
     pub(super) written: HashSet<VariableId>,
     /// Indexed by a variable: an array or matrix must then lie in memory.
     pub(super) indexed: HashSet<VariableId>,
+    /// Functions that others call.
+    pub(super) called: HashSet<FunctionId>,
     /// The globals that each function names.
     pub(super) globals: HashMap<FunctionId, HashSet<VariableId>>,
 }
@@ -23,12 +25,13 @@ impl Facts {
         let write = |written: &mut HashSet<VariableId>, target: ExprId| {
             written.extend(tree.root_variable(target));
         };
-        for (_, expr) in tree.exprs.iter() {
-            match &expr.kind {
+        for id in reached(draft) {
+            match &tree[id].kind {
                 ExprKind::Assign { target, .. } | ExprKind::Step { target, .. } => {
                     write(&mut facts.written, *target);
                 }
                 ExprKind::Call { function, arguments } => {
+                    facts.called.insert(*function);
                     for (argument, parameter) in arguments.iter().zip(&tree[*function].parameters) {
                         if is_out(draft, *parameter) {
                             write(&mut facts.written, *argument);
@@ -68,6 +71,24 @@ impl Facts {
     pub(super) fn is_memory(&self, variable: VariableId) -> bool {
         self.written.contains(&variable) || self.indexed.contains(&variable)
     }
+}
+
+/// The expressions that are printed: lowering leaves others behind in the tree.
+fn reached(draft: &Draft) -> Vec<ExprId> {
+    let tree = &draft.tree;
+    let bodies = tree
+        .functions
+        .iter()
+        .filter_map(|(_, function)| function.body.as_ref());
+    let roots = bodies.flat_map(|body| walk::roots(tree, body));
+    let globals = tree
+        .variables
+        .iter()
+        .filter_map(|(_, variable)| variable.initialiser);
+    roots
+        .chain(globals)
+        .flat_map(|root| tree.postorder(root))
+        .collect()
 }
 
 /// Whether a parameter is a pointer.

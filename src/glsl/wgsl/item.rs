@@ -43,7 +43,9 @@ impl Writer<'_> {
             let ty = self.type_name(member.ty);
             self.inset(|writer| {
                 writer.comment(member.at);
+                let from = writer.out.len();
                 writer.line(&format!("{name}: {ty},"));
+                writer.comment_behind(member.at, from);
             });
         }
         self.line("}");
@@ -55,26 +57,30 @@ impl Writer<'_> {
         if matches!(variable.ty, Type::Sampler(_)) {
             return Err(Unprintable("a sampler that nobody feeds"));
         }
-        if self.out.ends_with("}\n") {
+        let is_apart = variable.at.is_some_and(|at| self.comments.is_apart(at));
+        if is_apart || self.out.ends_with("}\n") {
             self.line("");
         }
         if let Some(at) = variable.at {
             self.comment(at);
         }
+        let from = self.out.len();
         let name = self.variable(id);
-        let ty = self.type_name(variable.ty);
-        let line = match (variable.kind, variable.initialiser) {
-            (VariableKind::Const, Some(initialiser)) => {
+        let word = match variable.kind {
+            VariableKind::Const => "const",
+            _ => "var<private>",
+        };
+        let line = match variable.initialiser {
+            Some(initialiser) => {
                 let value = self.value(initialiser)?;
-                format!("const {name}: {ty} = {};", value.words)
+                self.typed(word, name, variable.ty, &value.words)
             }
-            (_, Some(initialiser)) => {
-                let value = self.value(initialiser)?;
-                format!("var<private> {name}: {ty} = {};", value.words)
-            }
-            (_, None) => format!("var<private> {name}: {ty};"),
+            None => format!("{word} {name}: {};", self.type_name(variable.ty)),
         };
         self.line(&line);
+        if let Some(at) = variable.at {
+            self.comment_behind(at, from);
+        }
         Ok(())
     }
 
@@ -90,7 +96,10 @@ impl Writer<'_> {
         for &parameter in &function.parameters {
             let variable = &self.draft.tree[parameter];
             if is_out(self.draft, parameter) {
-                let is_read_first = variable.kind == VariableKind::Parameter(Direction::Out)
+                // Its caller's variable begins with zeros.
+                let is_new = id == self.draft.main_image && !self.facts.called.contains(&id);
+                let is_read_first = !is_new
+                    && variable.kind == VariableKind::Parameter(Direction::Out)
                     && !self.is_set_first(body, parameter);
                 if is_read_first {
                     let zero = self.zero(variable.ty);
@@ -102,7 +111,7 @@ impl Writer<'_> {
             }
         }
         self.statements(body)?;
-        if function.return_type != Type::Void && Self::may_end(body) {
+        if function.return_type != Type::Void && self.may_end(body) {
             let zero = self.zero(function.return_type);
             self.line(&format!("return {zero};"));
         }
@@ -185,10 +194,16 @@ impl Writer<'_> {
             format!("{direction}{} {}", tree.type_name(variable.ty), variable.name)
         });
         let parameters: Vec<_> = parameters.collect();
+        // What the name does not say.
+        let about = if function.name.ends_with("_remainder") {
+            "// `a % b` of GLSL as Mesa and SwiftShader round it, down: WGSL's rounds towards zero.\n"
+        } else {
+            ""
+        };
         let source = format!(
-            "{} {}({}) {{ {text} }}\nvoid mainImage(out vec4 c, in vec2 p) {{}}",
+            "{about}{} {}({}) {{ {text} }}\nvoid mainImage(out vec4 c, in vec2 p) {{}}",
             tree.type_name(function.return_type),
-            self.function(id),
+            function.name,
             parameters.join(", ")
         );
         let mut files = Files::default();
@@ -204,11 +219,13 @@ impl Writer<'_> {
             items: vec![Item::Function(first)],
             inputs: Vec::new(),
         };
-        let names = Names::of(&draft, &order, self.style);
+        let mut names = Names::of(&draft, &order, self.style);
+        names.functions.insert(first, self.function(id).to_owned());
         let facts = Facts::of(&draft);
         let mut writer = Writer::new(&draft, &names, &facts, self.style, &files);
         writer.definition(first)?;
         self.derives |= writer.derives;
+        self.helpers.append(&mut writer.helpers);
         self.out.push_str(&writer.out);
         Ok(())
     }

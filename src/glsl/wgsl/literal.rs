@@ -42,11 +42,15 @@ impl Writer<'_> {
                 let suffix = if self.suffixed { "i" } else { "" };
                 if value == i32::MIN {
                     "i32(-2147483648)".to_owned()
+                } else if value > 0 && is_hexadecimal(&literal.text) {
+                    format!("{}{suffix}", literal.text)
                 } else {
                     format!("{value}{suffix}")
                 }
             }
-            Value::Uint(value) if literal.text.starts_with("0x") => format!("0x{value:X}u"),
+            Value::Uint(_) if is_hexadecimal(&literal.text) => {
+                format!("{}u", literal.text.trim_end_matches(['u', 'U']))
+            }
             Value::Uint(value) => format!("{value}u"),
         }
     }
@@ -99,6 +103,10 @@ impl Writer<'_> {
             _ => format!("{}()", self.type_name(ty)),
         }
     }
+}
+
+fn is_hexadecimal(text: &str) -> bool {
+    text.starts_with("0x") || text.starts_with("0X")
 }
 
 /// A float as written, with digits on both sides of its point; by its value if WGSL reads the text otherwise.

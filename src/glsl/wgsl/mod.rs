@@ -6,19 +6,24 @@
 
 mod assign;
 mod builtin;
+mod call;
 mod comment;
+mod conditional;
 mod construct;
 mod expression;
 mod facts;
 mod host;
 mod item;
+mod later;
 mod literal;
+mod loops;
 mod names;
 mod statement;
 mod style;
 mod text;
 mod texture;
 mod word;
+mod wrap;
 mod writer;
 
 use thiserror::Error;
@@ -42,19 +47,20 @@ pub struct Unprintable(pub &'static str);
 pub fn wgsl(checked: &Checked, files: &Files, style: Style) -> Result<String, Unprintable> {
     let mut draft = Draft::new(checked.tree.clone(), checked.main_image);
     passes().run(&mut draft);
-    let order = Order::of(&draft);
+    let order = Order::with_labels(&draft);
     let names = names::Names::of(&draft, &order, style);
     let facts = facts::Facts::of(&draft);
     let writer = writer::Writer::new(&draft, &names, &facts, style, files);
     writer.write(&order)
 }
 
-/// What WGSL, as GLSL in naga's reading, does not have. Loops, `?:` and swizzles that are assigned to are printed here instead, locals begin
+/// What WGSL, as GLSL in naga's reading, does not have. Loops, `?:` and assignments are printed here instead, locals begin
 /// with zero in any case, and functions return where they must.
 fn passes() -> Passes {
     [
         Pass::ShortCircuit,
         Pass::Matrices,
+        Pass::Compounds,
         Pass::Inequality,
         Pass::Members,
         Pass::Uninitialised,

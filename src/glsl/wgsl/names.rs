@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 
 use super::super::lower::{Draft, walk};
 use super::super::print::Order;
-use super::super::tree::{FunctionId, Item, StructId, Type, VariableId};
+use super::super::tree::{ExprKind, FunctionId, Item, StructId, Type, VariableId};
 use super::style::Style;
 use super::word;
 use super::writer::type_name;
@@ -57,7 +57,7 @@ impl Names {
         }
         for item in &order.items {
             if let Item::Function(id) = *item {
-                let own = &tree[id].name;
+                let own = author_s(&tree[id].name);
                 let name = if taken_at(&taken, own) && !word::is_taken(own) {
                     let types = tree[id]
                         .parameters
@@ -65,7 +65,7 @@ impl Names {
                         .map(|&parameter| label(draft, &names, tree[parameter].ty));
                     format!("{own}_{}", types.collect::<Vec<_>>().join("_"))
                 } else {
-                    own.clone()
+                    own.to_owned()
                 };
                 let name = word::free(&name, |name| taken_at(&taken, name));
                 taken.insert(name.clone());
@@ -90,13 +90,15 @@ impl Names {
         }
         let mut counts: HashMap<&str, usize> = HashMap::new();
         for &id in &locals {
-            *counts.entry(tree[id].name.as_str()).or_default() += 1;
+            *counts.entry(author_s(&tree[id].name)).or_default() += 1;
         }
-        let mut taken: HashSet<String> = locals.iter().map(|&id| tree[id].name.clone()).collect();
+        let mut taken: HashSet<String> = counts.keys().map(|&name| name.to_owned()).collect();
+        let called = called(draft, function);
         for &id in &locals {
-            let own = tree[id].name.as_str();
+            let own = author_s(&tree[id].name);
             let meets = draft.moved.contains(&id) && counts.get(own).is_some_and(|&count| count > 1);
-            let name = if own.is_empty() || meets || word::is_taken(own) || global.contains(own) {
+            let clashes = word::is_taken(own) && (!word::may_be_hidden(own) || called.contains(own));
+            let name = if own.is_empty() || meets || clashes || global.contains(own) {
                 word::free(own, |name| {
                     word::is_taken(name) || global.contains(name) || taken.contains(name)
                 })
@@ -116,6 +118,27 @@ impl Names {
         }
         self.all.extend(taken);
     }
+}
+
+/// A name without the prefix that keeps lowering's own apart from the author's: here nothing else is called so.
+fn author_s(name: &str) -> &str {
+    name.strip_prefix("toyproof_").unwrap_or(name)
+}
+
+/// The built-in functions that a function calls.
+fn called(draft: &Draft, function: FunctionId) -> HashSet<&'static str> {
+    let tree = &draft.tree;
+    let roots = tree[function]
+        .body
+        .iter()
+        .flat_map(|body| walk::roots(tree, body));
+    roots
+        .flat_map(|root| tree.postorder(root))
+        .filter_map(|id| match tree[id].kind {
+            ExprKind::BuiltIn { function, .. } => Some(function.name()),
+            _ => None,
+        })
+        .collect()
 }
 
 /// A type as part of a name.

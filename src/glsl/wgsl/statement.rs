@@ -2,8 +2,8 @@
 
 use super::super::lower::walk;
 use super::super::tree::{
-    Arm, Block, Case, Condition, ExprId, ExprKind, Label, Scalar, Statement, StatementKind, Type, VariableId,
-    VariableKind,
+    Arm, Block, Case, Condition, ExprId, ExprKind, Label, Scalar, Statement, StatementKind, Tree, Type,
+    Value, VariableId, VariableKind,
 };
 use super::Unprintable;
 use super::writer::Writer;
@@ -12,28 +12,36 @@ type Done = Result<(), Unprintable>;
 
 impl Writer<'_> {
     pub(super) fn statements(&mut self, block: &Block) -> Done {
-        for statement in block {
-            if !matches!(statement.kind, StatementKind::Struct(_)) {
-                self.comment(statement.at);
+        for (number, statement) in block.iter().enumerate() {
+            if matches!(statement.kind, StatementKind::Struct(_)) {
+                continue;
             }
+            let begin = self.out.len();
+            if self.comments.is_apart(statement.at) && number > 0 {
+                self.line("");
+            }
+            self.comment(statement.at);
+            let from = self.out.len();
             self.statement(statement)?;
+            if self.out.len() == from {
+                self.out.truncate(begin);
+            } else if !statement.kind.is_compound() {
+                self.comment_behind(statement.at, from);
+            }
         }
         Ok(())
     }
 
-    fn block(&mut self, block: &Block) -> Done {
+    pub(super) fn block(&mut self, block: &Block) -> Done {
         self.inset(|writer| writer.statements(block))
     }
 
     fn statement(&mut self, statement: &Statement) -> Done {
         match &statement.kind {
-            StatementKind::Expression(expr) => self.effect(*expr),
-            StatementKind::Declare(variable) => {
-                let text = self.declaration(*variable)?;
-                self.line(&text);
-                Ok(())
-            }
+            StatementKind::Expression(expr) => self.stepping_later(*expr, |writer| writer.effect(*expr)),
+            StatementKind::Declare(variable) => self.declare(*variable),
             StatementKind::Struct(_) => Ok(()),
+            StatementKind::Block(body) if is_switch(body) => self.statements(body),
             StatementKind::Block(body) => {
                 self.line("{");
                 self.block(body)?;
@@ -82,9 +90,7 @@ impl Writer<'_> {
                     self.line("return;");
                     return Ok(());
                 }
-                let value = self.value(*value)?;
-                self.line(&format!("return {};", value.words));
-                Ok(())
+                self.give_back(*value)
             }
         }
     }
@@ -93,17 +99,56 @@ impl Writer<'_> {
     pub(super) fn declaration(&mut self, id: VariableId) -> Result<String, Unprintable> {
         let variable = &self.draft.tree[id];
         let name = self.variable(id);
-        let ty = self.type_name(variable.ty);
         let Some(initialiser) = variable.initialiser else {
-            return Ok(format!("var {name}: {ty};"));
+            return Ok(format!("var {name}: {};", self.type_name(variable.ty)));
         };
         let value = self.value(initialiser)?.words;
         let word = if self.facts.is_memory(id) { "var" } else { "let" };
         if variable.kind == VariableKind::Const && variable.value.is_some() && is_constant(self, initialiser)
         {
-            return Ok(format!("const {name}: {ty} = {value};"));
+            return Ok(self.typed("const", name, variable.ty, &value));
         }
         Ok(format!("{word} {name} = {value};"))
+    }
+
+    /// A declaration with its type, unless a constructor says it: a number alone would not.
+    pub(super) fn typed(&self, word: &str, name: &str, ty: Type, value: &str) -> String {
+        let ty = self.type_name(ty);
+        let says_it = value.strip_prefix(&ty).is_some_and(|rest| rest.starts_with('('));
+        if says_it {
+            format!("{word} {name} = {value};")
+        } else {
+            format!("{word} {name}: {ty} = {value};")
+        }
+    }
+
+    fn declare(&mut self, id: VariableId) -> Done {
+        let name = self.variable(id);
+        let Some(initialiser) = self.draft.tree[id].initialiser else {
+            let text = self.declaration(id)?;
+            self.line(&text);
+            return Ok(());
+        };
+        // The initialiser may mean another variable of that name, which is no longer in sight behind the declaration.
+        let meets = walk::any(&self.draft.tree, initialiser, |kind| match kind {
+            ExprKind::Variable(other) => self.variable(*other) == name,
+            _ => false,
+        });
+        if !meets && self.branching(initialiser).is_some() {
+            let ty = self.type_name(self.draft.tree[id].ty);
+            self.line(&format!("var {name}: {ty};"));
+            return self.stepping_later(initialiser, |writer| writer.give(name, initialiser));
+        }
+        let print = |writer: &mut Self| {
+            let text = writer.declaration(id)?;
+            writer.line(&text);
+            Ok(())
+        };
+        if meets {
+            print(self)
+        } else {
+            self.stepping_later(initialiser, print)
+        }
     }
 
     fn branches(&mut self, arms: &[Arm], otherwise: Option<&Block>) -> Done {
@@ -135,6 +180,28 @@ impl Writer<'_> {
         Ok(())
     }
 
+    fn case(&mut self, head: &str, body: &Block) -> Done {
+        let from = self.out.len();
+        self.line(&format!("{head}: {{"));
+        let inner = self.out.len();
+        self.block(body)?;
+        if self.out.len() == inner {
+            self.out.truncate(from);
+            self.line(&format!("{head}: {{}}"));
+        } else {
+            self.line("}");
+        }
+        Ok(())
+    }
+
+    /// Whether a label is a constant's name, or made of such.
+    fn is_named(&self, label: ExprId) -> bool {
+        let names_something = walk::any(&self.draft.tree, label, |kind| {
+            matches!(kind, ExprKind::Variable(_))
+        });
+        names_something && is_constant(self, label)
+    }
+
     fn switch(&mut self, selector: ExprId, cases: &[Case]) -> Done {
         let unsigned = self.draft.tree[selector].ty.scalar() == Some(Scalar::Uint);
         let selector = self.value(selector)?;
@@ -150,6 +217,10 @@ impl Writer<'_> {
                         has_default = true;
                         "default".to_owned()
                     }
+                    Label::Case { expr, .. } if self.is_named(expr) => match self.value(expr) {
+                        Ok(text) => text.words,
+                        Err(_) => String::new(),
+                    },
                     Label::Case { value, .. } if unsigned => format!("{value}u"),
                     Label::Case { value, .. } => value.cast_signed().to_string(),
                 })
@@ -158,14 +229,7 @@ impl Writer<'_> {
                 [one] if one == "default" => "default".to_owned(),
                 _ => format!("case {}", labels.join(", ")),
             };
-            self.line(&format!("{head}: {{"));
-            // Each case ends by itself.
-            let body = match case.body.split_last() {
-                Some((last, rest)) if matches!(last.kind, StatementKind::Break) => rest,
-                _ => &case.body,
-            };
-            self.block(&body.to_vec())?;
-            self.line("}");
+            self.case(&head, &body_of(&self.draft.tree, case))?;
         }
         if !has_default {
             self.line("default: {}");
@@ -175,203 +239,60 @@ impl Writer<'_> {
         Ok(())
     }
 
-    fn for_loop(
-        &mut self,
-        init: &Block,
-        condition: Option<ExprId>,
-        step: Option<ExprId>,
-        body: &Block,
-    ) -> Done {
-        let is_plain_init = match init.as_slice() {
-            [] => true,
-            [only] => match only.kind {
-                StatementKind::Declare(variable) => {
-                    let value = self.draft.tree[variable].initialiser;
-                    value.is_none_or(|value| !self.hoists(value))
-                }
-                StatementKind::Expression(expr) => self.is_single(expr),
-                _ => false,
-            },
-            _ => false,
-        };
-        let is_plain = is_plain_init
-            && condition.is_none_or(|condition| !self.hoists(condition))
-            && step.is_none_or(|step| self.is_single(step));
-        if is_plain {
-            let init = match init.first().map(|statement| &statement.kind) {
-                Some(StatementKind::Declare(variable)) => self.counter(*variable)?,
-                Some(StatementKind::Expression(expr)) => self.single(*expr)?,
-                _ => String::new(),
-            };
-            let condition = match condition {
-                Some(condition) => self.value(condition)?.words,
-                None => String::new(),
-            };
-            let step = match step {
-                Some(step) => self.single(step)?,
-                None => String::new(),
-            };
-            let init = init.trim_end_matches(';');
-            let step = step.trim_end_matches(';');
-            let head = if init.is_empty() && step.is_empty() {
-                if condition.is_empty() {
-                    "loop {".to_owned()
-                } else {
-                    format!("while {condition} {{")
-                }
-            } else {
-                format!("for ({init}; {condition}; {step}) {{")
-            };
-            self.line(&head);
-            self.block(body)?;
-            self.line("}");
-            return Ok(());
-        }
-        let scoped = init
-            .iter()
-            .any(|statement| matches!(statement.kind, StatementKind::Declare(_)));
-        if scoped {
-            self.line("{");
-            self.indent += 1;
-        }
-        for statement in init {
-            match statement.kind {
-                StatementKind::Declare(variable) => {
-                    let text = self.counter(variable)?;
-                    self.line(&text);
-                }
-                _ => self.statement(statement)?,
-            }
-        }
-        self.line("loop {");
-        self.inset(|writer| {
-            if let Some(condition) = condition {
-                writer.leave_unless(condition)?;
-            }
-            match step {
-                None => writer.statements(body),
-                Some(step) => {
-                    // A scope of its own, so that the step does not see what the body declares.
-                    writer.line("{");
-                    writer.block(body)?;
-                    writer.line("}");
-                    writer.line("continuing {");
-                    writer.inset(|writer| writer.effect(step))?;
-                    writer.line("}");
-                    Ok(())
-                }
-            }
-        })?;
-        self.line("}");
-        if scoped {
-            self.indent -= 1;
-            self.line("}");
-        }
-        Ok(())
-    }
-
-    /// A declaration in a loop's head, which is a `var`.
-    fn counter(&mut self, id: VariableId) -> Result<String, Unprintable> {
-        let text = self.declaration(id)?;
-        Ok(match text.strip_prefix("let ") {
-            Some(rest) => format!("var {rest}"),
-            None => text,
-        })
-    }
-
-    fn while_loop(&mut self, condition: ExprId, body: &Block) -> Done {
-        if self.hoists(condition) {
-            self.line("loop {");
-            self.inset(|writer| {
-                writer.leave_unless(condition)?;
-                writer.statements(body)
-            })?;
-        } else {
-            let condition = self.value(condition)?;
-            self.line(&format!("while {} {{", condition.words));
-            self.block(body)?;
-        }
-        self.line("}");
-        Ok(())
-    }
-
-    fn do_while(&mut self, body: &Block, condition: ExprId) -> Done {
-        self.line("loop {");
-        self.inset(|writer| {
-            writer.line("{");
-            writer.block(body)?;
-            writer.line("}");
-            writer.line("continuing {");
-            writer.inset(|writer| {
-                let condition = writer.negated(condition)?;
-                writer.line(&format!("break if {condition};"));
-                Ok(())
-            })?;
-            writer.line("}");
-            Ok(())
-        })?;
-        self.line("}");
-        Ok(())
-    }
-
-    fn leave_unless(&mut self, condition: ExprId) -> Done {
-        let condition = self.negated(condition)?;
-        self.line(&format!("if {condition} {{"));
-        self.inset(|writer| writer.line("break;"));
-        self.line("}");
-        Ok(())
-    }
-
-    /// Whether an expression is one assignment, step or call, and so may stand in a loop's head.
-    fn is_single(&mut self, id: ExprId) -> bool {
-        let tree = &self.draft.tree;
-        match &tree[id].kind {
-            &ExprKind::Assign { target, value, .. } => {
-                let is_swizzle = matches!(tree[target].kind, ExprKind::Swizzle { components, .. } if components.size() > 1);
-                !is_swizzle && !self.hoists(target) && !self.hoists(value)
-            }
-            &ExprKind::Step { target, .. } => !self.hoists(target),
-            ExprKind::Call { .. } => tree[id].ty == Type::Void && !self.hoists(id),
-            _ => false,
-        }
-    }
-
-    /// What such an expression does, as one line without indentation.
-    fn single(&mut self, id: ExprId) -> Result<String, Unprintable> {
-        let outer = std::mem::take(&mut self.out);
-        let done = self.effect(id);
-        let text = std::mem::replace(&mut self.out, outer);
-        done?;
-        Ok(text.trim().to_owned())
-    }
-
     /// Whether a block may come to its end, as WGSL's analysis of behaviours sees it (§9.7).
-    pub(super) fn may_end(block: &Block) -> bool {
-        !block.iter().any(Self::never_ends)
+    pub(super) fn may_end(&self, block: &Block) -> bool {
+        !block.iter().any(|statement| self.never_ends(statement))
     }
 
-    fn never_ends(statement: &Statement) -> bool {
+    fn never_ends(&self, statement: &Statement) -> bool {
         match &statement.kind {
             StatementKind::Return(_) => true,
-            StatementKind::Block(body) => !Self::may_end(body),
+            StatementKind::Block(body) => !self.may_end(body),
             StatementKind::If {
                 arms,
                 otherwise: Some(otherwise),
-            } => !Self::may_end(otherwise) && arms.iter().all(|arm| !Self::may_end(&arm.body)),
+            } => !self.may_end(otherwise) && arms.iter().all(|arm| !self.may_end(&arm.body)),
             StatementKind::Switch { cases, .. } => {
                 let has_default = cases.iter().any(|case| case.labels.contains(&Label::Default));
                 has_default
-                    && cases
-                        .iter()
-                        .all(|case| !Self::may_end(&case.body) && !leaves(&case.body))
+                    && cases.iter().all(|case| {
+                        let body = body_of(&self.draft.tree, case);
+                        !self.may_end(&body) && !leaves(&body)
+                    })
             }
             _ => false,
         }
     }
 }
 
+/// Whether a block is a `switch` that lowering gave a scope.
+fn is_switch(block: &Block) -> bool {
+    matches!(block.as_slice(), [only] if matches!(only.kind, StatementKind::Switch { .. }))
+}
+
+/// What a case does: WGSL's ends by itself, and a jump at its end needs no `if (true)` round it, as naga's GLSL does.
+fn body_of(tree: &Tree, case: &Case) -> Block {
+    let mut body = case.body.clone();
+    body.pop_if(|last| matches!(last.kind, StatementKind::Break));
+    let always = body.pop_if(|last| match &last.kind {
+        StatementKind::If { arms, otherwise: None } => match arms.as_slice() {
+            [arm] => {
+                let declares = arm.body.iter().any(|statement| walk::declared(statement).is_some());
+                let is_true = matches!(&tree[arm.condition].kind, ExprKind::Literal(literal) if literal.value == Value::Bool(true));
+                is_true && !declares
+            }
+            _ => false,
+        },
+        _ => false,
+    });
+    if let Some(StatementKind::If { arms, .. }) = always.map(|statement| statement.kind) {
+        body.extend(arms.into_iter().flat_map(|arm| arm.body));
+    }
+    body
+}
+
 /// Whether a `break` of the block's own stands in it.
-fn leaves(block: &Block) -> bool {
+pub(super) fn leaves(block: &Block) -> bool {
     block.iter().any(|statement| match &statement.kind {
         StatementKind::Break => true,
         StatementKind::For { .. }

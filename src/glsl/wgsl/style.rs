@@ -6,9 +6,10 @@ use std::collections::BTreeSet;
 use serde::{Deserialize, Serialize};
 
 use super::super::print::Order;
-use super::super::tree::{Input, SamplerShape, Type, VariableKind};
+use super::super::tree::{Direction, ExprId, ExprKind, Input, SamplerShape, Swizzle, Type, VariableKind};
 use super::Unprintable;
 use super::host::{BEVY_ENTRY, BEVY_RETURN, COMPUTE_ENTRY, COMPUTE_STORE};
+use super::text::Text;
 use super::writer::Writer;
 
 /// The kind of host that WGSL is for.
@@ -149,6 +150,26 @@ impl Writer<'_> {
             },
         };
         Ok(words.to_owned())
+    }
+
+    /// Components of the picture's size, where the host has it in two numbers.
+    pub(super) fn resolution(&mut self, vector: ExprId, components: Swizzle) -> Option<Text> {
+        let ExprKind::Variable(id) = self.draft.tree[vector].kind else {
+            return None;
+        };
+        let is_resolution = self.draft.tree[id].kind == VariableKind::Input(Input::Resolution);
+        if !is_resolution || components.components().iter().any(|&component| component > 1) {
+            return None;
+        }
+        let name = components.name();
+        let words = match (self.style, components.size()) {
+            (Style::ComputeToys, 1) => format!("f32(textureDimensions(screen).{name})"),
+            (Style::ComputeToys, 2) if name == "xy" => "vec2f(textureDimensions(screen))".to_owned(),
+            (Style::ComputeToys, size) => format!("vec{size}f(textureDimensions(screen).{name})"),
+            (Style::Bevy, _) => format!("view.viewport.{}", name.replace('x', "z").replace('y', "w")),
+            _ => return None,
+        };
+        Some(Text::primary(words))
     }
 
     /// What stands before the author's text.
@@ -334,7 +355,15 @@ impl Writer<'_> {
         if let Some(begin) = begin {
             self.line(&format!("    {begin}"));
         }
-        self.line("    var color = vec4f(0.0, 0.0, 0.0, 1.0);");
+        let main_image = &self.draft.tree[self.draft.main_image];
+        let brings = main_image
+            .parameters
+            .first()
+            .map(|&colour| self.draft.tree[colour].kind);
+        self.line(match brings {
+            Some(VariableKind::Parameter(Direction::InOut)) => "    var color = vec4f(0.0, 0.0, 0.0, 1.0);",
+            _ => "    var color: vec4f;",
+        });
         self.line(&format!("    {call}"));
     }
 }

@@ -53,7 +53,7 @@ void mainImage(out vec4 fragColor, in vec2 fragCoord) {
         // it goes.
         fn far(p: vec2f) -> f32 {
             // Not near.
-            return p.x * inputs.iTime + f32(STEPS);
+            return p.x * inputs.iTime + f32(STEPS); // behind
         }
 
         fn mainImage(fragColor: ptr<function, vec4f>, fragCoord: vec2f) {
@@ -62,7 +62,7 @@ void mainImage(out vec4 fragColor, in vec2 fragCoord) {
 
         @fragment
         fn main(@builtin(position) position: vec4f) -> @location(0) vec4f {
-            var color = vec4f(0.0, 0.0, 0.0, 1.0);
+            var color: vec4f;
             mainImage(&color, position.xy);
             return vec4f(color.xyz, 1.0);
         }
@@ -79,12 +79,10 @@ fn effects_stand_before_what_they_are_part_of() {
                 var p = p_in;
                 var i = 0;
                 var a: f32;
-                let kept = p.yx * 2.0;
-                p = vec2f(kept.y, kept.x);
-                let kept_1 = p.x;
-                let kept_2 = i;
+                let yx = p.yx * 2.0;
+                p = vec2f(yx.y, yx.x);
+                a = p.x + f32(i);
                 i++;
-                a = kept_1 + f32(kept_2);
                 return select(p.y, a, i > 0);
             }
         "]],
@@ -111,9 +109,7 @@ fn loops_are_those_of_the_author_where_wgsl_has_them() {
                         if i >= j {
                             break;
                         }
-                        {
-                            s += p.x;
-                        }
+                        s += p.x;
                         continuing {
                             i++;
                             j--;
@@ -124,11 +120,9 @@ fn loops_are_those_of_the_author_where_wgsl_has_them() {
                     s *= 2.0;
                 }
                 loop {
-                    {
-                        s -= 1.0;
-                    }
-                    continuing {
-                        break if !(s > 1.0);
+                    s -= 1.0;
+                    if !(s > 1.0) {
+                        break;
                     }
                 }
                 return s;
@@ -154,15 +148,15 @@ fn what_is_never_written_is_not_kept_and_conditions_are_turned_round() {
                 {
                     var i = 0;
                     loop {
-                        let kept = i;
+                        let old_i = i;
                         i++;
-                        if kept >= last {
+                        if old_i >= last {
                             break;
                         }
-                        let kept_1 = b;
-                        let kept_2 = b;
+                        let old_b = b;
+                        let old_b_1 = b;
                         b += 1.0;
-                        b = mix(p.y, kept_1, kept_2);
+                        b = mix(p.y, old_b, old_b_1);
                     }
                 }
                 return b;
@@ -203,4 +197,145 @@ fn y_points_down_where_the_host_has_it_so() {
     for style in [Style::WgpuShadertoy, Style::Bevy] {
         assert!(printed(shader, style).contains("vec4f(-dpdy(p.y))"));
     }
+}
+
+#[test]
+fn steps_wait_where_nobody_looks_and_choices_are_ifs_only_where_a_side_acts() {
+    function(
+        "float g(float x) { return x * 2.0; }
+        float pick(vec2 p, int i) { return i > 2 ? g(p.x) : i > 1 ? g(p.y) : p.x; }
+        float f(vec2 p) {
+            float stack[4];
+            int top = 0, i = 1;
+            stack[top++] = pick(p, top);
+            stack[top++] = p.y;
+            float a = i++ > 0 ? g(p.x) : p.y;
+            a += p.x > 0.0 ? g(a) : 1.0;
+            vec2 b = g(a) > 1.0 ? p : p.yx;
+            return stack[--top] + a * b.x;
+        }",
+        &expect![[r"
+            fn f(p: vec2f) -> f32 {
+                var stack: array<f32, 4>;
+                var top = 0;
+                var i = 1;
+                let old_top = top;
+                top++;
+                stack[old_top] = pick(p, top);
+                stack[top] = p.y;
+                top++;
+                var a: f32;
+                if i > 0 {
+                    a = g(p.x);
+                } else {
+                    a = p.y;
+                }
+                i++;
+                if p.x > 0.0 {
+                    a += g(a);
+                } else {
+                    a += 1.0;
+                }
+                let b = select(p.yx, p, g(a) > 1.0);
+                top--;
+                return stack[top] + a * b.x;
+            }
+        "]],
+    );
+}
+
+#[test]
+fn cases_keep_their_names_and_fall_through() {
+    function(
+        "const int NEAR = 0, MIDDLE = 1;
+        const int FAR = 2;
+        float f(vec2 p) {
+            switch (int(p.x)) {
+            case NEAR: p.y *= 0.5;
+            case MIDDLE: return p.y;
+            case FAR:
+            default: break;
+            }
+            return 1.0;
+        }",
+        &expect![[r"
+            fn f(p_in: vec2f) -> f32 {
+                var p = p_in;
+                let selector = i32(p.x);
+                switch selector {
+                    case NEAR, MIDDLE: {
+                        let reached = selector == NEAR;
+                        if reached {
+                            p.y *= 0.5;
+                        }
+                        return p.y;
+                    }
+                    case FAR, default: {}
+                }
+                return 1.0;
+            }
+        "]],
+    );
+}
+
+#[test]
+fn letters_bits_blank_lines_and_comments_are_the_author_s() {
+    function(
+        "float f(vec2 p) {
+            vec4 colour = vec4(p, 0.0, 1.0); // red and green
+
+            // The other way.
+            colour.bg = colour.rb;
+            float distance = length(p), length = 0.1; /* hidden */
+            int bits = 2;
+            bits = 0x0fF & int(p.x) << 3 >> bits;
+            colour.xz *= mod(p.x * 2.0, length) * mod(p, 2.0).x;
+            colour /= distance;
+            return colour.a + float(bits % 3);
+        }",
+        &expect![[r"
+            fn f(p: vec2f) -> f32 {
+                var colour = vec4f(p, 0.0, 1.0); // red and green
+
+                // The other way.
+                let bg = colour.rb;
+                colour = vec4f(colour.r, bg.g, bg.r, colour.a);
+                let distance = length(p); // hidden
+                let length_1 = 0.1;
+                var bits = 2;
+                bits = 0x0fF & ((i32(p.x) << 3u) >> u32(bits));
+                let xz = colour.xz * (modulo(p.x * 2.0, length_1) * modulo_vec2f(p, vec2f(2.0)).x);
+                colour = vec4f(xz.x, colour.y, xz.y, colour.w);
+                colour /= distance;
+                return colour.a + f32(remainder(bits, 3));
+            }
+        "]],
+    );
+}
+
+#[test]
+fn a_call_that_may_change_what_it_is_added_to_comes_first() {
+    function(
+        "float seed;
+        float next() { return seed += 1.0; }
+        float twice(inout float x) { return x *= 2.0; }
+        float f(vec2 p) {
+            float x = p.x;
+            x += next();
+            x += twice(x);
+            seed *= next();
+            return x;
+        }",
+        &expect![[r"
+            fn f(p: vec2f) -> f32 {
+                var x = p.x;
+                x += next();
+                let value = twice(&x);
+                x += value;
+                let value_1 = next();
+                seed *= value_1;
+                return x;
+            }
+        "]],
+    );
 }

@@ -1,5 +1,7 @@
 //! Words of WGSL that no identifier may be (§15), or had better not be.
 
+use super::super::tree::BuiltIn;
+
 /// Keywords and reserved words that GLSL leaves to its authors.
 const RESERVED: &[&str] = &[
     "NULL",
@@ -272,6 +274,13 @@ pub(super) fn is_taken(word: &str) -> bool {
         || word.starts_with("__")
 }
 
+/// Whether a local variable may have the name of that function, if nobody calls it where the variable is. What is printed calls some that the
+/// author did not.
+pub(super) fn may_be_hidden(word: &str) -> bool {
+    const PRINTED: [&str; 4] = ["all", "any", "floor", "round"];
+    BuiltIn::ALL.iter().any(|function| function.name() == word) && !PRINTED.contains(&word)
+}
+
 /// The same of a member, which stands behind a dot and meets nothing.
 pub(super) fn is_reserved(word: &str) -> bool {
     RESERVED.binary_search(&word).is_ok() || word == "_" || word.starts_with("__")
@@ -306,5 +315,6 @@ mod tests {
         assert_eq!(free("loop", is_taken), "loop_1");
         assert_eq!(free("near", is_taken), "near");
         assert_eq!(free("__x", is_taken), "x");
+        assert!(may_be_hidden("distance") && !may_be_hidden("select") && !may_be_hidden("floor"));
     }
 }

@@ -11,6 +11,7 @@ use super::comment::Comments;
 use super::facts::Facts;
 use super::names::Names;
 use super::style::Style;
+use super::wrap;
 use crate::source::Files;
 
 /// Prints a draft.
@@ -26,10 +27,14 @@ pub(super) struct Writer<'a> {
     pub(super) temporaries: HashSet<String>,
     /// Every number gets its suffix: what stands among numbers only is computed in 32 bits, too.
     pub(super) suffixed: bool,
+    /// Steps that are done at the end of their statement.
+    pub(super) waiting: HashSet<ExprId>,
     /// Which expressions print lines before their value, as far as it was found out.
     pub(super) hoisting: HashMap<ExprId, bool>,
     /// Macros that stand for a number, by name, with what they are declared as.
     pub(super) macros: BTreeMap<String, String>,
+    /// Functions of our own that are called, by name.
+    pub(super) helpers: BTreeMap<String, String>,
     /// Whether something compares with the pixel's neighbours.
     pub(super) derives: bool,
     /// Whether `gl_FragCoord` is read elsewhere than by `mainImage`'s caller.
@@ -54,8 +59,10 @@ impl<'a> Writer<'a> {
             indent: 0,
             temporaries: HashSet::new(),
             suffixed: false,
+            waiting: HashSet::new(),
             hoisting: HashMap::new(),
             macros: BTreeMap::new(),
+            helpers: BTreeMap::new(),
             derives: false,
             reads_position: false,
         }
@@ -63,11 +70,7 @@ impl<'a> Writer<'a> {
 
     /// A line at the present depth.
     pub(super) fn line(&mut self, text: &str) {
-        for _ in 0..self.indent {
-            self.out.push_str("    ");
-        }
-        self.out.push_str(text);
-        self.out.push('\n');
+        wrap::put(&mut self.out, text, self.indent);
     }
 
     /// Lines one step further in.
@@ -82,6 +85,24 @@ impl<'a> Writer<'a> {
     pub(super) fn comment(&mut self, at: Place) {
         for line in self.comments.above(at) {
             self.line(&line);
+        }
+    }
+
+    /// Puts the comment that the author has behind a place behind the line that was printed from there on, or above several.
+    pub(super) fn comment_behind(&mut self, at: Place, from: usize) {
+        let Some(comment) = self.comments.behind(at) else {
+            return;
+        };
+        let is_one_line = self.out[from..].matches('\n').count() == 1;
+        if is_one_line {
+            self.out.pop();
+            self.out.push(' ');
+            self.out.push_str(&comment);
+            self.out.push('\n');
+        } else {
+            let lines = self.out.split_off(from);
+            self.line(&comment);
+            self.out.push_str(&lines);
         }
     }
 
@@ -129,6 +150,10 @@ impl<'a> Writer<'a> {
                 text.push_str(declaration);
                 text.push('\n');
             }
+            text.push('\n');
+        }
+        for helper in self.helpers.values() {
+            text.push_str(helper);
             text.push('\n');
         }
         text.push_str(items.trim_start_matches('\n'));
