@@ -75,6 +75,7 @@ static DIFFERED: &[&str] = &[
     // Nothing times what is no number.
     "float k = sqrt(p.x - 20.); c = vec4(0. * k, vec2(.5, 0) * k, 1.); c.w = dot(vec2(0, 1), vec2(k, 1));",
     "float k = log(20. - p.x); c.xyz = mat3(1, 0, 0, 0, p, k, 0, p.x) * vec3(k, p); c.w = 0. / k;",
+    "float k = sqrt(p.x - 20.); c = vec4(mix(vec3(0, 0, 1), vec3(1, .5, 0), k), p.x > 9. ? 0. : 1.);",
     // A loop that hangs on uniforms alone, by more paths than a compiler can walk.
     "float k = sin(8. * cos(iTime)), s = 0.; for (int i = 0; i < 8; i++) { if (k < float(i) * .1) break; s += .1; } c = vec4(s, k, p);",
     // Exact functions of what is constant after propagation, in one branch of two.

@@ -191,9 +191,10 @@ fn edges_are_as_in_c() {
     }
 }
 
-/// The largest errors that millions of random arguments have.
+/// The largest error that millions of random arguments have.
 const POW_LIMIT: f64 = 0.85;
-const ATAN2_LIMIT: f64 = 1.62;
+/// A hundred million pairs whose quotient lies between 0.5 and 0.5463, where its own rounding counts most, have errors of up to 1.67.
+const ATAN2_LIMIT: f64 = 1.75;
 
 /// The error, where the function is defined: of x < 0 it is not.
 fn pow_error(x: f32, y: f32) -> f64 {

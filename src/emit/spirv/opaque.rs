@@ -13,7 +13,7 @@ use super::{BOUND, has_type, instructions, opcode};
 ///   made of uniforms and constants only, and walks the expression as a tree, though it is none: `sin(iTime)`, spelled out, has
 ///   some hundred operations and more paths through them than can be walked. Where the first operand that it meets hangs on the
 ///   pixel, the walk has ended.
-/// - Zeros that are multiplied, divided or made parts of what may be. Mesa's llvmpipe takes the product of a constant zero and anything, and its quotient,
+/// - Zeros that are multiplied or divided, or brought to where they may be. Mesa's llvmpipe takes the product of a constant zero and anything, and its quotient,
 ///   for zero, also where it is NaN, whatever decorations say.
 #[must_use]
 pub fn with_opaque_numbers(words: &[u32]) -> Vec<u32> {
@@ -40,9 +40,9 @@ pub fn with_opaque_numbers(words: &[u32]) -> Vec<u32> {
                     None => code.extend(instruction),
                 }
             }
-            (Some(op), _) if takes_zero_for_zero(op) => {
+            (Some(op), _) => {
                 let mut instruction = instruction.to_vec();
-                for operand in instruction.iter_mut().skip(3) {
+                for operand in instruction.iter_mut().skip(first_value(op)) {
                     *operand = opaque.without_zero(&mut code, *operand);
                 }
                 code.extend(instruction);
@@ -55,21 +55,25 @@ pub fn with_opaque_numbers(words: &[u32]) -> Vec<u32> {
     whole
 }
 
-/// Whether it multiplies or divides, or makes a vector or matrix for that; all its operands are values.
-fn takes_zero_for_zero(op: Op) -> bool {
-    matches!(
-        op,
+/// Where the operands of an instruction begin that are multiplied or divided, or that it brings to where they may be; all from there on are
+/// values. Behind its end, if it does no such thing.
+fn first_value(op: Op) -> usize {
+    match op {
         Op::FMul
-            | Op::FDiv
-            | Op::VectorTimesScalar
-            | Op::MatrixTimesScalar
-            | Op::VectorTimesMatrix
-            | Op::MatrixTimesVector
-            | Op::MatrixTimesMatrix
-            | Op::OuterProduct
-            | Op::Dot
-            | Op::CompositeConstruct
-    )
+        | Op::FDiv
+        | Op::VectorTimesScalar
+        | Op::MatrixTimesScalar
+        | Op::VectorTimesMatrix
+        | Op::MatrixTimesVector
+        | Op::MatrixTimesMatrix
+        | Op::OuterProduct
+        | Op::Dot
+        | Op::CompositeConstruct
+        | Op::Select => 3,
+        Op::FunctionCall => 4,
+        Op::ReturnValue => 1,
+        _ => usize::MAX,
+    }
 }
 
 /// A number, or a vector of them.
@@ -362,6 +366,7 @@ mod tests {
             "c.x = 0.0 / c.y;",
             "c.x = dot(c, vec4(1, 0, 1, 1));",
             "c = vec4(p.x, 1, 0, 1);",
+            "c.x = p.y > 1.0 ? 0.0 : 1.0;",
         ] {
             assert_eq!(hidden(body), 1, "{body}");
         }
