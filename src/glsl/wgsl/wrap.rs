@@ -201,10 +201,10 @@ mod tests {
     fn short_lines_stay() {
         broken(
             "let x = f(a, b) + c;",
-            &expect![[r#"
+            &expect![[r"
                 {
                     let x = f(a, b) + c;
-            "#]],
+            "]],
         );
     }
 
@@ -212,20 +212,20 @@ mod tests {
     fn sums_are_broken_before_an_operator() {
         broken(
             "return spheres[emitter].material.color * brdf(hit.material, reflected, direction) * facing * weight(density, other);",
-            &expect![[r#"
+            &expect![[r"
                 {
                     return spheres[emitter].material.color * brdf(hit.material, reflected, direction) * facing
                         * weight(density, other);
-            "#]],
+            "]],
         );
         broken(
             "if first_of_them[index] > second_of_them[index] && third_of_them[index] > fourth_of_them[index] || fifth_of_them {",
-            &expect![[r#"
+            &expect![[r"
                 {
                     if first_of_them[index] > second_of_them[index] && third_of_them[index] > fourth_of_them[index]
                         || fifth_of_them
                     {
-            "#]],
+            "]],
         );
     }
 
@@ -233,31 +233,31 @@ mod tests {
     fn lists_are_broken_item_by_item() {
         broken(
             "return normalize(vec3f(map(p + e.xyy, &which) - map(p - e.xyy, &which), map(p + e.yxy, &which) - map(p - e.yxy, &which)));",
-            &expect![[r#"
+            &expect![[r"
                 {
                     return normalize(vec3f(
                         map(p + e.xyy, &which) - map(p - e.xyy, &which),
                         map(p + e.yxy, &which) - map(p - e.yxy, &which),
                     ));
-            "#]],
+            "]],
         );
         broken(
             "const TABLE = array<f32, 16>(0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0, 1.125, 1.25, 1.375, 1.5, 1.625, 1.75, 1.875, 2.0);",
-            &expect![[r#"
+            &expect![[r"
                 {
                     const TABLE = array<f32, 16>(
                         0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0, 1.125, 1.25, 1.375, 1.5, 1.625, 1.75, 1.875, 2.0,
                     );
-            "#]],
+            "]],
         );
         broken(
             "let n = normalize(k.xyy * scene(p + k.xyy * h) + k.yyx * scene(p + k.yyx * h) + k.yxy * scene(p + k.yxy * h));",
-            &expect![[r#"
+            &expect![[r"
                 {
                     let n = normalize(
                         k.xyy * scene(p + k.xyy * h) + k.yyx * scene(p + k.yyx * h) + k.yxy * scene(p + k.yxy * h)
                     );
-            "#]],
+            "]],
         );
     }
 }
