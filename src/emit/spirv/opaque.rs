@@ -68,8 +68,7 @@ fn first_value(op: Op) -> usize {
         | Op::MatrixTimesMatrix
         | Op::OuterProduct
         | Op::Dot
-        | Op::CompositeConstruct
-        | Op::Select => 3,
+        | Op::CompositeConstruct => 3,
         Op::FunctionCall => 4,
         Op::ReturnValue => 1,
         _ => usize::MAX,
@@ -366,7 +365,6 @@ mod tests {
             "c.x = 0.0 / c.y;",
             "c.x = dot(c, vec4(1, 0, 1, 1));",
             "c = vec4(p.x, 1, 0, 1);",
-            "c.x = p.y > 1.0 ? 0.0 : 1.0;",
         ] {
             assert_eq!(hidden(body), 1, "{body}");
         }
