@@ -88,14 +88,20 @@ impl Names {
         if let Some(body) = &tree[function].body {
             walk::each(body, &mut |statement| locals.extend(walk::declared(statement)));
         }
+        let theirs: HashSet<&str> = locals.iter().map(|&id| &*tree[id].name).collect();
+        let own = |id: VariableId| {
+            let name = &*tree[id].name;
+            let short = author_s(name);
+            if theirs.contains(short) { name } else { short }
+        };
         let mut counts: HashMap<&str, usize> = HashMap::new();
         for &id in &locals {
-            *counts.entry(author_s(&tree[id].name)).or_default() += 1;
+            *counts.entry(own(id)).or_default() += 1;
         }
         let mut taken: HashSet<String> = counts.keys().map(|&name| name.to_owned()).collect();
         let called = called(draft, function);
         for &id in &locals {
-            let own = author_s(&tree[id].name);
+            let own = own(id);
             let meets = draft.moved.contains(&id) && counts.get(own).is_some_and(|&count| count > 1);
             let clashes = word::is_taken(own) && (!word::may_be_hidden(own) || called.contains(own));
             let name = if own.is_empty() || meets || clashes || global.contains(own) {
