@@ -46,24 +46,24 @@ pub enum Means {
 /// if they were normal.
 const NO_CHANCE: f64 = 4.5;
 
-/// Means that are this much apart are the same.
+/// Means that are this much apart are the same: as far as two right formulas may be, for a picture and for its mean.
 const SAME: f64 = 2.0 * super::EXACT_TOLERANCE;
 
-/// A pixel counts as if its noise were at least this.
+/// A pixel counts as if its noise were at least this, or those in which eight drawings have met a sliver by chance not once would count for nearly all.
 const LEAST_NOISE: f64 = 0.01;
 
-/// Nothing is said where means that are this much apart might not be seen.
+/// Nothing is said where means that are this much apart, two and a half levels of 8 bits, might not be seen.
 const FINEST: f64 = 0.01;
 
 /// Neighbouring pixels may draw the same numbers if the variance of what their noise has not in common is below this share of what it would be:
-/// 0.2 to 0.65 for the course's scenes, and 0.9 to 1.15 if each pixel draws its own.
+/// 0.2 to 0.65 for the course's scenes; it is 0.8 if each pixel draws its own on a grid, and 0.9 to 1.15 if it just draws.
 const REPEATED: f64 = 0.75;
 
 /// The shader draws the scene's numbers if its noise and the reference's are correlated more than this. It is 0.1 if they have only the mean in common
 /// which both are told from.
 const THE_SCENES: f64 = 0.5;
 
-/// Noise of more than so many times the variance has fewer samples.
+/// Noise of more than so many times the variance has fewer samples: beyond what the variance of eight drawings is uncertain by, over thousands of pixels.
 const NOISIER: f64 = 1.2;
 
 /// The picture is looked at whole, and in so many columns and rows.

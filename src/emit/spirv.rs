@@ -146,6 +146,33 @@ fn has_type(op: Op) -> bool {
     !(names_and_decorations || structure || flow || is_type(op))
 }
 
+/// Whether it multiplies floats, and perhaps adds up what comes of it.
+fn is_product(op: Op) -> bool {
+    matches!(
+        op,
+        Op::FMul
+            | Op::VectorTimesScalar
+            | Op::MatrixTimesScalar
+            | Op::VectorTimesMatrix
+            | Op::MatrixTimesVector
+            | Op::MatrixTimesMatrix
+            | Op::OuterProduct
+            | Op::Dot
+    )
+}
+
 fn is_type(op: Op) -> bool {
     (Op::TypeVoid as u32..=Op::TypeForwardPointer as u32).contains(&(op as u32))
+}
+
+/// The words of a shader that is right.
+#[cfg(test)]
+fn words_of(shader: &str) -> Vec<u32> {
+    use crate::glsl::{Options as Language, check, lower};
+    use crate::source::{File, Files};
+
+    let mut files = Files::default();
+    let file = files.add(File::new("s", shader));
+    let checked = check(&files, file, &Language::default()).unwrap();
+    words(&ValidModule::parse(&lower(&checked)).unwrap()).unwrap()
 }

@@ -147,7 +147,8 @@ impl<'a> Painted<'a> {
             Means::Repeated => (
                 Verdict::Inconclusive,
                 format!(
-                    "random: {differs}, and what they do in neighbouring pixels has much in common, so that means cannot be compared. Draw as docs/scenes.md                      tells, or start each pixel's numbers from its place"
+                    "random: {differs}, and what they do in neighbouring pixels has much in common, so that means cannot be compared. Draw as docs/scenes.md \
+                     tells, or start each pixel's numbers from its place"
                 ),
             ),
         };

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use ::spirv::{BuiltIn, Decoration, Op, StorageClass};
 
-use super::{BOUND, has_type, instructions, opcode};
+use super::{BOUND, has_type, instructions, is_product, opcode};
 
 /// The same module with some numbers put through an exclusive or with the bits of `gl_FragCoord.z`, which are 0 where a picture is
 /// painted by triangles at depth 0. Their values are the same. A module that has no `gl_FragCoord` stays as it is. The numbers are:
@@ -59,16 +59,8 @@ pub fn with_opaque_numbers(words: &[u32]) -> Vec<u32> {
 /// values. Behind its end, if it does no such thing.
 fn first_value(op: Op) -> usize {
     match op {
-        Op::FMul
-        | Op::FDiv
-        | Op::VectorTimesScalar
-        | Op::MatrixTimesScalar
-        | Op::VectorTimesMatrix
-        | Op::MatrixTimesVector
-        | Op::MatrixTimesMatrix
-        | Op::OuterProduct
-        | Op::Dot
-        | Op::CompositeConstruct => 3,
+        Op::FDiv | Op::CompositeConstruct => 3,
+        op if is_product(op) => 3,
         Op::FunctionCall => 4,
         Op::ReturnValue => 1,
         _ => usize::MAX,
@@ -300,18 +292,8 @@ fn push(code: &mut Vec<u32>, op: Op, operands: &[u32]) {
 mod tests {
     use std::collections::HashSet;
 
-    use super::super::words;
+    use super::super::words_of;
     use super::*;
-    use crate::glsl::{Options as Language, check, lower};
-    use crate::module::ValidModule;
-    use crate::source::{File, Files};
-
-    fn words_of(shader: &str) -> Vec<u32> {
-        let mut files = Files::default();
-        let file = files.add(File::new("s", shader));
-        let checked = check(&files, file, &Language::default()).unwrap();
-        words(&ValidModule::parse(&lower(&checked)).unwrap()).unwrap()
-    }
 
     fn all(words: &[u32], op: Op) -> Vec<&[u32]> {
         let found = instructions(words).filter(|(_, instruction)| opcode(instruction) == Some(op));

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use ::spirv::{Capability, Decoration, GlslStd450Op, Op};
 
-use super::{HEADER_WORDS, instructions, is_type, opcode};
+use super::{HEADER_WORDS, instructions, is_product, is_type, opcode};
 
 /// The same module with `NoContraction` on every float operation that a driver could fuse, rearrange or round otherwise,
 /// and with fine derivatives where the module leaves it to the driver how near a derivative must be: Mesa takes that of a pixel's own
@@ -70,21 +70,8 @@ fn is_arithmetic(op: Op, instruction: &[u32], floats: &HashSet<u32>) -> bool {
             );
             floats.contains(&instruction[1]) && !exact
         }
-        Op::FNegate
-        | Op::FAdd
-        | Op::FSub
-        | Op::FMul
-        | Op::FDiv
-        | Op::FRem
-        | Op::FMod
-        | Op::VectorTimesScalar
-        | Op::MatrixTimesScalar
-        | Op::VectorTimesMatrix
-        | Op::MatrixTimesVector
-        | Op::MatrixTimesMatrix
-        | Op::OuterProduct
-        | Op::Dot => true,
-        _ => false,
+        Op::FNegate | Op::FAdd | Op::FSub | Op::FDiv | Op::FRem | Op::FMod => true,
+        _ => is_product(op),
     }
 }
 
@@ -100,24 +87,14 @@ fn fine(op: Op) -> Option<Op> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::words;
+    use super::super::words_of;
     use super::*;
-    use crate::glsl::{Options as Language, check, lower};
-    use crate::module::ValidModule;
-    use crate::source::{File, Files};
 
     const SHADER: &str = "void mainImage(out vec4 c, in vec2 p) {
         int i = int(p.x) * 3;
         mat2 m = mat2(p, p);
         c = vec4(m * p, dot(p, p) - 0.5, sin(p.x) / float(i));
     }";
-
-    fn plain(shader: &str) -> Vec<u32> {
-        let mut files = Files::default();
-        let file = files.add(File::new("s", shader));
-        let checked = check(&files, file, &Language::default()).unwrap();
-        words(&ValidModule::parse(&lower(&checked)).unwrap()).unwrap()
-    }
 
     fn is_no_contraction(instruction: &[u32]) -> bool {
         instruction.len() == 3
@@ -127,7 +104,7 @@ mod tests {
 
     #[test]
     fn only_decorations_are_added() {
-        let plain = plain(SHADER);
+        let plain = words_of(SHADER);
         let strict = strict(&plain);
         let kept: Vec<u32> = instructions(&strict)
             .filter(|(_, instruction)| !is_no_contraction(instruction))
@@ -139,7 +116,7 @@ mod tests {
 
     #[test]
     fn every_float_operation_is_decorated_and_no_integer_one() {
-        let strict = strict(&plain(SHADER));
+        let strict = strict(&words_of(SHADER));
         let decorated: HashSet<u32> = instructions(&strict)
             .filter(|(_, instruction)| is_no_contraction(instruction))
             .map(|(_, instruction)| instruction[1])
@@ -168,14 +145,14 @@ mod tests {
         let shader = "void mainImage(out vec4 c, in vec2 p) {
             c = vec4(sqrt(p), min(p.x, max(p.y, 2.0)), clamp(p.x, 0.0, 1.0));
         }";
-        let strict = strict(&plain(shader));
+        let strict = strict(&words_of(shader));
         assert!(instructions(&strict).all(|(_, instruction)| !is_no_contraction(instruction)));
     }
 
     #[test]
     fn derivatives_are_fine() {
         let shader = "void mainImage(out vec4 c, in vec2 p) { c = vec4(dFdx(p), dFdy(p.x), fwidth(p.y)); }";
-        let (plain, strict) = (plain(shader), strict(&plain(shader)));
+        let (plain, strict) = (words_of(shader), strict(&words_of(shader)));
         let of = |words: &[u32]| -> Vec<Op> {
             let all = instructions(words).filter_map(|(_, instruction)| opcode(instruction));
             all.filter(|op| (Op::DPdx..=Op::FwidthCoarse).contains(op))
