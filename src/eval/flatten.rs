@@ -198,15 +198,15 @@ impl Flatten<'_> {
                 }
             }
             Node::Scope { scope, ref body } => self.scope(scope, body),
-            Node::Loop { id, ref body } => {
+            Node::Loop { ref body } => {
                 let head = self.label();
                 self.place(head);
                 let first = self.steps.len() as u32;
-                self.push(Step::Iterate(id));
                 self.block(body);
                 self.push(Step::Jump(head));
                 self.loops.push((first, self.steps.len() as u32 - 1));
             }
+            Node::Round(id) => self.push(Step::Iterate(id)),
             Node::Leave(scope) => self.leave(scope, None),
             Node::LeaveIf {
                 scope,
@@ -400,7 +400,7 @@ fn leaves(block: &Block) -> bool {
         Node::Leave(_) | Node::LeaveIf { .. } => true,
         Node::If { yes, no, .. } => leaves(yes) || leaves(no),
         Node::Scope { scope, body } => leaves_beyond(body, *scope),
-        Node::Loop { body, .. } => leaves(body),
+        Node::Loop { body } => leaves(body),
         _ => false,
     })
 }
@@ -421,7 +421,7 @@ fn beyond(block: &Block, inside: &mut Vec<Scope>) -> bool {
             inside.pop();
             found
         }
-        Node::Loop { body, .. } => beyond(body, inside),
+        Node::Loop { body } => beyond(body, inside),
         _ => false,
     })
 }

@@ -30,6 +30,13 @@ pub(super) struct Cells {
     pub(super) count: u32,
 }
 
+impl Cells {
+    /// The one that `offset + index` leads to; in range by construction, and held to it all the same.
+    pub(super) fn held(self, offset: u32, index: u32) -> Cell {
+        Cell(self.first + offset + index.min(self.count - 1 - offset))
+    }
+}
+
 /// Where a value comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Origin {
@@ -103,7 +110,9 @@ pub(super) enum Node {
     /// What can be left.
     Scope { scope: Scope, body: Block },
     /// Again and again, until all have left a scope around it.
-    Loop { id: LoopId, body: Block },
+    Loop { body: Block },
+    /// One more round of a loop begins.
+    Round(LoopId),
     /// The end of a scope, for the pixels that are here. Nothing follows it in its block.
     Leave(Scope),
     /// The same for those for which a condition is `when`.
@@ -212,7 +221,19 @@ impl Node {
                 visit(yes);
                 visit(no);
             }
-            Self::Scope { body, .. } | Self::Loop { body, .. } => visit(body),
+            Self::Scope { body, .. } | Self::Loop { body } => visit(body),
+            _ => {}
+        }
+    }
+
+    /// The same, to change them.
+    pub(super) fn for_each_block_mut(&mut self, mut visit: impl FnMut(&mut Block)) {
+        match self {
+            Self::If { yes, no, .. } => {
+                visit(yes);
+                visit(no);
+            }
+            Self::Scope { body, .. } | Self::Loop { body } => visit(body),
             _ => {}
         }
     }
@@ -231,7 +252,12 @@ impl Node {
                 .filter(|&&value| value != NONE)
                 .for_each(|&value| visit(value)),
             Self::Tell { value, .. } if *value != NONE => visit(*value),
-            Self::Tell { .. } | Self::Let(_) | Self::Scope { .. } | Self::Loop { .. } | Self::Leave(_) => {}
+            Self::Tell { .. }
+            | Self::Let(_)
+            | Self::Scope { .. }
+            | Self::Loop { .. }
+            | Self::Round(_)
+            | Self::Leave(_) => {}
         }
     }
 
@@ -246,7 +272,12 @@ impl Node {
             Self::If { condition, .. } | Self::LeaveIf { condition, .. } => visit(condition),
             Self::Check { values, .. } => values.iter_mut().filter(|value| **value != NONE).for_each(visit),
             Self::Tell { value, .. } if *value != NONE => visit(value),
-            Self::Tell { .. } | Self::Let(_) | Self::Scope { .. } | Self::Loop { .. } | Self::Leave(_) => {}
+            Self::Tell { .. }
+            | Self::Let(_)
+            | Self::Scope { .. }
+            | Self::Loop { .. }
+            | Self::Round(_)
+            | Self::Leave(_) => {}
         }
     }
 }

@@ -23,6 +23,7 @@ mod compile;
 mod flatten;
 mod flow;
 mod forward;
+mod fuse;
 mod group;
 mod handler;
 mod input;

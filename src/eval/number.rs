@@ -23,6 +23,9 @@ macro_rules! functions {
             fn to_f32(self) -> f32;
             /// Whether it is NaN.
             fn is_nan(self) -> bool;
+            /// `yes` where all bits of the mask are set, `no` where none is; bit by bit.
+            #[must_use]
+            fn blend(mask: u32, yes: Self, no: Self) -> Self;
 
             /// `self + other`
             #[must_use]
@@ -106,7 +109,7 @@ macro_rules! functions {
             fn sqrt(self, (): ()) -> Self {
                 f32::sqrt(self)
             }
-            exact!(f32);
+            exact!(f32, i32);
             $(
                 #[inline(always)]
                 fn $method(self, (): ()) -> Self {
@@ -158,7 +161,7 @@ macro_rules! functions {
             fn sqrt(self, (): ()) -> Self {
                 f64::sqrt(self)
             }
-            exact!(f64);
+            exact!(f64, i64);
             $(
                 #[inline(always)]
                 fn $method(self, (): ()) -> Self {
@@ -193,6 +196,10 @@ macro_rules! functions {
             #[inline(always)]
             fn is_nan(self) -> bool {
                 self.0.is_nan()
+            }
+            #[inline(always)]
+            fn blend(mask: u32, yes: Self, no: Self) -> Self {
+                Self(f64::blend(mask, yes.0, no.0))
             }
             #[inline(always)]
             fn add(self, other: Self, seed: Seed) -> Self {
@@ -267,7 +274,12 @@ macro_rules! functions {
 }
 
 macro_rules! exact {
-    ($float:ident) => {
+    ($float:ident, $signed:ident) => {
+        #[inline(always)]
+        fn blend(mask: u32, yes: Self, no: Self) -> Self {
+            let mask = $signed::from(mask.cast_signed()).cast_unsigned();
+            $float::from_bits((yes.to_bits() & mask) | (no.to_bits() & !mask))
+        }
         #[inline(always)]
         fn is_nan(self) -> bool {
             $float::is_nan(self)

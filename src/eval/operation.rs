@@ -24,6 +24,8 @@ macro_rules! for_each_operation {
         $then! {
             // Arithmetic: rounds, or is exact.
             Add(F, F) F, Sub(F, F) F, Mul(F, F) F, Div(F, F) F,
+            // Two roundings, as apart from each other: a·b + c, a·b − c, c − a·b.
+            MulAdd(F, F, F) F, MulSub(F, F, F) F, SubMul(F, F, F) F,
             Min(F, F) F, Max(F, F) F,
             Neg(F) F, Abs(F) F, Sqrt(F) F, Floor(F) F, Ceil(F) F, Trunc(F) F, RoundEven(F) F,
             // Elementary functions.

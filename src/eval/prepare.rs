@@ -204,7 +204,7 @@ impl<N: Number> Writer<'_, N> {
                 ..
             } => {
                 let (condition, _) = self.value(condition);
-                let run = handler::split(self.level, when);
+                let run = handler::split(self.level, when, yes != no);
                 self.push(run, 0, [condition, yes.0.into(), no.0.into()], 0);
             }
             Step::Copy { to } => {

@@ -7,6 +7,7 @@ use super::compile::{self, Choice, Extras, Refusal, compile, with_stack};
 use super::flatten::{Flat, flatten};
 use super::flow::Flow;
 use super::forward::forward;
+use super::fuse::fuse;
 use super::group::Groups;
 use super::number::{Jittered, Number};
 use super::observe::Site;
@@ -148,6 +149,7 @@ impl Compiled {
             prune(&mut flow);
             let groups = Groups::of(&flow);
             let varying = Varying::of(&flow, &groups);
+            fuse(&mut flow, &varying);
             let flat = flatten(&flow, &varying);
             let homes = allocate(&flow, &flat, &varying, &groups);
             let cells = (0..flow.cells.len() as u32).map(super::flow::Cell);

@@ -108,8 +108,7 @@ impl Prune<'_> {
                     values: [value, _],
                     ..
                 } if matches!(self.flow.origin(value), Origin::Word(word) if word != 0) => None,
-                Node::Loop { id, body } => Some(Node::Loop {
-                    id,
+                Node::Loop { body } => Some(Node::Loop {
                     body: self.keep(body),
                 }),
                 _ => Some(node),

@@ -155,10 +155,10 @@ impl<'a> Map<'a> {
                     self.enter(no, here, What::Branch(*condition));
                 }
                 Node::Scope { scope, body } => self.enter(body, here, What::Scope(*scope)),
-                Node::Loop { body, .. } => self.enter(body, here, What::Loop),
+                Node::Loop { body } => self.enter(body, here, What::Loop),
                 Node::Leave(scope) => self.leaves.push((*scope, here, None)),
                 Node::LeaveIf { scope, condition, .. } => self.leaves.push((*scope, here, Some(*condition))),
-                Node::Check { .. } | Node::Tell { .. } => {}
+                Node::Round(_) | Node::Check { .. } | Node::Tell { .. } => {}
             }
         }
     }

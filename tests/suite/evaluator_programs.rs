@@ -1,6 +1,6 @@
 //! Small programs with what they must paint: what GLSL says, told of the evaluator in f32 and f64, and of the GPU.
 
-use toyproof::eval::{Fault, Jittered, Number, Other, Program, Settings, Variant};
+use toyproof::eval::{Failure, Fault, Jittered, Number, Other, Program, Settings, Variant};
 use toyproof::frame::Frame;
 use toyproof::glsl::{Checked, Options, check, lower_strict};
 use toyproof::gpu::FloatMode;
@@ -252,6 +252,37 @@ static PROGRAMS: &[(&str, &str, f64)] = &[
         "mat3 m = outerProduct(vec3(1, 2, 3), vec3(4, 5, 6)); o.x = m[1][2] + matrixCompMult(m, m)[0][0];",
         31.0,
     ),
+    // Loops that can be written out, or not: rounds that depend on each other, ways out of several, too many of them.
+    (
+        "float f(int n) { for (int i = 0; i < 9; i++) { for (int j = 0; j < 3; j++) if (i * j == n) return float(10 * i + j); } return -1.0; }",
+        "o.x = f(4) + 100.0 * f(9) + f(int(p.x) + 7);",
+        -7.0,
+    ),
+    (
+        "",
+        "int a[4] = int[](3, 1, 2, 0), i = 0; for (int n = 0; n < 6; n++) { o.x = 10.0 * o.x + float(a[i]); a[i] ^= 1; i = a[i]; }",
+        320_121.0,
+    ),
+    (
+        "",
+        "float a[3]; int n = 0; for (int i = 0; i < 3; i++) { for (int j = int(p.x); j <= i; j++) { a[j] += float(i); n++; } if (n > 2) break; } o.x = a[0] + 10.0 * a[1] + 100.0 * a[2] + 1000.0 * float(n);",
+        3011.0,
+    ),
+    (
+        "",
+        "for (int i = 0; i < 3; i++) { float x; for (int j = 0; j < 9000; j++) { if (j == 8999 - i) x = float(j) + p.x; } o.x += x; }",
+        26_995.5,
+    ),
+    (
+        "",
+        "int i = 0; do { switch (i) { case 1: continue; case 2: o.x += 1.0; break; default: o.x += 10.0; } o.x += 100.0; } while (i++ < 3);",
+        321.0,
+    ),
+    (
+        "",
+        "for (int i = 0; i < 4; i++) { for (;;) { o.x += 1.0; if (o.x > float(i * i) + p.x) break; } if (i == 2) continue; o.x += 0.5; }",
+        10.5,
+    ),
     // Inputs and textures.
     (
         "",
@@ -490,6 +521,10 @@ fn divergent_pixels_paint_the_same_bits_as_on_the_gpu() {
         ),
         ("", "if (p.x > 6.0 && p.y > 3.0) discard; o.x = p.x;"),
         (
+            "float f(vec2 p) { for (int i = 0; i < 4; i++) { if (p.x < 5.0 * float(i)) break; for (int j = 0; j < 3; j++) { if (p.y < float(i + j)) return float(i); p.x += p.y; } } return p.x; }",
+            "o.x = f(p); for (int i = 0; i < 3; i++) { if (o.x > p.y) continue; o.y += o.x * p.x - p.y; o.x += p.y - p.x * o.y; }",
+        ),
+        (
             "bool f(inout float x) { x += 1.0; return x > 4.0; }",
             "float x = p.x; bool b = p.y > 3.0 && f(x) || p.x > 5.0 && !f(x); o.xy = vec2(x, b);",
         ),
@@ -521,6 +556,58 @@ fn divergent_pixels_paint_the_same_bits_as_on_the_gpu() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn what_never_ends_is_stopped() {
+    let settings = Settings::<f32> {
+        rounds: 1 << 16,
+        ..Settings::default()
+    };
+    for body in [
+        "for (;;) o.x += p.x;",
+        "for (int i = 0; i < 3; i += 0) o.x += p.x;",
+        "for (int i = 0; i < 3; i++) for (int j = 0; j < 3; j *= 2) o.x += p.x;",
+    ] {
+        let program = Program::new(&checked("", body).unwrap()).unwrap();
+        let failure = program.paint(&frame(), &settings).unwrap_err();
+        assert!(matches!(failure, Failure::TooOften { .. }), "{body}: {failure}");
+    }
+}
+
+#[test]
+fn rounds_are_counted_of_loops_that_are_written_out_and_of_others() {
+    let bodies = [
+        (
+            "for (int i = 0; i < 5; i++) for (int j = 0; j < 7; j++) o.x += p.x;",
+            46,
+        ),
+        (
+            "for (int i = 0; i < 5; i++) { if (i == 3) break; o.x += p.x; }",
+            4,
+        ),
+        (
+            "for (int i = 0; i < 5; i++) { if (p.x > 1.0 && i == 3) break; o.x += p.x; }",
+            6,
+        ),
+        (
+            "for (int i = 0; i < int(p.x) + 5; i++) for (int j = 0; j < 7; j++) o.x += p.x;",
+            55,
+        ),
+        (
+            "for (int i = 0; i < 9000; i++) for (int j = 0; j < 2; j++) o.x += p.x;",
+            36_001,
+        ),
+    ];
+    let frame = Frame {
+        size: [2, 1],
+        ..Frame::default()
+    };
+    for (body, rounds) in bodies {
+        let program = Program::new(&checked("", body).unwrap()).unwrap();
+        let painted = program.paint::<f32>(&frame, &Settings::default()).unwrap();
+        assert_eq!(painted.observations.most_rounds, rounds, "{body}");
+    }
 }
 
 /// What stands in `mainImage`, and whether its colour hangs on what GLSL leaves open.

@@ -161,6 +161,7 @@ impl Builder<'_> {
         let (out, on) = (self.scope(), self.scope());
         let id = self.new_loop(at);
         let nodes = self.inner(|builder| {
+            builder.push(Node::Round(id));
             builder.begin_round(at);
             if let Some(condition) = condition {
                 let condition = match condition {
@@ -197,7 +198,7 @@ impl Builder<'_> {
             builder.end_rounds();
             Ok(())
         })?;
-        let body = vec![Node::Loop { id, body: nodes }];
+        let body = vec![Node::Loop { body: nodes }];
         self.push(Node::Scope { scope: out, body });
         Ok(())
     }

@@ -76,6 +76,9 @@ apply! {
     Sub(a: F, b: F) F = |noise| a.sub(b, noise);
     Mul(a: F, b: F) F = |noise| a.mul(b, noise);
     Div(a: F, b: F) F = |noise| a.div(b, noise);
+    MulAdd(a: F, b: F, c: F) F = |noise| a.mul(b, noise).add(c, noise);
+    MulSub(a: F, b: F, c: F) F = |noise| a.mul(b, noise).sub(c, noise);
+    SubMul(a: F, b: F, c: F) F = |noise| c.sub(a.mul(b, noise), noise);
     // Of NaN, and of zeros of different signs, the second: as lavapipe and SwiftShader.
     Min(a: F, b: F) F = |_| if a < b { a } else { b };
     Max(a: F, b: F) F = |_| if a > b { a } else { b };
@@ -365,6 +368,32 @@ pub(crate) fn compute<N: Number>(level: Level, operation: Operation, rows: [bool
                 (Operation::DFdx, true) => handler::<N, Difference<1>>(level),
                 (Operation::DFdy, true) => handler::<N, Difference<2>>(level),
                 $((Operation::$name, _) => forms!($name($($operand),+) $value),)*
+            }
+        };
+    }
+    for_each_operation!(select)
+}
+
+/// What an operation on words makes of them, if it is one.
+pub(crate) fn fold(operation: Operation, [a, b, c]: [u32; 3]) -> Option<u32> {
+    macro_rules! word {
+        ($name:ident(W) W) => {
+            Some(<$name as Of1<f32, u32, u32>>::apply(a, ()))
+        };
+        ($name:ident(W, W) W) => {
+            Some(<$name as Of2<f32, u32, u32, u32>>::apply(a, b, ()))
+        };
+        ($name:ident(W, W, W) W) => {
+            Some(<$name as Of3<f32, u32, u32, u32, u32>>::apply(a, b, c, ()))
+        };
+        ($name:ident($($operand:ident),+) $value:ident) => {
+            None
+        };
+    }
+    macro_rules! select {
+        ($($name:ident($($operand:ident),+) $value:ident,)*) => {
+            match operation {
+                $(Operation::$name => word!($name($($operand),+) $value),)*
             }
         };
     }

@@ -6,8 +6,8 @@ use super::{Handler, Instruction, Level, Run, for_each_chunk, handler};
 use crate::eval::batch::{Batch, FUEL, Here, LANES, Stop, any};
 use crate::eval::number::Number;
 
-/// Divides the pixels that are here by a word: those whose bits are all set go to one mask, the others to another, unless it is the
-/// same. Operands: the word, the two masks.
+/// Divides the pixels that are here by a word: those whose bits are all set go to one mask, the others to another. Operands: the word, the
+/// two masks.
 struct Split<const WHEN: bool>;
 
 impl<N: Number, const WHEN: bool> Run<N> for Split<WHEN> {
@@ -50,12 +50,43 @@ impl<N: Number, const WHEN: bool> Run<N> for Split<WHEN> {
     }
 }
 
-/// The handler that divides; `when` is the condition of the first mask.
-pub(crate) fn split<N: Number>(level: Level, when: bool) -> Handler<N> {
-    if when {
-        handler::<N, Split<true>>(level)
-    } else {
-        handler::<N, Split<false>>(level)
+/// Puts the pixels that are here and whose bits of a word are all set, or none, into another mask. Operands: the word, the mask.
+struct Choose<const WHEN: bool>;
+
+impl<N: Number, const WHEN: bool> Run<N> for Choose<WHEN> {
+    #[inline(always)]
+    fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
+        let [word, to, _] = instruction.operands;
+        let condition = batch.word_row(word);
+        let (from, to_row) = (batch.mask_row(instruction.mask), batch.mask_row(to));
+        let (mut chunks, mut every) = (0_u32, [u32::MAX; LANES]);
+        for_each_chunk!(batch, instruction.mask, chunk => {
+            let (condition, from) = (condition[chunk].get(), from[chunk].get());
+            let mut chosen = [0; LANES];
+            for lane in 0..LANES {
+                chosen[lane] = from[lane] & if WHEN { condition[lane] } else { !condition[lane] };
+                every[lane] &= chosen[lane];
+            }
+            chunks |= u32::from(any(&chosen)) << chunk;
+            to_row[chunk].set(chosen);
+        });
+        let all = batch.here[instruction.mask as usize].get().all && every == [u32::MAX; LANES];
+        batch.here[to as usize].set(Here { chunks, all });
+        if chunks == 0 {
+            instruction.to as usize
+        } else {
+            at + 1
+        }
+    }
+}
+
+/// The handler that divides; `when` is the condition of the first mask, `both` whether there are two.
+pub(crate) fn split<N: Number>(level: Level, when: bool, both: bool) -> Handler<N> {
+    match (when, both) {
+        (true, true) => handler::<N, Split<true>>(level),
+        (false, true) => handler::<N, Split<false>>(level),
+        (true, false) => handler::<N, Choose<true>>(level),
+        (false, false) => handler::<N, Choose<false>>(level),
     }
 }
 

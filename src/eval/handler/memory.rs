@@ -50,7 +50,7 @@ impl<N: Number, A: Source<N, T>, T: Sink<N>> Run<N> for Store<A, T> {
             let (a, old, mask) = (A::chunk(a, chunk), out[chunk].get(), mask[chunk].get());
             let mut result = old;
             for lane in 0..LANES {
-                result[lane] = if mask[lane] != 0 { a[lane] } else { old[lane] };
+                result[lane] = T::blend(mask[lane], a[lane], old[lane]);
             }
             out[chunk].set(result);
         });
