@@ -3,9 +3,11 @@
 //! Rows are read a chunk at a time by value and then written, so that the compiler knows that nothing overlaps, and makes
 //! vector instructions of it. Chunks without a pixel that is here are skipped.
 
+mod apply;
 mod check;
 mod compute;
 mod control;
+mod half;
 mod memory;
 mod tell;
 mod texel;
@@ -13,8 +15,9 @@ mod texel;
 use super::batch::{Batch, Lanes};
 use super::number::Number;
 
+pub(super) use apply::fold;
 pub(super) use check::check;
-pub(super) use compute::{compute, fold};
+pub(super) use compute::compute;
 pub(super) use control::{copy_mask, iterate, jump, jump_if, jump_if_empty, remove, split};
 pub(super) use memory::{copy, load_at, store, store_at};
 pub(super) use tell::{mention, tell};
