@@ -13,7 +13,7 @@ use rayon::ThreadPool;
 use super::cpu::{Evaluator, Single};
 use super::{ALL, Case, Failure, PATIENCE, join};
 use crate::compare::{self, Answer};
-use crate::eval::{self, Program};
+use crate::eval::{self, Observed, Program};
 use crate::frame::Frame;
 use crate::glsl::Checked;
 use crate::glsl::tree::SamplerShape;
@@ -31,6 +31,8 @@ pub struct Proof {
     pub against: Against,
     /// For each frame, which pixels hang on what GLSL leaves undefined.
     pub undefined_at: Vec<Vec<bool>>,
+    /// Of the operations that GLSL leaves undefined, the one that most pixels of a frame met.
+    pub undefined_by: Option<Observed>,
 }
 
 /// What a conversion is compared with.
@@ -46,12 +48,7 @@ impl Proof {
     /// Whether every pixel has the same bits, and some are not left out.
     #[must_use]
     pub fn holds(&self) -> bool {
-        let compared: u64 = self
-            .answers
-            .iter()
-            .map(|answer| answer.pixels - answer.undefined)
-            .sum();
-        compared > 0 && self.differing() == 0
+        self.undefined() < self.pixels() && self.differing() == 0
     }
 
     /// Pixels of all frames.
@@ -158,7 +155,7 @@ pub fn prove(
     });
     let painted = painted?;
     let singles = singles?;
-    if let pixels @ 1.. = singles.iter().map(|single| single.beyond_cap).sum::<u64>() {
+    if let pixels @ 1.. = singles.iter().map(|single| single.noted.beyond_cap).sum::<u64>() {
         return Err(Failure::CutShort(pixels));
     }
     let (against, expected) = if checked.reads_textures() {
@@ -173,6 +170,9 @@ pub fn prove(
         let images = singles.iter().map(|single| single.image.clone());
         (Against::Evaluator, images.collect())
     };
+    let faults = singles.iter().flat_map(|single| &single.noted.faults);
+    let undefined = faults.filter(|observed| observed.site.fault.is_undefined());
+    let undefined_by = undefined.max_by_key(|observed| observed.pixels).copied();
     let proof = |(images, device): (Vec<Image>, String)| {
         let pictures = expected.iter().zip(&images).zip(&singles);
         let answers = pictures.map(|((expected, painted), single)| {
@@ -184,6 +184,7 @@ pub fn prove(
             device,
             against,
             undefined_at: singles.iter().map(|single| single.undefined.clone()).collect(),
+            undefined_by,
         }
     };
     Ok(painted.into_iter().map(proof).collect())

@@ -47,8 +47,8 @@ pub(super) struct Single {
     pub(super) image: Image,
     /// Pixels whose colour hangs on what GLSL leaves undefined.
     pub(super) undefined: Vec<bool>,
-    /// In how many pixels Mesa before 23 would end the loops.
-    pub(super) beyond_cap: u64,
+    /// What was noted.
+    pub(super) noted: Observations,
 }
 
 impl<'a> Evaluator<'a> {
@@ -83,7 +83,7 @@ impl<'a> Evaluator<'a> {
         Ok(Single {
             image: painted.image,
             undefined,
-            beyond_cap: painted.observations.beyond_cap,
+            noted: painted.observations,
         })
     }
 

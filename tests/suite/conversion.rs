@@ -309,6 +309,20 @@ fn a_file_is_written_if_it_is_proved_and_says_so() {
 }
 
 #[test]
+fn what_nobody_can_prove_is_told_with_its_operation_and_place() {
+    if worker().is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let text = "void mainImage(out vec4 c, in vec2 p) {\n    c = vec4(p, pow(-p.x, 2.0), 1);\n}\n";
+    fs::write(folder.path().join("a.glsl"), text).unwrap();
+    let run = toyproof(folder.path(), &["convert", "a.glsl", "--verify", "-o", "a.wgsl"]);
+    assert_eq!(run.code, 2, "{}", run.stderr);
+    let why = "every pixel hangs on what GLSL leaves undefined: `pow` of a negative base, or of zero to zero or less at a.glsl:2:17; not written";
+    assert!(run.stdout.contains(why), "{}", run.stdout);
+}
+
+#[test]
 fn a_folder_has_a_table_of_what_was_proved() {
     if worker().is_none() {
         return;

@@ -116,7 +116,7 @@ impl Converter<'_> {
             let bytes = lowered.text().as_bytes().to_vec();
             let standing = if self.verify {
                 let readings = vec![(NAGA.to_owned(), Written::Lowered(lowered))];
-                self.run(hand, checked, readings, None)
+                self.run(hand, (checked, &shader.files), readings, None)
             } else {
                 Standing::Unasked
             };
@@ -176,7 +176,7 @@ impl Converter<'_> {
                 Err(why) => Standing::Unproved(why),
                 Ok(judge) => {
                     let readings = vec![(NAGA.to_owned(), Written::Wgsl(hosted.clone()))];
-                    let standing = self.run(hand, checked, readings, judge);
+                    let standing = self.run(hand, (checked, &shader.files), readings, judge);
                     let text = Text::Wgsl(&hosted.text);
                     in_browser(hand, checked, shader, standing, text, hosted.upside_down)
                 }
@@ -209,7 +209,7 @@ impl Converter<'_> {
             .translate(lowered.clone(), target, self.float)
             .map_err(trouble)?;
         let standing = if self.verify {
-            let standing = self.judge(hand, checked, lowered, target, &bytes);
+            let standing = self.judge(hand, (checked, &shader.files), lowered, target, &bytes);
             let standing = standing.unwrap_or_else(Standing::Unproved);
             let text = String::from_utf8_lossy(&bytes);
             let text = match target {

@@ -49,7 +49,7 @@ impl Converter<'_> {
     pub(super) fn judge(
         &self,
         hand: &mut Hand,
-        checked: &Checked,
+        (checked, files): (&Checked, &Files),
         lowered: Lowered,
         target: Target,
         bytes: &[u8],
@@ -76,10 +76,10 @@ impl Converter<'_> {
             readings.push((who, Written::Words(words, channels)));
         }
         if !readings.is_empty() {
-            return Ok(self.run(hand, checked, readings, judge));
+            return Ok(self.run(hand, (checked, files), readings, judge));
         }
         let meaning = vec![(String::new(), Written::Lowered(lowered))];
-        Ok(match self.run(hand, checked, meaning, None) {
+        Ok(match self.run(hand, (checked, files), meaning, None) {
             Standing::Proved(proof, _) => Standing::Meant(proof),
             other => other,
         })
@@ -89,7 +89,7 @@ impl Converter<'_> {
     pub(super) fn run(
         &self,
         hand: &mut Hand,
-        checked: &Checked,
+        (checked, files): (&Checked, &Files),
         readings: Vec<(String, Written)>,
         judge: Option<String>,
     ) -> Standing {
@@ -99,6 +99,9 @@ impl Converter<'_> {
             Ok(proofs) => proofs,
             Err(untold) => return untold,
         };
+        if let Some(why) = proofs.first().and_then(|proof| incomparable(proof, files)) {
+            return Standing::Untried(why);
+        }
         let held = || {
             let several = proofs.len() > 1;
             let mut first = None;
@@ -208,15 +211,28 @@ pub(super) fn in_browser(
     Standing::Proved(proof, readers)
 }
 
+/// Why nothing that is written of a shader can be proved, if that is so.
+fn incomparable(proof: &Proof, files: &Files) -> Option<String> {
+    let by = proof
+        .undefined_by
+        .filter(|_| proof.undefined() == proof.pixels())?;
+    let span = by.site.at.span;
+    let place = files.position(span);
+    Some(format!(
+        "every pixel hangs on what GLSL leaves undefined: {} at {}:{}:{}",
+        by.site.fault.words(),
+        files.get(span.file).name(),
+        place.line,
+        place.column
+    ))
+}
+
 /// The proof if it holds, or why it does not.
 fn held(proof: Proof) -> Result<Proof, String> {
     if proof.holds() {
         return Ok(proof);
     }
     let differing = proof.differing();
-    if differing == 0 {
-        return Err("every pixel hangs on what GLSL leaves undefined".to_owned());
-    }
     let worst = proof
         .answers
         .iter()
