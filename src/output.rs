@@ -1,8 +1,9 @@
 //! Files that appear whole or not at all; a device or a pipe is written to, never replaced.
 
+use std::collections::HashSet;
 use std::fs;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Writes a file under a temporary name beside its place and renames it, so that neither a crash nor a
 /// reader ever sees half of it. Missing folders are made. A link is followed, and what is there but is no file
@@ -41,6 +42,26 @@ pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     Ok(())
 }
 
+/// Files that must not be lost, by whatever way one comes to them.
+#[derive(Debug, Default)]
+pub struct Originals(HashSet<PathBuf>);
+
+impl<'a> FromIterator<&'a Path> for Originals {
+    fn from_iter<T: IntoIterator<Item = &'a Path>>(paths: T) -> Self {
+        let places = paths.into_iter().filter_map(|path| path.canonicalize().ok());
+        Self(places.collect())
+    }
+}
+
+impl Originals {
+    /// Whether a file that is written there would replace one of them.
+    #[must_use]
+    pub fn would_lose(&self, path: &Path) -> bool {
+        path.canonicalize()
+            .is_ok_and(|place| place.is_file() && self.0.contains(&place))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -53,6 +74,20 @@ mod tests {
         write(&path, b"two").unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"two");
         assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_file_is_the_same_by_whatever_way() {
+        let folder = tempfile::tempdir().unwrap();
+        let [file, link, other] = ["file", "link", "other"].map(|name| folder.path().join(name));
+        fs::write(&file, b"").unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        let stdout = Path::new("/dev/stdout");
+        let originals: Originals = [&*other, &*file, stdout].into_iter().collect();
+        assert!(originals.would_lose(&link));
+        assert!(!originals.would_lose(&other), "there is none yet");
+        assert!(!originals.would_lose(stdout), "nothing is replaced there");
     }
 
     #[cfg(unix)]

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::inputs::may_write;
 use super::{Exit, Terminal};
 use crate::compare::{TOLERANCE, compare, grouped};
 use crate::image::{self, Legend};
@@ -20,6 +21,11 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
+    if let Some(diff) = &args.diff
+        && !may_write(diff, &[&*args.a, &*args.b].into_iter().collect(), terminal)
+    {
+        return Exit::Trouble;
+    }
     let (a, b) = match (image::read(&args.a), image::read(&args.b)) {
         (Ok(a), Ok(b)) => (a, b),
         (a, b) => {

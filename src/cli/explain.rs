@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use super::check::Reference;
+use super::check::References;
 use super::inputs::{Format, FrameArgs, LanguageArgs, deadline};
 use super::run::place;
 use super::shader::{Shader, Unusable, find};
@@ -74,7 +74,10 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
 /// The frame, of the size of the scene beside the shader unless the arguments tell another.
 fn frame(args: &Args, input: &Result<Found, ReadError>) -> Result<Frame, String> {
     let mut frame = args.frame.frame()?;
-    let reference = input.as_ref().ok().and_then(|found| Reference::find(None, found));
+    let reference = input
+        .as_ref()
+        .ok()
+        .and_then(|found| References::new(None).find(found));
     let scene: Option<Scene> = reference.and_then(|reference| reference.scene.ok());
     if let (None, Some(scene)) = (args.frame.size, scene) {
         frame.size = scene.film.size;
@@ -117,7 +120,7 @@ fn tell(args: &Args, shader: &Shader, checked: &Checked, frame: &Frame, terminal
     };
     let story = report::Story::new(&subject, &explanation);
     match args.format {
-        Format::Json if terminal.bytes(story.json().as_bytes()).is_err() => return Exit::Trouble,
+        Format::Json if !terminal.bytes(story.json().as_bytes()) => return Exit::Trouble,
         Format::Json => {}
         Format::Human => terminal.result(&story.human(terminal.is_verbose())),
     }

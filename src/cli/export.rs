@@ -1,7 +1,9 @@
 //! `toyproof export`
 
+use std::iter;
 use std::path::PathBuf;
 
+use super::inputs::may_write;
 use super::render::load;
 use super::{Exit, Terminal};
 use crate::export;
@@ -22,6 +24,9 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
+    if !may_write(&args.output, &iter::once(&*args.scene).collect(), terminal) {
+        return Exit::Trouble;
+    }
     let Some(scene) = load(&args.scene, terminal) else {
         return Exit::Trouble;
     };

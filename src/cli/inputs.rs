@@ -1,18 +1,32 @@
 //! Arguments that several commands share: the frame, the driver, the deadline.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::time::Duration;
 
 use clap::ValueEnum;
 
+use super::Terminal;
 use crate::frame::Frame;
 use crate::glsl;
 use crate::gpu::{FloatMode, On, Worker};
 use crate::image::{self, Image, check_size};
+use crate::output::Originals;
 
 /// A longer deadline is none.
 const LONGEST: Duration = Duration::from_secs(24 * 60 * 60);
+
+/// Whether a file of that name may be written without one being lost that it is made of; says so if not.
+pub(super) fn may_write(path: &Path, originals: &Originals, terminal: &Terminal) -> bool {
+    let loses = originals.would_lose(path);
+    if loses {
+        let path = path.display();
+        terminal.error(format_args!(
+            "{path}: this is an input, and would be lost; give the output another name"
+        ));
+    }
+    !loses
+}
 
 /// What ShaderToy's inputs are set to.
 #[derive(Debug, Clone, clap::Args)]

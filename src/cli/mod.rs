@@ -85,7 +85,7 @@ impl Cli {
     #[must_use]
     pub fn run(self) -> Exit {
         let terminal = Terminal::new(self.quiet, self.verbose);
-        match self.command {
+        let exit = match self.command {
             Command::Check(args) => check::run(&args, &terminal),
             Command::Render(args) => render::run(&args, &terminal),
             Command::Run(args) => run::run(&args, &terminal),
@@ -98,6 +98,7 @@ impl Cli {
             Command::Scenes(args) => scenes::run(&args, &terminal),
             Command::Doctor(args) => doctor::run(&args, &terminal),
             Command::Worker => worker::run(),
-        }
+        };
+        if terminal.has_lost() { Exit::Trouble } else { exit }
     }
 }

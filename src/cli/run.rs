@@ -7,7 +7,7 @@ use std::time::Instant;
 use clap::ValueEnum;
 
 use super::check::cut_short;
-use super::inputs::{DriverArgs, FrameArgs, LanguageArgs};
+use super::inputs::{DriverArgs, FrameArgs, LanguageArgs, may_write};
 use super::sequence::{self, Frames, Sequence};
 use super::shader::{Names, Shader, Unusable, find, is_invalid, with_suffix};
 use super::{Exit, Terminal};
@@ -79,6 +79,10 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let one = standard || (!several && !args.output.is_dir());
     let mut names = Names::default();
     let mut exit = Exit::Good;
+    let channels = args.frame.files().map(PathBuf::as_path).collect();
+    if !may_write(&args.output, &channels, terminal) {
+        return Exit::Trouble;
+    }
     let mut runner = Runner {
         args,
         terminal,

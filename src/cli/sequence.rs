@@ -35,6 +35,10 @@ pub(super) struct Numbered {
 }
 
 impl Frames {
+    fn count(self) -> u64 {
+        u64::from(self.last.abs_diff(self.first)) + 1
+    }
+
     /// All frames, each to go to `output` with its number before the extension.
     fn numbered(self, output: &Path) -> impl Iterator<Item = Numbered> {
         let digits = self.last.to_string().len().max(4);
@@ -56,39 +60,48 @@ pub(super) struct Sequence {
     record: PathBuf,
     /// Scene and settings: a record of others does not count.
     what: String,
-    frames: Vec<Numbered>,
+    frames: Frames,
+    output: PathBuf,
+    /// Frames from this one on have not been made; those before may have gone since.
+    next: i64,
+    /// How many are there.
+    kept: u64,
 }
 
 impl Sequence {
     /// The frames that are still to be made, in their order.
     pub(super) fn resume(frames: Frames, output: &Path, what: &str, terminal: &Terminal) -> Self {
         let record = output.with_extension("sequence");
-        let next: i32 = std::fs::read_to_string(&record)
+        let next = std::fs::read_to_string(&record)
             .ok()
             .and_then(|before| before.strip_prefix(what)?.trim().parse().ok())
             .unwrap_or(0);
-        let mut missing: Vec<_> = frames.numbered(output).collect();
-        let count = missing.len();
-        missing.retain(|one| one.frame >= next || !one.path.is_file());
-        if missing.len() < count {
-            let kept = count - missing.len();
-            terminal.say(&format!("{kept} of {count} frames are there already"));
+        let made = frames
+            .numbered(output)
+            .take_while(|one| i64::from(one.frame) < next);
+        let kept = made.filter(|one| one.path.is_file()).count() as u64;
+        if kept > 0 {
+            terminal.say(&format!("{kept} of {} frames are there already", frames.count()));
         }
         Self {
             record,
             what: what.to_owned(),
-            frames: missing,
+            frames,
+            output: output.to_owned(),
+            next,
+            kept,
         }
     }
 
     /// Makes one frame after the other, until one fails; tells whether none did.
     pub(super) fn make(self, terminal: &Terminal, mut frame: impl FnMut(&Numbered) -> bool) -> bool {
-        let bar = terminal.bar(self.frames.len() as u64, "frames");
-        for one in &self.frames {
-            if !frame(one) {
+        let bar = terminal.bar(self.frames.count() - self.kept, "frames");
+        let is_missing = |one: &Numbered| i64::from(one.frame) >= self.next || !one.path.is_file();
+        for one in self.frames.numbered(&self.output).filter(is_missing) {
+            if !frame(&one) {
                 return false;
             }
-            let record = format!("{}\n{}\n", self.what, one.frame + 1);
+            let record = format!("{}\n{}\n", self.what, i64::from(one.frame) + 1);
             if !terminal.write(&self.record, record.as_bytes()) {
                 return false;
             }
@@ -126,6 +139,14 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let output = folder.path().join("x.png");
         let terminal = Terminal::new(true, false);
+        // Far too many to be listed.
+        let far = Sequence::resume(frames("0..2147483647").unwrap(), &output, "far", &terminal);
+        let mut first = Vec::new();
+        far.make(&terminal, |one| {
+            first.push(one.frame);
+            first.len() < 3
+        });
+        assert_eq!(first, [0, 1, 2]);
         let make = |what: &str, most: usize| {
             let mut made = Vec::new();
             let sequence = Sequence::resume(frames("0..3").unwrap(), &output, what, &terminal);

@@ -96,11 +96,14 @@ fn subject(error: &ReadError) -> String {
     }
 }
 
-/// All shaders that the arguments name, in their order.
+/// All shaders that the arguments name, in their order; standard input once.
 pub(super) fn find(arguments: &[PathBuf]) -> Vec<Result<Found, ReadError>> {
+    let first = arguments.iter().position(|argument| argument == Path::new("-"));
     arguments
         .iter()
-        .flat_map(|argument| source::find(argument))
+        .enumerate()
+        .filter(|&(at, argument)| argument != Path::new("-") || Some(at) == first)
+        .flat_map(|(_, argument)| source::find(argument))
         .collect()
 }
 

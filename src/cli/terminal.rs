@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use anstyle::{AnsiColor, Style};
@@ -21,6 +22,8 @@ const WARNINGS_SHOWN: usize = 3;
 pub(super) struct Terminal {
     quiet: bool,
     verbose: bool,
+    /// Whether standard output did not take something.
+    lost: AtomicBool,
 }
 
 #[expect(
@@ -29,24 +32,44 @@ pub(super) struct Terminal {
 )]
 impl Terminal {
     pub(super) fn new(quiet: bool, verbose: bool) -> Self {
-        Self { quiet, verbose }
+        Self {
+            quiet,
+            verbose,
+            lost: AtomicBool::new(false),
+        }
     }
 
     pub(super) fn is_verbose(&self) -> bool {
         self.verbose
     }
 
-    /// A result, on standard output.
-    pub(super) fn result(&self, text: &str) {
-        // A reader that closed its end has all it wants.
-        let _ = writeln!(anstream::stdout().lock(), "{text}");
+    /// Whether standard output did not take something.
+    pub(super) fn has_lost(&self) -> bool {
+        self.lost.load(Ordering::Relaxed)
     }
 
-    /// Bytes that are the result, on standard output.
-    pub(super) fn bytes(&self, bytes: &[u8]) -> io::Result<()> {
+    /// A result, on standard output.
+    pub(super) fn result(&self, text: &str) {
+        self.out(writeln!(anstream::stdout().lock(), "{text}"));
+    }
+
+    /// Bytes that are the result, on standard output; whether it took them.
+    pub(super) fn bytes(&self, bytes: &[u8]) -> bool {
         let mut stdout = io::stdout().lock();
-        stdout.write_all(bytes)?;
-        stdout.flush()
+        self.out(stdout.write_all(bytes).and_then(|()| stdout.flush()))
+    }
+
+    /// Says once that standard output took something not. A reader that closed its end has all it wants.
+    fn out(&self, written: io::Result<()>) -> bool {
+        match written {
+            Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+                if !self.lost.swap(true, Ordering::Relaxed) {
+                    self.error(format_args!("cannot write to standard output: {error}"));
+                }
+                false
+            }
+            _ => true,
+        }
     }
 
     /// What helps, on standard error; not with `--quiet`.
@@ -114,11 +137,10 @@ impl Terminal {
 
     /// Writes a file whole, or to standard output if it is named `-`; says what went wrong.
     pub(super) fn write(&self, path: &Path, bytes: &[u8]) -> bool {
-        let written = if path == Path::new("-") {
-            self.bytes(bytes)
-        } else {
-            output::write(path, bytes)
-        };
+        if path == Path::new("-") {
+            return self.bytes(bytes);
+        }
+        let written = output::write(path, bytes);
         if let Err(error) = &written {
             self.error(format_args!("cannot write {error}"));
         }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-use super::check::Reference;
+use super::check::References;
 use super::inputs::{FrameArgs, LanguageArgs, on, worker};
 use super::render::load;
 use super::shader::{Shader, Unusable, find};
@@ -159,7 +159,7 @@ fn beside(path: &Path, scene: Option<&Scene>, args: &Args) -> Option<Shader> {
 fn of_shader(path: &Path) -> Option<Scene> {
     let found = find(&[path.to_owned()]);
     let found = found.first()?.as_ref().ok()?;
-    Reference::find(None, found)?.scene.ok()
+    References::new(None).find(found)?.scene.ok()
 }
 
 /// A worker for each device that is asked for.

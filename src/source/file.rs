@@ -32,8 +32,15 @@ impl File {
     #[must_use]
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Self {
         let text = text.into();
+        // Lines end in LF, CR LF, or CR alone (GLSL ES 3.00.6 §3.1).
+        let bytes = text.as_bytes();
+        let is_end = |at: &usize| match bytes[*at] {
+            b'\n' => true,
+            b'\r' => bytes.get(at + 1) != Some(&b'\n'),
+            _ => false,
+        };
         let line_starts = std::iter::once(0)
-            .chain(text.match_indices('\n').map(|(at, _)| at + 1))
+            .chain((0..bytes.len()).filter(is_end).map(|at| at + 1))
             .collect();
         Self {
             name: name.into(),
@@ -172,6 +179,17 @@ mod tests {
         assert_eq!(at("€"), Position { line: 2, column: 2 });
         assert_eq!(at("x"), Position { line: 2, column: 3 });
         assert_eq!(file.position(usize::MAX), Position { line: 3, column: 1 });
+    }
+
+    #[test]
+    fn lines_end_as_on_any_system() {
+        let file = File::new("a", "a\r\nb\rc\n\rd");
+        let lines: Vec<_> = ["a", "b", "c", "d"]
+            .iter()
+            .map(|needle| file.position(file.text().find(needle).unwrap()))
+            .map(|place| (place.line, place.column))
+            .collect();
+        assert_eq!(lines, [(1, 1), (2, 1), (3, 1), (5, 1)]);
     }
 
     #[test]

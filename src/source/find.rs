@@ -17,16 +17,21 @@ pub const EXTENSIONS: [&str; 4] = ["glsl", "frag", "fs", "shadertoy"];
 pub const MAX_BYTES: u64 = 1 << 20;
 
 /// Where an input's text comes from.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone)]
 pub enum FoundIn {
-    /// `-`.
-    StandardInput,
+    /// Standard input, or a pipe: it can be read only once.
+    Stream {
+        /// What messages call it.
+        name: String,
+        /// What was read.
+        bytes: Vec<u8>,
+    },
     /// A file.
     File(PathBuf),
 }
 
 /// One input: where it is, and where its outputs go below an output folder.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone)]
 pub struct Found {
     /// Where the text is.
     pub place: FoundIn,
@@ -35,11 +40,20 @@ pub struct Found {
 }
 
 impl Found {
+    /// The file, where it is one.
+    #[must_use]
+    pub fn path(&self) -> Option<&Path> {
+        match &self.place {
+            FoundIn::Stream { .. } => None,
+            FoundIn::File(path) => Some(path),
+        }
+    }
+
     /// The name that messages and reports use: the path as the user typed it.
     #[must_use]
     pub fn name(&self) -> String {
         match &self.place {
-            FoundIn::StandardInput => "<stdin>".to_owned(),
+            FoundIn::Stream { name, .. } => name.clone(),
             FoundIn::File(path) => path.display().to_string(),
         }
     }
@@ -92,25 +106,30 @@ const _: () = assert!(MAX_BYTES == 1 << 20);
 /// What is said of a file that is not UTF-8.
 pub const NOT_UTF8: &str = "this is not UTF-8 text; save the file as UTF-8";
 
-/// The shaders that one argument names; a folder gives those below it, in the order of their names.
+/// The shaders that one argument names; a folder gives those below it, in the order of their names. Standard input and pipes are read.
 #[must_use]
 pub fn find(argument: &Path) -> Vec<Result<Found, ReadError>> {
+    let named = |place, name: &OsStr| Found {
+        place,
+        relative: PathBuf::from(name),
+    };
+    let stream = |bytes: Result<Vec<u8>, ReadError>, name: String, relative| {
+        bytes.map(|bytes| named(FoundIn::Stream { name, bytes }, relative))
+    };
     if argument == Path::new("-") {
-        return vec![Ok(Found {
-            place: FoundIn::StandardInput,
-            relative: PathBuf::from("stdin"),
-        })];
+        let name = "<stdin>".to_owned();
+        let bytes = bytes_of(io::stdin().lock(), &name);
+        return vec![stream(bytes, name, OsStr::new("stdin"))];
     }
     if !argument.is_dir() {
         let name = argument.file_name().unwrap_or(argument.as_os_str());
         return vec![
             if argument.extension() == Some(OsStr::new("toml")) && argument.exists() {
                 Err(ReadError::Scene(argument.to_owned()))
+            } else if argument.exists() && !argument.is_file() {
+                stream(bytes_at(argument), argument.display().to_string(), name)
             } else if argument.exists() {
-                Ok(Found {
-                    place: FoundIn::File(argument.to_owned()),
-                    relative: PathBuf::from(name),
-                })
+                Ok(named(FoundIn::File(argument.to_owned()), name))
             } else {
                 Err(ReadError::Missing(argument.to_owned()))
             },
@@ -156,7 +175,7 @@ pub fn is_shader(path: &Path) -> bool {
 /// Those of [`ReadError`]; no more than [`MAX_BYTES`] are ever read.
 pub fn read(found: &Found) -> Result<File, ReadError> {
     match &found.place {
-        FoundIn::StandardInput => read_from(io::stdin().lock(), found.name()),
+        FoundIn::Stream { name, bytes } => decoded(bytes.clone(), name.clone()),
         FoundIn::File(path) => read_text(path),
     }
 }
@@ -166,19 +185,31 @@ pub fn read(found: &Found) -> Result<File, ReadError> {
 /// # Errors
 /// Those of [`ReadError`]; no more than [`MAX_BYTES`] are ever read.
 pub fn read_text(path: &Path) -> Result<File, ReadError> {
+    decoded(bytes_at(path)?, path.display().to_string())
+}
+
+fn bytes_at(path: &Path) -> Result<Vec<u8>, ReadError> {
     let name = path.display().to_string();
     match OsFile::open(path) {
-        Ok(file) => read_from(file, name),
+        Ok(file) => bytes_of(file, &name),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Err(ReadError::Missing(path.to_owned())),
         Err(error) => Err(ReadError::Unreadable { name, error }),
     }
 }
 
-fn read_from(input: impl Read, name: String) -> Result<File, ReadError> {
+/// What there is to read, or one byte more than may be decoded.
+fn bytes_of(input: impl Read, name: &str) -> Result<Vec<u8>, ReadError> {
     let mut bytes = Vec::new();
-    if let Err(error) = input.take(MAX_BYTES + 1).read_to_end(&mut bytes) {
-        return Err(ReadError::Unreadable { name, error });
+    match input.take(MAX_BYTES + 1).read_to_end(&mut bytes) {
+        Ok(_) => Ok(bytes),
+        Err(error) => Err(ReadError::Unreadable {
+            name: name.to_owned(),
+            error,
+        }),
     }
+}
+
+fn decoded(bytes: Vec<u8>, name: String) -> Result<File, ReadError> {
     if bytes.len() as u64 > MAX_BYTES {
         return Err(ReadError::TooLarge { name });
     }
@@ -212,13 +243,15 @@ mod tests {
 
     #[test]
     fn an_endless_file_is_too_large_and_not_read_to_its_end() {
-        let endless = read_from(io::repeat(b' '), "x".to_owned());
+        let endless = bytes_of(io::repeat(b' '), "x").unwrap();
+        assert_eq!(endless.len() as u64, MAX_BYTES + 1);
+        let endless = decoded(endless, "x".to_owned());
         assert!(matches!(endless, Err(ReadError::TooLarge { .. })));
     }
 
     #[test]
     fn a_byte_that_is_not_utf8_is_named_by_line_and_column() {
-        let error = read_from(&b"ok\nab\xffc"[..], "x".to_owned()).unwrap_err();
+        let error = decoded(b"ok\nab\xffc".to_vec(), "x".to_owned()).unwrap_err();
         assert_eq!(
             error.to_string(),
             "x:2:3: this is not UTF-8 text; save the file as UTF-8"
@@ -227,7 +260,7 @@ mod tests {
 
     #[test]
     fn a_byte_order_mark_is_not_part_of_the_text() {
-        let file = read_from("\u{feff}void".as_bytes(), "x".to_owned()).unwrap();
+        let file = decoded("\u{feff}void".into(), "x".to_owned()).unwrap();
         assert_eq!(file.text(), "void");
     }
 }

@@ -8,7 +8,7 @@ use super::pictures::PICTURES;
 use crate::cli::shader::with_suffix;
 use crate::image::{self, ImageError};
 use crate::report::{BUDGET, Exhibit, Gallery, every};
-use crate::source::{self, FoundIn};
+use crate::source;
 
 /// The gallery of all shaders, of whose pictures so many pixels are left out that it fits the page.
 pub(super) fn gallery(submissions: &[&Submission]) -> Gallery {
@@ -37,7 +37,6 @@ fn thinned(submissions: &[&Submission], step: u32) -> Gallery {
 fn exhibit(submission: &Submission, step: u32, gallery: &mut Gallery) -> Exhibit {
     let mut exhibit = Exhibit::default();
     if let Ok(found) = &submission.input
-        && found.place != FoundIn::StandardInput
         && let Ok(file) = source::read(found)
     {
         exhibit.source = Some(file.text().to_owned());

@@ -5,10 +5,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use sha2::{Digest, Sha256};
 
+use super::Args;
 use super::pictures::PICTURES;
+use super::reference::{Reference, References};
 use super::scenes::Scenes;
 use super::stopped::Stopped;
-use super::{Args, Reference};
 use crate::cli::Terminal;
 use crate::cli::shader::{Names, Shader, Unusable, denied, with_suffix};
 use crate::compare::Verdict;
@@ -33,7 +34,12 @@ pub(super) struct Submission {
 }
 
 impl Submission {
-    pub(super) fn new(input: Result<Found, ReadError>, args: &Args, names: &mut Names) -> Self {
+    pub(super) fn new(
+        input: Result<Found, ReadError>,
+        args: &Args,
+        references: &References,
+        names: &mut Names,
+    ) -> Self {
         let found = input.as_ref().ok();
         let place = match (&args.out, found) {
             (Some(out), Some(found)) => Some(out.join(names.place(&found.relative))),
@@ -43,7 +49,7 @@ impl Submission {
             name: found.map_or_else(String::new, Found::name),
             key: found
                 .filter(|_| args.out.is_some())
-                .and_then(|found| key(found, args)),
+                .and_then(|found| key(found, args, references)),
             place,
             input,
         }
@@ -51,7 +57,7 @@ impl Submission {
 }
 
 /// A hash of what a record depends on: this version, the shader, its scene, the flags, and the files that they name.
-fn key(found: &Found, args: &Args) -> Option<String> {
+fn key(found: &Found, args: &Args, references: &References) -> Option<String> {
     let mut hash = Sha256::new();
     let mut add = |part: &[u8]| {
         hash.update((part.len() as u64).to_le_bytes());
@@ -61,10 +67,10 @@ fn key(found: &Found, args: &Args) -> Option<String> {
     add(env!("CARGO_PKG_VERSION").as_bytes());
     add(format!("{settings:?} {:?} {}", args.scene, found.name()).as_bytes());
     add(source::read(found).ok()?.text().as_bytes());
-    for path in Reference::path(args.scene.as_deref(), found)
-        .iter()
-        .chain(args.frame.files())
-    {
+    if let Some((_, scene)) = references.text(found) {
+        add(scene.ok()?.text().as_bytes());
+    }
+    for path in args.frame.files() {
         add(&std::fs::read(path).ok()?);
     }
     let hash: [u8; 32] = hash.finalize().into();
@@ -143,6 +149,7 @@ impl Judged {
 /// Judges shaders, on any thread.
 pub(super) struct Judge<'a> {
     args: &'a Args,
+    references: &'a References,
     frame: Frame,
     /// Whether somebody was told that there is no driver.
     fell_back: AtomicBool,
@@ -150,9 +157,10 @@ pub(super) struct Judge<'a> {
 }
 
 impl<'a> Judge<'a> {
-    pub(super) fn new(args: &'a Args, frame: Frame) -> Self {
+    pub(super) fn new(args: &'a Args, references: &'a References, frame: Frame) -> Self {
         Self {
             args,
+            references,
             frame,
             fell_back: AtomicBool::new(false),
             scenes: Scenes::default(),
@@ -163,7 +171,7 @@ impl<'a> Judge<'a> {
     pub(super) fn judge(&self, hand: &mut Hand, submission: &Submission) -> Judged {
         let shader = Shader::load(&submission.input, &self.args.language);
         let found = submission.input.as_ref().ok();
-        let reference = found.and_then(|found| Reference::find(self.args.scene.as_deref(), found));
+        let reference = found.and_then(|found| self.references.find(found));
         let mut judged = Judged::known(Record {
             shader: shader.name.clone(),
             scene: reference.as_ref().map(|reference| reference.name.clone()),

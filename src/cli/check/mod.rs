@@ -14,7 +14,7 @@ use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
 use self::judge::{Hand, Judge, Judged, Submission};
-pub(super) use self::reference::Reference;
+pub(super) use self::reference::References;
 use self::results::Results;
 use super::inputs::{DriverArgs, Format, FrameArgs, LanguageArgs};
 use super::pool::{self, InOrder};
@@ -92,9 +92,10 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         }
     }
     let mut names = Names::default();
+    let references = References::new(args.scene.as_deref());
     let submissions: Vec<Submission> = find(&args.shaders)
         .into_iter()
-        .map(|input| Submission::new(input, args, &mut names))
+        .map(|input| Submission::new(input, args, &references, &mut names))
         .collect();
     let mut batch = Batch {
         args,
@@ -106,7 +107,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         device: None,
         trouble: false,
     };
-    batch.check(&submissions, &Judge::new(args, frame));
+    batch.check(&submissions, &Judge::new(args, &references, frame));
     batch.finish(&submissions)
 }
 
@@ -241,7 +242,7 @@ impl Batch<'_> {
         if args.format == Format::Human {
             terminal.say(&report::summary(report.shaders()));
         } else {
-            trouble |= terminal.bytes(report.json().as_bytes()).is_err();
+            trouble |= !terminal.bytes(report.json().as_bytes());
         }
         if let Some(out) = &args.out {
             if reports::write(&report, &told_of, rubric.as_ref(), out, terminal) {

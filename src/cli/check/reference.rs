@@ -1,10 +1,10 @@
-//! The scene that a shader is compared with.
+//! The scenes that shaders are compared with.
 
 use std::path::{Path, PathBuf};
 
 use crate::cli::shader::Unusable;
 use crate::scene::{self, Scene};
-use crate::source::{self, Files, Found, FoundIn};
+use crate::source::{self, File, Files, Found, FoundIn};
 
 /// The scene of a shader.
 pub(in crate::cli) struct Reference {
@@ -13,34 +13,48 @@ pub(in crate::cli) struct Reference {
     pub(in crate::cli) files: Files,
 }
 
-impl Reference {
-    /// Where the scene of a shader is: the one that `--scene` names, else the one beside the shader.
-    pub(super) fn path(scene: Option<&Path>, found: &Found) -> Option<PathBuf> {
-        match (scene, &found.place) {
-            (Some(path), _) => Some(path.to_owned()),
+/// Where the scenes of shaders come from.
+pub(in crate::cli) struct References {
+    /// The one that `--scene` names, which may be a pipe and is read once: its path, and its text or why there is none.
+    named: Option<(PathBuf, Result<File, String>)>,
+}
+
+impl References {
+    /// Reads the scene that `--scene` names, if it does.
+    pub(in crate::cli) fn new(named: Option<&Path>) -> Self {
+        let named = named.map(|path| (path.to_owned(), text(path)));
+        Self { named }
+    }
+
+    /// Where the scene of a shader is, and its text: the one that `--scene` names, else the one beside the shader.
+    pub(super) fn text(&self, found: &Found) -> Option<(PathBuf, Result<File, String>)> {
+        match (&self.named, &found.place) {
+            (Some(named), _) => Some(named.clone()),
             (None, FoundIn::File(shader)) => {
                 let beside = shader.with_extension("toml");
-                beside.is_file().then_some(beside)
+                let text = beside.is_file().then(|| text(&beside))?;
+                Some((beside, text))
             }
-            (None, FoundIn::StandardInput) => None,
+            (None, FoundIn::Stream { .. }) => None,
         }
     }
 
     /// The scene of a shader; none if it has none.
-    pub(in crate::cli) fn find(scene: Option<&Path>, found: &Found) -> Option<Self> {
-        let path = Self::path(scene, found)?;
+    pub(in crate::cli) fn find(&self, found: &Found) -> Option<Reference> {
+        let (path, text) = self.text(found)?;
         let mut files = Files::default();
-        let scene = match source::read_text(&path) {
-            Ok(text) => {
-                let file = files.add(text);
-                scene::parse(&files, file).map_err(Unusable::Invalid)
-            }
-            Err(error) => Err(Unusable::Trouble(error.to_string())),
-        };
-        Some(Self {
+        let scene = text.map_err(Unusable::Trouble).and_then(|text| {
+            let file = files.add(text);
+            scene::parse(&files, file).map_err(Unusable::Invalid)
+        });
+        Some(Reference {
             name: path.display().to_string(),
             scene,
             files,
         })
     }
+}
+
+fn text(path: &Path) -> Result<File, String> {
+    source::read_text(path).map_err(|error| error.to_string())
 }

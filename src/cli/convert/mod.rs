@@ -15,6 +15,7 @@ pub(super) use self::args::Args;
 use self::args::{StyleName, To};
 use self::conversion::{Converter, Made, Trouble};
 use self::proof::Standing;
+use super::inputs::may_write;
 use super::pool::{self, InOrder};
 use super::shader::{Names, Shader, find, with_suffix};
 use super::{Exit, Terminal, interrupt};
@@ -92,6 +93,13 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         Job { input, path }
     });
     let jobs: Vec<Job> = jobs.collect();
+    let originals = jobs
+        .iter()
+        .filter_map(|job| job.input.as_ref().ok()?.path())
+        .collect();
+    if !jobs.iter().all(|job| may_write(&job.path, &originals, terminal)) {
+        return Exit::Trouble;
+    }
     Batch {
         args,
         terminal,
