@@ -5,6 +5,8 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
 use std::thread;
 
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
 /// Does `work` for each of `todo`, on so many threads. `arrived` is told of each result as it comes. No more work is begun once `stop` is
 /// set; what was begun is finished.
 pub(super) fn each<H, T: Send>(
@@ -39,6 +41,14 @@ pub(super) fn each<H, T: Send>(
             arrived(index, result);
         }
     });
+}
+
+/// A pool for what one of so many threads computes, so that none waits for another's rows; none for a thread that is alone. Each has twice its
+/// share of the cores: whoever is last has more than its share, and until then the system is fair.
+pub(super) fn own(threads: usize) -> Option<ThreadPool> {
+    let share = (2 * rayon::current_num_threads() / threads.max(1)).max(1);
+    let pool = || ThreadPoolBuilder::new().num_threads(share).build().ok();
+    (threads > 1).then(pool).flatten()
 }
 
 /// Gives results out in order, each as soon as those before it are there.

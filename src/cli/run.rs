@@ -17,6 +17,7 @@ use crate::glsl::Checked;
 use crate::gpu::{Drawn, Failure, Worker};
 use crate::image::{self, Image};
 use crate::source::Files;
+use crate::verify::unbound;
 
 /// Run shaders and keep the pictures that they paint
 #[derive(Debug, clap::Args)]
@@ -96,6 +97,9 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             (false, Ok(found)) => with_suffix(&args.output.join(names.place(&found.relative)), ".png"),
         };
         terminal.diagnostics(&shader.warnings, &shader.files);
+        if let Ok(checked) = &shader.checked {
+            terminal.diagnostics(&unbound(checked, &runner.frame), &shader.files);
+        }
         exit = exit.max(match args.frames {
             None => {
                 let spinner = terminal.spinner(&shader.name);

@@ -99,7 +99,7 @@ impl Json {
     }
 }
 
-/// The one JSON form of a diagnostic: place resolved, notes kept.
+/// The one JSON form of a diagnostic: place resolved, what is written beside the place put before the notes.
 #[must_use]
 pub fn json(diagnostic: &Diagnostic, files: &Files) -> Json {
     let place = diagnostic
@@ -112,7 +112,12 @@ pub fn json(diagnostic: &Diagnostic, files: &Files) -> Json {
         file: place.map(|(name, _)| name.to_owned()),
         line: place.map(|(_, at)| at.line),
         column: place.map(|(_, at)| at.column),
-        notes: diagnostic.notes.clone(),
+        notes: diagnostic
+            .label
+            .iter()
+            .chain(&diagnostic.notes)
+            .cloned()
+            .collect(),
     }
 }
 

@@ -83,11 +83,12 @@ pub(super) struct Flat {
     pub(super) constants: Vec<Value>,
 }
 
-/// Lays a program out.
-pub(super) fn flatten(flow: &Flow, varying: &Varying) -> Flat {
+/// Lays a program out. Values of a story may be replaced while it runs: there, nothing is computed before its time.
+pub(super) fn flatten(flow: &Flow, varying: &Varying, story: bool) -> Flat {
     let mut pass = Flatten {
         flow,
         varying,
+        story,
         steps: Vec::new(),
         labels: vec![u32::MAX],
         owners: vec![Owner {
@@ -115,6 +116,7 @@ struct Owner {
 struct Flatten<'a> {
     flow: &'a Flow,
     varying: &'a Varying,
+    story: bool,
     steps: Vec<(Step, Mask)>,
     /// The position of each label.
     labels: Vec<u32>,
@@ -164,7 +166,7 @@ impl Flatten<'_> {
         ) {
             return;
         }
-        if self.varying.is_constant(value) {
+        if self.varying.is_constant(value) && !self.story {
             self.constants.push(value);
         } else {
             self.push(Step::Compute(value));

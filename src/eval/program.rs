@@ -145,12 +145,12 @@ impl Compiled {
                 sites,
                 plot,
             } = compile(checked, extras)?;
-            forward(&mut flow);
+            forward(&mut flow, extras.story);
             prune(&mut flow);
             let groups = Groups::of(&flow);
             let varying = Varying::of(&flow, &groups);
             fuse(&mut flow, &varying);
-            let flat = flatten(&flow, &varying);
+            let flat = flatten(&flow, &varying, extras.story);
             let homes = allocate(&flow, &flat, &varying, &groups);
             let cells = (0..flow.cells.len() as u32).map(super::flow::Cell);
             let shared = cells.map(|cell| varying.is_shared(cell)).collect();

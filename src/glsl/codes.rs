@@ -107,6 +107,7 @@ codes! {
     LostDigits "W0602" "Digits that float32 loses",
     NotFinite "W0603" "A colour that is NaN or infinite",
     NeverWritten "W0604" "A read of what was never written",
+    UnboundChannel "W0605" "A channel that no picture is bound to",
 }
 
 /// How many errors of one file are told, and how many warnings; more would help nobody.

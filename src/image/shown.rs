@@ -47,6 +47,13 @@ impl Shown {
         self.pixels.extend(colours);
     }
 
+    /// The colour that all pixels have, in 8 bits; none if they differ.
+    #[must_use]
+    pub fn only_colour(&self) -> Option<[u8; 3]> {
+        let &first = self.pixels.first()?;
+        self.pixels.iter().all(|&pixel| pixel == first).then_some(first)
+    }
+
     /// Width and height in pixels.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {

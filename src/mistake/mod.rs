@@ -193,6 +193,10 @@ impl Suspects {
         if let Some((first, others)) = singles.split_first() {
             return (others.len() <= MANY).then(|| confirmed(first, others)).flatten();
         }
+        // Some number takes all colour out of any picture, and so do many pairs: of one colour nothing more can be told.
+        if small.pixels().windows(2).all(|pair| pair[0] == pair[1]) {
+            return None;
+        }
         let text = self.styles.first().map(String::as_str);
         let fitted = fit::suspects(&self.scene, self.moment, text, &looked_at, right);
         if let Some(suspect) = looked_at.matching(&fitted).first() {

@@ -164,6 +164,12 @@ fn question(answer: &Answer, verb: [&str; 2], differ: &str, hang: [&str; 2]) -> 
     if let (Some(told), Some(pixel)) = (parts.first_mut(), &answer.first) {
         told.push_str(", first ");
         told.push_str(&place(pixel));
+        if let Some(worst) = &answer.worst
+            && worst.difference() > 10.0 * pixel.difference()
+        {
+            told.push_str(", most ");
+            told.push_str(&place(worst));
+        }
     }
     if answer.undefined > 0 {
         parts.push(format!(

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use rayon::ThreadPool;
 
 use super::cpu::{Evaluator, Single};
-use super::{ALL, Case, Failure, PATIENCE, join};
+use super::{ALL, Case, Failure, PATIENCE, join, within};
 use crate::compare::{self, Answer};
 use crate::eval::{self, Observed, Program};
 use crate::frame::Frame;
@@ -144,10 +144,7 @@ pub fn prove(
     let stop = AtomicBool::new(false);
     let singles = || evaluate(checked, frames, timeout, &stop);
     let (painted, singles) = thread::scope(|scope| {
-        let cpu = scope.spawn(|| match pool {
-            Some(pool) => pool.install(singles),
-            None => singles(),
-        });
+        let cpu = scope.spawn(|| within(pool, singles));
         let paint = |written| worker.paint(written, frames.to_vec());
         let painted: Result<Vec<_>, _> = readings.into_iter().map(paint).collect();
         stop.store(painted.is_err(), Ordering::Relaxed);
@@ -250,6 +247,7 @@ fn evaluate(
             frame,
             float: FloatMode::Strict,
             timeout,
+            pool: None,
         };
         let until = Instant::now() + timeout * ALL;
         Evaluator::new(&program, &case, timeout * PATIENCE, until, stop).single(&frame.rows())

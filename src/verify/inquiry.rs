@@ -292,6 +292,16 @@ impl Findings {
                 (self.verdict, self.reason) = judged;
             }
         }
+        self.notes.extend(notes::unbound(case.checked, case.frame));
+        if let (Verdict::Wrong, None, Some(colour)) = (self.verdict, &self.mistake, self.actual.only_colour())
+        {
+            let [r, g, b] = colour;
+            let says = match colour {
+                [0, 0, 0] => "; every pixel is black".to_owned(),
+                _ => format!("; every pixel has one colour, ({r}, {g}, {b}) of 255"),
+            };
+            self.reason.push_str(&says);
+        }
         let rounds = |asked: &Asked| asked.answer.share(asked.answer.differing) > MAX_UNSTABLE;
         let loses = self.verdict == Verdict::Ok && self.rounding.as_ref().is_some_and(rounds);
         if self.verdict == Verdict::Unstable || loses {

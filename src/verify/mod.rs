@@ -16,9 +16,11 @@ use std::sync::mpsc::{self, Receiver, SyncSender};
 use std::thread::{self, ScopedJoinHandle};
 use std::time::{Duration, Instant};
 
+use rayon::ThreadPool;
 use thiserror::Error;
 
 pub use self::expected::Expected;
+pub use self::notes::unbound;
 
 use self::cpu::Evaluator;
 use self::inquiry::{Counted, Inquiry};
@@ -47,6 +49,9 @@ pub struct Case<'a> {
     pub float: FloatMode,
     /// How long a picture may take.
     pub timeout: Duration,
+    /// Where the evaluator and the tracer run; in the pool that all share, if none is given. There a slow shader's rows would be painted
+    /// before another's, whose time runs meanwhile.
+    pub pool: Option<&'a ThreadPool>,
 }
 
 /// What was found.
@@ -171,15 +176,17 @@ pub fn verify(worker: Option<&mut Worker>, case: &Case) -> Result<Findings, Fail
     };
     let mut inquiry = Inquiry::new(case, evaluator, until, counted);
     let Some(worker) = worker else {
-        inquiry.bands(None)?;
-        return Ok(inquiry.findings(None));
+        return within(case.pool, || {
+            inquiry.bands(None)?;
+            Ok(inquiry.findings(None))
+        });
     };
     // They share the cores, but none waits for the others' latencies. The worker is asked from this thread: it dies with the one that
     // started it.
     let asked = &mut inquiry;
     let (drawn, compared) = thread::scope(|scope| {
         let (sender, bands) = mpsc::sync_channel(WAITING);
-        let comparing = scope.spawn(move || asked.bands(Some(&bands)));
+        let comparing = scope.spawn(move || within(case.pool, move || asked.bands(Some(&bands))));
         let drawn = draw(worker, case, &rounds, &sender);
         let is_usable = |drawn: &Drawn| drawn.cut_short.is_none_or(|pixels| pixels == 0);
         stop.store(!drawn.as_ref().is_ok_and(is_usable), Ordering::Relaxed);
@@ -199,7 +206,15 @@ pub fn verify(worker: Option<&mut Worker>, case: &Case) -> Result<Findings, Fail
         0 => Painter::of(drawn),
         pixels => return Err(Failure::CutShort(pixels)),
     };
-    Ok(inquiry.findings(Some(painter)))
+    Ok(within(case.pool, || inquiry.findings(Some(painter))))
+}
+
+/// Does work in a pool, if there is one.
+fn within<T: Send>(pool: Option<&ThreadPool>, work: impl FnOnce() -> T + Send) -> T {
+    match pool {
+        Some(pool) => pool.install(work),
+        None => work(),
+    }
 }
 
 /// Has the worker paint, sends on what it painted, and has it watch the loops unless the evaluator tells that they are short.

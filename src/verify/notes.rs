@@ -3,7 +3,9 @@
 use crate::compare::{grouped, plural};
 use crate::diagnostic::Diagnostic;
 use crate::eval::{Fault, MESA_CAP, Observations, Observed};
-use crate::glsl::Code;
+use crate::frame::Frame;
+use crate::glsl::tree::{ExprKind, Input, SamplerShape, VariableKind};
+use crate::glsl::{Checked, Code};
 
 /// What was seen, but for what was foreseen: `warned` before the run. Pixels may be left out because of it.
 pub(super) fn notes(noted: &Observations, leaves_out: bool, warned: &[Diagnostic]) -> Vec<Diagnostic> {
@@ -37,6 +39,35 @@ pub(super) fn notes(noted: &Observations, leaves_out: bool, warned: &[Diagnostic
         notes.push(Diagnostic::warning(Code::LongRun.as_str(), message));
     }
     notes
+}
+
+/// The channels that a shader names and a frame has no picture for, each where it is named first.
+#[must_use]
+pub fn unbound(checked: &Checked, frame: &Frame) -> Vec<Diagnostic> {
+    let mut named = [None; 4];
+    for (_, expr) in checked.tree.exprs.iter() {
+        if let ExprKind::Variable(variable) = expr.kind
+            && let VariableKind::Input(Input::Channel(channel)) = checked.tree[variable].kind
+        {
+            named[usize::from(channel)].get_or_insert(expr.at.span);
+        }
+    }
+    let named = (0..)
+        .zip(named)
+        .filter_map(|(channel, span)| Some((channel, span?)));
+    let told = named.filter_map(|(channel, span): (usize, _)| {
+        let note = match checked.channels[channel] {
+            SamplerShape::D2 if frame.channels[channel].is_some() => return None,
+            SamplerShape::D2 => {
+                format!("`--channel{channel} FILE` binds a picture, `--channel{channel} noise` noise")
+            }
+            _ => "cube maps, volumes and arrays cannot be bound yet".to_owned(),
+        };
+        let message = format!("`iChannel{channel}` is black: no picture is bound to it");
+        let diagnostic = Diagnostic::warning(Code::UnboundChannel.as_str(), message);
+        Some(diagnostic.at(span).note(note))
+    });
+    told.filter(|note| !checked.allows(note)).collect()
 }
 
 fn undefined(observed: &Observed, leaves_out: bool) -> Diagnostic {

@@ -414,3 +414,85 @@ fn after_a_worker_died_the_next_shader_is_checked() {
     );
     expect(&run, 1, &["timeout      ./a.glsl", "ok           ./b.glsl"]);
 }
+
+#[test]
+fn no_output_takes_the_place_of_an_input() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "void mainImage(out vec4 c, in vec2 p) { c = vec4(p, 0, 1); }";
+    fs::write(folder.path().join("a.frag"), text).unwrap();
+    fs::write(folder.path().join("s.toml"), SPHERE).unwrap();
+    assert_eq!(
+        toyproof(folder.path(), &["run", "a.frag", "-o", "a.png", "--size", "8x8"]).code,
+        0
+    );
+    let picture = fs::read(folder.path().join("a.png")).unwrap();
+    for arguments in [
+        &["convert", "a.frag", "-o", "./a.frag"][..],
+        &["convert", ".", "-o", ".", "--to", "glsl"],
+        &["export", "s.toml", "-o", "s.toml"],
+        &["compare", "a.png", "a.png", "--diff", "a.png"],
+        &["run", "a.frag", "-o", "a.png", "--channel0", "a.png"],
+    ] {
+        expect(
+            &toyproof(folder.path(), arguments),
+            2,
+            &["this is an input, and would be lost"],
+        );
+    }
+    assert_eq!(fs::read_to_string(folder.path().join("a.frag")).unwrap(), text);
+    assert_eq!(fs::read_to_string(folder.path().join("s.toml")).unwrap(), SPHERE);
+    assert_eq!(fs::read(folder.path().join("a.png")).unwrap(), picture);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn what_standard_output_does_not_take_is_an_error_unless_nobody_reads_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = env!("CARGO_BIN_EXE_toyproof");
+    let run = |end: &str| {
+        let line = format!("{program} scenes {end}; echo $?");
+        let run = std::process::Command::new("sh")
+            .args(["-c", &line])
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
+        String::from_utf8_lossy(&[run.stdout, run.stderr].concat()).into_owned()
+    };
+    let full = run("> /dev/full");
+    assert!(
+        full.starts_with("2\n") && full.contains("cannot write to standard output"),
+        "{full}"
+    );
+    assert!(!run("| true").contains("error"), "{}", run("| true"));
+}
+
+#[cfg(unix)]
+#[test]
+fn what_can_be_read_once_is_read_once() {
+    let root = env!("CARGO_MANIFEST_DIR");
+    let folder = tempfile::tempdir().unwrap();
+    let program = env!("CARGO_BIN_EXE_toyproof");
+    let out = folder.path().display();
+    for line in [
+        format!("cat glsl/02-sphere.glsl | {program} check - --scene glsl/02-sphere.toml --out {out}"),
+        format!("cat glsl/02-sphere.glsl | {program} check - - --scene glsl/02-sphere.toml"),
+        format!(
+            "cat glsl/02-sphere.glsl | {program} check /dev/stdin --scene glsl/02-sphere.toml --out {out}"
+        ),
+        format!(
+            "cat glsl/02-sphere.toml | {program} check glsl/02-sphere.glsl --scene /dev/stdin --out {out}"
+        ),
+    ] {
+        let line = format!("{line} --size 64x36 --on cpu");
+        let run = std::process::Command::new("sh")
+            .args(["-c", &line])
+            .current_dir(root)
+            .output()
+            .unwrap();
+        let told = String::from_utf8_lossy(&run.stdout);
+        assert!(
+            run.status.success() && told.starts_with("correct "),
+            "{line}: {told}"
+        );
+    }
+}

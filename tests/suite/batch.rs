@@ -170,6 +170,51 @@ fn what_was_killed_goes_on_and_nothing_is_lost_or_done_twice() {
     assert_eq!(results(folder.path()).len(), COUNT, "none is there twice");
 }
 
+#[test]
+fn a_shader_is_not_late_because_its_neighbours_never_end() {
+    let folder = tempfile::tempdir().unwrap();
+    let endless =
+        "void mainImage(out vec4 c, in vec2 p) { for (float s = p.x; s > -1.0; s += 0.0) c.x += s; }";
+    for name in ["a", "c", "d"] {
+        fs::write(folder.path().join(name).with_extension("glsl"), endless).unwrap();
+    }
+    for kind in ["glsl", "toml"] {
+        let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("glsl/02-sphere");
+        fs::copy(
+            from.with_extension(kind),
+            folder.path().join("b").with_extension(kind),
+        )
+        .unwrap();
+    }
+    let run = toyproof(
+        folder.path(),
+        &[
+            "check",
+            ".",
+            "--on",
+            "cpu",
+            "--jobs",
+            "4",
+            "--timeout",
+            "3s",
+            "--size",
+            "160x90",
+        ],
+    );
+    let verdicts: Vec<_> = run
+        .stdout
+        .lines()
+        .filter_map(|line| line.split_once("./"))
+        .collect();
+    let verdicts: Vec<_> = verdicts.iter().map(|(verdict, _)| verdict.trim()).collect();
+    assert_eq!(
+        verdicts,
+        ["timeout", "correct", "timeout", "timeout"],
+        "{}",
+        run.stdout
+    );
+}
+
 /// A folder of any shaders, which `TOYPROOF_CORPUS` names, killed ten times at moments that nobody chose.
 #[test]
 #[ignore = "takes minutes, and a folder of shaders that TOYPROOF_CORPUS names"]

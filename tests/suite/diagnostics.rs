@@ -103,6 +103,7 @@ fn seen(checked: &Checked, scene: Option<&Scene>) -> Vec<Diagnostic> {
         frame: &frame,
         float: FloatMode::Strict,
         timeout: Duration::from_secs(60),
+        pool: None,
     };
     let mut all = checked.warnings.clone();
     // Of one that never ends there is no run to tell of.

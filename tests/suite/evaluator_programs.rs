@@ -453,6 +453,74 @@ static FAULTS: &[(&str, &[Fault])] = &[
     ("if (p.x > 1.0) o.x = 1.0; o.x = dFdx(p.x);", &[]),
 ];
 
+/// Functions that write what they are handed, or may not.
+const HANDED: &str = "void f(out float x) { x = 2.0; }
+    void none(out float x) {}
+    void through(inout float x) { none(x); }
+    void lose(out vec4 v) {}
+    bool hit(float p, out float t) { if (p < 20.0) return false; t = p; return true; }";
+
+/// What stands in `mainImage`, its red, and whether it is made of what was never written.
+static HANDED_OUT: &[(&str, f64, bool)] = &[
+    ("float a = 1.0; f(a); o.x = a;", 2.0, false),
+    ("float a = 1.0; none(a); o.x = a;", 0.0, true),
+    ("float a = 1.0; through(a); o.x = a;", 0.0, true),
+    ("float a = 1.0; if (p.x > 20.0) f(a); o.x = a;", 1.0, false),
+    ("float a = 1.0; if (p.x > 20.0) none(a); o.x = a;", 1.0, false),
+    ("float t = 9.0; bool b = hit(p.x, t); o.x = t;", 0.0, true),
+    (
+        "float t = 9.0; bool b = p.y > 5.0 && hit(p.x, t); o.x = t;",
+        9.0,
+        false,
+    ),
+    ("float a[2]; a[1] = 3.0; f(a[0]); o.x = a[1];", 3.0, false),
+    (
+        "vec2 v[2]; f(v[1][0]); int n = 5; v[1][int(p.x)] = 1.0; o.x = float(n);",
+        5.0,
+        false,
+    ),
+    (
+        "vec2 v[2]; f(v[1][0]); v[1][int(p.x)] = 1.0; o.x = v[1].x;",
+        1.0,
+        false,
+    ),
+    ("vec2 v[2]; f(v[1][0]); o.x = v[1][int(p.x) + 1];", 0.0, true),
+    (
+        "mat3 m = mat3(1.0); f(m[1][0]); for (int i = 0; i < 3; i++) o.x += m[1][i];",
+        3.0,
+        false,
+    ),
+    (
+        "for (int i = 0; i < 3; i++) { float a[2]; a[0] = 3.0; if (i > 5) o.x += a[1]; f(a[1]); }",
+        0.0,
+        false,
+    ),
+    ("f(o.x); if (p.x > 20.0) none(o.x);", 2.0, false),
+    ("lose(o); o.x += 1.0;", 1.0, true),
+];
+
+#[test]
+fn what_a_function_was_handed_and_did_not_write_is_noted() {
+    let frame = Frame {
+        size: [1, 1],
+        ..Frame::default()
+    };
+    let mut wrong = Vec::new();
+    for &(body, red, never_written) in HANDED_OUT {
+        let program = Program::new(&checked(HANDED, body).unwrap()).unwrap();
+        let painted = program.paint::<f64>(&frame, &Settings::default()).unwrap();
+        let faults = painted.observations.faults.iter();
+        let noted = faults
+            .filter(|noted| noted.site.fault == Fault::NeverWritten)
+            .count();
+        let [painted, ..] = painted.painting.get(0, 0);
+        if (painted, noted > 0) != (red, never_written) {
+            wrong.push(format!("{body}: {painted}, noted {noted} times"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
 #[test]
 fn undefined_operations_are_noted_where_they_happen_and_only_there() {
     let mut wrong = Vec::new();

@@ -132,6 +132,43 @@ fn explain_names_the_line_that_loses_the_digits_and_not_a_harmless_one() {
 }
 
 #[test]
+fn explain_follows_what_is_the_same_for_all_pixels_and_what_is_computed_twice() {
+    let folder = tempfile::tempdir().unwrap();
+    let causes = [
+        (
+            "float t = iTime * 1000.0;\n float s = sin(t);\n float u = s * 0.5 + 0.5;\n c = vec4(u);",
+            3,
+        ),
+        (
+            "float a = (1e8 + p.x) - 1e8;\n float u = a * 0.0;\n float b = (1e8 + p.x) - 1e8;\n c = vec4(b * 0.1, u, 0, 1);",
+            4,
+        ),
+        (
+            "float s = 0.0;\n for (int i = 0; i < 3; i++) {\n float a = (1e8 + fract(iTime)) - 1e8;\n if (i == 2) s = a; }\n c = vec4(s);",
+            4,
+        ),
+    ];
+    for (body, line) in causes {
+        let text = format!("void mainImage(out vec4 c, in vec2 p) {{\n{body}\n}}\n");
+        fs::write(folder.path().join("a.glsl"), text).unwrap();
+        let arguments = [
+            "explain",
+            "a.glsl",
+            "--pixel",
+            "20,5",
+            "--time",
+            "12345.678",
+            "--format",
+            "json",
+        ];
+        let run = toyproof(folder.path(), &arguments);
+        let story: Value = serde_json::from_str(&run.stdout).unwrap();
+        let cause = &story["steps"][story["cause_at"].as_u64().unwrap() as usize];
+        assert_eq!(cause["line"], line, "{body}\n{cause}");
+    }
+}
+
+#[test]
 fn explain_tells_where_a_nan_is_born() {
     let folder = tempfile::tempdir().unwrap();
     let shader =

@@ -246,6 +246,7 @@ fn judged_beside(
         frame: &frame,
         float: FloatMode::Strict,
         timeout: Duration::from_secs(60),
+        pool: None,
     };
     verify(worker, &case).unwrap_or_else(|failure| panic!("{failure}\n{shader}"))
 }

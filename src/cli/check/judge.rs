@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use rayon::ThreadPool;
 use sha2::{Digest, Sha256};
 
 use super::Args;
@@ -10,8 +11,8 @@ use super::pictures::PICTURES;
 use super::reference::{Reference, References};
 use super::scenes::Scenes;
 use super::stopped::Stopped;
-use crate::cli::Terminal;
 use crate::cli::shader::{Names, Shader, Unusable, denied, with_suffix};
+use crate::cli::{Terminal, pool};
 use crate::compare::Verdict;
 use crate::diagnostic::{self, Diagnostic};
 use crate::frame::Frame;
@@ -82,13 +83,16 @@ fn key(found: &Found, args: &Args, references: &References) -> Option<String> {
 pub(super) struct Hand {
     /// None where the evaluator paints.
     worker: Option<Worker>,
+    pool: Option<ThreadPool>,
 }
 
 impl Hand {
-    pub(super) fn new(args: &Args) -> Self {
+    /// One of so many.
+    pub(super) fn new(args: &Args, threads: usize) -> Self {
         // That the arguments are right has been seen before.
         Self {
             worker: args.driver.worker().ok().flatten(),
+            pool: pool::own(threads),
         }
     }
 }
@@ -232,6 +236,7 @@ impl<'a> Judge<'a> {
             frame: &frame,
             float: self.args.driver.float(),
             timeout: self.args.driver.timeout(),
+            pool: hand.pool.as_ref(),
         };
         let mut verified = verify(hand.worker.as_mut(), &case);
         if let Err(verify::Failure::Gpu(gpu::Failure::NoDriver(why))) = &verified

@@ -164,12 +164,13 @@ impl Batch<'_> {
         let threads = match self.args.jobs {
             Some(jobs) => usize::from(jobs),
             None => std::thread::available_parallelism().map_or(1, NonZero::get),
-        };
+        }
+        .clamp(1, todo.len().max(1));
         pool::each(
             &todo,
             threads,
             &interrupted,
-            || Hand::new(self.args),
+            || Hand::new(self.args, threads),
             |hand, index| judge.judge(hand, &submissions[index]),
             |index, judged| {
                 tally.add(judged.record.verdict);

@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 use std::thread;
 
-use rayon::{ThreadPool, ThreadPoolBuilder};
+use rayon::ThreadPool;
 
 use super::super::Exit;
 use super::super::inputs::{DriverArgs, LanguageArgs};
+use super::super::pool;
 use super::super::shader::{Shader, Unusable, is_invalid};
 use super::args::To;
 use super::proof::{NAGA, Standing, in_browser};
@@ -81,14 +82,10 @@ impl Converter<'_> {
     /// What one of so many threads works with.
     pub(super) fn hand(&self, threads: usize) -> Hand {
         let runner = self.driver.worker_for(FRAMES.len() as u32);
-        let pool = || {
-            let share = (rayon::current_num_threads() / threads).max(1);
-            ThreadPoolBuilder::new().num_threads(share).build().ok()
-        };
         Hand {
             translator: self.driver.translator(),
             runner: runner.map(|runner| runner.map(Worker::with_plain_code)),
-            pool: (self.verify && threads > 1).then(pool).flatten(),
+            pool: self.verify.then(|| pool::own(threads)).flatten(),
             browser: self.browser.as_ref().map(|program| {
                 let patience = self.driver.timeout() * FRAMES.len() as u32;
                 Chromium::new(program.clone(), patience)

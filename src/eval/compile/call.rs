@@ -36,6 +36,7 @@ impl Builder<'_> {
                 passed.values = self.read(back);
             }
         }
+        let parts = self.parts.len();
         let mut taken = Vec::new();
         for (at, (passed, &parameter)) in passed.into_iter().zip(parameters).enumerate() {
             if matches!(tree[parameter].ty, Type::Sampler(_)) {
@@ -46,20 +47,20 @@ impl Builder<'_> {
             {
                 if direction(tree[parameter].kind) == Direction::Out {
                     self.store_all(cells, &passed.values);
-                    self.begin_unwritten(parameter, cells);
+                    self.begin_part(parameter, cells);
                 }
                 self.homes.insert(parameter, Home::Cells(cells));
                 continue;
             }
             let cells = self.allocate_type(tree[parameter].ty)?;
             self.store_all(cells, &passed.values);
-            if direction(tree[parameter].kind) == Direction::Out {
-                self.begin_unwritten(parameter, cells);
-            }
+            let with_value = direction(tree[parameter].kind) != Direction::Out;
+            self.begin(parameter, cells, with_value);
             self.homes.insert(parameter, Home::Cells(cells));
             taken.extend(passed.back.map(|back| (cells, back)));
         }
         let result = self.inline(function, call)?;
+        self.end_parts(parts);
         let value = self.load_all(result);
         for (cells, back) in taken {
             let values = self.load_all(cells);
@@ -149,9 +150,11 @@ impl Builder<'_> {
         let coordinates = self.frag_coord();
         if let &[out, position] = tree[function].parameters.as_slice() {
             self.homes.insert(out, Home::Cells(colour));
+            self.begin(out, colour, true);
             let cells = self.allocate_type(tree[position].ty)?;
             self.store_all(cells, &coordinates);
             self.homes.insert(position, Home::Cells(cells));
+            self.begin(position, cells, true);
         }
         self.inline(function, None).map(drop)
     }

@@ -20,7 +20,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use self::place::Home;
 use self::term::Term;
-use self::written::Written;
+use self::written::{Written, handed_out};
 use super::flow::{Block, Cell, Cells, Flow, LoopId, NONE, Node, Origin, Scope, Value};
 use super::observe::{Predicate, Site, SiteId};
 use super::operation::{Kind, Operation};
@@ -116,6 +116,11 @@ pub(super) fn compile(checked: &Checked, extras: Extras) -> Result<Program> {
         site_ids: HashMap::new(),
         open: Vec::new(),
         written: BTreeMap::new(),
+        parts: Vec::new(),
+        handed_out: match extras.choice {
+            Choice::Noted => handed_out(&checked.tree),
+            _ => HashSet::new(),
+        },
         plot: Plot::default(),
         rounds: Vec::new(),
         depth: 0,
@@ -207,8 +212,12 @@ struct Builder<'a> {
     site_ids: HashMap<Site, SiteId>,
     /// What was checked and is not settled.
     open: Vec<(Predicate, [Value; 2])>,
-    /// Variables that began unwritten, by their first cells.
+    /// Variables of which it is kept what is written, by their first cells.
     written: BTreeMap<u32, Written>,
+    /// The parts of them that are parameters now, the innermost last.
+    parts: Vec<(Cells, Place)>,
+    /// The variables whose values a function may take away.
+    handed_out: HashSet<VariableId>,
     plot: Plot,
     /// The rounds of the loops that are being written.
     rounds: Vec<EventId>,

@@ -110,8 +110,8 @@ impl Builder<'_> {
         }
         self.store_all(cells, &values);
         let local = self.tree[variable].kind == VariableKind::Local;
-        if local && initialiser.is_none() && !self.shared.contains(&variable) {
-            self.begin_unwritten(variable, cells);
+        if local && !self.shared.contains(&variable) {
+            self.begin(variable, cells, initialiser.is_some());
         }
         Ok(())
     }

@@ -1,10 +1,13 @@
 //! Which components of a variable have been written, kept beside it where that is not known from the start.
 
+use std::collections::{HashMap, HashSet};
+
+use super::call::direction;
 use super::{Builder, Choice};
 use crate::eval::flow::{Cell, Cells, NONE, Node, Origin, Value};
 use crate::eval::observe::{Fault, Predicate};
 use crate::eval::operation::{Kind, Operation};
-use crate::glsl::tree::{Place, Type, VariableId};
+use crate::glsl::tree::{Direction, ExprKind, Place, Tree, Type, VariableId};
 
 /// What is kept of a variable.
 #[derive(Debug, Clone, Copy)]
@@ -18,26 +21,77 @@ pub(super) struct Written {
 /// Of larger variables it is not kept.
 const MAX_COMPONENTS: u32 = 64;
 
+/// The variables that are handed to a function which may leave them unwritten, also by way of others.
+pub(super) fn handed_out(tree: &Tree) -> HashSet<VariableId> {
+    let mut handed = HashSet::new();
+    let mut pending = Vec::new();
+    let mut given = HashMap::<VariableId, Vec<VariableId>>::new();
+    for (_, expr) in tree.exprs.iter() {
+        let ExprKind::Call {
+            function,
+            ref arguments,
+        } = expr.kind
+        else {
+            continue;
+        };
+        for (&argument, &parameter) in arguments.iter().zip(&tree[function].parameters) {
+            let Some(root) = tree.root_variable(argument) else {
+                continue;
+            };
+            match direction(tree[parameter].kind) {
+                Direction::Out => pending.push(root),
+                Direction::InOut => given.entry(parameter).or_default().push(root),
+                Direction::In | Direction::ConstIn => {}
+            }
+        }
+    }
+    while let Some(variable) = pending.pop() {
+        if handed.insert(variable) {
+            pending.extend(given.get(&variable).into_iter().flatten());
+        }
+    }
+    handed
+}
+
 impl Builder<'_> {
-    /// A variable begins that nothing has been written to, in these cells.
-    pub(super) fn begin_unwritten(&mut self, variable: VariableId, cells: Cells) {
+    /// A variable begins in these cells, which nobody else has, with a value or without. Of one with a value it is kept what is written
+    /// only if a function may take the value away.
+    pub(super) fn begin(&mut self, variable: VariableId, cells: Cells, with_value: bool) {
         let Some(at) = self.tree[variable].at else { return };
-        if self.extras.choice != Choice::Noted || cells.count > MAX_COMPONENTS {
+        if self.extras.choice != Choice::Noted
+            || cells.count > MAX_COMPONENTS
+            || with_value && !self.handed_out.contains(&variable)
+        {
             return;
         }
-        let known = self.written.get(&cells.first).map(|known| known.flags);
-        let flags = known.unwrap_or_else(|| {
-            let first = self.cells.len() as u32;
-            self.cells.extend((0..cells.count).map(|_| Kind::Word));
-            Cells {
-                first,
-                count: cells.count,
-            }
-        });
+        let flags = Cells {
+            first: self.cells.len() as u32,
+            count: cells.count,
+        };
+        self.cells.extend((0..cells.count).map(|_| Kind::Word));
         self.written.insert(cells.first, Written { flags, at });
-        let no = self.truth(false);
+        self.mark(flags, with_value);
+    }
+
+    /// An `out` parameter begins, in cells of the variable that is handed to it, until [`Self::end_parts`].
+    pub(super) fn begin_part(&mut self, parameter: VariableId, cells: Cells) {
+        let (Some((first, _)), Some(at)) = (self.flag(cells.first), self.tree[parameter].at) else {
+            return;
+        };
+        self.parts.push((cells, at));
+        let count = cells.count;
+        self.mark(Cells { first, count }, false);
+    }
+
+    /// All of those parameters end but so many.
+    pub(super) fn end_parts(&mut self, left: usize) {
+        self.parts.truncate(left);
+    }
+
+    fn mark(&self, flags: Cells, written: bool) {
+        let value = self.truth(written);
         for flag in flags.first..flags.first + flags.count {
-            self.store(Cell(flag), no);
+            self.store(Cell(flag), value);
         }
     }
 
@@ -97,9 +151,11 @@ impl Builder<'_> {
         }
     }
 
-    /// The flag of a cell, and where its variable is declared.
+    /// The flag of a cell, and where that is declared which it is for now.
     fn flag(&self, cell: u32) -> Option<(u32, Place)> {
         let (&first, &Written { flags, at }) = self.written.range(..=cell).next_back()?;
-        (cell - first < flags.count).then(|| (flags.first + cell - first, at))
+        let holds = |(cells, _): &&(Cells, Place)| cell.wrapping_sub(cells.first) < cells.count;
+        let part = self.parts.iter().rev().find(holds).map(|&(_, at)| at);
+        (cell - first < flags.count).then(|| (flags.first + cell - first, part.unwrap_or(at)))
     }
 }

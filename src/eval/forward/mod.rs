@@ -17,8 +17,8 @@ use super::group::Groups;
 /// Groups of more cells than this are not followed cell by cell.
 const MAX_FOLLOWED: u32 = 256;
 
-/// Rewrites a program.
-pub(super) fn forward(flow: &mut Flow) {
+/// Rewrites a program. Values of a story may be replaced while it runs: there, what is computed twice is not one value.
+pub(super) fn forward(flow: &mut Flow, story: bool) {
     let groups = Groups::of(flow);
     let body = std::mem::take(&mut flow.body);
     let templates = std::mem::take(&mut flow.origins);
@@ -31,6 +31,7 @@ pub(super) fn forward(flow: &mut Flow) {
         constant: Vec::new(),
         words: Map::default(),
         flow,
+        story,
         known: Log::default(),
         computed: Log::default(),
         exits: Vec::new(),
@@ -73,6 +74,7 @@ struct Forward<'a> {
     constant: Vec<bool>,
     /// The values that are words.
     words: Map<u32, Value>,
+    story: bool,
     known: Log<Cell, Value>,
     computed: Log<(Origin, u32), Value>,
     /// The open scopes.

@@ -82,7 +82,7 @@ impl Forward<'_> {
             Origin::Operation(operation, operands) => self.folded(operation, operands),
             _ => None,
         };
-        let found = found.or_else(|| self.computed.map.get(&key).copied());
+        let found = found.or_else(|| self.computed.map.get(&key).copied().filter(|_| !self.story));
         if let Some(found) = found {
             self.alias[at] = found;
             return None;

@@ -42,6 +42,11 @@ mistakes! {
     "blue-is-red": "has red and blue exchanged", [(LAST, "fragColor = vec4(color.zyx, 1.0);")];
     "samples-not-averaged": "adds up its samples without dividing by their number", [(MEAN, "")];
     "one-sample-short": "takes one sample less than it divides by", [("i < SAMPLES;", "i < SAMPLES - 1;")];
+    "one-sample-too-many": "takes one sample more than it divides by", [("i < SAMPLES;", "i <= SAMPLES;")];
+    "one-sample-less": "takes one sample less than the scene",
+        [("i < SAMPLES;", "i < SAMPLES - 1;"), (MEAN, "color /= float(SAMPLES - 1);")];
+    "one-sample-more": "takes one sample more than the scene",
+        [("i < SAMPLES;", "i <= SAMPLES;"), (MEAN, "color /= float(SAMPLES + 1);")];
     "samples-divided-by-one-less": "divides by one less than the number of its samples", [(MEAN, "color /= float(SAMPLES - 1);")];
     "last-sample-only": "keeps its last sample only", [(SUM, "color = look"), (MEAN, "")];
     "one-seed-for-all-samples": "draws the same numbers for all samples of a pixel", [("startSample(fragCoord, i);", "startSample(fragCoord, 0);")];
