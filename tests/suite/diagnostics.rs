@@ -11,6 +11,7 @@ use toyproof::diagnostic::{self, Diagnostic, Explanation, explanations};
 use toyproof::frame::Frame;
 use toyproof::glsl::{self, Checked, Code};
 use toyproof::gpu::FloatMode;
+use toyproof::image::noise;
 use toyproof::report::Rubric;
 use toyproof::scene::{self, Scene};
 use toyproof::source::{File, Files};
@@ -93,6 +94,8 @@ fn told(example: &Example, scene: Option<&Scene>) -> (Vec<Diagnostic>, Files) {
 fn seen(checked: &Checked, scene: Option<&Scene>) -> Vec<Diagnostic> {
     let frame = Frame {
         size: scene.map_or([16, 9], |scene| scene.film.size),
+        // The fourth channel stays without a picture.
+        channels: [true, true, true, false].map(|bound| bound.then(noise)),
         ..Frame::default()
     };
     let expected = scene.map(|scene| Expected::new(scene.clone(), &frame));

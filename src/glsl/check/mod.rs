@@ -63,6 +63,8 @@ pub(crate) struct Checker<'a> {
     doubtful: HashSet<Symbol>,
     /// Whether any name may be.
     lacks_names: bool,
+    /// Where the text ends.
+    end: Option<Place>,
     pub(crate) errors: Vec<Diagnostic>,
     pub(crate) warnings: Vec<Diagnostic>,
 }
@@ -75,6 +77,7 @@ impl<'a> Checker<'a> {
             incomplete: Vec::new(),
             doubtful: HashSet::new(),
             lacks_names: text.lacks_names,
+            end: text.tokens.last().map(|token| token.at),
             lenient: options.lenient,
             tree: Tree::default(),
             scopes: Scopes::default(),

@@ -3,7 +3,6 @@
 use std::collections::HashSet;
 
 use super::Checker;
-use crate::diagnostic::Diagnostic;
 use crate::glsl::codes::Code;
 use crate::glsl::tree::{Direction, FunctionId, Place, Type, VariableKind};
 
@@ -120,16 +119,14 @@ impl Checker<'_> {
                 return Some(id);
             }
         }
-        let diagnostic = match near {
-            Some(at) => Code::NoMainImage.at(
-                at,
+        let (at, message) = match near {
+            Some(_) => (
+                near,
                 "this `mainImage` does not have the parameters that ShaderToy gives it",
             ),
-            None => Diagnostic::error(
-                Code::NoMainImage.as_str(),
-                "the shader has no function `mainImage`",
-            ),
+            None => (self.end, "the shader has no function `mainImage`"),
         };
+        let diagnostic = Code::NoMainImage.at(at?, message);
         let calls = "ShaderToy calls `void mainImage(out vec4 fragColor, in vec2 fragCoord)` for each pixel";
         self.report(diagnostic.note(calls));
         None
