@@ -94,7 +94,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         let shader = Shader::load(input, &args.language);
         let path = match (one, input) {
             (true, _) | (false, Err(_)) => args.output.clone(),
-            (false, Ok(found)) => with_suffix(&args.output.join(names.place(&found.relative)), ".png"),
+            (false, Ok(found)) => with_suffix(&args.output.join(names.place(found)), ".png"),
         };
         terminal.diagnostics(&shader.warnings, &shader.files);
         if let Ok(checked) = &shader.checked {

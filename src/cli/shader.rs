@@ -1,6 +1,6 @@
 //! What the commands that take shaders share: reading one, lowering it, and naming its outputs.
 
-use std::collections::HashSet;
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use super::inputs::{Deny, LanguageArgs};
@@ -115,24 +115,40 @@ pub(super) fn is_invalid(failure: &Failure) -> bool {
 /// Names for outputs below a folder: the input's own place and stem, made unlike any other's.
 #[derive(Debug, Default)]
 pub(super) struct Names {
-    taken: HashSet<PathBuf>,
+    /// Each with the folder of its input.
+    taken: HashMap<PathBuf, Option<PathBuf>>,
 }
 
 impl Names {
-    /// The place of an input's outputs, without an ending.
-    pub(super) fn place(&mut self, relative: &Path) -> PathBuf {
-        let stem = relative.with_extension("");
-        let whole = relative.to_owned();
-        let numbered = (2..).map(|n| {
-            let mut name = stem.clone().into_os_string();
-            name.push(format!("-{n}"));
-            PathBuf::from(name)
-        });
-        let free = [stem.clone(), whole]
-            .into_iter()
-            .chain(numbered)
-            .find(|name| self.taken.insert(name.clone()));
-        free.unwrap_or(stem)
+    /// The place of an input's outputs, without an ending. Of two inputs that would share one, the second has its extension, too, or before
+    /// its name that of its folder, if that is another.
+    pub(super) fn place(&mut self, found: &Found) -> PathBuf {
+        let folder = found.path().and_then(Path::parent);
+        let stem = found.relative.with_extension("");
+        let whole = found.relative.clone();
+        let in_folder = || {
+            let mut name = folder?.file_name()?.to_owned();
+            name.push("-");
+            name.push(stem.file_name()?);
+            Some(stem.with_file_name(name))
+        };
+        let is_beside = self
+            .taken
+            .get(&stem)
+            .is_none_or(|other| other.as_deref() == folder);
+        let numbered = (2..).map(|n| with_suffix(&stem, &format!("-{n}")));
+        let free = [
+            Some(stem.clone()),
+            in_folder().filter(|_| !is_beside),
+            Some(whole),
+        ]
+        .into_iter()
+        .flatten()
+        .chain(numbered)
+        .find(|name| !self.taken.contains_key(name))
+        .unwrap_or(stem);
+        self.taken.insert(free.clone(), folder.map(Path::to_owned));
+        free
     }
 }
 
@@ -146,16 +162,26 @@ pub(super) fn with_suffix(place: &Path, suffix: &str) -> PathBuf {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::source::FoundIn;
 
     #[test]
     fn no_two_inputs_share_an_output() {
         let mut names = Names::default();
-        let places: Vec<_> = ["a/x.glsl", "a/x.frag", "a/x.glsl", "x.glsl"]
-            .iter()
-            .map(|relative| names.place(Path::new(relative)))
-            .collect();
-        assert_eq!(places, ["a/x", "a/x.frag", "a/x.glsl", "x"].map(PathBuf::from));
-        assert_eq!(names.place(Path::new("x.glsl")), Path::new("x.glsl"));
-        assert_eq!(names.place(Path::new("x.glsl")), Path::new("x-2"));
+        let mut place = |folder: &str, relative: &str| {
+            let place = FoundIn::File(Path::new(folder).join(relative));
+            let found = Found {
+                place,
+                relative: PathBuf::from(relative),
+            };
+            names.place(&found).display().to_string()
+        };
+        assert_eq!(place("in", "a/x.glsl"), "a/x");
+        assert_eq!(place("in", "a/x.frag"), "a/x.frag");
+        assert_eq!(place("in", "a/x.glsl"), "a/x.glsl", "named twice");
+        assert_eq!(place("in", "a/x.glsl"), "a/x-2");
+        assert_eq!(place("in/ann", "x.glsl"), "x");
+        assert_eq!(place("in/bob", "x.glsl"), "bob-x");
+        assert_eq!(place("out/bob", "x.glsl"), "x.glsl");
+        assert_eq!(place("out/bob", "y.glsl"), "y");
     }
 }

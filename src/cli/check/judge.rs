@@ -43,7 +43,7 @@ impl Submission {
     ) -> Self {
         let found = input.as_ref().ok();
         let place = match (&args.out, found) {
-            (Some(out), Some(found)) => Some(out.join(names.place(&found.relative))),
+            (Some(out), Some(found)) => Some(out.join(names.place(found))),
             _ => None,
         };
         Self {

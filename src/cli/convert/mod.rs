@@ -86,7 +86,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         let path = match (one, &input) {
             (true, _) | (false, Err(_)) => args.output.clone(),
             (false, Ok(found)) => with_suffix(
-                &args.output.join(names.place(&found.relative)),
+                &args.output.join(names.place(found)),
                 &format!(".{}", to.extension()),
             ),
         };
