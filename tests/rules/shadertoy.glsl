@@ -20,7 +20,7 @@ void mainImage(inout vec4 c, in vec2 p) { c.x += c.w - c.y; }
 void mainImage(out vec4 c, const in vec2 p) { c = vec4(p.x * 2.0); }
 
 //# - holds mainImage may be declared before
-void mainImage(out vec4 c, in vec2 p);
+void mainImage(out vec4 c, in vec2 p);  //!
 void paint(out vec4 c) { c = vec4(iTime - 1.0); }
 void mainImage(out vec4 c, in vec2 p) { paint(c); }
 
@@ -93,7 +93,7 @@ void mainVR(out vec4 c, in vec2 p, in vec3 o, in vec3 d) { c = vec4(0.0); }
 bool holds() { return mainSound(0, iTime).x == 2.0; }
 
 //# - E0409 there is a mainImage
-float f() { return 1.0; } // no mainImage
+float f() { return 1.0; } // no mainImage //!
 
 //# - E0409 mainImage has a body
 // glslang leaves it to the linker.
@@ -122,7 +122,7 @@ void mainImage(in vec2 p, out vec4 c) { c = vec4(1.0); }  //!
 vec4 mainImage(in vec2 p) { return vec4(1.0); }  //!
 
 //# - E0409 mainImage is written so
-void mainimage(out vec4 c, in vec2 p) { c = vec4(1.0); } // not mainImage
+void mainimage(out vec4 c, in vec2 p) { c = vec4(1.0); } // not mainImage //!
 
 //# - E0409 mainImage's place is not out
 void mainImage(out vec4 c, inout vec2 p) { c = vec4(1.0); }  //!

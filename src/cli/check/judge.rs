@@ -197,7 +197,12 @@ impl<'a> Judge<'a> {
             Ok(findings) => fill(&mut judged, findings),
             Err(stopped) => {
                 judged.record.verdict = stopped.verdict;
-                judged.record.reason = stopped.reason;
+                // Its name stands before the reason anyway.
+                let named = format!("{}: ", judged.record.shader);
+                judged.record.reason = match stopped.reason.strip_prefix(&named) {
+                    Some(reason) => reason.to_owned(),
+                    None => stopped.reason,
+                };
                 judged.tell(stopped.diagnostics, &stopped.files);
             }
         }

@@ -63,7 +63,7 @@ pub(crate) struct Checker<'a> {
     doubtful: HashSet<Symbol>,
     /// Whether any name may be.
     lacks_names: bool,
-    /// Where the text ends.
+    /// What is written last.
     end: Option<Place>,
     pub(crate) errors: Vec<Diagnostic>,
     pub(crate) warnings: Vec<Diagnostic>,
@@ -77,7 +77,8 @@ impl<'a> Checker<'a> {
             incomplete: Vec::new(),
             doubtful: HashSet::new(),
             lacks_names: text.lacks_names,
-            end: text.tokens.last().map(|token| token.at),
+            // The last of the tokens is the end itself, which may stand lines below what is written.
+            end: text.tokens.iter().rev().take(2).last().map(|token| token.at),
             lenient: options.lenient,
             tree: Tree::default(),
             scopes: Scopes::default(),
