@@ -108,7 +108,8 @@ impl Prune<'_> {
                     values: [value, _],
                     ..
                 } if matches!(self.flow.origin(value), Origin::Word(word) if word != 0) => None,
-                Node::Loop { body } => Some(Node::Loop {
+                Node::Loop { id, body } => Some(Node::Loop {
+                    id,
                     body: self.keep(body),
                 }),
                 _ => Some(node),
