@@ -136,11 +136,6 @@ impl<'a> Uses<'a> {
         }
     }
 
-    fn unit(&self, cell: Cell) -> usize {
-        let group = self.groups.find(cell);
-        group.map_or(cell.0, |group| self.groups.ranges()[group].first) as usize
-    }
-
     /// The last position at which something that began at `start` is needed if it is used at `at`: in a loop that it
     /// began before, until the loop's end.
     fn until(&self, start: u32, at: u32) -> u32 {
@@ -203,7 +198,7 @@ impl<'a> Uses<'a> {
                 Step::Store { cell, value } => {
                     self.read(*value, at);
                     self.cell_at(*cell, at);
-                    let unit = self.unit(*cell);
+                    let unit = self.groups.unit(*cell);
                     self.stores[unit].push(at);
                 }
                 Step::StoreAt {
@@ -211,7 +206,7 @@ impl<'a> Uses<'a> {
                 } => {
                     self.read(*index, at);
                     self.read(*value, at);
-                    let unit = self.unit(Cell(cells.first));
+                    let unit = self.groups.unit(Cell(cells.first));
                     self.stores[unit].push(at);
                 }
                 Step::Split { condition, .. }
@@ -257,7 +252,7 @@ impl Allocate<'_> {
                 continue;
             };
             let Span { end, .. } = self.uses.values[value.0 as usize];
-            let stores = &self.uses.stores[self.uses.unit(cell)];
+            let stores = &self.uses.stores[self.uses.groups.unit(cell)];
             let next = stores.partition_point(|&store| store <= at);
             if stores.get(next).is_none_or(|&store| store > end) {
                 self.idle[at as usize] = true;

@@ -95,7 +95,9 @@ pub(super) fn flatten(flow: &Flow, varying: &Varying, story: bool) -> Flat {
             mask: Mask(0),
             end: 0,
         }],
-        scopes: vec![(0, 0); flow.scopes as usize],
+        scopes: vec![Exit::default(); flow.scopes as usize],
+        open: 0,
+        left: usize::MAX,
         masks: 1,
         loops: Vec::new(),
         constants: Vec::new(),
@@ -113,6 +115,17 @@ struct Owner {
     end: Target,
 }
 
+/// Where a scope that is open ends.
+#[derive(Debug, Clone, Copy, Default)]
+struct Exit {
+    /// How many scopes are around it.
+    depth: usize,
+    /// How many owners are around its inside.
+    owners: usize,
+    /// The label of its end.
+    end: Target,
+}
+
 struct Flatten<'a> {
     flow: &'a Flow,
     varying: &'a Varying,
@@ -121,8 +134,11 @@ struct Flatten<'a> {
     /// The position of each label.
     labels: Vec<u32>,
     owners: Vec<Owner>,
-    /// Of each open scope, how many owners are around its inside, and its end.
-    scopes: Vec<(usize, Target)>,
+    scopes: Vec<Exit>,
+    /// How many scopes are open.
+    open: usize,
+    /// Of the scopes that have been left, how many are around the outermost.
+    left: usize,
     masks: u16,
     loops: Vec<(u32, u32)>,
     constants: Vec<Value>,
@@ -200,7 +216,7 @@ impl Flatten<'_> {
                 }
             }
             Node::Scope { scope, ref body } => self.scope(scope, body),
-            Node::Loop { ref body } => {
+            Node::Loop { ref body, .. } => {
                 let head = self.label();
                 self.place(head);
                 let first = self.steps.len() as u32;
@@ -209,16 +225,20 @@ impl Flatten<'_> {
                 self.loops.push((first, self.steps.len() as u32 - 1));
             }
             Node::Round(id) => self.push(Step::Iterate(id)),
-            Node::Leave(scope) => self.leave(scope, None),
+            Node::Leave(scope) => {
+                self.note_left(scope);
+                self.leave(scope, None);
+            }
             Node::LeaveIf {
                 scope,
                 condition,
                 when,
             } => {
+                self.note_left(scope);
                 if self.varying.value(condition) {
                     self.leave(scope, Some((condition, when)));
                 } else if self.is_plain(scope) {
-                    let to = self.scopes[scope.0 as usize].1;
+                    let to = self.scopes[scope.0 as usize].end;
                     self.push(Step::JumpIf { condition, when, to });
                 } else {
                     let on = self.label();
@@ -252,13 +272,26 @@ impl Flatten<'_> {
         }
     }
 
+    fn note_left(&mut self, scope: Scope) {
+        self.left = self.left.min(self.scopes[scope.0 as usize].depth);
+    }
+
+    /// Does some work, and tells whether a scope was left in it that is open now.
+    fn is_left(&mut self, work: impl FnOnce(&mut Self)) -> bool {
+        let before = std::mem::replace(&mut self.left, usize::MAX);
+        work(self);
+        let found = self.left < self.open;
+        self.left = self.left.min(before);
+        found
+    }
+
     /// Whether all pixels of a scope are here together, if they are.
     fn is_plain(&self, scope: Scope) -> bool {
-        self.scopes[scope.0 as usize].0 == self.owners.len()
+        self.scopes[scope.0 as usize].owners == self.owners.len()
     }
 
     fn leave(&mut self, scope: Scope, condition: Option<(Value, bool)>) {
-        let (owners, end) = self.scopes[scope.0 as usize];
+        let Exit { owners, end, .. } = self.scopes[scope.0 as usize];
         if condition.is_none() && owners == self.owners.len() {
             self.push(Step::Jump(end));
             return;
@@ -316,24 +349,26 @@ impl Flatten<'_> {
             when,
             empty: otherwise,
         });
-        self.owners.push(Owner {
-            mask: mask.max(other),
-            end: otherwise,
-        });
-        self.block(first);
-        self.owners.pop();
-        self.place(otherwise);
-        if !second.is_empty() {
-            self.owners.push(Owner {
-                mask: mask.min(other),
-                end,
+        let left = self.is_left(|pass| {
+            pass.owners.push(Owner {
+                mask: mask.max(other),
+                end: otherwise,
             });
-            self.push(Step::JumpIfEmpty(end));
-            self.block(second);
-            self.owners.pop();
-        }
+            pass.block(first);
+            pass.owners.pop();
+            pass.place(otherwise);
+            if !second.is_empty() {
+                pass.owners.push(Owner {
+                    mask: mask.min(other),
+                    end,
+                });
+                pass.push(Step::JumpIfEmpty(end));
+                pass.block(second);
+                pass.owners.pop();
+            }
+        });
         self.place(end);
-        if leaves(first) || leaves(second) {
+        if left {
             let end = self.here().end;
             self.push(Step::JumpIfEmpty(end));
         }
@@ -347,13 +382,21 @@ impl Flatten<'_> {
             self.push(Step::Copy { to: mask });
             self.owners.push(Owner { mask, end });
         }
-        self.scopes[scope.0 as usize] = (self.owners.len(), end);
-        self.block(body);
+        self.scopes[scope.0 as usize] = Exit {
+            depth: self.open,
+            owners: self.owners.len(),
+            end,
+        };
+        let left = self.is_left(|pass| {
+            pass.open += 1;
+            pass.block(body);
+            pass.open -= 1;
+        });
         if own {
             self.owners.pop();
         }
         self.place(end);
-        if own && leaves_beyond(body, scope) {
+        if own && left {
             let end = self.here().end;
             self.push(Step::JumpIfEmpty(end));
         }
@@ -395,35 +438,4 @@ impl Mask {
     fn min(self, other: Self) -> Self {
         Self(self.0.min(other.0))
     }
-}
-
-fn leaves(block: &Block) -> bool {
-    block.iter().any(|node| match node {
-        Node::Leave(_) | Node::LeaveIf { .. } => true,
-        Node::If { yes, no, .. } => leaves(yes) || leaves(no),
-        Node::Scope { scope, body } => leaves_beyond(body, *scope),
-        Node::Loop { body } => leaves(body),
-        _ => false,
-    })
-}
-
-/// Whether something in the body of a scope leaves one around it.
-fn leaves_beyond(body: &Block, scope: Scope) -> bool {
-    let mut inside = vec![scope];
-    beyond(body, &mut inside)
-}
-
-fn beyond(block: &Block, inside: &mut Vec<Scope>) -> bool {
-    block.iter().any(|node| match node {
-        Node::Leave(left) | Node::LeaveIf { scope: left, .. } => !inside.contains(left),
-        Node::If { yes, no, .. } => beyond(yes, inside) || beyond(no, inside),
-        Node::Scope { scope, body } => {
-            inside.push(*scope);
-            let found = beyond(body, inside);
-            inside.pop();
-            found
-        }
-        Node::Loop { body } => beyond(body, inside),
-        _ => false,
-    })
 }

@@ -110,7 +110,7 @@ pub(super) enum Node {
     /// What can be left.
     Scope { scope: Scope, body: Block },
     /// Again and again, until all have left a scope around it.
-    Loop { body: Block },
+    Loop { id: LoopId, body: Block },
     /// One more round of a loop begins.
     Round(LoopId),
     /// The end of a scope, for the pixels that are here. Nothing follows it in its block.
@@ -221,7 +221,7 @@ impl Node {
                 visit(yes);
                 visit(no);
             }
-            Self::Scope { body, .. } | Self::Loop { body } => visit(body),
+            Self::Scope { body, .. } | Self::Loop { body, .. } => visit(body),
             _ => {}
         }
     }
@@ -233,7 +233,7 @@ impl Node {
                 visit(yes);
                 visit(no);
             }
-            Self::Scope { body, .. } | Self::Loop { body } => visit(body),
+            Self::Scope { body, .. } | Self::Loop { body, .. } => visit(body),
             _ => {}
         }
     }

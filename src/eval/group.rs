@@ -35,6 +35,12 @@ impl Groups {
         (cell.0 < cells.first + cells.count).then_some(group)
     }
 
+    /// The cell by whose number something is kept that holds of a whole group: its own, or the first of its group.
+    pub(super) fn unit(&self, cell: Cell) -> usize {
+        let group = self.find(cell);
+        group.map_or(cell.0, |group| self.ranges[group].first) as usize
+    }
+
     /// All groups.
     pub(super) fn ranges(&self) -> &[Cells] {
         &self.ranges

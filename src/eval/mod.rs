@@ -1,10 +1,10 @@
 //! Runs the typed GLSL tree on the CPU: any shader, without a driver, in f32 bit for bit as the strict GPU run, or in f64.
 //!
 //! ```text
-//! tree ─► compile ─► forward ─► prune ─► uniform ─► flatten ─► allocate ─► instructions ─► paint
-//!         (calls     (loads are (what     (what is    (jumps,    (registers)   (a function
-//!         inlined,   values)    nobody    the same    masks)                   pointer each)
-//!         components)           reads)    for all)
+//! tree ─► compile ─► forward ─► prune ─► uniform ─► fuse ─────► flatten ─► allocate ─► prepare ──────► paint
+//!         (calls     (loads are (what     (what is   (products   (jumps,    (registers) (instructions:
+//!         inlined,   values)    nobody    the same   with their  masks)                 a function
+//!         components)           reads)    for all)   sums)                              pointer each)
 //! ```
 //!
 //! Each instruction is applied to a batch of pixels, so that finding out what to do costs little beside doing it; what does
@@ -37,6 +37,8 @@ mod program;
 mod prune;
 mod story;
 mod teller;
+#[cfg(test)]
+mod tests;
 mod texture;
 mod tile;
 mod uniform;

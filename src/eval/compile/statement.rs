@@ -198,7 +198,7 @@ impl Builder<'_> {
             builder.end_rounds();
             Ok(())
         })?;
-        let body = vec![Node::Loop { body: nodes }];
+        let body = vec![Node::Loop { id, body: nodes }];
         self.push(Node::Scope { scope: out, body });
         Ok(())
     }

@@ -59,7 +59,7 @@ pub(super) fn leaves(block: &Block, scope: Scope) -> bool {
     block.iter().any(|node| match node {
         Node::Leave(left) | Node::LeaveIf { scope: left, .. } => *left == scope,
         Node::If { yes, no, .. } => leaves(yes, scope) || leaves(no, scope),
-        Node::Scope { body, .. } | Node::Loop { body } => leaves(body, scope),
+        Node::Scope { body, .. } | Node::Loop { body, .. } => leaves(body, scope),
         _ => false,
     })
 }

@@ -1,18 +1,17 @@
 //! A map that can go back to what it was.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hash};
 
 use rustc_hash::FxHasher;
 
 /// By numbers that nobody chooses to make trouble.
 pub(super) type Map<K, V> = HashMap<K, V, BuildHasherDefault<FxHasher>>;
-pub(super) type Set<K> = HashSet<K, BuildHasherDefault<FxHasher>>;
 
 #[derive(Debug)]
 pub(super) struct Log<K, V> {
     pub(super) map: Map<K, V>,
-    pub(super) changes: Vec<(K, Option<V>)>,
+    changes: Vec<(K, Option<V>)>,
 }
 
 impl<K, V> Default for Log<K, V> {
@@ -25,6 +24,10 @@ impl<K, V> Default for Log<K, V> {
 }
 
 impl<K: Copy + Eq + Hash, V: Copy + PartialEq> Log<K, V> {
+    pub(super) fn get(&self, key: K) -> Option<V> {
+        self.map.get(&key).copied()
+    }
+
     pub(super) fn set(&mut self, key: K, value: Option<V>) {
         let old = match value {
             Some(value) => self.map.insert(key, value),
@@ -39,10 +42,14 @@ impl<K: Copy + Eq + Hash, V: Copy + PartialEq> Log<K, V> {
         self.changes.len()
     }
 
-    /// What has changed since a mark, as it is now.
+    /// What has changed since a mark.
+    pub(super) fn keys_since(&self, mark: usize) -> impl Iterator<Item = K> {
+        self.changes[mark..].iter().map(|(key, _)| *key)
+    }
+
+    /// The same, and what it is now.
     pub(super) fn since(&self, mark: usize) -> Map<K, Option<V>> {
-        let keys = self.changes[mark..].iter().map(|(key, _)| *key);
-        keys.map(|key| (key, self.map.get(&key).copied())).collect()
+        self.keys_since(mark).map(|key| (key, self.get(key))).collect()
     }
 
     pub(super) fn back_to(&mut self, mark: usize) {

@@ -1,17 +1,22 @@
 //! Loads become the values that were stored, and what was computed before is not computed again.
 //!
 //! Along each way through the code it is known what cells hold; where ways meet, what holds on all of them. Whatever a loop stores is
-//! unknown in it and after it, unless it was known before and is stored again. Words that are known decide branches, name elements, and
-//! tell how often a loop runs.
+//! unknown in it and after it, unless the same value was known before and is stored again. Words that are known decide branches, name
+//! elements, and tell how often a loop runs.
 
+mod change;
+mod exit;
 mod log;
 mod repeat;
 mod unroll;
 mod value;
 
-use self::log::{Log, Map, Set};
+use self::change::Changes;
+use self::exit::Exit;
+use self::log::Log;
+use self::repeat::Open;
 use self::unroll::Room;
-use super::flow::{Block, Cell, Cells, Flow, NONE, Node, Origin, Scope, Value};
+use super::flow::{Block, Cell, Cells, Flow, NONE, Node, Origin, Value};
 use super::group::Groups;
 
 /// Groups of more cells than this are not followed cell by cell.
@@ -28,8 +33,9 @@ pub(super) fn forward(flow: &mut Flow, story: bool) {
         groups,
         alias: vec![NONE; templates.len()],
         templates,
+        changes: Changes::of(&body, scopes, flow.loops.len()),
         constant: Vec::new(),
-        words: Map::default(),
+        words: Log::default(),
         flow,
         story,
         known: Log::default(),
@@ -39,25 +45,13 @@ pub(super) fn forward(flow: &mut Flow, story: bool) {
         loops: Vec::new(),
         live: true,
         room: Room::default(),
+        kept: exit::MAX_KEPT,
     };
-    pass.leaves();
-    let body = pass.block(body);
+    pass.take_over();
+    let body = pass.block(&body);
     let output = pass.flow.output.map(|value| pass.output(value));
     flow.body = body;
     flow.output = output;
-}
-
-/// What has changed on a way to where it meets others.
-type Way = Map<Cell, Option<Value>>;
-
-/// A scope that is open.
-#[derive(Debug)]
-struct Exit {
-    scope: Scope,
-    /// Where its changes begin.
-    mark: usize,
-    /// The ways that leave it.
-    ways: Vec<Way>,
 }
 
 struct Forward<'a> {
@@ -70,10 +64,12 @@ struct Forward<'a> {
     templates: Vec<Origin>,
     /// What stands for each of them: of a loop that is written out, in the round that was last.
     alias: Vec<Value>,
+    /// What the loops and scopes of that program change.
+    changes: Changes,
     /// Which values are made of inputs of the frame and numbers alone.
     constant: Vec<bool>,
     /// The values that are words.
-    words: Map<u32, Value>,
+    words: Log<u32, Value>,
     story: bool,
     known: Log<Cell, Value>,
     computed: Log<(Origin, u32), Value>,
@@ -81,15 +77,17 @@ struct Forward<'a> {
     exits: Vec<Exit>,
     /// Where among them each scope of the program that is read is.
     depths: Vec<usize>,
-    /// Where the changes of each open loop begin.
-    loops: Vec<usize>,
+    /// The open loops.
+    loops: Vec<Open>,
     /// Whether anything comes here.
     live: bool,
     room: Room,
+    /// How much may still be kept of ways that leave scopes.
+    kept: usize,
 }
 
 impl Forward<'_> {
-    fn block(&mut self, block: Block) -> Block {
+    fn block(&mut self, block: &[Node]) -> Block {
         let computed = self.computed.mark();
         let mut out = Block::with_capacity(block.len());
         self.nodes(block, &mut out);
@@ -97,7 +95,7 @@ impl Forward<'_> {
         out
     }
 
-    fn nodes(&mut self, block: Block, out: &mut Block) {
+    fn nodes(&mut self, block: &[Node], out: &mut Block) {
         for node in block {
             if !self.live || self.room.is_full() {
                 break;
@@ -107,11 +105,31 @@ impl Forward<'_> {
         }
     }
 
-    fn node(&mut self, mut node: Node, out: &mut Block) {
-        if let Node::Let(value) = node {
-            out.extend(self.compute(value).map(Node::Let));
-            return;
+    fn node(&mut self, node: &Node, out: &mut Block) {
+        match node {
+            Node::Let(value) => out.extend(self.compute(*value).map(Node::Let)),
+            Node::If { condition, yes, no } => {
+                let condition = self.alias[condition.0 as usize];
+                match self.known_word(condition) {
+                    Some(word) => self.nodes(if word == 0 { no } else { yes }, out),
+                    None => self.branch(condition, [yes, no], out),
+                }
+            }
+            Node::Scope { scope, body } => self.scope(*scope, body, out),
+            Node::Loop { id, body } => {
+                if let Some(nodes) = self.unrolled(body) {
+                    out.extend(nodes);
+                } else {
+                    self.repeat(*id, body, out);
+                }
+            }
+            // Only what has nothing inside is copied: what nobody comes to costs nothing, however often it is passed by.
+            _ => self.single(node.clone(), out),
         }
+    }
+
+    /// A node without others in it.
+    fn single(&mut self, mut node: Node, out: &mut Block) {
         node.for_each_value_mut(|value| *value = self.alias[value.0 as usize]);
         match node {
             Node::Store { cell, value } => self.store(cell, value, out),
@@ -128,55 +146,39 @@ impl Forward<'_> {
                     out.push(node);
                 }
             }
-            Node::If { condition, yes, no } => match self.known_word(condition) {
-                Some(word) => self.nodes(if word == 0 { no } else { yes }, out),
-                None => self.branch(condition, [yes, no], out),
-            },
-            Node::Scope { scope, body } => self.scope(scope, body, out),
-            Node::Loop { body } => {
-                if let Some(nodes) = self.unrolled(&body) {
-                    out.extend(nodes);
-                } else {
-                    self.repeat(body, out);
-                }
-            }
-            Node::Leave(scope) => {
-                let scope = self.leave(scope);
-                self.live = false;
-                out.push(Node::Leave(scope));
-            }
+            Node::Leave(scope) => self.leave(scope, out),
             Node::LeaveIf {
                 scope,
                 condition,
                 when,
             } => {
-                let Some(word) = self.known_word(condition) else {
-                    let scope = self.leave(scope);
+                if let Some(word) = self.known_word(condition) {
+                    self.room.decide(self.depths[scope.0 as usize]);
+                    if (word != 0) == when {
+                        self.leave(scope, out);
+                    }
+                } else {
+                    let scope = self.note_way(scope);
                     out.push(Node::LeaveIf {
                         scope,
                         condition,
                         when,
                     });
-                    return;
-                };
-                self.room.decide(self.depths[scope.0 as usize]);
-                if (word != 0) == when {
-                    self.node(Node::Leave(scope), out);
                 }
             }
-            Node::Let(_) | Node::Round(_) | Node::Check { .. } | Node::Tell { .. } => out.push(node),
+            _ => out.push(node),
         }
     }
 
     fn store(&mut self, cell: Cell, value: Value, out: &mut Block) {
-        if self.known.map.get(&cell) != Some(&value) {
+        if self.known.get(cell) != Some(value) {
             self.stored(cell);
             self.know(cell, value);
             out.push(Node::Store { cell, value });
         }
     }
 
-    fn branch(&mut self, condition: Value, branches: [Block; 2], out: &mut Block) {
+    fn branch(&mut self, condition: Value, branches: [&[Node]; 2], out: &mut Block) {
         let mark = self.known.mark();
         let mut ways = Vec::new();
         let [yes, no] = branches.map(|branch| {
@@ -188,37 +190,8 @@ impl Forward<'_> {
             self.known.back_to(mark);
             branch
         });
-        self.meet(&ways);
+        self.meet(ways);
         out.push(Node::If { condition, yes, no });
-    }
-
-    fn scope(&mut self, template: Scope, body: Block, out: &mut Block) {
-        let scope = Scope(self.flow.scopes);
-        self.flow.scopes += 1;
-        let mark = self.known.mark();
-        self.depths[template.0 as usize] = self.exits.len();
-        self.exits.push(Exit {
-            scope,
-            mark,
-            ways: Vec::new(),
-        });
-        let mut body = self.block(body);
-        let mut ways = self.exits.pop().map_or_else(Vec::new, |exit| exit.ways);
-        let mut leaves = ways.len();
-        if matches!(body.last(), Some(&Node::Leave(left)) if left == scope) {
-            body.pop();
-            leaves -= 1;
-        }
-        if self.live {
-            ways.push(self.known.since(mark));
-        }
-        self.known.back_to(mark);
-        self.meet(&ways);
-        if leaves == 0 {
-            out.extend(body);
-        } else {
-            out.push(Node::Scope { scope, body });
-        }
     }
 
     fn know(&mut self, cell: Cell, value: Value) {
@@ -243,37 +216,6 @@ impl Forward<'_> {
             for cell in cells.first..cells.first + cells.count {
                 self.known.set(Cell(cell), None);
             }
-        }
-    }
-
-    /// Notes a way out of a scope, and tells what is written for it.
-    fn leave(&mut self, template: Scope) -> Scope {
-        let depth = self.depths[template.0 as usize];
-        let mark = self.exits[depth].mark;
-        let mut way = self.known.since(mark);
-        // What a loop computes may be computed again for others before those who leave go on.
-        if let Some(&start) = self.loops.iter().find(|&&start| start >= mark) {
-            for (cell, _) in &self.known.changes[start..] {
-                way.insert(*cell, None);
-            }
-        }
-        let exit = &mut self.exits[depth];
-        exit.ways.push(way);
-        exit.scope
-    }
-
-    /// Goes on with what holds on all ways.
-    fn meet(&mut self, ways: &[Way]) {
-        self.live = !ways.is_empty();
-        let cells: Set<Cell> = ways.iter().flat_map(|way| way.keys().copied()).collect();
-        let mut cells: Vec<Cell> = cells.into_iter().collect();
-        cells.sort_unstable();
-        for cell in cells {
-            let before = self.known.map.get(&cell).copied();
-            let mut values = ways.iter().map(|way| way.get(&cell).copied().unwrap_or(before));
-            let first = values.next().flatten();
-            let same = values.all(|value| value == first);
-            self.known.set(cell, first.filter(|_| same));
         }
     }
 }

@@ -1,51 +1,59 @@
 //! Loops that stay loops: what they store is unknown in them.
 
+use std::ops::Range;
+
 use super::Forward;
-use crate::eval::flow::{Block, Cell, Cells, NONE, Node, Value};
+use super::change::Change;
+use crate::eval::flow::{Block, LoopId, NONE, Node};
+
+/// A loop that is open.
+#[derive(Debug)]
+pub(super) struct Open {
+    /// How many scopes are around it.
+    pub(super) depth: usize,
+    /// Where its changes begin.
+    pub(super) mark: usize,
+}
 
 impl Forward<'_> {
     /// A loop that stays one.
-    pub(super) fn repeat(&mut self, body: Block, out: &mut Block) {
-        let mut stored = Stored::default();
-        stored.collect(&body);
-        for value in stored.values {
-            self.alias[value.0 as usize] = NONE;
-        }
-        for (cell, value) in stored.cells {
-            self.stored(cell);
-            if self.known.map.get(&cell) != Some(&self.alias[value.0 as usize]) {
-                self.known.set(cell, None);
+    pub(super) fn repeat(&mut self, id: LoopId, body: &[Node], out: &mut Block) {
+        let part = self.changes.of_loop(id);
+        for at in part.clone() {
+            if let Change::Computed(value) = self.changes.get(at) {
+                self.alias[value.0 as usize] = NONE;
             }
         }
-        for cells in stored.ranges {
-            self.forget(cells);
+        for at in part {
+            match self.changes.get(at) {
+                Change::Computed(_) => {}
+                Change::Stored(cell, value) => {
+                    self.stored(cell);
+                    if self.known.get(cell) != Some(self.alias[value.0 as usize]) {
+                        self.known.set(cell, None);
+                    }
+                }
+                Change::StoredAt(cells) => self.forget(cells),
+            }
         }
-        self.loops.push(self.known.mark());
+        self.loops.push(Open {
+            depth: self.exits.len(),
+            mark: self.known.mark(),
+        });
         let body = self.block(body);
         self.loops.pop();
         self.live = false;
-        out.push(Node::Loop { body });
+        out.push(Node::Loop { id, body });
     }
-}
 
-/// What a block computes and stores to.
-#[derive(Debug, Default)]
-struct Stored {
-    values: Vec<Value>,
-    cells: Vec<(Cell, Value)>,
-    ranges: Vec<Cells>,
-}
-
-impl Stored {
-    pub(super) fn collect(&mut self, block: &Block) {
-        for node in block {
-            match node {
-                Node::Let(value) => self.values.push(*value),
-                Node::Store { cell, value } => self.cells.push((*cell, *value)),
-                Node::StoreAt { cells, .. } => self.ranges.push(*cells),
-                _ => {}
+    /// Forgets whatever a part of the program that is read stores.
+    pub(super) fn forget_all(&mut self, part: Range<usize>) {
+        for at in part {
+            match self.changes.get(at) {
+                Change::Computed(_) => {}
+                Change::Stored(cell, _) => self.known.set(cell, None),
+                Change::StoredAt(cells) => self.forget(cells),
             }
-            node.for_each_block(|block| self.collect(block));
         }
     }
 }

@@ -2,20 +2,20 @@
 //! element that it names is a cell like any other.
 
 use super::Forward;
-use crate::eval::flow::Block;
+use crate::eval::flow::{Block, Node};
 
 /// The most values that a loop and those in it may compute in each batch once they are written out.
-const MAX_VALUES: usize = 1 << 11;
+const MAX_COMPUTED: usize = 1 << 11;
 
-/// The most nodes that may be read in all attempts together, those that fail among them: what it may cost to find out.
+/// The most nodes that may be read in all attempts of a shader together, those that fail among them: what it may cost to find out.
 const MAX_TRIED: usize = 1 << 16;
 
-/// What attempts may still write.
+/// What attempts may still read and write.
 #[derive(Debug)]
 pub(super) struct Room {
-    /// What may still be read, in all of them.
+    /// How many nodes may still be read in attempts, in all those of the shader.
     tried: usize,
-    /// How many values the one that goes on may still compute; those inside share it.
+    /// How many values the attempt that goes on may still compute; those inside share it.
     open: Option<usize>,
     /// How many scopes are around the outermost of which it was known who leaves it.
     decided: usize,
@@ -63,23 +63,26 @@ struct Start {
     scopes: u32,
     known: usize,
     computed: usize,
+    words: usize,
     /// How many ways led out of each open scope.
     ways: Vec<usize>,
 }
 
 impl Forward<'_> {
     /// The rounds of a loop one after the other, if each knows whether another follows.
-    pub(super) fn unrolled(&mut self, body: &Block) -> Option<Block> {
+    pub(super) fn unrolled(&mut self, body: &[Node]) -> Option<Block> {
+        // To begin costs something, too.
+        self.room.tried = self.room.tried.checked_sub(1)?;
         let outermost = self.room.open.is_none();
         if outermost {
-            self.room.open = Some(MAX_VALUES);
+            self.room.open = Some(MAX_COMPUTED);
         }
         let around = self.room.decided;
         let start = self.start();
         let mut out = Block::new();
         loop {
             self.room.decided = usize::MAX;
-            self.nodes(body.clone(), &mut out);
+            self.nodes(body, &mut out);
             if !self.live || self.room.is_full() || self.room.decided >= start.ways.len() {
                 break;
             }
@@ -101,10 +104,14 @@ impl Forward<'_> {
             scopes: self.flow.scopes,
             known: self.known.mark(),
             computed: self.computed.mark(),
+            words: self.words.mark(),
             ways: self.exits.iter().map(|exit| exit.ways.len()).collect(),
         }
     }
 
+    /// Goes back to where an attempt began. The epochs stay: they only grow, and what was computed in one that is over is not asked for
+    /// again. What stands for values of the body stays: each is computed again before it is used, and [`Self::repeat`] clears it first. What
+    /// was kept of ways is not given back: it took its time.
     fn back_to(&mut self, start: &Start) {
         self.live = true;
         self.known.back_to(start.known);
@@ -112,7 +119,7 @@ impl Forward<'_> {
         for (exit, &ways) in self.exits.iter_mut().zip(&start.ways) {
             exit.ways.truncate(ways);
         }
-        self.words.retain(|_, value| (value.0 as usize) < start.values);
+        self.words.back_to(start.words);
         self.flow.origins.truncate(start.values);
         self.constant.truncate(start.values);
         self.flow.scopes = start.scopes;

@@ -7,7 +7,7 @@ use crate::eval::operation::Operation;
 
 impl Forward<'_> {
     /// Takes over what is not computed.
-    pub(super) fn leaves(&mut self) {
+    pub(super) fn take_over(&mut self) {
         for at in 0..self.templates.len() {
             let origin = self.templates[at];
             match origin {
@@ -20,7 +20,7 @@ impl Forward<'_> {
         }
     }
 
-    pub(super) fn make(&mut self, origin: Origin) -> Value {
+    fn make(&mut self, origin: Origin) -> Value {
         let mut constant = !matches!(
             origin,
             Origin::FragCoord(_) | Origin::Load(_) | Origin::LoadAt { .. } | Origin::Texel { .. }
@@ -42,12 +42,12 @@ impl Forward<'_> {
         }
     }
 
-    pub(super) fn word(&mut self, word: u32) -> Value {
-        if let Some(&value) = self.words.get(&word) {
+    fn word(&mut self, word: u32) -> Value {
+        if let Some(value) = self.words.get(word) {
             return value;
         }
         let value = self.make(Origin::Word(word));
-        self.words.insert(word, value);
+        self.words.set(word, Some(value));
         value
     }
 
@@ -97,7 +97,7 @@ impl Forward<'_> {
     }
 
     /// The value of an operation on words that are known, or one of those that a known word chooses from.
-    pub(super) fn folded(&mut self, operation: Operation, operands: [Value; 3]) -> Option<Value> {
+    fn folded(&mut self, operation: Operation, operands: [Value; 3]) -> Option<Value> {
         let words = operands.map(|value| {
             if value == NONE {
                 Some(0)
@@ -114,7 +114,7 @@ impl Forward<'_> {
         }
     }
 
-    pub(super) fn epoch(&self, origin: Origin) -> u32 {
+    fn epoch(&self, origin: Origin) -> u32 {
         let Origin::LoadAt { cells, .. } = origin else {
             return 0;
         };

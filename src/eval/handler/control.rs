@@ -1,7 +1,5 @@
 //! Masks and jumps.
 
-use std::marker::PhantomData;
-
 use super::{Handler, Instruction, Level, Run, for_each_chunk, handler};
 use crate::eval::batch::{Batch, FUEL, Here, LANES, Stop, any};
 use crate::eval::number::Number;
@@ -188,7 +186,7 @@ pub(crate) fn jump<N: Number>() -> Handler<N> {
 }
 
 /// Jumps if a scalar word is all bits, or none.
-struct JumpIf<const WHEN: bool>(PhantomData<()>);
+struct JumpIf<const WHEN: bool>;
 
 impl<N: Number, const WHEN: bool> Run<N> for JumpIf<WHEN> {
     #[inline(always)]
