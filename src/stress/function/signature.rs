@@ -65,6 +65,13 @@ impl Signature {
     /// That there is none, or which ones there are.
     pub fn only(checked: &Checked, map: &Map) -> Result<Self, String> {
         let mut all = Self::all(checked, map);
+        // Why the one function that was to be had is none with that map.
+        if all.is_empty()
+            && !map.is_empty()
+            && let Ok(one) = Self::only(checked, &Map::new())
+        {
+            return Self::recognise(checked, &one.name, map);
+        }
         match (all.pop(), all.is_empty()) {
             (Some(one), true) => Ok(one),
             (None, _) => Err(
