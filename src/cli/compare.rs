@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::inputs::may_write;
 use super::{Exit, Terminal};
-use crate::compare::{TOLERANCE, compare, grouped};
+use crate::compare::{TOLERANCE, compare, grouped, magnitude};
 use crate::image::{self, Legend};
 
 /// Compare two pictures: exit code 0 if they agree, 1 if they differ
@@ -65,8 +65,8 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let pixels = grouped(comparison.pixels);
     match comparison.differing {
         0 => terminal.result(&format!(
-            "all {pixels} pixels agree, to {:.1e}",
-            comparison.max_abs
+            "all {pixels} pixels agree, to {}",
+            magnitude(comparison.max_abs)
         )),
         differing => terminal.result(&format!(
             "{} of {pixels} pixels differ by more than {TOLERANCE}, by at most {:.4} ({} in 8 bits)",

@@ -2,16 +2,18 @@
 
 use std::time::Duration;
 
-use super::{Exit, Terminal, inputs};
+use super::inputs::{self, Place};
+use super::{Exit, Terminal};
+use crate::compare::grouped;
 use crate::gpu::{Driver, INSTALL_HINT, LoopCap, On, is_pinned_by_user, lavapipe_manifest, manifests};
 
 /// Say which Vulkan drivers are installed, which is chosen and why, what is missing and how to get it
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example:\n  toyproof doctor")]
 pub(super) struct Args {
-    /// The adapter that a command would be given
-    #[arg(long, value_name = "ADAPTER", default_value = "auto", value_parser = inputs::on)]
-    on: On,
+    /// The adapter that a command would be given; `cpu` for toyproof's own evaluator, which needs none
+    #[arg(long, value_name = "ADAPTER", default_value = "auto", value_parser = inputs::place)]
+    on: Place,
 }
 
 /// Loading every driver of a machine takes longer than one shader.
@@ -21,6 +23,10 @@ const PATIENCE: Duration = Duration::from_secs(60);
 const WITHOUT: &str = "\nChosen: none. `check`, `run` and `explain` work all the same, on the CPU. `check` then tells whether a shader's \
                        mathematics is the scene's and whether float32 is enough for it; the toolchain question, whether a GPU paints what \
                        the shader says, is not asked.";
+
+/// What `--on cpu` chooses.
+const EVALUATOR: &str = "\nChosen, because --on cpu asks for it: toyproof's own evaluator, which needs no driver. `check` does not ask the \
+                         toolchain question with it.";
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let manifests = manifests();
@@ -36,7 +42,14 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             "  VK_DRIVER_FILES or VK_ICD_FILENAMES is set: only the drivers that it names are loaded",
         );
     }
-    let drivers = inputs::worker(args.on.clone(), PATIENCE).and_then(|worker| {
+    let on = match &args.on {
+        Place::Gpu(on) => on,
+        Place::Cpu => {
+            terminal.result(EVALUATOR);
+            return Exit::Good;
+        }
+    };
+    let drivers = inputs::worker(on.clone(), PATIENCE).and_then(|worker| {
         worker
             .with_all_drivers()
             .probe()
@@ -45,7 +58,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     match drivers {
         Ok(drivers) => {
             if let Some(chosen) = drivers.first() {
-                terminal.result(&format!("\nChosen, {}:", reason(&args.on, chosen)));
+                terminal.result(&format!("\nChosen, {}:", reason(on, chosen)));
             }
             for (index, driver) in drivers.iter().enumerate() {
                 if index == 1 {
@@ -61,7 +74,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             Exit::Good
         }
         Err(error) => {
-            if args.on == On::Auto {
+            if *on == On::Auto {
                 terminal.result(WITHOUT);
             }
             terminal.error(error);
@@ -90,10 +103,14 @@ fn describe(driver: &Driver) -> String {
     };
     let loops = match driver.loop_cap {
         None => "could not be measured".to_owned(),
-        Some(LoopCap::NoneUpTo(tried)) => format!("run to their end (tried {tried} iterations)"),
+        Some(LoopCap::NoneUpTo(tried)) => format!(
+            "run to their end (tried {} iterations)",
+            grouped(u64::from(tried))
+        ),
         Some(LoopCap::After(count)) => {
             format!(
-                "are ended by force after {count} iterations of a pixel (Mesa before 23); `check` tells which"
+                "are ended by force after {} iterations of a pixel (Mesa before 23); `check` tells which",
+                grouped(u64::from(count))
             )
         }
     };

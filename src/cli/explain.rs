@@ -19,14 +19,14 @@ use crate::source::{Found, ReadError};
 /// Tell what one pixel does, line by line, in f32 beside f64, and where the two part
 #[derive(Debug, clap::Args)]
 #[command(
-    after_help = "Example:\n  toyproof explain glsl/05-shading.glsl --pixel 320,180\n\n\
+    after_help = "Example:\n  toyproof explain glsl/03-shading.glsl --pixel 320,180\n\n\
                         Pixels are counted as ShaderToy does: from the left, and from the bottom up."
 )]
 pub(super) struct Args {
     /// The shader: a file, or - for standard input
     shader: PathBuf,
     /// The pixel, from the left and from the bottom
-    #[arg(long, value_name = "X,Y", value_parser = pixel)]
+    #[arg(long, value_name = "X,Y", value_parser = pixel, allow_hyphen_values = true)]
     pixel: [u32; 2],
     /// `human` shows what each line stores and decides (`-v`: every step, with the parts of expressions), `json` everything
     #[arg(long, value_enum, default_value_t = Format::Human)]

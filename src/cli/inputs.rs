@@ -36,16 +36,16 @@ pub(super) struct FrameArgs {
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub(super) size: Option<[u32; 2]>,
     /// iTime, in seconds
-    #[arg(long, value_name = "S", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = seconds::<f32>, allow_negative_numbers = true)]
     time: f32,
     /// iFrame
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(i32).range(0..))]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(i32).range(0..), allow_negative_numbers = true)]
     frame: i32,
     /// iMouse, in pixels
     #[arg(long, value_name = "X,Y[,Z,W]", value_parser = mouse, allow_hyphen_values = true)]
     mouse: Option<[f32; 4]>,
-    /// iDate: year, month from 0, day, seconds since midnight
-    #[arg(long, value_name = "Y,M,D,S", value_parser = date)]
+    /// iDate: year, month from 0 to 11, day, seconds since midnight
+    #[arg(long, value_name = "Y,M,D,S", value_parser = date, allow_hyphen_values = true)]
     date: Option<[f32; 4]>,
     /// A picture (.png, .exr) or `noise` for iChannel0
     #[arg(long, value_name = "FILE|noise")]
@@ -238,7 +238,18 @@ pub(super) fn deadline(text: &str) -> Result<Duration, String> {
     if time > LONGEST {
         return Err("nobody waits longer than a day".to_owned());
     }
+    if time.is_zero() {
+        return Err("nothing is done in no time: it must be more than 0".to_owned());
+    }
     Ok(time)
+}
+
+/// A time that a picture shows.
+pub(super) fn seconds<T: FromStr + Into<f64> + Copy>(text: &str) -> Result<T, String> {
+    match text.parse::<T>() {
+        Ok(time) if time.into().is_finite() => Ok(time),
+        _ => Err("expected a finite number of seconds".to_owned()),
+    }
 }
 
 pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
@@ -252,7 +263,7 @@ pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
     check_size(side(width)?, side(height)?)
 }
 
-fn place(text: &str) -> Result<Place, String> {
+pub(super) fn place(text: &str) -> Result<Place, String> {
     match text {
         "cpu" => Ok(Place::Cpu),
         text => on(text).map(Place::Gpu),
@@ -281,7 +292,10 @@ fn deny(text: &str) -> Result<Deny, String> {
 
 fn numbers(text: &str) -> Result<Vec<f32>, String> {
     text.split(',')
-        .map(|part| f32::from_str(part.trim()).map_err(|_| format!("“{part}” is no number")))
+        .map(|part| match f32::from_str(part.trim()) {
+            Ok(number) if number.is_finite() => Ok(number),
+            _ => Err(format!("“{part}” is no number")),
+        })
         .collect()
 }
 
@@ -294,9 +308,14 @@ fn mouse(text: &str) -> Result<[f32; 4], String> {
 }
 
 fn date(text: &str) -> Result<[f32; 4], String> {
-    numbers(text)?
-        .try_into()
-        .map_err(|_| "a date is four numbers: year, month from 0, day, seconds".to_owned())
+    let expected = "a date is four numbers: year, month from 0 (January) to 11, day, seconds";
+    match numbers(text)?[..] {
+        [year, month, day, seconds] if (0.0..=11.0).contains(&month) => Ok([year, month, day, seconds]),
+        [_, month, ..] if !(0.0..=11.0).contains(&month) => {
+            Err(format!("there is no month {month}: {expected}"))
+        }
+        _ => Err(expected.to_owned()),
+    }
 }
 
 #[cfg(test)]
@@ -316,6 +335,17 @@ mod tests {
         for bad in ["640", "0x0", "ax3", "100000x100000", "1x-1"] {
             assert!(size(bad).is_err(), "{bad}");
         }
+        assert_eq!(date("2020,11,1,0"), Ok([2020.0, 11.0, 1.0, 0.0]));
+        for bad in ["2020,12,1,0", "2020,-1,1,0", "nan,0,1,0", "2020,nan,1,0"] {
+            assert!(date(bad).is_err(), "{bad}");
+        }
+        assert_eq!(seconds("-1.5"), Ok(-1.5_f32));
+        assert!(
+            ["nan", "inf", "-inf", "1e60"]
+                .iter()
+                .all(|bad| seconds::<f32>(bad).is_err())
+        );
+        assert!(deadline("0s").is_err() && deadline("500ms").is_ok());
         assert!(mouse("1,2,3").is_err() && date("2026,1").is_err() && numbers("1,b").is_err());
     }
 }

@@ -8,6 +8,7 @@ use indicatif::ProgressBar;
 
 use super::sequence::{self, Frames, Sequence};
 use super::{Exit, Terminal, inputs};
+use crate::compare::{grouped, magnitude};
 use crate::image::{self, Image};
 use crate::scene::{self, Moment, Requirements, Sampler, Scene};
 use crate::source::{self, Files};
@@ -31,23 +32,23 @@ pub(super) struct Args {
     #[arg(long, value_enum, default_value_t = Precision::F64)]
     precision: Precision,
     /// Samples in each pixel [default: the scene's]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65_536))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65_536), allow_negative_numbers = true)]
     samples: Option<u32>,
     /// Where samples lie in a pixel, and what lights and surfaces draw [default: the scene's]
     #[arg(long, value_enum, value_name = "NAME")]
     sampler: Option<SamplerName>,
     /// Take samples until the estimated error of every tile of 16x16 pixels is below this, in [0, 1], and say how
     /// many it took; needs a sampler that draws
-    #[arg(long, value_name = "ERROR", value_parser = max_error, conflicts_with = "samples")]
+    #[arg(long, value_name = "ERROR", value_parser = max_error, conflicts_with = "samples", allow_negative_numbers = true)]
     max_error: Option<f64>,
     /// Width and height in pixels [default: the scene's]
     #[arg(long, value_name = "WxH", value_parser = inputs::size)]
     size: Option<[u32; 2]>,
     /// The time in seconds, where anything moves by it
-    #[arg(long, value_name = "S", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = inputs::seconds::<f64>, allow_negative_numbers = true)]
     time: f64,
     /// The number of the frame, where anything moves by it
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(i32).range(0..))]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(i32).range(0..), allow_negative_numbers = true)]
     frame: i32,
     /// All frames from A to B, at 60 a second, each into a file with its number; a sequence that was interrupted goes
     /// on where it stopped
@@ -213,8 +214,11 @@ fn trace<T: Real>(
     bar.finish_and_clear();
     let [most, fewest] = spent.per_pixel;
     terminal.say(&format!(
-        "{} samples, {fewest} to {most} in a pixel; the largest estimated error of a tile is {:.1e}",
-        spent.samples, spent.error
+        "{} samples, {} to {} in a pixel; the largest estimated error of a tile is {}",
+        grouped(spent.samples),
+        grouped(u64::from(fewest)),
+        grouped(u64::from(most)),
+        magnitude(spent.error)
     ));
     picture
 }

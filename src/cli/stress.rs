@@ -34,15 +34,20 @@ pub(super) struct Args {
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
     /// What the cases are drawn from: the same seed draws the same
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_negative_numbers = true)]
     seed: u64,
     /// Cases for each step of each axis
-    #[arg(long, value_name = "N", default_value_t = 500, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, value_name = "N", default_value_t = 500, value_parser = clap::value_parser!(u32).range(1..=100_000), allow_negative_numbers = true)]
     cases: u32,
     #[command(flatten)]
     language: LanguageArgs,
     #[command(flatten)]
     driver: DriverArgs,
+}
+
+fn seed(text: &str) -> Result<u64, String> {
+    text.parse()
+        .map_err(|_| format!("a seed is a whole number from 0 to {}", u64::MAX))
 }
 
 fn role(text: &str) -> Result<(String, Role), String> {
@@ -131,7 +136,7 @@ fn examine(
     let map: Map = args.map.iter().cloned().collect();
     let signature = match &args.function {
         Some(name) => Signature::recognise(checked, name, &map),
-        None => Signature::only(checked),
+        None => Signature::only(checked, &map),
     };
     let signature = match signature {
         Ok(signature) => signature,

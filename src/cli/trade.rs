@@ -5,10 +5,11 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use super::check::References;
-use super::inputs::{FrameArgs, LanguageArgs, on, worker};
+use super::inputs::{FrameArgs, LanguageArgs, deadline, on, worker};
 use super::render::load;
 use super::shader::{Shader, Unusable, find};
 use super::{Exit, Terminal, interrupt};
+use crate::compare::{grouped, plural};
 use crate::export;
 use crate::frame::Frame;
 use crate::gpu::{On, Worker};
@@ -29,14 +30,14 @@ use crate::trade::{self, ERRORS, Report, Subject};
 pub(super) struct Args {
     /// A scene, in TOML, or a shader
     subject: PathBuf,
-    /// Where the results go
+    /// Where the results go; needed unless --max-error is given
     #[arg(short, long, value_name = "DIR", required_unless_present = "max_error")]
     output: Option<PathBuf>,
     /// How long everything may take
-    #[arg(long, value_name = "TIME", default_value = "30s", value_parser = humantime::parse_duration)]
+    #[arg(long, value_name = "TIME", default_value = "30s", value_parser = deadline)]
     budget: Duration,
     /// Say only which way is the cheapest whose error, a root mean square in [0, 1], is at most this
-    #[arg(long, value_name = "ERROR", value_parser = max_error)]
+    #[arg(long, value_name = "ERROR", value_parser = max_error, allow_negative_numbers = true)]
     max_error: Option<f64>,
     /// The GPUs: `all` that there are, `cpu` for none, `lavapipe`, or words of an adapter's name
     #[arg(long, value_name = "ADAPTER", default_value = "all")]
@@ -199,12 +200,21 @@ fn workers(asked: &str, budget: Duration, terminal: &Terminal) -> Result<Vec<(St
 }
 
 fn tell(report: &Report, args: &Args, terminal: &Terminal) -> Exit {
+    if report.ways.is_empty() {
+        terminal.error(format_args!("nothing was measured: {}", report.unmeasured()));
+        return Exit::Trouble;
+    }
     if let Some(error) = args.max_error {
         terminal.result(&report.line(error, &error.to_string()));
+        if report.cheapest(error).is_some() && !report.left_out.is_empty() {
+            terminal.say(&report.unmeasured());
+        }
     } else {
+        let ways = report.ways.len() as u64;
         terminal.say(&format!(
-            "{} ways; the truth is {}: {}",
-            report.ways.len(),
+            "{} {}; the truth is {}: {}",
+            grouped(ways),
+            plural(ways, "way", "ways"),
             report.truth,
             if report.truth_error > 0.0 {
                 format!("{:.1e}", report.truth_error)

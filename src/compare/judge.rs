@@ -135,12 +135,16 @@ pub fn judge(answers: Answers) -> (Verdict, String) {
     }
     let reason = match (maths.differing, maths.undecided + maths.undefined) {
         (0, 0) => format!("all {} pixels agree with the scene", grouped(maths.pixels)),
-        (0, left) => format!("all pixels agree with the scene but {left} that cannot be decided"),
+        (0, left) => format!(
+            "all pixels agree with the scene but {} that cannot be decided",
+            grouped(left)
+        ),
         (differing, _) => format!(
-            "{differing} of {} pixels {} from the scene, fewer than the {} that are allowed",
+            "{} of {} pixels {} from the scene, fewer than the {} that are allowed",
+            grouped(differing),
             grouped(maths.pixels),
             plural(differing, "differs", "differ"),
-            (maths.pixels as f64 * MAX_DIFFERING).floor() + 1.0
+            grouped((maths.pixels as f64 * MAX_DIFFERING) as u64 + 1)
         ),
     };
     (Verdict::Correct, reason)
@@ -185,9 +189,31 @@ pub fn grouped(count: u64) -> String {
     text
 }
 
+/// An error in few digits: 1.2e-7, or 0 where there is none.
+#[must_use]
+pub fn magnitude(error: f64) -> String {
+    if error == 0.0 {
+        "0".to_owned()
+    } else {
+        format!("{error:.1e}")
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_are_written_as_people_read_them() {
+        assert_eq!(
+            [0, 999, 57_600, 67_108_864].map(grouped),
+            ["0", "999", "57,600", "67,108,864"]
+        );
+        assert_eq!(
+            [0.0, -0.0, 1.25e-7, 3.0].map(magnitude),
+            ["0", "0", "1.2e-7", "3.0e0"]
+        );
+    }
 
     /// Of 10,000 pixels.
     fn answer([differing, undecided, undefined]: [u64; 3], max_abs: f64) -> Answer {

@@ -17,7 +17,8 @@ mod toolchain;
 
 pub use answer::{Answer, Standing, marks};
 pub use judge::{
-    Answers, MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABLE, Verdict, differing, grouped, judge, plural,
+    Answers, MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABLE, Verdict, differing, grouped, judge, magnitude,
+    plural,
 };
 pub use maths::{Mixed, SHAKES, maths};
 pub use mean::{DrawnPixel, Means, means};

@@ -57,8 +57,8 @@ impl Target {
     /// The target whose files end as `path` does.
     #[must_use]
     pub fn of(path: &Path) -> Option<Self> {
-        let extension = path.extension()?.to_str()?;
-        match extension {
+        let extension = path.extension()?.to_str()?.to_ascii_lowercase();
+        match extension.as_str() {
             "glsl" => Some(Self::Glsl),
             "msl" => Some(Self::Msl),
             _ => Self::ALL

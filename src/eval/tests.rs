@@ -70,7 +70,7 @@ impl Draft {
 
     fn flat(self) -> Flat {
         let flow = self.output([0, 0]);
-        flatten(&flow, &Varying::of(&flow, &Groups::of(&flow)))
+        flatten(&flow, &Varying::of(&flow, &Groups::of(&flow)), false)
     }
 }
 
@@ -124,7 +124,7 @@ fn left_often(times: u32) -> Flow {
 fn scopes_that_are_left_often_keep_what_there_is_room_for() {
     for times in [1, 60_000] {
         let mut flow = left_often(times);
-        forward(&mut flow);
+        forward(&mut flow, false);
         let [kept, stored, ..] = flow.output.map(|value| flow.origin(value));
         assert_eq!(kept, Origin::Word(7));
         assert_eq!(stored, Origin::Load(Cell(1)), "it is 7 or 9");
@@ -158,7 +158,7 @@ fn what_no_round_of_a_loop_comes_to_is_not_copied() {
         body,
     });
     let mut flow = draft.output([0, 1]);
-    forward(&mut flow);
+    forward(&mut flow, false);
     assert!(matches!(flow.origin(flow.output[0]), Origin::Load(_)));
 }
 

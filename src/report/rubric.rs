@@ -90,7 +90,7 @@ impl Rubric {
     /// that is out of range.
     pub fn parse(files: &Files, file: FileId) -> Result<Self, Vec<Diagnostic>> {
         let document: Document = toml::from_str(files.get(file).text())
-            .map_err(|error| vec![diagnostic::of_toml("E0503", &error, file)])?;
+            .map_err(|error| vec![diagnostic::of_toml("E0503", &error, files, file)])?;
         let mut refused = Vec::new();
         let mut checks = Checks {
             file,
@@ -309,7 +309,7 @@ mod tests {
             (
                 "[maths]\npoints = \"all\"",
                 "r.toml:2:10: error[E0503]",
-                "expected",
+                "expected a number",
             ),
             (
                 "[maths]\npartial_from = 0.5",

@@ -7,7 +7,7 @@ use std::fmt;
 use anstyle::{AnsiColor, Style};
 
 use super::Record;
-use crate::compare::{Answer, Comparison, Pixel, Verdict, grouped, plural};
+use crate::compare::{Answer, Comparison, Pixel, Verdict, grouped, magnitude, plural};
 use crate::diagnostic::Json;
 
 /// One shader: verdict, name, reason, and a line for each question whose answer is worth reading.
@@ -142,8 +142,8 @@ pub(super) fn rounding(answer: &Answer) -> String {
 
 fn toolchain(answer: &Answer) -> String {
     let says = format!(
-        "not to the bit what the shader says (by at most {:.1e})",
-        answer.max_abs
+        "not to the bit what the shader says (by at most {})",
+        magnitude(answer.max_abs)
     );
     question(answer, ["is", "are"], &says, ["cannot be told"; 2])
 }
@@ -200,8 +200,9 @@ fn numbers(picture: &Comparison) -> String {
         ),
     };
     format!(
-        "{levels}; as floats by at most {:.1e}, {:.1e} on average",
-        picture.max_abs, picture.mean_abs
+        "{levels}; as floats by at most {}, {} on average",
+        magnitude(picture.max_abs),
+        magnitude(picture.mean_abs)
     )
 }
 

@@ -106,7 +106,8 @@ const _: () = assert!(MAX_BYTES == 1 << 20);
 /// What is said of a file that is not UTF-8.
 pub const NOT_UTF8: &str = "this is not UTF-8 text; save the file as UTF-8";
 
-/// The shaders that one argument names; a folder gives those below it, in the order of their names. Standard input and pipes are read.
+/// The shaders that one argument names; a folder gives those below it, in the order of their names, without what is hidden. Standard input and
+/// pipes are read.
 #[must_use]
 pub fn find(argument: &Path) -> Vec<Result<Found, ReadError>> {
     let named = |place, name: &OsStr| Found {
@@ -139,6 +140,7 @@ pub fn find(argument: &Path) -> Vec<Result<Found, ReadError>> {
         .follow_links(true)
         .sort_by_file_name()
         .into_iter()
+        .filter_entry(|entry| entry.depth() == 0 || !is_hidden(entry.file_name()))
         .filter_map(|entry| match entry {
             Ok(entry) if entry.file_type().is_file() && is_shader(entry.path()) => Some(Ok(Found {
                 relative: entry
@@ -159,6 +161,11 @@ pub fn find(argument: &Path) -> Vec<Result<Found, ReadError>> {
         return vec![Err(ReadError::NoShader(argument.to_owned()))];
     }
     found
+}
+
+/// Whether a file or folder is hidden, as `.git` is, or macOS put it into an archive beside what was packed.
+fn is_hidden(name: &OsStr) -> bool {
+    name.as_encoded_bytes().starts_with(b".") || name == "__MACOSX"
 }
 
 /// Whether a file is a shader by its name.
@@ -239,6 +246,24 @@ mod tests {
             .map(|found| found.unwrap().relative)
             .collect();
         assert_eq!(relative, ["a.glsl", "b/c.fs", "z.frag"].map(PathBuf::from));
+    }
+
+    #[test]
+    fn what_is_hidden_is_found_only_by_its_name() {
+        let folder = tempfile::tempdir().unwrap();
+        for below in [".git", "__MACOSX", "a"] {
+            fs::create_dir(folder.path().join(below)).unwrap();
+        }
+        for name in [".git/x.glsl", ".h.glsl", "__MACOSX/._a.glsl", "a/b.glsl"] {
+            fs::write(folder.path().join(name), "").unwrap();
+        }
+        let relative = |argument: &Path| -> Vec<PathBuf> {
+            let found = find(argument).into_iter();
+            found.map(|found| found.unwrap().relative).collect()
+        };
+        assert_eq!(relative(folder.path()), [Path::new("a/b.glsl")]);
+        assert_eq!(relative(&folder.path().join(".git")), [Path::new("x.glsl")]);
+        assert_eq!(relative(&folder.path().join(".h.glsl")), [Path::new(".h.glsl")]);
     }
 
     #[test]

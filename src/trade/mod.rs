@@ -322,5 +322,12 @@ mod tests {
                 .line(0.05, "0.05")
                 .contains("within 0.05 of the truth is d:")
         );
+        let few = Report {
+            ways: vec![way("a", 1.0, 0.1)],
+            left_out: vec!["b".to_owned(), "c".to_owned()],
+            ..report
+        };
+        assert!(few.line(0.2, "0.2").starts_with("a, the only way"));
+        assert!(few.line(0.05, "0.05").contains("no time for 2 ways"));
     }
 }

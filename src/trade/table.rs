@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::way::Group;
 use super::{Measured, Report};
 use crate::chart::{Point, Scatter};
+use crate::compare::{grouped, magnitude, plural};
 use crate::stress::formula::RECENTRED;
 
 const COLUMNS: &str = "way,group,runs,outliers,median_ms,mad_ms,rmse,max,mismatches_8bit,flips,pareto";
@@ -86,13 +87,13 @@ impl Report {
             let stable = self.ways.iter().find(|way| way.way == name)?;
             let [before, after] = [own, stable].map(|way| 1e3 * way.seconds.median);
             Some(format!(
-                "with the {} formula for spheres, {} takes {after:.2} ms a frame where its own takes {before:.2} ({:+.0} %); the error is {:.1e} \
-                 where it is {:.1e}",
+                "with the {} formula for spheres, {} takes {after:.2} ms a frame where its own takes {before:.2} ({:+.0} %); the error is {} \
+                 where it is {}",
                 RECENTRED.name,
                 own.way,
                 100.0 * (after / before - 1.0),
-                stable.error.rmse,
-                own.error.rmse
+                magnitude(stable.error.rmse),
+                magnitude(own.error.rmse)
             ))
         })
     }
@@ -100,16 +101,41 @@ impl Report {
     /// Which way is the cheapest that is near enough.
     #[must_use]
     pub fn line(&self, error: f64, word: &str) -> String {
-        match self.cheapest(error) {
-            Some(way) => format!(
-                "the cheapest way to be within {word} of the truth is {}: {:.2} ms a frame (±{:.2}), error {:.1e}",
-                way.way,
-                1e3 * way.seconds.median,
-                1e3 * way.seconds.deviation,
-                way.error.rmse
+        let Some(way) = self.cheapest(error) else {
+            let ways = match &self.ways[..] {
+                [only] => format!("{}, the only way that was measured, is not", only.way),
+                _ => "no way that was measured is".to_owned(),
+            };
+            let rest = match self.left_out.len() {
+                0 => String::new(),
+                _ => format!("; {}", self.unmeasured()),
+            };
+            return format!("{ways} within {word} of the truth{rest}");
+        };
+        let which = match self.ways.len() {
+            1 => format!(
+                "{}, the only way that was measured, is within {word} of the truth",
+                way.way
             ),
-            None => format!("no way that was measured is within {word} of the truth"),
-        }
+            _ => format!("the cheapest way to be within {word} of the truth is {}", way.way),
+        };
+        format!(
+            "{which}: {:.2} ms a frame (±{:.2}), error {}",
+            1e3 * way.seconds.median,
+            1e3 * way.seconds.deviation,
+            magnitude(way.error.rmse)
+        )
+    }
+
+    /// How many ways were not measured, and what to do about it.
+    #[must_use]
+    pub fn unmeasured(&self) -> String {
+        let ways = self.left_out.len() as u64;
+        format!(
+            "there was no time for {} {}; a longer --budget or a smaller --size measures more",
+            grouped(ways),
+            plural(ways, "way", "ways")
+        )
     }
 }
 

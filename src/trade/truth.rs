@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use super::error::rmse;
 use super::way::{Shader, Workshop};
+use crate::compare::grouped;
 use crate::eval::{self, Jittered, Seed};
 use crate::frame::Frame;
 use crate::image::Image;
@@ -57,7 +58,8 @@ impl Truth {
                 says: format!(
                     "the tracer in f64 with Sobol's samples, {} to {} in a pixel; its error is the largest that a tile of 16x16 pixels is \
                      estimated to have",
-                    spent.per_pixel[1], spent.per_pixel[0]
+                    grouped(u64::from(spent.per_pixel[1])),
+                    grouped(u64::from(spent.per_pixel[0]))
                 ),
             });
             let took = start.elapsed().saturating_sub(before);

@@ -142,7 +142,7 @@ pub enum Failure {
     #[error(transparent)]
     Cpu(#[from] eval::Failure),
     /// The driver ended loops by force in that many pixels.
-    #[error("a loop was ended by force in {0} pixels")]
+    #[error("a loop was ended by force in {} {}", compare::grouped(*.0), compare::plural(*.0, "pixel", "pixels"))]
     CutShort(u64),
 }
 

@@ -176,6 +176,10 @@ fn scenes_that_say_what_they_must_not() {
             ["radius must be a finite number above 0, not 0", "s.toml:3:10"],
         ),
         (
+            "title = \"soon\"\n".to_owned(),
+            ["this scene shows nothing", "s.toml:1:1"],
+        ),
+        (
             "[film]\nsize = [0, 0]\n".to_owned(),
             ["nothing to show", "s.toml:2:8"],
         ),
@@ -215,6 +219,49 @@ fn deadlines_that_cannot_be() {
     ] {
         expect(&check("", &["--timeout", deadline]), 2, &[words]);
     }
+}
+
+#[test]
+fn numbers_that_are_out_of_range_are_told_by_our_own_words() {
+    let folder = folder(&[
+        ("s.glsl", &format!("{MAIN} {{ c = vec4(0.5); }}")),
+        ("s.toml", SPHERE),
+    ]);
+    for (arguments, words) in [
+        (&["check", "s.glsl", "--frame", "-1"][..], "not in 0..="),
+        (&["check", "s.glsl", "--time", "nan"], "finite"),
+        (&["run", "s.glsl", "-o", "s.png", "--time", "inf"], "finite"),
+        (&["check", "s.glsl", "--date", "2020,12,1,0"], "no month 12"),
+        (&["check", "s.glsl", "--timeout", "0s"], "more than 0"),
+        (&["explain", "s.glsl", "--pixel", "-1,0"], "two whole numbers"),
+        (
+            &["render", "s.toml", "-o", "s.png", "--max-error", "-1"],
+            "above 0",
+        ),
+        (&["render", "s.toml", "-o", "s.png", "--time", "inf"], "finite"),
+        (&["trade", "s.toml", "--max-error", "-1"], "from 0 to 1"),
+        (&["trade", "s.toml", "-o", "out", "--budget", "0s"], "more than 0"),
+        (&["stress", "-o", "out", "--seed", "-1"], "from 0 to"),
+    ] {
+        let run = toyproof(folder.path(), arguments);
+        expect(&run, 2, &[words]);
+        assert!(!run.stderr.contains("tip:"), "{}", run.stderr);
+    }
+    assert_eq!(names(folder.path()), ["s.glsl", "s.toml"]);
+}
+
+#[test]
+fn an_ending_that_is_another_languages() {
+    let folder = folder(&[("s.glsl", &format!("{MAIN} {{ c = vec4(0.5); }}"))]);
+    let convert = |arguments: &[&str]| toyproof(folder.path(), &[&["convert", "s.glsl"], arguments].concat());
+    expect(
+        &convert(&["-o", "s.wgsl", "--to", "spv"]),
+        2,
+        &["s.wgsl", "--to says spv"],
+    );
+    assert_eq!(names(folder.path()), ["s.glsl"]);
+    expect(&convert(&["-o", "S.WGSL"]), 0, &[]);
+    expect(&convert(&["-o", "l.glsl", "--to", "lowered"]), 0, &[]);
 }
 
 #[test]

@@ -24,6 +24,29 @@ fn the_help_of_each_command_shows_an_example() {
     }
 }
 
+#[test]
+fn what_an_example_of_help_reads_exists() {
+    let mut seen = 0;
+    for name in [
+        "check", "render", "run", "convert", "explain", "stress", "trade", "compare", "export", "scenes",
+        "doctor",
+    ] {
+        let help = toyproof(root(), &[name, "--help"]).stdout;
+        for path in help.split_whitespace().filter(|word| word.starts_with("glsl/")) {
+            assert!(root().join(path).is_file(), "{name}: {path}");
+            seen += 1;
+        }
+    }
+    assert!(seen > 10, "{seen}");
+}
+
+#[test]
+fn the_evaluator_is_chosen_where_it_is_asked_for() {
+    let run = toyproof(root(), &["doctor", "--on", "cpu"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    assert!(run.stdout.contains("evaluator"), "{}", run.stdout);
+}
+
 /// In the middle of an odd size stands a ray along each axis of the screen.
 #[test]
 fn the_course_is_correct_at_odd_sizes() {

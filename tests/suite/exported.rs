@@ -288,7 +288,7 @@ fn random_scenes_and_their_shaders_agree() {
 
 #[test]
 fn a_shader_holds_only_what_its_scene_requires() {
-    let bare = exported("").unwrap();
+    let bare = exported("[background]\n").unwrap();
     for word in [
         "Sphere",
         "Light",
@@ -310,7 +310,7 @@ fn a_shader_holds_only_what_its_scene_requires() {
     for word in ["Quadric", "checkered", "figure", "rotate", "PI", "brdf"] {
         assert!(!one.contains(word), "{word} in\n{one}");
     }
-    let refused = exported("[film]\nsamples = 4\nsampler = \"sobol\"\n");
+    let refused = exported("[film]\nsamples = 4\nsampler = \"sobol\"\n[background]\n");
     assert_eq!(
         refused,
         Err("the samplers \"stratified\" and \"sobol\"".to_owned())

@@ -730,6 +730,103 @@ fn a_list_in_braces() {
 }
 
 #[test]
+fn an_else_if_of_another_language() {
+    told(
+        in_main(
+            r"    float x = 0.0;
+    if (fragCoord.x > 1.0) {
+        x = 1.0;
+    } elif (fragCoord.y > 2.0) {
+        x = 2.0;
+    } else {
+        x = 3.0;
+    }
+    fragColor = vec4(x);",
+        ),
+        &expect![[r#"
+            error[E0100]: GLSL has no `elif`
+              ┌─ s.glsl:5:7
+              │
+            5 │     } elif (fragCoord.y > 2.0) {
+              │       ^^^^ write `else if`
+
+        "#]],
+    );
+}
+
+#[test]
+fn a_decimal_comma() {
+    told(
+        in_main(
+            r"    vec3 sky = vec3(0,5, 0.5, 0.45);
+    float gain = 0,5;
+    fragColor = vec4(sky * clamp(0,5, 0.0, 1.0), vec2(1, 2, 3));",
+        ),
+        &expect![[r#"
+            error[E0303]: `vec3` has 3 components and is given more
+              ┌─ s.glsl:2:16
+              │
+            2 │     vec3 sky = vec3(0,5, 0.5, 0.45);
+              │                ^^^^^^^^^^^^^^^^^^^^
+              │
+              = is `0,5` one number? write `0.5`: GLSL has a decimal point
+
+            error[E0100]: expected a name, found `5`
+              ┌─ s.glsl:3:20
+              │
+            3 │     float gain = 0,5;
+              │                    ^ write `0.5`: GLSL has a decimal point
+
+            error[E0302]: `clamp` takes 3 arguments and is given 4
+              ┌─ s.glsl:4:28
+              │
+            4 │     fragColor = vec4(sky * clamp(0,5, 0.0, 1.0), vec2(1, 2, 3));
+              │                            ^^^^^
+              │
+              = is `0,5` one number? write `0.5`: GLSL has a decimal point
+
+            error[E0303]: `vec2` has 2 components and is given more
+              ┌─ s.glsl:4:50
+              │
+            4 │     fragColor = vec4(sky * clamp(0,5, 0.0, 1.0), vec2(1, 2, 3));
+              │                                                  ^^^^^^^^^^^^^
+
+        "#]],
+    );
+}
+
+#[test]
+fn a_structure_without_its_end() {
+    let main = in_main("    fragColor = vec4(Ball(vec3(0.0), 1.0).at, LIMIT);");
+    told(
+        format!(
+            "struct Ray {{\n    vec3 at;\n    vec3 to;\n\nstruct Ball {{\n    vec3 at;\n    float r;\n;\n\n\
+             const float LIMIT = 1.0;\n\n{main}"
+        ),
+        &expect![[r#"
+            error[E0105]: this `{` is never closed
+              ┌─ s.glsl:1:12
+              │
+            1 │ struct Ray {
+              │            ^
+              ·
+            5 │ struct Ball {
+              │ ------ its `}` is missing before this
+
+            error[E0105]: this `{` is never closed
+              ┌─ s.glsl:5:13
+              │
+            5 │ struct Ball {
+              │             ^
+              ·
+            8 │ ;
+              │ - its `}` is missing before this
+
+        "#]],
+    );
+}
+
+#[test]
 fn a_cast_of_c() {
     told(
         in_main(

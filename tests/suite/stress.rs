@@ -11,7 +11,7 @@ use toyproof::stress::function::{self, Findings, Map, Role, Signature};
 use toyproof::stress::{self, Settings, formula};
 
 use crate::program::{command, has_driver, toyproof};
-use crate::support::{EVERY_RUNG, Edit, SPHERE, checked, edited, worker};
+use crate::support::{EVERY_RUNG, Edit, QUADRICS, SPHERE, checked, edited, worker};
 
 const FEW: Settings = Settings {
     seed: 1,
@@ -234,6 +234,39 @@ fn the_rungs_functions_are_recognised_and_blamed_for_nothing_but_unit_directions
 }
 
 #[test]
+fn other_shapes_are_not_taken_for_spheres() {
+    for rung in EVERY_RUNG {
+        for signature in Signature::all(&checked(rung.shader), &Map::new()) {
+            let name = signature.name.to_lowercase();
+            // `keepNearest` takes a ray and a sphere, too.
+            assert!(
+                name.contains("sph") || name == "keepnearest",
+                "{}: {name}",
+                rung.name
+            );
+        }
+    }
+    let why = Signature::recognise(&checked(QUADRICS.shader), "intersectQuadric", &Map::new()).unwrap_err();
+    assert!(why.contains("not clear") && why.contains("--map"), "{why}");
+    let body = "{ return length(o + d + c) + r; } void mainImage(out vec4 c, in vec2 p) { c = vec4(0.0); }";
+    for (head, is_sphere) in [
+        ("float f(vec3 o, vec3 d, vec3 c, float r)", true),
+        ("float f(vec3 o, vec3 d, vec3 c, float w, float r)", true),
+        ("float disk(vec3 o, vec3 d, vec3 c, float r)", false),
+        ("float f(vec3 o, vec3 d, vec3 c, vec3 n, float r)", false),
+        ("float f(vec3 o, vec3 d, vec3 c, vec3 axis, float r)", false),
+    ] {
+        let found = Signature::recognise(&checked(&format!("{head} {body}")), name(head), &Map::new());
+        assert_eq!(found.is_ok(), is_sphere, "{head}");
+    }
+}
+
+/// The name of the function that a header begins.
+fn name(head: &str) -> &str {
+    head.split([' ', '(']).nth(1).unwrap()
+}
+
+#[test]
 fn a_strict_gpu_fails_where_the_cpu_does() {
     let Some(mut worker) = worker() else { return };
     let subjects = formula::subjects();
@@ -324,6 +357,7 @@ fn bad_input_is_told_and_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.glsl");
     fs::write(&path, "void mainImage(out vec4 c, in vec2 p) { c = vec4(1.0); }").unwrap();
+    fs::write(folder.path().join("meet.glsl"), TEXTBOOK).unwrap();
     let stress = |arguments: &[&str]| {
         let all = [&["stress", "-o", "out", "--on", "cpu"], arguments].concat();
         toyproof(folder.path(), &all)
@@ -334,6 +368,22 @@ fn bad_input_is_told_and_leaves_nothing() {
         (&["none.glsl"], "none.glsl"),
         (&["--function", "f"], "SHADER"),
         (&["a.glsl", "--map", "x=nonsense"], "say what is what"),
+        (
+            &["meet.glsl", "--function", "hitSphere", "--map", "q=origin"],
+            "hitSphere has no parameter `q`",
+        ),
+        (
+            &["meet.glsl", "--function", "hitSphere", "--map", "ro.at=center"],
+            "no parameter `ro.at`",
+        ),
+        (
+            &["meet.glsl", "--function", "hitSphere", "--map", "radius=origin"],
+            "`radius` is the ray's origin",
+        ),
+        (
+            &["meet.glsl", "--map", "q=origin"],
+            "hitSphere has no parameter `q`",
+        ),
         (&["--cases", "0"], "--cases"),
     ] {
         let run = stress(arguments);

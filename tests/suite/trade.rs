@@ -85,6 +85,32 @@ fn one_line_is_told_where_an_error_is_asked_for() {
 }
 
 #[test]
+fn what_there_was_no_time_for_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("s.toml"), REFLECTIONS.scene).unwrap();
+    let arguments = [
+        "trade",
+        "s.toml",
+        "--max-error",
+        "0.01",
+        "--on",
+        "cpu",
+        "--budget",
+        "1ms",
+        "-o",
+        "out",
+    ];
+    let run = toyproof(folder.path(), &arguments);
+    assert_eq!(run.code, 2, "{}", run.stdout);
+    assert!(
+        run.stderr.contains("nothing was measured") && run.stderr.contains("no time for"),
+        "{}",
+        run.stderr
+    );
+    assert!(!folder.path().join("out").exists());
+}
+
+#[test]
 fn bad_input_is_told_and_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("bad.glsl"), "void mainImage(").unwrap();

@@ -20,7 +20,7 @@ use super::inputs::{DriverArgs, Format, FrameArgs, LanguageArgs};
 use super::pool::{self, InOrder};
 use super::shader::{Names, find};
 use super::{Exit, Terminal, codes, interrupt};
-use crate::compare::Verdict;
+use crate::compare::{Verdict, grouped, plural};
 use crate::gpu::INSTALL_HINT;
 use crate::report::{self, Record, Report, Rubric};
 
@@ -53,7 +53,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "RUBRIC.toml", requires = "out")]
     rubric: Option<PathBuf>,
     /// Check so many shaders at a time [default: as many as there are cores]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256), allow_negative_numbers = true)]
     jobs: Option<u16>,
     /// What goes to standard output
     #[arg(long, value_enum, default_value_t = Format::Human)]
@@ -114,8 +114,10 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
 /// What a driver that ended loops by force means for a shader.
 pub(super) fn cut_short(pixels: u64) -> String {
     format!(
-        "a loop never ends, or runs longer than this driver allows: it was ended by force in {pixels} pixels \
-         (Mesa before 23 stops at 65,535 iterations)"
+        "a loop never ends, or runs longer than this driver allows: it was ended by force in {} {} \
+         (Mesa before 23 stops at 65,535 iterations)",
+        grouped(pixels),
+        plural(pixels, "pixel", "pixels")
     )
 }
 
@@ -158,7 +160,10 @@ impl Batch<'_> {
         if taken_over > 0 {
             let of = submissions.len();
             self.terminal.say(&format!(
-                "{taken_over} of {of} shaders are taken over from an earlier run"
+                "{} of {} {} taken over from an earlier run",
+                grouped(taken_over as u64),
+                grouped(of as u64),
+                plural(of as u64, "shader is", "shaders are")
             ));
         }
         let threads = match self.args.jobs {

@@ -64,7 +64,7 @@ mod tests {
 
     fn scene(title: &str) -> Scene {
         let mut files = Files::default();
-        let text = format!("title = \"{title}\"\n[film]\nsize = [64, 36]\n");
+        let text = format!("title = \"{title}\"\n[film]\nsize = [64, 36]\n[background]\n");
         let file = files.add(File::new("s", text));
         scene::parse(&files, file).unwrap()
     }

@@ -13,12 +13,12 @@ Examples:
   toyproof convert glsl/02-sphere.glsl -o sphere.wgsl --verify
   toyproof convert glsl -o converted --to spv
 
-What a host feeds the result: entry point `main`, colour at location 0. Group 0, binding 0 is a block of
-208 bytes (std140): iResolution at byte 0, iTime 12, iTimeDelta 16, iFrame 20, iFrameRate 24, iChannelTime[4]
-32 and iChannelResolution[4] 96 (16 bytes each), iMouse 160, iDate 176, iSampleRate 192. The texture of channel
-K is binding 1+2K, its sampler 2+2K; only those that the shader uses are declared.
+What a host feeds the result: entry point `main`, colour at location 0. Group 0, binding 0 is a block of 208 bytes \
+(std140): iResolution at byte 0, iTime 12, iTimeDelta 16, iFrame 20, iFrameRate 24, iChannelTime[4] 32 and \
+iChannelResolution[4] 96 (16 bytes each), iMouse 160, iDate 176, iSampleRate 192. The texture of channel K is \
+binding 1+2K, its sampler 2+2K; only those that the shader uses are declared.
 
-Exit code: 0 if every shader was written (and proved, with --verify), 1 if one is at fault, 2 if there was other
+Exit code: 0 if every shader was written (and proved, with --verify), 1 if one is at fault, 2 if there was other \
 trouble, as where a conversion is not proved.";
 
 /// Translate shaders to WGSL, SPIR-V, Metal, HLSL or GLSL ES
@@ -48,7 +48,7 @@ pub(in crate::cli) struct Args {
     #[arg(long, requires = "verify")]
     pub(super) force: bool,
     /// Convert so many shaders at a time [default: as many as there are cores]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256), allow_negative_numbers = true)]
     pub(super) jobs: Option<u16>,
     #[command(flatten)]
     pub(super) language: LanguageArgs,
@@ -104,6 +104,17 @@ impl To {
 
     pub(super) fn extension(self) -> &'static str {
         self.target().map_or("lowered.glsl", Target::extension)
+    }
+
+    /// What `--to` calls it.
+    pub(super) fn name(self) -> String {
+        let value = self.to_possible_value();
+        value.map_or_else(String::new, |value| value.get_name().to_owned())
+    }
+
+    /// Whether it may go to a file whose name ends as another's does: what naga is fed is GLSL.
+    pub(super) fn may_end_as(self, other: Self) -> bool {
+        self == other || (self, other) == (Self::Lowered, Self::Glsl)
     }
 
     pub(super) fn of(path: &Path) -> Option<Self> {

@@ -98,10 +98,14 @@ fn settings(head: &mut String, proof: &Proof) {
 
 /// How far a browser's pictures are apart.
 pub(super) fn told(shown: Shown) -> String {
+    let by = match format!("{:.2}", shown.max * 255.0).as_str() {
+        _ if shown.max == 0.0 => String::new(),
+        "0.00" => " by as much as 0.01/255".to_owned(),
+        levels => format!(" by more than {levels}/255"),
+    };
     format!(
-        "no colour of {} pixels, as shown, differs by more than {:.2}/255",
-        grouped(shown.pixels),
-        shown.max * 255.0
+        "no colour of {} pixels, as shown, differs{by}",
+        grouped(shown.pixels)
     )
 }
 
@@ -131,6 +135,23 @@ mod tests {
             .split("[[package]]")
             .find(|package| package.contains("name = \"naga\"\n"));
         assert!(package.unwrap().contains(&format!("version = \"{NAGA}\"")));
+    }
+
+    #[test]
+    fn a_difference_of_nothing_has_no_number() {
+        let said = [0.0, 1e-9, 0.5 / 255.0].map(|max| {
+            let shown = Shown {
+                pixels: 57_600,
+                differing: 0,
+                max,
+            };
+            told(shown)
+        });
+        assert!(said[0].ends_with("57,600 pixels, as shown, differs"), "{said:?}");
+        assert!(
+            said[1].ends_with("as much as 0.01/255") && said[2].ends_with("more than 0.50/255"),
+            "{said:?}"
+        );
     }
 
     #[test]

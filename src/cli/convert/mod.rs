@@ -38,6 +38,17 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         ));
         return Exit::Trouble;
     };
+    if let Some(of) = of_extension
+        && !to.may_end_as(of)
+    {
+        terminal.error(format_args!(
+            "{} ends as {} does, and --to says {}; leave --to out, or give the file another ending",
+            args.output.display(),
+            of.name(),
+            to.name()
+        ));
+        return Exit::Trouble;
+    }
     if several && (standard || of_extension.is_some()) {
         terminal.error(format_args!(
             "several shaders need a folder to go to, not {}",

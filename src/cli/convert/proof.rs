@@ -4,7 +4,7 @@ use super::super::shader::Shader;
 use super::conversion::{Converter, Hand};
 use super::tool;
 use crate::browser::{self, Text};
-use crate::compare::plural;
+use crate::compare::{grouped, plural};
 use crate::diagnostic::short;
 use crate::emit::{Target, reread, spirv};
 use crate::glsl::tree::SamplerShape;
@@ -200,8 +200,8 @@ pub(super) fn in_browser(
     if shown.differing > 0 {
         return Standing::Unproved(format!(
             "in Chromium {} of {} pixels {} not as with WebGL 2 of the original, by up to {:.1}/255",
-            shown.differing,
-            shown.pixels,
+            grouped(shown.differing),
+            grouped(shown.pixels),
             plural(shown.differing, "is", "are"),
             shown.max * 255.0
         ));
@@ -243,8 +243,9 @@ fn held(proof: Proof) -> Result<Proof, String> {
         Against::StrictRun => "the shader's own",
     };
     Err(format!(
-        "{differing} of {} pixels {} not to the bit {against}, by up to {worst:.1e}",
-        proof.pixels(),
+        "{} of {} pixels {} not to the bit {against}, by up to {worst:.1e}",
+        grouped(differing),
+        grouped(proof.pixels()),
         plural(differing, "is", "are")
     ))
 }

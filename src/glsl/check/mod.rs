@@ -78,7 +78,7 @@ impl<'a> Checker<'a> {
             doubtful: HashSet::new(),
             lacks_names: text.lacks_names,
             // The last of the tokens is the end itself, which may stand lines below what is written.
-            end: text.tokens.iter().rev().take(2).last().map(|token| token.at),
+            end: text.tokens.iter().rev().take(2).next_back().map(|token| token.at),
             lenient: options.lenient,
             tree: Tree::default(),
             scopes: Scopes::default(),

@@ -109,6 +109,15 @@ impl Search<'_> {
                     Some(partner) => pairs.push((partner, index)),
                     None => return Some(self.too_many(&pairs, bare, index)),
                 },
+                _ if let Some(&last) = open.last()
+                    && self.opens_structure(last)
+                    && self.ends_structure(index) =>
+                {
+                    return Some(Fault::NeverClosed {
+                        open: last,
+                        before: index,
+                    });
+                }
                 TokenKind::Word(_) => {
                     let Some(end) = self.header(index) else {
                         continue;
@@ -177,6 +186,27 @@ impl Search<'_> {
         match head {
             Some(after) => Fault::NeverOpened { after, close },
             None => Fault::Stray { close },
+        }
+    }
+
+    /// Whether the `{` at `open` begins the members of a structure.
+    fn opens_structure(&self, open: usize) -> bool {
+        let is_struct = |before: usize| {
+            let token = open.checked_sub(before).map(|index| self.tokens[index].kind);
+            matches!(token, Some(TokenKind::Word(word)) if self.words.word(word) == Word::Keyword(Keyword::Struct))
+        };
+        is_struct(1) || is_struct(2)
+    }
+
+    /// Whether no member can be here: another structure or a constant begins, or the `;` after the `}` stands.
+    fn ends_structure(&self, index: usize) -> bool {
+        match self.tokens[index].kind {
+            TokenKind::Word(word) => matches!(
+                self.words.word(word),
+                Word::Keyword(Keyword::Struct | Keyword::Const)
+            ),
+            TokenKind::Punctuator(Punctuator::Semicolon) => self.is(index - 1, Punctuator::Semicolon),
+            _ => false,
         }
     }
 

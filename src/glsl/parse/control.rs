@@ -20,6 +20,10 @@ impl Parser<'_> {
             let condition = condition.unwrap_or_else(|| self.check.broken(at));
             let body = self.scoped(Self::guarded)?;
             arms.push(Arm { condition, body });
+            if self.is_others_else_if() {
+                self.tell_else_if();
+                continue;
+            }
             if !self.eat_keyword(Keyword::Else) {
                 return Ok(StatementKind::If {
                     arms,

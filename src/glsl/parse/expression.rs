@@ -160,8 +160,12 @@ impl Parser<'_> {
                     if !self.is(Punctuator::LeftParen) {
                         return Ok(self.check.name(symbol, token.at));
                     }
+                    let start = self.at;
                     let (arguments, close) = self.arguments()?;
-                    Ok(self.check.call(symbol, token.at, arguments, token.at.to(close)))
+                    let told = self.check.errors.len();
+                    let called = self.check.call(symbol, token.at, arguments, token.at.to(close));
+                    self.note_decimal_comma(told, start);
+                    Ok(called)
                 }
                 Word::Keyword(_) => self.unexpected("an expression"),
             },
@@ -180,9 +184,13 @@ impl Parser<'_> {
             }
             return self.unexpected(&format!("`(`, for `{name}` is a type"));
         }
+        let start = self.at;
         let (arguments, close) = self.arguments()?;
         let at = specifier.at.to(close);
-        Ok(self.check.construct(&specifier, arguments, at))
+        let told = self.check.errors.len();
+        let constructed = self.check.construct(&specifier, arguments, at);
+        self.note_decimal_comma(told, start);
+        Ok(constructed)
     }
 
     /// `(a, b)`, `()` or `(void)`; and the place of the `)`.

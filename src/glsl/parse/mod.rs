@@ -9,6 +9,7 @@ mod control;
 mod declaration;
 mod expression;
 mod function;
+mod habit;
 mod layout;
 mod number;
 mod qualifier;
@@ -214,24 +215,6 @@ impl<'a> Parser<'a> {
         };
         let diagnostic = Code::Syntax.at(at, format!("expected {wanted}, found {found}"));
         self.halt_with(self.with_habit(diagnostic))
-    }
-
-    /// The diagnostic about the next token with what to write, where a habit from another language is at work.
-    fn with_habit(&self, diagnostic: Diagnostic) -> Diagnostic {
-        use Punctuator::{Assign, Greater, LeftBrace, Less};
-        let previous = self.at.checked_sub(1).and_then(|at| self.tokens.get(at));
-        match (previous.map(|token| token.kind), self.kind()) {
-            (_, TokenKind::Word(symbol)) if let Some(foreign) = Foreign::named(self.words.text(symbol)) => {
-                diagnostic.label(format!("write {}", foreign.instead()))
-            }
-            (_, TokenKind::Punctuator(LeftBrace)) => diagnostic.note(
-                "GLSL ES has no lists in braces: write `vec3(…)` for a vector, `float[](…)` for an array",
-            ),
-            (Some(TokenKind::Punctuator(Assign)), TokenKind::Punctuator(comparison @ (Less | Greater))) => {
-                diagnostic.label(format!("write `{}=`", comparison.text()))
-            }
-            _ => diagnostic,
-        }
     }
 
     /// What is said of a word that may not be used.

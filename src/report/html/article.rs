@@ -3,7 +3,7 @@
 use super::messages::messages;
 use super::text::Text;
 use super::{Exhibit, verdict};
-use crate::compare::{Answer, Pixel, grouped};
+use crate::compare::{Answer, Pixel, grouped, magnitude};
 use crate::report::Record;
 
 pub(super) fn article(index: usize, record: &Record, exhibit: &Exhibit) -> String {
@@ -81,13 +81,13 @@ fn answered(answer: &Answer) -> String {
         .filter_map(|(name, pixel)| Some(place(name, pixel?)))
         .collect();
     format!(
-        "<td class=\"number\">{} of {}</td><td class=\"number\">{}</td><td class=\"number\">{}</td><td class=\"number\">{:.1e}</td>\
+        "<td class=\"number\">{} of {}</td><td class=\"number\">{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td>\
          <td>{}</td>",
         grouped(answer.differing),
         grouped(answer.pixels),
         grouped(answer.undecided),
         grouped(answer.undefined),
-        answer.max_abs,
+        magnitude(answer.max_abs),
         named.join(" ")
     )
 }

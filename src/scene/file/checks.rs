@@ -44,6 +44,15 @@ impl Checks {
             .push(Diagnostic::error("E0502", message).at(span(self.file, bytes)));
     }
 
+    /// Refuses a file that is fine but for showing nothing: most likely it is unfinished, or no scene.
+    pub(super) fn nothing_to_see(&mut self) {
+        if self.diagnostics.is_empty() {
+            let words =
+                "this scene shows nothing; give it a surface such as `[[sphere]]`, or a `[background]`";
+            self.refuse(0..0, words.to_owned());
+        }
+    }
+
     /// A key that is there only for another kind of the thing.
     pub(super) fn foreign<T>(&mut self, key: &str, value: Option<&Spanned<T>>, owner: &str, actual: &str) {
         if let Some(value) = value {

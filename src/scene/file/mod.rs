@@ -27,7 +27,7 @@ use self::motion::Names;
 pub fn parse(files: &Files, file: FileId) -> Result<Scene, Vec<Diagnostic>> {
     let text = files.get(file).text();
     let document: Document =
-        toml::from_str(text).map_err(|error| vec![diagnostic::of_toml("E0501", &error, file)])?;
+        toml::from_str(text).map_err(|error| vec![diagnostic::of_toml("E0501", &error, files, file)])?;
     let mut checks = Checks::new(file);
     let scene = document.check(&mut checks);
     checks.finish(scene)
@@ -92,6 +92,7 @@ impl Document {
         let ambient = self.ambient.as_ref().map(Spanned::span);
         let max_depth = self.film.max_depth.as_ref().map(Spanned::span);
         let scene_ambient = checks.color("ambient", self.ambient, [0.0; 3]);
+        let has_background = self.background.is_some();
         let film = self.film.check(checks);
         let (motions, names) = motion::check(self.motion, checks);
         let mut lights = Vec::new();
@@ -142,7 +143,7 @@ impl Document {
             );
             checks.refuse(max_depth, words);
         }
-        Scene {
+        let scene = Scene {
             title: self.title,
             ambient: scene_ambient,
             max_offset: self
@@ -160,7 +161,11 @@ impl Document {
             objects,
             scatters,
             motions,
+        };
+        if scene.objects.is_empty() && scene.figures.is_empty() && !has_background {
+            checks.nothing_to_see();
         }
+        scene
     }
 }
 

@@ -13,8 +13,8 @@ const SPHERE: &str =
     "[[sphere]]\ncenter = [0, 0, -6.0]\nradius = 1.5\nmaterial = { model = \"facing\", color = [1, 1, 0] }\n";
 
 #[test]
-fn an_empty_file_is_the_empty_scene_with_all_defaults() {
-    let scene = read("").unwrap();
+fn what_a_file_does_not_say_has_its_default() {
+    let scene = read("[background]").unwrap();
     assert_eq!(
         scene.film,
         Film {
@@ -39,8 +39,24 @@ fn an_empty_file_is_the_empty_scene_with_all_defaults() {
 }
 
 #[test]
+fn a_scene_that_shows_nothing_is_told_once() {
+    for text in ["", "title = \"soon\"\n[film]\nsize = [4, 4]\n"] {
+        let errors = read(text).unwrap_err();
+        assert!(
+            errors[0].starts_with("s.toml:1:1: error[E0502]") && errors[0].contains("[[sphere]]"),
+            "{errors:?}"
+        );
+    }
+    assert_eq!(read("[film]\nsamples = 0").unwrap_err().len(), 1);
+    assert!(read("[background]\ncolor = [1, 1, 1]").is_ok());
+}
+
+#[test]
 fn the_largest_offset_is_above_zero() {
-    assert_eq!(read("max_offset = 0.01\n").unwrap().max_offset, 0.01);
+    assert_eq!(
+        read("max_offset = 0.01\n[background]\n").unwrap().max_offset,
+        0.01
+    );
     assert!(read("max_offset = 0.0\n").is_err());
 }
 
@@ -95,6 +111,13 @@ fn each_mistake_is_told_by_line_column_and_what_was_expected() {
             "[film]\nsise = [1, 1]",
             "s.toml:2:1: error[E0501]",
             "unknown field `sise`, expected one of",
+        ),
+        ("[sphere]\nradius = 1", "s.toml:1:1: error[E0501]", "[[sphere]]"),
+        ("[[film]]\nsamples = 1", "s.toml:1:1: error[E0501]", "[film]"),
+        (
+            "[film]\nsamples = 1.5",
+            "s.toml:2:11: error[E0501]",
+            "a whole number",
         ),
         (
             "[camera]\neye = [0, 0]",

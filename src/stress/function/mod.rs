@@ -1,5 +1,6 @@
 //! An author's own function at the extremes: what it takes, how it says no, where it fails first, and by which mistake.
 
+mod leaf;
 mod mistake;
 mod reading;
 mod replace;

@@ -6,7 +6,7 @@ use super::super::axis::Shot;
 use super::super::formula::{FORMULAS, Formula, RECENTRED};
 use super::super::tally::Outcome;
 use super::super::{Failure, paint};
-use super::{Answers, Asked, Role, Signature, subject};
+use super::{Answers, Asked, Map, Role, Signature, subject};
 use crate::eval::{self, Program, Variant};
 use crate::glsl::tree::{Scalar, Type};
 use crate::glsl::{self, Checked};
@@ -21,7 +21,7 @@ pub fn replacements(
     checked: &Checked,
     options: &glsl::Options,
 ) -> Result<Vec<(&'static str, String)>, Failure> {
-    let all = Signature::all(checked);
+    let all = Signature::all(checked, &Map::new());
     let of_spheres = |one: &&Signature| one.name.to_lowercase().contains("sph");
     let Some(signature) = all.iter().find(of_spheres).or(all.first()) else {
         return Ok(Vec::new());

@@ -99,6 +99,11 @@ impl Role {
         }
     }
 
+    /// Whether it is the sphere's, or a part of it.
+    pub(super) fn is_of_sphere(self) -> bool {
+        matches!(self, Self::Center | Self::Radius | Self::Sphere)
+    }
+
     /// What a shader that reads a case passes for it.
     pub(super) fn input(self) -> Option<&'static str> {
         Some(match self {

@@ -3,21 +3,13 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use super::leaf::{agrees, inputs, is_sphere, leaves, outputs};
 use super::role::Role;
 use crate::glsl::Checked;
-use crate::glsl::tree::{Direction, Function, Scalar, Tree, Type, VariableKind};
+use crate::glsl::tree::{Direction, Function, Tree, Type, VariableKind};
 
 /// What the user says about a function, where names do not: paths (`ray.origin`, `s`, `return`) and their roles.
 pub type Map = BTreeMap<String, Role>;
-
-/// A value that a function takes or gives: a parameter, its result, or a part of one.
-#[derive(Debug, Clone)]
-struct Leaf {
-    path: String,
-    ty: Type,
-    /// The name of the structure that it is a member of.
-    within: String,
-}
 
 /// A function, and what its values are.
 #[derive(Debug, Clone)]
@@ -57,26 +49,33 @@ impl Signature {
         }))
     }
 
-    /// All functions that can be recognised without help.
+    /// All functions that can be recognised with no more help than that.
     #[must_use]
-    pub fn all(checked: &Checked) -> Vec<Self> {
+    pub fn all(checked: &Checked, map: &Map) -> Vec<Self> {
         let functions = checked.tree.functions.iter();
         let functions = functions.filter(|(_, function)| function.body.is_some());
         functions
-            .filter_map(|(_, function)| Self::of(&checked.tree, function, &Map::new()).ok())
+            .filter_map(|(_, function)| Self::of(&checked.tree, function, map).ok())
             .collect()
     }
 
-    /// The one function that can be recognised without help.
+    /// The one function that can be recognised with no more help than that.
     ///
     /// # Errors
     /// That there is none, or which ones there are.
-    pub fn only(checked: &Checked) -> Result<Self, String> {
-        let mut all = Self::all(checked);
+    pub fn only(checked: &Checked, map: &Map) -> Result<Self, String> {
+        let mut all = Self::all(checked, map);
+        // Why the one function that was to be had is none with that map.
+        if all.is_empty()
+            && !map.is_empty()
+            && let Ok(one) = Self::only(checked, &Map::new())
+        {
+            return Self::recognise(checked, &one.name, map);
+        }
         match (all.pop(), all.is_empty()) {
             (Some(one), true) => Ok(one),
             (None, _) => Err(
-                "no function is seen to take a ray and a sphere and to give t; name it with --function"
+                "no function is seen to take a ray and a sphere and to give t; name it with --function, and what it takes with --map"
                     .to_owned(),
             ),
             (Some(last), false) => {
@@ -89,6 +88,7 @@ impl Signature {
 
     fn of(tree: &Tree, function: &Function, map: &Map) -> Result<Self, String> {
         let mut takes = Vec::new();
+        let mut only_takes = Vec::new();
         let mut gives = Vec::new();
         let mut parameters = Vec::new();
         for (index, &id) in function.parameters.iter().enumerate() {
@@ -105,6 +105,8 @@ impl Signature {
             let leaves = leaves(tree, &name, variable.ty, "");
             if matches!(direction, Direction::Out | Direction::InOut) {
                 gives.extend(leaves.clone());
+            } else {
+                only_takes.extend(leaves.clone());
             }
             if direction != Direction::Out {
                 takes.extend(leaves);
@@ -112,7 +114,11 @@ impl Signature {
         }
         let returns = (function.return_type != Type::Void).then(|| tree.type_name(function.return_type));
         gives.extend(leaves(tree, "return", function.return_type, ""));
-        let inputs = inputs(&takes, map);
+        agrees(function, &takes, &gives, map)?;
+        let mut inputs = inputs(&takes, map);
+        if !is_sphere(function, &only_takes, &inputs, map) {
+            inputs.retain(|(path, role)| !role.is_of_sphere() || map.contains_key(path));
+        }
         let has = |role| inputs.iter().any(|(_, found)| *found == role);
         let wanted = [Role::Origin, Role::Direction, Role::Center, Role::Radius];
         let whole = has(Role::Sphere);
@@ -223,146 +229,4 @@ impl Signature {
         told.filter_map(|(path, role)| Some(format!("{path} = {};", value(*role)?)))
             .collect()
     }
-}
-
-/// The parts of a value that are scalars or vectors; elements of arrays are not looked at.
-fn leaves(tree: &Tree, path: &str, ty: Type, within: &str) -> Vec<Leaf> {
-    match ty {
-        Type::Struct(id) => {
-            let of = &tree[id];
-            let members = of.members.iter();
-            members
-                .flat_map(|member| leaves(tree, &format!("{path}.{}", member.name), member.ty, &of.name))
-                .collect()
-        }
-        Type::Scalar(_) | Type::Vector(..) => vec![Leaf {
-            path: path.to_owned(),
-            ty,
-            within: within.to_owned(),
-        }],
-        _ => Vec::new(),
-    }
-}
-
-impl Leaf {
-    /// Its last name as people vary it.
-    fn plain(&self) -> String {
-        let last = self.path.rsplit('.').next().unwrap_or_default();
-        last.to_lowercase().replace('_', "")
-    }
-
-    fn named(&self, role: Role) -> bool {
-        role.fits(self.ty) && role.is_called(&self.plain())
-    }
-
-    /// Whether it may be a place, and not a colour or a normal.
-    fn is_spatial(&self) -> bool {
-        let plain = self.plain();
-        let other = [
-            "col", "albedo", "emi", "kd", "ks", "spec", "norm", "mat", "amb", "diff",
-        ];
-        self.ty == Type::vector(Scalar::Float, 3)
-            && !other.iter().any(|word| plain.contains(word))
-            && plain != "n"
-    }
-
-    fn is_within(&self, word: &str) -> bool {
-        self.within.to_lowercase().contains(word)
-    }
-}
-
-fn inputs(takes: &[Leaf], map: &Map) -> Vec<(String, Role)> {
-    let mut found: Vec<(String, Role)> = Vec::new();
-    for leaf in takes {
-        if let Some(&role) = map.get(&leaf.path) {
-            found.push((leaf.path.clone(), role));
-        }
-    }
-    let give = |found: &mut Vec<(String, Role)>, leaf: &Leaf, role: Role| {
-        let taken = found
-            .iter()
-            .any(|(path, other)| *path == leaf.path || *other == role);
-        if !taken && !map.contains_key(&leaf.path) {
-            found.push((leaf.path.clone(), role));
-        }
-    };
-    let roles = [
-        Role::Origin,
-        Role::Direction,
-        Role::Center,
-        Role::Radius,
-        Role::Sphere,
-        Role::TMin,
-        Role::TMax,
-    ];
-    for role in roles {
-        for leaf in takes.iter().filter(|leaf| leaf.named(role)) {
-            give(&mut found, leaf, role);
-        }
-    }
-    // What is called `pos` is what its structure makes of it, or its place among the others.
-    let has = |found: &[(String, Role)], role: Role| found.iter().any(|(_, other)| *other == role);
-    for (word, role) in [
-        ("ray", Role::Origin),
-        ("ray", Role::Direction),
-        ("sph", Role::Center),
-        ("ball", Role::Center),
-    ] {
-        for leaf in takes
-            .iter()
-            .filter(|leaf| leaf.is_spatial() && leaf.is_within(word))
-        {
-            give(&mut found, leaf, role);
-        }
-    }
-    let whole = has(&found, Role::Sphere);
-    for role in [Role::Origin, Role::Direction, Role::Center] {
-        if !(whole && role == Role::Center) {
-            for leaf in takes.iter().filter(|leaf| leaf.is_spatial()) {
-                give(&mut found, leaf, role);
-            }
-        }
-    }
-    if !whole {
-        for leaf in takes.iter().filter(|leaf| leaf.ty == Type::FLOAT) {
-            give(&mut found, leaf, Role::Radius);
-        }
-    }
-    found
-}
-
-fn outputs(gives: &[Leaf], map: &Map) -> Vec<(String, Role, Type)> {
-    let mut found: Vec<(String, Role, Type)> = Vec::new();
-    let mut give = |leaf: &Leaf, role: Role| {
-        let taken = found
-            .iter()
-            .any(|(path, other, _)| *path == leaf.path || *other == role);
-        if !taken {
-            found.push((leaf.path.clone(), role, leaf.ty));
-        }
-    };
-    for leaf in gives {
-        if let Some(&role) = map.get(&leaf.path) {
-            give(leaf, role);
-        }
-    }
-    // What is returned by itself is t, or whether there is one.
-    for leaf in gives.iter().filter(|leaf| leaf.path == "return") {
-        if Role::T.fits(leaf.ty) {
-            give(leaf, Role::T);
-        } else if Role::Flag.fits(leaf.ty) {
-            give(leaf, Role::Flag);
-        }
-    }
-    for role in [Role::T, Role::Second, Role::Flag] {
-        for leaf in gives.iter().filter(|leaf| leaf.named(role)) {
-            give(leaf, role);
-        }
-    }
-    // The only floats that a function gives out are its t.
-    let floats: Vec<_> = gives.iter().filter(|leaf| leaf.ty == Type::FLOAT).collect();
-    if let [leaf] = floats[..] {
-        give(leaf, Role::T);
-    }
-    found
 }
