@@ -20,7 +20,7 @@ void mainImage(inout vec4 c, in vec2 p) { c.x += c.w - c.y; }
 void mainImage(out vec4 c, const in vec2 p) { c = vec4(p.x * 2.0); }
 
 //# - holds mainImage may be declared before
-void mainImage(out vec4 c, in vec2 p);  //!
+void mainImage(out vec4 c, in vec2 p);
 void paint(out vec4 c) { c = vec4(iTime - 1.0); }
 void mainImage(out vec4 c, in vec2 p) { paint(c); }
 
@@ -97,7 +97,7 @@ float f() { return 1.0; } // no mainImage //!
 
 //# - E0409 mainImage has a body
 // glslang leaves it to the linker.
-void mainImage(out vec4 c, in vec2 p);
+void mainImage(out vec4 c, in vec2 p);  //!
 
 //# - E0409 mainImage writes its colour
 // The site compiles it, and stays black.
