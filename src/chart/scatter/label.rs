@@ -6,6 +6,9 @@ use super::{LETTERS, Point, SIZE, Scatter};
 type Area = [i32; 4];
 type Pixel = (i32, i32);
 
+/// Squared distances that differ by less look alike, in pixels.
+const SLACK: i32 = 8;
+
 /// A name and where it stands.
 #[derive(Debug, Clone)]
 pub(super) struct Label {
@@ -31,7 +34,7 @@ impl Label {
 
 impl Scatter {
     /// Names beside their points, as many as have room, the best first: none covers another, a point, the front or what else is `taken`, and
-    /// none stands nearer to another's point than to its own.
+    /// none stands nearer to another's point than to its own. One of the front, whose points are larger, may stand as near to both.
     pub(super) fn labels(&self, place: &impl Fn(f64, f64) -> Pixel, mut taken: Vec<Area>) -> Vec<Label> {
         let pixel = |point: &Point| place(point.x, point.y);
         let dots: Vec<Pixel> = self.points.iter().map(pixel).collect();
@@ -47,6 +50,7 @@ impl Scatter {
         let mut labels: Vec<Label> = Vec::new();
         for point in points {
             let own = pixel(point);
+            let slack = if point.best { SLACK } else { 0 };
             let is_free = |label: &Label| {
                 let around = label.around();
                 let inside = around[0] > 140 && around[2] < SIZE.0 as i32 - 20 && around[1] > 60;
@@ -54,7 +58,9 @@ impl Scatter {
                 inside
                     && around[3] < SIZE.1 as i32 - 90
                     && !taken.iter().any(|other| overlap(&around, other))
-                    && !dots.iter().any(|&dot| squared_distance(dot, &around) < distance)
+                    && !dots
+                        .iter()
+                        .any(|&dot| squared_distance(dot, &around) + slack < distance)
                     && !labels.iter().any(|other| {
                         let mut leader = along(own, label.at);
                         leader.any(|piece| overlap(&piece, &other.around()))
@@ -74,7 +80,10 @@ impl Scatter {
 fn places(name: &str, (x, y): Pixel) -> impl Iterator<Item = Label> {
     [0, -1, 1, -2, 2, -3, 3, -4, 4].into_iter().flat_map(move |row| {
         let y_of_row = y + row * (LETTERS + 4);
-        [14, -14].map(|dx| Label {
+        let beside = [14, -14].into_iter();
+        // In another row it may begin or end at the point itself.
+        let above_or_below = [1, -1].into_iter().filter(move |_| row != 0);
+        beside.chain(above_or_below).map(move |dx| Label {
             name: name.to_owned(),
             at: (x + dx, y_of_row),
             point: (x, y),
@@ -136,7 +145,16 @@ mod tests {
                 .iter()
                 .map(|&dot| squared_distance(dot, &label.around()))
                 .min();
-            assert!(nearest >= Some(own), "{label:?}");
+            let slack = if scatter
+                .points
+                .iter()
+                .any(|point| point.best && point.name == label.name)
+            {
+                SLACK
+            } else {
+                0
+            };
+            assert!(nearest >= Some(own - slack), "{label:?}");
         }
     }
 
