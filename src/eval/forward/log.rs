@@ -10,7 +10,7 @@ pub(super) type Map<K, V> = HashMap<K, V, BuildHasherDefault<FxHasher>>;
 
 #[derive(Debug)]
 pub(super) struct Log<K, V> {
-    pub(super) map: Map<K, V>,
+    map: Map<K, V>,
     changes: Vec<(K, Option<V>)>,
 }
 

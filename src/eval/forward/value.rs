@@ -78,11 +78,11 @@ impl Forward<'_> {
             Origin::Word(_) | Origin::Float(_) | Origin::Input(..) | Origin::FragCoord(_) => {
                 Some(self.alias[at])
             }
-            Origin::Load(cell) => self.known.map.get(&cell).copied(),
+            Origin::Load(cell) => self.known.get(cell),
             Origin::Operation(operation, operands) => self.folded(operation, operands),
             _ => None,
         };
-        let found = found.or_else(|| self.computed.map.get(&key).copied().filter(|_| !self.story));
+        let found = found.or_else(|| self.computed.get(key).filter(|_| !self.story));
         if let Some(found) = found {
             self.alias[at] = found;
             return None;
