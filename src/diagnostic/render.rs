@@ -158,6 +158,15 @@ mod tests {
     }
 
     #[test]
+    fn programs_are_told_what_stands_beside_the_line() {
+        let (diagnostic, files) = example();
+        assert_eq!(
+            json(&diagnostic, &files).notes,
+            ["not declared", "declare it first"]
+        );
+    }
+
+    #[test]
     fn a_line_too_long_to_show_is_named_by_its_column() {
         let mut files = Files::default();
         let id = files.add(File::new("a.glsl", "x".repeat(20_000)));

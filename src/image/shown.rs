@@ -111,10 +111,12 @@ mod tests {
         let band = |red| Image::new(2, 1, vec![[red, 0.5, f32::NAN, 1.0]; 2]);
         let mut shown = Shown::empty(2, 2);
         shown.extend(&band(0.0));
+        assert_eq!(shown.only_colour(), Some([0, 128, 0]));
         shown.extend(&band(7.0));
         assert_eq!(shown.size(), [2, 2]);
         assert_eq!(shown.get(1, 0), [0, 128, 0]);
         assert_eq!(shown.get(0, 1), [255, 128, 0]);
         assert_eq!(shown.rows().count(), 2);
+        assert_eq!(shown.only_colour(), None);
     }
 }

@@ -171,6 +171,38 @@ fn what_was_killed_goes_on_and_nothing_is_lost_or_done_twice() {
 }
 
 #[test]
+fn plain_pictures_and_counts_of_samples_are_called_what_they_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let rung = &MANY_OBJECTS;
+    fs::write(folder.path().join("scene.toml"), rung.scene).unwrap();
+    let last = "fragColor = vec4(color / float(SAMPLES), 1.0);";
+    let count = "i < SAMPLES;";
+    assert!(rung.shader.contains(last) && rung.shader.contains(count));
+    let black = rung.shader.replace(last, "fragColor = vec4(0.0, 0.0, 0.0, 1.0);");
+    let more = rung.shader.replace(count, "i <= SAMPLES;");
+    let less = rung.shader.replace("SAMPLES = 4", "SAMPLES = 3");
+    for (text, words) in [
+        (black, "; every pixel is black"),
+        (more, "takes one sample more than it divides by"),
+        (less, "takes one sample less than the scene"),
+    ] {
+        fs::write(folder.path().join("a.glsl"), text).unwrap();
+        let arguments = [
+            "check",
+            "a.glsl",
+            "--scene",
+            "scene.toml",
+            "--on",
+            "cpu",
+            "--size",
+            "160x90",
+        ];
+        let run = toyproof(folder.path(), &arguments);
+        assert!(run.stdout.contains(words), "{words}: {}", run.stdout);
+    }
+}
+
+#[test]
 fn a_shader_is_not_late_because_its_neighbours_never_end() {
     let folder = tempfile::tempdir().unwrap();
     let endless =
