@@ -2,6 +2,7 @@
 //! milliseconds of processor time, ours on one thread. Who is not installed is left out.
 //! `cargo bench --bench tracers [-- rays povray threads features growth building]`
 
+#![expect(clippy::disallowed_methods, reason = "the paths are the benchmark's own")]
 #![expect(
     clippy::print_stdout,
     clippy::print_stderr,

@@ -45,7 +45,7 @@ impl Pipe {
         // A page of a file may use WebGPU, which an empty one may not.
         let file = profile.path().join("page.html");
         fs::write(&file, page).map_err(gone)?;
-        let url = format!("file://{}", file.display());
+        let url = format!("file://{}", file.to_string_lossy());
         let mut command = Command::new("sh");
         command
             .args(["-c", SHELL])
@@ -67,7 +67,7 @@ impl Pipe {
                 "--use-webgpu-adapter=swiftshader",
                 "--enable-features=Vulkan",
             ])
-            .arg(format!("--user-data-dir={}", profile.path().display()));
+            .arg(format!("--user-data-dir={}", profile.path().to_string_lossy()));
         if geteuid().is_root() {
             // Its own sandbox does not run as root; the shaders are those that run here in any case.
             command.arg("--no-sandbox");

@@ -6,6 +6,7 @@ use super::inputs::may_write;
 use super::{Exit, Terminal};
 use crate::compare::{TOLERANCE, compare, grouped, magnitude};
 use crate::image::{self, Legend};
+use crate::source::path_name;
 
 /// Compare two pictures: exit code 0 if they agree, 1 if they differ
 #[derive(Debug, clap::Args)]
@@ -39,8 +40,8 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         let [[aw, ah], [bw, bh]] = [a.size(), b.size()];
         terminal.error(format_args!(
             "{} has {aw}×{ah} pixels and {} has {bw}×{bh}; only pictures of one size can be compared",
-            args.a.display(),
-            args.b.display()
+            path_name(&args.a),
+            path_name(&args.b)
         ));
         return Exit::Trouble;
     }

@@ -6,6 +6,7 @@ use super::inputs::{self, Place};
 use super::{Exit, Terminal};
 use crate::compare::grouped;
 use crate::gpu::{Driver, INSTALL_HINT, LoopCap, On, is_pinned_by_user, lavapipe_manifest, manifests};
+use crate::source::path_name;
 
 /// Say which Vulkan drivers are installed, which is chosen and why, what is missing and how to get it
 #[derive(Debug, clap::Args)]
@@ -32,7 +33,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let manifests = manifests();
     terminal.result("Vulkan drivers installed:");
     for path in &manifests {
-        terminal.result(&format!("  {}", path.display()));
+        terminal.result(&format!("  {}", path_name(path)));
     }
     if manifests.is_empty() {
         terminal.result("  none");

@@ -14,7 +14,7 @@ use crate::frame::Frame;
 use crate::glsl::Checked;
 use crate::report;
 use crate::scene::Scene;
-use crate::source::{Found, ReadError};
+use crate::source::{Found, ReadError, path_name};
 
 /// Tell what one pixel does, line by line, in f32 beside f64, and where the two part
 #[derive(Debug, clap::Args)]
@@ -45,7 +45,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let [input] = found.as_slice() else {
         terminal.error(format_args!(
             "{} holds several shaders; explain takes one",
-            args.shader.display()
+            path_name(&args.shader)
         ));
         return Exit::Trouble;
     };

@@ -7,6 +7,7 @@ use super::inputs::may_write;
 use super::render::load;
 use super::{Exit, Terminal};
 use crate::export;
+use crate::source::path_name;
 
 /// Write the shader that paints a scene
 #[derive(Debug, clap::Args)]
@@ -36,7 +37,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         Err(what) => {
             terminal.error(format_args!(
                 "{}: {what} cannot be exported yet",
-                args.scene.display()
+                path_name(&args.scene)
             ));
             Exit::Trouble
         }

@@ -12,6 +12,7 @@ use crate::glsl;
 use crate::gpu::{FloatMode, On, Worker};
 use crate::image::{self, Image, check_size};
 use crate::output::Originals;
+use crate::source::path_name;
 
 /// A longer deadline is none.
 const LONGEST: Duration = Duration::from_secs(24 * 60 * 60);
@@ -20,7 +21,7 @@ const LONGEST: Duration = Duration::from_secs(24 * 60 * 60);
 pub(super) fn may_write(path: &Path, originals: &Originals, terminal: &Terminal) -> bool {
     let loses = originals.would_lose(path);
     if loses {
-        let path = path.display();
+        let path = path_name(path);
         terminal.error(format_args!(
             "{path}: this is an input, and would be lost; give the output another name"
         ));

@@ -11,6 +11,7 @@ mod explain;
 mod export;
 mod inputs;
 mod interrupt;
+mod names;
 mod pool;
 mod render;
 mod run;
@@ -22,9 +23,12 @@ mod terminal;
 mod trade;
 mod worker;
 
+use std::panic;
+
 use clap::{Parser, Subcommand};
 
 use self::terminal::Terminal;
+use crate::contain::{Part, contain};
 
 /// Checks, renders and converts ShaderToy shaders.
 #[derive(Debug, Parser)]
@@ -85,20 +89,32 @@ impl Cli {
     #[must_use]
     pub fn run(self) -> Exit {
         let terminal = Terminal::new(self.quiet, self.verbose);
-        let exit = match self.command {
-            Command::Check(args) => check::run(&args, &terminal),
-            Command::Render(args) => render::run(&args, &terminal),
-            Command::Run(args) => run::run(&args, &terminal),
-            Command::Convert(args) => convert::run(&args, &terminal),
-            Command::Explain(args) => explain::run(&args, &terminal),
-            Command::Stress(args) => stress::run(&args, &terminal),
-            Command::Trade(args) => trade::run(&args, &terminal),
-            Command::Compare(args) => compare::run(&args, &terminal),
-            Command::Export(args) => export::run(&args, &terminal),
-            Command::Scenes(args) => scenes::run(&args, &terminal),
-            Command::Doctor(args) => doctor::run(&args, &terminal),
-            Command::Worker => worker::run(),
-        };
+        if std::env::var_os("RUST_BACKTRACE").is_none() {
+            panic::set_hook(Box::new(Terminal::panicked));
+        }
+        let exit = contain(Part::Command, || self.command.run(&terminal)).unwrap_or_else(|panic| {
+            terminal.error(panic);
+            Exit::Trouble
+        });
         if terminal.has_lost() { Exit::Trouble } else { exit }
+    }
+}
+
+impl Command {
+    fn run(&self, terminal: &Terminal) -> Exit {
+        match self {
+            Self::Check(args) => check::run(args, terminal),
+            Self::Render(args) => render::run(args, terminal),
+            Self::Run(args) => run::run(args, terminal),
+            Self::Convert(args) => convert::run(args, terminal),
+            Self::Explain(args) => explain::run(args, terminal),
+            Self::Stress(args) => stress::run(args, terminal),
+            Self::Trade(args) => trade::run(args, terminal),
+            Self::Compare(args) => compare::run(args, terminal),
+            Self::Export(args) => export::run(args, terminal),
+            Self::Scenes(args) => scenes::run(args, terminal),
+            Self::Doctor(args) => doctor::run(args, terminal),
+            Self::Worker => worker::run(),
+        }
     }
 }

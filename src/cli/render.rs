@@ -11,7 +11,7 @@ use super::{Exit, Terminal, inputs};
 use crate::compare::{grouped, magnitude};
 use crate::image::{self, Image};
 use crate::scene::{self, Moment, Requirements, Sampler, Scene};
-use crate::source::{self, Files};
+use crate::source::{self, Files, path_name};
 use crate::trace::{Real, Tracer};
 
 /// Render a scene with the reference tracer
@@ -167,7 +167,7 @@ fn picture(
 /// A scene from its file; says what is wrong with it.
 pub(super) fn load(path: &Path, terminal: &Terminal) -> Option<Scene> {
     if source::is_shader(path) {
-        let path = path.display();
+        let path = path_name(path);
         terminal.error(format_args!(
             "{path} is a shader, and `render` takes a scene; paint the shader with `toyproof run {path} -o PICTURE`"
         ));

@@ -8,15 +8,16 @@ use clap::ValueEnum;
 
 use super::check::cut_short;
 use super::inputs::{DriverArgs, FrameArgs, LanguageArgs, may_write};
+use super::names::{Names, with_suffix};
 use super::sequence::{self, Frames, Sequence};
-use super::shader::{Names, Shader, Unusable, find, is_invalid, with_suffix};
+use super::shader::{Shader, Unusable, find, is_invalid};
 use super::{Exit, Terminal};
 use crate::eval::{self, Number, Program, Settings, Variant};
 use crate::frame::Frame;
 use crate::glsl::Checked;
 use crate::gpu::{Drawn, Failure, Worker};
 use crate::image::{self, Image};
-use crate::source::Files;
+use crate::source::{Files, path_name};
 use crate::verify::unbound;
 
 /// Run shaders and keep the pictures that they paint
@@ -69,7 +70,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     if several && (standard || args.output.extension().is_some()) {
         terminal.error(format_args!(
             "several shaders need a folder to go to, not {}",
-            args.output.display()
+            path_name(&args.output)
         ));
         return Exit::Trouble;
     }
@@ -78,7 +79,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         return Exit::Trouble;
     }
     let one = standard || (!several && !args.output.is_dir());
-    let mut names = Names::default();
+    let mut names = Names::new(&[".png"], &[]);
     let mut exit = Exit::Good;
     let channels = args.frame.files().map(PathBuf::as_path).collect();
     if !may_write(&args.output, &channels, terminal) {
@@ -105,7 +106,10 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
                 let spinner = terminal.spinner(&shader.name);
                 let painted = runner.paint(&shader);
                 spinner.finish_and_clear();
-                painted.map_or_else(|exit| exit, |picture| keep(&picture, &path, terminal))
+                painted.map_or_else(
+                    |exit| exit,
+                    |picture| keep(&picture, &path, &args.output, terminal),
+                )
             }
             Some(frames) => runner.sequence(&shader, frames, &path),
         });
@@ -131,7 +135,7 @@ impl Runner<'_> {
             self.frame.frame = one.frame;
             self.frame.time = one.time as f32;
             exit = match self.paint(shader) {
-                Ok(picture) => keep(&picture, &one.path, self.terminal),
+                Ok(picture) => keep(&picture, &one.path, &self.args.output, self.terminal),
                 Err(exit) => exit,
             };
             exit == Exit::Good
@@ -262,14 +266,14 @@ pub(super) fn place(failure: &eval::Failure, files: &Files) -> String {
     }
 }
 
-fn keep(picture: &Image, path: &Path, terminal: &Terminal) -> Exit {
+fn keep(picture: &Image, path: &Path, output: &Path, terminal: &Terminal) -> Exit {
     let format = if path == Path::new("-") {
         Path::new("-.png")
     } else {
         path
     };
     match image::encode(picture, format) {
-        Ok(bytes) if terminal.write(path, &bytes) => Exit::Good,
+        Ok(bytes) if terminal.write_output(output, path, &bytes) => Exit::Good,
         Ok(_) => Exit::Trouble,
         Err(error) => {
             terminal.error(error);

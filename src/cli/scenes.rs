@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use super::{Exit, Terminal, course};
 use crate::scene;
-use crate::source::{File, Files};
+use crate::source::{File, Files, path_name};
 
 /// List the course's scenes and shaders, or write them to a folder
 #[derive(Debug, clap::Args)]
@@ -33,7 +33,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     if let Some((name, _)) = course::files().find(|(name, text)| differs(name, text)) {
         terminal.error(format_args!(
             "{} is there already and is not the course's; nothing was written, name another folder",
-            folder.join(name).display()
+            path_name(&folder.join(name))
         ));
         return Exit::Trouble;
     }
@@ -45,7 +45,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     terminal.say(&format!(
         "wrote {} files to {}",
         course::files().count(),
-        folder.display()
+        path_name(folder)
     ));
     Exit::Good
 }

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::Terminal;
+use crate::compare::grouped;
 use crate::frame::FRAME_RATE;
 
 /// The numbers of the frames of a sequence, both ends included.
@@ -81,7 +82,8 @@ impl Sequence {
             .take_while(|one| i64::from(one.frame) < next);
         let kept = made.filter(|one| one.path.is_file()).count() as u64;
         if kept > 0 {
-            terminal.say(&format!("{kept} of {} frames are there already", frames.count()));
+            let (kept, count) = (grouped(kept), grouped(frames.count()));
+            terminal.say(&format!("{kept} of {count} frames are there already"));
         }
         Self {
             record,
@@ -117,13 +119,14 @@ impl Sequence {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::source::path_name;
 
     #[test]
     fn a_range_has_both_ends_and_its_files_sort_by_number() {
         let sequence = frames("8..11").unwrap();
         let names: Vec<_> = sequence
             .numbered(Path::new("a/b.png"))
-            .map(|one| one.path.display().to_string())
+            .map(|one| path_name(&one.path))
             .collect();
         assert_eq!(
             names,

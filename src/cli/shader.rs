@@ -1,13 +1,12 @@
-//! What the commands that take shaders share: reading one, lowering it, and naming its outputs.
+//! What the commands that take shaders share: finding and reading them.
 
-use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use super::inputs::{Deny, LanguageArgs};
 use crate::diagnostic::{self, Diagnostic, Severity};
 use crate::glsl::{self, Checked};
 use crate::gpu::Failure;
-use crate::source::{self, Files, Found, ReadError};
+use crate::source::{self, Files, Found, ReadError, path_name};
 
 /// A shader's text and its tree, or why there is none.
 pub(super) struct Shader {
@@ -88,9 +87,7 @@ fn read(found: &Found, files: &mut Files, options: &glsl::Options) -> Result<Che
 
 fn subject(error: &ReadError) -> String {
     match error {
-        ReadError::Missing(path) | ReadError::NoShader(path) | ReadError::Scene(path) => {
-            path.display().to_string()
-        }
+        ReadError::Missing(path) | ReadError::NoShader(path) | ReadError::Scene(path) => path_name(path),
         ReadError::Unreadable { name, .. } | ReadError::TooLarge { name } => name.clone(),
         ReadError::NotUtf8 { file, .. } => file.name().to_owned(),
     }
@@ -110,78 +107,4 @@ pub(super) fn find(arguments: &[PathBuf]) -> Vec<Result<Found, ReadError>> {
 /// Whether it is the shader that does not compile, rather than the tools around it.
 pub(super) fn is_invalid(failure: &Failure) -> bool {
     matches!(failure, Failure::Invalid(_) | Failure::StackOverflow { .. })
-}
-
-/// Names for outputs below a folder: the input's own place and stem, made unlike any other's.
-#[derive(Debug, Default)]
-pub(super) struct Names {
-    /// Each with the folder of its input.
-    taken: HashMap<PathBuf, Option<PathBuf>>,
-}
-
-impl Names {
-    /// The place of an input's outputs, without an ending. Of two inputs that would share one, the second has its extension, too, or before
-    /// its name that of its folder, if that is another.
-    pub(super) fn place(&mut self, found: &Found) -> PathBuf {
-        let folder = found.path().and_then(Path::parent);
-        let stem = found.relative.with_extension("");
-        let whole = found.relative.clone();
-        let in_folder = || {
-            let mut name = folder?.file_name()?.to_owned();
-            name.push("-");
-            name.push(stem.file_name()?);
-            Some(stem.with_file_name(name))
-        };
-        let is_beside = self
-            .taken
-            .get(&stem)
-            .is_none_or(|other| other.as_deref() == folder);
-        let numbered = (2..).map(|n| with_suffix(&stem, &format!("-{n}")));
-        let free = [
-            Some(stem.clone()),
-            in_folder().filter(|_| !is_beside),
-            Some(whole),
-        ]
-        .into_iter()
-        .flatten()
-        .chain(numbered)
-        .find(|name| !self.taken.contains_key(name))
-        .unwrap_or(stem);
-        self.taken.insert(free.clone(), folder.map(Path::to_owned));
-        free
-    }
-}
-
-/// `place` with words behind its last name.
-pub(super) fn with_suffix(place: &Path, suffix: &str) -> PathBuf {
-    let mut name = place.as_os_str().to_owned();
-    name.push(suffix);
-    PathBuf::from(name)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::source::FoundIn;
-
-    #[test]
-    fn no_two_inputs_share_an_output() {
-        let mut names = Names::default();
-        let mut place = |folder: &str, relative: &str| {
-            let place = FoundIn::File(Path::new(folder).join(relative));
-            let found = Found {
-                place,
-                relative: PathBuf::from(relative),
-            };
-            names.place(&found).display().to_string()
-        };
-        assert_eq!(place("in", "a/x.glsl"), "a/x");
-        assert_eq!(place("in", "a/x.frag"), "a/x.frag");
-        assert_eq!(place("in", "a/x.glsl"), "a/x.glsl", "named twice");
-        assert_eq!(place("in", "a/x.glsl"), "a/x-2");
-        assert_eq!(place("in/ann", "x.glsl"), "x");
-        assert_eq!(place("in/bob", "x.glsl"), "bob-x");
-        assert_eq!(place("out/bob", "x.glsl"), "x.glsl");
-        assert_eq!(place("out/bob", "y.glsl"), "y");
-    }
 }

@@ -7,6 +7,7 @@ use super::inputs::{DriverArgs, LanguageArgs};
 use super::shader::{Shader, Unusable, find};
 use super::{Exit, Terminal, interrupt};
 use crate::gpu::{Failure, Worker};
+use crate::source::path_name;
 use crate::stress::function::{self, Findings, Map, Role, Signature};
 use crate::stress::{self, Report, Settings, formula};
 
@@ -117,7 +118,7 @@ fn examine(
     let [input] = found.as_slice() else {
         terminal.error(format_args!(
             "{} holds several shaders; stress takes one",
-            path.display()
+            path_name(path)
         ));
         return Exit::Trouble;
     };

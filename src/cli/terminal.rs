@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
+use std::panic::PanicHookInfo;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -9,6 +10,7 @@ use std::time::Duration;
 use anstyle::{AnsiColor, Style};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use crate::contain;
 use crate::diagnostic::{self, Diagnostic, Severity};
 use crate::output;
 use crate::source::Files;
@@ -106,6 +108,16 @@ impl Terminal {
         );
     }
 
+    /// Where a panic happened; what it cost is said by whoever contains it.
+    pub(super) fn panicked(info: &PanicHookInfo) {
+        let place = info.location().map(|at| format!(" at {at}")).unwrap_or_default();
+        let message = contain::message(info.payload());
+        let _ = writeln!(
+            anstream::stderr().lock(),
+            "panic{place}: {message} (RUST_BACKTRACE=1 shows the calls)"
+        );
+    }
+
     /// Diagnostics with their source lines, on standard error; with `--quiet` a line each. Of warnings with one code the first few
     /// are shown and the others counted.
     pub(super) fn diagnostics(&self, diagnostics: &[Diagnostic], files: &Files) {
@@ -141,6 +153,18 @@ impl Terminal {
             return self.bytes(bytes);
         }
         let written = output::write(path, bytes);
+        if let Err(error) = &written {
+            self.error(format_args!("cannot write {error}"));
+        }
+        written.is_ok()
+    }
+
+    /// Writes one of the files that go to the `output` argument: to it, or below it where it is a folder, from which no link leads out.
+    pub(super) fn write_output(&self, output: &Path, path: &Path, bytes: &[u8]) -> bool {
+        if path == output || !path.starts_with(output) {
+            return self.write(path, bytes);
+        }
+        let written = output::write_inside(output, path, bytes);
         if let Err(error) = &written {
             self.error(format_args!("cannot write {error}"));
         }

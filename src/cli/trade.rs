@@ -15,7 +15,7 @@ use crate::frame::Frame;
 use crate::gpu::{On, Worker};
 use crate::image;
 use crate::scene::Scene;
-use crate::source::{self, File, Files};
+use crate::source::{self, File, Files, path_name};
 use crate::trade::{self, ERRORS, Report, Subject};
 
 /// Measure what accuracy costs: every way to the picture of a scene, or of a shader, with its time and its error
@@ -85,7 +85,7 @@ fn measure(args: &Args, interrupted: &AtomicBool, terminal: &Terminal) -> Result
         .as_ref()
         .and_then(|shader| Some((shader, shader.checked.as_ref().ok()?)));
     let subject = Subject {
-        name: args.subject.display().to_string(),
+        name: path_name(&args.subject),
         scene: scene.as_ref(),
         shader: checked.map(|(shader, checked)| (shader.text(checked), checked)),
         options: args.language.options(),
@@ -120,7 +120,7 @@ fn from_file(path: &Path, args: &Args, terminal: &Terminal) -> Result<Shader, Ex
     let [input] = found.as_slice() else {
         terminal.error(format_args!(
             "{} holds several shaders; trade takes one",
-            path.display()
+            path_name(path)
         ));
         return Err(Exit::Trouble);
     };

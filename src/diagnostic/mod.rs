@@ -15,7 +15,7 @@ pub use explain::{Explanation, explain, explanations};
 pub use render::{Json, human, json, short};
 pub use suggest::nearest;
 
-use crate::source::Span;
+use crate::source::{Span, printable, printable_lines};
 
 /// How bad it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -42,9 +42,13 @@ impl fmt::Display for Severity {
 /// The longest text of a message, in bytes: messages quote shaders, one word of which may be as long as a file.
 const LONGEST: usize = 1000;
 
+/// A text on one line without control characters, or its beginning and its end.
+fn one_line(text: impl Into<String>) -> String {
+    shortened(printable(&text.into()).into_owned())
+}
+
 /// A text, or its beginning and its end.
-fn shortened(text: impl Into<String>) -> String {
-    let mut text = text.into();
+fn shortened(mut text: String) -> String {
     if text.len() > LONGEST {
         let whole = text.len();
         let boundary = |from: usize| (from..whole).find(|&at| text.is_char_boundary(at));
@@ -79,7 +83,7 @@ impl Diagnostic {
         Self {
             severity,
             code: code.into(),
-            message: shortened(message),
+            message: one_line(message),
             span: None,
             label: None,
             related: Vec::new(),
@@ -107,21 +111,22 @@ impl Diagnostic {
     /// The same, with a few words at the caret.
     #[must_use]
     pub fn label(mut self, label: impl Into<String>) -> Self {
-        self.label = Some(shortened(label));
+        self.label = Some(one_line(label));
         self
     }
 
     /// The same, with another place that matters.
     #[must_use]
     pub fn related(mut self, span: Span, words: impl Into<String>) -> Self {
-        self.related.push((span, shortened(words)));
+        self.related.push((span, one_line(words)));
         self
     }
 
     /// The same, with a note.
     #[must_use]
     pub fn note(mut self, note: impl Into<String>) -> Self {
-        self.notes.push(shortened(note));
+        self.notes
+            .push(shortened(printable_lines(&note.into()).into_owned()));
         self
     }
 }

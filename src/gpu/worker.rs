@@ -15,6 +15,7 @@ use crate::emit::Target;
 use crate::frame::Frame;
 use crate::glsl::Lowered;
 use crate::image::Image;
+use crate::source::path_name;
 
 /// A worker process that is started when it is first needed, and anew after each that died.
 #[derive(Debug)]
@@ -289,7 +290,7 @@ impl Worker {
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()
-            .map_err(|error| Failure::Worker(format!("{}: {error}", self.program.display())))?;
+            .map_err(|error| Failure::Worker(format!("{}: {error}", path_name(&self.program))))?;
         let missing = || Failure::Worker("no pipe to the worker".to_owned());
         let requests = child.stdin.take().ok_or_else(missing)?;
         let mut output = child.stdout.take().ok_or_else(missing)?;

@@ -78,6 +78,24 @@ pub struct Record {
 }
 
 impl Record {
+    /// Of a shader of which nothing but the verdict is known.
+    #[must_use]
+    pub fn new(shader: String, verdict: Verdict) -> Self {
+        Self {
+            shader,
+            scene: None,
+            verdict,
+            reason: String::new(),
+            maths: None,
+            rounding: None,
+            toolchain: None,
+            picture: None,
+            mistake: None,
+            diagnostics: Vec::new(),
+            seconds: Seconds::default(),
+        }
+    }
+
     /// Why the toolchain question was not asked where others were.
     pub(super) fn toolchain_unasked(&self) -> Option<&'static str> {
         let others = self.maths.is_some() || self.rounding.is_some();

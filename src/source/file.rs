@@ -5,6 +5,7 @@ use std::ops::Range;
 use serde::{Deserialize, Serialize};
 
 use super::Span;
+use super::printable::{masked, printable};
 
 /// Names one file of a [`Files`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -15,6 +16,8 @@ pub struct FileId(u16);
 pub struct File {
     name: String,
     text: String,
+    /// The text as it is shown to people, where that is another.
+    shown: Option<String>,
     line_starts: Vec<usize>,
 }
 
@@ -28,9 +31,9 @@ pub struct Position {
 }
 
 impl File {
-    /// A text under the name that messages give it (a path as the user typed it, or `<stdin>`).
+    /// A text under the name that messages give it (a path as the user typed it, or `<stdin>`), in which control characters are escaped.
     #[must_use]
-    pub fn new(name: impl Into<String>, text: impl Into<String>) -> Self {
+    pub fn new(name: impl AsRef<str>, text: impl Into<String>) -> Self {
         let text = text.into();
         // Lines end in LF, CR LF, or CR alone (GLSL ES 3.00.6 §3.1).
         let bytes = text.as_bytes();
@@ -43,7 +46,8 @@ impl File {
             .chain((0..bytes.len()).filter(is_end).map(|at| at + 1))
             .collect();
         Self {
-            name: name.into(),
+            name: printable(name.as_ref()).into_owned(),
+            shown: masked(&text),
             text,
             line_starts,
         }
@@ -145,7 +149,8 @@ impl<'a> codespan_reporting::files::Files<'a> for Files {
     }
 
     fn source(&'a self, id: FileId) -> Result<&'a str, codespan_reporting::files::Error> {
-        Ok(self.get(id).text())
+        let file = self.get(id);
+        Ok(file.shown.as_deref().unwrap_or(&file.text))
     }
 
     fn line_index(&'a self, id: FileId, byte: usize) -> Result<usize, codespan_reporting::files::Error> {

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 use walkdir::WalkDir;
 
-use super::File;
+use super::{File, path_name};
 
 /// What a folder is searched for.
 pub const EXTENSIONS: [&str; 4] = ["glsl", "frag", "fs", "shadertoy"];
@@ -54,7 +54,7 @@ impl Found {
     pub fn name(&self) -> String {
         match &self.place {
             FoundIn::Stream { name, .. } => name.clone(),
-            FoundIn::File(path) => path.display().to_string(),
+            FoundIn::File(path) => path_name(path),
         }
     }
 }
@@ -63,17 +63,19 @@ impl Found {
 #[derive(Debug, Error)]
 pub enum ReadError {
     /// There is nothing of that name.
-    #[error("{0}: no such file or folder")]
+    #[error("{}: no such file or folder", path_name(.0))]
     Missing(PathBuf),
     /// A scene where a shader is needed.
     #[error(
-        "{0}: this is a scene, not a shader; `toyproof check SHADER --scene {0}` compares a shader with it, and \
-         `toyproof render {0} -o PICTURE` traces it"
+        "{name}: this is a scene, not a shader; `toyproof check SHADER --scene {name}` compares a shader with it, and \
+         `toyproof render {name} -o PICTURE` traces it",
+        name = path_name(.0)
     )]
     Scene(PathBuf),
     /// A folder without any shader.
     #[error(
-        "{0}: no shader in this folder (looked for .glsl .frag .fs .shadertoy, also in the folders below)"
+        "{}: no shader in this folder (looked for .glsl .frag .fs .shadertoy, also in the folders below)",
+        path_name(.0)
     )]
     NoShader(PathBuf),
     /// The system refused.
@@ -128,7 +130,7 @@ pub fn find(argument: &Path) -> Vec<Result<Found, ReadError>> {
             if argument.extension() == Some(OsStr::new("toml")) && argument.exists() {
                 Err(ReadError::Scene(argument.to_owned()))
             } else if argument.exists() && !argument.is_file() {
-                stream(bytes_at(argument), argument.display().to_string(), name)
+                stream(bytes_at(argument), path_name(argument), name)
             } else if argument.exists() {
                 Ok(named(FoundIn::File(argument.to_owned()), name))
             } else {
@@ -152,7 +154,7 @@ pub fn find(argument: &Path) -> Vec<Result<Found, ReadError>> {
             })),
             Ok(_) => None,
             Err(error) => Some(Err(ReadError::Unreadable {
-                name: error.path().unwrap_or(argument).display().to_string(),
+                name: path_name(error.path().unwrap_or(argument)),
                 error: error.into(),
             })),
         })
@@ -192,11 +194,11 @@ pub fn read(found: &Found) -> Result<File, ReadError> {
 /// # Errors
 /// Those of [`ReadError`]; no more than [`MAX_BYTES`] are ever read.
 pub fn read_text(path: &Path) -> Result<File, ReadError> {
-    decoded(bytes_at(path)?, path.display().to_string())
+    decoded(bytes_at(path)?, path_name(path))
 }
 
 fn bytes_at(path: &Path) -> Result<Vec<u8>, ReadError> {
-    let name = path.display().to_string();
+    let name = path_name(path);
     match OsFile::open(path) {
         Ok(file) => bytes_of(file, &name),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Err(ReadError::Missing(path.to_owned())),

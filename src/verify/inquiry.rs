@@ -12,6 +12,7 @@ use super::drawn::{Found, Painted};
 use super::tangent::{self, Trap};
 use super::{Asked, Case, Expected, Failure, Findings, PATIENCE_FOR_TWO, Painter, join, notes, timed};
 use crate::compare::{self, Answers, Comparison, MAX_UNSTABLE, Mixed, Verdict};
+use crate::contain::{Panic, Part, contain};
 use crate::eval::{self, Observations, Program};
 use crate::gpu::FloatMode;
 use crate::image::{Image, Mark, Shown};
@@ -241,6 +242,7 @@ impl<'a> Inquiry<'a> {
             notes: Vec::new(),
             cause: None,
             mistake: None,
+            panics: Vec::new(),
             eval: self.eval,
             trace: self.case.expected.map(|_| self.trace),
         };
@@ -252,15 +254,19 @@ impl<'a> Inquiry<'a> {
                 findings.toolchain = self.toolchain;
                 let (case, program) = (self.case, evaluator.program());
                 findings.notes = notes::notes(&self.noted, self.leaves_out, &case.checked.warnings);
-                findings
-                    .notes
-                    .extend(self.not_finite.told(program, case, self.until));
-                if let (Some((scene, traps, double)), Some(&at)) =
-                    (self.traps, case.checked.discriminants.first())
-                {
-                    let traps = tangent::shown(traps, &scene, &findings.actual, &double);
-                    findings.notes.extend(tangent::told(&traps, at));
-                }
+                let (not_finite, traps, actual) = (self.not_finite, self.traps, &findings.actual);
+                let notes = contain(Part::Notes, || {
+                    let mut notes: Vec<_> = not_finite.told(program, case, self.until).into_iter().collect();
+                    if let (Some((scene, traps, double)), Some(&at)) =
+                        (traps, case.checked.discriminants.first())
+                    {
+                        let traps = tangent::shown(traps, &scene, actual, &double);
+                        notes.extend(tangent::told(&traps, at));
+                    }
+                    notes
+                });
+                let notes = findings.contained(notes);
+                findings.notes.extend(notes);
                 findings.judge(case, program, self.until, self.painted.as_ref());
                 findings.notes.retain(|note| !case.checked.allows(note));
             }
@@ -278,7 +284,10 @@ impl Findings {
         });
         if let (Verdict::Wrong, Some(suspects)) = (self.verdict, case.suspects) {
             let patience = PATIENCE_FOR_TWO.min(until.saturating_duration_since(Instant::now()));
-            self.mistake = suspects.recognise(program, case.frame, patience);
+            let named = contain(Part::Mistake, || {
+                suspects.recognise(program, case.frame, patience)
+            });
+            self.mistake = self.contained(named);
         }
         if let (Verdict::Wrong, None, Some(painted), Some(maths)) =
             (self.verdict, &self.mistake, painted, &self.maths)
@@ -305,8 +314,11 @@ impl Findings {
         let rounds = |asked: &Asked| asked.answer.share(asked.answer.differing) > MAX_UNSTABLE;
         let loses = self.verdict == Verdict::Ok && self.rounding.as_ref().is_some_and(rounds);
         if self.verdict == Verdict::Unstable || loses {
-            let mut questions = [&self.rounding, &self.maths].into_iter().flatten();
-            let cause = questions.find_map(|asked| cause::cause(program, case, until, asked));
+            let cause = contain(Part::Cause, || {
+                let mut questions = [&self.rounding, &self.maths].into_iter().flatten();
+                questions.find_map(|asked| cause::cause(program, case, until, asked))
+            });
+            let cause = self.contained(cause);
             self.cause = cause.as_ref().and_then(|cause| cause.span);
             let is_foreseen = case
                 .checked
@@ -315,6 +327,14 @@ impl Findings {
                 .any(|warning| warning.span == self.cause);
             self.notes.extend(cause.filter(|_| !is_foreseen));
         }
+    }
+
+    /// What a part of the work found; nothing if it failed, which is noted.
+    fn contained<T: Default>(&mut self, found: Result<T, Panic>) -> T {
+        found.unwrap_or_else(|panic| {
+            self.panics.push(panic);
+            T::default()
+        })
     }
 
     /// Without the evaluator nothing can be said of a shader but that it paints.

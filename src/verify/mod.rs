@@ -25,6 +25,7 @@ pub use self::notes::unbound;
 use self::cpu::Evaluator;
 use self::inquiry::{Counted, Inquiry};
 use crate::compare::{self, Answer, Comparison, Standing, Verdict};
+use crate::contain::Panic;
 use crate::diagnostic::Diagnostic;
 use crate::eval::{self, Program};
 use crate::frame::Frame;
@@ -81,6 +82,8 @@ pub struct Findings {
     pub cause: Option<Span>,
     /// What explains a wrong picture, if that is a classic mistake, or two.
     pub mistake: Option<Vec<Named>>,
+    /// What failed internally beside the verdict: the parts that are missing here.
+    pub panics: Vec<Panic>,
     /// How long the evaluator took, for all its pictures.
     pub eval: Duration,
     /// How long the tracer took; next to nothing where the picture was known.

@@ -1,12 +1,18 @@
 //! The tests that need the whole program, in one binary: it links once.
 
 #![expect(clippy::print_stderr, reason = "a test's own words")]
+#![expect(
+    clippy::disallowed_methods,
+    reason = "tests show the paths that they made themselves"
+)]
 
 mod architecture;
 mod bad_input;
 mod batch;
 mod browser;
 mod commands;
+#[cfg(debug_assertions)]
+mod containment;
 mod conversion;
 mod derivatives;
 mod diagnostics;
@@ -23,6 +29,7 @@ mod generated;
 mod glslang;
 #[cfg(target_os = "linux")]
 mod hostile;
+mod literals;
 mod miscompiles;
 mod mistaken;
 mod mistakes;
@@ -38,6 +45,7 @@ mod sensitivity;
 mod stories;
 mod stress;
 mod strict;
+mod submissions;
 mod support;
 mod trade;
 mod unstable;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::judge::Submission;
 use super::pictures::PICTURES;
-use crate::cli::shader::with_suffix;
+use crate::cli::names::with_suffix;
 use crate::image::{self, ImageError};
 use crate::report::{BUDGET, Exhibit, Gallery, every};
 use crate::source;

@@ -1,5 +1,6 @@
 //! One shader, from its text to its record and its pictures.
 
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -11,17 +12,19 @@ use super::pictures::PICTURES;
 use super::reference::{Reference, References};
 use super::scenes::Scenes;
 use super::stopped::Stopped;
-use crate::cli::shader::{Names, Shader, Unusable, denied, with_suffix};
+use crate::cli::names::{Names, with_suffix};
+use crate::cli::shader::{Shader, Unusable, denied};
 use crate::cli::{Terminal, pool};
 use crate::compare::Verdict;
+use crate::contain::{Part, contain};
 use crate::diagnostic::{self, Diagnostic};
 use crate::frame::Frame;
 use crate::gpu::{self, Worker};
 use crate::image;
 use crate::output;
-use crate::report::{Mistake, Record, Seconds};
+use crate::report::{Mistake, Record};
 use crate::scene::Scene;
-use crate::source::{self, Files, Found, ReadError};
+use crate::source::{self, Files, Found, ReadError, path_name};
 use crate::verify::{self, Case, Findings, verify};
 
 /// A shader that is to be judged.
@@ -89,12 +92,16 @@ pub(super) struct Hand {
 impl Hand {
     /// One of so many.
     pub(super) fn new(args: &Args, threads: usize) -> Self {
-        // That the arguments are right has been seen before.
         Self {
-            worker: args.driver.worker().ok().flatten(),
+            worker: new_worker(args),
             pool: pool::own(threads),
         }
     }
+}
+
+/// That the arguments are right has been seen before.
+fn new_worker(args: &Args) -> Option<Worker> {
+    args.driver.worker().ok().flatten()
 }
 
 /// Something that is to be said, once it is the shader's turn.
@@ -171,27 +178,26 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// Judges a shader and keeps its pictures.
+    /// Judges a shader and keeps its pictures. A panic costs this shader's verdict, which is then `error`, and nothing else.
     pub(super) fn judge(&self, hand: &mut Hand, submission: &Submission) -> Judged {
+        contain(Part::Shader, || self.judge_one(hand, submission)).unwrap_or_else(|panic| {
+            // What the worker was doing when it was left is not known.
+            hand.worker = hand.worker.take().and_then(|_| new_worker(self.args));
+            let mut judged = Judged::known(Record::new(submission.name.clone(), Verdict::Error));
+            judged.record.reason = panic.to_string();
+            judged
+        })
+    }
+
+    fn judge_one(&self, hand: &mut Hand, submission: &Submission) -> Judged {
         let shader = Shader::load(&submission.input, &self.args.language);
         let found = submission.input.as_ref().ok();
         let reference = found.and_then(|found| self.references.find(found));
-        let mut judged = Judged::known(Record {
-            shader: shader.name.clone(),
-            scene: reference.as_ref().map(|reference| reference.name.clone()),
-            verdict: Verdict::Ok,
-            reason: String::new(),
-            maths: None,
-            rounding: None,
-            toolchain: None,
-            picture: None,
-            mistake: None,
-            diagnostics: Vec::new(),
-            seconds: Seconds::default(),
-        });
+        let mut judged = Judged::known(Record::new(shader.name.clone(), Verdict::Ok));
+        judged.record.scene = reference.as_ref().map(|reference| reference.name.clone());
         let findings = self.verify(hand, &mut judged, shader, reference);
-        if let Some(place) = &submission.place {
-            keep(place, findings.as_ref().ok(), &mut judged);
+        if let (Some(out), Some(place)) = (&self.args.out, &submission.place) {
+            keep(out, place, findings.as_ref().ok(), &mut judged);
         }
         match findings {
             Ok(findings) => fill(&mut judged, findings),
@@ -234,10 +240,17 @@ impl<'a> Judge<'a> {
             Some((Ok(scene), _)) => Some(self.sized(scene, &mut frame)),
         };
         let known = scene.map(|scene| self.scenes.known(scene, &frame));
+        let suspects = contain(Part::Mistake, || {
+            known.as_ref().and_then(|known| known.suspects(&frame))
+        });
+        let suspects = suspects.unwrap_or_else(|panic| {
+            judged.failed(format!("{}: {panic}", judged.record.shader));
+            None
+        });
         let case = Case {
             checked: &checked,
             expected: known.as_ref().map(|known| &known.expected),
-            suspects: known.as_ref().and_then(|known| known.suspects(&frame)),
+            suspects,
             frame: &frame,
             float: self.args.driver.float(),
             timeout: self.args.driver.timeout(),
@@ -260,6 +273,9 @@ impl<'a> Judge<'a> {
             let at = files.position(cause);
             let place = format!("; it is lost in line {}, column {}", at.line, at.column);
             findings.reason.push_str(&place);
+        }
+        for panic in findings.panics.drain(..) {
+            judged.failed(format!("{}: {panic}", judged.record.shader));
         }
         let mut notes = std::mem::take(&mut findings.notes);
         let denied = denied(&mut notes, self.args.language.denied());
@@ -312,21 +328,21 @@ fn fill(judged: &mut Judged, findings: Findings) {
 }
 
 /// Writes the pictures, and removes those of an earlier run that there are no more.
-fn keep(place: &Path, findings: Option<&Findings>, judged: &mut Judged) {
+fn keep(out: &Path, place: &Path, findings: Option<&Findings>, judged: &mut Judged) {
     for picture in PICTURES {
         let path = with_suffix(place, picture.suffix);
-        let Some(picture) = findings.and_then(picture.of) else {
-            // Usually there is none.
-            let _ = std::fs::remove_file(&path);
-            continue;
+        let encoded = contain(Part::Image, || {
+            let picture = findings.and_then(picture.of)?;
+            Some(image::encode_shown(&picture, &path))
+        });
+        let kept = match encoded {
+            Ok(Some(Ok(bytes))) => output::write_inside(out, &path, &bytes),
+            Ok(None) => output::remove_inside(out, &path),
+            Ok(Some(Err(error))) => Err(io::Error::other(error)),
+            Err(panic) => Err(io::Error::other(format!("{}: {panic}", path_name(&path)))),
         };
-        match image::encode_shown(&picture, &path) {
-            Ok(bytes) => {
-                if let Err(error) = output::write(&path, &bytes) {
-                    judged.failed(format!("cannot write {error}"));
-                }
-            }
-            Err(error) => judged.failed(error.to_string()),
+        if let Err(error) = kept {
+            judged.failed(format!("cannot write {error}"));
         }
     }
 }

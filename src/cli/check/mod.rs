@@ -14,15 +14,19 @@ use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
 use self::judge::{Hand, Judge, Judged, Submission};
+use self::pictures::PICTURES;
 pub(super) use self::reference::References;
 use self::results::Results;
 use super::inputs::{DriverArgs, Format, FrameArgs, LanguageArgs};
+use super::names::Names;
 use super::pool::{self, InOrder};
-use super::shader::{Names, find};
+use super::shader::find;
 use super::{Exit, Terminal, codes, interrupt};
 use crate::compare::{Verdict, grouped, plural};
+use crate::contain::{Part, contain};
 use crate::gpu::INSTALL_HINT;
 use crate::report::{self, Record, Report, Rubric};
+use crate::source::path_name;
 
 /// Compare what shaders paint with the reference tracer, and give a verdict on each
 ///
@@ -91,7 +95,8 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             }
         }
     }
-    let mut names = Names::default();
+    let reserved: Vec<&str> = reports::NAMES.into_iter().chain([results::NAME]).collect();
+    let mut names = Names::new(&PICTURES.map(|picture| picture.suffix), &reserved);
     let references = References::new(args.scene.as_deref());
     let submissions: Vec<Submission> = find(&args.shaders)
         .into_iter()
@@ -222,7 +227,15 @@ impl Batch<'_> {
             said.say(self.terminal);
         }
         if self.args.format == Format::Human {
-            self.terminal.result(&report::line(&judged.record));
+            match contain(Part::Summary, || report::line(&judged.record)) {
+                Ok(line) => self.terminal.result(&line),
+                Err(panic) => {
+                    let Record { shader, verdict, .. } = &judged.record;
+                    self.terminal.result(&format!("{verdict:<12} {shader}"));
+                    self.terminal.error(format_args!("{shader}: {panic}"));
+                    self.trouble = true;
+                }
+            }
         }
         self.trouble |= judged.trouble;
         self.device = judged.device.or(self.device.take());
@@ -252,7 +265,7 @@ impl Batch<'_> {
         }
         if let Some(out) = &args.out {
             if reports::write(&report, &told_of, rubric.as_ref(), out, terminal) {
-                terminal.say(&format!("pictures and reports are in {}", out.display()));
+                terminal.say(&format!("pictures and reports are in {}", path_name(out)));
             } else {
                 trouble = true;
             }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::cli::shader::Unusable;
 use crate::scene::{self, Scene};
-use crate::source::{self, File, Files, Found, FoundIn};
+use crate::source::{self, File, Files, Found, FoundIn, path_name};
 
 /// The scene of a shader.
 pub(in crate::cli) struct Reference {
@@ -48,7 +48,7 @@ impl References {
             scene::parse(&files, file).map_err(Unusable::Invalid)
         });
         Some(Reference {
-            name: path.display().to_string(),
+            name: path_name(&path),
             scene,
             files,
         })

@@ -7,6 +7,7 @@ use super::gallery::gallery;
 use super::judge::Submission;
 use crate::cli::Terminal;
 use crate::cli::shader::Unusable;
+use crate::contain::{Part, contain};
 use crate::diagnostic::of_content;
 use crate::report::{Report, Rubric, csv, gradescope, html, junit, sarif};
 use crate::source::{self, Files};
@@ -36,6 +37,16 @@ pub(super) fn rubric(args: &Args, terminal: &Terminal) -> Result<Option<Rubric>,
     })
 }
 
+/// The reports, in the order in which they are written: whoever sees the last sees all.
+pub(super) const NAMES: [&str; 6] = [
+    "report.html",
+    "report.csv",
+    "junit.xml",
+    "report.sarif",
+    "results.json",
+    "verdict.json",
+];
+
 /// Writes the reports into the folder; whether that worked. The submissions are those of the report's records. `results.json` is for a
 /// rubric alone.
 pub(super) fn write(
@@ -46,20 +57,25 @@ pub(super) fn write(
     terminal: &Terminal,
 ) -> bool {
     let records = report.shaders();
-    let mut files = vec![
-        ("report.html", html(report, rubric, &gallery(submissions))),
-        ("report.csv", csv(records, rubric)),
-        ("junit.xml", junit(records)),
-        ("report.sarif", sarif(records)),
+    let texts: [&dyn Fn() -> Option<String>; NAMES.len()] = [
+        &|| Some(html(report, rubric, &gallery(submissions))),
+        &|| Some(csv(records, rubric)),
+        &|| Some(junit(records)),
+        &|| Some(sarif(records)),
+        &|| rubric.map(|rubric| gradescope(records, rubric)),
+        &|| Some(report.json()),
     ];
-    if let Some(rubric) = rubric {
-        files.push(("results.json", gradescope(records, rubric)));
-    }
-    // Last, so that who sees it sees all.
-    files.push(("verdict.json", report.json()));
-    let written = files
-        .into_iter()
-        .map(|(name, text)| terminal.write(&out.join(name), text.as_bytes()));
+    let written = NAMES
+        .iter()
+        .zip(texts)
+        .map(|(name, text)| match contain(Part::Report, text) {
+            Ok(None) => true,
+            Ok(Some(text)) => terminal.write_output(out, &out.join(name), text.as_bytes()),
+            Err(panic) => {
+                terminal.error(format_args!("cannot write {name}: {panic}"));
+                false
+            }
+        });
     // All are tried.
     written.fold(true, |all, one| all & one)
 }

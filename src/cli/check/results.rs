@@ -9,6 +9,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::output;
 use crate::report::Record;
+use crate::source::path_name;
+
+/// The name of the file.
+pub(super) const NAME: &str = "results.jsonl";
 
 /// One line.
 #[derive(Debug, Serialize, Deserialize)]
@@ -30,7 +34,7 @@ pub(super) struct Results {
 impl Results {
     /// Begins the file; with `resume` it goes on with what is there. A line that was being written when a run was killed is dropped.
     pub(super) fn open(folder: &Path, resume: bool) -> io::Result<Self> {
-        let path = folder.join("results.jsonl");
+        let path = folder.join(NAME);
         let before = match std::fs::read_to_string(&path) {
             Ok(text) if resume => text,
             Err(error) if resume && error.kind() != io::ErrorKind::NotFound => {
@@ -46,7 +50,7 @@ impl Results {
                 kept.push_str(line);
             }
         }
-        output::write(&path, kept.as_bytes())?;
+        output::write_inside(folder, &path, kept.as_bytes())?;
         let file = OpenOptions::new().append(true).open(&path);
         let file = file.map_err(|error| named(&path, &error))?;
         Ok(Self { path, file, known })
@@ -73,5 +77,5 @@ impl Results {
 }
 
 fn named(path: &Path, error: &io::Error) -> io::Error {
-    io::Error::new(error.kind(), format!("{}: {error}", path.display()))
+    io::Error::new(error.kind(), format!("{}: {error}", path_name(path)))
 }

@@ -16,13 +16,14 @@ use self::args::{StyleName, To};
 use self::conversion::{Converter, Made, Trouble};
 use self::proof::Standing;
 use super::inputs::may_write;
+use super::names::{Names, with_suffix};
 use super::pool::{self, InOrder};
-use super::shader::{Names, Shader, find, with_suffix};
+use super::shader::{Shader, find};
 use super::{Exit, Terminal, interrupt};
 use crate::browser;
 use crate::compare::{grouped, plural};
 use crate::gpu::FloatMode;
-use crate::source::{Found, ReadError};
+use crate::source::{Found, ReadError, path_name};
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let inputs = find(&args.shaders);
@@ -34,7 +35,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let Some(to) = args.to.or(of_extension) else {
         terminal.error(format_args!(
             "{}: say the language with --to, or end the file's name in .wgsl, .spv, .metal, .hlsl or .frag",
-            args.output.display()
+            path_name(&args.output)
         ));
         return Exit::Trouble;
     };
@@ -43,7 +44,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     {
         terminal.error(format_args!(
             "{} ends as {} does, and --to says {}; leave --to out, or give the file another ending",
-            args.output.display(),
+            path_name(&args.output),
             of.name(),
             to.name()
         ));
@@ -52,7 +53,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     if several && (standard || of_extension.is_some()) {
         terminal.error(format_args!(
             "several shaders need a folder to go to, not {}",
-            args.output.display()
+            path_name(&args.output)
         ));
         return Exit::Trouble;
     }
@@ -91,15 +92,13 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         .jobs
         .map_or_else(cores, usize::from)
         .clamp(1, inputs.len().max(1));
-    let mut names = Names::default();
     let one = standard || (!several && !args.output.is_dir());
+    let suffix = format!(".{}", to.extension());
+    let mut names = Names::new(&[&suffix], &[]);
     let jobs = inputs.into_iter().map(|input| {
         let path = match (one, &input) {
             (true, _) | (false, Err(_)) => args.output.clone(),
-            (false, Ok(found)) => with_suffix(
-                &args.output.join(names.place(found)),
-                &format!(".{}", to.extension()),
-            ),
+            (false, Ok(found)) => with_suffix(&args.output.join(names.place(found)), &suffix),
         };
         Job { input, path }
     });
@@ -160,7 +159,7 @@ impl Batch<'_> {
         let stop = interrupt::watch("finishing the shaders in hand");
         let threads = self.threads;
         let bar = match jobs {
-            [one] => self.terminal.spinner(&one.path.display().to_string()),
+            [one] => self.terminal.spinner(&path_name(&one.path)),
             several => self.terminal.bar(several.len() as u64, "converting"),
         };
         let mut order: InOrder<(usize, Done)> = InOrder::default();
@@ -201,7 +200,7 @@ impl Batch<'_> {
         match made {
             Ok(made) if made.is_proved() || self.args.force => {
                 let bytes = std::mem::take(&mut made.bytes);
-                self.terminal.write(&job.path, &bytes)
+                self.terminal.write_output(&self.args.output, &job.path, &bytes)
             }
             _ => false,
         }
@@ -284,7 +283,7 @@ impl Batch<'_> {
         let name = job
             .input
             .as_ref()
-            .map_or_else(|_| job.path.display().to_string(), Found::name);
+            .map_or_else(|_| path_name(&job.path), Found::name);
         let line = format!("{state:<15}{name}: {words}");
         self.line(&line);
     }

@@ -1,6 +1,8 @@
-//! Anything as text in HTML: in an element, or between double quotes.
+//! Anything as text in HTML: in an element, or between double quotes. Characters that act on the text around them are escaped.
 
 use std::fmt::{self, Display, Formatter, Write};
+
+use crate::source::printable;
 
 /// Shows a value with what means something in HTML spelt out.
 pub(super) struct Text<T>(pub(super) T);
@@ -22,9 +24,8 @@ impl Write for Escaping<'_, '_> {
                 '>' => self.0.write_str("&gt;")?,
                 '"' => self.0.write_str("&quot;")?,
                 '\'' => self.0.write_str("&#39;")?,
-                // HTML has no place for it.
-                '\0' => self.0.write_char(char::REPLACEMENT_CHARACTER)?,
-                other => self.0.write_char(other)?,
+                '\n' | '\t' => self.0.write_char(character)?,
+                other => self.0.write_str(&printable(other.encode_utf8(&mut [0; 4])))?,
             }
         }
         Ok(())
@@ -38,8 +39,8 @@ mod tests {
     #[test]
     fn what_means_something_in_html_is_spelt_out() {
         assert_eq!(
-            Text("<a b=\"c\" d='e'>&\0é").to_string(),
-            "&lt;a b=&quot;c&quot; d=&#39;e&#39;&gt;&amp;\u{fffd}é"
+            Text("<a b=\"c\" d='e'>&\0\u{202e}\né").to_string(),
+            "&lt;a b=&quot;c&quot; d=&#39;e&#39;&gt;&amp;\\u{0}\\u{202e}\né"
         );
         assert_eq!(Text(1.5).to_string(), "1.5");
     }
