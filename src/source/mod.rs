@@ -5,10 +5,12 @@
 
 mod file;
 mod find;
+mod search;
 mod span;
 
 pub use file::{File, FileId, Files, Position};
 pub use find::{
     EXTENSIONS, Found, FoundIn, MAX_BYTES, NOT_UTF8, ReadError, TOO_LARGE, find, is_shader, read, read_text,
 };
+pub use search::{Search, Skipped};
 pub use span::Span;
