@@ -4,6 +4,7 @@ pub mod browser;
 pub mod chart;
 pub mod cli;
 pub mod compare;
+pub mod deadline;
 pub mod diagnostic;
 pub mod elementary;
 pub mod emit;

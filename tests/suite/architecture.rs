@@ -4,7 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The stages in the order of the flow.
-const STAGES: [&str; 24] = [
+const STAGES: [&str; 25] = [
+    "deadline",
     "source",
     "diagnostic",
     "output",
