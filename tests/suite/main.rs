@@ -10,6 +10,8 @@ mod commands;
 mod conversion;
 mod derivatives;
 mod diagnostics;
+#[cfg(unix)]
+mod driver_start;
 mod elementary;
 mod equivalent_rewrites;
 mod estimators;
@@ -23,6 +25,7 @@ mod generated;
 mod glslang;
 #[cfg(target_os = "linux")]
 mod hostile;
+mod limits;
 mod miscompiles;
 mod mistaken;
 mod mistakes;
