@@ -5,6 +5,7 @@ pub mod chart;
 pub mod cli;
 pub mod compare;
 pub mod contain;
+pub mod deadline;
 pub mod diagnostic;
 pub mod elementary;
 pub mod emit;

@@ -1,11 +1,14 @@
 //! `toyproof doctor`
 
+use std::path::PathBuf;
 use std::time::Duration;
 
 use super::inputs::{self, Place};
 use super::{Exit, Terminal};
 use crate::compare::grouped;
-use crate::gpu::{Driver, INSTALL_HINT, LoopCap, On, is_pinned_by_user, lavapipe_manifest, manifests};
+use crate::gpu::{
+    Driver, Failure, INSTALL_HINT, LoopCap, On, is_pinned_by_user, lavapipe_manifest, manifests, pinned,
+};
 use crate::source::path_name;
 
 /// Say which Vulkan drivers are installed, which is chosen and why, what is missing and how to get it
@@ -17,8 +20,8 @@ pub(super) struct Args {
     on: Place,
 }
 
-/// Loading every driver of a machine takes longer than one shader.
-const PATIENCE: Duration = Duration::from_secs(60);
+/// How long all drivers of a machine together may take to load, and then each of them alone.
+const PATIENCE: Duration = Duration::from_secs(20);
 
 /// What there is without a driver.
 const WITHOUT: &str = "\nChosen: none. `check`, `run` and `explain` work all the same, on the CPU. `check` then tells whether a shader's \
@@ -50,13 +53,14 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             return Exit::Good;
         }
     };
-    let drivers = inputs::worker(on.clone(), PATIENCE).and_then(|worker| {
-        worker
-            .with_all_drivers()
-            .probe()
-            .map_err(|failure| failure.to_string())
-    });
-    match drivers {
+    let worker = match inputs::worker(on.clone(), PATIENCE) {
+        Ok(worker) => worker,
+        Err(error) => {
+            terminal.error(error);
+            return Exit::Trouble;
+        }
+    };
+    match worker.with_all_drivers().probe() {
         Ok(drivers) => {
             if let Some(chosen) = drivers.first() {
                 terminal.result(&format!("\nChosen, {}:", reason(on, chosen)));
@@ -74,14 +78,43 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             }
             Exit::Good
         }
-        Err(error) => {
+        Err(failure) => {
+            if let Failure::NotStarted(_) = failure {
+                name_broken(&candidates(manifests), terminal);
+            }
             if *on == On::Auto {
                 terminal.result(WITHOUT);
             }
-            terminal.error(error);
+            terminal.error(failure);
             Exit::Trouble
         }
     }
+}
+
+/// The manifests of the drivers that the loader would load.
+fn candidates(installed: Vec<PathBuf>) -> Vec<PathBuf> {
+    match pinned() {
+        None => installed,
+        Some(pinned) => pinned,
+    }
+}
+
+/// Starts each driver alone, to say which one does not start.
+fn name_broken(manifests: &[PathBuf], terminal: &Terminal) {
+    terminal.result("\nEach driver alone:");
+    for manifest in manifests {
+        let path = path_name(manifest);
+        let alone =
+            inputs::worker(On::Auto, PATIENCE).map(|worker| worker.with_manifest(manifest.clone()).probe());
+        match alone {
+            Ok(Ok(_)) => terminal.result(&format!("  {path}: starts")),
+            Ok(Err(failure)) => terminal.result(&format!("  {path}: {failure}")),
+            Err(error) => terminal.result(&format!("  {path}: {error}")),
+        }
+    }
+    terminal.result(
+        "  Remove or update a driver that does not start, or name another: VK_DRIVER_FILES=MANIFEST.json toyproof …",
+    );
 }
 
 fn reason(on: &On, chosen: &Driver) -> String {

@@ -8,6 +8,7 @@ use super::inputs::{Format, FrameArgs, LanguageArgs, deadline};
 use super::run::place;
 use super::shader::{Shader, Unusable, find};
 use super::{Exit, Terminal};
+use crate::deadline::Deadline;
 use crate::eval::{Failure, Program};
 use crate::explain::explain;
 use crate::frame::Frame;
@@ -41,7 +42,7 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
-    let found = find(std::slice::from_ref(&args.shader));
+    let found = find(std::slice::from_ref(&args.shader), terminal);
     let [input] = found.as_slice() else {
         terminal.error(format_args!(
             "{} holds several shaders; explain takes one",
@@ -56,7 +57,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             return Exit::Trouble;
         }
     };
-    let shader = Shader::load(input, &args.language);
+    let shader = Shader::load(input, &args.language, Deadline::default());
     terminal.diagnostics(&shader.warnings, &shader.files);
     match &shader.checked {
         Ok(checked) => tell(args, &shader, checked, &frame, terminal),

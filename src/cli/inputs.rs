@@ -7,6 +7,7 @@ use std::time::Duration;
 use clap::ValueEnum;
 
 use super::Terminal;
+use crate::deadline::Deadline;
 use crate::frame::Frame;
 use crate::glsl;
 use crate::gpu::{FloatMode, On, Worker};
@@ -176,9 +177,10 @@ impl From<Float> for FloatMode {
 }
 
 impl LanguageArgs {
-    pub(super) fn options(&self) -> glsl::Options {
+    pub(super) fn options(&self, deadline: Deadline) -> glsl::Options {
         glsl::Options {
             lenient: self.lenient,
+            deadline,
             ..glsl::Options::default()
         }
     }

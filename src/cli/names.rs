@@ -119,6 +119,7 @@ mod tests {
         let found = Found {
             place,
             relative: PathBuf::from(relative),
+            folder: None,
         };
         path_name(&names.place(&found))
     }

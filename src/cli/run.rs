@@ -12,9 +12,10 @@ use super::names::{Names, with_suffix};
 use super::sequence::{self, Frames, Sequence};
 use super::shader::{Shader, Unusable, find, is_invalid};
 use super::{Exit, Terminal};
+use crate::deadline::Deadline;
 use crate::eval::{self, Number, Program, Settings, Variant};
 use crate::frame::Frame;
-use crate::glsl::Checked;
+use crate::glsl::{self, Checked};
 use crate::gpu::{Drawn, Failure, Worker};
 use crate::image::{self, Image};
 use crate::source::{Files, path_name};
@@ -64,7 +65,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             return Exit::Trouble;
         }
     };
-    let inputs = find(&args.shaders);
+    let inputs = find(&args.shaders, terminal);
     let several = inputs.len() > 1 || args.shaders.iter().any(|path| path.is_dir());
     let standard = args.output == Path::new("-");
     if several && (standard || args.output.extension().is_some()) {
@@ -92,7 +93,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         frame,
     };
     for input in &inputs {
-        let shader = Shader::load(input, &args.language);
+        let shader = Shader::load(input, &args.language, Deadline::after(args.driver.timeout()));
         let path = match (one, input) {
             (true, _) | (false, Err(_)) => args.output.clone(),
             (false, Ok(found)) => with_suffix(&args.output.join(names.place(found)), ".png"),
@@ -179,9 +180,19 @@ impl Runner<'_> {
         };
         if let Some(worker) = &mut self.worker {
             let float = self.args.driver.float();
-            match worker.draw(float.lower(checked), self.frame.clone(), float) {
-                Err(Failure::NoDriver(why)) if self.args.driver.may_fall_back() => {
-                    self.terminal.warn(format_args!("{why}; shaders run on the CPU"));
+            let deadline = Deadline::after(self.args.driver.timeout());
+            let lowered = match float.lower_within(checked, &deadline) {
+                Ok(lowered) => lowered,
+                Err(overdue) => {
+                    let overdue = [glsl::overdue(overdue)];
+                    self.terminal.diagnostics(&overdue, &shader.files);
+                    return Err(Exit::Bad);
+                }
+            };
+            match worker.draw(lowered, self.frame.clone(), float) {
+                Err(failure) if failure.is_without_driver() && self.args.driver.may_fall_back() => {
+                    self.terminal
+                        .warn(format_args!("{failure}; shaders run on the CPU"));
                     self.worker = None;
                 }
                 drawn => return self.drawn(drawn, shader),

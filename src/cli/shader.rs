@@ -2,10 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use super::Terminal;
 use super::inputs::{Deny, LanguageArgs};
+use crate::deadline::Deadline;
 use crate::diagnostic::{self, Diagnostic, Severity};
 use crate::glsl::{self, Checked};
-use crate::gpu::Failure;
+use crate::gpu::{Failure, Phase};
 use crate::source::{self, Files, Found, ReadError, path_name};
 
 /// A shader's text and its tree, or why there is none.
@@ -26,13 +28,17 @@ pub(super) enum Unusable {
 }
 
 impl Shader {
-    pub(super) fn load(found: &Result<Found, ReadError>, language: &LanguageArgs) -> Self {
+    pub(super) fn load(
+        found: &Result<Found, ReadError>,
+        language: &LanguageArgs,
+        deadline: Deadline,
+    ) -> Self {
         let mut files = Files::default();
         let mut warnings = Vec::new();
         let (name, checked) = match found {
             Err(error) => (subject(error), Err(Unusable::Trouble(error.to_string()))),
             Ok(found) => {
-                let checked = read(found, &mut files, &language.options());
+                let checked = read(found, &mut files, &language.options(deadline));
                 let checked = checked.and_then(|checked| {
                     warnings.clone_from(&checked.warnings);
                     let denied = denied(&mut warnings, language.denied());
@@ -62,9 +68,10 @@ impl Shader {
 
 /// Takes out the warnings that count as errors.
 pub(super) fn denied(warnings: &mut Vec<Diagnostic>, denied: &[Deny]) -> Vec<Diagnostic> {
-    let (mut errors, rest): (Vec<_>, Vec<_>) = std::mem::take(warnings)
-        .into_iter()
-        .partition(|warning| denied.iter().any(|denied| denied.includes(&warning.code)));
+    let (mut errors, rest): (Vec<_>, Vec<_>) = std::mem::take(warnings).into_iter().partition(|told| {
+        let includes = |denied: &Deny| denied.includes(&told.code);
+        told.severity == Severity::Warning && denied.iter().any(includes)
+    });
     *warnings = rest;
     for error in &mut errors {
         error.severity = Severity::Error;
@@ -93,18 +100,30 @@ fn subject(error: &ReadError) -> String {
     }
 }
 
-/// All shaders that the arguments name, in their order; standard input once.
-pub(super) fn find(arguments: &[PathBuf]) -> Vec<Result<Found, ReadError>> {
+/// All shaders that the arguments name, in their order; standard input once. Warns of links that are not followed.
+pub(super) fn find(arguments: &[PathBuf], terminal: &Terminal) -> Vec<Result<Found, ReadError>> {
     let first = arguments.iter().position(|argument| argument == Path::new("-"));
     arguments
         .iter()
         .enumerate()
         .filter(|&(at, argument)| argument != Path::new("-") || Some(at) == first)
-        .flat_map(|(_, argument)| source::find(argument))
+        .flat_map(|(_, argument)| {
+            let search = source::find(argument);
+            for skipped in &search.skipped {
+                terminal.warn(skipped);
+            }
+            search.inputs
+        })
         .collect()
 }
 
 /// Whether it is the shader that does not compile, rather than the tools around it.
 pub(super) fn is_invalid(failure: &Failure) -> bool {
-    matches!(failure, Failure::Invalid(_) | Failure::StackOverflow { .. })
+    matches!(
+        failure,
+        Failure::Invalid(_)
+            | Failure::StackOverflow {
+                phase: Phase::Translating | Phase::Compiling
+            }
+    )
 }

@@ -6,7 +6,8 @@ use std::sync::atomic::AtomicBool;
 use super::inputs::{DriverArgs, LanguageArgs};
 use super::shader::{Shader, Unusable, find};
 use super::{Exit, Terminal, interrupt};
-use crate::gpu::{Failure, Worker};
+use crate::deadline::Deadline;
+use crate::gpu::Worker;
 use crate::source::path_name;
 use crate::stress::function::{self, Findings, Map, Role, Signature};
 use crate::stress::{self, Report, Settings, formula};
@@ -114,7 +115,7 @@ fn examine(
     interrupted: &AtomicBool,
     terminal: &Terminal,
 ) -> Exit {
-    let found = find(&[path.to_owned()]);
+    let found = find(&[path.to_owned()], terminal);
     let [input] = found.as_slice() else {
         terminal.error(format_args!(
             "{} holds several shaders; stress takes one",
@@ -122,7 +123,7 @@ fn examine(
         ));
         return Exit::Trouble;
     };
-    let shader = Shader::load(input, &args.language);
+    let shader = Shader::load(input, &args.language, Deadline::after(args.driver.timeout()));
     let checked = match &shader.checked {
         Ok(checked) => checked,
         Err(Unusable::Invalid(diagnostics)) => {
@@ -146,7 +147,11 @@ fn examine(
             return Exit::Trouble;
         }
     };
-    let subject = function::subject(shader.text(checked), &signature, args.language.options());
+    let subject = function::subject(
+        shader.text(checked),
+        &signature,
+        args.language.options(Deadline::after(args.driver.timeout())),
+    );
     let bar = terminal.bar(2 + u64::from(worker.is_some()), &signature.name);
     let examined = function::examine(&subject, &signature, worker, args.settings(), interrupted, || {
         bar.inc(1);
@@ -201,8 +206,8 @@ fn worker(driver: &DriverArgs, terminal: &Terminal) -> Result<Option<Worker>, Ex
     };
     match worker.probe() {
         Ok(_) => Ok(Some(worker)),
-        Err(Failure::NoDriver(why)) if driver.may_fall_back() => {
-            terminal.warn(format_args!("{why}; only the CPU is tested"));
+        Err(failure) if failure.is_without_driver() && driver.may_fall_back() => {
+            terminal.warn(format_args!("{failure}; only the CPU is tested"));
             Ok(None)
         }
         Err(failure) => Err(fail(&failure)),

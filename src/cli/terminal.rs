@@ -26,6 +26,8 @@ pub(super) struct Terminal {
     verbose: bool,
     /// Whether standard output did not take something.
     lost: AtomicBool,
+    /// Whether whoever read standard output has closed it.
+    closed: AtomicBool,
 }
 
 #[expect(
@@ -38,7 +40,13 @@ impl Terminal {
             quiet,
             verbose,
             lost: AtomicBool::new(false),
+            closed: AtomicBool::new(false),
         }
+    }
+
+    /// Whether whoever read standard output has closed it.
+    pub(super) fn is_closed(&self) -> bool {
+        self.closed.load(Ordering::Relaxed)
     }
 
     pub(super) fn is_verbose(&self) -> bool {
@@ -70,7 +78,11 @@ impl Terminal {
                 }
                 false
             }
-            _ => true,
+            Err(_) => {
+                self.closed.store(true, Ordering::Relaxed);
+                true
+            }
+            Ok(()) => true,
         }
     }
 

@@ -10,6 +10,7 @@ use super::render::load;
 use super::shader::{Shader, Unusable, find};
 use super::{Exit, Terminal, interrupt};
 use crate::compare::{grouped, plural};
+use crate::deadline::Deadline;
 use crate::export;
 use crate::frame::Frame;
 use crate::gpu::{On, Worker};
@@ -88,7 +89,7 @@ fn measure(args: &Args, interrupted: &AtomicBool, terminal: &Terminal) -> Result
         name: path_name(&args.subject),
         scene: scene.as_ref(),
         shader: checked.map(|(shader, checked)| (shader.text(checked), checked)),
-        options: args.language.options(),
+        options: args.language.options(Deadline::default()),
         frame: &frame,
         workers: workers(&args.on, args.budget, terminal)?,
         start,
@@ -116,7 +117,7 @@ fn fitted(scene: Option<Scene>, mut frame: Frame, size: Option<[u32; 2]>) -> (Op
 
 /// A shader that must be valid.
 fn from_file(path: &Path, args: &Args, terminal: &Terminal) -> Result<Shader, Exit> {
-    let found = find(&[path.to_owned()]);
+    let found = find(&[path.to_owned()], terminal);
     let [input] = found.as_slice() else {
         terminal.error(format_args!(
             "{} holds several shaders; trade takes one",
@@ -124,7 +125,7 @@ fn from_file(path: &Path, args: &Args, terminal: &Terminal) -> Result<Shader, Ex
         ));
         return Err(Exit::Trouble);
     };
-    let shader = Shader::load(input, &args.language);
+    let shader = Shader::load(input, &args.language, Deadline::default());
     match &shader.checked {
         Ok(_) => Ok(shader),
         Err(Unusable::Invalid(diagnostics)) => {
@@ -142,15 +143,16 @@ fn from_file(path: &Path, args: &Args, terminal: &Terminal) -> Result<Shader, Ex
 fn beside(path: &Path, scene: Option<&Scene>, args: &Args) -> Option<Shader> {
     let shader = path.with_extension("glsl");
     if shader.is_file() {
-        let found = find(&[shader]);
-        return Some(Shader::load(found.first()?, &args.language));
+        let found = source::find(&shader).inputs;
+        return Some(Shader::load(found.first()?, &args.language, Deadline::default()));
     }
     let text = export::shader(scene?).ok()?;
     let mut files = Files::default();
     let file = files.add(File::new("<exported>", text));
     Some(Shader {
         name: "<exported>".to_owned(),
-        checked: crate::glsl::check(&files, file, &args.language.options()).map_err(Unusable::Invalid),
+        checked: crate::glsl::check(&files, file, &args.language.options(Deadline::default()))
+            .map_err(Unusable::Invalid),
         files,
         warnings: Vec::new(),
     })
@@ -158,7 +160,7 @@ fn beside(path: &Path, scene: Option<&Scene>, args: &Args) -> Option<Shader> {
 
 /// The scene beside a shader.
 fn of_shader(path: &Path) -> Option<Scene> {
-    let found = find(&[path.to_owned()]);
+    let found = source::find(path).inputs;
     let found = found.first()?.as_ref().ok()?;
     References::new(None).find(found)?.scene.ok()
 }

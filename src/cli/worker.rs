@@ -1,13 +1,22 @@
 //! The worker process that `check`, `run`, `convert` and `doctor` start.
 
 use std::io;
+use std::thread::{self, JoinHandle};
 
 use super::Exit;
 use crate::gpu;
 
+/// What Linux gives a main thread unless told otherwise.
+const STACK_BYTES: usize = 8 << 20;
+
 pub(super) fn run() -> Exit {
-    match gpu::serve(io::stdin().lock(), io::stdout().lock()) {
-        Ok(()) => Exit::Good,
-        Err(_) => Exit::Trouble,
+    // A thread whose stack is as large whatever limit the shell sets: drivers compile shaders on it.
+    let serving = thread::Builder::new().stack_size(STACK_BYTES).spawn(|| {
+        let (input, output) = (io::stdin().lock(), io::stdout().lock());
+        gpu::serve(input, output)
+    });
+    match serving.map(JoinHandle::join) {
+        Ok(Ok(Ok(()))) => Exit::Good,
+        _ => Exit::Trouble,
     }
 }

@@ -1,6 +1,7 @@
 //! A shader that is ready to be evaluated.
 
 use std::sync::{Arc, OnceLock};
+use std::time::Duration;
 
 use super::allocate::{Homes, allocate};
 use super::compile::{self, Choice, Extras, Refusal, compile, with_stack};
@@ -16,6 +17,7 @@ use super::prepare::Prepared;
 use super::prune::prune;
 use super::story::Plot;
 use super::uniform::Varying;
+use crate::deadline::Deadline;
 use crate::frame::Frame;
 use crate::glsl::Checked;
 use crate::glsl::tree::Place;
@@ -32,6 +34,8 @@ pub struct Program {
     plain: OnceLock<Result<Compiled, Refusal>>,
     /// With what each pixel does; made when it is first asked for.
     telling: OnceLock<Result<Compiled, Refusal>>,
+    /// How long each of them may take to make.
+    limit: Option<Duration>,
 }
 
 impl Program {
@@ -43,17 +47,30 @@ impl Program {
         Self::prepared(checked, Variant::Observed)
     }
 
+    /// The same; none of a shader's variants may take longer to compile than that.
+    ///
+    /// # Errors
+    /// If it is too large once its calls are inlined, or takes longer.
+    pub fn within(checked: &Checked, limit: Duration) -> Result<Self, Refusal> {
+        Self::made_within(checked, Variant::Observed, Some(limit))
+    }
+
     /// The same of a shader that is to be painted in that variant; others are compiled when they are first asked for.
     ///
     /// # Errors
     /// If it is too large once its calls are inlined.
     pub fn prepared(checked: &Checked, variant: Variant) -> Result<Self, Refusal> {
+        Self::made_within(checked, variant, None)
+    }
+
+    fn made_within(checked: &Checked, variant: Variant, limit: Option<Duration>) -> Result<Self, Refusal> {
         let program = Self {
             checked: Arc::new(checked.clone()),
             observing: OnceLock::new(),
             otherwise: Default::default(),
             plain: OnceLock::new(),
             telling: OnceLock::new(),
+            limit,
         };
         program.code(variant)?;
         Ok(program)
@@ -85,7 +102,8 @@ impl Program {
         kept: &'a OnceLock<Result<Compiled, Refusal>>,
         extras: Extras,
     ) -> Result<&'a Compiled, Refusal> {
-        let made = kept.get_or_init(|| Compiled::new(&self.checked, extras));
+        let deadline = self.limit.map_or_else(Deadline::default, Deadline::after);
+        let made = kept.get_or_init(|| Compiled::new(&self.checked, extras, &deadline));
         made.as_ref().map_err(|&refusal| refusal)
     }
 
@@ -138,19 +156,24 @@ pub struct Compiled {
 }
 
 impl Compiled {
-    fn new(checked: &Checked, extras: Extras) -> Result<Self, Refusal> {
+    fn new(checked: &Checked, extras: Extras, deadline: &Deadline) -> Result<Self, Refusal> {
         with_stack(|| {
             let compile::Program {
                 mut flow,
                 sites,
                 plot,
-            } = compile(checked, extras)?;
+            } = compile(checked, extras, deadline)?;
+            deadline.check()?;
             forward(&mut flow, extras.story);
+            deadline.check()?;
             prune(&mut flow);
             let groups = Groups::of(&flow);
+            deadline.check()?;
             let varying = Varying::of(&flow, &groups);
             fuse(&mut flow, &varying);
+            deadline.check()?;
             let flat = flatten(&flow, &varying, extras.story);
+            deadline.check()?;
             let homes = allocate(&flow, &flat, &varying, &groups);
             let cells = (0..flow.cells.len() as u32).map(super::flow::Cell);
             let shared = cells.map(|cell| varying.is_shared(cell)).collect();

@@ -305,3 +305,18 @@ fn arms_in_arms_are_looked_through_once() {
     });
     assert!(steps.is_ok_and(|steps| steps > arms as usize));
 }
+
+#[test]
+fn compiling_ends_when_its_time_is_over() {
+    use std::time::Duration;
+
+    let mut files = Files::default();
+    let file = files.add(File::new(
+        "a",
+        "void mainImage(out vec4 c, in vec2 p) { c = vec4(p, 0, 1); }",
+    ));
+    let checked = crate::glsl::check(&files, file, &crate::glsl::Options::default()).unwrap();
+    let late = super::Program::within(&checked, Duration::ZERO).map(drop);
+    assert!(matches!(late, Err(super::Refusal::TooSlow(_))), "{late:?}");
+    assert!(super::Program::within(&checked, Duration::from_secs(3600)).is_ok());
+}

@@ -1,6 +1,7 @@
 //! The stable codes of the front end's diagnostics.
 
 use super::tree::Place;
+use crate::deadline::Overdue;
 use crate::diagnostic::Diagnostic;
 
 macro_rules! codes {
@@ -82,6 +83,7 @@ codes! {
     BadSwitch "E0407" "A label of a `switch` that is not allowed",
     MisplacedJump "E0408" "A `break` or `continue` outside of a loop",
     NoMainImage "E0409" "No `void mainImage(out vec4, in vec2)`",
+    TooSlow "E0410" "A shader that takes too long to compile",
     // Warnings.
     ReservedName "W0001" "A name that begins with what GLSL keeps for itself",
     UnknownExtension "W0002" "An `#extension` that does not exist",
@@ -101,6 +103,7 @@ codes! {
     BadAllow "W0014" "An `allow` that is not understood",
     UnusedAllow "W0015" "An `allow` that nothing needs",
     MissingReturn "W0016" "A function that on some way ends without a `return`",
+    LintTimeout "W0017" "Lints that take too long",
     // What is seen while a shader runs.
     UndefinedOperation "W0600" "An operation whose value GLSL leaves open",
     LongRun "W0601" "Loops that older drivers cut short",
@@ -108,6 +111,14 @@ codes! {
     NotFinite "W0603" "A colour that is NaN or infinite",
     NeverWritten "W0604" "A read of what was never written",
     UnboundChannel "W0605" "A channel that no picture is bound to",
+    SlowCompilation "W0606" "A shader that the driver takes too long to compile",
+}
+
+/// What is reported of a shader that takes too long to compile, in whatever stage.
+#[must_use]
+pub fn overdue(overdue: Overdue) -> Diagnostic {
+    Diagnostic::error(Code::TooSlow.as_str(), overdue.to_string())
+        .note("shorten its longest expressions, lists and functions, or give it more time with `--timeout`")
 }
 
 /// How many errors of one file are told, and how many warnings; more would help nobody.

@@ -23,8 +23,8 @@ mod warn;
 pub mod wgsl;
 mod words;
 
-pub use codes::Code;
-pub use lower::{lower, lower_strict};
+pub use codes::{Code, overdue};
+pub use lower::{lower, lower_strict, lower_within};
 pub use options::Options;
 pub use print::Lowered;
 
@@ -38,6 +38,9 @@ use tree::{FunctionId, SamplerShape, Tree};
 /// fits a stack of 2 MB. Chains of operators, of postfix `.x` and `[i]`, of commas and of `else if` do not count.
 pub const MAX_NESTING: usize = 256;
 
+/// Lints have that part of the time for a check.
+const LINTS: u32 = 4;
+
 /// A shader that keeps every rule.
 #[derive(Debug, Clone)]
 pub struct Checked {
@@ -47,7 +50,7 @@ pub struct Checked {
     pub main_image: FunctionId,
     /// The shapes of `iChannel0` to `iChannel3`, as asked for or told from use.
     pub channels: [SamplerShape; 4],
-    /// What is legal and worth a word, and not allowed by the author.
+    /// What is legal and worth a word, and not allowed by the author; or a note that the lints were out of time.
     pub warnings: Vec<Diagnostic>,
     /// Discriminants of spheres that lose digits, as textbooks write them, and not allowed by the author.
     pub discriminants: Vec<Span>,
@@ -98,7 +101,10 @@ impl Checked {
 /// # Errors
 /// With at least one error if the shader breaks a rule; warnings may stand among them.
 pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, Vec<Diagnostic>> {
-    let mut text = preprocess::preprocess(files, file);
+    let deadline = &options.deadline;
+    let too_slow = |overdue| vec![codes::overdue(overdue)];
+    let mut text = preprocess::preprocess(files, file, deadline);
+    deadline.check().map_err(too_slow)?;
     if text.incomplete {
         return Err(text.diagnostics);
     }
@@ -110,6 +116,7 @@ pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, 
     loop {
         channels.changed = false;
         let mut checker = Parser::new(&text, source, Checker::new(&text, options, channels.clone())).parse();
+        deadline.check().map_err(too_slow)?;
         if checker.channels().changed {
             channels = checker.channels().clone();
             continue;
@@ -122,7 +129,14 @@ pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, 
         return match main_image {
             Some(main_image) if !all.iter().any(is_error) => {
                 let tree = checker.tree;
-                let warned = warn::warn(files, &tree, main_image, &text.remarks, all);
+                let warned = warn::warn(
+                    files,
+                    &tree,
+                    main_image,
+                    &text.remarks,
+                    all,
+                    &deadline.share(LINTS),
+                );
                 Ok(Checked {
                     tree,
                     main_image,

@@ -1,6 +1,7 @@
 //! What a check is told about the shader's surroundings.
 
 use super::tree::SamplerShape;
+use crate::deadline::Deadline;
 
 /// How to judge a shader.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -11,4 +12,6 @@ pub struct Options {
     /// The shapes of the textures bound to `iChannel0` to `iChannel3`. Where none is known, it is told from use: `sampler2D`, or
     /// what the first lookup that does not fit a `sampler2D` asks for.
     pub channels: [Option<SamplerShape>; 4],
+    /// When the check must be over. Lints have a quarter of the time for themselves; what takes longer is left out.
+    pub deadline: Deadline,
 }

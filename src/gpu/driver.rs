@@ -17,6 +17,13 @@ pub fn is_pinned_by_user() -> bool {
     PINS.iter().any(|name| env::var_os(name).is_some())
 }
 
+/// The manifests that the user names through those variables; none if the user names none.
+#[must_use]
+pub fn pinned() -> Option<Vec<PathBuf>> {
+    let list = PINS.iter().find_map(env::var_os)?;
+    Some(env::split_paths(&list).collect())
+}
+
 /// The manifests of all installed drivers, in the loader's order of search.
 #[must_use]
 pub fn manifests() -> Vec<PathBuf> {

@@ -20,12 +20,14 @@ use thiserror::Error;
 
 pub use device::{Driver, LoopCap};
 pub use draw::{Drawn, Painter, SAFE_ROUNDS};
-pub use driver::{INSTALL_HINT, is_pinned_by_user, lavapipe_manifest, manifests};
+pub use driver::{INSTALL_HINT, is_pinned_by_user, lavapipe_manifest, manifests, pinned};
 pub use protocol::Written;
 pub use serve::{MEMORY_BYTES, serve};
 pub use worker::Worker;
 
+use crate::deadline::{Deadline, Overdue};
 use crate::diagnostic::Diagnostic;
+use crate::glsl::lower::Passes;
 use crate::glsl::{self, Checked, Lowered};
 
 /// Which adapter runs the shader.
@@ -58,6 +60,18 @@ impl FloatMode {
             Self::Strict => glsl::lower_strict(checked),
             Self::Fast => glsl::lower(checked),
         }
+    }
+
+    /// The same within a deadline.
+    ///
+    /// # Errors
+    /// If it passes.
+    pub fn lower_within(self, checked: &Checked, deadline: &Deadline) -> Result<Lowered, Overdue> {
+        let passes = match self {
+            Self::Strict => Passes::strict(),
+            Self::Fast => Passes::all(),
+        };
+        glsl::lower_within(checked, passes, deadline)
     }
 }
 
@@ -137,7 +151,30 @@ pub enum Failure {
     /// There is no such driver.
     #[error("{0}")]
     NoDriver(String),
+    /// The driver, or the worker process itself, did not start: no shader is to blame.
+    #[error("{0}")]
+    NotStarted(String),
     /// The worker process could not be started or spoken to.
     #[error("cannot run the worker process: {0}")]
     Worker(String),
+}
+
+impl Failure {
+    /// Whether there is no driver to be used, whatever the shader: the evaluator may take its place.
+    #[must_use]
+    pub fn is_without_driver(&self) -> bool {
+        matches!(self, Self::NoDriver(_) | Self::NotStarted(_))
+    }
+
+    /// Whether the time ran out while the driver compiled the shader: that says nothing of how long the shader runs.
+    #[must_use]
+    pub fn is_slow_compilation(&self) -> bool {
+        matches!(
+            self,
+            Self::Timeout {
+                phase: Phase::Compiling,
+                ..
+            }
+        )
+    }
 }

@@ -244,7 +244,13 @@ impl<W: Write> Server<W> {
     fn open(&mut self, on: &On) -> Result<(), Failure> {
         if self.device.as_ref().is_none_or(|(open, _)| open != on) {
             self.phase(Phase::Starting)?;
-            self.device = Some((on.clone(), Device::open(on)?));
+            let device = Device::open(on).map_err(|failure| match failure {
+                Failure::Device(why) => {
+                    Failure::NotStarted(format!("the Vulkan driver does not start: {why}"))
+                }
+                failure => failure,
+            })?;
+            self.device = Some((on.clone(), device));
         }
         Ok(())
     }

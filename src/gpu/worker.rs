@@ -24,12 +24,15 @@ pub struct Worker {
     arguments: Vec<String>,
     on: On,
     timeout: Duration,
+    start_timeout: Duration,
     all_drivers: bool,
     manifest: Option<PathBuf>,
     compiles_plainly: bool,
     live: Option<Live>,
 }
 
+/// How long a driver may take to start, unless a shader may take longer: a busy machine needs a second or two.
+const START_TIMEOUT: Duration = Duration::from_secs(10);
 /// How long a worker that closed its pipe may take to end.
 const GRACE: Duration = Duration::from_millis(500);
 /// So many replies may wait to be heard: bands are large.
@@ -48,11 +51,19 @@ impl Worker {
             arguments,
             on,
             timeout,
+            start_timeout: timeout.max(START_TIMEOUT),
             all_drivers: false,
             manifest: None,
             compiles_plainly: false,
             live: None,
         }
+    }
+
+    /// The same, giving the process and its driver that long to start. What a job may take does not pass meanwhile.
+    #[must_use]
+    pub fn with_start_timeout(mut self, start_timeout: Duration) -> Self {
+        self.start_timeout = start_timeout;
+        self
     }
 
     /// The same, loading every installed driver, also where one is known to be enough.
@@ -218,22 +229,35 @@ impl Worker {
         self.run_in_bands(job, |_| ())
     }
 
-    /// Has a job done, under a deadline that does not pass while `each` works.
+    /// Has a job done, under a deadline that does not pass while `each` works or the driver starts.
     fn run_in_bands(&mut self, job: &Job, mut each: impl FnMut(Image)) -> Result<Output, Failure> {
-        let mut deadline = Instant::now() + self.timeout;
         let mut live = match self.live.take() {
             Some(live) => live,
             None => self.start()?,
         };
+        let mut deadline = Instant::now() + self.timeout;
+        let mut start = Start::new(self.start_timeout);
         let mut phase = Phase::Starting;
         // A worker that died is told by its replies' end; sending is best effort.
         let sent = send(&mut live.requests, job);
         loop {
+            let until = match phase {
+                Phase::Starting => start.deadline,
+                _ => deadline,
+            };
             match live
                 .replies
-                .recv_timeout(deadline.saturating_duration_since(Instant::now()))
+                .recv_timeout(until.saturating_duration_since(Instant::now()))
             {
-                Ok(Reply::Phase(now)) => phase = now,
+                Ok(Reply::Phase(now)) => {
+                    if phase == Phase::Starting {
+                        deadline += start.began.elapsed();
+                    }
+                    if now == Phase::Starting {
+                        start = Start::of_driver(self.start_timeout);
+                    }
+                    phase = now;
+                }
                 Ok(Reply::Band(band)) => {
                     let start = Instant::now();
                     each(band);
@@ -245,15 +269,17 @@ impl Worker {
                 }
                 Err(RecvTimeoutError::Timeout) => {
                     live.end();
-                    return Err(Failure::Timeout {
-                        phase,
-                        after: self.timeout,
+                    let after = self.timeout;
+                    return Err(match phase {
+                        Phase::Starting => start.timed_out(self.start_timeout),
+                        _ => Failure::Timeout { phase, after },
                     });
                 }
                 Err(RecvTimeoutError::Disconnected) => {
                     let (status, words) = live.end();
                     return Err(match sent {
                         Err(error) if status.is_none() => Failure::Worker(error.to_string()),
+                        _ if phase == Phase::Starting => start.died(status, &words),
                         _ => classify(phase, status, &words),
                     });
                 }
@@ -367,15 +393,65 @@ fn classify(phase: Phase, status: Option<ExitStatus>, words: &str) -> Failure {
     if words.contains("memory allocation of") || words.contains("out of memory") {
         return Failure::OutOfMemory { phase };
     }
+    Failure::Crash {
+        phase,
+        how: end_of(status, words),
+    }
+}
+
+/// How a worker ended, as part of a sentence.
+fn end_of(status: Option<ExitStatus>, words: &str) -> String {
     let end = status.map_or_else(
         || "stopped answering".to_owned(),
         |status| format!("died ({status})"),
     );
-    let how = match words.lines().last() {
+    match words.lines().last() {
         Some(last) => format!("{end}, saying “{last}”,"),
         None => end,
-    };
-    Failure::Crash { phase, how }
+    }
+}
+
+/// A worker process or, once it has answered, its driver on the way up.
+struct Start {
+    began: Instant,
+    deadline: Instant,
+    is_driver: bool,
+}
+
+impl Start {
+    fn new(timeout: Duration) -> Self {
+        let began = Instant::now();
+        Self {
+            began,
+            deadline: began + timeout,
+            is_driver: false,
+        }
+    }
+
+    fn of_driver(timeout: Duration) -> Self {
+        Self {
+            is_driver: true,
+            ..Self::new(timeout)
+        }
+    }
+
+    fn timed_out(&self, after: Duration) -> Failure {
+        let what = if self.is_driver {
+            "the Vulkan driver did not start"
+        } else {
+            "the worker process did not answer"
+        };
+        Failure::NotStarted(format!("{what} within {} s", after.as_secs_f64()))
+    }
+
+    fn died(&self, status: Option<ExitStatus>, words: &str) -> Failure {
+        let when = if self.is_driver {
+            "while the Vulkan driver was starting"
+        } else {
+            "before it answered"
+        };
+        Failure::NotStarted(format!("the worker process {} {when}", end_of(status, words)))
+    }
 }
 
 /// A driver that is missing may only be hidden.

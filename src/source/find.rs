@@ -6,8 +6,8 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
-use walkdir::WalkDir;
 
+use super::search::{Search, search};
 use super::{File, path_name};
 
 /// What a folder is searched for.
@@ -37,6 +37,8 @@ pub struct Found {
     pub place: FoundIn,
     /// Below the folder that was named; just the file's name for a file named itself.
     pub relative: PathBuf,
+    /// The folder that was named and searched; none for a file named itself.
+    pub folder: Option<PathBuf>,
 }
 
 impl Found {
@@ -108,13 +110,18 @@ const _: () = assert!(MAX_BYTES == 1 << 20);
 /// What is said of a file that is not UTF-8.
 pub const NOT_UTF8: &str = "this is not UTF-8 text; save the file as UTF-8";
 
-/// The shaders that one argument names; a folder gives those below it, in the order of their names, without what is hidden. Standard input and
-/// pipes are read.
+/// The shaders that one argument names; a folder gives those below it, in the order of their names, without what is hidden and what links
+/// lead out of it to. Standard input and pipes are read.
 #[must_use]
-pub fn find(argument: &Path) -> Vec<Result<Found, ReadError>> {
+pub fn find(argument: &Path) -> Search {
     let named = |place, name: &OsStr| Found {
         place,
         relative: PathBuf::from(name),
+        folder: None,
+    };
+    let only = |input| Search {
+        inputs: vec![input],
+        skipped: Vec::new(),
     };
     let stream = |bytes: Result<Vec<u8>, ReadError>, name: String, relative| {
         bytes.map(|bytes| named(FoundIn::Stream { name, bytes }, relative))
@@ -122,11 +129,11 @@ pub fn find(argument: &Path) -> Vec<Result<Found, ReadError>> {
     if argument == Path::new("-") {
         let name = "<stdin>".to_owned();
         let bytes = bytes_of(io::stdin().lock(), &name);
-        return vec![stream(bytes, name, OsStr::new("stdin"))];
+        return only(stream(bytes, name, OsStr::new("stdin")));
     }
     if !argument.is_dir() {
         let name = argument.file_name().unwrap_or(argument.as_os_str());
-        return vec![
+        return only(
             if argument.extension() == Some(OsStr::new("toml")) && argument.exists() {
                 Err(ReadError::Scene(argument.to_owned()))
             } else if argument.exists() && !argument.is_file() {
@@ -136,38 +143,13 @@ pub fn find(argument: &Path) -> Vec<Result<Found, ReadError>> {
             } else {
                 Err(ReadError::Missing(argument.to_owned()))
             },
-        ];
+        );
     }
-    let found: Vec<_> = WalkDir::new(argument)
-        .follow_links(true)
-        .sort_by_file_name()
-        .into_iter()
-        .filter_entry(|entry| entry.depth() == 0 || !is_hidden(entry.file_name()))
-        .filter_map(|entry| match entry {
-            Ok(entry) if entry.file_type().is_file() && is_shader(entry.path()) => Some(Ok(Found {
-                relative: entry
-                    .path()
-                    .strip_prefix(argument)
-                    .unwrap_or(entry.path())
-                    .to_owned(),
-                place: FoundIn::File(entry.into_path()),
-            })),
-            Ok(_) => None,
-            Err(error) => Some(Err(ReadError::Unreadable {
-                name: path_name(error.path().unwrap_or(argument)),
-                error: error.into(),
-            })),
-        })
-        .collect();
-    if found.is_empty() {
-        return vec![Err(ReadError::NoShader(argument.to_owned()))];
+    let mut search = search(argument);
+    if search.inputs.is_empty() {
+        search.inputs = vec![Err(ReadError::NoShader(argument.to_owned()))];
     }
-    found
-}
-
-/// Whether a file or folder is hidden, as `.git` is, or macOS put it into an archive beside what was packed.
-fn is_hidden(name: &OsStr) -> bool {
-    name.as_encoded_bytes().starts_with(b".") || name == "__MACOSX"
+    search
 }
 
 /// Whether a file is a shader by its name.
@@ -244,6 +226,7 @@ mod tests {
             fs::write(folder.path().join(name), "").unwrap();
         }
         let relative: Vec<_> = find(folder.path())
+            .inputs
             .into_iter()
             .map(|found| found.unwrap().relative)
             .collect();
@@ -260,7 +243,7 @@ mod tests {
             fs::write(folder.path().join(name), "").unwrap();
         }
         let relative = |argument: &Path| -> Vec<PathBuf> {
-            let found = find(argument).into_iter();
+            let found = find(argument).inputs.into_iter();
             found.map(|found| found.unwrap().relative).collect()
         };
         assert_eq!(relative(folder.path()), [Path::new("a/b.glsl")]);

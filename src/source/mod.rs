@@ -6,6 +6,7 @@
 mod file;
 mod find;
 mod printable;
+mod search;
 mod span;
 
 pub use file::{File, FileId, Files, Position};
@@ -13,4 +14,5 @@ pub use find::{
     EXTENSIONS, Found, FoundIn, MAX_BYTES, NOT_UTF8, ReadError, TOO_LARGE, find, is_shader, read, read_text,
 };
 pub use printable::{path_name, printable, printable_lines};
+pub use search::{Search, Skipped};
 pub use span::Span;

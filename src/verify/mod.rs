@@ -26,6 +26,7 @@ use self::cpu::Evaluator;
 use self::inquiry::{Counted, Inquiry};
 use crate::compare::{self, Answer, Comparison, Standing, Verdict};
 use crate::contain::Panic;
+use crate::deadline::{Deadline, Overdue};
 use crate::diagnostic::Diagnostic;
 use crate::eval::{self, Program};
 use crate::frame::Frame;
@@ -144,6 +145,9 @@ pub enum Failure {
     /// There is no GPU, and the evaluator failed.
     #[error(transparent)]
     Cpu(#[from] eval::Failure),
+    /// It takes too long to make the shader ready to run.
+    #[error(transparent)]
+    Overdue(#[from] Overdue),
     /// The driver ended loops by force in that many pixels.
     #[error("a loop was ended by force in {} {}", compare::grouped(*.0), compare::plural(*.0, "pixel", "pixels"))]
     CutShort(u64),
@@ -168,7 +172,10 @@ const ALL: u32 = 8;
 /// Why there is no picture of the shader.
 pub fn verify(worker: Option<&mut Worker>, case: &Case) -> Result<Findings, Failure> {
     let until = Instant::now() + case.timeout * ALL;
-    let program = Program::new(case.checked);
+    let program = Program::within(case.checked, case.timeout * PATIENCE);
+    if let Err(eval::Refusal::TooSlow(overdue)) = program {
+        return Err(overdue.into());
+    }
     let stop = AtomicBool::new(false);
     // Where a GPU paints too, it is the one that must not take long.
     let each = case.timeout * if worker.is_some() { PATIENCE } else { 1 };
@@ -177,13 +184,11 @@ pub fn verify(worker: Option<&mut Worker>, case: &Case) -> Result<Findings, Fail
         Ok(program) => Ok(Evaluator::new(program, case, each, until, &stop)),
         Err(refusal) => Err((*refusal).into()),
     };
-    let mut inquiry = Inquiry::new(case, evaluator, until, counted);
+    let inquiry = Inquiry::new(case, evaluator, until, counted);
     let Some(worker) = worker else {
-        return within(case.pool, || {
-            inquiry.bands(None)?;
-            Ok(inquiry.findings(None))
-        });
+        return on_cpu(case, inquiry);
     };
+    let mut inquiry = inquiry;
     // They share the cores, but none waits for the others' latencies. The worker is asked from this thread: it dies with the one that
     // started it.
     let asked = &mut inquiry;
@@ -196,7 +201,12 @@ pub fn verify(worker: Option<&mut Worker>, case: &Case) -> Result<Findings, Fail
         drop(sender);
         (drawn, join(comparing))
     });
-    let drawn = drawn?;
+    let drawn = match drawn {
+        Err(Failure::Gpu(failure)) if failure.is_slow_compilation() => {
+            return without_compiler(failure, case, program.as_ref(), until);
+        }
+        drawn => drawn?,
+    };
     compared?;
     // A loop that the evaluator saw no end of, on a driver that may have ended it by force and could not be watched.
     if let (None, Err(failure @ (eval::Failure::Timeout { .. } | eval::Failure::TooOften { .. }))) =
@@ -210,6 +220,33 @@ pub fn verify(worker: Option<&mut Worker>, case: &Case) -> Result<Findings, Fail
         pixels => return Err(Failure::CutShort(pixels)),
     };
     Ok(within(case.pool, || inquiry.findings(Some(painter))))
+}
+
+/// What the evaluator finds alone.
+fn on_cpu(case: &Case, mut inquiry: Inquiry) -> Result<Findings, Failure> {
+    within(case.pool, || {
+        inquiry.bands(None)?;
+        Ok(inquiry.findings(None))
+    })
+}
+
+/// What the evaluator finds alone where the driver's compiler did not come to an end: how long that takes says nothing of how
+/// long the shader runs. If the evaluator cannot compile it either, neither can be waited for.
+fn without_compiler(
+    failure: gpu::Failure,
+    case: &Case,
+    program: Result<&Program, &eval::Refusal>,
+    until: Instant,
+) -> Result<Findings, Failure> {
+    let Ok(program) = program else {
+        return Err(failure.into());
+    };
+    let stop = AtomicBool::new(false);
+    let (counted, _) = mpsc::channel();
+    let evaluator = Evaluator::new(program, case, case.timeout * PATIENCE, until, &stop);
+    let mut findings = on_cpu(case, Inquiry::new(case, Ok(evaluator), until, counted))?;
+    findings.notes.push(notes::slow_compilation(case.timeout));
+    Ok(findings)
 }
 
 /// Does work in a pool, if there is one.
@@ -226,7 +263,7 @@ fn draw(
     case: &Case,
     rounds: &Receiver<Counted>,
     bands: &SyncSender<Image>,
-) -> Result<Drawn, gpu::Failure> {
+) -> Result<Drawn, Failure> {
     // A strict run goes round as often as the evaluator does, who has often counted by now. Otherwise, no band is waited for longer
     // than it would take the driver to paint all again.
     let are_short = |painting| {
@@ -241,8 +278,11 @@ fn draw(
     let watch = |drawn: &Drawn, painting| {
         drawn.may_be_cut_short() && (case.float == FloatMode::Fast || !are_short(painting))
     };
-    let lowered = case.float.lower(case.checked);
-    worker.draw_in_bands(lowered, case.frame.clone(), case.float, each, watch)
+    let lowered = case
+        .float
+        .lower_within(case.checked, &Deadline::after(case.timeout))?;
+    let drawn = worker.draw_in_bands(lowered, case.frame.clone(), case.float, each, watch)?;
+    Ok(drawn)
 }
 
 fn timed<T>(work: impl FnOnce() -> T) -> (T, Duration) {

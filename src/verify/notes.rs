@@ -1,7 +1,9 @@
 //! What was seen while a shader ran, as diagnostics with their lines.
 
+use std::time::Duration;
+
 use crate::compare::{grouped, plural};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Severity};
 use crate::eval::{Fault, MESA_CAP, Observations, Observed};
 use crate::frame::Frame;
 use crate::glsl::tree::{ExprKind, Input, SamplerShape, VariableKind};
@@ -68,6 +70,18 @@ pub fn unbound(checked: &Checked, frame: &Frame) -> Vec<Diagnostic> {
         Some(diagnostic.at(span).note(note))
     });
     told.filter(|note| !checked.allows(note)).collect()
+}
+
+/// Why no GPU ran the shader.
+pub(super) fn slow_compilation(after: Duration) -> Diagnostic {
+    let message = format!(
+        "the Vulkan driver takes longer than {} s to compile this shader: it was evaluated on the CPU, without the \
+         toolchain check",
+        after.as_secs_f64()
+    );
+    Diagnostic::new(Severity::Note, Code::SlowCompilation.as_str(), message).note(
+        "a longer `--timeout` lets the driver finish; shorter functions and smaller arrays compile faster",
+    )
 }
 
 fn undefined(observed: &Observed, leaves_out: bool) -> Diagnostic {

@@ -4,8 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The stages in the order of the flow.
-const STAGES: [&str; 25] = [
+const STAGES: [&str; 26] = [
     "contain",
+    "deadline",
     "source",
     "diagnostic",
     "output",

@@ -421,11 +421,9 @@ fn a_shader_that_compiles_for_a_minute() {
     }
     let start = Instant::now();
     let run = check(&format!("{MAIN} {{ {SLOW_TO_COMPILE} }}"), &["--timeout", "2s"]);
-    expect(
-        &run,
-        1,
-        &["timeout      s.glsl: stopped after 2.0 s, while the driver was compiling the shader"],
-    );
+    // That is the driver's fault: the evaluator judges the shader.
+    let words = ["ok           s.glsl", "W0606", "takes longer than 2 s to compile"];
+    expect(&run, 0, &words);
     assert!(start.elapsed().as_secs() < 30);
 }
 

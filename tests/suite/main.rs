@@ -16,6 +16,8 @@ mod containment;
 mod conversion;
 mod derivatives;
 mod diagnostics;
+#[cfg(unix)]
+mod driver_start;
 mod elementary;
 mod equivalent_rewrites;
 mod estimators;
@@ -29,6 +31,7 @@ mod generated;
 mod glslang;
 #[cfg(target_os = "linux")]
 mod hostile;
+mod limits;
 mod literals;
 mod miscompiles;
 mod mistaken;

@@ -17,9 +17,10 @@ use crate::cli::shader::{Shader, Unusable, denied};
 use crate::cli::{Terminal, pool};
 use crate::compare::Verdict;
 use crate::contain::{Part, contain};
+use crate::deadline::Deadline;
 use crate::diagnostic::{self, Diagnostic};
 use crate::frame::Frame;
-use crate::gpu::{self, Worker};
+use crate::gpu::Worker;
 use crate::image;
 use crate::output;
 use crate::report::{Mistake, Record};
@@ -190,11 +191,18 @@ impl<'a> Judge<'a> {
     }
 
     fn judge_one(&self, hand: &mut Hand, submission: &Submission) -> Judged {
-        let shader = Shader::load(&submission.input, &self.args.language);
+        let shader = Shader::load(
+            &submission.input,
+            &self.args.language,
+            Deadline::after(self.args.driver.timeout()),
+        );
         let found = submission.input.as_ref().ok();
         let reference = found.and_then(|found| self.references.find(found));
         let mut judged = Judged::known(Record::new(shader.name.clone(), Verdict::Ok));
         judged.record.scene = reference.as_ref().map(|reference| reference.name.clone());
+        if let Some(skipped) = found.and_then(|found| self.references.skipped(found)) {
+            judged.said.push(Said::Warning(skipped.to_string()));
+        }
         let findings = self.verify(hand, &mut judged, shader, reference);
         if let (Some(out), Some(place)) = (&self.args.out, &submission.place) {
             keep(out, place, findings.as_ref().ok(), &mut judged);
@@ -256,13 +264,17 @@ impl<'a> Judge<'a> {
             timeout: self.args.driver.timeout(),
             pool: hand.pool.as_ref(),
         };
+        if self.fell_back.load(Ordering::Relaxed) {
+            hand.worker = None;
+        }
         let mut verified = verify(hand.worker.as_mut(), &case);
-        if let Err(verify::Failure::Gpu(gpu::Failure::NoDriver(why))) = &verified
+        if let Err(verify::Failure::Gpu(failure)) = &verified
+            && failure.is_without_driver()
             && self.args.driver.may_fall_back()
         {
             if !self.fell_back.swap(true, Ordering::Relaxed) {
                 judged.said.push(Said::Warning(format!(
-                    "{why}; shaders run on the CPU, and whether a GPU would paint the same is not asked"
+                    "{failure}; shaders are evaluated on the CPU instead, without the toolchain check                      (`toyproof doctor` tests the drivers)"
                 )));
             }
             hand.worker = None;

@@ -88,7 +88,18 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let mut results = None;
     if let Some(out) = &args.out {
         match Results::open(out, args.resume) {
-            Ok(opened) => results = Some(opened),
+            Ok(opened) => {
+                if let broken @ 1.. = opened.broken as u64 {
+                    terminal.warn(format_args!(
+                        "{} {} of results.jsonl cannot be read and {} skipped: what {} of is checked again",
+                        grouped(broken),
+                        plural(broken, "line", "lines"),
+                        plural(broken, "was", "were"),
+                        plural(broken, "it told", "they told"),
+                    ));
+                }
+                results = Some(opened);
+            }
             Err(error) => {
                 terminal.error(format_args!("cannot write {error}"));
                 return Exit::Trouble;
@@ -98,7 +109,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let reserved: Vec<&str> = reports::NAMES.into_iter().chain([results::NAME]).collect();
     let mut names = Names::new(&PICTURES.map(|picture| picture.suffix), &reserved);
     let references = References::new(args.scene.as_deref());
-    let submissions: Vec<Submission> = find(&args.shaders)
+    let submissions: Vec<Submission> = find(&args.shaders, terminal)
         .into_iter()
         .map(|input| Submission::new(input, args, &references, &mut names))
         .collect();
@@ -142,7 +153,7 @@ struct Batch<'a> {
 
 impl Batch<'_> {
     fn check(&mut self, submissions: &[Submission], judge: &Judge) {
-        let interrupted = interrupt::watch("finishing the shader in hand");
+        let stop = interrupt::watch("finishing the shader in hand");
         let bar = match submissions {
             [one] => self.terminal.spinner(&one.name),
             several => self.terminal.bar(several.len() as u64, "checking"),
@@ -179,7 +190,7 @@ impl Batch<'_> {
         pool::each(
             &todo,
             threads,
-            &interrupted,
+            &stop,
             || Hand::new(self.args, threads),
             |hand, index| judge.judge(hand, &submissions[index]),
             |index, judged| {
@@ -188,10 +199,15 @@ impl Batch<'_> {
                 bar.set_message(tally.to_string());
                 self.keep(&submissions[index], &judged);
                 bar.suspend(|| self.take(index, judged));
+                if self.terminal.is_closed() {
+                    // Nobody reads what comes; the shaders in hand are finished.
+                    stop.store(true, Ordering::Relaxed);
+                }
             },
         );
         bar.finish_and_clear();
-        if interrupted.load(Ordering::Relaxed) {
+        let is_done = self.told.len() == submissions.len();
+        if stop.load(Ordering::Relaxed) && !(self.terminal.is_closed() && is_done) {
             for (index, judged) in std::mem::take(&mut self.order).rest() {
                 self.tell(index, judged);
             }
@@ -199,8 +215,13 @@ impl Batch<'_> {
                 Some(_) => "; the same command with --resume goes on",
                 None => "",
             };
+            let why = if self.terminal.is_closed() {
+                "standard output was closed"
+            } else {
+                "interrupted"
+            };
             self.terminal
-                .error(format_args!("interrupted; what was done is kept{how}"));
+                .error(format_args!("{why}; what was done is kept{how}"));
             self.trouble = true;
         }
     }
@@ -249,6 +270,7 @@ impl Batch<'_> {
             rubric,
             told,
             device,
+            results,
             mut trouble,
             ..
         } = self;
@@ -264,10 +286,20 @@ impl Batch<'_> {
             trouble |= !terminal.bytes(report.json().as_bytes());
         }
         if let Some(out) = &args.out {
-            if reports::write(&report, &told_of, rubric.as_ref(), out, terminal) {
-                terminal.say(&format!("pictures and reports are in {}", path_name(out)));
-            } else {
-                trouble = true;
+            // Before the reports, which would make the folder anew.
+            let is_there = results.as_ref().map_or(Ok(()), Results::check_place);
+            let written = reports::write(&report, &told_of, rubric.as_ref(), out, terminal);
+            match is_there {
+                Ok(()) if written => {
+                    terminal.say(&format!("pictures and reports are in {}", path_name(out)));
+                }
+                Ok(()) => trouble = true,
+                Err(error) => {
+                    terminal.error(format_args!(
+                        "results and pictures were removed while they were written: {error}; run the command again"
+                    ));
+                    trouble = true;
+                }
             }
         }
         if no_driver {

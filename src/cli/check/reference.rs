@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::cli::shader::Unusable;
 use crate::scene::{self, Scene};
-use crate::source::{self, File, Files, Found, FoundIn, path_name};
+use crate::source::{self, File, Files, Found, FoundIn, Skipped, path_name};
 
 /// The scene of a shader.
 pub(in crate::cli) struct Reference {
@@ -32,10 +32,21 @@ impl References {
             (Some(named), _) => Some(named.clone()),
             (None, FoundIn::File(shader)) => {
                 let beside = shader.with_extension("toml");
-                let text = beside.is_file().then(|| text(&beside))?;
+                if !beside.is_file() || leaves(found, shader, &beside).is_some() {
+                    return None;
+                }
+                let text = text(&beside);
                 Some((beside, text))
             }
             (None, FoundIn::Stream { .. }) => None,
+        }
+    }
+
+    /// The link that is not followed where the scene beside a shader would be.
+    pub(super) fn skipped(&self, found: &Found) -> Option<Skipped> {
+        match (&self.named, &found.place) {
+            (None, FoundIn::File(shader)) => leaves(found, shader, &shader.with_extension("toml")),
+            _ => None,
         }
     }
 
@@ -53,6 +64,12 @@ impl References {
             files,
         })
     }
+}
+
+/// Whether what lies beside a shader is a link out of the folder that was searched, or out of the shader's own.
+fn leaves(found: &Found, shader: &Path, beside: &Path) -> Option<Skipped> {
+    let folder = found.folder.as_deref().or(shader.parent())?;
+    Skipped::of(beside, folder)
 }
 
 fn text(path: &Path) -> Result<File, String> {

@@ -29,31 +29,53 @@ pub(super) struct Results {
     file: File,
     /// What an earlier run found.
     known: HashMap<String, Record>,
+    /// How many lines of an earlier run could not be read.
+    pub(super) broken: usize,
 }
 
 impl Results {
     /// Begins the file; with `resume` it goes on with what is there. A line that was being written when a run was killed is dropped.
     pub(super) fn open(folder: &Path, resume: bool) -> io::Result<Self> {
         let path = folder.join(NAME);
-        let before = match std::fs::read_to_string(&path) {
-            Ok(text) if resume => text,
+        let before = match std::fs::read(&path) {
+            Ok(bytes) if resume => bytes,
             Err(error) if resume && error.kind() != io::ErrorKind::NotFound => {
                 return Err(named(&path, &error));
             }
-            _ => String::new(),
+            _ => Vec::new(),
         };
-        let mut kept = String::new();
+        let mut kept = Vec::new();
         let mut known = HashMap::new();
-        for line in before.split_inclusive('\n').filter(|line| line.ends_with('\n')) {
-            if let Ok(Line { key, record }) = serde_json::from_str(line) {
-                known.insert(key, record);
-                kept.push_str(line);
+        let mut broken = 0;
+        for line in before
+            .split_inclusive(|&byte| byte == b'\n')
+            .filter(|line| line.ends_with(b"\n"))
+        {
+            match serde_json::from_slice(line) {
+                Ok(Line { key, record }) => {
+                    known.insert(key, record);
+                    kept.extend_from_slice(line);
+                }
+                Err(_) => broken += 1,
             }
         }
-        output::write_inside(folder, &path, kept.as_bytes())?;
+        output::write_inside(folder, &path, &kept)?;
         let file = OpenOptions::new().append(true).open(&path);
         let file = file.map_err(|error| named(&path, &error))?;
-        Ok(Self { path, file, known })
+        Ok(Self {
+            path,
+            file,
+            known,
+            broken,
+        })
+    }
+
+    /// Whether the file is still where it was: what is written to one that was removed is lost.
+    pub(super) fn check_place(&self) -> io::Result<()> {
+        match self.path.metadata() {
+            Ok(_) => Ok(()),
+            Err(error) => Err(named(&self.path, &error)),
+        }
     }
 
     /// What is known of a shader.

@@ -6,6 +6,7 @@ use crate::cli::shader::{Unusable, is_invalid};
 use crate::compare::Verdict;
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::eval;
+use crate::glsl::{self, Code};
 use crate::gpu::Failure;
 use crate::source::Files;
 use crate::verify;
@@ -37,6 +38,12 @@ impl Stopped {
     }
 
     fn invalid(verdict: Verdict, diagnostics: Vec<Diagnostic>, files: Files) -> Self {
+        let is_slow = |told: &Diagnostic| told.code == Code::TooSlow.as_str();
+        let verdict = if diagnostics.iter().any(is_slow) {
+            Verdict::Timeout
+        } else {
+            verdict
+        };
         let error = diagnostics.iter().find(|told| told.severity == Severity::Error);
         let reason = error.map_or_else(
             || "it does not compile".to_owned(),
@@ -58,6 +65,9 @@ impl Stopped {
             verify::Failure::Gpu(failure) => Self::gpu(failure, files),
             verify::Failure::CutShort(pixels) => Self::because(Verdict::Timeout, cut_short(pixels)),
             verify::Failure::Cpu(failure) => Self::cpu(&failure, &files),
+            verify::Failure::Overdue(overdue) => {
+                Self::invalid(Verdict::Timeout, vec![glsl::overdue(overdue)], files)
+            }
         }
     }
 

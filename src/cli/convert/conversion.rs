@@ -13,10 +13,11 @@ use super::args::To;
 use super::proof::{NAGA, Standing, in_browser};
 use super::{header, tool};
 use crate::browser::{Chromium, Text};
+use crate::deadline::Deadline;
 use crate::diagnostic::Diagnostic;
 use crate::emit::Target;
-use crate::glsl::Checked;
 use crate::glsl::wgsl::{self, Style};
+use crate::glsl::{self, Checked, Lowered};
 use crate::gpu::{Failure, FloatMode, Worker, Written};
 use crate::module::ValidModule;
 use crate::source::{Found, ReadError};
@@ -98,7 +99,7 @@ impl Converter<'_> {
         hand: &mut Hand,
         input: &Result<Found, ReadError>,
     ) -> (Shader, Result<Made, Trouble>) {
-        let shader = Shader::load(input, self.language);
+        let shader = Shader::load(input, self.language, Deadline::after(self.driver.timeout()));
         let made = match &shader.checked {
             Ok(checked) => self.make(hand, checked, &shader),
             Err(Unusable::Invalid(diagnostics)) => Err(Trouble::Told(diagnostics.clone(), Exit::Bad)),
@@ -109,7 +110,7 @@ impl Converter<'_> {
 
     fn make(&self, hand: &mut Hand, checked: &Checked, shader: &Shader) -> Result<Made, Trouble> {
         let Some(target) = self.to.target() else {
-            let lowered = self.float.lower(checked);
+            let lowered = self.lower(checked)?;
             let bytes = lowered.text().as_bytes().to_vec();
             let standing = if self.verify {
                 let readings = vec![(NAGA.to_owned(), Written::Lowered(lowered))];
@@ -189,6 +190,12 @@ impl Converter<'_> {
         })
     }
 
+    fn lower(&self, checked: &Checked) -> Result<Lowered, Trouble> {
+        let deadline = Deadline::after(self.driver.timeout());
+        let lowered = self.float.lower_within(checked, &deadline);
+        lowered.map_err(|overdue| Trouble::Told(vec![glsl::overdue(overdue)], Exit::Bad))
+    }
+
     /// What naga writes of the shader.
     fn by_naga(
         &self,
@@ -197,7 +204,7 @@ impl Converter<'_> {
         target: Target,
         shader: &Shader,
     ) -> Result<Made, Trouble> {
-        let lowered = self.float.lower(checked);
+        let lowered = self.lower(checked)?;
         let translator = hand
             .translator
             .as_mut()

@@ -26,7 +26,7 @@ use crate::gpu::FloatMode;
 use crate::source::{Found, ReadError, path_name};
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
-    let inputs = find(&args.shaders);
+    let inputs = find(&args.shaders, terminal);
     let standard = args.output == Path::new("-");
     let of_extension = (!standard && !args.output.is_dir())
         .then(|| To::of(&args.output))

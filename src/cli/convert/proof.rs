@@ -146,13 +146,14 @@ impl Converter<'_> {
 /// What stands of a conversion that has no pictures. Another text has them only if this one is at fault, not where the shader itself
 /// takes too long or cannot be run.
 fn unproved(failure: verify::Failure) -> Standing {
-    use Failure::{Device, NoDriver, Timeout};
+    use Failure::{Device, Timeout};
     match failure {
-        verify::Failure::Gpu(NoDriver(why)) => {
-            Standing::Untried(format!("to prove a conversion takes a Vulkan driver: {why}"))
+        verify::Failure::Gpu(failure) if failure.is_without_driver() => {
+            Standing::Untried(format!("to prove a conversion takes a Vulkan driver: {failure}"))
         }
         verify::Failure::Cpu(_)
         | verify::Failure::CutShort(_)
+        | verify::Failure::Overdue(_)
         | verify::Failure::Gpu(Timeout { .. } | Device(_)) => Standing::Untried(failure.to_string()),
         verify::Failure::Gpu(_) => Standing::Unproved(failure.to_string()),
     }

@@ -26,6 +26,7 @@ use super::observe::{Predicate, Site, SiteId};
 use super::operation::{Kind, Operation};
 use super::paint::Other;
 use super::story::{CallId, EventId, Plot};
+use crate::deadline::{Deadline, Overdue};
 use crate::glsl::Checked;
 use thiserror::Error;
 
@@ -55,6 +56,9 @@ pub enum Refusal {
     /// There is no memory for it, or for the stack that is needed.
     #[error("there is not enough memory to evaluate this shader on the CPU")]
     NoMemory,
+    /// Compiling it takes longer than it may.
+    #[error(transparent)]
+    TooSlow(#[from] Overdue),
 }
 
 /// What comes of operations that GLSL leaves undefined.
@@ -99,9 +103,10 @@ pub(super) struct Program {
 }
 
 /// Writes a shader's flow.
-pub(super) fn compile(checked: &Checked, extras: Extras) -> Result<Program> {
+pub(super) fn compile(checked: &Checked, extras: Extras, deadline: &Deadline) -> Result<Program> {
     let mut builder = Builder {
         tree: &checked.tree,
+        deadline,
         extras,
         draft: RefCell::default(),
         homes: HashMap::new(),
@@ -197,6 +202,7 @@ struct Frame {
 /// Writes the flow of a tree.
 struct Builder<'a> {
     tree: &'a Tree,
+    deadline: &'a Deadline,
     extras: Extras,
     draft: RefCell<Draft>,
     homes: HashMap<VariableId, Home>,
@@ -361,8 +367,11 @@ impl Builder<'_> {
         self.draft.borrow_mut().push(origin)
     }
 
-    /// Stops when a program grows beyond all measure.
+    /// Stops when a program grows beyond all measure, or the time is over.
     fn bounded(&self) -> Result<()> {
+        if self.deadline.is_over() {
+            self.deadline.check()?;
+        }
         if self.draft.borrow().origins.len().max(self.plot.events.len()) > MAX_VALUES {
             return Err(Refusal::TooLong);
         }

@@ -55,7 +55,7 @@ impl Builder<'_> {
         if let Some(position) = offset_position(function)
             && let Some(value) = others.get(position).and_then(|&offset| self.tree.value(offset))
         {
-            for (axis, scalar) in offset.iter_mut().zip(&*value.scalars) {
+            for (axis, scalar) in offset.iter_mut().zip(value.components()) {
                 if let crate::glsl::tree::Value::Int(texels) = scalar {
                     *axis = *texels;
                 }

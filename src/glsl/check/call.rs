@@ -161,10 +161,13 @@ impl Checker<'_> {
             return;
         }
         let value = self.tree.value(offset);
-        let too_far = value.iter().flat_map(|value| &*value.scalars).find_map(|part| {
-            let Value::Int(part) = *part else { return None };
-            (!TEXEL_OFFSETS.contains(&part)).then_some(part)
-        });
+        let too_far = value
+            .iter()
+            .flat_map(|value| value.components())
+            .find_map(|part| {
+                let Value::Int(part) = *part else { return None };
+                (!TEXEL_OFFSETS.contains(&part)).then_some(part)
+            });
         if let Some(part) = too_far {
             let message = format!(
                 "the offset {part} is out of range: {} to {}",

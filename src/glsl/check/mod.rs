@@ -40,6 +40,7 @@ use super::preprocess::Preprocessed;
 use super::token::Symbol;
 use super::tree::{Expr, ExprId, ExprKind, FunctionId, Literal, Place, Scalar, StructId, Tree, Type, Value};
 use super::words::Words;
+use crate::deadline::Deadline;
 use crate::diagnostic::Diagnostic;
 
 /// Builds the tree and keeps the rules.
@@ -67,6 +68,7 @@ pub(crate) struct Checker<'a> {
     end: Option<Place>,
     pub(crate) errors: Vec<Diagnostic>,
     pub(crate) warnings: Vec<Diagnostic>,
+    pub(crate) deadline: Deadline,
 }
 
 impl<'a> Checker<'a> {
@@ -88,6 +90,7 @@ impl<'a> Checker<'a> {
             calls: Vec::new(),
             errors: Vec::new(),
             warnings: Vec::new(),
+            deadline: options.deadline.clone(),
         };
         checker.declare_prelude();
         checker
@@ -142,7 +145,9 @@ impl<'a> Checker<'a> {
             constant,
             at,
         };
-        self.tree.exprs.push(expr)
+        let id = self.tree.exprs.push(expr);
+        self.tree.keep_value(id);
+        id
     }
 
     /// What stands for an expression whose mistake has been told.

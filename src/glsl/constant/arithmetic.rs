@@ -2,10 +2,16 @@
 
 use crate::glsl::tree::{BinaryOp, Constant, Type, Value};
 
+/// The most scalars that are compared: constants share their parts, so that a short text may compare large ones often.
+const MAX_COMPARED: usize = 1 << 12;
+
 pub(super) fn binary(op: BinaryOp, a: &Constant, b: &Constant) -> Option<Vec<Value>> {
     match op {
-        BinaryOp::Equal => return Some(vec![Value::Bool(a.scalars == b.scalars)]),
-        BinaryOp::NotEqual => return Some(vec![Value::Bool(a.scalars != b.scalars)]),
+        BinaryOp::Equal | BinaryOp::NotEqual => {
+            let is_equal = a.scalar_count() <= MAX_COMPARED && b.scalar_count() <= MAX_COMPARED;
+            let is_equal = is_equal.then(|| a == b)?;
+            return Some(vec![Value::Bool(is_equal == (op == BinaryOp::Equal))]);
+        }
         _ => {}
     }
     let vector_or_matrix = |ty| matches!(ty, Type::Matrix { .. } | Type::Vector(..));
@@ -14,11 +20,11 @@ pub(super) fn binary(op: BinaryOp, a: &Constant, b: &Constant) -> Option<Vec<Val
     if op == BinaryOp::Multiply && algebraic {
         return product(a, b);
     }
-    let count = a.scalars.len().max(b.scalars.len());
+    let count = a.components().len().max(b.components().len());
     // A scalar meets every component of the other side.
     let pick = |side: &Constant, at: usize| {
-        side.scalars
-            .get(if side.scalars.len() == 1 { 0 } else { at })
+        side.components()
+            .get(if side.components().len() == 1 { 0 } else { at })
             .copied()
     };
     (0..count)
@@ -36,7 +42,7 @@ fn product(a: &Constant, b: &Constant) -> Option<Vec<Value>> {
     };
     let (inner, rows) = shape(a.ty, true)?;
     let (columns, _) = shape(b.ty, false)?;
-    let float = |side: &Constant, at: usize| match side.scalars.get(at) {
+    let float = |side: &Constant, at: usize| match side.components().get(at) {
         Some(Value::Float(value)) => Some(*value),
         _ => None,
     };

@@ -17,8 +17,8 @@ pub(super) fn call(function: BuiltIn, ty: Type, arguments: &[Constant]) -> Optio
     (0..count)
         .map(|at| {
             let pick = |argument: &Constant| {
-                let at = if argument.scalars.len() == 1 { 0 } else { at };
-                argument.scalars.get(at).copied()
+                let at = if argument.components().len() == 1 { 0 } else { at };
+                argument.components().get(at).copied()
             };
             component(function, &arguments.iter().map(pick).collect::<Option<Vec<_>>>()?)
         })
@@ -131,7 +131,7 @@ fn relation(function: BuiltIn, a: Value, b: Value) -> Option<Value> {
 }
 
 fn truths(function: BuiltIn, arguments: &[Constant]) -> Option<bool> {
-    let mut all = arguments.first()?.scalars.iter();
+    let mut all = arguments.first()?.components().iter();
     match function {
         BuiltIn::Any => Some(all.any(|&value| value == Value::Bool(true))),
         BuiltIn::All => Some(all.all(|&value| value == Value::Bool(true))),
@@ -147,7 +147,7 @@ fn floats(arguments: &[Constant]) -> Option<Vec<Vec<f64>>> {
     };
     arguments
         .iter()
-        .map(|argument| argument.scalars.iter().map(float).collect())
+        .map(|argument| argument.components().iter().map(float).collect())
         .collect()
 }
 

@@ -7,29 +7,68 @@
 mod arithmetic;
 mod builtin;
 
-use std::sync::Arc;
-
 use super::tree::{Constant, Constructor, ExprId, ExprKind, Scalar, Tree, Type, UnaryOp, Value};
 
 /// The most scalars that a value may have; structures of structures could have 2⁶⁰.
 const MAX_SCALARS: usize = 1 << 18;
 
 impl Tree {
-    /// The value of a constant expression; none if it is none, or its value cannot be told.
+    /// The value of a constant expression; none if it is none, or its value cannot be told. Takes constant time for expressions
+    /// that [`Self::keep_value`] was called for.
     #[must_use]
     pub fn value(&self, root: ExprId) -> Option<Constant> {
         if !self[root].constant {
             return None;
         }
+        if let Some(known) = self.kept_value(root) {
+            return known;
+        }
         // Operands come before what uses them, so their values lie on top of this stack. A loop, for chains of any length.
         let mut values: Vec<Option<Constant>> = Vec::new();
-        for expr in self.postorder(root) {
-            let mut operands = 0;
-            self[expr].kind.for_each_operand(|_| operands += 1);
-            let operands = values.split_off(values.len() - operands);
-            values.push(self.value_of(expr, operands));
+        let mut pending = vec![(root, false)];
+        while let Some((expr, operands_done)) = pending.pop() {
+            if operands_done {
+                let mut operands = 0;
+                self[expr].kind.for_each_operand(|_| operands += 1);
+                let operands = values.split_off(values.len() - operands);
+                values.push(self.value_of(expr, operands));
+            } else if !self[expr].constant {
+                values.push(None);
+            } else if let Some(known) = self.kept_value(expr) {
+                values.push(known);
+            } else {
+                pending.push((expr, true));
+                let first = pending.len();
+                self[expr]
+                    .kind
+                    .for_each_operand(|operand| pending.push((operand, false)));
+                pending[first..].reverse();
+            }
         }
         values.pop().flatten()
+    }
+
+    /// Computes the value of an expression once and for all, from those of its operands. Called for operands before what uses
+    /// them, as expressions are made, this keeps the time for all values proportional to the size of the tree. Whoever rewrites
+    /// the expression later must leave it its value, or unset [`Expr::constant`](super::tree::Expr::constant).
+    pub fn keep_value(&mut self, expr: ExprId) {
+        let is_literal = matches!(self[expr].kind, ExprKind::Literal(_));
+        if self[expr].constant && !is_literal {
+            let value = self.value(expr);
+            self.values.insert(expr, value);
+        }
+    }
+
+    /// What is known of a value without computing it: none of those that were not kept.
+    #[expect(
+        clippy::option_option,
+        reason = "a value that is not known, and one that there is not"
+    )]
+    fn kept_value(&self, expr: ExprId) -> Option<Option<Constant>> {
+        match &self[expr].kind {
+            ExprKind::Literal(literal) => Some(Some(Constant::scalar(literal.value))),
+            _ => self.values.get(&expr).cloned(),
+        }
     }
 
     fn value_of(&self, expr: ExprId, operands: Vec<Option<Constant>>) -> Option<Constant> {
@@ -42,74 +81,55 @@ impl Tree {
             return Some(Constant::scalar(Value::Int(self.array(id).size.cast_signed())));
         }
         let operands: Vec<Constant> = operands.into_iter().collect::<Option<_>>()?;
-        let scalars: Arc<[Value]> = match (&self[expr].kind, &operands[..]) {
-            (ExprKind::Literal(literal), _) => [literal.value].into(),
-            (ExprKind::Variable(variable), _) => self[*variable].value.as_ref()?.scalars.clone(),
-            (ExprKind::Unary { op, .. }, [a]) => {
-                a.scalars.iter().map(|&a| unary(*op, a)).collect::<Option<_>>()?
-            }
-            (ExprKind::Binary { op, .. }, [a, b]) => arithmetic::binary(*op, a, b)?.into(),
-            (ExprKind::Conditional { .. }, [condition, yes, no]) => match condition.scalars[..] {
-                [Value::Bool(true)] => yes.scalars.clone(),
-                [Value::Bool(false)] => no.scalars.clone(),
+        let components: Vec<Value> = match (&self[expr].kind, &operands[..]) {
+            (ExprKind::Variable(variable), _) => return self[*variable].value.clone(),
+            (ExprKind::Conditional { .. }, [condition, yes, no]) => match condition.components() {
+                [Value::Bool(true)] => return Some(yes.clone()),
+                [Value::Bool(false)] => return Some(no.clone()),
                 _ => return None,
             },
-            (ExprKind::Construct { constructor, .. }, arguments) => {
-                construct(*constructor, ty, arguments)?.into()
+            (ExprKind::Member { member, .. }, [structure]) => return structure.parts().get(*member).cloned(),
+            (ExprKind::Index { .. }, [base, index]) => {
+                return element(base, ty, usize::try_from(index.integer()?).ok()?);
             }
-            (ExprKind::BuiltIn { function, .. }, arguments) => {
-                builtin::call(*function, ty, arguments)?.into()
+            (
+                ExprKind::Construct {
+                    constructor: Constructor::Struct | Constructor::Array,
+                    ..
+                },
+                _,
+            ) => {
+                let whole = Constant::of_parts(ty, operands);
+                return (whole.scalar_count() <= MAX_SCALARS).then_some(whole);
             }
+            (ExprKind::Literal(literal), _) => vec![literal.value],
+            (ExprKind::Unary { op, .. }, [a]) => {
+                let results = a.components().iter().map(|&a| unary(*op, a));
+                results.collect::<Option<_>>()?
+            }
+            (ExprKind::Binary { op, .. }, [a, b]) => arithmetic::binary(*op, a, b)?,
+            (ExprKind::Construct { constructor, .. }, arguments) => construct(*constructor, ty, arguments)?,
+            (ExprKind::BuiltIn { function, .. }, arguments) => builtin::call(*function, ty, arguments)?,
             (ExprKind::Swizzle { components, .. }, [vector]) => components
                 .components()
                 .iter()
-                .map(|&component| vector.scalars.get(usize::from(component)).copied())
+                .map(|&component| vector.components().get(usize::from(component)).copied())
                 .collect::<Option<_>>()?,
-            (ExprKind::Member { member, .. }, [structure]) => {
-                let Type::Struct(id) = structure.ty else {
-                    return None;
-                };
-                let before = &self[id].members[..*member];
-                let start = before
-                    .iter()
-                    .map(|member| self.scalar_count(member.ty))
-                    .sum::<Option<usize>>()?;
-                structure
-                    .scalars
-                    .get(start..start + self.scalar_count(ty)?)?
-                    .into()
-            }
-            (ExprKind::Index { .. }, [base, index]) => {
-                let size = self.scalar_count(ty)?;
-                let start = usize::try_from(index.integer()?).ok()?.checked_mul(size)?;
-                base.scalars.get(start..start + size)?.into()
-            }
             _ => return None,
         };
-        (scalars.len() <= MAX_SCALARS).then_some(Constant { ty, scalars })
+        Some(Constant::of_components(ty, components))
     }
+}
 
-    /// How many scalars a type has; none for those without, and those with more than a constant may have.
-    fn scalar_count(&self, ty: Type) -> Option<usize> {
-        let count = match ty {
-            Type::Scalar(_) | Type::Vector(..) | Type::Matrix { .. } => usize::from(ty.component_count()?),
-            Type::Array(id) => self
-                .scalar_count(self.array(id).element)?
-                .checked_mul(self.array(id).size as usize)?,
-            Type::Struct(id) => {
-                let mut sum = 0;
-                for member in &self[id].members {
-                    sum += self.scalar_count(member.ty)?;
-                    if sum > MAX_SCALARS {
-                        return None;
-                    }
-                }
-                sum
-            }
-            Type::Void | Type::Sampler(_) | Type::Error => return None,
-        };
-        (count <= MAX_SCALARS).then_some(count)
+/// An element of an array, a column of a matrix, or a component of a vector, of that type.
+fn element(base: &Constant, ty: Type, index: usize) -> Option<Constant> {
+    if let Type::Array(_) = base.ty {
+        return base.parts().get(index).cloned();
     }
+    let size = usize::from(ty.component_count()?);
+    let start = index.checked_mul(size)?;
+    let components = base.components().get(start..start.checked_add(size)?)?;
+    Some(Constant::of_components(ty, components.to_vec()))
 }
 
 fn unary(op: UnaryOp, a: Value) -> Option<Value> {
@@ -125,17 +145,13 @@ fn unary(op: UnaryOp, a: Value) -> Option<Value> {
     })
 }
 
-/// §5.4.
+/// The components of a scalar, vector or matrix (§5.4).
 fn construct(constructor: Constructor, ty: Type, arguments: &[Constant]) -> Option<Vec<Value>> {
     let all = || {
         arguments
             .iter()
-            .flat_map(|argument| argument.scalars.iter().copied())
+            .flat_map(|argument| argument.components().iter().copied())
     };
-    if matches!(constructor, Constructor::Struct | Constructor::Array) {
-        let total: usize = arguments.iter().map(|argument| argument.scalars.len()).sum();
-        return (total <= MAX_SCALARS).then(|| all().collect());
-    }
     let scalar = ty.scalar()?;
     let count = usize::from(ty.component_count()?);
     let of_matrix = |pick: &dyn Fn(u8, u8) -> Option<Value>| {
@@ -157,18 +173,15 @@ fn construct(constructor: Constructor, ty: Type, arguments: &[Constant]) -> Opti
             of_matrix(&|column, row| Some(if column == row { value } else { Value::Float(0.0) }))
         }
         Constructor::Resize => {
-            let [
-                Constant {
-                    ty: Type::Matrix { columns, rows },
-                    scalars,
-                },
-            ] = arguments
-            else {
+            let [matrix] = arguments else {
+                return None;
+            };
+            let Type::Matrix { columns, rows } = matrix.ty else {
                 return None;
             };
             of_matrix(&|column, row| {
-                if column < *columns && row < *rows {
-                    scalars.get(usize::from(column * rows + row)).copied()
+                if column < columns && row < rows {
+                    matrix.components().get(usize::from(column * rows + row)).copied()
                 } else {
                     Some(identity(column, row))
                 }

@@ -12,7 +12,8 @@ use super::draft::Draft;
 use super::helper::Helper;
 
 pub(super) fn run(draft: &mut Draft) {
-    draft.each_expression(|draft, id| {
+    draft.operands_first(|draft, id| {
+        draft.tree.keep_value(id);
         for value in passed_on(&draft.tree, id) {
             postpone(draft, value);
         }
@@ -138,7 +139,7 @@ fn overflows(tree: &Tree, id: ExprId) -> bool {
         tree[id].constant
             && tree
                 .value(id)
-                .is_some_and(|value| value.scalars.iter().copied().any(is_beyond))
+                .is_some_and(|value| value.components().iter().copied().any(is_beyond))
     };
     let mut below = false;
     tree[id].kind.for_each_operand(|operand| {
@@ -170,7 +171,7 @@ fn any_scalar(tree: &Tree, id: ExprId, is_such: impl Fn(Value) -> bool) -> bool 
     tree[id].constant
         && tree
             .value(id)
-            .is_some_and(|value| value.scalars.iter().copied().any(is_such))
+            .is_some_and(|value| value.components().iter().copied().any(is_such))
 }
 
 fn crosses(tree: &Tree, low: ExprId, high: ExprId, crossed: impl Fn(f64, f64) -> bool) -> bool {
@@ -183,9 +184,9 @@ fn crosses(tree: &Tree, low: ExprId, high: ExprId, crossed: impl Fn(f64, f64) ->
     };
     match (values(low), values(high)) {
         (Some(low), Some(high)) => low
-            .scalars
+            .components()
             .iter()
-            .zip(high.scalars.iter())
+            .zip(high.components().iter())
             .any(|(low, high)| crossed(number(low), number(high))),
         _ => false,
     }
@@ -208,7 +209,7 @@ pub(super) fn spell(draft: &mut Draft, value: &Constant, place: ExprId) -> ExprI
     let ty = value.ty;
     let mut build = draft.build_at(place);
     let scalars: Vec<ExprId> = value
-        .scalars
+        .components()
         .iter()
         .map(|&scalar| build.literal(scalar))
         .collect();

@@ -50,6 +50,7 @@ pub use pass::{Pass, Passes};
 
 use super::Checked;
 use super::print::{Lowered, print};
+use crate::deadline::{Deadline, Overdue};
 
 /// Lowers a shader and prints what naga is fed.
 #[must_use]
@@ -67,9 +68,18 @@ pub fn lower_strict(checked: &Checked) -> Lowered {
 /// The same by some passes only, to see what naga makes of the rest.
 #[must_use]
 pub fn lower_with(checked: &Checked, passes: Passes) -> Lowered {
+    // Without a deadline there is no failure.
+    lower_within(checked, passes, &Deadline::default()).unwrap_or_default()
+}
+
+/// The same within a deadline.
+///
+/// # Errors
+/// If it passes.
+pub fn lower_within(checked: &Checked, passes: Passes, deadline: &Deadline) -> Result<Lowered, Overdue> {
     let mut draft = Draft::new(checked.tree.clone(), checked.main_image);
-    passes.run(&mut draft);
-    print(&draft)
+    passes.run(&mut draft, deadline)?;
+    print(&draft, deadline)
 }
 
 #[cfg(test)]

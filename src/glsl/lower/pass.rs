@@ -1,6 +1,7 @@
 //! The passes and their order.
 
 use super::draft::Draft;
+use crate::deadline::{Deadline, Overdue};
 
 macro_rules! passes {
     ($($(#[$doc:meta])* $variant:ident = $run:path,)*) => {
@@ -121,9 +122,11 @@ impl Passes {
         self.0 & (1 << pass as u32) != 0
     }
 
-    pub(in crate::glsl) fn run(self, draft: &mut Draft) {
+    pub(in crate::glsl) fn run(self, draft: &mut Draft, deadline: &Deadline) -> Result<(), Overdue> {
         for pass in Pass::ALL.iter().filter(|pass| self.contains(**pass)) {
+            deadline.check()?;
             pass.run(draft);
         }
+        Ok(())
     }
 }

@@ -66,7 +66,7 @@ fn spell_out(draft: &mut Draft, id: ExprId) {
 fn is_natural(tree: &Tree, operand: ExprId) -> bool {
     let natural = |value: &Value| matches!(value, Value::Int(value) if *value >= 0);
     tree.value(operand)
-        .is_some_and(|value| value.scalars.iter().all(natural))
+        .is_some_and(|value| value.components().iter().all(natural))
 }
 
 fn widen(draft: &mut Draft, operand: ExprId, ty: Type) -> ExprId {

@@ -84,9 +84,9 @@ impl<'a> Parser<'a> {
         self.tokens[(self.at + ahead).min(last)]
     }
 
-    /// Whether there is nothing left to read, or nothing left to tell.
+    /// Whether there is nothing left to read, nothing left to tell, or no time.
     fn is_at_end(&self) -> bool {
-        self.kind() == TokenKind::End || self.check.is_full()
+        self.kind() == TokenKind::End || self.check.is_full() || self.check.deadline.is_over()
     }
 
     fn kind(&self) -> TokenKind {
@@ -258,6 +258,9 @@ impl<'a> Parser<'a> {
                 at,
                 format!("this is nested more than {MAX_NESTING} deep"),
             );
+        }
+        if self.check.deadline.is_over() {
+            return self.halt_silently();
         }
         self.depth += 1;
         let result = read(self);

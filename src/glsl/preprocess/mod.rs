@@ -21,6 +21,7 @@ use self::macros::Macro;
 use super::codes::{Code, tell};
 use super::token::{Punctuator, Symbol, Token, TokenKind};
 use super::words::Words;
+use crate::deadline::Deadline;
 use crate::diagnostic::Diagnostic;
 use crate::source::{FileId, Files};
 
@@ -59,9 +60,9 @@ const LOSES_NAMES: [Code; 5] = [
     Code::PasteOperator,
 ];
 
-/// Preprocesses one file, to its end whatever is wrong with it.
+/// Preprocesses one file, to its end whatever is wrong with it, or to where it is when the time is over.
 #[must_use]
-pub(crate) fn preprocess(files: &Files, file: FileId) -> Preprocessed {
+pub(crate) fn preprocess(files: &Files, file: FileId, deadline: &Deadline) -> Preprocessed {
     let mut preprocessor = Preprocessor::new(files, file);
     let mut tokens = Vec::new();
     loop {
@@ -106,7 +107,7 @@ pub(crate) fn preprocess(files: &Files, file: FileId) -> Preprocessed {
             at: token.at,
             told: token.kind == TokenKind::Stray,
         });
-        if token.kind == TokenKind::End {
+        if token.kind == TokenKind::End || deadline.is_over() {
             break;
         }
     }

@@ -16,16 +16,18 @@ pub(super) use order::Order;
 pub use text::Lowered;
 
 use super::lower::Draft;
+use crate::deadline::{Deadline, Overdue};
 
 /// Prints what the picture of a draft needs.
-pub(super) fn print(draft: &Draft) -> Lowered {
+pub(super) fn print(draft: &Draft, deadline: &Deadline) -> Result<Lowered, Overdue> {
     let order = order::Order::of(draft);
     let names = names::Names::of(draft, &order);
     let mut printer = printer::Printer::new(draft, &names);
     printer.prelude(&order);
     for &item in &order.items {
+        deadline.check()?;
         printer.item(item);
     }
     printer.epilogue();
-    printer.out
+    Ok(printer.out)
 }

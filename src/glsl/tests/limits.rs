@@ -82,7 +82,7 @@ fn long_chains_are_no_nesting() {
         .unwrap()
         .1;
     assert_eq!(
-        k.value.as_ref().unwrap().scalars[..],
+        k.value.as_ref().unwrap().components(),
         [tree::Value::Float(20_001.0)]
     );
     let consts = each(1..5_000, |index| {
@@ -155,4 +155,104 @@ fn cut_short_anywhere_a_shader_ends_in_a_diagnostic() {
             &text[..end]
         );
     }
+}
+
+/// Whatever is looked at again for each part of a text takes minutes for these.
+#[test]
+fn a_megabyte_of_one_construct_takes_time_in_proportion() {
+    let terms = |term: &str, operator: &str| vec![term; 60_000].join(operator);
+    let numbers = terms("1.", ",");
+    let statements: [(&str, String); 12] = [
+        ("a sum of literals", format!("x = {};", terms("1.", "+"))),
+        ("a product of vectors", format!("v = {};", terms("vec4(1.)", "*"))),
+        ("conditions", format!("b = {};", terms("true", "&&"))),
+        ("what has no value", format!("i = {};", terms("(1/0)", "+"))),
+        (
+            "a local constant",
+            format!("const float k = {};", terms("1.", "+")),
+        ),
+        (
+            "reads of a constant array",
+            format!(
+                "const float k[] = float[]({numbers}); x = {};",
+                terms("k[7]", "+")
+            ),
+        ),
+        (
+            "copies of a constant structure",
+            format!(
+                "struct S {{ float a[60000]; }}; const S s = S(float[60000]({numbers})); {}",
+                "{ const S t = s; x += t.a[3]; }".repeat(10_000)
+            ),
+        ),
+        ("comparisons", "if (x == 1.5) x = 2.0;".repeat(30_000)),
+        (
+            "comparisons of sums",
+            "if (x + y == 1.5) x = y * .3;".repeat(30_000),
+        ),
+        (
+            "declarations",
+            each(0..60_000, |index| format!("float a{index};")),
+        ),
+        ("arrays", each(0..60_000, |index| format!("float a{index}[9];"))),
+        ("declarations before a branch", {
+            let declared = each(0..40_000, |index| format!("float a{index};"));
+            format!("{declared} if (b) x = 1.;")
+        }),
+    ];
+    for (name, statements) in statements {
+        let text = format!(
+            "void mainImage(out vec4 c, in vec2 p) {{ float x = p.x, y = p.y; vec4 v; bool b = x > y; int i; {statements} c = vec4(x); }}"
+        );
+        let checked = check_text(&text, &Options::default());
+        let checked = checked.unwrap_or_else(|errors| panic!("{name}: {}", errors[0].message));
+        let lowered = crate::glsl::lower_strict(&checked);
+        assert!(lowered.text().contains("mainImage"), "{name}");
+    }
+}
+
+#[test]
+fn every_stage_ends_when_its_time_is_over() {
+    use crate::deadline::Deadline;
+    use crate::glsl::check::{Channels, Checker};
+    use crate::glsl::parse::Parser;
+    use crate::glsl::{lower, preprocess, print, warn};
+    use crate::source::{File, Files};
+
+    let over = Deadline::after(std::time::Duration::ZERO);
+    let in_time = Options::default();
+    let late = Options {
+        deadline: over.clone(),
+        ..Options::default()
+    };
+    let text = format!("float f(float x) {{ return x == x + .1 ? 1. : 2.; }} {MAIN}");
+    let errors = check_text(&text, &late).unwrap_err();
+    assert_eq!(errors.len(), 1, "{errors:?}");
+    assert_eq!(errors[0].code, "E0410");
+    assert_eq!(errors[0].message, "this shader takes longer than 0 s to compile");
+
+    let mut files = Files::default();
+    let file = files.add(File::new("a", text.as_str()));
+    let whole = preprocess::preprocess(&files, file, &in_time.deadline);
+    let begun = preprocess::preprocess(&files, file, &over);
+    assert!(begun.tokens.len() < whole.tokens.len());
+    let parse = |options: &Options| {
+        let checker = Checker::new(&whole, options, Channels::new(options));
+        Parser::new(&whole, files.get(file), checker)
+            .parse()
+            .tree
+            .exprs
+            .len()
+    };
+    assert!(parse(&in_time) > 0);
+    assert_eq!(parse(&late), 0);
+
+    let checked = check_text(&text, &in_time).unwrap();
+    let warned = warn::warn(&files, &checked.tree, checked.main_image, &[], Vec::new(), &over);
+    let codes: Vec<_> = warned.warnings.iter().map(|told| &*told.code).collect();
+    assert_eq!(codes, ["W0017"]);
+    assert!(lower::lower_within(&checked, lower::Passes::all(), &over).is_err());
+    let draft = lower::Draft::new(checked.tree.clone(), checked.main_image);
+    assert!(print::print(&draft, &over).is_err());
+    assert!(print::print(&draft, &in_time.deadline).is_ok());
 }

@@ -51,6 +51,8 @@ pub struct Tree {
     pub items: Vec<Item>,
     arrays: Arena<ArrayType>,
     array_ids: HashMap<ArrayType, ArrayId>,
+    /// The values of constant expressions, as far as they are kept; none of those without a value.
+    pub(super) values: HashMap<ExprId, Option<Constant>>,
 }
 
 impl Tree {

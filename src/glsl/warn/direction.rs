@@ -82,7 +82,7 @@ fn never_unit(program: &Program, members: &Members, direction: ExprId) -> Option
             return origin;
         };
         if let Some(constant) = tree.value(expr) {
-            let squares = constant.scalars.iter().map(|scalar| match scalar {
+            let squares = constant.components().iter().map(|scalar| match scalar {
                 Value::Float(value) => value * value,
                 _ => 0.0,
             });

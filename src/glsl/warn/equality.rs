@@ -13,14 +13,18 @@ use super::super::tree::{BinaryOp, BuiltIn, ExprId, ExprKind, FunctionId, Value}
 use super::Found;
 use super::program::{Program, is_float};
 use super::shape::Shape;
-use origin::Origin;
+use origin::{Origin, Origins};
 
 pub(super) fn run(program: &Program, found: &mut Found) {
     let tree = program.tree;
+    let mut origins = Origins::new(program);
     for &function in &program.functions {
         let mut divisors = None;
         let lengths = lengths(program, function);
         for &expr in program.exprs(function) {
+            if program.deadline.is_over() {
+                return;
+            }
             let (sign, left, right) = match &tree[expr].kind {
                 ExprKind::Binary {
                     op: op @ (BinaryOp::Equal | BinaryOp::NotEqual),
@@ -37,7 +41,7 @@ pub(super) fn run(program: &Program, found: &mut Found) {
                 continue;
             }
             let divisors = divisors.get_or_insert_with(|| self::divisors(program, function));
-            if is_left_to_rounding(program, left, right, divisors) {
+            if is_left_to_rounding(program, &mut origins, left, right, divisors) {
                 let message = format!(
                     "whether these are equal is left to rounding: `{sign}` of a float that was computed"
                 );
@@ -59,7 +63,7 @@ fn lengths(program: &Program, function: FunctionId) -> HashSet<ExprId> {
             ..
         } => program.constant(right).is_some_and(|constant| {
             constant
-                .scalars
+                .components()
                 .iter()
                 .all(|scalar| matches!(scalar, Value::Float(0.0)))
         }),
@@ -107,14 +111,20 @@ fn divisors(program: &Program, function: FunctionId) -> HashSet<Shape> {
         .collect()
 }
 
-fn is_left_to_rounding(program: &Program, left: ExprId, right: ExprId, divisors: &HashSet<Shape>) -> bool {
+fn is_left_to_rounding(
+    program: &Program,
+    origins: &mut Origins,
+    left: ExprId,
+    right: ExprId,
+    divisors: &HashSet<Shape>,
+) -> bool {
     let constants = (program.constant(left), program.constant(right));
     let (computed, constant) = match constants {
         (Some(_), Some(_)) => return false,
         (Some(constant), None) => (right, constant),
         (None, Some(constant)) => (left, constant),
         (None, None) => {
-            let (a, b) = (Origin::of(program, left), Origin::of(program, right));
+            let (a, b) = (origins.of(left), origins.of(right));
             return a.is_rounded()
                 && b.is_rounded()
                 && !a.feeds(program, left, right)
@@ -122,7 +132,7 @@ fn is_left_to_rounding(program: &Program, left: ExprId, right: ExprId, divisors:
         }
     };
     let guards = Shape::of(program.tree, computed).is_some_and(|shape| divisors.contains(&shape));
-    !guards && misses(&Origin::of(program, computed), &constant.scalars)
+    !guards && misses(&origins.of(computed), constant.components())
 }
 
 /// Whether a computed value may miss a constant by rounding alone.

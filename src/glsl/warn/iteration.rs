@@ -170,7 +170,7 @@ impl Counter<'_, '_> {
             Some(Condition::Expression(condition)) => condition,
         };
         if let Some(constant) = tree.value(condition) {
-            return constant.scalars[..] == [Value::Bool(true)];
+            return constant.components() == [Value::Bool(true)];
         }
         // Loops inside of loops are looked at once each, not once for each that encloses them.
         let is_innermost = |statement: &Statement| walk::inner(statement).is_empty() || !is_loop(statement);

@@ -23,7 +23,8 @@ use self::program::Program;
 use super::codes::{Code, MAX_TOLD};
 use super::preprocess::Remark;
 use super::tree::{FunctionId, Place, Tree};
-use crate::diagnostic::Diagnostic;
+use crate::deadline::{Deadline, Overdue};
+use crate::diagnostic::{Diagnostic, Severity};
 use crate::source::{Files, Span};
 
 /// What is found in a shader that keeps every rule.
@@ -43,8 +44,9 @@ pub(super) fn warn(
     main: FunctionId,
     remarks: &[Remark],
     told: Vec<Diagnostic>,
+    deadline: &Deadline,
 ) -> Warned {
-    let program = Program::new(tree, main);
+    let program = Program::new(tree, main, deadline);
     let mut found = Found::default();
     let quadratics = quadratic::quadratics(&program);
     direction::run(&program, &quadratics, &mut found);
@@ -59,12 +61,20 @@ pub(super) fn warn(
             diagnostic
         });
     }
+    let in_time = deadline.check();
     let mut all = told;
-    all.append(&mut found.all);
+    if in_time.is_ok() {
+        // Of lints that were out of time, what they found is no more than chance.
+        all.append(&mut found.all);
+    }
     let mut of_remarks = Vec::new();
     let allows = Allows::read(files, remarks, tree, &mut of_remarks);
     let mut left = allows.sift(all);
     left.append(&mut of_remarks);
+    if let Err(overdue) = in_time {
+        left.retain(|diagnostic| diagnostic.code != Code::UnusedAllow.as_str());
+        left.push(lint_timeout(overdue));
+    }
     left.sort_by_key(|diagnostic| diagnostic.span.map(|span| span.start));
     let (seeds, mut warnings): (Vec<_>, Vec<_>) = left
         .into_iter()
@@ -75,6 +85,15 @@ pub(super) fn warn(
         discriminants: seeds.into_iter().filter_map(|seed| seed.span).collect(),
         allowed: allows.of_runs(),
     }
+}
+
+fn lint_timeout(overdue: Overdue) -> Diagnostic {
+    let message = format!(
+        "the lints take longer than {} s for this shader: it was not searched for suspicious code",
+        overdue.limit.as_secs_f64()
+    );
+    Diagnostic::new(Severity::Note, Code::LintTimeout.as_str(), message)
+        .note("shorter functions take less time; `--timeout` gives more")
 }
 
 /// What the analyses found so far.

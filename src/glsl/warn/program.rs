@@ -4,10 +4,13 @@ use super::super::lower::walk;
 use super::super::tree::{
     Direction, ExprId, ExprKind, FunctionId, Item, StatementKind, Tree, Type, VariableId, VariableKind,
 };
+use crate::deadline::Deadline;
 
 /// A shader as the analyses see it: only what `mainImage` reaches counts.
 pub(super) struct Program<'a> {
     pub(super) tree: &'a Tree,
+    /// When all analyses must be over.
+    pub(super) deadline: &'a Deadline,
     pub(super) main: FunctionId,
     /// Those that run, callees before callers.
     pub(super) functions: Vec<FunctionId>,
@@ -31,9 +34,10 @@ pub(super) enum Definition {
 }
 
 impl<'a> Program<'a> {
-    pub(super) fn new(tree: &'a Tree, main: FunctionId) -> Self {
+    pub(super) fn new(tree: &'a Tree, main: FunctionId, deadline: &'a Deadline) -> Self {
         let mut program = Self {
             tree,
+            deadline,
             main,
             functions: Vec::new(),
             exprs: vec![Vec::new(); tree.functions.len()],
@@ -50,11 +54,12 @@ impl<'a> Program<'a> {
         &self.exprs[function.index()]
     }
 
-    /// All that runs, function by function.
+    /// All that runs, function by function, as long as there is time.
     pub(super) fn all_exprs(&self) -> impl Iterator<Item = ExprId> {
         self.functions
             .iter()
             .flat_map(|function| self.exprs(*function).iter().copied())
+            .take_while(|_| !self.deadline.is_over())
     }
 
     /// All ways in which a variable comes by a value; none for one that keeps its first zero.
@@ -227,6 +232,11 @@ impl Tree {
             _ => {}
         }
     }
+}
+
+/// The last of many: all that a search sees of them which takes the newest of what waits, and only so many.
+pub(super) fn last<T>(all: &[T], most: usize) -> &[T] {
+    &all[all.len().saturating_sub(most)..]
 }
 
 /// How a parameter is passed.

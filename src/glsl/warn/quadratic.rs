@@ -35,6 +35,9 @@ pub(super) fn quadratics(program: &Program) -> Vec<Quadratic> {
         // Sums that are a part of a larger sum.
         let mut parts: HashSet<ExprId> = HashSet::new();
         for &expr in program.exprs(function).iter().rev() {
+            if program.deadline.is_over() {
+                break;
+            }
             let ExprKind::Binary {
                 op: BinaryOp::Add | BinaryOp::Subtract,
                 left,
@@ -196,7 +199,7 @@ fn product(program: &Program, expr: ExprId) -> Option<Term> {
 }
 
 fn number(program: &Program, expr: ExprId) -> Option<f64> {
-    match program.constant(expr)?.scalars[..] {
+    match *program.constant(expr)?.components() {
         [Value::Float(value)] => Some(value),
         _ => None,
     }

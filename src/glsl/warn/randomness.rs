@@ -51,7 +51,7 @@ fn fraction(program: &Program, expr: ExprId) -> Option<ExprId> {
         (BuiltIn::Fract, [x]) => Some(*x),
         (BuiltIn::Mod, [x, one]) => {
             let one = program.tree.value(*one)?;
-            one.scalars
+            one.components()
                 .iter()
                 .all(|&scalar| scalar == Value::Float(1.0))
                 .then_some(*x)
@@ -117,7 +117,7 @@ fn product(program: &Program, product: ExprId) -> Option<(ExprId, f64)> {
     while let Some(factor) = factors.pop() {
         if let Some(constant) = program.constant(factor) {
             size *= constant
-                .scalars
+                .components()
                 .iter()
                 .fold(0.0_f64, |most, scalar| match scalar {
                     Value::Float(value) => most.max(value.abs()),

@@ -62,7 +62,7 @@ fn shows(program: &Program, lookup: ExprId, values: &[Traits]) -> bool {
         _ => arguments.get(2),
     };
     let bias = bias.and_then(|&bias| program.constant(bias));
-    let is_lowest = bias.is_some_and(|bias| match bias.scalars[..] {
+    let is_lowest = bias.is_some_and(|bias| match *bias.components() {
         [Value::Float(bias)] => bias <= -MAX_LEVELS,
         _ => false,
     });

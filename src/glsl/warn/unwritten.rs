@@ -24,12 +24,9 @@ use crate::source::Files;
 use builder::Builder;
 use flow::{begun, is_followed};
 use part::Layout;
-use search::{Quarry, Search};
+use search::{Budget, Quarry, Search};
 use summary::{Summary, summary};
 use way::{Decision, DecisionKind, Way};
-
-/// How many blocks are visited for one shader: a second's work at most. Of what is beyond, nothing is told.
-const BUDGET: usize = 100_000;
 
 /// The longest condition that is shown.
 const MAX_SHOWN: usize = 48;
@@ -39,9 +36,12 @@ pub(super) fn run(program: &Program, files: &Files, found: &mut Found) {
     let layout = Layout::new(tree);
     let mut summaries = vec![Summary::default(); tree.functions.len()];
     let mut written = global::Written::default();
-    let mut left = BUDGET;
+    let mut left = Budget::default();
     let colour = tree[program.main].parameters.first().copied();
     for &function in &program.functions {
+        if program.deadline.is_over() {
+            return;
+        }
         let flow = Builder::build(tree, &layout, &summaries, colour, function);
         let mut sum = summary(tree, &flow, function);
         let mut search = Search::new(program, &flow);

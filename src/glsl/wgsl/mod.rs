@@ -31,6 +31,7 @@ use thiserror::Error;
 use super::Checked;
 use super::lower::{Draft, Pass, Passes};
 use super::print::Order;
+use crate::deadline::Deadline;
 use crate::source::Files;
 pub use host::Hosted;
 pub use style::Style;
@@ -46,7 +47,8 @@ pub struct Unprintable(pub &'static str);
 /// What cannot be said.
 pub fn wgsl(checked: &Checked, files: &Files, style: Style) -> Result<String, Unprintable> {
     let mut draft = Draft::new(checked.tree.clone(), checked.main_image);
-    passes().run(&mut draft);
+    // Without a deadline there is no failure.
+    let _ = passes().run(&mut draft, &Deadline::default());
     let order = Order::with_labels(&draft);
     let names = names::Names::of(&draft, &order, style);
     let facts = facts::Facts::of(&draft);

@@ -110,7 +110,9 @@ fn every_lowered_expression_has_one_parent() {
     let checked = checked(&main_image(EVERYTHING, body), false);
     accepted(&checked);
     let mut draft = crate::glsl::lower::draft::Draft::new(checked.tree, checked.main_image);
-    Passes::all().run(&mut draft);
+    Passes::all()
+        .run(&mut draft, &crate::deadline::Deadline::default())
+        .unwrap();
     let mut seen = std::collections::HashSet::new();
     for (_, function) in draft.tree.functions.iter() {
         let roots = function

@@ -1,39 +1,85 @@
 //! Floats on a grid of whole numbers, halves and the like, where `+ - *` do not round.
 
-use std::collections::HashSet;
+use std::cell::RefCell;
+use std::collections::{HashMap, HashSet};
 
 use super::super::super::tree::{
     BinaryOp, BuiltIn, Constructor, ExprId, ExprKind, Input, UnaryOp, Value, VariableId, VariableKind,
 };
-use super::super::program::{Definition, Program, is_float};
+use super::super::program::{Definition, Program, is_float, last};
 
 const BUDGET: usize = 500;
 
 /// Multiples of this count as on the grid.
 const STEP: f64 = 1.0 / 1024.0;
 
-/// Whether all that an expression may be lies on the grid, or cannot be told to lie elsewhere.
-pub(super) fn is_on_grid(program: &Program, expr: ExprId) -> bool {
-    let mut pending = vec![expr];
-    let mut seen: HashSet<VariableId> = HashSet::new();
-    for _ in 0..BUDGET {
-        match pending.pop() {
-            None => return true,
-            Some(expr) if !stays(program, expr, &mut seen, &mut pending) => return false,
-            Some(_) => {}
-        }
-    }
-    true
+/// What is known of the expressions of a program, each looked at once.
+pub(super) struct Grid<'a> {
+    pub(super) program: &'a Program<'a>,
+    known: RefCell<HashMap<ExprId, bool>>,
+    /// Whether a variable is anywhere given what a function rounded to a whole number.
+    rounded: RefCell<HashMap<VariableId, bool>>,
 }
 
-/// Whether an expression stays on the grid if what it pushes does.
-fn stays(program: &Program, expr: ExprId, seen: &mut HashSet<VariableId>, pending: &mut Vec<ExprId>) -> bool {
+impl<'a> Grid<'a> {
+    pub(super) fn new(program: &'a Program<'a>) -> Self {
+        Self {
+            program,
+            known: RefCell::default(),
+            rounded: RefCell::default(),
+        }
+    }
+
+    /// Whether all that an expression may be lies on the grid, or cannot be told to lie elsewhere.
+    pub(super) fn holds(&self, expr: ExprId) -> bool {
+        if let Some(&known) = self.known.borrow().get(&expr) {
+            return known;
+        }
+        let holds = self.holds_within_budget(expr);
+        self.known.borrow_mut().insert(expr, holds);
+        holds
+    }
+
+    fn holds_within_budget(&self, expr: ExprId) -> bool {
+        let mut pending = vec![expr];
+        let mut seen: HashSet<VariableId> = HashSet::new();
+        for left in (0..BUDGET).rev() {
+            match pending.pop() {
+                None => return true,
+                Some(expr) if !stays(self, expr, &mut seen, left, &mut pending) => return false,
+                Some(_) => {}
+            }
+        }
+        true
+    }
+
+    /// `x = floor(x);`: which of its values is asked for, is not known.
+    fn is_rounded_somewhere(&self, variable: VariableId) -> bool {
+        *self.rounded.borrow_mut().entry(variable).or_insert_with(|| {
+            let mut definitions = self.program.definitions(variable).iter();
+            definitions.any(|definition| match definition {
+                Definition::Value(value) => rounds_to_whole(self.program, *value),
+                _ => false,
+            })
+        })
+    }
+}
+
+/// Whether an expression stays on the grid if what it pushes does, of which no more than `left` will be looked at.
+fn stays(
+    grid: &Grid,
+    expr: ExprId,
+    seen: &mut HashSet<VariableId>,
+    left: usize,
+    pending: &mut Vec<ExprId>,
+) -> bool {
+    let program = grid.program;
     let tree = program.tree;
     if !is_float(tree[expr].ty) {
         return true;
     }
     if let Some(constant) = tree.value(expr) {
-        return constant.scalars.iter().all(|scalar| match scalar {
+        return constant.components().iter().all(|scalar| match scalar {
             Value::Float(value) => (value / STEP).fract() == 0.0 && value.abs() < 65536.0,
             _ => true,
         });
@@ -45,13 +91,8 @@ fn stays(program: &Program, expr: ExprId, seen: &mut HashSet<VariableId>, pendin
             {
                 return false;
             }
-            // `x = floor(x);`: which of its values is asked for, is not known.
-            let floored = |definition: &Definition| match definition {
-                Definition::Value(value) => rounds_to_whole(program, *value),
-                _ => false,
-            };
-            if seen.insert(*variable) && !program.definitions(*variable).iter().any(floored) {
-                for definition in program.definitions(*variable) {
+            if seen.insert(*variable) && !grid.is_rounded_somewhere(*variable) {
+                for definition in last(program.definitions(*variable), left) {
                     match definition {
                         Definition::Value(value) => pending.push(*value),
                         Definition::Change(change) => match tree[*change].kind {
@@ -116,7 +157,7 @@ fn stays(program: &Program, expr: ExprId, seen: &mut HashSet<VariableId>, pendin
             true
         }
         ExprKind::Call { function, .. } => {
-            pending.extend(program.returned(*function));
+            pending.extend(last(program.returned(*function), left));
             true
         }
         ExprKind::BuiltIn { function, arguments } => {
@@ -152,7 +193,7 @@ fn rounds_to_whole(program: &Program, expr: ExprId) -> bool {
 
 fn is_power_of_two(program: &Program, expr: ExprId) -> bool {
     program.constant(expr).is_some_and(|constant| {
-        constant.scalars.iter().all(|scalar| match scalar {
+        constant.components().iter().all(|scalar| match scalar {
             Value::Float(value) => value.abs().log2().fract() == 0.0,
             _ => false,
         })

@@ -1,16 +1,41 @@
 //! Where a float comes from, as far as its rounding goes.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
+use std::rc::Rc;
 
 use super::super::super::tree::{
-    BinaryOp, BuiltIn, Constructor, ExprId, ExprKind, Type, UnaryOp, Value, VariableId, VariableKind,
+    BinaryOp, BuiltIn, Constructor, ExprId, ExprKind, Tree, Type, UnaryOp, Value, VariableId, VariableKind,
 };
-use super::super::program::{Definition, Program};
+use super::super::program::{Definition, Program, last};
 use super::super::shape::Shape;
-use super::grid::is_on_grid;
+use super::grid::Grid;
 
 /// How many expressions are looked at; of what has more, nothing is known.
 const BUDGET: usize = 2_000;
+
+/// Where the values of a program come from, each variable's looked for once.
+pub(super) struct Origins<'a> {
+    grid: Grid<'a>,
+    of_variables: HashMap<VariableId, Rc<Origin>>,
+}
+
+impl<'a> Origins<'a> {
+    pub(super) fn new(program: &'a Program<'a>) -> Self {
+        Self {
+            grid: Grid::new(program),
+            of_variables: HashMap::new(),
+        }
+    }
+
+    pub(super) fn of(&mut self, expr: ExprId) -> Rc<Origin> {
+        let grid = &self.grid;
+        let find = || Rc::new(Origin::of(grid, expr));
+        match grid.program.tree[expr].kind {
+            ExprKind::Variable(variable) => Rc::clone(self.of_variables.entry(variable).or_insert_with(find)),
+            _ => find(),
+        }
+    }
+}
 
 /// All that a value may be, whichever way control goes.
 #[derive(Debug, Default)]
@@ -26,12 +51,12 @@ pub(super) struct Origin {
 }
 
 impl Origin {
-    pub(super) fn of(program: &Program, expr: ExprId) -> Self {
+    fn of(grid: &Grid, expr: ExprId) -> Self {
         let mut origin = Self::default();
         let mut pending = vec![(expr, 1.0)];
         for _ in 0..BUDGET {
             match pending.pop() {
-                Some((expr, sign)) if !origin.unknown => origin.follow(program, expr, sign, &mut pending),
+                Some((expr, sign)) if !origin.unknown => origin.follow(grid, expr, sign, &mut pending),
                 _ => return origin,
             }
         }
@@ -67,7 +92,7 @@ impl Origin {
             match tree[expr].kind {
                 ExprKind::Variable(variable) if self.names.contains(&variable) => return true,
                 ExprKind::Variable(variable) if seen.insert(variable) => {
-                    for definition in program.definitions(variable) {
+                    for definition in last(program.definitions(variable), BUDGET) {
                         match definition {
                             Definition::Value(value) | Definition::Change(value) => pending.push(*value),
                             Definition::Outside => {}
@@ -86,10 +111,11 @@ impl Origin {
         self.cancelled |= cancels;
     }
 
-    fn follow(&mut self, program: &Program, expr: ExprId, sign: f64, pending: &mut Vec<(ExprId, f64)>) {
+    fn follow(&mut self, grid: &Grid, expr: ExprId, sign: f64, pending: &mut Vec<(ExprId, f64)>) {
+        let program = grid.program;
         let tree = program.tree;
         if let Some(constant) = tree.value(expr) {
-            for scalar in constant.scalars.iter() {
+            for scalar in constant.components() {
                 if let Value::Float(value) = scalar {
                     self.given.push(sign * value);
                 }
@@ -97,7 +123,7 @@ impl Origin {
             return;
         }
         match &tree[expr].kind {
-            ExprKind::Variable(variable) => self.follow_variable(program, *variable, sign, pending),
+            ExprKind::Variable(variable) => self.follow_variable(grid, *variable, sign, pending),
             ExprKind::Unary {
                 op: UnaryOp::Minus,
                 operand,
@@ -107,7 +133,7 @@ impl Origin {
                 operand,
             } => pending.push((*operand, sign)),
             ExprKind::Binary { op, .. } => {
-                if !is_on_grid(program, expr) {
+                if !grid.holds(expr) {
                     self.round(matches!(op, BinaryOp::Add | BinaryOp::Subtract));
                 }
             }
@@ -116,10 +142,11 @@ impl Origin {
                 pending.push((*value, sign));
             }
             ExprKind::Call { function, .. } => {
-                pending.extend(program.returned(*function).iter().map(|&value| (value, sign)));
+                let returned = last(program.returned(*function), BUDGET);
+                pending.extend(returned.iter().map(|&value| (value, sign)));
             }
             ExprKind::BuiltIn { function, arguments } => {
-                self.follow_built_in(program, expr, *function, arguments, sign, pending);
+                self.follow_built_in(grid, expr, *function, arguments, sign, pending);
             }
             ExprKind::Construct {
                 constructor: Constructor::Scalar | Constructor::Splat,
@@ -143,16 +170,20 @@ impl Origin {
 
     fn follow_variable(
         &mut self,
-        program: &Program,
+        grid: &Grid,
         variable: VariableId,
         sign: f64,
         pending: &mut Vec<(ExprId, f64)>,
     ) {
-        let tree = program.tree;
+        let tree = grid.program.tree;
         if !self.names.insert(variable) {
             return;
         }
-        let definitions = program.definitions(variable);
+        let definitions = grid.program.definitions(variable);
+        if definitions.len() > BUDGET {
+            self.unknown = true;
+            return;
+        }
         // A function cannot know that its argument is exact, and most often is right to ask.
         self.unknown |=
             matches!(tree[variable].kind, VariableKind::Parameter(_)) && definitions != [Definition::Outside];
@@ -162,7 +193,7 @@ impl Origin {
         }
         // `x = floor(x);`: which of its values is compared, is not known.
         let exact = |definition: &Definition| match definition {
-            Definition::Value(value) => tree.value(*value).is_none() && is_on_grid(program, *value),
+            Definition::Value(value) => tree.value(*value).is_none() && grid.holds(*value),
             _ => false,
         };
         self.unknown |= definitions.len() > 1 && definitions.iter().any(exact);
@@ -175,7 +206,7 @@ impl Origin {
                     | ExprKind::Assign {
                         op: Some(_), target, ..
                     } => {
-                        if !is_on_grid(program, target) {
+                        if !grid.holds(target) {
                             self.round(true);
                         }
                     }
@@ -187,7 +218,7 @@ impl Origin {
 
     fn follow_built_in(
         &mut self,
-        program: &Program,
+        grid: &Grid,
         expr: ExprId,
         function: BuiltIn,
         arguments: &[ExprId],
@@ -201,7 +232,7 @@ impl Origin {
             // At both ends it gives its arguments as they are.
             B::Mix => {
                 pending.extend(arguments[..2].iter().map(|&argument| (argument, sign)));
-                if !is_on_grid(program, arguments[2]) {
+                if !grid.holds(arguments[2]) {
                     self.round(true);
                 }
             }
@@ -211,13 +242,11 @@ impl Origin {
             }
             B::Floor | B::Ceil | B::Trunc | B::Round | B::RoundEven | B::Sign | B::Step => {}
             B::Mod | B::Fract => {
-                if !is_on_grid(program, expr) {
+                if !grid.holds(expr) {
                     self.round(true);
                 }
             }
-            B::Dot if Shape::of(program.tree, arguments[0]) == Shape::of(program.tree, arguments[1]) => {
-                self.round(false);
-            }
+            B::Dot if is_square(grid.program.tree, arguments) => self.round(false),
             B::Sin | B::Cos | B::Tan | B::Dot | B::Cross | B::Reflect => self.round(true),
             B::Sqrt
             | B::InverseSqrt
@@ -235,4 +264,9 @@ impl Origin {
             _ => self.unknown = true,
         }
     }
+}
+
+/// Whether a vector is multiplied by itself.
+fn is_square(tree: &Tree, arguments: &[ExprId]) -> bool {
+    Shape::of(tree, arguments[0]) == Shape::of(tree, arguments[1])
 }

@@ -78,7 +78,7 @@ fn change_by(program: &Program, counter: VariableId, step: ExprId) -> Option<f64
 fn scalar(program: &Program, expr: ExprId) -> Option<f64> {
     let tree = program.tree;
     if let Some(constant) = program.constant(expr) {
-        return match constant.scalars[..] {
+        return match *constant.components() {
             [Value::Int(value)] => Some(f64::from(value)),
             [Value::Uint(value)] => Some(f64::from(value)),
             [Value::Float(value)] => Some(value),

@@ -108,6 +108,11 @@ impl Flow {
 }
 
 impl End {
+    /// Whether a block may come next.
+    pub(super) fn goes_on(&self) -> bool {
+        !matches!(self, Self::Open | Self::Return | Self::Fall)
+    }
+
     /// Visits each block that may come next.
     pub(super) fn each_next(&self, mut visit: impl FnMut(BlockId)) {
         match self {

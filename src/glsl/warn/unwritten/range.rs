@@ -110,7 +110,7 @@ pub(super) fn range(program: &Program, known: &Known, expr: ExprId, depth: u32) 
         ExprKind::Literal(literal) => Some(Range::of(literal.value)),
         ExprKind::Variable(variable) => known.range(*variable).or_else(|| match tree[*variable].kind {
             VariableKind::Input(Input::Frame | Input::Time | Input::TimeDelta) => Some(Range::NOT_NEGATIVE),
-            _ => match program.constant(expr)?.scalars[..] {
+            _ => match *program.constant(expr)?.components() {
                 [value] => Some(Range::of(value)),
                 _ => None,
             },

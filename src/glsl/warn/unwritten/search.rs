@@ -1,17 +1,42 @@
 //! The search for ways from where a variable begins to where it is read, without a write between.
 
 use std::collections::{HashMap, HashSet};
+use std::rc::Rc;
 
 use super::super::super::tree::{ExprId, Type, VariableId};
 use super::super::program::Program;
 use super::conditions::Conditions;
 use super::flow::{BlockId, End, Event, Flow};
 use super::known::Known;
-use super::part::Parts;
+use super::part::{Part, Parts};
 use super::way::{Decision, DecisionKind, Trail, Visit, Way};
 
 /// How many blocks are visited for one variable; of those that need more, nothing is told.
 const BUDGET: usize = 2_000;
+
+/// How much may still be looked at for a shader; of what is beyond, nothing is told.
+#[derive(Debug)]
+pub(super) struct Budget {
+    blocks: usize,
+    /// Events whose effects are followed.
+    events: usize,
+}
+
+impl Default for Budget {
+    /// A second's work at most.
+    fn default() -> Self {
+        Self {
+            blocks: 100_000,
+            events: 4_000_000,
+        }
+    }
+}
+
+impl Budget {
+    fn is_spent(&self) -> bool {
+        self.blocks == 0 || self.events == 0
+    }
+}
 
 /// How many ways are looked at for one variable, of which one is told.
 const MAX_WAYS: usize = 8;
@@ -27,6 +52,10 @@ pub(super) struct Search<'a, 'p> {
     before: Vec<Vec<BlockId>>,
     /// By head of a loop: what the loop changes.
     changed: HashMap<BlockId, Vec<VariableId>>,
+    /// By block and variable: the events that begin, read or write it.
+    own_events: HashMap<(BlockId, VariableId), Rc<[usize]>>,
+    /// What was known before the event of a block that was asked for last.
+    last_known: Option<(BlockId, usize, Known)>,
 }
 
 /// What is looked for.
@@ -45,8 +74,20 @@ pub(super) struct Quarry {
 impl<'a, 'p> Search<'a, 'p> {
     pub(super) fn new(program: &'p Program<'p>, flow: &'a Flow) -> Self {
         let mut before = vec![Vec::new(); flow.nodes.len()];
+        let mut own_events: HashMap<_, Vec<usize>> = HashMap::new();
         for (block, node) in flow.nodes.iter().enumerate() {
             node.end.each_next(|next| before[next].push(block));
+            for (index, event) in node.events.iter().enumerate() {
+                if let Event::Begin(variable)
+                | Event::Read {
+                    part: Part { variable, .. },
+                    ..
+                }
+                | Event::Write(Part { variable, .. }) = event
+                {
+                    own_events.entry((block, *variable)).or_default().push(index);
+                }
+            }
         }
         Self {
             program,
@@ -54,33 +95,58 @@ impl<'a, 'p> Search<'a, 'p> {
             conditions: Conditions::new(program),
             before,
             changed: HashMap::new(),
+            own_events: own_events
+                .into_iter()
+                .map(|(place, events)| (place, events.into()))
+                .collect(),
+            last_known: None,
         }
     }
 
-    /// The ways on which a variable is read unwritten; at most [`MAX_WAYS`]. `left` is how many blocks may still be visited for this shader.
-    pub(super) fn ways(&mut self, quarry: Quarry, left: &mut usize) -> Vec<Way> {
+    /// The ways on which a variable is read unwritten; at most [`MAX_WAYS`].
+    pub(super) fn ways(&mut self, quarry: Quarry, left: &mut Budget) -> Vec<Way> {
         let (block, event) = quarry.from;
+        if left.is_spent() || self.program.deadline.is_over() {
+            return Vec::new();
+        }
         let mut ways = Vec::new();
         let mut visits = vec![Visit {
             block,
             before: None,
             decision: None,
             unwritten: quarry.parts,
-            known: self.known_before(block, event),
+            known: self.known_before(block, event, left),
             again: None,
         }];
         let mut seen = HashSet::new();
         let mut pending = vec![0];
         let mut skip = event;
         for _ in 0..BUDGET {
-            let Some(visit) = pending.pop().filter(|_| *left > 0 && ways.len() < MAX_WAYS) else {
+            let Some(visit) = pending
+                .pop()
+                .filter(|_| !left.is_spent() && ways.len() < MAX_WAYS)
+            else {
                 break;
             };
-            *left -= 1;
+            left.blocks -= 1;
             let mut unwritten = visits[visit].unwritten;
             let mut known = visits[visit].known.clone();
             let node = &self.flow.nodes[visits[visit].block];
-            for event in node.events.iter().skip(std::mem::take(&mut skip)) {
+            let from = std::mem::take(&mut skip);
+            // Where nothing comes after the block, what is known at its end is of no use.
+            let goes_on = node.end.goes_on();
+            let own = match quarry.variable {
+                Some(variable) if !goes_on => self.own_events.get(&(visits[visit].block, variable)),
+                _ => None,
+            };
+            let own: Rc<[usize]> = own.map_or_else(Rc::default, Rc::clone);
+            let own = own.iter().copied().filter(|&index| index >= from);
+            let all = if goes_on { from..node.events.len() } else { 0..0 };
+            for event in all.chain(own).map(|index| &node.events[index]) {
+                if unwritten == 0 {
+                    break;
+                }
+                left.events = left.events.saturating_sub(usize::from(goes_on));
                 match event {
                     // Anew, in the next round of a loop.
                     Event::Begin(begun) if Some(*begun) == quarry.variable && visit > 0 => unwritten = 0,
@@ -267,7 +333,21 @@ impl<'a, 'p> Search<'a, 'p> {
     }
 
     /// What is known before an event, from the blocks that always come before it.
-    fn known_before(&mut self, block: BlockId, event: usize) -> Known {
+    fn known_before(&mut self, block: BlockId, event: usize, left: &mut Budget) -> Known {
+        let (mut known, from) = match self.last_known.take() {
+            Some((last, from, known)) if last == block && from <= event => (known, from),
+            _ => (self.known_at_entry(block, left), 0),
+        };
+        let events = &self.flow.nodes[block].events[from..event];
+        left.events = left.events.saturating_sub(events.len());
+        for event in events {
+            self.learn(&mut known, event);
+        }
+        self.last_known = Some((block, event, known.clone()));
+        known
+    }
+
+    fn known_at_entry(&mut self, block: BlockId, left: &mut Budget) -> Known {
         let mut way = vec![block];
         let mut first = block;
         while let [only] = self.before[first][..]
@@ -279,15 +359,14 @@ impl<'a, 'p> Search<'a, 'p> {
         let mut known = Known::default();
         for pair in way.iter().rev().zip(way.iter().rev().skip(1)) {
             let (&from, &to) = pair;
-            for event in &self.flow.nodes[from].events {
+            let events = &self.flow.nodes[from].events;
+            left.events = left.events.saturating_sub(events.len());
+            for event in events {
                 self.learn(&mut known, event);
             }
             if let End::Branch { condition, yes, .. } = self.flow.nodes[from].end {
                 self.conditions.assume(&mut known, condition, yes == to);
             }
-        }
-        for event in &self.flow.nodes[block].events[..event] {
-            self.learn(&mut known, event);
         }
         known
     }

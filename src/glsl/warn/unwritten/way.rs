@@ -212,7 +212,7 @@ impl Trail<'_> {
         else {
             return None;
         };
-        match self.program.constant(right)?.scalars[..] {
+        match *self.program.constant(right)?.components() {
             [Value::Float(bound)] if bound > 1.0 && bound.fract() != 0.0 => Shape::of(tree, left),
             _ => None,
         }

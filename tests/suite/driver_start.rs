@@ -1,0 +1,258 @@
+//! Drivers that do not start, and drivers that do not finish compiling: neither is ever the shader's fault.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::thread;
+use std::time::Duration;
+
+use serde_json::Value;
+
+use toyproof::compare::Verdict;
+use toyproof::eval;
+use toyproof::frame::Frame;
+use toyproof::glsl::{Checked, lower};
+use toyproof::gpu::{Failure, FloatMode, On, Phase, Worker};
+use toyproof::verify::{self, Case, Findings, verify};
+
+use crate::program::{Run, command, has_driver, run};
+use crate::support::{SPHERE, checked};
+
+/// A worker that is a script. It says in which phase it is by printing a message of the protocol: its length, that it is a
+/// phase, and which.
+fn worker(script: &str) -> Worker {
+    let phases = ["STARTING", "TRANSLATING", "COMPILING", "DRAWING"];
+    let script = (0..)
+        .zip(phases)
+        .fold(script.to_owned(), |script, (number, name)| {
+            let says = format!(r"printf '\002\000\000\000\000\000\000\000\000\00{number}'");
+            script.replace(name, &says)
+        });
+    let arguments = vec!["-c".to_owned(), script];
+    Worker::new("/bin/sh".into(), arguments, On::Auto, Duration::from_millis(300))
+        .with_start_timeout(Duration::from_millis(300))
+}
+
+fn draw(script: &str) -> Failure {
+    let shader = checked(SPHERE.shader);
+    let drawn = worker(script).draw(lower(&shader), Frame::default(), FloatMode::Strict);
+    drawn.expect_err("a script paints nothing")
+}
+
+#[test]
+fn a_driver_that_does_not_start_is_told_from_a_shader_that_takes_too_long() {
+    let overflow = "echo \"thread 'main' has overflowed its stack\" >&2; kill -ABRT $$";
+    for (script, wanted) in [
+        ("exec sleep 60", "the worker process did not answer within 0.3 s"),
+        ("kill -STOP $$", "the worker process did not answer within 0.3 s"),
+        ("exit 3", "died (exit status: 3) before it answered"),
+        (
+            "STARTING; exec sleep 60",
+            "the Vulkan driver did not start within 0.3 s",
+        ),
+        (
+            "STARTING; kill -STOP $$",
+            "the Vulkan driver did not start within 0.3 s",
+        ),
+        (
+            "TRANSLATING; STARTING; exit 3",
+            "while the Vulkan driver was starting",
+        ),
+        (
+            &format!("STARTING; {overflow}"),
+            "while the Vulkan driver was starting",
+        ),
+    ] {
+        let failure = draw(script);
+        assert!(matches!(failure, Failure::NotStarted(_)), "{script}: {failure:?}");
+        assert!(failure.is_without_driver(), "{script}");
+        assert!(failure.to_string().contains(wanted), "{script}: {failure}");
+    }
+    for (script, wanted) in [
+        ("COMPILING; exec sleep 60", Phase::Compiling),
+        ("DRAWING; kill -STOP $$", Phase::Drawing),
+    ] {
+        let failure = draw(script);
+        assert!(
+            matches!(failure, Failure::Timeout { phase, .. } if phase == wanted),
+            "{script}: {failure:?}"
+        );
+    }
+    let failure = draw(&format!("TRANSLATING; {overflow}"));
+    let phase = Phase::Translating;
+    assert_eq!(failure, Failure::StackOverflow { phase });
+}
+
+#[test]
+fn the_time_that_a_driver_takes_to_start_is_not_the_shaders() {
+    // Together longer than the shader may take, but not the driver alone.
+    let script = "STARTING; sleep 0.4; COMPILING; exec sleep 60";
+    let shader = checked(SPHERE.shader);
+    let mut worker = worker(script).with_start_timeout(Duration::from_secs(60));
+    let drawn = worker.draw(lower(&shader), Frame::default(), FloatMode::Strict);
+    let failure = drawn.unwrap_err();
+    assert!(failure.is_slow_compilation(), "{failure:?}");
+}
+
+fn judge(script: &str, checked: &Checked, timeout: Duration) -> Result<Findings, verify::Failure> {
+    let frame = Frame {
+        size: [16, 9],
+        ..Frame::default()
+    };
+    let case = Case {
+        checked,
+        expected: None,
+        suspects: None,
+        frame: &frame,
+        float: FloatMode::Strict,
+        timeout,
+        pool: None,
+    };
+    verify(Some(&mut worker(script)), &case)
+}
+
+#[test]
+fn a_shader_that_the_driver_does_not_finish_compiling_is_judged_by_the_evaluator() {
+    let minute = Duration::from_secs(60);
+    let findings = judge("COMPILING; exec sleep 60", &checked(SPHERE.shader), minute).unwrap();
+    assert_eq!(findings.verdict, Verdict::Ok);
+    assert!(findings.toolchain.is_none() && findings.rounding.is_some() && findings.painter.is_none());
+    let note = findings.notes.iter().find(|note| note.code == "W0606").unwrap();
+    assert!(
+        note.message.contains("takes longer than 60 s to compile"),
+        "{note:?}"
+    );
+
+    // One that does not end is still told so.
+    let endless =
+        "void mainImage(out vec4 c, in vec2 p) { for (float s = p.x; s > -1.0; s += 0.0) c.x += s; }";
+    let failure = judge(
+        "COMPILING; exec sleep 60",
+        &checked(endless),
+        Duration::from_millis(500),
+    )
+    .unwrap_err();
+    let is_endless = matches!(
+        failure,
+        verify::Failure::Cpu(eval::Failure::Timeout { .. } | eval::Failure::TooOften { .. })
+    );
+    assert!(is_endless, "{failure:?}");
+
+    // Nor does a picture that takes too long fall back.
+    let failure = judge("DRAWING; exec sleep 60", &checked(SPHERE.shader), minute).unwrap_err();
+    assert!(
+        matches!(failure, verify::Failure::Gpu(Failure::Timeout { .. })),
+        "{failure:?}"
+    );
+}
+
+/// A Vulkan driver whose entry points do that; none where there is no C compiler.
+fn fake_driver(folder: &Path, does: &str) -> Option<PathBuf> {
+    let source = format!(
+        "#include <stdlib.h>\n#include <unistd.h>\n\
+         int vk_icdNegotiateLoaderICDInterfaceVersion(unsigned *version) {{ {does} return 0; }}\n\
+         void *vk_icdGetInstanceProcAddr(void *instance, const char *name) {{ {does} return 0; }}\n"
+    );
+    fs::write(folder.join("driver.c"), source).unwrap();
+    let mut compiler = Command::new("cc");
+    compiler.current_dir(folder);
+    let made = compiler
+        .args(["-shared", "-fPIC", "-o", "driver.so", "driver.c"])
+        .status();
+    if !made.is_ok_and(|status| status.success()) {
+        eprintln!("skipped: no C compiler here (`cc`) to make a driver with");
+        return None;
+    }
+    let manifest = folder.join("driver.json");
+    let library = folder.join("driver.so");
+    let text = format!(
+        r#"{{"file_format_version": "1.0.0", "ICD": {{"library_path": {library:?}, "api_version": "1.3.0"}}}}"#
+    );
+    fs::write(&manifest, text).unwrap();
+    Some(manifest)
+}
+
+/// `toyproof` where there is that driver only, in a folder with three right shaders.
+fn with_driver(does: &str, arguments: &[&str]) -> Option<Run> {
+    let folder = tempfile::tempdir().unwrap();
+    let manifest = fake_driver(folder.path(), does)?;
+    fs::create_dir(folder.path().join("hw")).unwrap();
+    for name in ["a", "b", "c"] {
+        let path = folder.path().join("hw").join(name).with_extension("glsl");
+        fs::write(path, SPHERE.shader).unwrap();
+    }
+    let mut command = command(folder.path());
+    command
+        .env("VK_ICD_FILENAMES", manifest)
+        .env_remove("VK_DRIVER_FILES");
+    Some(run(command.args(arguments)))
+}
+
+/// What the driver does, and what is said of it.
+const FAULTS: [(&str, &str); 3] = [
+    ("_exit(3);", "while the Vulkan driver was starting"),
+    ("abort();", "while the Vulkan driver was starting"),
+    ("for (;;) pause();", "the Vulkan driver did not start within 10 s"),
+];
+
+#[test]
+fn a_batch_goes_on_without_a_driver_that_does_not_start() {
+    if !has_driver() {
+        return;
+    }
+    thread::scope(|scope| {
+        for (does, wanted) in FAULTS {
+            scope.spawn(move || {
+                let check = [
+                    "check",
+                    "hw",
+                    "--size",
+                    "16x9",
+                    "--format",
+                    "json",
+                    "--timeout",
+                    "10s",
+                ];
+                let Some(run) = with_driver(does, &check) else {
+                    return;
+                };
+                assert_eq!(run.code, 0, "{does}: {run:?}");
+                assert_eq!(
+                    run.stderr.matches("evaluated on the CPU instead").count(),
+                    1,
+                    "{does}: {run:?}"
+                );
+                assert!(run.stderr.contains(wanted), "{does}: {run:?}");
+                let report: Value = serde_json::from_str(&run.stdout).unwrap();
+                for shader in report["shaders"].as_array().unwrap() {
+                    assert_eq!(shader["verdict"], "ok", "{does}: {shader}");
+                    assert!(shader["toolchain"].is_null(), "{does}: {shader}");
+                }
+            });
+        }
+    });
+}
+
+#[test]
+fn a_driver_that_is_asked_for_and_does_not_start_is_an_error_of_the_machine() {
+    if !has_driver() {
+        return;
+    }
+    let check = ["check", "hw/a.glsl", "--size", "16x9", "--on", "lavapipe"];
+    let Some(run) = with_driver("_exit(3);", &check) else {
+        return;
+    };
+    assert_eq!(run.code, 2, "{run:?}");
+    assert!(
+        run.stdout.contains("error") && run.stdout.contains("driver was starting"),
+        "{run:?}"
+    );
+
+    let doctor = with_driver("_exit(3);", &["doctor"]).unwrap();
+    assert_eq!(doctor.code, 2, "{doctor:?}");
+    assert!(doctor.stdout.contains("Each driver alone:"), "{doctor:?}");
+    assert!(
+        doctor.stdout.contains("driver.json: the worker process died"),
+        "{doctor:?}"
+    );
+}

@@ -1,0 +1,151 @@
+//! What a command line may be asked to do and must not do for ever: slow texts, links, files that vanish, readers that go.
+
+use std::fs;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+use crate::program::{command, run, toyproof};
+use crate::support::SPHERE;
+
+/// A folder `hw` with so many right shaders.
+fn homework(count: usize) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("hw")).unwrap();
+    for index in 0..count {
+        let path = folder.path().join(format!("hw/{index:03}.glsl"));
+        fs::write(path, SPHERE.shader).unwrap();
+    }
+    folder
+}
+
+fn check(folder: &Path, arguments: &[&str]) -> Command {
+    let mut check = command(folder);
+    check
+        .args(["check", "hw", "--on", "cpu", "--size", "16x9"])
+        .args(arguments);
+    check
+}
+
+fn results(folder: &Path) -> usize {
+    let text = fs::read_to_string(folder.join("out/results.jsonl")).unwrap_or_default();
+    text.lines().count()
+}
+
+#[test]
+fn a_shader_that_takes_too_long_to_compile_is_a_timeout_with_a_code() {
+    let folder = homework(1);
+    let run = run(&mut check(
+        folder.path(),
+        &["--timeout", "1ns", "--format", "json"],
+    ));
+    assert_eq!(run.code, 1, "{run:?}");
+    let report: Value = serde_json::from_str(&run.stdout).unwrap();
+    let shader = &report["shaders"][0];
+    assert_eq!(shader["verdict"], "timeout");
+    assert_eq!(shader["diagnostics"][0]["code"], "E0410");
+    let reason = shader["reason"].as_str().unwrap();
+    assert!(reason.starts_with("this shader takes longer than"), "{reason}");
+
+    let convert = ["convert", "hw/000.glsl", "-o", "x.wgsl", "--timeout", "1ns"];
+    let convert = toyproof(folder.path(), &convert);
+    assert_eq!(convert.code, 1, "{convert:?}");
+    assert!(convert.stderr.contains("E0410"), "{convert:?}");
+}
+
+#[cfg(unix)]
+#[test]
+fn links_out_of_the_submissions_are_skipped_with_a_warning() {
+    use std::os::unix::fs::symlink;
+    let folder = homework(1);
+    let secret = "[film]\nsize = [16, 9]\nsecret = 42\n";
+    fs::write(folder.path().join("secret.toml"), secret).unwrap();
+    symlink("/", folder.path().join("hw/root")).unwrap();
+    symlink("../secret.toml", folder.path().join("hw/leak.glsl")).unwrap();
+    symlink("../secret.toml", folder.path().join("hw/000.toml")).unwrap();
+    let run = run(&mut check(folder.path(), &["--out", "out"]));
+    assert_eq!(run.code, 0, "{run:?}");
+    for link in ["hw/root", "hw/leak.glsl", "hw/000.toml"] {
+        let wanted = format!("skipped `{link}`: it links to `");
+        assert_eq!(run.stderr.matches(&wanted).count(), 1, "{run:?}");
+    }
+    for entry in fs::read_dir(folder.path().join("out")).unwrap() {
+        let text = fs::read(entry.unwrap().path()).unwrap();
+        assert!(!String::from_utf8_lossy(&text).contains("secret = 42"));
+    }
+    // A file that is named is read, wherever it leads.
+    let named = toyproof(folder.path(), &["check", "hw/leak.glsl", "--on", "cpu"]);
+    assert!(named.stderr.contains("film"), "{named:?}");
+}
+
+#[test]
+fn broken_lines_of_an_earlier_run_are_skipped_and_counted() {
+    let folder = homework(2);
+    let arguments = ["--out", "out", "--resume"];
+    assert_eq!(run(&mut check(folder.path(), &arguments)).code, 0);
+    let path = folder.path().join("out/results.jsonl");
+    let mut bytes = fs::read(&path).unwrap();
+    bytes.extend_from_slice(b"\xff\xfe\n{\"key\":\n");
+    fs::write(&path, bytes).unwrap();
+    let again = run(&mut check(folder.path(), &arguments));
+    assert_eq!(again.code, 0, "{again:?}");
+    assert!(
+        again.stderr.contains("2 lines of results.jsonl cannot be read"),
+        "{again:?}"
+    );
+    assert!(
+        again.stderr.contains("2 of 2 shaders are taken over"),
+        "{again:?}"
+    );
+}
+
+#[test]
+fn a_folder_that_is_removed_during_the_run_is_an_error() {
+    let folder = homework(40);
+    let running = check(folder.path(), &["--out", "out", "--jobs", "1"])
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let start = Instant::now();
+    while results(folder.path()) == 0 && start.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    fs::rename(folder.path().join("out"), folder.path().join("moved")).unwrap();
+    let output = running.wait_with_output().unwrap();
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{stderr}");
+    assert!(
+        stderr.contains("were removed while they were written"),
+        "{stderr}"
+    );
+    assert!(!stderr.contains("pictures and reports are in"), "{stderr}");
+}
+
+#[test]
+fn a_batch_ends_when_nobody_reads_what_it_prints() {
+    const COUNT: usize = 60;
+    let folder = homework(COUNT);
+    let mut running = check(folder.path(), &["--out", "out", "--jobs", "1"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut first = String::new();
+    BufReader::new(running.stdout.take().unwrap())
+        .read_line(&mut first)
+        .unwrap();
+    assert!(first.contains("000.glsl"), "{first}");
+    let output = running.wait_with_output().unwrap();
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{stderr}");
+    assert!(
+        stderr.contains("standard output was closed; what was done is kept"),
+        "{stderr}"
+    );
+    let kept = results(folder.path());
+    assert!((1..COUNT).contains(&kept), "{kept}");
+}
