@@ -26,6 +26,7 @@ mod hostile;
 mod miscompiles;
 mod mistaken;
 mod mistakes;
+mod nesting;
 mod page;
 mod planted_faults;
 mod povray;
