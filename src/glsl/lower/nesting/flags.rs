@@ -2,7 +2,7 @@
 //! it still runs; a jump lowers the flags of all regions that it leaves. Loops stay, each around its own regions.
 
 use super::super::super::tree::{
-    Arm, BinaryOp, Block, Case, Condition, ExprId, ExprKind, FunctionId, Label, Place, Scalar, Statement,
+    Arm, BinaryOp, Block, Case, Condition, ExprId, FunctionId, Label, Place, Scalar, Statement,
     StatementKind, Type, UnaryOp, VariableId, VariableKind,
 };
 use super::super::draft::Draft;
