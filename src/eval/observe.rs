@@ -18,6 +18,8 @@ pub enum Fault {
     DivisionByZero,
     /// The remainder by zero: the value is zero.
     RemainderByZero,
+    /// Zero divided by zero, both of them constants to whoever propagates constants: what drivers fold it to, they choose.
+    ZeroByZero,
     /// A shift by 32 or more, or by less than zero: the lowest five bits count.
     ShiftTooFar,
     /// A float that its `int` or `uint` cannot hold: the nearest that it can is taken.
@@ -40,6 +42,8 @@ pub enum Fault {
     ArcDomain,
     /// `atan(0, 0)`.
     ArcOfNothing,
+    /// The size of a level that a texture does not have.
+    NoLevel,
     /// A lookup in a texture at coordinates that are infinite, NaN, or so large that no texel's number can be told of them.
     NoPlace,
     /// A derivative where a neighbour in the quad does not run the same.
@@ -71,6 +75,7 @@ impl Fault {
             Self::IndexOutOfBounds => "an index out of bounds",
             Self::DivisionByZero => "an integer divided by zero",
             Self::RemainderByZero => "the remainder of an integer divided by zero",
+            Self::ZeroByZero => "zero divided by zero, both of them constants",
             Self::ShiftTooFar => "a shift by more bits than there are",
             Self::IntegerOverflow => "a float too large for its integer",
             Self::EqualEdges => "`smoothstep` between equal edges",
@@ -82,6 +87,7 @@ impl Fault {
             Self::LogDomain => "the logarithm of zero or less",
             Self::ArcDomain => "an inverse function beyond its domain",
             Self::ArcOfNothing => "`atan(0, 0)`",
+            Self::NoLevel => "the size of a level that the texture does not have",
             Self::NoPlace => "a texture looked up at infinite, NaN or far too large coordinates",
             Self::LonelyDerivative => "a derivative where a neighbouring pixel runs something else",
             Self::NeverWritten => "the value of a variable that was never written",
@@ -127,6 +133,8 @@ pub(super) enum Predicate {
     BelowOne,
     /// Both are zero.
     BothZero,
+    /// The same of constants; of other values nobody looks.
+    ConstantZeros,
     /// `pow` has no value.
     NoPower,
     /// The pixel runs this and one of its quad does not.

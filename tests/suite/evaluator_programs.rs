@@ -434,6 +434,22 @@ static FAULTS: &[(&str, &[Fault])] = &[
     ),
     ("o.x = float(7 / int(p.x));", &[Fault::DivisionByZero]),
     ("o.x = float(7u % uint(p.x));", &[Fault::RemainderByZero]),
+    // A quotient of zeros is NaN, but of two that the driver knows whatever it folds them to.
+    (
+        "uint k = 0u; if (p.x > 0.0) o.x = 0.0 / float(k);",
+        &[Fault::ZeroByZero],
+    ),
+    ("float k = fract(1.0); o.x = k / 0.0;", &[Fault::ZeroByZero]),
+    (
+        "float z = p.x * 0.0; o.x = z / z + 1.0 / 0.0 + 1.0 / float(0u);",
+        &[],
+    ),
+    (
+        "o.x = float(textureSize(iChannel0, int(p.x) + 1).x);",
+        &[Fault::NoLevel],
+    ),
+    ("o.x = float(textureSize(iChannel0, -1).x);", &[Fault::NoLevel]),
+    ("o.x = float(textureSize(iChannel0, int(p.x)).x);", &[]),
     ("o.x = float(1 << (int(p.x) + 32));", &[Fault::ShiftTooFar]),
     ("o.x = float(1 << (int(p.x) - 1));", &[Fault::ShiftTooFar]),
     ("o.x = float(int(p.x * 1e20));", &[Fault::IntegerOverflow]),
@@ -699,6 +715,9 @@ static OPEN: &[(&str, bool)] = &[
     ("o.x = min(pow(p.x - 1.0, 2.0), 0.0) > 9.0 ? 1.0 : 0.0;", false),
     ("o.x = max(p.x, sqrt(p.x - 1.0));", true),
     ("o.x = max(p.x, sqrt(p.x - 1.0)) > 9.0 ? 1.0 : 0.0;", false),
+    ("uint k = 0u; o.x = 0.0 / float(k);", true),
+    ("uint k = 0u; o.x = 0.0 / float(k) > 9.0 ? 1.0 : 0.0;", false),
+    ("o.x = float(textureSize(iChannel0, 3).y);", true),
     ("o.x = clamp(1.0, p.x, 0.0);", true),
     ("o.x = mix(0.0, 0.0, smoothstep(p.x, p.y, 1.0));", true),
     ("o.x = max(0.0, log(-p.x)) < 9.0 ? 1.0 : 0.0;", true),

@@ -1,31 +1,33 @@
-//! Generated programs: ours on lavapipe must paint what glslang's and the evaluator paint, to the bit.
+//! Generated programs: our SPIR-V on lavapipe must render what the evaluator computes, to the bit, and so must glslang's.
 //!
-//! `TOYPROOF_PROGRAMS` says how many (24), `TOYPROOF_SEED` which (0), `TOYPROOF_FIRST` with which number to begin (0). A program that the
-//! driver dies of, as it does of some, is told and counted; it is judged by those that paint it.
+//! `TOYPROOF_PROGRAMS` says how many (24), `TOYPROOF_SEED` which (0), `TOYPROOF_FIRST` with which number to begin (0), `TOYPROOF_EFFECTS`
+//! where operands may have effects (`ordered` or `anywhere`; else every other program is of the one kind). A program that the driver
+//! crashes on, as it does on some, is reported and counted; it is compared with those that render it.
 
 use std::cell::RefCell;
 use std::fmt::Write;
 use std::path::Path;
+use std::time::Instant;
 
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestError, TestRng, TestRunner};
-use toyproof::emit::Target;
 use toyproof::eval::{Program, Settings};
 use toyproof::frame::Frame;
-use toyproof::glsl::{Checked, Options, check, lower};
-use toyproof::gpu::{FloatMode, Worker};
+use toyproof::glsl::{Checked, Options, check, lower, lower_strict};
+use toyproof::gpu::{Drawn, Failure, FloatMode, Worker};
 use toyproof::image::Image;
 use toyproof::source::{File, Files};
 
+use crate::generate::Effects;
 use crate::support::setting;
 use crate::{generate, glslang};
 
-/// Programs that are as long as the decisions that they are made of.
-fn programs() -> impl Strategy<Value = String> {
-    (8_usize..2000)
+/// Programs that are as long as the decisions that they are made of, of which there are at most `longest`.
+fn programs(effects: Effects, longest: usize) -> impl Strategy<Value = String> {
+    (8..longest)
         .prop_flat_map(|length| vec(any::<u8>(), length / 2..=length))
-        .prop_map(|bytes| generate::program(&bytes))
+        .prop_map(move |bytes| generate::program(&bytes, effects))
 }
 
 fn frame() -> Frame {
@@ -49,49 +51,68 @@ fn wrong(kind: &'static str) -> impl Fn(String) -> Wrong {
     move |words| Wrong { kind, words }
 }
 
-/// Those that paint.
-struct Judges<'a> {
+/// Those that are compared.
+struct Renderers<'a> {
     worker: Worker,
-    folder: &'a Path,
+    /// Where glslang works, if it is one of them.
+    glslang: Option<&'a Path>,
+    /// Whether ours is what strict runs are.
+    strict: bool,
 }
 
-impl Judges<'_> {
-    /// Whether all who paint a program paint the same; and, in words, on whose SPIR-V the driver died.
-    fn judge(&mut self, program: &str) -> Result<Option<String>, Wrong> {
-        let checked = checked(program).map_err(wrong("we refuse it"))?;
+impl Renderers<'_> {
+    /// Compares all images of a program; reports on whose SPIR-V the driver crashed.
+    fn compare(&mut self, program: &str) -> Result<Option<String>, Wrong> {
+        let checked = checked(program).map_err(wrong("the front end refuses it"))?;
         let evaluated = evaluated(&checked).map_err(wrong("the evaluator"))?;
-        // Not `draw`, which would look for loops that the driver ends by force: these end by themselves.
-        let bytes = self
-            .worker
-            .translate(lower(&checked), Target::Spirv, FloatMode::Strict)
-            .map_err(|failure| wrong("ours")(format!("{failure:?}")))?;
-        let ours = self.painted(&glslang::words_of(&bytes), FloatMode::Fast);
-        let words = glslang::words(program, self.folder).map_err(wrong("glslang refuses it"))?;
-        let theirs = self.painted(&words, FloatMode::Strict);
-        let mut pictures = vec![("the evaluator's", evaluated)];
-        let mut died = String::new();
-        for (whose, painted) in [("ours", ours), ("glslang's", theirs)] {
-            match painted {
-                Ok(picture) => pictures.push((whose, picture)),
-                Err(why) => died = format!("{died}{whose}: {why}; "),
+        let mut images = vec![("the evaluator's", evaluated)];
+        let mut crashes = String::new();
+        let lowered = if self.strict {
+            lower_strict(&checked)
+        } else {
+            lower(&checked)
+        };
+        let ours = self.again_after_a_crash(|worker| {
+            let drawn = worker.draw_unwatched(lowered.clone(), frame(), FloatMode::Strict);
+            drawn.map(Drawn::image)
+        });
+        match ours {
+            Ok(image) => images.push(("ours", image)),
+            Err(failure @ (Failure::Refused(_) | Failure::Naga(_))) => {
+                return Err(wrong("naga refuses it")(format!("{failure:?}")));
+            }
+            Err(failure) => crashes = format!("ours: {failure}; "),
+        }
+        if let Some(folder) = self.glslang {
+            let words = glslang::words(program, folder).map_err(wrong("glslang refuses it"))?;
+            let theirs = self
+                .again_after_a_crash(|worker| worker.run_spirv(words.clone(), frame(), FloatMode::Strict));
+            match theirs {
+                Ok(image) => images.push(("glslang's", image)),
+                Err(failure) => crashes = format!("{crashes}glslang's: {failure}"),
             }
         }
-        match difference(&pictures) {
+        match difference(&images) {
             Some(words) => Err(wrong("pixels differ")(words)),
-            None => Ok((!died.is_empty()).then_some(died)),
+            None => Ok((!crashes.is_empty()).then_some(crashes)),
         }
     }
 
-    /// What the driver paints. If it fails, it is asked once more in a new process, where nothing came before.
-    fn painted(&mut self, words: &[u32], float: FloatMode) -> Result<Image, String> {
-        let first = self.worker.run_spirv(words.to_vec(), frame(), float);
-        let Err(failure) = first else {
-            return first.map_err(|failure| failure.to_string());
-        };
-        eprintln!("once more: {failure}");
-        self.worker = crate::support::worker().expect("there was one before");
-        let second = self.worker.run_spirv(words.to_vec(), frame(), float);
-        second.map_err(|failure| failure.to_string())
+    /// What a worker renders. If the driver fails, once more in a new process, where nothing came before.
+    fn again_after_a_crash(
+        &mut self,
+        mut render: impl FnMut(&mut Worker) -> Result<Image, Failure>,
+    ) -> Result<Image, Failure> {
+        match render(&mut self.worker) {
+            Err(failure) if !matches!(failure, Failure::Refused(_) | Failure::Naga(_)) => {
+                eprintln!("once more: {failure}");
+                self.worker = crate::support::worker()
+                    .expect("there was one before")
+                    .with_plain_code();
+                render(&mut self.worker)
+            }
+            result => result,
+        }
     }
 }
 
@@ -144,14 +165,34 @@ fn difference(pictures: &[(&str, Image)]) -> Option<String> {
 }
 
 #[test]
-fn glslang_and_the_evaluator_paint_the_same() {
-    let Some(worker) = crate::support::worker() else {
-        return;
-    };
+fn glslang_and_the_evaluator_agree_with_ours() {
     if !glslang::is_here() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
+    compare_all(Some(folder.path()), 2000);
+}
+
+#[test]
+fn the_evaluator_agrees_with_ours() {
+    compare_all(None, 900);
+}
+
+/// Where the operands of that program may have effects.
+fn effects(number: u32) -> Effects {
+    match std::env::var("TOYPROOF_EFFECTS").as_deref() {
+        Ok("ordered") => Effects::Ordered,
+        Ok("anywhere") => Effects::Anywhere,
+        _ if number.is_multiple_of(2) => Effects::Ordered,
+        _ => Effects::Anywhere,
+    }
+}
+
+/// Compares as many programs as are asked for, of at most `longest` decisions.
+fn compare_all(glslang: Option<&Path>, longest: usize) {
+    let Some(worker) = crate::support::worker() else {
+        return;
+    };
     let count: u32 = setting("TOYPROOF_PROGRAMS", 24);
     let seed: u64 = setting("TOYPROOF_SEED", 0);
     let first: u32 = setting("TOYPROOF_FIRST", 0);
@@ -159,26 +200,31 @@ fn glslang_and_the_evaluator_paint_the_same() {
     seeds[..8].copy_from_slice(&seed.to_le_bytes());
     let config = Config {
         failure_persistence: None,
-        max_shrink_iters: 200,
+        max_shrink_iters: 300,
         ..Config::default()
     };
     let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &seeds);
     let mut runner = TestRunner::new_with_rng(config, rng);
-    let judges = RefCell::new(Judges {
-        worker,
-        folder: folder.path(),
+    let renderers = RefCell::new(Renderers {
+        worker: worker.with_plain_code(),
+        glslang,
+        strict: false,
     });
-    let (mut failures, mut deaths) = (Vec::new(), 0);
+    let start = Instant::now();
+    let (mut failures, mut crashes) = (Vec::new(), 0);
     for number in 0..count {
-        let tree = programs().new_tree(&mut runner).unwrap();
+        let effects = effects(number);
+        let tree = programs(effects, longest).new_tree(&mut runner).unwrap();
         if number < first {
             continue;
         }
-        let (found, died) = (RefCell::new(None), RefCell::new(None));
+        // glslang's products of matrices are the driver's, whose sums are exact here.
+        renderers.borrow_mut().strict = number % 4 >= 2;
+        let (found, crashed) = (RefCell::new(None), RefCell::new(None));
         let result = runner.run_one(tree, |program| {
-            let wrong = match judges.borrow_mut().judge(&program) {
+            let wrong = match renderers.borrow_mut().compare(&program) {
                 Ok(words) => {
-                    died.replace(words.map(|words| format!("{words}\n{program}")));
+                    crashed.replace(words.map(|words| format!("{words}\n{program}")));
                     return Ok(());
                 }
                 Err(wrong) => wrong,
@@ -190,18 +236,90 @@ fn glslang_and_the_evaluator_paint_the_same() {
             Err(TestCaseError::fail(format!("{}: {}", wrong.kind, wrong.words)))
         });
         if let Err(TestError::Fail(why, program)) = result {
-            eprintln!("program {number} of seed {seed}: {why}\n{program}");
+            eprintln!("program {number} of seed {seed} ({effects:?}): {why}\n{program}");
             failures.push(format!("program {number}: {why}"));
-        } else if let Some(words) = died.take() {
-            eprintln!("program {number} of seed {seed}: the driver died on {words}");
-            deaths += 1;
+        } else if let Some(words) = crashed.take() {
+            eprintln!("program {number} of seed {seed}: the driver crashed on {words}");
+            crashes += 1;
         }
     }
-    let told = format!(
-        "seed {seed}: {count} programs, {} wrong, the driver died of {deaths}",
+    let each = start.elapsed().as_secs_f64() * 1e3 / f64::from(count.saturating_sub(first).max(1));
+    let summary = format!(
+        "seed {seed}: {count} programs, {} wrong, the driver crashed on {crashes}",
         failures.len()
     );
-    eprintln!("{told}");
-    assert!(failures.is_empty(), "{told}\n{}", failures.join("\n"));
-    assert!(50 * deaths <= count, "{told}");
+    eprintln!("{summary}, {each:.0} ms each");
+    assert!(failures.is_empty(), "{summary}\n{}", failures.join("\n"));
+    assert!(50 * crashes <= count, "{summary}");
+}
+
+/// Programs whose pixels tell in which order their operands are evaluated, where the specification leaves it open or may be read in
+/// several ways.
+const ORDERS: &[&str] = &[
+    // The indices of a target, its value, and what is added to it.
+    "int q[2]; q[0] = at.x; q[1] = at.y; q[q[0] & 1] += q[0]++; r = ivec2(q[0], q[1]);",
+    "int q[2]; q[0] = 5; q[1] = 7; int i = at.x & 1; q[i] -= (i = at.y & 1) + 4; r = ivec2(q[0], q[1]);",
+    "int q[2]; q[0] = 5; q[1] = 7; g = at.x & 1; q[next() & 1] *= next() + (q[1]++); r = ivec2(q[0], q[1]) + g;",
+    "int q[2]; q[0] = 5; q[1] = 7; int i = at.x & 1; q[i] = (i = 1 - i) + 4; r = ivec2(q[0], q[1]);",
+    "ivec2 v = at; v[v.x & 1] += (v = v.yx + 2, v.x); r = v;",
+    "int q[2]; q[0] = 5; q[1] = 7; g = at.x & 1; q[g] %= next() + 2; r = ivec2(q[0], q[1]);",
+    "S s; s.a[0] = 1; s.a[1] = 2; int i = at.x & 1; s.a[i] <<= (i = 1 - i) + s.a[0]; r = ivec2(s.a[0], s.a[1]);",
+    "T t[2]; int i = at.x & 1; t[i].m = mat2(float((i = 1 - i) + 2)); t[i].m *= float(i = at.y & 1) + 3.0; \
+     r = ivec2(t[0].m * vec2(1) + t[1].m * vec2(10));",
+    // Arguments that are copied in and out, beside others that change them.
+    "ivec2 v = at; bump(v[0], (v[0] = 3)); r = v;",
+    "ivec2 v = at; int i = at.x & 1; bump(v[i], (v = v + 4, i = 1 - i, 2)); r = v;",
+    "int x = at.x; bump(x, (x = 3)); r = ivec2(x, 0);",
+    "S s; s.a[0] = at.x; s.k = 4; bump(s.k, (s.k = at.y)); bump(s.a[at.y & 1], (s.a[0] += 7)); r = ivec2(s.a[0] + s.a[1] * 16, s.k);",
+    "ivec2 v = at; both(v.x, v); r = v;",
+    "ivec2 v = at; whole(v, v.y); r = v;",
+    "int q[2]; q[0] = at.x; q[1] = at.y; int i = 0; swap(q[i++], q[i & 1]); r = ivec2(q[0], q[1]) + 16 * i;",
+    "g = at.x; alias(g); r = ivec2(g, 1);",
+    "ivec2 v = at; r = ivec2(add(v.x, v.x++), add(v.y, (v.y += 2, 1)));",
+    // What is indexed, and the index.
+    "ivec2 v = at; r = ivec2(v[(v = v + 3, at.x & 1)], (v.yx)[v.x++ & 1]);",
+    "int i = at.x & 1; r = ivec2(int[2](i, 7)[i = 1 - i], (at.y > 2 ? at : at.yx)[i = 1 - i] + i);",
+    "ivec2 v[2]; v[0] = at; v[1] = at + 4; int i = 0; r = v[i++].yx + v[i] * 16; r.x += v[i = 1][i = 0];",
+    // Operators, constructors, choices.
+    "int i = at.x; r = ivec2(i++ * 2 + i, (i = 3) + i); r += ivec2(i, i++);",
+    "int i = at.x; bool b = i++ > 2 && i++ > 4 || i++ > 3; r = ivec2(i, int(b)); r += b ? i++ : --i;",
+    "g = at.x; r = ivec2(next(), next() - 2 * next()); r.x += g > 4 ? next() : -next();",
+];
+
+const ORDERS_PRELUDE: &str = "int g; struct S { int a[2]; int k; }; struct T { mat2 m; };
+int next() { g += 1; return g; }
+int add(int a, int b) { return a * 16 + b; }
+void bump(inout int a, int b) { a += b; }
+void both(inout int a, inout ivec2 b) { a += 1; b *= 2; }
+void whole(inout ivec2 a, inout int b) { a += 1; b *= 2; }
+void swap(inout int a, inout int b) { int c = a; a = b; b = c; }
+void alias(inout int a) { a += 1; g += 16; a += g; }
+";
+
+#[test]
+fn operands_are_evaluated_in_the_order_of_glslang() {
+    let Some(worker) = crate::support::worker() else {
+        return;
+    };
+    if !glslang::is_here() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let mut renderers = Renderers {
+        worker: worker.with_plain_code(),
+        glslang: Some(folder.path()),
+        strict: true,
+    };
+    let mut failures = String::new();
+    for body in ORDERS {
+        let program = format!(
+            "{ORDERS_PRELUDE}void mainImage(out vec4 c, in vec2 p) {{ ivec2 at = ivec2(p), r = ivec2(0); {body} c = vec4(r, g, 1); }}"
+        );
+        match renderers.compare(&program) {
+            Ok(None) => {}
+            Ok(Some(crash)) => failures += &format!("{crash}\n{body}\n"),
+            Err(wrong) => failures += &format!("{}: {}\n{body}\n", wrong.kind, wrong.words),
+        }
+    }
+    assert!(failures.is_empty(), "{failures}");
 }

@@ -36,6 +36,7 @@ mod literals;
 mod miscompiles;
 mod mistaken;
 mod mistakes;
+mod nesting;
 mod page;
 mod planted_faults;
 mod povray;

@@ -26,13 +26,11 @@ impl Builder<'_> {
         for (&argument, &parameter) in arguments.iter().zip(parameters) {
             passed.push(self.pass(argument, parameter)?);
         }
-        for ((passed, &argument), &parameter) in passed.iter_mut().zip(arguments).zip(parameters) {
-            let whole = matches!(tree[argument].kind, ExprKind::Variable(_));
+        for (passed, &parameter) in passed.iter_mut().zip(parameters) {
             if let Some(back) = &passed.back
-                && whole
                 && direction(tree[parameter].kind) == Direction::InOut
             {
-                // A variable as such is handed over when the call begins, after all arguments.
+                // Copied in when the call begins, after all arguments, as glslang does.
                 passed.values = self.read(back);
             }
         }
@@ -98,10 +96,7 @@ impl Builder<'_> {
             return Ok(Passed { values, back: None });
         }
         let back = self.target(argument)?;
-        let values = match &back {
-            Some(target) if direction == Direction::InOut => self.read(target),
-            _ => self.zeros(ty),
-        };
+        let values = self.zeros(ty);
         Ok(Passed { values, back })
     }
 

@@ -60,7 +60,10 @@ impl Builder<'_> {
             B::Add if float => O::Add,
             B::Subtract if float => O::Sub,
             B::Multiply if float => O::Mul,
-            B::Divide if float => O::Div,
+            B::Divide if float => {
+                self.check(Fault::ZeroByZero, at, Predicate::ConstantZeros, [a, b]);
+                O::Div
+            }
             B::Add => O::AddWord,
             B::Subtract => O::SubWord,
             B::Multiply => O::MulWord,

@@ -24,16 +24,26 @@ impl Builder<'_> {
         }
         let flat = Type::Sampler(Sampler::D2);
         let Some(channel) = channel.filter(|_| self.ty(sampler) == flat) else {
-            return Ok(self.nothing(function, channel.is_some(), self.ty(call)));
+            let nothing = self.nothing(function, channel.is_some(), self.ty(call));
+            let (B::TextureSize, Some(&[level, ..])) = (function, values.first().map(Vec::as_slice)) else {
+                return Ok(nothing);
+            };
+            let each = nothing.into_iter().map(|size| {
+                self.check(Fault::NoLevel, self.at(call), Predicate::From(1), [level, NONE]);
+                self.settle(size)
+            });
+            return Ok(each.collect());
         };
         if function == B::TextureSize {
+            let level = values[0][0];
+            self.check(Fault::NoLevel, self.at(call), Predicate::From(1), [level, NONE]);
             let size = [0, 1].map(|at| {
                 let size = self.value(Origin::Input(Input::ChannelResolution, 3 * channel + at));
                 let size = self.unary(Operation::ToInt, size);
                 // What reads black is one texel.
                 self.binary(Operation::MaxInt, size, self.word(1))
             });
-            return Ok(size.to_vec());
+            return Ok(self.settle_all(size).to_vec());
         }
         if matches!(function, B::TexelFetch | B::TexelFetchOffset) {
             let mut at = [values[0][0], values[0][1]];

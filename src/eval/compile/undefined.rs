@@ -92,6 +92,11 @@ impl Builder<'_> {
                 let both = self.binary(O::And, is_zero, not_positive);
                 self.binary(O::Or, negative, both)
             }
+            Predicate::ConstantZeros => {
+                let zero = self.float(0.0);
+                let [a, b] = [a, b].map(|value| self.binary(O::Equal, value, zero));
+                self.binary(O::And, a, b)
+            }
             Predicate::Lonely
             | Predicate::Negative
             | Predicate::NotPositive

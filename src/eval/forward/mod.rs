@@ -18,6 +18,7 @@ use self::repeat::Open;
 use self::unroll::Room;
 use super::flow::{Block, Cell, Cells, Flow, NONE, Node, Origin, Value};
 use super::group::Groups;
+use super::observe::Predicate;
 
 /// Groups of more cells than this are not followed cell by cell.
 const MAX_FOLLOWED: u32 = 256;
@@ -166,8 +167,21 @@ impl Forward<'_> {
                     });
                 }
             }
+            Node::Check {
+                predicate: Predicate::ConstantZeros,
+                values,
+                ..
+            } if !self.may_be_folded(values) => {}
             _ => out.push(node),
         }
+    }
+
+    /// Whether a quotient may be zero by zero to a compiler that propagates constants.
+    fn may_be_folded(&self, [dividend, divisor]: [Value; 2]) -> bool {
+        let known = |value: Value| self.constant[value.0 as usize];
+        let is_number =
+            matches!(self.flow.origin(divisor), Origin::Float(number) if f64::from_bits(number) != 0.0);
+        known(dividend) && known(divisor) && !is_number
     }
 
     fn store(&mut self, cell: Cell, value: Value, out: &mut Block) {

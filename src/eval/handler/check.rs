@@ -114,7 +114,7 @@ pub(crate) fn check<N: Number>(level: Level, predicate: Predicate, rows: [bool; 
         Predicate::BeyondOne => forms!(BeyondOne, N),
         Predicate::FromOne => forms!(FromOne, N),
         Predicate::BelowOne => forms!(BelowOne, N),
-        Predicate::BothZero => forms!(BothZero, N),
+        Predicate::BothZero | Predicate::ConstantZeros => forms!(BothZero, N),
         Predicate::NoPower => forms!(NoPower, N),
         Predicate::Lonely => handler::<N, Lonely>(level),
     }

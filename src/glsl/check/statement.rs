@@ -6,6 +6,9 @@ use super::Checker;
 use crate::glsl::codes::Code;
 use crate::glsl::tree::{ExprId, Label, Place, Type};
 
+/// How many labels a `switch` may have: lavapipe loses the device at 50,000.
+const MAX_LABELS: usize = 20_000;
+
 /// The labels of a `switch` so far.
 #[derive(Debug)]
 pub(crate) struct Labels {
@@ -48,6 +51,11 @@ impl Checker<'_> {
                 );
             } else if !labels.values.insert(bits) {
                 self.error(Code::BadSwitch, at, "this `switch` has that label already");
+            } else if labels.values.len() == MAX_LABELS + 1 {
+                let message = format!(
+                    "this `switch` has more than {MAX_LABELS} labels, which is more than drivers take"
+                );
+                self.error(Code::BadSwitch, at, message);
             }
         }
         Label::Case { expr, value: bits }

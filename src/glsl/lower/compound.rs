@@ -1,10 +1,15 @@
-//! `t += f(t *= 2.0)`: what the right side makes of the target is what is added to.
+//! `t += f(t *= 2.0)`: what the right side makes of the target is what is added to, and `t[i] += i++` adds to the element that `i` named
+//! before.
 //!
-//! GLSL leaves open when the target is read; naga reads it first, WebGL2's translators and glslang read it last.
+//! GLSL leaves open when the target is read; naga reads it first, WebGL2's translators and glslang read it last. Its indices all of them
+//! evaluate first, but here the right side moves before them, too.
 
-use super::super::tree::{ExprId, ExprKind, Tree, VariableKind};
+use std::collections::HashSet;
+
+use super::super::tree::{ExprId, ExprKind, Tree, VariableId, VariableKind};
 use super::draft::Draft;
-use super::{lvalue, walk};
+use super::lvalue::{self, Fix};
+use super::walk;
 
 pub(super) fn run(draft: &mut Draft) {
     draft.operands_first(|draft, id| {
@@ -15,27 +20,28 @@ pub(super) fn run(draft: &mut Draft) {
         } = draft.tree[id].kind
             && may_change(&draft.tree, value, target)
         {
-            let step = lvalue::set_aside(draft, value, "value");
+            let mut steps = Vec::new();
+            lvalue::fix_indices(draft, target, Fix::Changing, &mut steps);
+            steps.push(lvalue::set_aside(draft, value, "value"));
             let operation = draft.build_at(id).detach(id);
-            lvalue::replace(draft, id, vec![step], Some(operation));
+            lvalue::replace(draft, id, steps, Some(operation));
         }
     });
 }
 
-/// Whether evaluating `value` may change the variable that `target` is part of: it stands in it where something acts, or
-/// a function that is called may know it.
+/// Whether evaluating `value` may change the variable that `target` is part of, or what its indices are made of: it stands in it where
+/// something acts, or a function that is called may know it.
 fn may_change(tree: &Tree, value: ExprId, target: ExprId) -> bool {
-    let Some(&root) = lvalue::path(tree, target).last() else {
+    if !walk::acts(tree, value) {
         return false;
-    };
-    let ExprKind::Variable(variable) = tree[root].kind else {
-        return false;
-    };
-    let is_global = tree[variable].kind == VariableKind::Global;
-    walk::acts(tree, value)
-        && walk::any(tree, value, |kind| match kind {
-            ExprKind::Variable(other) => *other == variable,
-            ExprKind::Call { .. } => is_global,
-            _ => false,
-        })
+    }
+    let read: HashSet<VariableId> = walk::variables(tree, target).collect();
+    let has_global = read
+        .iter()
+        .any(|&variable| tree[variable].kind == VariableKind::Global);
+    walk::any(tree, value, |kind| match kind {
+        ExprKind::Variable(other) => read.contains(other),
+        ExprKind::Call { .. } => has_global,
+        _ => false,
+    })
 }

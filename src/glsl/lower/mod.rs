@@ -30,6 +30,7 @@ mod member;
 mod missing;
 mod missing_return;
 mod negation;
+mod nesting;
 mod out_argument;
 mod pass;
 mod remainder;

@@ -1,7 +1,8 @@
 //! `out` and `inout` arguments that are components, swizzles, elements or members: `m(p.x)`, `m(a[i])`, `m(s.a)`.
 //!
-//! naga passes a pointer to a component, which its SPIR-V writer panics on. GLSL copies in and out (§6.1.1): so do we, with indices evaluated once, before the call. Two
-//! arguments that are the same variable are copied too: WGSL forbids pointers that alias.
+//! naga passes a pointer to a component, which its SPIR-V writer panics on. GLSL copies in and out (§6.1.1): so do we, with indices evaluated
+//! once, where the argument stands, and values copied in when all arguments are evaluated, as glslang does. Arguments that are parts of
+//! one variable are copied too: WGSL forbids pointers that alias.
 
 use std::collections::HashSet;
 
@@ -37,28 +38,27 @@ fn is_out(direction: Direction) -> bool {
 
 /// Lets a call work on copies where naga cannot point at the arguments themselves.
 fn copy(draft: &mut Draft, call: ExprId, arguments: &[(ExprId, Direction)], discarded: bool) {
-    let mut pointed_at = HashSet::new();
-    let awkward = |draft: &Draft, (argument, direction): (ExprId, Direction)| match draft.tree[argument].kind
-    {
-        _ if !is_out(direction) => false,
-        ExprKind::Variable(variable) => !pointed_at.insert(variable),
-        _ => true,
-    };
-    let awkward: Vec<_> = {
-        let mut awkward = awkward;
-        arguments
-            .iter()
-            .map(|&argument| awkward(draft, argument))
-            .collect()
-    };
+    let mut written = HashSet::new();
+    let awkward: Vec<bool> = arguments
+        .iter()
+        .map(|&(argument, direction)| {
+            let is_whole = matches!(draft.tree[argument].kind, ExprKind::Variable(_));
+            is_out(direction)
+                && (!draft
+                    .tree
+                    .root_variable(argument)
+                    .is_none_or(|root| written.insert(root))
+                    || !is_whole)
+        })
+        .collect();
     if !awkward.contains(&true) {
         return;
     }
     // Once one value is set aside, all are: what stays in the call is evaluated last.
     let acting = arguments
         .iter()
-        .any(|&(argument, direction)| !is_out(direction) && walk::acts(&draft.tree, argument));
-    let (mut before, mut after) = (Vec::new(), Vec::new());
+        .any(|&(argument, _)| walk::acts(&draft.tree, argument));
+    let (mut before, mut copied, mut after) = (Vec::new(), Vec::new(), Vec::new());
     for (&(argument, direction), awkward) in arguments.iter().zip(awkward) {
         if awkward {
             lvalue::fix_indices(draft, argument, Fix::Changing, &mut before);
@@ -68,7 +68,7 @@ fn copy(draft: &mut Draft, call: ExprId, arguments: &[(ExprId, Direction)], disc
             let mut build = draft.build(at);
             if direction == Direction::InOut {
                 let read = build.copy(argument);
-                before.push(build.set(copy, read));
+                copied.push(build.set(copy, read));
             }
             let home = build.detach(argument);
             let value = build.variable(copy);
@@ -80,6 +80,7 @@ fn copy(draft: &mut Draft, call: ExprId, arguments: &[(ExprId, Direction)], disc
             before.push(lvalue::set_aside(draft, argument, "argument"));
         }
     }
+    before.extend(copied);
     let at = draft.tree[call].at;
     let ty = draft.tree[call].ty;
     let mut steps = before;

@@ -87,6 +87,8 @@ passes! {
     DeadCode = super::dead_code::run,
     /// Fall-through in `switch`.
     Switches = super::switch::run,
+    /// What is nested deeper than lavapipe counts.
+    Nesting = super::nesting::run,
     /// Sequences as statements.
     Sequences = super::sequence::run,
     /// Functions that may end without a `return`.

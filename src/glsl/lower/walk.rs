@@ -163,3 +163,13 @@ pub(crate) fn mentions(tree: &Tree, root: ExprId, variable: VariableId) -> bool 
         |kind| matches!(kind, ExprKind::Variable(v) if *v == variable),
     )
 }
+
+/// The variables that stand in an expression.
+pub(crate) fn variables(tree: &Tree, root: ExprId) -> impl Iterator<Item = VariableId> + '_ {
+    tree.postorder(root)
+        .into_iter()
+        .filter_map(|id| match tree[id].kind {
+            ExprKind::Variable(variable) => Some(variable),
+            _ => None,
+        })
+}

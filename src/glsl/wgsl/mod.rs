@@ -68,6 +68,7 @@ fn passes() -> Passes {
         Pass::Uninitialised,
         Pass::Steps,
         Pass::DoWhile,
+        Pass::Nesting,
         Pass::MissingReturns,
     ]
     .into_iter()

@@ -1,11 +1,21 @@
 //! Expressions of any type: what holds of all types. What operators and built-in functions give is in `value`.
 
 use super::expr::{Expr, Level, Range};
-use super::types::{BOOL, Base, Type};
-use super::{Function, Generator, MOST_OPERANDS, MOST_WORK, Mode, Passing};
+use super::types::{BOOL, Base, Scalar, Type};
+use super::{Effects, Function, Generator, MOST_OPERANDS, MOST_WORK, Mode, Passing};
 
 /// How deep operands nest.
 const DEEPEST: usize = 5;
+
+/// One step into a value.
+#[derive(Debug, Clone, Copy)]
+enum Part {
+    Field(&'static str),
+    /// Of so many elements, columns or components.
+    Element(u8),
+    /// Of so many components.
+    Swizzle(u8),
+}
 
 impl Generator<'_> {
     /// An expression of that type.
@@ -53,9 +63,8 @@ impl Generator<'_> {
                 let text = format!("{} = {}", place.text, value.at(Level::Assignment));
                 Some(Expr::plain(text, Level::Assignment))
             }
-            4 if ty.is_basic() && self.mode == Mode::Any => {
+            4 if self.mode == Mode::Any => {
                 let first = self.ty();
-                let first = if first.is_basic() { first } else { BOOL };
                 let (first, second) = (self.expr(first), self.expr(ty));
                 let text = format!("{}, {}", first.text, second.at(Level::Assignment));
                 Some(Expr::new(text, Level::Sequence, second.range))
@@ -72,8 +81,53 @@ impl Generator<'_> {
                 let array = Expr::call(&array.name(), &parts, Range::VARIABLE);
                 Some(Expr::primary(format!("{}[{index}]", array.text), Range::VARIABLE))
             }
+            6..=8 => self.part(ty),
             _ => None,
         }
+    }
+
+    /// A part of that type of a value of any form: a member, an element, a column, a component or a swizzle.
+    fn part(&mut self, ty: Type) -> Option<Expr> {
+        let mut wholes = Vec::new();
+        for (number, structure) in (0..).zip(&self.structs) {
+            let fields = structure.fields.iter().filter(|&&(_, field)| field == ty);
+            wholes.extend(fields.map(|&(name, _)| (Type::of(Base::Struct(number)), Part::Field(name))));
+        }
+        if ty.length.is_none() {
+            let length = 1 + self.choices.below(4) as u8;
+            let array = Type {
+                length: Some(length),
+                ..ty
+            };
+            wholes.push((array, Part::Element(length)));
+            let size = self.size();
+            match ty.base {
+                Base::Vector(Scalar::Float, rows) => {
+                    wholes.push((Type::of(Base::Matrix(size, rows)), Part::Element(size)));
+                }
+                Base::Scalar(scalar) => {
+                    wholes.push((Type::of(Base::Vector(scalar, size)), Part::Element(size)));
+                }
+                _ => {}
+            }
+            if let Some(scalar) = ty.base.scalar()
+                && !matches!(ty.base, Base::Matrix(..))
+            {
+                wholes.push((Type::of(Base::Vector(scalar, size)), Part::Swizzle(size)));
+            }
+        }
+        if wholes.is_empty() {
+            return None;
+        }
+        let (whole, part) = self.choices.pick(&wholes);
+        let whole = self.expr(whole);
+        let step = match part {
+            Part::Field(name) => format!(".{name}"),
+            Part::Element(length) => format!("[{}]", self.index(length)),
+            Part::Swizzle(of) => format!(".{}", self.swizzle(of, ty.base.size(), false)),
+        };
+        let text = format!("{}{step}", whole.at(Level::Primary));
+        Some(Expr::primary(text, whole.range))
     }
 
     /// A call of a function with that result; none if none can be called here.
@@ -100,7 +154,8 @@ impl Generator<'_> {
             .parameters
             .iter()
             .any(|&(passing, _)| passing != Passing::In);
-        let mode = if hands_out { Mode::Pure } else { Mode::Any };
+        let wild = self.effects == Effects::Anywhere;
+        let mode = if hands_out && !wild { Mode::Pure } else { Mode::Any };
         let mut taken = Vec::new();
         let mut arguments = Vec::new();
         for &(passing, ty) in &function.parameters {
@@ -109,7 +164,9 @@ impl Generator<'_> {
                     return Some(this.storable(ty));
                 }
                 let (name, place) = this.place(ty, true, &taken)?;
-                taken.push(name);
+                if !wild {
+                    taken.push(name);
+                }
                 Some(place)
             })?);
         }

@@ -1,9 +1,9 @@
 //! Valid programs from bytes: every type and statement of the language, without undefined behaviour and with exact arithmetic,
 //! so that all who run one must paint the same picture to the bit.
 //!
-//! Operands with effects stand anywhere and are meant to be evaluated from left to right; a compound assignment reads its target after
-//! its right side; next to an `out` argument nothing has an effect. Indices are masked, divisors positive, shifts below 32,
-//! loops bounded. A float in a variable is a multiple of 1/16 of at most 64 ([`Range::VARIABLE`]); where an expression could
+//! Operands with effects are meant to be evaluated from left to right; a compound assignment reads its target after
+//! its right side, but evaluates the target's indices before it; a function's `inout` arguments are copied in when all arguments are
+//! evaluated. [`Effects`] says where such operands may stand. Indices are masked, divisors positive, shifts below 32, loops bounded. A float in a variable is a multiple of 1/16 of at most 64 ([`Range::VARIABLE`]); where an expression could
 //! leave what 24 bits hold, `tame` brings it back.
 
 mod choices;
@@ -54,6 +54,15 @@ struct Function {
     work: u32,
 }
 
+/// Where operands with effects may stand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Effects {
+    /// Wherever the specification says what comes first: not beside an `out` argument.
+    Ordered,
+    /// Anywhere; and several `out` arguments may be parts of one variable.
+    Anywhere,
+}
+
 /// What may stand where an expression stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Mode {
@@ -83,6 +92,7 @@ struct Generator<'a> {
     /// Functions that the program needs for its own sake, each behind those that it calls.
     helpers: Vec<String>,
     mode: Mode,
+    effects: Effects,
     /// Whether places are the same however often they are evaluated.
     steady: bool,
     depth: usize,
@@ -98,7 +108,7 @@ struct Generator<'a> {
 }
 
 /// The program that these bytes decide: an eighth of them what is global, three eighths the functions, the others `mainImage`.
-pub(crate) fn program(bytes: &[u8]) -> String {
+pub(crate) fn program(bytes: &[u8], effects: Effects) -> String {
     let (globals, rest) = bytes.split_at(bytes.len() / 8);
     let (functions, main) = rest.split_at(bytes.len() * 3 / 8);
     let mut generator = Generator {
@@ -110,6 +120,7 @@ pub(crate) fn program(bytes: &[u8]) -> String {
         scopes: vec![inputs()],
         helpers: Vec::new(),
         mode: Mode::Any,
+        effects,
         steady: false,
         depth: 0,
         operands: 0,
@@ -205,13 +216,16 @@ impl<'a> Generator<'a> {
         Type { base, length }
     }
 
-    /// naga gives an array of truths in a structure another type than one outside, and refuses what passes between them; it also
-    /// refuses arrays of matrices with two rows there.
+    /// Arrays are more frequent in structures than elsewhere.
     fn field_type(&mut self) -> Type {
         let ty = self.ty();
+        let length = self.choices.chance(80).then(|| 1 + self.choices.below(3) as u8);
         match ty.base {
-            Base::Scalar(Scalar::Bool) | Base::Vector(Scalar::Bool, _) | Base::Matrix(_, 2) => ty.element(),
-            _ => ty,
+            Base::Struct(_) => ty,
+            _ => Type {
+                length: ty.length.or(length),
+                ..ty
+            },
         }
     }
 

@@ -247,6 +247,9 @@ impl Generator<'_> {
     fn compound(&mut self) {
         let ty = self.ty();
         let ty = if ty.is_float() { ty } else { FLOAT };
+        if self.choices.chance(100) {
+            return self.compound_anywhere(ty);
+        }
         let Some(place) = self.steady_place(ty) else {
             return;
         };
@@ -269,6 +272,30 @@ impl Generator<'_> {
         let back = self.tamed(ty, wild);
         self.line(&format!("{place} {op} {};", value.at(Level::Assignment)));
         self.line(&format!("{place} = {};", back.text));
+    }
+
+    /// A compound assignment of any part of a float variable, all of which is brought back at once: both sides may have effects.
+    fn compound_anywhere(&mut self, ty: Type) {
+        let Some((name, place)) = self.place(ty, true, &[]) else {
+            return;
+        };
+        let variables = self.scopes.iter().rev().flat_map(|scope| scope.iter().rev());
+        let Some(whole) = variables
+            .filter(|variable| variable.name == name)
+            .map(|variable| variable.ty)
+            .next()
+        else {
+            return;
+        };
+        if !whole.is_float() {
+            return;
+        }
+        let other = if self.choices.chance(128) { FLOAT } else { ty };
+        let value = self.storable(other);
+        let op = self.choices.pick(&["+=", "-="]);
+        let back = self.tamed(whole, Expr::primary(name.as_str(), Range::new(1e5, 8)));
+        self.line(&format!("{} {op} {};", place.text, value.at(Level::Assignment)));
+        self.line(&format!("{name} = {};", back.text));
     }
 
     fn branch(&mut self) {

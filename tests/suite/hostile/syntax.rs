@@ -135,6 +135,14 @@ fn too_much() -> Vec<Case> {
             &format!("c = vec4(0.0); switch (int(p.x)) {{ {cases} }}"),
         ),
         body(
+            "a switch of fifty thousand labels",
+            INVALID,
+            &format!(
+                "c = vec4(0.0); switch (int(p.x)) {{ {} c = vec4(1.0); }}",
+                lines(50_000, |at| format!("case {at}:"))
+            ),
+        ),
+        body(
             "twenty thousand variables",
             SLOW,
             &(lines(20_000, |at| format!("float a{at} = p.x * {at}.0;")) + "c = vec4(a0 + a19999);"),

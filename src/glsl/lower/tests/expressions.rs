@@ -179,7 +179,38 @@ fn indices_that_act() {
 }
 
 #[test]
+fn indices_of_what_is_no_variable() {
+    for body in [
+        "o.x = (p.x > 3.0 ? p : p.yx)[int(p.y)];",
+        "o.x = (p.x > 3.0 ? p : p.yx)[1];",
+        "o.xy = (p.x > 3.0 ? mat2(p, p) : mat2(1.0))[int(p.y)];",
+        "o.x = (p.x > 3.0 ? mat2(p, p) : mat2(1.0))[1][int(p.y)];",
+        "o.x = (o.y, p.x > 3.0 ? p : p.yx)[int(p.y)];",
+        "mat2 m = mat2(p, p); o.x = m[0].yx[int(p.x)];",
+        "mat2 m = mat2(p, p); o.x = m[int(p.y)].yx[int(p.x)];",
+        "mat2 m[2]; m[1] = mat2(p, p); int i = 1; o.x = m[i--][0].yx[i];",
+    ] {
+        mends(Pass::Indices, &main_image("", body));
+    }
+    for body in [
+        "o.x = f(p)[int(p.y)] + f(p).yx[int(p.y)] + g(p).a[int(p.y)] + g(p).v[int(p.y)] + g(p).v.yx[1];",
+        "S s; o.x = (s = g(p)).a[int(p.y)] + (p, s).a[1] + (p.x, p.yx)[int(p.y)] + S(float[2](1.0, p.x), p).a[int(p.y)];",
+        "vec2 q = p; o.x = (q = p.yx)[int(p.y)] + (q += p).yx[int(p.y)] + (++q)[int(p.y)] + (-q)[int(p.y)] + (q * 2.0)[1];",
+        "while ((p.x > 3.0 ? p : p.yx)[int(p.y)] > o.x) o.x += 1.0; o.y = p.x > 1.0 && p.yx[int(o.x) & 1] > 2.0 ? p.yx[int(o.x) & 1] : 0.0;",
+    ] {
+        let before = "struct S { float a[2]; vec2 v; }; vec2 f(vec2 p) { return p; } S g(vec2 p) { return S(float[2](p.x, p.y), p); }";
+        accepted(&checked(&main_image(before, body), false));
+    }
+}
+
+#[test]
 fn compound_assignments() {
+    // The indices are those from before the right side.
+    assert_eq!(
+        lines("", "int a[2]; int i = int(p.x); a[i] += i++; o.x = float(a[0]);"),
+        "int[2] a;\nint i = int(p.x);\nint toyproof_index = i;\nint toyproof_value = i++;\na[toyproof_index] += toyproof_value;\n\
+         o.x = float(a[0]);"
+    );
     assert_eq!(
         lines(
             "float g; float next() { return g += 1.0; }",
@@ -314,6 +345,19 @@ fn members_of_structures() {
         ),
     );
     assert!(lowered.contains("vec2[2] m;"), "{lowered}");
+    for body in [
+        "S s; s.m[2] = mat2(p, p); o = s.m[2][0].xyxy;",
+        "S s = S(mat2[3](mat2(p, p), mat2(1.0), mat2(2.0)), bvec4[2](bvec4(true), bvec4(false)), bvec3[2](bvec3(true), bvec3(false)), \
+         mat3x2[1](mat3x2(1.0))); o.x = s.m[1][int(p.x)].y + float(s.b[1].x);",
+        "S s, t; bool e = s == t || s.m == t.m || s.b == t.b || s.b != bvec4[2](bvec4(true), bvec4(false)); o.x = float(e);",
+        "S s[2]; int i = int(p.x) & 1; s[i].m[i] *= 2.0; s[i].m[i + 1][i] = p; s[i].m[i][1].x += p.y; mat2 m[3] = s[i].m; s[1].m = m; \
+         f(s[0].m); g(s[i].m[1]); mat2 old = s[0].m[1]++; o.xy = old[0] + (s[0].m[2]--)[1] + s[0].m[0] * p + s[i].n[0] * vec3(p, 1.0);",
+        "for (int i = 0; i < 2; i++) { N n; o.x += n.s[i].m[i][0].x; n.s[i] = n.s[0]; N k = N(n.s); o.y += k.s[1].m[0][1].y; }",
+    ] {
+        let before = "struct S { mat2 m[3]; bvec4 b[2]; bvec3 c[2]; mat3x2 n[1]; }; struct N { S s[2]; }; \
+                      void f(inout mat2 m[3]) { m[1][0] = vec2(3.0); } void g(inout mat2 m) { m *= 2.0; }";
+        mends(Pass::Members, &main_image(before, body));
+    }
     accepted(&checked(
         &main_image(arrays, "for (int i = 0; i < 2; i++) { S s; o.x += s.a[i]; }"),
         false,

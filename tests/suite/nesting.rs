@@ -1,0 +1,189 @@
+//! Statements, choices, jumps and calls nested deeper than lavapipe's stack of 80 conditions: the GPU must render what the evaluator
+//! computes, and does not without the pass that lays them side by side.
+
+use toyproof::eval::{Program, Settings};
+use toyproof::frame::Frame;
+use toyproof::glsl::Checked;
+use toyproof::glsl::lower::{Pass, Passes, lower_with};
+use toyproof::gpu::{FloatMode, Worker};
+use toyproof::image::Image;
+
+use crate::support;
+
+/// Pixels in a row: as many different depths as are reached.
+const WIDTH: u32 = 128;
+/// More than the driver counts.
+const DEPTH: usize = 100;
+
+/// Wraps `DEPTH` levels around the innermost statement; what a level is, `level` says of the inside and its number, 0 for the outermost.
+fn nest(level: impl Fn(String, usize) -> String) -> String {
+    (0..DEPTH)
+        .rev()
+        .fold("g(x, 1.0);".to_owned(), |inside, at| level(inside, at))
+}
+
+/// One after the other.
+fn row(one: impl Fn(usize) -> String) -> String {
+    (0..DEPTH).map(one).collect()
+}
+
+/// What stands before `mainImage`, and what in it makes `x` of `p`; level `d` is entered by pixels whose `p.x` is greater.
+fn programs() -> Vec<(&'static str, String, String)> {
+    let plain = |name, body| (name, String::new(), body);
+    let function = |name, body| {
+        let function = format!("float f(vec2 p) {{ float x = 0.0; {body} return x; }}");
+        (name, function, "x = f(p);".to_owned())
+    };
+    vec![
+        plain(
+            "if",
+            nest(|inside, d| format!("if (p.x > {d}.0) {{ g(x, {d}.0); {inside} x += 0.5; }}")),
+        ),
+        plain(
+            "if else",
+            nest(|inside, d| {
+                format!("if (p.x > {d}.0) {{ g(x, {d}.0); {inside} }} else {{ x *= 0.75; g(x, 3.0); }}")
+            }),
+        ),
+        plain(
+            "else in else",
+            nest(|inside, d| format!("if (p.x < {d}.0) {{ g(x, {d}.0); }} else {{ {inside} x += 0.25; }}")),
+        ),
+        plain(
+            "loops in ifs",
+            nest(|inside, d| match d % 25 {
+                3 => format!(
+                    "for (int i = 0; i < 2; i++) {{ if (p.x < {d}.0) continue; g(x, {d}.0); if (i == 1) {{ {inside} }} \
+                     if (x > 15.0) break; x += 0.5; }}"
+                ),
+                4 => format!(
+                    "int k{d} = 0; do {{ k{d}++; if (p.x > {d}.0) {{ {inside} }} x += 0.5; }} while (k{d} < 2 && x < 9.0);"
+                ),
+                _ => format!("if (p.x > {d}.0) {{ float y = x; g(y, {d}.0); x = y; {inside} x += 0.5; }}"),
+            }),
+        ),
+        plain(
+            "switch",
+            nest(|inside, d| {
+                format!(
+                    "switch (int(clamp(p.x - {d}.0, 0.0, 3.9))) {{ case 0: x += 0.5; break; case 2: g(x, 2.0); \
+                     case 3: default: g(x, {d}.0); {inside} if (x > 16.0) break; x += 0.25; }}"
+                )
+            }),
+        ),
+        plain(
+            "choices",
+            format!("x = {} 1.0;", row(|d| format!("p.x < {d}.0 ? h(x, {d}.0) : "))),
+        ),
+        plain(
+            "choices with effects",
+            format!(
+                "float y = 1.0; x = {} 1.0; x += y;",
+                row(|d| format!("(y += 0.25) * 4.0 > p.x ? (x += {d}.0, h(x, {d}.0) + y) : "))
+            ),
+        ),
+        plain(
+            "and",
+            format!(
+                "if ({} true) x += 0.25;",
+                row(|d| format!("p.x > {d}.0 && h(x, {d}.0) >= 0.0 && "))
+            ),
+        ),
+        function(
+            "returns",
+            row(|d| format!("g(x, {d}.0); if (p.x < {d}.0) return x; ")),
+        ),
+        function(
+            "returns in ifs",
+            nest(|inside, d| {
+                format!("if (p.x > {d}.0) {{ g(x, {d}.0); {inside} if (x < 2.0) return x; x += 0.25; }}")
+            }),
+        ),
+        plain(
+            "continues",
+            format!(
+                "for (int i = 0; i < 3; i++) {{ {} }}",
+                row(|d| format!("g(x, {d}.0); if (p.x < {d}.0) continue; "))
+            ),
+        ),
+        plain(
+            "breaks of a switch",
+            format!(
+                "switch (int(p.x) & 1) {{ case 0: x = 1.0; default: {} }}",
+                row(|d| format!("g(x, {d}.0); if (p.x < {d}.0) break; "))
+            ),
+        ),
+        plain(
+            "discards",
+            nest(|inside, d| format!("if (p.x > {d}.0) {{ g(x, {d}.0); {inside} if (x > 16.5) discard; }}")),
+        ),
+        (
+            "calls",
+            (0..5)
+                .rev()
+                .map(|at| {
+                    let inner = if at == 4 {
+                        String::new()
+                    } else {
+                        format!("x = k{}(p, x);", at + 1)
+                    };
+                    let levels = (20 * at..20 * at + 20).rev().fold(inner, |inside, d| {
+                        format!("if (p.x > {d}.0) {{ g(x, {d}.0); {inside} x += 0.5; }}")
+                    });
+                    format!("float k{at}(vec2 p, float x) {{ {levels} return x; }}\n")
+                })
+                .collect(),
+            "x = k0(p, x);".to_owned(),
+        ),
+    ]
+}
+
+fn frame() -> Frame {
+    Frame {
+        size: [WIDTH, 1],
+        ..Frame::default()
+    }
+}
+
+fn drawn(worker: &mut Worker, checked: &Checked, passes: Passes) -> Image {
+    let drawn = worker.draw_unwatched(lower_with(checked, passes), frame(), FloatMode::Strict);
+    drawn.unwrap_or_else(|failure| panic!("{failure}")).image()
+}
+
+#[test]
+fn what_is_nested_deep_renders_as_it_evaluates() {
+    let Some(worker) = support::worker() else {
+        return;
+    };
+    let mut worker = worker.with_plain_code();
+    let (mut wrong, mut needless) = (Vec::new(), Vec::new());
+    for (name, before, body) in programs() {
+        let text = format!(
+            "void g(inout float x, float d) {{ x = mod(x * 1.25 + d + x * x * 0.125, 17.0); }}\n\
+             float h(inout float x, float d) {{ x = mod(x * 1.25 + d, 17.0); return x; }}\n{before}\n\
+             void mainImage(out vec4 c, in vec2 p) {{ float x = 0.0; {body} c = vec4(x, x * x, p.x, 1); }}"
+        );
+        let checked = support::checked(&text);
+        let evaluated = Program::new(&checked)
+            .unwrap()
+            .paint::<f32>(&frame(), &Settings::default())
+            .unwrap()
+            .painting
+            .image();
+        if drawn(&mut worker, &checked, Passes::strict()).pixels() != evaluated.pixels() {
+            wrong.push(name);
+        }
+        let without = Passes::strict().without(Pass::Nesting);
+        if drawn(&mut worker, &checked, without).pixels() == evaluated.pixels() {
+            needless.push(name);
+        }
+    }
+    assert!(wrong.is_empty(), "rendered wrong: {wrong:?}");
+    // The driver folds what these nest, or its stack of loops holds them.
+    let harmless = ["choices", "and"];
+    needless.retain(|name| !harmless.contains(name));
+    assert!(
+        needless.len() <= 4,
+        "no longer wrong without the pass: {needless:?}"
+    );
+}
