@@ -12,6 +12,7 @@ mod surroundings;
 mod text;
 mod word;
 
+pub(super) use names::Numbering;
 pub(super) use order::Order;
 pub use text::Lowered;
 

@@ -59,6 +59,7 @@ impl Names {
             names.variables.insert(input, draft.tree[input].name.clone());
         }
         let tree = &draft.tree;
+        let mut numbering = Numbering::default();
         for item in &order.items {
             if let Item::Struct(id) = *item {
                 let name = if tree[id].name.is_empty() {
@@ -66,31 +67,29 @@ impl Names {
                 } else {
                     &tree[id].name
                 };
-                let name = free(name, |name| word::is_reserved(name) || taken.contains(name));
+                let is_taken = |name: &str| word::is_reserved(name) || taken.contains(name);
+                let name = numbering.free(&word::mended(name), is_taken);
                 types.insert(name.clone());
                 taken.insert(name.clone());
                 names.structs.insert(id, name);
                 names.name_members(draft, id);
             }
         }
-        let authors: HashSet<&str> = tree
-            .variables
-            .iter()
-            .map(|(_, variable)| variable.name.as_str())
-            .collect();
+        let mut authors: HashMap<&str, usize> = HashMap::new();
+        for (_, variable) in tree.variables.iter() {
+            *authors.entry(variable.name.as_str()).or_default() += 1;
+        }
         for item in &order.items {
             if let Item::Variable(id) = *item {
                 // What was moved out of a function meets every local that it is used among.
                 let moved = draft.moved.contains(&id);
                 let own = tree[id].name.as_str();
-                let name = free(own, |name| {
+                let name = numbering.free(&word::mended(own), |name| {
                     word::is_reserved(name)
                         || word::is_function(name)
                         || taken.contains(name)
-                        || (moved && name != own && authors.contains(name))
-                        || (moved
-                            && name == own
-                            && tree.variables.iter().filter(|(_, v)| v.name == own).count() > 1)
+                        || (moved && name != own && authors.contains_key(name))
+                        || (moved && name == own && authors.get(name).is_some_and(|&count| count > 1))
                 });
                 taken.insert(name.clone());
                 names.variables.insert(id, name);
@@ -197,7 +196,7 @@ impl Names {
         for &id in &locals {
             *counts.entry(tree[id].name.as_str()).or_default() += 1;
         }
-        let mut counters = HashMap::new();
+        let mut numbering = Numbering::default();
         for &id in &locals {
             let own = tree[id].name.as_str();
             let meets = draft.moved.contains(&id) && counts.get(own).is_some_and(|&count| count > 1);
@@ -207,20 +206,40 @@ impl Names {
                 } else {
                     word::mended(own)
                 };
-                // A counter for each stem: thousands of temporaries share one.
-                let counter: &mut usize = counters.entry(stem.clone()).or_default();
-                loop {
-                    *counter += 1;
-                    let name = format!("{stem}_{counter}");
-                    if !clashes(&name) && !taken.contains(&name) {
-                        break name;
-                    }
-                }
+                numbering.next(&stem, |name| clashes(name) || taken.contains(name))
             } else {
                 own.to_owned()
             };
             taken.insert(name.clone());
             self.variables.insert(id, name);
+        }
+    }
+}
+
+/// Numbers names that are taken. It counts on for each: thousands of temporaries share one, and what was taken once is not free
+/// later.
+#[derive(Debug, Default)]
+pub(in crate::glsl) struct Numbering(HashMap<String, usize>);
+
+impl Numbering {
+    /// The name itself, or the first free one that is made of it.
+    pub(in crate::glsl) fn free(&mut self, name: &str, is_taken: impl Fn(&str) -> bool) -> String {
+        if is_taken(name) {
+            self.next(name, is_taken)
+        } else {
+            name.to_owned()
+        }
+    }
+
+    /// The next free name that is made of it.
+    fn next(&mut self, name: &str, is_taken: impl Fn(&str) -> bool) -> String {
+        let counter = self.0.entry(name.to_owned()).or_default();
+        loop {
+            *counter += 1;
+            let numbered = format!("{name}_{counter}");
+            if !is_taken(&numbered) {
+                return numbered;
+            }
         }
     }
 }

@@ -16,7 +16,8 @@ impl Writer<'_> {
             .map(|&argument| self.draft.tree[argument].ty)
             .collect();
         let outer = self.suffixed;
-        self.suffixed |= arguments.iter().all(|&argument| self.is_abstract(argument));
+        let is_abstract = arguments.iter().all(|&argument| self.is_abstract(argument));
+        self.suffixed |= is_abstract;
         let texts = self.values(arguments);
         self.suffixed = outer;
         let mut texts = texts?;

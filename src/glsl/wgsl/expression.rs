@@ -239,7 +239,8 @@ impl Writer<'_> {
         }
         let types = [tree[left].ty, tree[right].ty];
         let outer = self.suffixed;
-        self.suffixed |= self.is_abstract(left) && self.is_abstract(right);
+        let is_abstract = self.is_abstract(left) && self.is_abstract(right);
+        self.suffixed |= is_abstract;
         let texts = self.values(&[left, right]);
         self.suffixed = outer;
         let [left, right] = <[Text; 2]>::try_from(texts?).map_err(|_| Unprintable("an operator"))?;

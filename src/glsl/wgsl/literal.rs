@@ -4,23 +4,39 @@ use super::super::tree::{ExprId, ExprKind, Literal, Place, Type, UnaryOp, Value}
 use super::writer::Writer;
 
 impl Writer<'_> {
-    /// Whether an expression is made of numbers only, so that WGSL knows no width for it.
-    pub(super) fn is_abstract(&self, id: ExprId) -> bool {
+    /// Whether an expression is made of numbers only, so that WGSL knows no width for it. Each is looked at once, and with a loop:
+    /// chains are asked about for each of their operators.
+    pub(super) fn is_abstract(&mut self, root: ExprId) -> bool {
         let tree = &self.draft.tree;
-        match &tree[id].kind {
-            ExprKind::Literal(literal) => {
-                matches!(literal.value, Value::Float(_) | Value::Int(_)) && !self.is_macro(id)
+        let mut pending = vec![(root, false)];
+        while let Some((id, operands_done)) = pending.pop() {
+            if self.abstract_numbers.contains_key(&id) {
+                continue;
             }
-            &ExprKind::Unary {
-                op: UnaryOp::Minus | UnaryOp::Plus,
-                operand,
-            } => self.is_abstract(operand),
-            &ExprKind::Binary { left, right, .. } => self.is_abstract(left) && self.is_abstract(right),
-            ExprKind::BuiltIn { arguments, .. } => {
-                arguments.iter().all(|&argument| self.is_abstract(argument))
+            let may_be = match &tree[id].kind {
+                ExprKind::Literal(literal) => {
+                    matches!(literal.value, Value::Float(_) | Value::Int(_)) && !self.is_macro(id)
+                }
+                ExprKind::Unary { op, .. } => matches!(op, UnaryOp::Minus | UnaryOp::Plus),
+                ExprKind::Binary { .. } | ExprKind::BuiltIn { .. } => true,
+                _ => false,
+            };
+            if may_be && !operands_done {
+                pending.push((id, true));
+                tree[id]
+                    .kind
+                    .for_each_operand(|operand| pending.push((operand, false)));
+                continue;
             }
-            _ => false,
+            let mut is_abstract = may_be;
+            if may_be {
+                tree[id]
+                    .kind
+                    .for_each_operand(|operand| is_abstract &= self.abstract_numbers[&operand]);
+            }
+            self.abstract_numbers.insert(id, is_abstract);
         }
+        self.abstract_numbers[&root]
     }
 
     /// A number as WGSL writes it.

@@ -4,7 +4,7 @@
 use std::collections::{HashMap, HashSet};
 
 use super::super::lower::{Draft, walk};
-use super::super::print::Order;
+use super::super::print::{Numbering, Order};
 use super::super::tree::{ExprKind, FunctionId, Item, StructId, Type, VariableId};
 use super::style::Style;
 use super::word;
@@ -28,6 +28,7 @@ impl Names {
         let tree = &draft.tree;
         let mut names = Self::default();
         let mut taken: HashSet<String> = style.words().map(str::to_owned).collect();
+        let mut numbering = Numbering::default();
         let taken_at = |taken: &HashSet<String>, name: &str| word::is_taken(name) || taken.contains(name);
         for item in &order.items {
             if let Item::Struct(id) = *item {
@@ -36,7 +37,7 @@ impl Names {
                 } else {
                     &tree[id].name
                 };
-                let name = word::free(own, |name| taken_at(&taken, name));
+                let name = numbering.free(word::stem(own), |name| taken_at(&taken, name));
                 taken.insert(name.clone());
                 names.structs.insert(id, name);
                 let mut members = HashSet::new();
@@ -50,7 +51,8 @@ impl Names {
         }
         for item in &order.items {
             if let Item::Variable(id) = *item {
-                let name = word::free(&tree[id].name, |name| taken_at(&taken, name));
+                let stem = word::stem(&tree[id].name);
+                let name = numbering.free(stem, |name| taken_at(&taken, name));
                 taken.insert(name.clone());
                 names.variables.insert(id, name);
             }
@@ -67,7 +69,7 @@ impl Names {
                 } else {
                     own.to_owned()
                 };
-                let name = word::free(&name, |name| taken_at(&taken, name));
+                let name = numbering.free(word::stem(&name), |name| taken_at(&taken, name));
                 taken.insert(name.clone());
                 names.functions.insert(id, name);
             }
@@ -100,12 +102,13 @@ impl Names {
         }
         let mut taken: HashSet<String> = counts.keys().map(|&name| name.to_owned()).collect();
         let called = called(draft, function);
+        let mut numbering = Numbering::default();
         for &id in &locals {
             let own = own(id);
             let meets = draft.moved.contains(&id) && counts.get(own).is_some_and(|&count| count > 1);
             let clashes = word::is_taken(own) && (!word::may_be_hidden(own) || called.contains(own));
             let name = if own.is_empty() || meets || clashes || global.contains(own) {
-                word::free(own, |name| {
+                numbering.free(word::stem(own), |name| {
                     word::is_taken(name) || global.contains(name) || taken.contains(name)
                 })
             } else {
@@ -116,7 +119,7 @@ impl Names {
         }
         for &id in &tree[function].parameters {
             let name = self.variables[&id].clone() + "_in";
-            let name = word::free(&name, |name| {
+            let name = numbering.free(word::stem(&name), |name| {
                 word::is_taken(name) || global.contains(name) || taken.contains(name)
             });
             taken.insert(name.clone());

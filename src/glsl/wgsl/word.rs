@@ -1,5 +1,6 @@
 //! Words of WGSL that no identifier may be (§15), or had better not be.
 
+use super::super::print::Numbering;
 use super::super::tree::BuiltIn;
 
 /// Keywords and reserved words that GLSL leaves to its authors.
@@ -288,17 +289,15 @@ pub(super) fn is_reserved(word: &str) -> bool {
 
 /// The word itself, or the first that is made of it and free.
 pub(super) fn free(word: &str, is_taken: impl Fn(&str) -> bool) -> String {
-    let stem = word.trim_start_matches("__");
-    let stem = if stem.is_empty() || stem == "_" {
-        "unused"
-    } else {
-        stem
-    };
-    let numbered = (1_usize..).map(|number| format!("{stem}_{number}"));
-    std::iter::once(stem.to_owned())
-        .chain(numbered)
-        .find(|name| !is_taken(name))
-        .unwrap_or_default()
+    Numbering::default().free(stem(word), is_taken)
+}
+
+/// What a word is called by, or begins with: WGSL has no words that begin with two underscores.
+pub(super) fn stem(word: &str) -> &str {
+    match word.trim_start_matches("__") {
+        "" | "_" => "unused",
+        stem => stem,
+    }
 }
 
 #[cfg(test)]

@@ -27,6 +27,8 @@ pub(super) struct Writer<'a> {
     pub(super) temporaries: HashSet<String>,
     /// Every number gets its suffix: what stands among numbers only is computed in 32 bits, too.
     pub(super) suffixed: bool,
+    /// Which expressions are made of numbers only, as far as it was found out.
+    pub(super) abstract_numbers: HashMap<ExprId, bool>,
     /// Steps that are done at the end of their statement.
     pub(super) waiting: HashSet<ExprId>,
     /// Which expressions print lines before their value, as far as it was found out.
@@ -58,6 +60,7 @@ impl<'a> Writer<'a> {
             out: String::new(),
             indent: 0,
             temporaries: HashSet::new(),
+            abstract_numbers: HashMap::new(),
             suffixed: false,
             waiting: HashSet::new(),
             hoisting: HashMap::new(),
