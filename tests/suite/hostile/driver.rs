@@ -29,7 +29,7 @@ pub(crate) fn cases() -> Vec<Case> {
         body("fifteen hundred vectors alive at once", SLOW, &alive),
         body(
             "an array in registers",
-            TIMEOUT,
+            SLOW,
             "float a[4096]; for (int i = 0; i < 4096; i++) a[i] = p.x; c = vec4(a[int(p.x)]);",
         ),
         body(

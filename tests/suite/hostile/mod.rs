@@ -128,7 +128,7 @@ fn judge(case: &Case) -> (Vec<String>, String) {
     }
     if fs::read_to_string(folder.join("words"))
         .unwrap_or_default()
-        .contains("panicked")
+        .contains("panic at")
     {
         wrong.push("panics".to_owned());
     }
