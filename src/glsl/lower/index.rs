@@ -95,7 +95,10 @@ fn places(tree: &Tree) -> HashSet<ExprId> {
             ExprKind::Call { function, arguments } => {
                 let outs = arguments.iter().zip(&tree[*function].parameters);
                 written.extend(outs.filter_map(|(&argument, &parameter)| {
-                    let is_in = matches!(tree[parameter].kind, VariableKind::Parameter(Direction::In));
+                    let is_in = matches!(
+                        tree[parameter].kind,
+                        VariableKind::Parameter(Direction::In | Direction::ConstIn)
+                    );
                     (!is_in).then_some(argument)
                 }));
             }
