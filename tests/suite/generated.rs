@@ -1,8 +1,10 @@
-//! Generated programs: our SPIR-V on lavapipe must render what the evaluator computes, to the bit, and so must glslang's.
+//! Generated programs: our SPIR-V on lavapipe must render what the evaluator computes, to the bit, and so
+//! must glslang's.
 //!
-//! `TOYPROOF_PROGRAMS` says how many (24), `TOYPROOF_SEED` which (0), `TOYPROOF_FIRST` with which number to begin (0), `TOYPROOF_EFFECTS`
-//! where operands may have effects (`ordered` or `anywhere`; else every other program is of the one kind). A program that the driver
-//! crashes on, as it does on some, is reported and counted; it is compared with those that render it.
+//! `TOYPROOF_PROGRAMS` says how many (24), `TOYPROOF_SEED` which (0), `TOYPROOF_FIRST` with which number to
+//! begin (0), `TOYPROOF_EFFECTS` where operands may have effects (`ordered` or `anywhere`; else every other
+//! program is of the one kind). A program that the driver crashes on, as it does on some, is reported and
+//! counted; it is compared with those that render it.
 
 use std::cell::RefCell;
 use std::fmt::Write;
@@ -253,8 +255,8 @@ fn compare_all(glslang: Option<&Path>, longest: usize) {
     assert!(50 * crashes <= count, "{summary}");
 }
 
-/// Programs whose pixels tell in which order their operands are evaluated, where the specification leaves it open or may be read in
-/// several ways.
+/// Programs whose pixels tell in which order their operands are evaluated, where the specification leaves it
+/// open or may be read in several ways.
 const ORDERS: &[&str] = &[
     // The indices of a target, its value, and what is added to it.
     "int q[2]; q[0] = at.x; q[1] = at.y; q[q[0] & 1] += q[0]++; r = ivec2(q[0], q[1]);",

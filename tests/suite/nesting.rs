@@ -1,5 +1,5 @@
-//! Statements, choices, jumps and calls nested deeper than lavapipe's stack of 80 conditions: the GPU must render what the evaluator
-//! computes, and does not without the pass that lays them side by side.
+//! Statements, choices, jumps and calls nested deeper than lavapipe's stack of 80 conditions: the GPU must
+//! render what the evaluator computes, and does not without the pass that lays them side by side.
 
 use toyproof::eval::{Program, Settings};
 use toyproof::frame::Frame;
@@ -15,7 +15,8 @@ const WIDTH: u32 = 128;
 /// More than the driver counts.
 const DEPTH: usize = 100;
 
-/// Wraps `DEPTH` levels around the innermost statement; what a level is, `level` says of the inside and its number, 0 for the outermost.
+/// Wraps `DEPTH` levels around the innermost statement; what a level is, `level` says of the inside and its
+/// number, 0 for the outermost.
 fn nest(level: impl Fn(String, usize) -> String) -> String {
     (0..DEPTH)
         .rev()
@@ -27,7 +28,8 @@ fn row(one: impl Fn(usize) -> String) -> String {
     (0..DEPTH).map(one).collect()
 }
 
-/// A name, what stands before `mainImage`, and what in it makes `x` of `p`; level `d` is entered by pixels whose `p.x` is greater.
+/// A name, what stands before `mainImage`, and what in it makes `x` of `p`; level `d` is entered by pixels
+/// whose `p.x` is greater.
 type Nested = (&'static str, String, String);
 
 fn plain(name: &'static str, body: String) -> Nested {

@@ -1,8 +1,8 @@
-//! `t += f(t *= 2.0)`: what the right side makes of the target is what is added to, and `t[i] += i++` adds to the element that `i` named
-//! before.
+//! `t += f(t *= 2.0)`: what the right side makes of the target is what is added to, and `t[i] += i++` adds to
+//! the element that `i` named before.
 //!
-//! GLSL leaves open when the target is read; naga reads it first, WebGL2's translators and glslang read it last. Its indices all of them
-//! evaluate first, but here the right side moves before them, too.
+//! GLSL leaves open when the target is read; naga reads it first, WebGL2's translators and glslang read it
+//! last. Its indices all of them evaluate first, but here the right side moves before them, too.
 
 use super::super::tree::ExprKind;
 use super::draft::Draft;

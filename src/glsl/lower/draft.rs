@@ -86,7 +86,8 @@ impl Draft {
         id
     }
 
-    /// Adds a function of our own. What it is given is read where it stands, as operands are: `in` is `const in`.
+    /// Adds a function of our own. What it is given is read where it stands, as operands are: `in` is `const
+    /// in`.
     pub(super) fn function(
         &mut self,
         name: String,

@@ -1,9 +1,10 @@
 //! `out` and `inout` arguments that are components, swizzles, elements or members: `m(p.x)`, `m(a[i])`, `m(s.a)`.
 //!
-//! naga passes a pointer to a component, which its SPIR-V writer panics on. GLSL copies in and out (§6.1.1): so do we, with indices evaluated
-//! once, where the argument stands, and values copied in when all arguments are evaluated, as glslang does. Arguments that are parts of
-//! one variable are copied too: WGSL forbids pointers that alias. Of `in` arguments, too, variables and their parts are read last, those of
-//! `const in` in their turn: `f(i, i++)`.
+//! naga passes a pointer to a component, which its SPIR-V writer panics on. GLSL copies in and out (§6.1.1):
+//! so do we, with indices evaluated once, where the argument stands, and values copied in when all arguments
+//! are evaluated, as glslang does. Arguments that are parts of one variable are copied too: WGSL forbids
+//! pointers that alias. Of `in` arguments, too, variables and their parts are read last, those of `const in`
+//! in their turn: `f(i, i++)`.
 
 use std::collections::HashSet;
 

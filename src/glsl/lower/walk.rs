@@ -166,8 +166,8 @@ pub(crate) fn mentions(tree: &Tree, root: ExprId, variable: VariableId) -> bool 
     )
 }
 
-/// Whether evaluating `value` may change what a path reads, its variable or what its indices are made of: that stands in `value` where
-/// something acts, or a function that is called may know it.
+/// Whether evaluating `value` may change what a path reads, its variable or what its indices are made of:
+/// that stands in `value` where something acts, or a function that is called may know it.
 pub(crate) fn may_change(tree: &Tree, value: ExprId, path: ExprId) -> bool {
     if !acts(tree, value) {
         return false;

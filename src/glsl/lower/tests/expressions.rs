@@ -192,6 +192,13 @@ fn indices_of_what_is_no_variable() {
     ] {
         mends(Pass::Indices, &main_image("", body));
     }
+    mends(
+        Pass::Indices,
+        &main_image(
+            "float h(const in float x) { return x; }",
+            "o.x = h((p.x > 3.0 ? p : p.yx)[1]);",
+        ),
+    );
     for body in [
         "o.x = f(p)[int(p.y)] + f(p).yx[int(p.y)] + g(p).a[int(p.y)] + g(p).v[int(p.y)] + g(p).v.yx[1];",
         "S s; o.x = (s = g(p)).a[int(p.y)] + (p, s).a[1] + (p.x, p.yx)[int(p.y)] + S(float[2](1.0, p.x), p).a[int(p.y)];",
