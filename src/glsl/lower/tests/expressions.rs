@@ -183,8 +183,8 @@ fn indices_of_what_is_no_variable() {
     for body in [
         "o.x = (p.x > 3.0 ? p : p.yx)[int(p.y)];",
         "o.x = (p.x > 3.0 ? p : p.yx)[1];",
-        "o.xy = (p.x > 3.0 ? mat2(p, p) : mat2(1.0))[int(p.y)];",
-        "o.x = (p.x > 3.0 ? mat2(p, p) : mat2(1.0))[1][int(p.y)];",
+        "mat2 m = mat2(p, p), n; o.xy = (p.x > 3.0 ? m : n)[int(p.y)];",
+        "mat2 m = mat2(p, p), n; o.x = (p.x > 3.0 ? m : n)[1][int(p.y)];",
         "o.x = (o.y, p.x > 3.0 ? p : p.yx)[int(p.y)];",
         "mat2 m = mat2(p, p); o.x = m[0].yx[int(p.x)];",
         "mat2 m = mat2(p, p); o.x = m[int(p.y)].yx[int(p.x)];",
