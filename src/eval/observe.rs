@@ -18,7 +18,8 @@ pub enum Fault {
     DivisionByZero,
     /// The remainder by zero: the value is zero.
     RemainderByZero,
-    /// Zero divided by zero, both of them constants to whoever propagates constants: what drivers fold it to, they choose.
+    /// Zero divided by zero, both of them constants to whoever propagates constants: what drivers fold it to,
+    /// they choose.
     ZeroByZero,
     /// A shift by 32 or more, or by less than zero: the lowest five bits count.
     ShiftTooFar,

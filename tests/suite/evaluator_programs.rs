@@ -56,7 +56,27 @@ static PROGRAMS: &[(&str, &str, f64)] = &[
     ),
     ("", "o.x = 7.0; if (p.x < 9.0) return; o.x = 1.0;", 7.0),
     ("", "while (o.w++ < 3.0) o.x += 1.0;", 3.0),
+    (
+        "",
+        "int a = 0; float s = 0.0; for (int k = 0; k < 3; k++, a += 2) { int a = 7; s += float(a); } o.x = float(a) + s;",
+        27.0,
+    ),
     // Evaluation: once, from left to right, and only what is needed.
+    (
+        "",
+        "int q[2]; q[0] = int(p.x) + 1; q[1] = 0; q[q[0] & 1] += q[0]++; o.x = float(q[0] + 10 * q[1]);",
+        12.0,
+    ),
+    (
+        "int add(int a, int b) { return a * 16 + b; } int fixed_add(const int a, int b) { return a * 16 + b; }",
+        "int i = int(p.x); o.x = float(add(i, i++)); o.x += 256.0 * float(fixed_add(i, i++));",
+        4368.0,
+    ),
+    (
+        "",
+        "mat2 m[2]; int i = int(p.x); m[i][(i = 1) & 1].yx = vec2(3.0, float(i)); o.x = m[0][1].y * 10.0 + m[0][1].x + m[1][1].y;",
+        31.0,
+    ),
     (
         "float t = 1.0; bool hit() { t = 9.0; return true; }",
         "if (p.x > 9.0 && hit()) t += 1.0; o.x = t; if (p.x < 9.0 || hit()) o.x += t;",

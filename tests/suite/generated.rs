@@ -1,8 +1,10 @@
-//! Generated programs: our SPIR-V on lavapipe must render what the evaluator computes, to the bit, and so must glslang's.
+//! Generated programs: our SPIR-V on lavapipe must render what the evaluator computes, to the bit, and so
+//! must glslang's.
 //!
-//! `TOYPROOF_PROGRAMS` says how many (24), `TOYPROOF_SEED` which (0), `TOYPROOF_FIRST` with which number to begin (0), `TOYPROOF_EFFECTS`
-//! where operands may have effects (`ordered` or `anywhere`; else every other program is of the one kind). A program that the driver
-//! crashes on, as it does on some, is reported and counted; it is compared with those that render it.
+//! `TOYPROOF_PROGRAMS` says how many (24), `TOYPROOF_SEED` which (0), `TOYPROOF_FIRST` with which number to
+//! begin (0), `TOYPROOF_EFFECTS` where operands may have effects (`ordered` or `anywhere`; else every other
+//! program is of the one kind). A program that the driver crashes on, as it does on some, is reported and
+//! counted; it is compared with those that render it.
 
 use std::cell::RefCell;
 use std::fmt::Write;
@@ -253,8 +255,8 @@ fn compare_all(glslang: Option<&Path>, longest: usize) {
     assert!(50 * crashes <= count, "{summary}");
 }
 
-/// Programs whose pixels tell in which order their operands are evaluated, where the specification leaves it open or may be read in
-/// several ways.
+/// Programs whose pixels tell in which order their operands are evaluated, where the specification leaves it
+/// open or may be read in several ways.
 const ORDERS: &[&str] = &[
     // The indices of a target, its value, and what is added to it.
     "int q[2]; q[0] = at.x; q[1] = at.y; q[q[0] & 1] += q[0]++; r = ivec2(q[0], q[1]);",
@@ -276,6 +278,9 @@ const ORDERS: &[&str] = &[
     "int q[2]; q[0] = at.x; q[1] = at.y; int i = 0; swap(q[i++], q[i & 1]); r = ivec2(q[0], q[1]) + 16 * i;",
     "g = at.x; alias(g); r = ivec2(g, 1);",
     "ivec2 v = at; r = ivec2(add(v.x, v.x++), add(v.y, (v.y += 2, 1)));",
+    "int i = at.x; r = ivec2(add(i, i++), add(i++, i)); r += ivec2(addc(i, i++), add((i), (i = 7, 2)));",
+    "ivec2 v = at; int q[2]; q[0] = 3; q[1] = 5; int i = 0; r = ivec2(add(q[i++], q[i] += 2), add(q[i & 1], i = 0));",
+    "g = at.x; ivec2 v = at; r = ivec2(add(g, next()), add(v[g & 1], next() + v.x++)); r.x += add(3, v.x) % (v.x = 7);",
     // What is indexed, and the index.
     "ivec2 v = at; r = ivec2(v[(v = v + 3, at.x & 1)], (v.yx)[v.x++ & 1]);",
     "int i = at.x & 1; r = ivec2(int[2](i, 7)[i = 1 - i], (at.y > 2 ? at : at.yx)[i = 1 - i] + i);",
@@ -289,6 +294,7 @@ const ORDERS: &[&str] = &[
 const ORDERS_PRELUDE: &str = "int g; struct S { int a[2]; int k; }; struct T { mat2 m; };
 int next() { g += 1; return g; }
 int add(int a, int b) { return a * 16 + b; }
+int addc(const in int a, const in int b) { return a * 16 + b; }
 void bump(inout int a, int b) { a += b; }
 void both(inout int a, inout ivec2 b) { a += 1; b *= 2; }
 void whole(inout ivec2 a, inout int b) { a += 1; b *= 2; }
@@ -317,8 +323,12 @@ fn operands_are_evaluated_in_the_order_of_glslang() {
         );
         match renderers.compare(&program) {
             Ok(None) => {}
-            Ok(Some(crash)) => failures += &format!("{crash}\n{body}\n"),
-            Err(wrong) => failures += &format!("{}: {}\n{body}\n", wrong.kind, wrong.words),
+            Ok(Some(crash)) => {
+                let _ = writeln!(failures, "{crash}\n{body}");
+            }
+            Err(wrong) => {
+                let _ = writeln!(failures, "{}: {}\n{body}", wrong.kind, wrong.words);
+            }
         }
     }
     assert!(failures.is_empty(), "{failures}");

@@ -61,12 +61,6 @@ static CASES: &[Case] = &[
         66.0,
     ),
     (
-        Pass::Compounds,
-        "",
-        "int q[2]; q[0] = int(p.x) + 1; q[1] = 0; q[q[0] & 1] += q[0]++; o.x = float(q[0] + 10 * q[1]);",
-        12.0,
-    ),
-    (
         Pass::Remainders,
         "",
         "int i = int(p.x) - 7; o.x = float(i % 3);",

@@ -1,5 +1,5 @@
-//! Statements, choices, jumps and calls nested deeper than lavapipe's stack of 80 conditions: the GPU must render what the evaluator
-//! computes, and does not without the pass that lays them side by side.
+//! Statements, choices, jumps and calls nested deeper than lavapipe's stack of 80 conditions: the GPU must
+//! render what the evaluator computes, and does not without the pass that lays them side by side.
 
 use toyproof::eval::{Program, Settings};
 use toyproof::frame::Frame;
@@ -15,7 +15,8 @@ const WIDTH: u32 = 128;
 /// More than the driver counts.
 const DEPTH: usize = 100;
 
-/// Wraps `DEPTH` levels around the innermost statement; what a level is, `level` says of the inside and its number, 0 for the outermost.
+/// Wraps `DEPTH` levels around the innermost statement; what a level is, `level` says of the inside and its
+/// number, 0 for the outermost.
 fn nest(level: impl Fn(String, usize) -> String) -> String {
     (0..DEPTH)
         .rev()
@@ -27,13 +28,35 @@ fn row(one: impl Fn(usize) -> String) -> String {
     (0..DEPTH).map(one).collect()
 }
 
-/// What stands before `mainImage`, and what in it makes `x` of `p`; level `d` is entered by pixels whose `p.x` is greater.
-fn programs() -> Vec<(&'static str, String, String)> {
-    let plain = |name, body| (name, String::new(), body);
-    let function = |name, body| {
-        let function = format!("float f(vec2 p) {{ float x = 0.0; {body} return x; }}");
-        (name, function, "x = f(p);".to_owned())
+/// A name, what stands before `mainImage`, and what in it makes `x` of `p`; level `d` is entered by pixels
+/// whose `p.x` is greater.
+type Nested = (&'static str, String, String);
+
+fn plain(name: &'static str, body: String) -> Nested {
+    (name, String::new(), body)
+}
+
+fn function(name: &'static str, body: &str) -> Nested {
+    let function = format!("float f(vec2 p) {{ float x = 0.0; {body} return x; }}");
+    (name, function, "x = f(p);".to_owned())
+}
+
+/// One of five functions, each with a fifth of the levels, which calls the next.
+fn function_of_levels(at: usize) -> String {
+    let inner = if at == 4 {
+        String::new()
+    } else {
+        format!("x = k{}(p, x);", at + 1)
     };
+    let fifth = DEPTH / 5;
+    let levels = (fifth * at..fifth * (at + 1)).rev().fold(inner, |inside, d| {
+        format!("if (p.x > {d}.0) {{ g(x, {d}.0); {inside} x += 0.5; }}")
+    });
+    format!("float k{at}(vec2 p, float x) {{ {levels} return x; }}\n")
+}
+
+/// Levels in each other.
+fn nested() -> Vec<Nested> {
     vec![
         plain(
             "if",
@@ -71,6 +94,12 @@ fn programs() -> Vec<(&'static str, String, String)> {
                 )
             }),
         ),
+    ]
+}
+
+/// What the driver, or a grammar, nests.
+fn in_a_row() -> Vec<Nested> {
+    vec![
         plain(
             "choices",
             format!("x = {} 1.0;", row(|d| format!("p.x < {d}.0 ? h(x, {d}.0) : "))),
@@ -91,11 +120,11 @@ fn programs() -> Vec<(&'static str, String, String)> {
         ),
         function(
             "returns",
-            row(|d| format!("g(x, {d}.0); if (p.x < {d}.0) return x; ")),
+            &row(|d| format!("g(x, {d}.0); if (p.x < {d}.0) return x; ")),
         ),
         function(
             "returns in ifs",
-            nest(|inside, d| {
+            &nest(|inside, d| {
                 format!("if (p.x > {d}.0) {{ g(x, {d}.0); {inside} if (x < 2.0) return x; x += 0.25; }}")
             }),
         ),
@@ -119,20 +148,7 @@ fn programs() -> Vec<(&'static str, String, String)> {
         ),
         (
             "calls",
-            (0..5)
-                .rev()
-                .map(|at| {
-                    let inner = if at == 4 {
-                        String::new()
-                    } else {
-                        format!("x = k{}(p, x);", at + 1)
-                    };
-                    let levels = (20 * at..20 * at + 20).rev().fold(inner, |inside, d| {
-                        format!("if (p.x > {d}.0) {{ g(x, {d}.0); {inside} x += 0.5; }}")
-                    });
-                    format!("float k{at}(vec2 p, float x) {{ {levels} return x; }}\n")
-                })
-                .collect(),
+            (0..5).rev().map(function_of_levels).collect(),
             "x = k0(p, x);".to_owned(),
         ),
     ]
@@ -157,7 +173,7 @@ fn what_is_nested_deep_renders_as_it_evaluates() {
     };
     let mut worker = worker.with_plain_code();
     let (mut wrong, mut needless) = (Vec::new(), Vec::new());
-    for (name, before, body) in programs() {
+    for (name, before, body) in nested().into_iter().chain(in_a_row()) {
         let text = format!(
             "void g(inout float x, float d) {{ x = mod(x * 1.25 + d + x * x * 0.125, 17.0); }}\n\
              float h(inout float x, float d) {{ x = mod(x * 1.25 + d, 17.0); return x; }}\n{before}\n\

@@ -4,11 +4,14 @@ use super::place::{Home, Target};
 use super::{Builder, Frame, Result};
 use crate::eval::flow::{Cells, Node, Value};
 use crate::eval::story::CallId;
+use crate::glsl::lower::walk;
 use crate::glsl::tree::{Direction, ExprId, ExprKind, FunctionId, Place, Type, VariableId, VariableKind};
 
 /// What an argument gives to its parameter, and takes back.
 struct Passed {
     values: Vec<Value>,
+    /// Where the values are read when the call begins, if not before.
+    late: Option<Target>,
     back: Option<Target>,
 }
 
@@ -23,15 +26,15 @@ impl Builder<'_> {
         let call = self.name_call(function, at);
         let parameters = &tree[function].parameters;
         let mut passed = Vec::with_capacity(arguments.len());
-        for (&argument, &parameter) in arguments.iter().zip(parameters) {
-            passed.push(self.pass(argument, parameter)?);
+        let last_acting = arguments.iter().rposition(|&argument| walk::acts(tree, argument));
+        for (at, (&argument, &parameter)) in arguments.iter().zip(parameters).enumerate() {
+            let may_change = last_acting.is_some_and(|last| at < last);
+            passed.push(self.pass(argument, parameter, may_change)?);
         }
-        for (passed, &parameter) in passed.iter_mut().zip(parameters) {
-            if let Some(back) = &passed.back
-                && direction(tree[parameter].kind) == Direction::InOut
-            {
+        for passed in &mut passed {
+            if let Some(place) = &passed.late {
                 // Copied in when the call begins, after all arguments, as glslang does.
-                passed.values = self.read(back);
+                passed.values = self.read(place);
             }
         }
         let parts = self.parts.len();
@@ -80,24 +83,40 @@ impl Builder<'_> {
     }
 
     /// Evaluates an argument, or the indices of one that is written.
-    fn pass(&mut self, argument: ExprId, parameter: VariableId) -> Result<Passed> {
+    fn pass(&mut self, argument: ExprId, parameter: VariableId, may_change: bool) -> Result<Passed> {
         let ty = self.tree[parameter].ty;
         if matches!(ty, Type::Sampler(_)) {
             let channel = self.channel(argument);
             self.homes.insert(parameter, Home::Channel(channel));
             return Ok(Passed {
                 values: Vec::new(),
+                late: None,
                 back: None,
             });
         }
         let direction = direction(self.tree[parameter].kind);
+        let late = if direction == Direction::In && may_change {
+            self.target(argument)?
+        } else {
+            None
+        };
         if matches!(direction, Direction::In | Direction::ConstIn) {
-            let values = self.expression(argument)?;
-            return Ok(Passed { values, back: None });
+            let values = match &late {
+                Some(_) => self.zeros(ty),
+                None => self.expression(argument)?,
+            };
+            return Ok(Passed {
+                values,
+                late,
+                back: None,
+            });
         }
         let back = self.target(argument)?;
-        let values = self.zeros(ty);
-        Ok(Passed { values, back })
+        Ok(Passed {
+            values: self.zeros(ty),
+            late: back.clone().filter(|_| direction == Direction::InOut),
+            back,
+        })
     }
 
     /// The channel that a sampler is; none for one that nobody feeds.

@@ -86,7 +86,8 @@ impl Draft {
         id
     }
 
-    /// Adds a function of our own.
+    /// Adds a function of our own. What it is given is read where it stands, as operands are: `in` is `const
+    /// in`.
     pub(super) fn function(
         &mut self,
         name: String,
@@ -96,7 +97,10 @@ impl Draft {
     ) -> FunctionId {
         let variables = &mut self.tree.variables;
         let parameters = parameters.iter().map(|&(direction, ty, name)| {
-            let kind = VariableKind::Parameter(direction);
+            let kind = VariableKind::Parameter(match direction {
+                Direction::In => Direction::ConstIn,
+                other => other,
+            });
             let name = name.to_owned();
             variables.push(Variable {
                 name,

@@ -4,7 +4,9 @@
 //! the first round, and peels the test off: a vector that begins as a constant then takes one step too many. With a
 //! `continue` in the body the driver does not peel, and is right. Metal, HLSL and GLSL have no such construct either: naga writes a flag for it.
 
-use super::super::tree::{Statement, StatementKind};
+use std::collections::HashSet;
+
+use super::super::tree::{Block, ExprId, ExprKind, Statement, StatementKind};
 use super::draft::Draft;
 use super::walk;
 
@@ -14,11 +16,33 @@ pub(super) fn run(draft: &mut Draft) {
             && !walk::continues(body)
             && let Some(last) = step.take()
         {
+            let at = draft.tree[last].at;
+            if hides(draft, body, last) {
+                let inner = std::mem::take(body);
+                body.push(Statement {
+                    kind: StatementKind::Block(inner),
+                    at,
+                });
+            }
             body.push(Statement {
                 kind: StatementKind::Expression(last),
-                at: draft.tree[last].at,
+                at,
             });
         }
         out.push(statement);
     });
+}
+
+/// Whether a block declares a name that an expression behind it means otherwise.
+fn hides(draft: &Draft, body: &Block, behind: ExprId) -> bool {
+    let names: HashSet<&str> = body
+        .iter()
+        .filter_map(walk::declared)
+        .map(|variable| draft.tree[variable].name.as_str())
+        .collect();
+    walk::any(
+        &draft.tree,
+        behind,
+        |kind| matches!(kind, ExprKind::Variable(variable) if names.contains(draft.tree[*variable].name.as_str())),
+    )
 }

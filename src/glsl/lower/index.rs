@@ -1,8 +1,10 @@
-//! `a[i++] += x`, `a[i = 1][i]`, `(b ? u : v)[i]`, `m[0].yx[i]`: each index is evaluated once, from left to right, of a variable.
+//! `a[i++] += x`, `a[i = 1][i]`, `(b ? u : v)[i]`, `m[0].yx[i]`: each index is evaluated once, from left to
+//! right, of a variable.
 //!
-//! naga evaluates the target of `+=` twice, once to read and once to write it, and evaluates an index before what it
-//! indexes. Of `?:` below an index it wants pointers, which it then cannot store ("Local variable has a type that can't be stored"), and
-//! of a swizzle below one a field of a pointer ("Can't lookup field on this type").
+//! naga evaluates the target of `+=` twice, once to read and once to write it, and evaluates an index before
+//! what it indexes. Of `?:` below an index it wants pointers, which it then cannot store ("Local variable has
+//! a type that can't be stored"), and of a swizzle below one a field of a pointer ("Can't lookup field on
+//! this type").
 
 use std::collections::HashSet;
 
@@ -78,7 +80,8 @@ fn is_chosen(tree: &Tree, mut root: ExprId) -> bool {
     matches!(tree[root].kind, ExprKind::Conditional { .. })
 }
 
-/// The swizzle of a path that is indexed by more than a number, if there is one: numbers were joined with it before.
+/// The swizzle of a path that is indexed by more than a number, if there is one: numbers were joined with it
+/// before.
 fn indexed_swizzle(tree: &Tree, nodes: &[ExprId]) -> Option<ExprId> {
     nodes.iter().find_map(|&node| match tree[node].kind {
         ExprKind::Index { base, .. } if matches!(tree[base].kind, ExprKind::Swizzle { .. }) => Some(base),
@@ -95,7 +98,10 @@ fn places(tree: &Tree) -> HashSet<ExprId> {
             ExprKind::Call { function, arguments } => {
                 let outs = arguments.iter().zip(&tree[*function].parameters);
                 written.extend(outs.filter_map(|(&argument, &parameter)| {
-                    let is_in = matches!(tree[parameter].kind, VariableKind::Parameter(Direction::In));
+                    let is_in = matches!(
+                        tree[parameter].kind,
+                        VariableKind::Parameter(Direction::In | Direction::ConstIn)
+                    );
                     (!is_in).then_some(argument)
                 }));
             }

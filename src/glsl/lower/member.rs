@@ -1,8 +1,10 @@
-//! Members of structures that are arrays of anything narrower than 16 bytes or of truths, or matrices of two rows, or arrays of such.
+//! Members of structures that are arrays of anything narrower than 16 bytes or of truths, or matrices of two
+//! rows, or arrays of such.
 //!
-//! naga lays every structure out as if it stood in a uniform block: such arrays get a stride of 16 there, which makes
-//! them another type than the same array elsewhere, and matrices of two rows are refused (gfx-rs/wgpu #4375). So the
-//! matrices become arrays of columns, in an array each as the one member of a structure, and the arrays are copied element by element.
+//! naga lays every structure out as if it stood in a uniform block: such arrays get a stride of 16 there,
+//! which makes them another type than the same array elsewhere, and matrices of two rows are refused
+//! (gfx-rs/wgpu #4375). So the matrices become arrays of columns, in an array each as the one member of a
+//! structure, and the arrays are copied element by element.
 
 use std::collections::{HashMap, HashSet};
 
@@ -83,7 +85,8 @@ fn narrow(tree: &Tree, id: ExprId) -> Option<u32> {
     }
 }
 
-/// Lets matrices of two rows be arrays of columns, and arrays of them arrays of structures that hold those; gives what they were.
+/// Lets matrices of two rows be arrays of columns, and arrays of them arrays of structures that hold those;
+/// gives what they were.
 fn split_matrices(draft: &mut Draft) -> HashMap<(StructId, usize), Type> {
     let mut matrices = HashMap::new();
     let mut holders = HashMap::new();
@@ -112,7 +115,8 @@ fn columns_of(draft: &mut Draft, columns: u8) -> Type {
         .array_of(Type::vector(Scalar::Float, 2), columns.into())
 }
 
-/// An array of structures in place of one of matrices of two rows, one structure for each number of columns; none for other types.
+/// An array of structures in place of one of matrices of two rows, one structure for each number of columns;
+/// none for other types.
 fn held(draft: &mut Draft, holders: &mut HashMap<u8, StructId>, ty: Type, at: Place) -> Option<Type> {
     let Type::Array(array) = ty else {
         return None;

@@ -1,8 +1,10 @@
 //! `out` and `inout` arguments that are components, swizzles, elements or members: `m(p.x)`, `m(a[i])`, `m(s.a)`.
 //!
-//! naga passes a pointer to a component, which its SPIR-V writer panics on. GLSL copies in and out (§6.1.1): so do we, with indices evaluated
-//! once, where the argument stands, and values copied in when all arguments are evaluated, as glslang does. Arguments that are parts of
-//! one variable are copied too: WGSL forbids pointers that alias.
+//! naga passes a pointer to a component, which its SPIR-V writer panics on. GLSL copies in and out (§6.1.1):
+//! so do we, with indices evaluated once, where the argument stands, and values copied in when all arguments
+//! are evaluated, as glslang does. Arguments that are parts of one variable are copied too: WGSL forbids
+//! pointers that alias. Of `in` arguments, too, variables and their parts are read last, those of `const in`
+//! in their turn: `f(i, i++)`.
 
 use std::collections::HashSet;
 
@@ -51,7 +53,17 @@ fn copy(draft: &mut Draft, call: ExprId, arguments: &[(ExprId, Direction)], disc
                     || !is_whole)
         })
         .collect();
-    if !awkward.contains(&true) {
+    let late: Vec<bool> = arguments
+        .iter()
+        .map(|&(argument, direction)| {
+            direction == Direction::In && draft.tree.root_variable(argument).is_some()
+        })
+        .collect();
+    let changed = (0..arguments.len()).any(|at| {
+        let mut later = arguments[at + 1..].iter();
+        late[at] && later.any(|&(later, _)| walk::may_change(&draft.tree, later, arguments[at].0))
+    });
+    if !changed && !awkward.contains(&true) {
         return;
     }
     // Once one value is set aside, all are: what stays in the call is evaluated last.
@@ -59,8 +71,10 @@ fn copy(draft: &mut Draft, call: ExprId, arguments: &[(ExprId, Direction)], disc
         .iter()
         .any(|&(argument, _)| walk::acts(&draft.tree, argument));
     let (mut before, mut copied, mut after) = (Vec::new(), Vec::new(), Vec::new());
-    for (&(argument, direction), awkward) in arguments.iter().zip(awkward) {
-        if awkward {
+    for ((&(argument, direction), awkward), late) in arguments.iter().zip(awkward).zip(late) {
+        if acting && late {
+            lvalue::fix_indices(draft, argument, Fix::Changing, &mut before);
+        } else if awkward {
             lvalue::fix_indices(draft, argument, Fix::Changing, &mut before);
             let at = draft.tree[argument].at;
             let ty = draft.tree[argument].ty;

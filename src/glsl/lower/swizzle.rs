@@ -98,12 +98,12 @@ fn work_on_copy(draft: &mut Draft, id: ExprId, discarded: &HashSet<ExprId>) {
         return;
     };
     let mut steps = Vec::new();
-    match value.filter(|&value| walk::acts(&draft.tree, value)) {
-        Some(value) => {
-            lvalue::fix_indices(draft, target, Fix::Changing, &mut steps);
-            steps.push(lvalue::set_aside(draft, value, "value"));
-        }
-        None => lvalue::fix_indices(draft, target, Fix::Acting, &mut steps),
+    let acting = value.filter(|&value| walk::acts(&draft.tree, value));
+    if acting.is_some() || walk::acts(&draft.tree, target) {
+        lvalue::fix_indices(draft, target, Fix::Changing, &mut steps);
+    }
+    if let Some(value) = acting {
+        steps.push(lvalue::set_aside(draft, value, "value"));
     }
     let (ty, at) = (draft.tree[part].ty, draft.tree[id].at);
     let copy = draft.temporary("vector", ty, at);

@@ -1,7 +1,9 @@
 //! Ways through statements. Blocks nest at most `MAX_NESTING` deep, so these recurse.
 
+use std::collections::HashSet;
+
 use super::super::tree::{
-    Block, Condition, ExprId, ExprKind, Label, Statement, StatementKind, Tree, VariableId,
+    Block, Condition, ExprId, ExprKind, Label, Statement, StatementKind, Tree, VariableId, VariableKind,
 };
 
 /// The blocks directly inside of a statement, in order; the `init` of a `for` is one.
@@ -164,12 +166,25 @@ pub(crate) fn mentions(tree: &Tree, root: ExprId, variable: VariableId) -> bool 
     )
 }
 
-/// The variables that stand in an expression.
-pub(crate) fn variables(tree: &Tree, root: ExprId) -> impl Iterator<Item = VariableId> + '_ {
-    tree.postorder(root)
-        .into_iter()
+/// Whether evaluating `value` may change what a path reads, its variable or what its indices are made of:
+/// that stands in `value` where something acts, or a function that is called may know it.
+pub(crate) fn may_change(tree: &Tree, value: ExprId, path: ExprId) -> bool {
+    if !acts(tree, value) {
+        return false;
+    }
+    let nodes = tree.postorder(path).into_iter();
+    let read: HashSet<VariableId> = nodes
         .filter_map(|id| match tree[id].kind {
             ExprKind::Variable(variable) => Some(variable),
             _ => None,
         })
+        .collect();
+    let has_global = read
+        .iter()
+        .any(|&variable| tree[variable].kind == VariableKind::Global);
+    any(tree, value, |kind| match kind {
+        ExprKind::Variable(other) => read.contains(other),
+        ExprKind::Call { .. } => has_global,
+        _ => false,
+    })
 }

@@ -1,10 +1,12 @@
 //! Valid programs from bytes: every type and statement of the language, without undefined behaviour and with exact arithmetic,
 //! so that all who run one must paint the same picture to the bit.
 //!
-//! Operands with effects are meant to be evaluated from left to right; a compound assignment reads its target after
-//! its right side, but evaluates the target's indices before it; a function's `inout` arguments are copied in when all arguments are
-//! evaluated. [`Effects`] says where such operands may stand. Indices are masked, divisors positive, shifts below 32, loops bounded. A float in a variable is a multiple of 1/16 of at most 64 ([`Range::VARIABLE`]); where an expression could
-//! leave what 24 bits hold, `tame` brings it back.
+//! Operands with effects are meant to be evaluated from left to right; a compound assignment reads its target
+//! after its right side, but evaluates the target's indices before it; a function's `inout` arguments are
+//! copied in when all arguments are evaluated. [`Effects`] says where such operands may stand. Indices are
+//! masked, divisors positive, shifts below 32, loops bounded. A float in a variable is a multiple of 1/16 of
+//! at most 64 ([`Range::VARIABLE`]); where an expression could leave what 24 bits hold, `tame` brings it
+//! back.
 
 mod choices;
 mod digest;

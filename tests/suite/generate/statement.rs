@@ -274,7 +274,8 @@ impl Generator<'_> {
         self.line(&format!("{place} = {};", back.text));
     }
 
-    /// A compound assignment of any part of a float variable, all of which is brought back at once: both sides may have effects.
+    /// A compound assignment of any part of a float variable, all of which is brought back at once: both
+    /// sides may have effects.
     fn compound_anywhere(&mut self, ty: Type) {
         let Some((name, place)) = self.place(ty, true, &[]) else {
             return;

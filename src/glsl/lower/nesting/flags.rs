@@ -1,5 +1,6 @@
-//! A function whose statements stand side by side. A flag tells of each region (a branch, a round of a loop, a case, the whole) whether
-//! it still runs; a jump lowers the flags of all regions that it leaves. Loops stay, each around its own regions.
+//! A function whose statements stand side by side. A flag tells of each region (a branch, a round of a loop,
+//! a case, the whole) whether it still runs; a jump lowers the flags of all regions that it leaves. Loops
+//! stay, each around its own regions.
 
 use super::super::super::tree::{
     Arm, BinaryOp, Block, Case, Condition, ExprId, FunctionId, Label, Place, Scalar, Statement,

@@ -1,8 +1,9 @@
-//! Statements, choices and calls nested so deep that lavapipe loses count: those of a function side by side, each under a flag that tells
-//! whether it runs (`flags`), and long `a ? x : b ? y : …` likewise (`chain`).
+//! Statements, choices and calls nested so deep that lavapipe loses count: those of a function side by side,
+//! each under a flag that tells whether it runs (`flags`), and long `a ? x : b ? y : …` likewise (`chain`).
 //!
-//! Mesa's software driver inlines all calls and keeps the conditions that pixels are under on a stack of 80, loops on another; what is
-//! nested deeper runs whatever its condition says. Its compiler nests what follows a conditional `return` or `continue`, too.
+//! Mesa's software driver inlines all calls and keeps the conditions that pixels are under on a stack of 80,
+//! loops on another; what is nested deeper runs whatever its condition says. Its compiler nests what follows
+//! a conditional `return` or `continue`, too.
 
 mod chain;
 mod flags;
@@ -13,7 +14,8 @@ use super::super::tree::{Block, ExprId, ExprKind, FunctionId, Statement, Stateme
 use super::draft::Draft;
 use super::walk;
 
-/// How deep the driver may nest what it is given: 79 with an `else`, less what helper functions and its own passes add.
+/// How deep the driver may nest what it is given: 79 with an `else`, less what helper functions and its own
+/// passes add.
 const DEEPEST: u32 = 64;
 /// Functions that nest no deeper by themselves are left as they are, first and then.
 const KEPT: [u32; 2] = [8, 2];

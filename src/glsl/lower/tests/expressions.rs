@@ -183,18 +183,25 @@ fn indices_of_what_is_no_variable() {
     for body in [
         "o.x = (p.x > 3.0 ? p : p.yx)[int(p.y)];",
         "o.x = (p.x > 3.0 ? p : p.yx)[1];",
-        "o.xy = (p.x > 3.0 ? mat2(p, p) : mat2(1.0))[int(p.y)];",
-        "o.x = (p.x > 3.0 ? mat2(p, p) : mat2(1.0))[1][int(p.y)];",
-        "o.x = (o.y, p.x > 3.0 ? p : p.yx)[int(p.y)];",
+        "mat2 m = mat2(p, p), n; o.xy = (p.x > 3.0 ? m : n)[int(p.y)];",
+        "mat2 m = mat2(p, p), n; o.x = (p.x > 3.0 ? m : n)[1][int(p.y)];",
         "mat2 m = mat2(p, p); o.x = m[0].yx[int(p.x)];",
         "mat2 m = mat2(p, p); o.x = m[int(p.y)].yx[int(p.x)];",
-        "mat2 m[2]; m[1] = mat2(p, p); int i = 1; o.x = m[i--][0].yx[i];",
     ] {
         mends(Pass::Indices, &main_image("", body));
     }
+    mends(
+        Pass::Indices,
+        &main_image(
+            "float h(const in float x) { return x; }",
+            "o.x = h((p.x > 3.0 ? p : p.yx)[1]);",
+        ),
+    );
     for body in [
         "o.x = f(p)[int(p.y)] + f(p).yx[int(p.y)] + g(p).a[int(p.y)] + g(p).v[int(p.y)] + g(p).v.yx[1];",
         "S s; o.x = (s = g(p)).a[int(p.y)] + (p, s).a[1] + (p.x, p.yx)[int(p.y)] + S(float[2](1.0, p.x), p).a[int(p.y)];",
+        "o.x = (o.y, p.x > 3.0 ? p : p.yx)[int(p.y)];",
+        "mat2 m[2]; m[1] = mat2(p, p); int i = 1; o.x = m[i--][0].yx[i];",
         "vec2 q = p; o.x = (q = p.yx)[int(p.y)] + (q += p).yx[int(p.y)] + (++q)[int(p.y)] + (-q)[int(p.y)] + (q * 2.0)[1];",
         "while ((p.x > 3.0 ? p : p.yx)[int(p.y)] > o.x) o.x += 1.0; o.y = p.x > 1.0 && p.yx[int(o.x) & 1] > 2.0 ? p.yx[int(o.x) & 1] : 0.0;",
     ] {
