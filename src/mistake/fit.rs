@@ -234,6 +234,7 @@ fn of_scene(scene: &Scene, moment: Moment) -> Vec<Knob> {
             made: Box::new(move |value| {
                 let mut scene = scene.clone();
                 set(&mut scene, value);
+                scene.release_changed_scatters();
                 Some(Made::Scene(Box::new(scene), moment))
             }),
         }

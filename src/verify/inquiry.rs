@@ -6,16 +6,20 @@ use std::sync::mpsc::{Receiver, Sender};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use rayon::prelude::*;
+
 use super::cause::{self, NotFinite};
 use super::cpu::{Band, Evaluator};
 use super::drawn::{Found, Painted};
+use super::expected::Digits;
 use super::tangent::{self, Trap};
 use super::{Asked, Case, Expected, Failure, Findings, PATIENCE_FOR_TWO, Painter, join, notes, timed};
-use crate::compare::{self, Answers, Comparison, MAX_UNSTABLE, Mixed, Verdict};
+use crate::compare::{self, Answers, Comparison, MAX_UNSTABLE, Mixed, Reference, Standing, Verdict};
 use crate::eval::{self, Observations, Program};
 use crate::gpu::FloatMode;
 use crate::image::{Image, Mark, Shown};
 use crate::scene::Scene;
+use crate::trace::{Hull, RayStyles, StyleFamily, Styles};
 
 /// Told after each band.
 #[derive(Debug, Clone, Copy)]
@@ -187,7 +191,14 @@ impl<'a> Inquiry<'a> {
                 painted.look(&band.double, reference, below);
             }
         }
-        let standings = compare::rounding(&band.double, actual, &band.undefined);
+        let mut standings = compare::rounding(&band.double, actual, &band.undefined);
+        if let Some(expected) = self.case.expected {
+            leave_out_tied(
+                &mut standings,
+                |x, y| expected.is_tied(x, below + y, Digits::Single),
+                actual.size()[0],
+            );
+        }
         self.rounding.extend(&band.double, actual, &standings, below);
         if let (Some(drawn), FloatMode::Strict) = (drawn, self.case.float) {
             let standings = compare::toolchain(&band.single, drawn, &band.undefined);
@@ -206,21 +217,15 @@ impl<'a> Inquiry<'a> {
             return;
         };
         let below = rows.start;
-        let hull = |x, y, styles| expected.hull(x, below + y, styles);
-        let derives = self.case.checked.takes_derivatives();
-        let edge = |x, y| derives && expected.tracer().is_quad_mixed(x, below + y);
+        let from_row = FromRow {
+            expected,
+            below,
+            derives: self.case.checked.takes_derivatives(),
+        };
         let (standings, shaking) = timed(|| {
             let shaken = |seed, wanted: &[bool]| evaluator.shaken(rows, seed, wanted);
             let mixed = &mut self.mixed;
-            compare::maths(
-                reference,
-                &band.double,
-                &band.undefined,
-                hull,
-                edge,
-                mixed,
-                shaken,
-            )
+            compare::maths(reference, &band.double, &band.undefined, &from_row, mixed, shaken)
         });
         self.eval += shaking;
         self.maths.extend(reference, &band.double, &standings, below);
@@ -269,6 +274,51 @@ impl<'a> Inquiry<'a> {
     }
 }
 
+/// What a band is compared with that begins at a row.
+struct FromRow<'a> {
+    expected: &'a Expected,
+    below: u32,
+    /// Whether the shader takes derivatives.
+    derives: bool,
+}
+
+impl Reference for FromRow<'_> {
+    fn hull(&self, x: u32, y: u32, styles: Styles) -> Hull {
+        self.expected.hull(x, self.below + y, styles)
+    }
+    fn families(&self) -> &[StyleFamily] {
+        self.expected.families()
+    }
+    fn styled(&self, x: u32, y: u32, styles: &RayStyles) -> [f64; 3] {
+        self.expected.styled(x, self.below + y, styles)
+    }
+    fn is_across_edge(&self, x: u32, y: u32) -> bool {
+        self.derives && self.expected.tracer().is_quad_mixed(x, self.below + y)
+    }
+    fn is_tied(&self, x: u32, y: u32) -> bool {
+        self.expected.is_tied(x, self.below + y, Digits::Double)
+    }
+}
+
+/// Where more pixels of a band change with the number type, no edges of the scene are to blame.
+const MAX_TIED: f64 = 0.05;
+
+/// Leaves out the pixels that change with the number type since the scene has an edge there: no shader's float32 could tell on which side of it
+/// they are.
+fn leave_out_tied(standings: &mut [Standing], is_tied: impl Fn(u32, u32) -> bool + Sync, width: u32) {
+    let differs = |standing: &&Standing| **standing == Standing::Differs;
+    let count = standings.iter().filter(differs).count();
+    if count as f64 > MAX_TIED * standings.len() as f64 {
+        return;
+    }
+    standings.par_iter_mut().enumerate().for_each(|(at, standing)| {
+        let at = at as u32;
+        if *standing == Standing::Differs && is_tied(at % width, at / width) {
+            *standing = Standing::Tied;
+        }
+    });
+}
+
 impl Findings {
     fn judge(&mut self, case: &Case, program: &Program, until: Instant, painted: Option<&Painted>) {
         (self.verdict, self.reason) = compare::judge(Answers {
@@ -288,7 +338,7 @@ impl Findings {
                 rounding: self.rounding.as_ref(),
                 toolchain: self.toolchain.as_ref(),
             };
-            if let Some(judged) = painted.judged(found) {
+            if let Some(judged) = painted.judged(found, program, case, until) {
                 (self.verdict, self.reason) = judged;
             }
         }

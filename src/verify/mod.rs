@@ -8,6 +8,9 @@ mod drawn;
 mod expected;
 mod inquiry;
 mod notes;
+mod replicates;
+mod reseed;
+mod sample_loops;
 mod tangent;
 
 use std::iter;

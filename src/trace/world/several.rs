@@ -51,12 +51,18 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         }
     }
 
-    /// [`World::occluded`] of secondary rays, at most [`PACKET`], and the distances of what they go to: bit i tells of ray i.
-    pub(super) fn occluded_of(&self, rays: &[(Ray<T>, T)], style: &impl Style<T>) -> u64 {
+    /// [`World::occluded`] of secondary rays, at most [`PACKET`], and the distances of what they go to, which is perhaps the surface
+    /// `light`: bit i tells of ray i.
+    pub(super) fn occluded_of(
+        &self,
+        rays: &[(Ray<T>, T)],
+        light: Option<usize>,
+        style: &impl Style<T>,
+    ) -> u64 {
         let mut hidden = 0;
-        if !self.goes_together(rays.len()) {
+        if !self.goes_together(rays.len()) || light.is_some() {
             for (at, (ray, distance)) in rays.iter().enumerate() {
-                hidden |= u64::from(self.occluded(ray, *distance, None, style)) << at;
+                hidden |= u64::from(self.occluded(ray, *distance, light, style)) << at;
             }
             return hidden;
         }
