@@ -6,8 +6,12 @@ use super::maths::Reference;
 use super::{EXACT_TOLERANCE, Pixel};
 use crate::trace::{RayStyle, RayStyles};
 
-/// So many pixels are compared with every style.
+/// So many pixels are compared with every style, and fewer of several samples, but so many at least.
 const ASKED: usize = 32;
+const LEAST_ASKED: usize = 8;
+
+/// So many samples are taken at most to look at pixels one by one.
+const WORK: usize = 3_000_000;
 
 /// A style that explains less than this share of them is not the shader's.
 const LEAST_SHARE: f64 = 0.1;
@@ -27,7 +31,8 @@ pub(super) fn fitted(
     differing: &[Pixel],
     before: Option<Fitted>,
 ) -> Option<Fitted> {
-    let count = differing.len().min(ASKED);
+    let most = (ASKED / reference.samples() as usize).max(LEAST_ASKED);
+    let count = differing.len().min(most);
     let pixel = |at| differing[(2 * at + 1) * differing.len() / (2 * count)];
     let asked: Vec<Pixel> = (0..count).map(pixel).collect();
     let explained = |styles: &RayStyles| {
@@ -38,7 +43,7 @@ pub(super) fn fitted(
     if best.is_some_and(|(most, _)| most == count) {
         return before;
     }
-    let mut improve = |make: &(dyn Fn(RayStyle, RayStyles) -> RayStyles + Sync)| {
+    let improve = |best: &mut Option<(usize, RayStyles)>, make: &dyn Fn(RayStyle, RayStyles) -> RayStyles| {
         let (most, styles) = best.unwrap_or_default();
         let all: Vec<RayStyles> = reference
             .families()
@@ -52,19 +57,17 @@ pub(super) fn fitted(
         if let Some((found, styles)) = found
             && found > most
         {
-            best = Some((found, styles));
+            *best = Some((found, styles));
         }
         best.is_some_and(|(most, _)| most == count)
     };
-    if !improve(&|style, _| RayStyles::alike(style)) {
+    let is_explained = improve(&mut best, &|style, _| RayStyles::alike(style));
+    // What no style explains anything of is no matter of style.
+    if !is_explained && best.is_some() {
         for _ in 0..TURNS {
-            if improve(&|style, styles| RayStyles {
-                light: style,
-                ..styles
-            }) || improve(&|style, styles| RayStyles {
-                other: style,
-                ..styles
-            }) {
+            let light = |light, styles| RayStyles { light, ..styles };
+            let other = |other, styles| RayStyles { other, ..styles };
+            if improve(&mut best, &light) || improve(&mut best, &other) {
                 break;
             }
         }
@@ -80,6 +83,12 @@ pub(super) fn is_in(reference: &impl Reference, pixel: &Pixel, styles: &RayStyle
         let [own, other] = [f64::from(pixel.actual[i]), color[i]].map(|part| part.clamp(0.0, 1.0));
         (own - other).abs() <= EXACT_TOLERANCE
     })
+}
+
+/// Whether so many pixels may be looked at one by one.
+pub(super) fn is_affordable(reference: &impl Reference, pixels: usize) -> bool {
+    let styles: usize = reference.families().iter().map(Vec::len).sum();
+    pixels * styles * reference.samples() as usize <= WORK
 }
 
 /// Whether a pixel lies between what the reference is in two neighboring styles of a family: as a function of an offset, a color is

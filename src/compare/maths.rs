@@ -27,6 +27,8 @@ pub trait Reference: Sync {
     fn families(&self) -> &[StyleFamily];
     /// The color of a pixel in these styles.
     fn styled(&self, x: u32, y: u32, styles: &RayStyles) -> [f64; 3];
+    /// How many samples a pixel takes: as much more work it is.
+    fn samples(&self) -> u32;
     /// Whether the shader takes derivatives, and the pixel's quad lies across an edge.
     fn is_across_edge(&self, x: u32, y: u32) -> bool;
     /// Whether the reference itself has another color there when the scene's numbers are moved by less than a shader can know them.
@@ -141,7 +143,7 @@ pub fn maths(
         }
     }
     let count = differing(&standings);
-    if count > 0 && take(&mut mixed.left_for_each, count) {
+    if count > 0 && fit::is_affordable(reference, count) && take(&mut mixed.left_for_each, count) {
         becomes(&mut standings, Standing::Agrees, &|pixel| {
             fit::is_in_any(reference, pixel)
         });
@@ -237,6 +239,9 @@ mod tests {
         }
         fn styled(&self, x: u32, _: u32, styles: &RayStyles) -> [f64; 3] {
             [(self.styled)(x, styles.other.offset), 0.0, 0.0]
+        }
+        fn samples(&self) -> u32 {
+            1
         }
         fn is_across_edge(&self, x: u32, _: u32) -> bool {
             (self.edge)(x)

@@ -39,6 +39,8 @@ pub struct Replicated {
     pub bias: (f64, [u32; 2]),
     /// Whether that is more than chance.
     pub is_biased: bool,
+    /// How far the means may be apart over the whole picture.
+    pub within: f64,
     /// Whether neighboring pixels use the same random numbers.
     pub is_repeated: bool,
     /// How many times the variance of the tracer's noise the shader's is.
@@ -48,7 +50,7 @@ pub struct Replicated {
 }
 
 /// So many standard deviations are no chance: some hundred sums are looked at.
-const SIGMA_LIMIT: f64 = 4.5;
+const SIGMA_LIMIT: f64 = 5.0;
 
 /// The same where neighbors use the same random numbers, so that the variance of sums is told from eight pictures alone: Student's t of
 /// seven degrees of freedom exceeds this once in 50,000 times.
@@ -119,10 +121,28 @@ pub fn replicated(pixels: &[ReplicatedPixel], size: [u32; 2]) -> Replicated {
     Replicated {
         bias,
         is_biased: bias.0 > limit,
+        within: within(pixels, limit),
         is_repeated,
         variance,
         is_uniform,
     }
+}
+
+/// How far the means may be apart, in the component in which they may be farthest; infinite where there is nothing to tell it from.
+fn within(pixels: &[ReplicatedPixel], limit: f64) -> f64 {
+    let of = |i: usize| {
+        let [mut sum, mut variance, mut all] = [0.0; 3];
+        for pixel in pixels {
+            let weight = pixel.weight[i];
+            sum += weight * pixel.difference(i);
+            let own = pixel.variance(i) / REPLICATES as f64;
+            variance += weight * weight * (own + pixel.reference_variance[i]);
+            all += weight;
+        }
+        SAME + sum.abs().max(limit * variance.sqrt()) / all
+    };
+    let most = of(0).max(of(1)).max(of(2));
+    if most.is_nan() { f64::INFINITY } else { most }
 }
 
 /// By how many standard deviations the sum of differences is too large, in the component in which it is largest.

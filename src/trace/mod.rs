@@ -34,7 +34,7 @@ use rayon::prelude::*;
 pub use adaptive::Spent;
 pub use real::{Real, Vector};
 pub use redraw::REDRAWN_ROWS;
-pub use style::{Hull, Lamp, RayStyle, RayStyles, Styles};
+pub use style::{Acne, Hull, Lamp, RayStyle, RayStyles, Styles};
 pub use styled::StyleFamily;
 
 use self::camera::Camera;

@@ -22,6 +22,11 @@ pub(super) trait Style<T: Real> {
     /// What rays that look for a light make of it.
     fn lamp(&self) -> Lamp;
 
+    /// Which of them meet the surface that they start from.
+    fn acne(&self) -> Acne {
+        Acne::default()
+    }
+
     /// Whether they start on their surface itself.
     fn is_on_surface(&self) -> bool {
         self.offset() == T::zero() && self.along() == T::zero()
@@ -38,6 +43,15 @@ pub struct Lamp {
     /// The density with which a light that a path meets by chance would have been sampled is that from the surface, not from
     /// where the ray starts.
     pub weighed_at_surface: bool,
+}
+
+/// Which rays of a shader wrongly meet the surface that they start from, where it starts them.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Acne {
+    /// Those that go on from the n-th surface, by bits from the lowest.
+    pub own_met: u32,
+    /// Those that look for the n-th light, which is hidden by it.
+    pub hidden_lights: u32,
 }
 
 /// From the surface itself.
@@ -76,6 +90,8 @@ pub struct RayStyle {
     pub t_min: f64,
     /// What becomes of lights.
     pub lamp: Lamp,
+    /// What is wrong with it, if anything is.
+    pub acne: Acne,
 }
 
 impl RayStyle {
@@ -107,6 +123,9 @@ impl Style<f64> for RayStyle {
     }
     fn lamp(&self) -> Lamp {
         self.lamp
+    }
+    fn acne(&self) -> Acne {
+        self.acne
     }
 }
 
@@ -145,6 +164,9 @@ impl Style<f64> for RayStyles {
     }
     fn lamp(&self) -> Lamp {
         self.light.lamp
+    }
+    fn acne(&self) -> Acne {
+        self.other.acne
     }
 }
 

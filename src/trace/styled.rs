@@ -1,7 +1,7 @@
 //! Pixels in any one style of secondary rays, and which styles shaders have.
 
 use super::sampler::Sample;
-use super::style::{Lamp, RayStyle, RayStyles};
+use super::style::{Acne, Lamp, RayStyle, RayStyles};
 use super::{Kernel, Tracer, film};
 use crate::scene::Integrator;
 
@@ -10,6 +10,10 @@ const USUAL: [f64; 12] = [1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.0, 7.5, 8.0,
 /// So many powers of ten below the largest offset are tried with all of these, and so many more with the first of each half.
 const DECADES: i32 = 3;
 const MORE_DECADES: i32 = 3;
+
+/// Rays that meet their own surface are told apart by so many lights, and on so many surfaces one after the other.
+const MOST_LIGHTS: u32 = 3;
+const MOST_BOUNCES: u32 = 4;
 
 /// Styles that differ in one length alone, in its order.
 pub type StyleFamily = Vec<RayStyle>;
@@ -66,6 +70,31 @@ impl Tracer<f64> {
             lamps.iter().map(family).collect::<Vec<_>>()
         });
         families.collect()
+    }
+
+    /// What a shader may make of a pixel whose secondary rays meet the surface that they start from: all ways in which some do and
+    /// others do not.
+    #[must_use]
+    pub fn acne(&self) -> Vec<RayStyles> {
+        let [lights, bounces] = match &self.kernel {
+            Kernel::Spheres(world) => world.lights_and_bounces(),
+            Kernel::Shapes(world) => world.lights_and_bounces(),
+        };
+        let (lights, bounces) = (lights.min(MOST_LIGHTS), bounces.min(MOST_BOUNCES));
+        let all = (0..1 << lights).flat_map(|hidden_lights| {
+            (0..1 << bounces).map(move |own_met| Acne {
+                own_met,
+                hidden_lights,
+            })
+        });
+        all.filter(|acne| *acne != Acne::default())
+            .map(|acne| {
+                RayStyles::alike(RayStyle {
+                    acne,
+                    ..RayStyle::default()
+                })
+            })
+            .collect()
     }
 
     /// What rays that look for a light may make of it.

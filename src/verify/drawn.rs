@@ -10,7 +10,7 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use super::cause::some;
-use super::replicates::{self, Unfit};
+use super::replicates::{self, Compared, Unfit};
 use super::sample_loops::fewer_samples;
 use super::{Asked, Case};
 use crate::compare::{
@@ -19,6 +19,7 @@ use crate::compare::{
 };
 use crate::eval::Program;
 use crate::image::Image;
+use crate::mistake::Named;
 use crate::scene::Sampler;
 use crate::trace::{REDRAWN_ROWS, Tracer};
 
@@ -32,11 +33,11 @@ const TIMES: u32 = 16;
 /// So many of them must be another colour in one of the drawings.
 const MOST: f64 = 0.98;
 
-/// If fewer of them are, a shader is not asked whether it is random itself where the scene is not.
-const FEWEST_DRAWN: f64 = 0.25;
-
 /// Noise of more than so many times the variance is worth a word.
 const NOISIER: f64 = 1.2;
+
+/// Nothing is said where means that are this much apart, two and a half levels of 8 bits, might not be seen.
+const FINEST: f64 = 0.01;
 
 /// Fewer random pixels say nothing: a mistake in a part of them would not be seen.
 const FEWEST: usize = 1000;
@@ -64,6 +65,14 @@ pub(super) struct Painted<'a> {
     bottoms: Vec<u32>,
     /// So far, row by row: the shader's colour, and the reference's.
     colours: Vec<[[f32; 3]; 2]>,
+}
+
+/// A verdict on a stochastic shader.
+pub(super) struct Judged {
+    pub(super) verdict: Verdict,
+    pub(super) reason: String,
+    /// What it does wrong.
+    pub(super) mistake: Option<Vec<Named>>,
 }
 
 /// What the three questions found.
@@ -126,24 +135,46 @@ impl<'a> Painted<'a> {
         program: &Program,
         case: &Case,
         until: Instant,
-    ) -> Option<(Verdict, String)> {
+    ) -> Option<Judged> {
         let differs = format!(
             "{}, only where the samples' random numbers decide: it draws others than the scene, whose sampler is `{}`",
             differing(&found.maths.answer),
             self.sampler
         );
         let is_drawn = self.is_drawn(found.maths);
-        if !is_drawn && !self.may_be_drawn(found.maths) {
-            return None;
-        }
-        let pairs = self.pairs(found.maths);
-        if follows_scene(&pairs) {
+        if !is_drawn && !replicates::is_random(program, case, self.tracer, found.maths, until) {
             return None;
         }
         match replicates::compared(program, case, self.tracer, found.maths, until) {
-            Ok((replicated, pixels)) => Some(self.by_replicates(&differs, replicated, pixels, found, case)),
-            Err(Unfit::Unsalted) if is_drawn => Some(self.by_one_picture(&differs, &pairs, found)),
-            Err(Unfit::Unsalted | Unfit::Fixed) => None,
+            Ok(compared) => {
+                let (verdict, reason) = self.by_replicates(&differs, &compared, found, case);
+                let mistake = case
+                    .suspects
+                    .filter(|_| verdict == Verdict::Wrong)
+                    .and_then(|suspects| {
+                        let (tracer, places) = (self.tracer, suspects.places());
+                        let noisy =
+                            replicates::noisy(program, case, tracer, compared.reseeding, places, until)?;
+                        suspects.recognise_noisy(&noisy)
+                    });
+                Some(Judged {
+                    verdict,
+                    reason,
+                    mistake,
+                })
+            }
+            Err(Unfit::Unsalted) if is_drawn => {
+                let pairs = self.pairs(found.maths);
+                (!follows_scene(&pairs)).then(|| {
+                    let (verdict, reason) = self.by_one_picture(&differs, &pairs, found);
+                    Judged {
+                        verdict,
+                        reason,
+                        mistake: None,
+                    }
+                })
+            }
+            Err(Unfit::Unsalted | Unfit::Fixed | Unfit::Follows) => None,
         }
     }
 
@@ -151,8 +182,9 @@ impl<'a> Painted<'a> {
     fn by_replicates(
         &self,
         differs: &str,
-        replicated: Replicated,
-        pixels: usize,
+        &Compared {
+            replicated, pixels, ..
+        }: &Compared,
         found: Found,
         case: &Case,
     ) -> (Verdict, String) {
@@ -162,6 +194,7 @@ impl<'a> Painted<'a> {
             is_repeated,
             variance,
             is_uniform,
+            within,
         } = replicated;
         if is_biased {
             let much = if deviations.is_finite() {
@@ -179,7 +212,7 @@ impl<'a> Painted<'a> {
         if is_repeated {
             return (Verdict::Inconclusive, repeated(differs));
         }
-        if pixels < FEWEST {
+        if pixels < FEWEST || within > FINEST {
             return (Verdict::Inconclusive, unseen(differs));
         }
         let samples = self.tracer.samples();
@@ -199,7 +232,7 @@ impl<'a> Painted<'a> {
             (Verdict::Correct, _) => {
                 let pixels = grouped(pixels as u64);
                 let mut reason = format!(
-                    "the same in the mean, over {pixels} pixels and {REPLICATES} sets of random numbers; {differs}"
+                    "the same in the mean, to within {within:.4} over {pixels} pixels, with {REPLICATES} sets of random numbers; {differs}"
                 );
                 if variance > NOISIER {
                     let _ = write!(
@@ -233,13 +266,6 @@ impl<'a> Painted<'a> {
             Means::Unseen => (Verdict::Inconclusive, unseen(differs)),
             Means::Repeated => (Verdict::Inconclusive, repeated(differs)),
         }
-    }
-
-    /// Whether there is anything random in the scene's picture, and few pixels differ where there is not.
-    fn may_be_drawn(&self, maths: &Asked) -> bool {
-        let asked = some(maths, self.size, ASKED);
-        let drawn = asked.par_iter().filter(|&&at| self.is_redrawn(at)).count();
-        drawn as f64 >= FEWEST_DRAWN * asked.len() as f64
     }
 
     fn is_redrawn(&self, at: [u32; 2]) -> bool {

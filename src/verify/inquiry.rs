@@ -1,5 +1,6 @@
 //! The questions while they are asked, one band of rows after the other: whole pictures are kept only as they are shown.
 
+use std::fmt::Write;
 use std::ops::Range;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender};
@@ -8,12 +9,13 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
+use super::acne;
 use super::cause::{self, NotFinite};
 use super::cpu::{Band, Evaluator};
 use super::drawn::{Found, Painted};
 use super::expected::Digits;
 use super::tangent::{self, Trap};
-use super::{Asked, Case, Expected, Failure, Findings, PATIENCE_FOR_TWO, Painter, join, notes, timed};
+use super::{Asked, Case, Expected, Failure, Findings, PAIRS, Painter, join, notes, timed};
 use crate::compare::{self, Answers, Comparison, MAX_UNSTABLE, Mixed, Reference, Standing, Verdict};
 use crate::eval::{self, Observations, Program};
 use crate::gpu::FloatMode;
@@ -292,6 +294,9 @@ impl Reference for FromRow<'_> {
     fn styled(&self, x: u32, y: u32, styles: &RayStyles) -> [f64; 3] {
         self.expected.styled(x, self.below + y, styles)
     }
+    fn samples(&self) -> u32 {
+        self.expected.tracer().samples()
+    }
     fn is_across_edge(&self, x: u32, y: u32) -> bool {
         self.derives && self.expected.tracer().is_quad_mixed(x, self.below + y)
     }
@@ -326,20 +331,40 @@ impl Findings {
             rounding: self.rounding.as_ref().map(|asked| &asked.answer),
             toolchain: self.toolchain.as_ref().map(|asked| &asked.answer),
         });
-        if let (Verdict::Wrong, Some(suspects)) = (self.verdict, case.suspects) {
-            let patience = PATIENCE_FOR_TWO.min(until.saturating_duration_since(Instant::now()));
-            self.mistake = suspects.recognise(program, case.frame, patience);
-        }
-        if let (Verdict::Wrong, None, Some(painted), Some(maths)) =
-            (self.verdict, &self.mistake, painted, &self.maths)
-        {
+        let mut is_judged = false;
+        if let (Verdict::Wrong, Some(painted), Some(maths)) = (self.verdict, painted, &self.maths) {
             let found = Found {
                 maths,
                 rounding: self.rounding.as_ref(),
                 toolchain: self.toolchain.as_ref(),
             };
             if let Some(judged) = painted.judged(found, program, case, until) {
-                (self.verdict, self.reason) = judged;
+                is_judged = true;
+                (self.verdict, self.reason) = (judged.verdict, judged.reason);
+                self.mistake = judged.mistake;
+            }
+        }
+        if let (Verdict::Wrong, None, Some(suspects)) = (self.verdict, &self.mistake, case.suspects) {
+            // Where chance decides, two mistakes paint another picture than both together.
+            let pairs = if is_judged { 0 } else { PAIRS };
+            self.mistake = suspects.recognise(program, case.frame, pairs);
+        }
+        if let (Verdict::Unstable | Verdict::Wrong, None, Some(expected)) =
+            (self.verdict, &self.mistake, case.expected)
+            && let Some(asked) =
+                acne::is_seen(expected.tracer(), case.frame.size, &self.maths, &self.rounding)
+        {
+            self.verdict = Verdict::Wrong;
+            self.reason = acne::reason(&asked.answer);
+            self.mistake = Some(vec![acne::named()]);
+        }
+        if let (Verdict::Correct, Some(suspects), Some(maths)) = (self.verdict, case.suspects, &self.maths)
+            && maths.answer.differing > 0
+            && !is_judged
+        {
+            let differing = cause::some(maths, case.frame.size, usize::MAX);
+            if let Some(named) = suspects.explaining(program, &differing) {
+                let _ = write!(self.reason, "; they are what a tracer paints that {}", named.says);
             }
         }
         self.notes.extend(notes::unbound(case.checked, case.frame));

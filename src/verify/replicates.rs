@@ -4,13 +4,14 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use super::reseed::Reseeding;
+use super::reseed::{Reseeding, is_without_chance};
 use super::{Asked, Case};
 use crate::compare::{
     EXACT_TOLERANCE, MAX_DIFFERING, REPLICATES, Replicated, ReplicatedPixel, Standing, replicated,
 };
 use crate::eval::{Places, Program, Settings, Variant};
 use crate::image::Image;
+use crate::mistake::NoisyPixel;
 use crate::trace::Tracer;
 
 /// So many further pictures say what each pixel counts, so that what is compared has no part in it.
@@ -42,6 +43,8 @@ const SAME_DISTANCE: f64 = 2.0;
 pub(super) enum Unfit {
     /// The shader differs in pixels that are random neither in the scene nor in the shader.
     Fixed,
+    /// The shader draws the scene's own numbers: its noise is the reference's, and its pixels are to be those of the scene.
+    Follows,
     /// No way was found to give the shader other random numbers, or there was no time.
     Unsalted,
 }
@@ -107,7 +110,7 @@ pub(super) fn compared(
     tracer: &Tracer<f64>,
     maths: &Asked,
     until: Instant,
-) -> Result<(Replicated, usize), Unfit> {
+) -> Result<Compared, Unfit> {
     let shader = Shader {
         program,
         case,
@@ -121,7 +124,10 @@ pub(super) fn compared(
     let pixels: Vec<[u32; 2]> = pixels.collect();
     let drawn: Vec<Drawn> = pixels.par_iter().map(|&pixel| Drawn::at(tracer, pixel)).collect();
     let moves: Vec<bool> = drawn.par_iter().map(|drawn| drawn.moves(tracer)).collect();
-    let mut sets = shader.replicates(usual, &drawn, &moves).ok_or(Unfit::Unsalted)?;
+    if follows(tracer, &pixels, &usual, &drawn) {
+        return Err(Unfit::Follows);
+    }
+    let (reseeding, mut sets) = shader.replicates(usual, &drawn, &moves).ok_or(Unfit::Unsalted)?;
     let weighing = sets.split_off(REPLICATES);
     let width = case.frame.size[0] as usize;
     let standing = |[x, y]: [u32; 2]| maths.standings[y as usize * width + x as usize];
@@ -165,8 +171,123 @@ pub(super) fn compared(
             })
         })
         .collect();
-    let count = replicated_pixels.len();
-    Ok((replicated(&replicated_pixels, case.frame.size), count))
+    Ok(Compared {
+        replicated: replicated(&replicated_pixels, case.frame.size),
+        pixels: replicated_pixels.len(),
+        reseeding,
+    })
+}
+
+/// So many places a side are looked at to see whether a shader is random at all.
+const GLANCE: u32 = 32;
+
+/// With other random numbers, a random pixel moves by more than this: more than it does where its place moves by a thousandth of a pixel.
+const MOVES: f64 = 20.0 * EXACT_TOLERANCE;
+
+/// Whether most pixels that differ are random in the shader.
+pub(super) fn is_random(
+    program: &Program,
+    case: &Case,
+    tracer: &Tracer<f64>,
+    maths: &Asked,
+    until: Instant,
+) -> bool {
+    let size = case.frame.size;
+    let shader = Shader {
+        program,
+        case,
+        tracer,
+        places: Places::spread(size, [GLANCE; 2]),
+        until,
+    };
+    let Some(usual) = shader.usual() else {
+        return false;
+    };
+    let [columns, rows] = shader.places.pixels();
+    let differs = |at: usize| {
+        let [x, y] = [columns[at % columns.len()], rows[at / columns.len()]];
+        maths.standings[y as usize * size[0] as usize + x as usize] == Standing::Differs
+    };
+    let differing: Vec<usize> = (0..usual.len()).filter(|&at| differs(at)).collect();
+    Reseeding::all().into_iter().any(|reseeding| {
+        shader.salted(reseeding, 1).is_some_and(|other| {
+            let moves = |&&at: &&usize| {
+                let [a, b] = [&usual, &other].map(|own| own[at].developed);
+                (0..3).any(|i| (a[i] - b[i]).abs() > MOVES)
+            };
+            let moved = differing.iter().filter(moves).count();
+            moved > 0 && moved as f64 >= LEAST_CHANGED * differing.len() as f64
+        })
+    })
+}
+
+/// What a comparison found.
+pub(super) struct Compared {
+    pub(super) replicated: Replicated,
+    /// How many pixels were compared.
+    pub(super) pixels: usize,
+    /// How the shader was given other random numbers.
+    pub(super) reseeding: Reseeding,
+}
+
+/// The means of a shader and of the tracer at other places, over so many sets of random numbers each.
+pub(super) fn noisy(
+    program: &Program,
+    case: &Case,
+    tracer: &Tracer<f64>,
+    reseeding: Reseeding,
+    places: &Places,
+    until: Instant,
+) -> Option<Vec<NoisyPixel>> {
+    let shader = Shader {
+        program,
+        case,
+        tracer,
+        places: places.clone(),
+        until,
+    };
+    let count = 2 * REPLICATES as u32;
+    let salted: Option<Vec<Vec<OwnPixel>>> = (1..=count).map(|salt| shader.salted(reseeding, salt)).collect();
+    let salted = salted?;
+    let [columns, rows] = places.pixels();
+    let noisy = (0..columns.len() * rows.len()).into_par_iter().map(|at| {
+        let pixel = [columns[at % columns.len()], rows[at / columns.len()]];
+        let own: Vec<_> = salted.iter().map(|set| set[at].developed).collect();
+        let reference: Vec<_> = (1..=count).map(|set| tracer.redrawn(pixel, set)).collect();
+        let variances = [&own, &reference].map(|all| variance(all));
+        NoisyPixel {
+            own: mean(&own),
+            reference: mean(&reference),
+            variance: [0, 1, 2].map(|i| (variances[0][i] + variances[1][i]) / f64::from(count)),
+        }
+    });
+    Some(noisy.collect())
+}
+
+/// A shader draws the scene's numbers if its noise and the reference's are correlated more than this. It is 0.1 if they have only the mean in
+/// common which both are told from.
+const THE_SCENES: f64 = 0.5;
+
+/// Whether a shader draws the scene's numbers.
+fn follows(tracer: &Tracer<f64>, pixels: &[[u32; 2]], own: &[OwnPixel], drawn: &[Drawn]) -> bool {
+    let of_each = (0..pixels.len()).into_par_iter().map(|at| {
+        let [x, y] = pixels[at];
+        let reference = tracer.undeveloped(tracer.pixel(x, y));
+        let (mean, chosen) = (drawn[at].mean(), variance(&drawn[at].choosing));
+        let mut sums = [0.0; 3];
+        for i in 0..3 {
+            let [a, b] = [own[at].mean[i] - mean[i], reference[i] - mean[i]];
+            let weight = 1.0 / (chosen[i] + LEAST_NOISE * LEAST_NOISE);
+            let terms = [a * a, a * b, b * b].map(|term| if term.is_finite() { weight * term } else { 0.0 });
+            (0..3).for_each(|at| sums[at] += terms[at]);
+        }
+        sums
+    });
+    let of_each: Vec<[f64; 3]> = of_each.collect();
+    let [own, both, reference] = of_each
+        .iter()
+        .fold([0.0; 3], |sum, each| [0, 1, 2].map(|at| sum[at] + each[at]));
+    both > THE_SCENES * (own * reference).sqrt()
 }
 
 /// Places from all over a picture.
@@ -236,7 +357,7 @@ impl Shader<'_> {
         usual: Vec<OwnPixel>,
         drawn: &[Drawn],
         moves: &[bool],
-    ) -> Option<Vec<Vec<OwnPixel>>> {
+    ) -> Option<(Reseeding, Vec<Vec<OwnPixel>>)> {
         let distance = |own: &[OwnPixel]| {
             let pixels = own.iter().zip(drawn).map(|(own, drawn)| {
                 let reference = self.tracer.developed(drawn.mean());
@@ -261,7 +382,7 @@ impl Shader<'_> {
             other <= SAME_DISTANCE * own && own <= SAME_DISTANCE * other
         };
         let salts = 2..(REPLICATES + WEIGHING) as u32;
-        Reseeding::all().into_iter().find_map(|reseeding| {
+        let found = Reseeding::all().into_iter().find_map(|reseeding| {
             let first = self.salted(reseeding, 1)?;
             if !is_changed(&first) || !is_as_far(&first) {
                 return None;
@@ -270,8 +391,14 @@ impl Shader<'_> {
             for salt in salts.clone() {
                 all.push(self.salted(reseeding, salt).filter(|other| is_as_far(other))?);
             }
-            Some(all)
-        })
+            Some((reseeding, all))
+        });
+        if found.is_some() || !is_without_chance(&self.case.checked.tree) {
+            return found;
+        }
+        // Nothing is random in it: it is the same with any numbers.
+        let [.., untouched] = Reseeding::all();
+        Some((untouched, vec![usual; REPLICATES + WEIGHING]))
     }
 }
 

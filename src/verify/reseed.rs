@@ -181,6 +181,30 @@ impl Reseeding {
     }
 }
 
+/// Whether a shader has nothing that a random number could come of: no hash, and no texture.
+pub(super) fn is_without_chance(tree: &Tree) -> bool {
+    tree.exprs.iter().all(|(_, expr)| {
+        let bits = match &expr.kind {
+            ExprKind::Binary { op, .. } | ExprKind::Assign { op: Some(op), .. } => matches!(
+                op,
+                BinaryOp::BitXor
+                    | BinaryOp::BitAnd
+                    | BinaryOp::BitOr
+                    | BinaryOp::ShiftLeft
+                    | BinaryOp::ShiftRight
+            ),
+            ExprKind::BuiltIn { function, .. } => {
+                matches!(
+                    function,
+                    BuiltIn::Fract | BuiltIn::FloatBitsToInt | BuiltIn::FloatBitsToUint
+                ) || function.name().starts_with("tex")
+            }
+            _ => false,
+        };
+        !bits && expr.ty.scalar() != Some(Scalar::Uint)
+    })
+}
+
 fn is_integer(tree: &Tree, id: ExprId) -> bool {
     matches!(tree[id].ty.scalar(), Some(Scalar::Int | Scalar::Uint))
         && matches!(tree[id].ty, Type::Scalar(_) | Type::Vector(..))

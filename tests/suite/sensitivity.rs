@@ -133,6 +133,9 @@ impl Reference for Traced {
     fn styled(&self, x: u32, y: u32, styles: &RayStyles) -> [f64; 3] {
         self.tracer.styled([x, y], styles)
     }
+    fn samples(&self) -> u32 {
+        self.tracer.samples()
+    }
     /// The rungs take no derivatives.
     fn is_across_edge(&self, _: u32, _: u32) -> bool {
         false

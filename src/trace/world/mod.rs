@@ -115,6 +115,17 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         ]
     }
 
+    /// How many lights are looked for, and from how many surfaces one after the other a ray may go on.
+    pub(super) fn lights_and_bounces(&self) -> [u32; 2] {
+        let lights = match self.integrator {
+            Integrator::Whitted => self.lights.iter().filter(|light| light.shadow).count(),
+            Integrator::Path => usize::from(self.has_emitters()),
+        };
+        let goes_on = |material: &Material<T>| matches!(material.model, Model::Mirror | Model::Glass(_));
+        let goes_on = self.integrator == Integrator::Whitted && self.materials.iter().any(goes_on);
+        [lights as u32, if goes_on { self.max_depth - 1 } else { 0 }]
+    }
+
     /// Whether any surface shines.
     pub(super) fn has_emitters(&self) -> bool {
         !self.emitters.is_empty()

@@ -83,7 +83,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
     ) -> T::Vec3 {
         let style = &style.of_light_rays();
         let number = T::from_f64(self.emitters.len() as f64);
-        if self.emitters.is_empty() {
+        if self.emitters.is_empty() || style.acne().hidden_lights != 0 {
             return T::Vec3::ZERO;
         }
         let drawn: T = draws.number();

@@ -192,7 +192,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
     /// Adds the light of every light that is seen from points, at most [`PACKET`].
     fn light(&self, walks: &mut [Walk<T>], points: &mut [Lit<T>], style: &impl Style<T>) {
         let style = &style.of_light_rays();
-        for light in &self.lights {
+        for (number, light) in self.lights.iter().enumerate() {
             // Those that face it: which, the direction to it and the cosine, and the way there.
             let mut facing: SmallVec<[(usize, T::Vec3, T); PACKET]> = SmallVec::new();
             let mut rays: SmallVec<[(Ray<T>, T); PACKET]> = SmallVec::new();
@@ -217,7 +217,9 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
                     });
                 }
             }
-            let hidden = if light.shadow {
+            let hidden = if style.acne().hidden_lights >> number.min(31) & 1 != 0 {
+                u64::MAX
+            } else if light.shadow {
                 self.occluded_of(&rays, light.surface, style)
             } else {
                 0
