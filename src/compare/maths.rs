@@ -388,7 +388,7 @@ mod tests {
         assert_eq!(mixed.styles().map(|styles| styles.other.offset), Some(0.7));
         // What no offset explains is wrong, however many others are explained.
         let mut reds = reds;
-        reds[500] = 0.123;
+        reds[500] = f32::NAN;
         let mixed = &mut Mixed::of(1000);
         let standings = maths(
             &expected,

@@ -13,7 +13,7 @@ const MORE_DECADES: i32 = 3;
 
 /// Rays that meet their own surface are told apart by so many lights, and on so many surfaces one after the other.
 const MOST_LIGHTS: u32 = 3;
-const MOST_BOUNCES: u32 = 4;
+const MOST_BOUNCES: u32 = 6;
 
 /// Styles that differ in one length alone, in its order.
 pub type StyleFamily = Vec<RayStyle>;

@@ -273,11 +273,11 @@ impl<'a> Painted<'a> {
         (2..=TIMES).any(|set| moves(first, self.tracer.redrawn(at, set)))
     }
 
-    /// Whether other draws paint another colour wherever the shader differs.
+    /// Whether other draws paint another colour wherever the shader differs, and there is such a pixel.
     fn is_drawn(&self, maths: &Asked) -> bool {
         let asked = some(maths, self.size, ASKED);
         let drawn = asked.par_iter().filter(|&&at| self.is_redrawn(at)).count();
-        drawn as f64 >= MOST * asked.len() as f64
+        !asked.is_empty() && drawn as f64 >= MOST * asked.len() as f64
     }
 
     /// Pairs of neighbours one of which at least hangs on what is drawn, and what they are on the average. Each square of four has two: along an edge
@@ -407,12 +407,14 @@ impl Found<'_> {
     fn without_chance(self) -> (Verdict, String) {
         let maths = Answer {
             differing: 0,
+            undecided: 0,
+            tied: 0,
             ..self.maths.answer.clone()
         };
         let rounding = self.rounding.map(|rounding| {
             let standings = rounding.standings.iter().zip(&self.maths.standings);
             let left = standings.filter(|&standings| match standings {
-                (Standing::Differs, &maths) => maths != Standing::Differs,
+                (Standing::Differs, &maths) => !matches!(maths, Standing::Differs | Standing::Undecided),
                 _ => false,
             });
             Answer {

@@ -332,7 +332,9 @@ impl Findings {
             toolchain: self.toolchain.as_ref().map(|asked| &asked.answer),
         });
         let mut is_judged = false;
-        if let (Verdict::Wrong, Some(painted), Some(maths)) = (self.verdict, painted, &self.maths) {
+        if let (Verdict::Wrong | Verdict::Unstable, Some(painted), Some(maths)) =
+            (self.verdict, painted, &self.maths)
+        {
             let found = Found {
                 maths,
                 rounding: self.rounding.as_ref(),
@@ -351,6 +353,7 @@ impl Findings {
         }
         if let (Verdict::Unstable | Verdict::Wrong, None, Some(expected)) =
             (self.verdict, &self.mistake, case.expected)
+            && painted.is_none()
             && let Some(asked) =
                 acne::is_seen(expected.tracer(), case.frame.size, &self.maths, &self.rounding)
         {
