@@ -13,7 +13,7 @@ const ASKED: usize = 64;
 
 /// So large a share of them must be what the tracer makes of rays that meet their own surface: where mirrors see each other, a ray may do so
 /// more often than is looked at. In double precision nothing else that rounding decides is seen in so many pixels.
-const MOST: f64 = 0.5;
+const MOST: f64 = 0.4;
 const MOST_IN_DOUBLE: f64 = 0.3;
 
 /// In float32 alone, fewer pixels than this may be a lack of digits at edges and at the rim of glass.
@@ -26,8 +26,8 @@ const SAME: f64 = 4.0 / 255.0;
 pub(super) fn is_seen<'a>(
     tracer: &Tracer<f64>,
     size: [u32; 2],
-    maths: &'a Option<Asked>,
-    rounding: &'a Option<Asked>,
+    maths: Option<&'a Asked>,
+    rounding: Option<&'a Asked>,
 ) -> Option<&'a Asked> {
     let styles = tracer.acne();
     if styles.is_empty() {
@@ -36,9 +36,9 @@ pub(super) fn is_seen<'a>(
     // In f64, rounding decides where it is acne, and not where it is another mistake.
     let decided_by_rounding =
         |asked: &&Asked| asked.answer.undecided - asked.answer.tied > asked.answer.differing;
-    let maths = maths.iter().filter(decided_by_rounding);
+    let maths = maths.into_iter().filter(decided_by_rounding);
     let maths = maths.map(|asked| (asked, MAX_UNSTABLE, MOST_IN_DOUBLE));
-    let rounding = rounding.iter().map(|asked| (asked, LEAST_IN_SINGLE, MOST));
+    let rounding = rounding.into_iter().map(|asked| (asked, LEAST_IN_SINGLE, MOST));
     let seen = maths.chain(rounding).find(|&(asked, least, most)| {
         let answer = &asked.answer;
         let count = answer.differing + answer.undecided - answer.tied;

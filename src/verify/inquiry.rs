@@ -354,8 +354,12 @@ impl Findings {
         if let (Verdict::Unstable | Verdict::Wrong, None, Some(expected)) =
             (self.verdict, &self.mistake, case.expected)
             && painted.is_none()
-            && let Some(asked) =
-                acne::is_seen(expected.tracer(), case.frame.size, &self.maths, &self.rounding)
+            && let Some(asked) = acne::is_seen(
+                expected.tracer(),
+                case.frame.size,
+                self.maths.as_ref(),
+                self.rounding.as_ref(),
+            )
         {
             self.verdict = Verdict::Wrong;
             self.reason = acne::reason(&asked.answer);

@@ -74,20 +74,20 @@ impl Reseeding {
                 BinaryOp::Multiply if self.integers && is_integer(tree, id) => {
                     // Never the constant: not every factor is as good.
                     if is_large(tree, right) {
-                        self.add(tree, left, salt);
+                        add(tree, left, salt);
                     } else if is_large(tree, left) {
-                        self.add(tree, right, salt);
+                        add(tree, right, salt);
                     }
                 }
                 BinaryOp::Add | BinaryOp::BitXor if self.integers && is_integer(tree, id) => {
                     if let Some(large) = [left, right].into_iter().find(|&side| is_large(tree, side)) {
-                        self.add(tree, large, salt);
+                        add(tree, large, salt);
                     }
                 }
                 BinaryOp::Multiply if self.fractions => {
                     for (noise, factor) in [(left, right), (right, left)] {
                         if is_noise(tree, noise) && is_factor(tree, factor) {
-                            self.add(tree, factor, salt);
+                            add(tree, factor, salt);
                         }
                     }
                 }
@@ -99,13 +99,13 @@ impl Reseeding {
                 value,
             } if self.integers && is_integer(tree, id) && is_large(tree, value) => {
                 if op != BinaryOp::Multiply {
-                    self.add(tree, value, salt);
+                    add(tree, value, salt);
                 } else if let ExprKind::Variable(_) = tree[target].kind {
                     // x *= c becomes x = (x + salt) * c.
                     let copy = tree[target].clone();
                     let ty = copy.ty;
                     let copy = tree.exprs.push(copy);
-                    self.add(tree, copy, salt);
+                    add(tree, copy, salt);
                     let product = tree.exprs.push(Expr {
                         kind: ExprKind::Binary {
                             op,
@@ -130,55 +130,55 @@ impl Reseeding {
                 let is_float = |&argument: &ExprId| tree[argument].ty.scalar() == Some(Scalar::Float);
                 let all_floats = arguments.iter().all(is_float);
                 if tree[id].ty.scalar() == Some(Scalar::Uint) && all_floats && tree.value(id).is_none() {
-                    self.add(tree, id, salt);
+                    add(tree, id, salt);
                 }
             }
             ExprKind::BuiltIn {
                 function: BuiltIn::FloatBitsToUint,
                 ..
-            } if self.conversions => self.add(tree, id, salt),
+            } if self.conversions => add(tree, id, salt),
             _ => {}
         }
     }
+}
 
-    /// Puts a sum with a number of the salt's in the place of an expression.
-    fn add(self, tree: &mut Tree, id: ExprId, salt: u32) {
-        let Expr { ty, at, .. } = tree[id].clone();
-        // Even, so that what is odd stays so.
-        let hash = salt.wrapping_mul(0x9E37_79B9) & !1;
-        let value = match ty.scalar() {
-            Some(Scalar::Uint) => Value::Uint(hash),
-            Some(Scalar::Int) => Value::Int((hash >> 12).cast_signed() & !1),
-            Some(Scalar::Float) => Value::Float(17.31 * f64::from(salt)),
-            _ => return,
-        };
-        let text = match value {
-            Value::Uint(value) => format!("{value}u"),
-            Value::Int(value) => value.to_string(),
-            _ => format!("{:?}", 17.31 * f64::from(salt)),
-        };
-        let own = tree[id].clone();
-        let left = tree.exprs.push(own);
-        let right = tree.exprs.push(Expr {
-            kind: ExprKind::Literal(Literal {
-                text: text.into(),
-                value,
-            }),
-            ty: value.ty(),
-            constant: true,
-            at,
-        });
-        tree[id] = Expr {
-            kind: ExprKind::Binary {
-                op: BinaryOp::Add,
-                left,
-                right,
-            },
-            ty,
-            constant: false,
-            at,
-        };
-    }
+/// Puts a sum with a number of the salt's in the place of an expression.
+fn add(tree: &mut Tree, id: ExprId, salt: u32) {
+    let Expr { ty, at, .. } = tree[id].clone();
+    // Even, so that what is odd stays so.
+    let hash = salt.wrapping_mul(0x9E37_79B9) & !1;
+    let value = match ty.scalar() {
+        Some(Scalar::Uint) => Value::Uint(hash),
+        Some(Scalar::Int) => Value::Int((hash >> 12).cast_signed() & !1),
+        Some(Scalar::Float) => Value::Float(17.31 * f64::from(salt)),
+        _ => return,
+    };
+    let text = match value {
+        Value::Uint(value) => format!("{value}u"),
+        Value::Int(value) => value.to_string(),
+        _ => format!("{:?}", 17.31 * f64::from(salt)),
+    };
+    let own = tree[id].clone();
+    let left = tree.exprs.push(own);
+    let right = tree.exprs.push(Expr {
+        kind: ExprKind::Literal(Literal {
+            text: text.into(),
+            value,
+        }),
+        ty: value.ty(),
+        constant: true,
+        at,
+    });
+    tree[id] = Expr {
+        kind: ExprKind::Binary {
+            op: BinaryOp::Add,
+            left,
+            right,
+        },
+        ty,
+        constant: false,
+        at,
+    };
 }
 
 /// Whether a shader has nothing that a random number could come of: no hash, and no texture.

@@ -34,9 +34,9 @@ fn in_block(tree: &Tree, block: &Block, outside: f64, counts: &mut Vec<f64>) {
                 bodies.for_each(|body| in_block(tree, body, outside, counts));
             }
             StatementKind::Switch { cases, .. } => {
-                cases
-                    .iter()
-                    .for_each(|case| in_block(tree, &case.body, outside, counts));
+                for case in cases {
+                    in_block(tree, &case.body, outside, counts);
+                }
             }
             StatementKind::For {
                 init,
