@@ -147,10 +147,10 @@ pub fn judge(answers: Answers) -> (Verdict, String) {
             grouped((maths.pixels as f64 * MAX_DIFFERING) as u64 + 1)
         ),
     };
-    let tied = match maths.tied {
+    let tied = match maths.tied.max(rounding.map_or(0, |rounding| rounding.tied)) {
         0 => String::new(),
         tied => format!(
-            "; in {} of them an edge of the scene itself passes through the pixel's sample",
+            "; in {} an edge of the scene itself passes through the pixel's sample",
             grouped(tied)
         ),
     };

@@ -5,7 +5,7 @@
 use toyproof::compare::Verdict;
 
 use crate::support::{
-    Edit, IMPORTANCE_SAMPLING, MANY_OBJECTS, REFLECTIONS, Rung, SOFT_SHADOWS, STILL, WHITTED, edit, edited,
+    Edit, IMPORTANCE_SAMPLING, MANY_OBJECTS, REFLECTIONS, Rung, SOFT_SHADOWS, STILL, WHITTED, edited,
     judged_by, numbers, scene,
 };
 
@@ -420,12 +420,9 @@ fn an_edge_of_the_scene_in_a_row_of_pixels_is_not_the_shaders_fault() {
     let told = format!("{}: {}", numbers(&findings), findings.reason);
     eprintln!("{told}");
     assert_eq!(findings.verdict, Verdict::Correct, "{told}");
+    assert!(findings.reason.contains("an edge of the scene itself"), "{told}");
     // A mistake in such a scene is still found.
-    let shader = edit(
-        &shader,
-        &[("vec3(0.9, 0.3, 0.2)", "vec3(0.9, 0.31, 0.2)")],
-        "tied",
-    );
+    let shader = shader.replace("vec3(0.9, 0.3, 0.2)", "vec3(0.9, 0.31, 0.2)");
     let findings = judged_by(None, &shader, &rung);
     assert_eq!(findings.verdict, Verdict::Wrong, "{}", findings.reason);
 }
