@@ -293,13 +293,13 @@ static BIASED: &[Case] = &[
         &[OWN, ("MAX_DEPTH = 4", "MAX_DEPTH = 3")],
     ),
     (
-        "directions spread over the half space, weighed as by the cosine",
+        "the cosine to the lamp forgotten",
         &IMPORTANCE_SAMPLING,
         &[
             OWN,
             (
-                "return around(normal, sqrt(1.0 - u), v);",
-                "return around(normal, u, v);",
+                "brdf(hit.material, reflected, direction) * facing\n",
+                "brdf(hit.material, reflected, direction)\n",
             ),
         ],
     ),
