@@ -12,6 +12,9 @@ pub enum Standing {
     Agrees,
     /// It differs, and another rounding of the same operations might not.
     Undecided,
+    /// It differs, and so does the scene itself when its numbers are moved by less than a shader can know them: an edge passes
+    /// through the pixel's sample.
+    Tied,
     /// The shader does there what GLSL leaves undefined.
     Undefined,
     /// It differs.
@@ -27,6 +30,9 @@ pub struct Answer {
     pub differing: u64,
     /// Pixels that differ, but hang by a hair in f64.
     pub undecided: u64,
+    /// Those of the undecided that the scene does not decide, whatever the shader.
+    #[serde(skip)]
+    pub tied: u64,
     /// Pixels that are left out because the shader does there what GLSL leaves undefined.
     pub undefined: u64,
     /// The largest absolute difference of a component of colours clamped to [0, 1], over all pixels that are not undefined.
@@ -73,7 +79,8 @@ impl Answer {
         Self {
             pixels: standings.len() as u64,
             differing,
-            undecided: count(Standing::Undecided),
+            undecided: count(Standing::Undecided) + count(Standing::Tied),
+            tied: count(Standing::Tied),
             undefined: count(Standing::Undefined),
             max_abs,
             first,
@@ -96,6 +103,7 @@ impl Answer {
         self.pixels += above.pixels;
         self.differing += above.differing;
         self.undecided += above.undecided;
+        self.tied += above.tied;
         self.undefined += above.undefined;
         self.max_abs = self.max_abs.max(above.max_abs);
     }
@@ -117,7 +125,7 @@ impl Answer {
 #[must_use]
 pub fn marks(expected: &Image, actual: &Image, standings: &[Standing]) -> Vec<Mark> {
     let mark = |(index, standing): (usize, &Standing)| match standing {
-        Standing::Undecided => Mark::UNDECIDED,
+        Standing::Undecided | Standing::Tied => Mark::UNDECIDED,
         Standing::Undefined => Mark::UNDEFINED,
         Standing::Agrees | Standing::Differs => {
             Mark::by(Pixel::at(index, expected, actual).difference() as f32)

@@ -114,11 +114,11 @@ pub fn judge(answers: Answers) -> (Verdict, String) {
         );
         return (Verdict::Inconclusive, reason);
     }
-    if maths.share(maths.undecided) > MAX_UNSTABLE {
+    if maths.share(maths.undecided - maths.tied) > MAX_UNSTABLE {
         let reason = format!(
             "the mathematics may be right, but {} {} by a hair even in double precision: a rounding error decides",
-            count(maths, maths.undecided),
-            plural(maths.undecided, "hangs", "hang")
+            count(maths, maths.undecided - maths.tied),
+            plural(maths.undecided - maths.tied, "hangs", "hang")
         );
         return (Verdict::Unstable, reason);
     }
@@ -147,7 +147,14 @@ pub fn judge(answers: Answers) -> (Verdict, String) {
             grouped((maths.pixels as f64 * MAX_DIFFERING) as u64 + 1)
         ),
     };
-    (Verdict::Correct, reason)
+    let tied = match maths.tied.max(rounding.map_or(0, |rounding| rounding.tied)) {
+        0 => String::new(),
+        tied => format!(
+            "; in {} an edge of the scene itself passes through the pixel's sample",
+            grouped(tied)
+        ),
+    };
+    (Verdict::Correct, reason + &tied)
 }
 
 /// How many pixels differ from the scene.
@@ -222,6 +229,7 @@ mod tests {
             differing,
             undecided,
             undefined,
+            tied: 0,
             max_abs,
             first: None,
             worst: None,

@@ -2,8 +2,8 @@
 //!
 //! A pixel of a renderer that draws its samples is a mean of few of them. Another renderer that draws other ones paints another
 //! colour there, and the same on the average. Of each pixel the tracer tells its mean and its variance; what is left of a shader's pixel without
-//! that mean is noise, if both paint the same. Three facts tell noise from a mistake: noise of many pixels sums up to little,
-//! that of a pixel says nothing of its neighbour's, and it is no stronger than the tracer's. Sums are judged by the sum of their terms' squares,
+//! that mean is noise, if both paint the same. Two facts tell noise from a mistake: noise of many pixels sums up to little,
+//! and that of a pixel says nothing of its neighbour's. How strong it is, is the shader's own business. Sums are judged by the sum of their terms' squares,
 //! which asks nothing of the distribution but that it is as good as symmetric over many pixels.
 
 /// A pixel that hangs on what is drawn. Components of colours lie in [0, 1].
@@ -17,9 +17,7 @@ pub struct DrawnPixel {
     pub reference: [f64; 3],
     /// What the tracer paints on the average.
     pub mean: [f64; 3],
-    /// The variance of what it paints once.
-    pub variance: [f64; 3],
-    /// The same of other drawings: what a pixel counts must hang on nothing that it is compared with.
+    /// The variance of what it paints once, told from other drawings: what a pixel counts must hang on nothing that it is compared with.
     pub spread: [f64; 3],
     /// How much brighter it is if its samples are all of the drawings': a tone curve makes a mean another one.
     pub gain: [f64; 3],
@@ -28,14 +26,10 @@ pub struct DrawnPixel {
 /// What the means of two pictures say.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Means {
-    /// They do not matter, since the shader draws the scene's numbers: its noise is the reference's.
-    Unasked,
     /// They are the same, as far as can be seen: this much apart at most, on the average over all pixels.
     Same(f64),
     /// They are not, most of all around this pixel.
     Apart([u32; 2]),
-    /// The shader's noise has so many times the variance of the tracer's.
-    Noisier(f64),
     /// There is too much noise, or there are too few pixels, to see whether they are.
     Unseen,
     /// They may be the same or not: neighbouring pixels draw the same numbers, so that their sums tell little.
@@ -55,16 +49,13 @@ const LEAST_NOISE: f64 = 0.01;
 /// Nothing is said where means that are this much apart, two and a half levels of 8 bits, might not be seen.
 const FINEST: f64 = 0.01;
 
-/// Neighbouring pixels may draw the same numbers if the variance of what their noise has not in common is below this share of what it would be:
-/// 0.2 to 0.65 for the course's scenes; it is 0.8 if each pixel draws its own on a grid, and 0.9 to 1.15 if it just draws.
+/// Neighbouring pixels may draw the same numbers if the variance of what their noise has not in common is below this share of that of their
+/// noise: it is 1 if each pixel draws its own.
 const REPEATED: f64 = 0.75;
 
 /// The shader draws the scene's numbers if its noise and the reference's are correlated more than this. It is 0.1 if they have only the mean in common
 /// which both are told from.
 const THE_SCENES: f64 = 0.5;
-
-/// Noise of more than so many times the variance has fewer samples: beyond what the variance of eight drawings is uncertain by, over thousands of pixels.
-const NOISIER: f64 = 1.2;
 
 /// The picture is looked at whole, and in so many columns and rows.
 const BLOCKS: u32 = 8;
@@ -75,13 +66,15 @@ const FEWEST: usize = 64;
 /// Fewer pixels of a picture say nothing: a mistake in a part of them would not be seen.
 const FEWEST_OF_ALL: usize = 4000;
 
-/// Compares a shader with the tracer where chance decides: pairs of neighbouring pixels of a picture of that size, with the mean of
-/// `drawings` pictures of the tracer's, which is as uncertain as that.
+/// Whether the shader draws the scene's numbers: its noise is the reference's, and its pixels are to be those of the scene.
 #[must_use]
-pub fn means(pairs: &[[DrawnPixel; 2]], size: [u32; 2], drawings: u32) -> Means {
-    if correlation(pairs) > THE_SCENES {
-        return Means::Unasked;
-    }
+pub fn follows_scene(pairs: &[[DrawnPixel; 2]]) -> bool {
+    correlation(pairs) > THE_SCENES
+}
+
+/// Compares a shader with the tracer where chance decides: pairs of neighbouring pixels of a picture of that size.
+#[must_use]
+pub fn means(pairs: &[[DrawnPixel; 2]], size: [u32; 2]) -> Means {
     let blocks = (0..BLOCKS * BLOCKS).map(|block| {
         let of = |pixel: &&DrawnPixel| {
             let [column, row] = [0, 1].map(|i| pixel.at[i] * BLOCKS / size[i]);
@@ -93,16 +86,13 @@ pub fn means(pairs: &[[DrawnPixel; 2]], size: [u32; 2], drawings: u32) -> Means 
     let sums = blocks.filter(|block| block.pixels >= FEWEST).chain([whole]);
     let farthest = sums.max_by(|a, b| a.deviations().total_cmp(&b.deviations()));
     let farthest = farthest.unwrap_or(whole);
-    let (own, is_noisier) = own_noise(pairs, 1.0 + 1.0 / f64::from(drawings));
     let within = whole.within();
     if farthest.deviations().max(common(pairs)) > NO_CHANCE {
-        if own < REPEATED {
+        if own_noise(pairs) < REPEATED {
             Means::Repeated
         } else {
             Means::Apart(farthest.middle())
         }
-    } else if is_noisier {
-        Means::Noisier(own)
     } else if within > FINEST || whole.pixels < FEWEST_OF_ALL {
         Means::Unseen
     } else {
@@ -145,27 +135,19 @@ impl Score {
     }
 }
 
-/// The variance of what the noise of neighbours has not in common, as a share of the tracer's, and whether it is more. A mistake is much the same
-/// in both. Only pixels with much noise are asked: in others, who draws nothing has none.
-fn own_noise(pairs: &[[DrawnPixel; 2]], uncertainty: f64) -> (f64, bool) {
-    let (mut own, mut expected) = (0.0, 0.0);
-    let mut more = Score::default();
+/// The variance of what the noise of neighbours has not in common, as a share of the shader's own. Only pixels with much noise are asked: in
+/// others, who draws nothing has none.
+fn own_noise(pairs: &[[DrawnPixel; 2]]) -> f64 {
+    let (mut own, mut all) = (0.0, 0.0);
     for [a, b] in pairs {
         let noisy = (0..3).filter(|&i| a.spread[i].max(b.spread[i]) > LEAST_NOISE * LEAST_NOISE);
-        let terms = noisy.map(|i| {
+        for i in noisy {
             let weight = (a.weight(i) * b.weight(i)).sqrt();
-            let both = weight * (a.variance[i] + b.variance[i]) * uncertainty;
-            (weight * (a.noise(i) - b.noise(i)).powi(2), both)
-        });
-        let (term, chance) = terms.fold((0.0, 0.0), |sum, term| (sum.0 + term.0, sum.1 + term.1));
-        own += term;
-        expected += chance;
-        more.add(term - NOISIER * chance);
+            own += weight * (a.noise(i) - b.noise(i)).powi(2);
+            all += weight * (a.noise(i).powi(2) + b.noise(i).powi(2));
+        }
     }
-    if expected == 0.0 {
-        return (1.0, false);
-    }
-    (own / expected, more.deviations(more.sum) > NO_CHANCE)
+    if all == 0.0 { 1.0 } else { own / all }
 }
 
 /// The correlation of the shader's noise and the reference's.
@@ -271,7 +253,6 @@ mod tests {
                 painted: [mean + mistake + 0.05 * noise(at); 3],
                 reference: [mean + 0.05 * normal(at[1] * 64 + at[0] + 4096); 3],
                 mean: [mean; 3],
-                variance: [0.0025; 3],
                 spread: [0.0025; 3],
                 gain: [0.0; 3],
             }
@@ -291,8 +272,7 @@ mod tests {
     }
 
     fn of(pairs: &[[DrawnPixel; 2]]) -> Means {
-        // The means are exact.
-        means(pairs, [64, 64], u32::MAX)
+        means(pairs, [64, 64])
     }
 
     #[test]
@@ -327,28 +307,18 @@ mod tests {
     }
 
     #[test]
-    fn who_takes_fewer_samples_is_noisier() {
-        let Means::Noisier(times) = of(&pairs(|at| 2f64.sqrt() * own(at), 0.0)) else {
-            panic!();
-        };
-        assert!((1.8..2.2).contains(&times), "{times}");
-    }
-
-    #[test]
     fn the_same_noise_everywhere_is_no_mistake() {
         assert_eq!(of(&pairs(|_| 1.0, 0.0)), Means::Repeated);
-        let shared = |at: [u32; 2]| 0.9 * normal(7) + 0.43 * own(at);
+        let shared = |at: [u32; 2]| 0.9 + 0.43 * own(at);
         assert_eq!(of(&pairs(shared, 0.0)), Means::Repeated);
     }
 
     #[test]
     fn who_draws_the_scenes_numbers_is_not_judged_by_the_mean() {
         let scenes = |[x, y]: [u32; 2]| normal(y * 64 + x + 4096);
-        assert_eq!(of(&pairs(scenes, 0.0)), Means::Unasked);
-        assert_eq!(
-            of(&pairs(|at| 0.8 * scenes(at) + 0.6 * own(at), 0.02)),
-            Means::Unasked
-        );
+        assert!(follows_scene(&pairs(scenes, 0.0)));
+        assert!(follows_scene(&pairs(|at| 0.8 * scenes(at) + 0.6 * own(at), 0.02)));
+        assert!(!follows_scene(&pairs(own, 0.0)));
     }
 
     #[test]
@@ -360,7 +330,6 @@ mod tests {
         let coarse = some.iter().map(|pair| {
             pair.map(|pixel| DrawnPixel {
                 painted: pixel.painted.map(|part| part + 4.0 * (part - pixel.mean[0])),
-                variance: [25.0 * 0.0025; 3],
                 spread: [25.0 * 0.0025; 3],
                 ..pixel
             })

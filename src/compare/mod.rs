@@ -7,10 +7,12 @@
 //! | [`toolchain`] | the shader in f32 on the CPU | the GPU in f32 | naga, toyproof or the driver broke it |
 
 mod answer;
+mod fit;
 mod judge;
 mod maths;
 mod mean;
 mod picture;
+mod replicate;
 mod rounding;
 mod tolerance;
 mod toolchain;
@@ -20,9 +22,10 @@ pub use judge::{
     Answers, MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABLE, Verdict, differing, grouped, judge, magnitude,
     plural,
 };
-pub use maths::{Mixed, SHAKES, maths};
-pub use mean::{DrawnPixel, Means, means};
+pub use maths::{Mixed, Reference, SHAKES, maths};
+pub use mean::{DrawnPixel, Means, follows_scene, means};
 pub use picture::{Comparison, Pixel, compare};
+pub use replicate::{REPLICATES, Replicated, ReplicatedPixel, replicated};
 pub use rounding::{SEEN, rounding};
 pub use tolerance::{EXACT_TOLERANCE, IN_BITS, SEEN_BY_EYE, TOLERANCE};
 pub use toolchain::toolchain;

@@ -46,7 +46,7 @@ mod uniform;
 pub use compile::Refusal;
 pub use number::{Jittered, Number, Seed};
 pub use observe::{Fault, MESA_CAP, Observations, Observed, Site};
-pub use paint::{Failure, Other, Painted, Pictured, Settings, Variant};
+pub use paint::{Failure, Other, Painted, Pictured, Places, Settings, Variant};
 pub use painting::Painting;
 pub use program::Program;
 pub use story::{Call, CallId, Event, EventId, Happened, Lead, Plot, Story, Told, What};

@@ -72,6 +72,62 @@ impl<N: Number> Default for Settings<'_, N> {
     }
 }
 
+/// The places of a frame that are evaluated instead of the middles of all its pixels: all pairs of these coordinates, as `fragCoord` has
+/// them. Neighbors at an even and the next odd number make a quad.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Places {
+    /// x, from the left.
+    pub columns: Vec<f64>,
+    /// y, from the bottom up.
+    pub rows: Vec<f64>,
+}
+
+impl Places {
+    /// The middles of pixels from all over a frame of that size, so many columns and rows of them at most, in whole quads.
+    #[must_use]
+    pub fn spread(size: [u32; 2], most: [u32; 2]) -> Self {
+        let along = |axis: usize| {
+            let (length, most) = (size[axis], most[axis]);
+            let pixels: Vec<u32> = if most >= length {
+                (0..length).collect()
+            } else {
+                let pairs = (most / 2).max(1);
+                let first = |pair| 2 * ((2 * pair + 1) * (length / 2) / (2 * pairs));
+                (0..pairs)
+                    .flat_map(|pair| [first(pair), first(pair) + 1])
+                    .filter(|&at| at < length)
+                    .collect()
+            };
+            pixels.into_iter().map(|at| f64::from(at) + 0.5).collect()
+        };
+        Self {
+            columns: along(0),
+            rows: along(1),
+        }
+    }
+
+    /// The pixels that these places lie in: their columns and rows.
+    #[must_use]
+    pub fn pixels(&self) -> [Vec<u32>; 2] {
+        [&self.columns, &self.rows].map(|along| along.iter().map(|&at| at as u32).collect())
+    }
+
+    /// Width and height of the picture that has a pixel for each place.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        [&self.columns, &self.rows].map(|along| along.len() as u32)
+    }
+
+    /// The same places, moved.
+    #[must_use]
+    pub fn shifted(&self, [x, y]: [f64; 2]) -> Self {
+        Self {
+            columns: self.columns.iter().map(|column| column + x).collect(),
+            rows: self.rows.iter().map(|row| row + y).collect(),
+        }
+    }
+}
+
 /// Why there is no picture.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum Failure {
@@ -152,6 +208,12 @@ pub struct Pictured {
     pub observations: Observations,
 }
 
+/// What of a frame is evaluated.
+enum Part<'a> {
+    Rows(Range<u32>),
+    Places(&'a Places),
+}
+
 impl Program {
     /// Paints a frame.
     ///
@@ -160,7 +222,8 @@ impl Program {
     pub fn paint<N: Number>(&self, frame: &Frame, settings: &Settings<'_, N>) -> Result<Painted<N>, Failure> {
         let mut painting = Painting::new(frame.size);
         let (pixels, marks) = painting.parts_mut();
-        let observations = self.fill(frame, frame.rows(), settings, pixels, marks, |colour, _| colour)?;
+        let part = Part::Rows(frame.rows());
+        let observations = self.fill(frame, part, settings, pixels, marks, |colour, _| colour)?;
         Ok(Painted {
             painting,
             observations,
@@ -181,7 +244,7 @@ impl Program {
         let size = [frame.size[0], rows.len() as u32];
         let mut pixels = vec![[0.0; 4]; size[0] as usize * size[1] as usize];
         let mut marks = vec![0; pixels.len()];
-        let observations = self.fill(frame, rows, settings, &mut pixels, &mut marks, shown)?;
+        let observations = self.fill(frame, Part::Rows(rows), settings, &mut pixels, &mut marks, shown)?;
         Ok(Pictured {
             image: Image::new(size[0], size[1], pixels),
             undefined: marks.into_iter().map(|mark| mark & UNDEFINED != 0).collect(),
@@ -189,11 +252,37 @@ impl Program {
         })
     }
 
-    /// Paints rows, of whose pixels what `keep` makes of colours and marks is kept.
+    /// Evaluates a frame at some places only, rounded to f32: a pixel for each.
+    ///
+    /// # Errors
+    /// As [`Self::paint`].
+    pub fn at<N: Number>(
+        &self,
+        frame: &Frame,
+        places: &Places,
+        settings: &Settings<'_, N>,
+    ) -> Result<Image, Failure> {
+        let size = places.size();
+        let mut pixels = vec![[0.0; 4]; size[0] as usize * size[1] as usize];
+        let mut marks = vec![0; pixels.len()];
+        if !pixels.is_empty() {
+            self.fill(
+                frame,
+                Part::Places(places),
+                settings,
+                &mut pixels,
+                &mut marks,
+                shown,
+            )?;
+        }
+        Ok(Image::new(size[0], size[1], pixels))
+    }
+
+    /// Paints a part, of whose pixels what `keep` makes of colours and marks is kept.
     fn fill<N: Number, P: Send>(
         &self,
         frame: &Frame,
-        rows: Range<u32>,
+        part: Part<'_>,
         settings: &Settings<'_, N>,
         pixels: &mut [P],
         marks: &mut [u8],
@@ -203,15 +292,18 @@ impl Program {
         let prepared = N::prepare(compiled, frame);
         let textures = frame.channels.each_ref().map(|image| image.as_ref().map(Texture));
         let limits = Limits::of(settings);
-        let size = [frame.size[0], rows.end];
-        let job = Job::new(compiled, &prepared, &textures, &limits, settings, size);
+        let (size, start, places) = match part {
+            Part::Rows(rows) => ([frame.size[0], rows.end], rows.start, None),
+            Part::Places(places) => (places.size(), 0, Some(places)),
+        };
+        let job = Job::new(compiled, &prepared, &textures, &limits, settings, size).at(places);
         let failure = Mutex::new(None);
-        let band = frame.size[0] as usize * job.rows();
+        let band = size[0] as usize * job.rows();
         let bands = pixels.par_chunks_mut(band).zip(marks.par_chunks_mut(band));
         let noted = bands.enumerate().map_init(
             || (job.batch(), vec![[N::default(); 3]; band]),
             |(batch, colours), (tiles, (pixels, marks))| {
-                let first = rows.start + (tiles * job.rows()) as u32;
+                let first = start + (tiles * job.rows()) as u32;
                 let wanted = settings
                     .wanted
                     .map(|wanted| &wanted[tiles * band..][..pixels.len()]);

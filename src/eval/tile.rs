@@ -8,7 +8,7 @@ use super::batch::{Batch, COLUMNS, FUEL, Here, LANES, Lanes, Stop, Watch, lane_a
 use super::handler::run;
 use super::number::Number;
 use super::observe::{MESA_CAP, Observations, Observed, Site, earlier};
-use super::paint::{Failure, Limits, Settings};
+use super::paint::{Failure, Limits, Places, Settings};
 use super::painting::{DISCARDED, UNDEFINED};
 use super::prepare::Prepared;
 use super::program::Compiled;
@@ -53,6 +53,8 @@ pub(super) struct Job<'a, N: Number> {
     words: Vec<u32>,
     sites: &'a [Site],
     size: [u32; 2],
+    /// Where the pixels are, if not side by side.
+    places: Option<&'a Places>,
 }
 
 impl<'a, N: Number> Job<'a, N> {
@@ -74,7 +76,13 @@ impl<'a, N: Number> Job<'a, N> {
             words,
             sites: &compiled.sites,
             size,
+            places: None,
         }
+    }
+
+    /// The same at places of the frame, not at all its pixels.
+    pub(super) fn at(self, places: Option<&'a Places>) -> Self {
+        Self { places, ..self }
     }
 
     /// How many rows of pixels a tile has.
@@ -175,9 +183,9 @@ impl<'a, N: Number> Job<'a, N> {
                 continue;
             };
             for (chunk, cell) in batch.float_row(row).iter().enumerate() {
-                let first = f64::from(corner[axis]) + place(chunk * LANES)[axis] as f64;
+                let first = corner[axis] as usize + place(chunk * LANES)[axis];
                 cell.set(std::array::from_fn(|lane| {
-                    N::from_f64(first + place(lane)[axis] as f64 + 0.5)
+                    N::from_f64(self.coordinate(axis, first + place(lane)[axis]))
                 }));
             }
         }
@@ -185,6 +193,16 @@ impl<'a, N: Number> Job<'a, N> {
         for rounds in &batch.own_rounds {
             rounds.set([0; LANES]);
         }
+    }
+
+    /// `fragCoord.x` or `fragCoord.y` of a pixel, also beyond the picture's edge.
+    fn coordinate(&self, axis: usize, at: usize) -> f64 {
+        let middle = at as f64 + 0.5;
+        let Some(places) = self.places else {
+            return middle;
+        };
+        let along = [&places.columns, &places.rows][axis];
+        along.get(at).or(along.last()).copied().unwrap_or(middle)
     }
 
     /// The colours of a chunk, and which of its pixels were discarded.

@@ -45,6 +45,33 @@ pub(super) fn styles(text: &str) -> Vec<String> {
     [Some(first), second].into_iter().flatten().collect()
 }
 
+/// The shader with other offsets of secondary rays and least t's, as shares of the largest that the scene accepts.
+pub(super) fn restyled(text: &str, max_offset: f64) -> Vec<String> {
+    let all = RESTYLED.into_iter().map(|[offset, t_min]| {
+        let [offset, t_min] = [offset * max_offset, (t_min * max_offset).max(LEAST)];
+        // The written numbers stand nowhere else.
+        text.replace(" 0.001 * ", &format!(" {offset:?} * "))
+            .replace("> 0.00001", &format!("> {t_min:?}"))
+            .replace("> 0.001)", &format!("> {t_min:?})"))
+    });
+    all.filter(|other| other != text).collect()
+}
+
+/// Offsets and least t's.
+const RESTYLED: [[f64; 2]; 9] = [
+    [1.0, 0.0],
+    [0.5, 0.0],
+    [0.2, 0.0],
+    [0.1, 0.0],
+    [0.01, 0.0],
+    [0.0, 1.0],
+    [0.0, 0.1],
+    [1.0, 1.0],
+    [0.1, 0.1],
+];
+/// Less is lost to rounding where a ray starts on its surface.
+const LEAST: f64 = 1e-9;
+
 pub(super) const NO_SHADOWS: Edit = (
     "if (cosine > 0.0 && !inShadow(hit, lights[i].position)) {",
     "if (cosine > 0.0) {",

@@ -93,7 +93,7 @@ fn distance(one: &Image, other: &Image) -> f64 {
 /// The value that comes nearest to the picture: among the multiples first, then between the neighbours of the best. None where the number has
 /// nothing to do with too many of the wrong pixels: none of the multiples changes them.
 fn best(knob: &Knob, looked_at: &Looked, right: &Image) -> Option<f64> {
-    let painted = |value| (knob.made)(value)?.paint(looked_at.frame);
+    let painted = |value| (knob.made)(value)?.paint(looked_at.view);
     let values = MULTIPLES.map(|multiple| knob.usual * multiple);
     let pictures = values.map(painted);
     let is_out_of_reach = |&at: &usize| {
@@ -234,6 +234,7 @@ fn of_scene(scene: &Scene, moment: Moment) -> Vec<Knob> {
             made: Box::new(move |value| {
                 let mut scene = scene.clone();
                 set(&mut scene, value);
+                scene.release_changed_scatters();
                 Some(Made::Scene(Box::new(scene), moment))
             }),
         }

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::suspect::{Suspect, paint};
 use crate::compare::Pixel;
-use crate::eval::Program;
+use crate::eval::{Places, Program};
 use crate::frame::Frame;
 use crate::image::Image;
 use crate::scene::{Integrator, Scene};
@@ -17,6 +17,10 @@ const SAME: f64 = 1e-3;
 const LEFT_OVER: f64 = 0.05;
 const MAX_LEFT_OVER: f64 = 0.005;
 
+/// So many times as many pixels may be left by a mistake that is looked at in other styles of secondary rays, and so many mistakes are.
+const NEAR: u64 = 6;
+const MOST_NEAR: usize = 8;
+
 /// A ray meets as many surfaces in the time that one unit of work takes.
 const SURFACES: usize = 8;
 
@@ -25,14 +29,29 @@ pub(super) struct Looked<'a> {
     /// How many of them are wrong.
     pub(super) differing: u64,
     pub(super) small: &'a Image,
-    pub(super) frame: &'a Frame,
+    pub(super) view: &'a View,
 }
 
 impl Looked<'_> {
     /// How many pixels a suspect does not explain, if those are few.
     pub(super) fn left(&self, suspect: &Suspect) -> Option<u64> {
-        let left = differing(self.small, suspect.picture(self.frame)?);
+        let left = differing(self.small, suspect.picture(self.view)?);
         (left <= left_over(self.differing, self.small.pixels().len())).then_some(left)
+    }
+
+    /// Those that leave few pixels more than they may, so that another style of secondary rays might explain these.
+    pub(super) fn near<'s>(&self, suspects: impl Iterator<Item = &'s Suspect>) -> Vec<&'s Suspect> {
+        let limit = NEAR * left_over(self.differing, self.small.pixels().len()).max(1);
+        let near = suspects.filter_map(|suspect| {
+            let left = differing(self.small, suspect.picture(self.view)?);
+            (left <= limit && left < self.differing).then_some((left, suspect))
+        });
+        let mut near: Vec<_> = near.collect();
+        near.sort_by_key(|&(left, _)| left);
+        near.into_iter()
+            .map(|(_, suspect)| suspect)
+            .take(MOST_NEAR)
+            .collect()
     }
 
     /// Those that explain the picture best, one of each name.
@@ -56,7 +75,7 @@ impl Looked<'_> {
 /// A picture of still fewer pixels, in which most suspects are seen not to be it.
 pub(super) struct Glance {
     picture: Image,
-    frame: Frame,
+    view: View,
     /// How many pixels may be left unexplained.
     limit: u64,
 }
@@ -68,21 +87,21 @@ const A_FEW: u64 = 2;
 
 impl Glance {
     /// None if the shader cannot be painted.
-    pub(super) fn at(student: &Program, rights: &[Suspect], frame: &Frame) -> Option<Self> {
-        let frame = smaller(frame, GLANCE, u64::MAX);
-        let picture = paint(student, &frame)?;
-        let right = rights.first()?.made.paint(&frame)?;
+    pub(super) fn at(student: &Program, rights: &[Suspect], view: &View) -> Option<Self> {
+        let view = View::of(&view.frame, GLANCE, u64::MAX);
+        let picture = paint(student, &view)?;
+        let right = rights.first()?.made.paint(&view)?;
         let wrong = differing(&picture, &right);
         Some(Self {
             limit: (wrong as f64 * GLANCED_OVER) as u64 + A_FEW,
             picture,
-            frame,
+            view,
         })
     }
 
     /// Whether a suspect may explain the picture.
     pub(super) fn is_worth_a_look(&self, suspect: &Suspect) -> bool {
-        let painted = suspect.made.paint(&self.frame);
+        let painted = suspect.made.paint(&self.view);
         painted.is_some_and(|painted| differing(&self.picture, &painted) <= self.limit)
     }
 }
@@ -119,24 +138,37 @@ pub(super) fn pixels(frame: &Frame) -> u64 {
     frame.size.into_iter().map(u64::from).product()
 }
 
-/// The same frame in fewer pixels: so many a side at most, and so many in all. Their numbers are even, so that no ray runs along the middle
-/// of the picture where none did.
-pub(super) fn smaller(frame: &Frame, side: u32, all: u64) -> Frame {
-    let [width, height] = frame.size;
-    let divided = |divisor: u32| {
-        [width, height].map(|own| match own / divisor {
-            side if divisor == 1 || side < 2 => side.max(1),
-            side => side & !1,
-        })
-    };
-    let is_small = |divisor: &u32| {
-        let [width, height] = divided(*divisor);
-        width.max(height) <= side && u64::from(width) * u64::from(height) <= all
-    };
-    let divisor = (1..=width.max(height)).find(is_small).unwrap_or(u32::MAX);
-    Frame {
-        size: divided(divisor),
-        ..frame.clone()
+/// Some pixels of a frame, in whole quads from all over it. What they show is what the frame's own picture shows there, in its own size and
+/// aspect.
+#[derive(Debug, Clone)]
+pub(super) struct View {
+    pub(super) frame: Frame,
+    pub(super) places: Places,
+}
+
+impl View {
+    /// So many pixels a side at most, and so many in all.
+    pub(super) fn of(frame: &Frame, side: u32, all: u64) -> Self {
+        let [width, height] = frame.size;
+        let divided = |divisor: u32| {
+            [width, height].map(|own| match own / divisor {
+                side if divisor == 1 || side < 2 => side.max(1),
+                side => side & !1,
+            })
+        };
+        let is_small = |divisor: &u32| {
+            let [width, height] = divided(*divisor);
+            width.max(height) <= side && u64::from(width) * u64::from(height) <= all
+        };
+        let divisor = (1..=width.max(height)).find(is_small).unwrap_or(u32::MAX);
+        Self {
+            places: Places::spread(frame.size, divided(divisor)),
+            frame: frame.clone(),
+        }
+    }
+
+    pub(super) fn pixels(&self) -> u64 {
+        self.places.size().into_iter().map(u64::from).product()
     }
 }
 

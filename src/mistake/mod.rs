@@ -7,19 +7,21 @@ mod change;
 mod edit;
 mod fit;
 mod look;
+mod noisy;
 mod pair;
 mod suspect;
 
 use std::borrow::Cow;
 use std::sync::OnceLock;
-use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
-use self::look::{Glance, Looked, differing, left_over, pixels, smaller, work};
+pub use self::noisy::NoisyPixel;
+
+use self::look::{Glance, Looked, View, differing, left_over, pixels, work};
 use self::suspect::{Made, Suspect, paint};
 use crate::compare::MAX_DIFFERING;
-use crate::eval::Program;
+use crate::eval::{Places, Program};
 use crate::export;
 use crate::frame::Frame;
 use crate::scene::{Moment, Scene};
@@ -75,6 +77,10 @@ const FEW: u64 = 8;
 /// explanations.
 const MANY: usize = 3;
 
+/// Fewer pixels are not explained by a mistake that explains them all, and of more than so many, so many are looked at.
+const FEWEST_EXPLAINED: usize = 4;
+const MOST_EXPLAINED: usize = 40;
+
 /// So many pairs of mistakes are painted before it is asked whether one of them explains the picture.
 const AT_ONCE: usize = 32;
 
@@ -84,7 +90,7 @@ pub struct Suspects {
     scene: Scene,
     moment: Moment,
     /// Of few pixels.
-    small: Frame,
+    small: View,
     /// What paints the scene rightly: the tracer, and the shaders.
     right: Vec<Suspect>,
     /// What loses so much of the picture that many mistakes may have led to it.
@@ -100,15 +106,15 @@ impl Suspects {
     /// Of a scene, for pictures of that frame; none if it takes so long to paint that no picture worth comparing is small enough.
     #[must_use]
     pub fn of(scene: &Scene, frame: &Frame) -> Option<Self> {
-        let small = smaller(frame, SMALL, SMALL_WORK / work(scene));
-        let is_enough = pixels(&small) >= u64::from(FEWEST).min(pixels(frame));
+        let small = View::of(frame, SMALL, SMALL_WORK / work(scene));
+        let is_enough = small.pixels() >= u64::from(FEWEST).min(pixels(frame));
         is_enough.then(|| Self::in_size(scene, small, Some(OnceLock::new())))
     }
 
-    fn in_size(scene: &Scene, small: Frame, finer: Option<OnceLock<Box<Self>>>) -> Self {
+    fn in_size(scene: &Scene, small: View, finer: Option<OnceLock<Box<Self>>>) -> Self {
         let moment = Moment {
-            frame: small.frame,
-            time: f64::from(small.time),
+            frame: small.frame.frame,
+            time: f64::from(small.frame.time),
         };
         let styles = export::shader(scene)
             .map(|text| edit::styles(&text))
@@ -143,8 +149,8 @@ impl Suspects {
     fn finer(&self, frame: &Frame) -> Option<&Self> {
         let finer = self.finer.as_ref()?;
         let work = u64::from(FINER * FINER) * SMALL_WORK / work(&self.scene);
-        let large = smaller(frame, FINER * SMALL, work);
-        let is_finer = pixels(&large) > pixels(&self.small);
+        let large = View::of(frame, FINER * SMALL, work);
+        let is_finer = large.pixels() > self.small.pixels();
         is_finer.then(|| {
             finer
                 .get_or_init(|| Box::new(Self::in_size(&self.scene, large, None)))
@@ -153,9 +159,9 @@ impl Suspects {
     }
 
     /// The mistake, or the two, that paint what the `student`'s shader does in that frame, in f64. Where no single one
-    /// does, two at once are looked for, for as long as `patience` says at most.
+    /// does, two at once are looked for, `pairs` of them at most: the same whatever else the machine does.
     #[must_use]
-    pub fn recognise(&self, student: &Program, frame: &Frame, patience: Duration) -> Option<Vec<Named>> {
+    pub fn recognise(&self, student: &Program, frame: &Frame, pairs: usize) -> Option<Vec<Named>> {
         let small = paint(student, &self.small)?;
         let pixels = small.pixels().len();
         let rights = self.right.iter().filter_map(|right| right.picture(&self.small));
@@ -165,7 +171,7 @@ impl Suspects {
         if differing < ENOUGH
             && let Some(finer) = self.finer(frame)
         {
-            return finer.recognise(student, frame, patience);
+            return finer.recognise(student, frame, pairs);
         }
         if differing < FEW || differing as f64 <= pixels as f64 * MAX_DIFFERING {
             return None;
@@ -173,7 +179,7 @@ impl Suspects {
         let looked_at = Looked {
             differing,
             small: &small,
-            frame: &self.small,
+            view: &self.small,
         };
         let confirmed = |suspect: &Suspect, others: &[&Suspect]| {
             let mut named = self.confirm(suspect, student, frame)?;
@@ -202,14 +208,24 @@ impl Suspects {
         if let Some(suspect) = looked_at.matching(&fitted).first() {
             return confirmed(suspect, &[]);
         }
-        let deadline = Instant::now() + patience;
+        let near = looked_at.near(self.general.iter().chain(&self.wrong));
+        let restyled: Vec<Suspect> = near
+            .iter()
+            .flat_map(|suspect| suspect.in_other_styles(self.moment, self.scene.max_offset))
+            .collect();
+        if let Some(suspect) = looked_at.matching(&restyled).first() {
+            return confirmed(suspect, &[]);
+        }
+        if pairs == 0 {
+            return None;
+        }
         // What is general comes first: of what paints the same picture, it says least that may not be so.
         let glance = Glance::at(student, &self.right, &self.small)?;
-        let pairs = pair::likely(self.general.iter().chain(&self.wrong), &looked_at, right);
-        pairs.chunks(AT_ONCE).find_map(|pairs| {
+        let mut likely = pair::likely(self.general.iter().chain(&self.wrong), &looked_at, right);
+        likely.truncate(pairs);
+        likely.chunks(AT_ONCE).find_map(|pairs| {
             let painted: Vec<Suspect> = pairs
                 .par_iter()
-                .filter(|_| Instant::now() < deadline)
                 .filter_map(|&pair| pair::both(pair, self.moment))
                 .filter(|pair| glance.is_worth_a_look(pair) && looked_at.left(pair).is_some())
                 .collect();
@@ -220,14 +236,57 @@ impl Suspects {
         })
     }
 
-    /// The names, if a larger picture is explained as well.
+    /// The names, if a larger picture is explained as well, perhaps in another style of secondary rays.
     fn confirm(&self, suspect: &Suspect, student: &Program, frame: &Frame) -> Option<Vec<Named>> {
-        let large = smaller(frame, u32::MAX, LARGE_WORK / work(&self.scene));
+        let large = View::of(frame, u32::MAX, LARGE_WORK / work(&self.scene));
         let wrong = paint(student, &large)?;
         let right = self.right.first()?.made.paint(&large)?;
-        let limit = left_over(differing(&wrong, &right), wrong.pixels().len());
+        let all = differing(&wrong, &right);
+        let limit = left_over(all, wrong.pixels().len());
         drop(right);
-        let left = differing(&wrong, &suspect.made.paint(&large)?);
-        (left <= limit).then(|| suspect.mistakes.clone())
+        let explains = |suspect: &Suspect| {
+            let picture = suspect.made.paint(&large);
+            picture.is_some_and(|picture| differing(&wrong, &picture) <= limit)
+        };
+        let in_any_style = || {
+            let others = suspect.in_other_styles(self.moment, self.scene.max_offset);
+            others.par_iter().any(explains)
+        };
+        (explains(suspect) || in_any_style()).then(|| suspect.mistakes.clone())
+    }
+
+    /// The mistake that explains a few pixels in which the `student`'s shader is another color than it should be, and all that are not: it
+    /// shows in nothing else. None with fewer than [`FEWEST_EXPLAINED`].
+    #[must_use]
+    pub fn explaining(&self, student: &Program, pixels: &[[u32; 2]]) -> Option<Named> {
+        if pixels.len() < FEWEST_EXPLAINED {
+            return None;
+        }
+        let step = pixels.len().div_ceil(MOST_EXPLAINED);
+        let along = |axis: usize| {
+            let places = pixels.iter().step_by(step).map(|pixel| pixel[axis]);
+            let places: std::collections::BTreeSet<u32> = places.collect();
+            places.into_iter().map(|place| f64::from(place) + 0.5).collect()
+        };
+        let view = View {
+            frame: self.small.frame.clone(),
+            places: Places {
+                columns: along(0),
+                rows: along(1),
+            },
+        };
+        let own = paint(student, &view)?;
+        let right = self.right.first()?.made.paint(&view)?;
+        let wrong = differing(&own, &right);
+        let explains = |suspect: &&Suspect| {
+            let picture = suspect.made.paint(&view);
+            picture.is_some_and(|picture| differing(&own, &picture) == 0)
+        };
+        if wrong < FEWEST_EXPLAINED as u64 {
+            return None;
+        }
+        let explaining: Vec<&Suspect> = self.wrong.par_iter().filter(explains).collect();
+        let (first, others) = explaining.split_first()?;
+        (others.len() <= MANY).then(|| first.mistakes[0].or(others))
     }
 }

@@ -55,7 +55,7 @@ struct Alone<'a> {
 
 impl<'a> Alone<'a> {
     fn of(suspect: &'a Suspect, looked_at: &Looked, right: &Image) -> Option<Self> {
-        let picture = suspect.picture(looked_at.frame)?;
+        let picture = suspect.picture(looked_at.view)?;
         Some(Self {
             suspect,
             changed: Pixels::differing(picture, right),

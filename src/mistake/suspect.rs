@@ -5,10 +5,10 @@ use std::time::{Duration, Instant};
 
 use super::Named;
 use super::catalogue::Mistake;
-use super::edit::styles;
+use super::edit::{restyled, styles};
+use super::look::View;
 use crate::eval::{Program, Settings, Variant};
 use crate::export;
-use crate::frame::Frame;
 use crate::glsl;
 use crate::image::Image;
 use crate::scene::{Moment, Scene};
@@ -30,31 +30,32 @@ pub(super) enum Made {
 
 impl Made {
     /// None where there is no picture: what was made is no shader, or takes too long.
-    pub(super) fn paint(&self, frame: &Frame) -> Option<Image> {
+    pub(super) fn paint(&self, view: &View) -> Option<Image> {
         match self {
             Self::Shader(text) => {
                 let mut files = Files::default();
                 let file = files.add(File::new("<mistake>", text.as_str()));
                 let checked = glsl::check(&files, file, &glsl::Options::default()).ok()?;
-                paint(&Program::prepared(&checked, Variant::Plain).ok()?, frame)
+                paint(&Program::prepared(&checked, Variant::Plain).ok()?, view)
             }
             Self::Scene(scene, moment) => {
                 let mut scene = scene.as_ref().clone();
-                scene.film.size = frame.size;
-                Some(Tracer::<f64>::at(&scene, *moment).picture(|| ()))
+                scene.film.size = view.frame.size;
+                let [columns, rows] = view.places.pixels();
+                Some(Tracer::<f64>::at(&scene, *moment).sampled(&columns, &rows))
             }
         }
     }
 }
 
-/// The picture of a shader in f64.
-pub(super) fn paint(program: &Program, frame: &Frame) -> Option<Image> {
+/// What a shader shows of a view in f64.
+pub(super) fn paint(program: &Program, view: &View) -> Option<Image> {
     let settings = Settings::<f64> {
         variant: Variant::Plain,
         deadline: Some(Instant::now() + PATIENCE),
         ..Settings::default()
     };
-    Some(program.picture(frame, frame.rows(), &settings).ok()?.image)
+    program.at(&view.frame, &view.places, &settings).ok()
 }
 
 /// A tracer with mistakes in it. Its picture is painted once, when it is first asked for.
@@ -86,16 +87,27 @@ impl Suspect {
         })
     }
 
+    /// The same mistakes in shaders whose secondary rays start in other ways.
+    pub(super) fn in_other_styles(&self, moment: Moment, max_offset: f64) -> Vec<Self> {
+        let Some(text) = self.text(moment) else {
+            return Vec::new();
+        };
+        let others = restyled(&text, max_offset).into_iter();
+        others
+            .map(|text| Self::new(self.mistakes.clone(), Made::Shader(text)))
+            .collect()
+    }
+
     pub(super) fn names(&self) -> impl Iterator<Item = &'static str> {
         self.mistakes.iter().map(|named| named.name)
     }
 
-    /// The picture in that frame, which must always be the same. Nobody waits for it: a thread of rayon's that did, while it paints another
+    /// The picture in that view, which must always be the same. Nobody waits for it: a thread of rayon's that did, while it paints another
     /// for somebody else, might wait for itself.
-    pub(super) fn picture(&self, frame: &Frame) -> Option<&Image> {
+    pub(super) fn picture(&self, view: &View) -> Option<&Image> {
         if self.picture.get().is_none() {
             // Somebody may have been faster, with the same picture.
-            let _ = self.picture.set(self.made.paint(frame));
+            let _ = self.picture.set(self.made.paint(view));
         }
         self.picture.get()?.as_ref()
     }

@@ -33,6 +33,7 @@ pub(super) fn question([differing, undecided, undefined]: [u64; 3]) -> Answer {
         differing,
         undecided,
         undefined,
+        tied: 0,
         max_abs: 0.25,
         first: None,
         worst: None,

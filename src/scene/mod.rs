@@ -9,9 +9,12 @@ mod film;
 mod light;
 mod material;
 mod motion;
+mod perturb;
 mod requirements;
 mod scatter;
 mod shape;
+
+use std::ops::Range;
 
 pub use camera::{Camera, Projection};
 pub use figure::{Figure, Outline};
@@ -69,6 +72,35 @@ pub struct Object {
 }
 
 impl Scene {
+    /// Removes the surfaces for whose place `stays` is false. A scatter that loses a sphere is a grid no longer: those that it has
+    /// left are surfaces like any other.
+    pub fn retain_objects(&mut self, mut stays: impl FnMut(usize) -> bool) {
+        let stays: Vec<bool> = (0..self.objects.len()).map(&mut stays).collect();
+        let before = |end: usize| stays[..end].iter().filter(|&&stays| stays).count();
+        self.scatters.retain_mut(|scattered| {
+            let Range { start, end } = scattered.objects;
+            scattered.objects = before(start)..before(end);
+            scattered.objects.len() == end - start
+        });
+        let mut stays = stays.into_iter();
+        self.objects.retain(|_| stays.next().unwrap_or(true));
+    }
+
+    /// Makes surfaces like any other of the spheres of scatters that are no longer what the scatter says: somebody has changed them.
+    pub fn release_changed_scatters(&mut self) {
+        let objects = &self.objects;
+        self.scatters.retain(
+            |Scattered {
+                 scatter,
+                 objects: own,
+             }| {
+                objects
+                    .get(own.clone())
+                    .is_some_and(|own| scatter.spheres().eq(own.iter().cloned()))
+            },
+        );
+    }
+
     /// The scene at that moment: all that moves is where it is then, and nothing moves any more.
     #[must_use]
     pub fn at(&self, moment: Moment) -> Self {
@@ -86,5 +118,61 @@ impl Scene {
         }
         scene.motions.clear();
         scene
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::source::{File, Files};
+
+    #[test]
+    fn scatters_keep_their_spheres_or_are_none_any_more() {
+        let text = "[[sphere]]\ncenter = [0, 0, -9]\nradius = 1\nmaterial = { model = \"mirror\", color = [1, 1, 1] }\n\
+                    [[scatter]]\ncorner = [0, 0, -9]\ncells = [1, 1, 2]\nspacing = 1\nradius = [0.1, 0.4]\nseed = 1\n\
+                    material = { model = \"mirror\", color = [1, 1, 1] }\n\
+                    [[scatter]]\ncorner = [5, 0, -9]\ncells = [3, 1, 1]\nspacing = 1\nradius = [0.1, 0.4]\nseed = 2\n\
+                    material = { model = \"mirror\", color = [1, 1, 1] }\n";
+        let mut files = Files::default();
+        let file = files.add(File::new("s", text));
+        let scene = parse(&files, file).unwrap();
+        let ranges = |scene: &Scene| -> Vec<_> {
+            let ranges = scene.scatters.iter().map(|scattered| scattered.objects.clone());
+            ranges.collect()
+        };
+        let sphere = scene
+            .objects
+            .iter()
+            .position(|object| object.shape == scene.objects[0].shape)
+            .unwrap();
+        for removed in 0..scene.objects.len() {
+            let mut other = scene.clone();
+            other.retain_objects(|at| at != removed);
+            assert_eq!(other.objects.len(), scene.objects.len() - 1);
+            let whole = ranges(&scene)
+                .iter()
+                .filter(|range| !range.contains(&removed))
+                .count();
+            assert_eq!(other.scatters.len(), whole, "{removed}");
+            for Scattered { scatter, objects } in &other.scatters {
+                assert!(
+                    scatter
+                        .spheres()
+                        .eq(other.objects[objects.clone()].iter().cloned()),
+                    "{removed}"
+                );
+            }
+        }
+        let mut other = scene.clone();
+        other.retain_objects(|_| false);
+        assert!(other.objects.is_empty() && other.scatters.is_empty());
+        let mut other = scene.clone();
+        other.objects[sphere].material.color = [0.5; 3];
+        other.release_changed_scatters();
+        assert_eq!(ranges(&other), ranges(&scene), "none of theirs has changed");
+        let first = ranges(&scene)[0].start;
+        other.objects[first].material.color = [0.5; 3];
+        other.release_changed_scatters();
+        assert_eq!(ranges(&other), ranges(&scene)[1..]);
     }
 }

@@ -17,11 +17,21 @@ pub(super) struct Light<T: Real> {
     pub(super) shadow: bool,
     /// 0 for a point.
     pub(super) radius: T,
+    /// The emitter that is where the light is, and does not hide it.
+    pub(super) surface: Option<usize>,
 }
 
 impl<T: Real> Light<T> {
-    pub(super) fn new(light: &scene::Light) -> Self {
+    pub(super) fn new(light: &scene::Light, objects: &[scene::Object]) -> Self {
+        let is_its_own = |object: &scene::Object| {
+            let shape = scene::Shape::Sphere {
+                center: light.position,
+                radius: light.radius,
+            };
+            object.shape == shape && object.material.model == scene::Model::Emitter
+        };
         Self {
+            surface: objects.iter().position(is_its_own),
             position: T::Vec3::from_f64(light.position),
             color: T::Vec3::from_f64(light.color),
             shadow: light.shadow,

@@ -21,6 +21,7 @@ mod seen;
 mod shape;
 mod spheres;
 mod style;
+mod styled;
 #[cfg(test)]
 mod tests;
 mod tile;
@@ -33,7 +34,8 @@ use rayon::prelude::*;
 pub use adaptive::Spent;
 pub use real::{Real, Vector};
 pub use redraw::REDRAWN_ROWS;
-pub use style::{Hull, Styles};
+pub use style::{Acne, Hull, Lamp, RayStyle, RayStyles, Styles};
+pub use styled::StyleFamily;
 
 use self::camera::Camera;
 use self::figure::Figure;

@@ -60,6 +60,15 @@ pub(super) struct Hit<T: Real> {
 }
 
 impl<T: Real> Hit<T> {
+    /// The point from which lights are looked at, above the surface.
+    pub(super) fn lit_from(&self, style: &impl Style<T>) -> T::Vec3 {
+        if style.lamp().from_start {
+            self.point + self.normal * style.offset()
+        } else {
+            self.point
+        }
+    }
+
     /// A secondary ray, to either side of the surface.
     pub(super) fn leave(&self, direction: T::Vec3, style: &impl Style<T>) -> Ray<T> {
         let offset = style.offset();
@@ -69,7 +78,7 @@ impl<T: Real> Hit<T> {
             offset
         };
         Ray {
-            origin: self.point + self.normal * offset,
+            origin: self.point + self.normal * offset + direction * style.along(),
             direction,
             from: Some(self.surface),
         }

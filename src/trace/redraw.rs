@@ -1,8 +1,11 @@
 //! What pixels are when other numbers are drawn for their samples.
 
+use rayon::prelude::*;
+
 use super::sampler::{Draws, Sample};
 use super::style::Exact;
 use super::{Kernel, Tracer, film, tile};
+use crate::image::Image;
 use crate::scene::{Integrator, Sampler};
 
 impl Tracer<f64> {
@@ -28,10 +31,10 @@ impl Tracer<f64> {
         integrator == Integrator::Path
     }
 
-    /// The colour of the pixel at (x, y), y upwards, with as many samples as the scene asks for, drawn by the `independent` sampler: other
-    /// ones for each `set`, of which 0 is the scene's own. Components lie in [0, 1].
+    /// The mean of the samples of the pixel at (x, y), y upwards, as many as the scene asks for, drawn by the `independent` sampler: other
+    /// ones for each `set`, of which 0 is the scene's own. It is yet to be [developed](Self::developed).
     #[must_use]
-    pub fn redrawn(&self, [x, y]: [u32; 2], set: u32) -> [f64; 3] {
+    pub fn redrawn_mean(&self, [x, y]: [u32; 2], set: u32) -> [f64; 3] {
         let count = self.film.samples;
         let mut sum = glam::DVec3::ZERO;
         for index in 0..count {
@@ -46,7 +49,13 @@ impl Tracer<f64> {
             let seen = self.look(self.camera.screen(place));
             sum += self.radiance(seen, draws, &Exact);
         }
-        self.developed((sum / f64::from(count)).to_array())
+        (sum / f64::from(count)).to_array()
+    }
+
+    /// The same, developed.
+    #[must_use]
+    pub fn redrawn(&self, pixel: [u32; 2], set: u32) -> [f64; 3] {
+        self.developed(self.redrawn_mean(pixel, set))
     }
 
     /// The same of all pixels of [`REDRAWN_ROWS`] rows, or what is left of them, row by row; yet to be [developed](Self::developed).
@@ -60,6 +69,29 @@ impl Tracer<f64> {
     #[must_use]
     pub fn developed(&self, mean: [f64; 3]) -> [f64; 3] {
         mean.map(|component| film::develop(&self.film, component).clamp(0.0, 1.0))
+    }
+
+    /// What the mean of a pixel's samples was before it was developed; infinite where that cannot be.
+    #[must_use]
+    pub fn undeveloped(&self, color: [f64; 3]) -> [f64; 3] {
+        color.map(|component| film::undevelop(&self.film, component))
+    }
+
+    /// By how much more than a mean of samples the color rises.
+    #[must_use]
+    pub fn slope(&self, mean: [f64; 3]) -> [f64; 3] {
+        mean.map(|component| film::slope(&self.film, component))
+    }
+
+    /// The colors of all pixels in these columns and rows, a pixel for each.
+    #[must_use]
+    pub fn sampled(&self, columns: &[u32], rows: &[u32]) -> Image {
+        let width = columns.len();
+        let pixels = (0..width * rows.len()).into_par_iter().map(|at| {
+            let [r, g, b] = self.pixel(columns[at % width], rows[at / width]);
+            [r as f32, g as f32, b as f32, 1.0]
+        });
+        Image::new(width as u32, rows.len() as u32, pixels.collect())
     }
 }
 

@@ -9,14 +9,49 @@ use super::real::Real;
 use super::sampler::{Draws, Sample};
 use super::{Tracer, film};
 
-/// How secondary rays start. [`Exact`] costs nothing.
+/// How secondary rays start, and what they look for. [`Exact`] costs nothing.
 pub(super) trait Style<T: Real> {
     /// How far along the normal they start off their surface, in scene units.
     fn offset(&self) -> T;
+    /// How far along their own direction they start, in scene units.
+    fn along(&self) -> T;
     /// Hits must lie beyond this t; that of camera rays is 0.
     fn t_min(&self, secondary: bool) -> T;
     /// The style of rays that look for a light, where that of the others is this one.
     fn of_light_rays(&self) -> impl Style<T>;
+    /// What rays that look for a light make of it.
+    fn lamp(&self) -> Lamp;
+
+    /// Which of them meet the surface that they start from.
+    fn acne(&self) -> Acne {
+        Acne::default()
+    }
+
+    /// Whether they start on their surface itself.
+    fn is_on_surface(&self) -> bool {
+        self.offset() == T::zero() && self.along() == T::zero()
+    }
+}
+
+/// What rays that look for a light make of it.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Lamp {
+    /// The direction to a light, or the cone in which it is seen, is that from where the ray starts, not from the surface.
+    pub from_start: bool,
+    /// A light that is a surface counts only where the ray meets it: at the edge of the cone, a ray that starts elsewhere may not.
+    pub must_be_met: bool,
+    /// The density with which a light that a path meets by chance would have been sampled is that from the surface, not from
+    /// where the ray starts.
+    pub weighed_at_surface: bool,
+}
+
+/// Which rays of a shader wrongly meet the surface that they start from, where it starts them.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Acne {
+    /// Those that go on from the n-th surface, by bits from the lowest.
+    pub own_met: u32,
+    /// Those that look for the n-th light, which is hidden by it.
+    pub hidden_lights: u32,
 }
 
 /// From the surface itself.
@@ -26,11 +61,17 @@ impl<T: Real> Style<T> for Exact {
     fn offset(&self) -> T {
         T::zero()
     }
+    fn along(&self) -> T {
+        T::zero()
+    }
     fn t_min(&self, _: bool) -> T {
         T::zero()
     }
     fn of_light_rays(&self) -> impl Style<T> {
         Self
+    }
+    fn lamp(&self) -> Lamp {
+        Lamp::default()
     }
 }
 
@@ -38,28 +79,41 @@ impl<T: Real> Style<T> for Exact {
 const OFFSETS: [f64; 3] = [0.0, 0.1, 1.0];
 const T_MINS: [f64; 2] = [0.0, 1.0];
 
-/// As a shader might.
-#[derive(Clone, Copy)]
-struct Legal {
-    offset: f64,
-    t_min: f64,
+/// How a shader may start its secondary rays. Lengths are in scene units.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct RayStyle {
+    /// How far along the normal they start off their surface.
+    pub offset: f64,
+    /// How far along their own direction they start.
+    pub along: f64,
+    /// The least t of a hit.
+    pub t_min: f64,
+    /// What becomes of lights.
+    pub lamp: Lamp,
+    /// What is wrong with it, if anything is.
+    pub acne: Acne,
 }
 
-impl Legal {
-    fn all(max_offset: f64) -> impl Iterator<Item = Self> + Clone {
+impl RayStyle {
+    /// A few from all over what is accepted.
+    fn few(max_offset: f64) -> impl Iterator<Item = Self> + Clone {
         let of_offset = move |offset: f64| {
             T_MINS.map(|t_min| Self {
                 offset: offset * max_offset,
                 t_min: t_min * max_offset,
+                ..Self::default()
             })
         };
         OFFSETS.into_iter().flat_map(of_offset)
     }
 }
 
-impl Style<f64> for Legal {
+impl Style<f64> for RayStyle {
     fn offset(&self) -> f64 {
         self.offset
+    }
+    fn along(&self) -> f64 {
+        self.along
     }
     fn t_min(&self, secondary: bool) -> f64 {
         if secondary { self.t_min } else { 0.0 }
@@ -67,23 +121,52 @@ impl Style<f64> for Legal {
     fn of_light_rays(&self) -> impl Style<f64> {
         *self
     }
+    fn lamp(&self) -> Lamp {
+        self.lamp
+    }
+    fn acne(&self) -> Acne {
+        self.acne
+    }
 }
 
 /// Rays that look for a light start in one style, those that go on in another.
-struct Mixed {
-    light: Legal,
-    other: Legal,
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct RayStyles {
+    /// Those that look for a light.
+    pub light: RayStyle,
+    /// Those that go on.
+    pub other: RayStyle,
 }
 
-impl Style<f64> for Mixed {
+impl RayStyles {
+    /// Both start alike.
+    #[must_use]
+    pub fn alike(style: RayStyle) -> Self {
+        Self {
+            light: style,
+            other: style,
+        }
+    }
+}
+
+impl Style<f64> for RayStyles {
     fn offset(&self) -> f64 {
         self.other.offset
+    }
+    fn along(&self) -> f64 {
+        self.other.along
     }
     fn t_min(&self, secondary: bool) -> f64 {
         self.other.t_min(secondary)
     }
     fn of_light_rays(&self) -> impl Style<f64> {
         self.light
+    }
+    fn lamp(&self) -> Lamp {
+        self.light.lamp
+    }
+    fn acne(&self) -> Acne {
+        self.other.acne
     }
 }
 
@@ -142,7 +225,7 @@ impl Tracer<f64> {
     /// the mean of theirs: which style a shader follows is the same for all samples, but not what it means to each.
     #[must_use]
     pub fn hull(&self, x: u32, y: u32, styles: Styles) -> Hull {
-        let legal = || Legal::all(self.max_offset);
+        let legal = || RayStyle::few(self.max_offset);
         let mut sum = Hull {
             low: [0.0; 3],
             high: [0.0; 3],
@@ -166,7 +249,7 @@ impl Tracer<f64> {
                     continue;
                 }
                 for light in legal() {
-                    let style = Mixed { light, other };
+                    let style = RayStyles { light, other };
                     hull.take(self.radiance(seen, draws.clone(), &style).to_array());
                 }
             }

@@ -3,16 +3,23 @@
 //! A shader that draws other random numbers than its scene paints another picture of the same mean. Where all that differs hangs on what is
 //! drawn, the means are compared: of many drawings of the tracer's, and of the one that the shader paints, over many pixels.
 
+use std::fmt::Write;
 use std::ops::Range;
+use std::time::Instant;
 
 use rayon::prelude::*;
 
-use super::Asked;
 use super::cause::some;
+use super::replicates::{self, Compared, Unfit};
+use super::sample_loops::fewer_samples;
+use super::{Asked, Case};
 use crate::compare::{
-    Answer, Answers, DrawnPixel, EXACT_TOLERANCE, Means, Standing, Verdict, differing, grouped, judge, means,
+    Answer, Answers, DrawnPixel, EXACT_TOLERANCE, Means, REPLICATES, Replicated, Standing, Verdict,
+    differing, follows_scene, grouped, judge, means,
 };
+use crate::eval::Program;
 use crate::image::Image;
+use crate::mistake::Named;
 use crate::scene::Sampler;
 use crate::trace::{REDRAWN_ROWS, Tracer};
 
@@ -25,6 +32,15 @@ const TIMES: u32 = 16;
 
 /// So many of them must be another colour in one of the drawings.
 const MOST: f64 = 0.98;
+
+/// Noise of more than so many times the variance is worth a word.
+const NOISIER: f64 = 1.2;
+
+/// Nothing is said where means that are this much apart, two and a half levels of 8 bits, might not be seen.
+const FINEST: f64 = 0.01;
+
+/// Fewer random pixels say nothing: a mistake in a part of them would not be seen.
+const FEWEST: usize = 1000;
 
 /// These drawings choose pixels and what each counts. They are not those that the means are made of, nor is the shader's picture asked, or
 /// whoever met a sliver would be chosen for it.
@@ -49,6 +65,14 @@ pub(super) struct Painted<'a> {
     bottoms: Vec<u32>,
     /// So far, row by row: the shader's colour, and the reference's.
     colours: Vec<[[f32; 3]; 2]>,
+}
+
+/// A verdict on a stochastic shader.
+pub(super) struct Judged {
+    pub(super) verdict: Verdict,
+    pub(super) reason: String,
+    /// What it does wrong.
+    pub(super) mistake: Option<Vec<Named>>,
 }
 
 /// What the three questions found.
@@ -105,18 +129,126 @@ impl<'a> Painted<'a> {
     }
 
     /// The verdict on a shader that differs from its scene where chance decides, and the reason; none if it differs elsewhere too.
-    pub(super) fn judged(&self, found: Found) -> Option<(Verdict, String)> {
-        if !self.is_drawn(found.maths) {
-            return None;
-        }
-        let pairs = self.pairs(found.maths);
+    pub(super) fn judged(
+        &self,
+        found: Found,
+        program: &Program,
+        case: &Case,
+        until: Instant,
+    ) -> Option<Judged> {
         let differs = format!(
             "{}, only where the samples' random numbers decide: it draws others than the scene, whose sampler is `{}`",
             differing(&found.maths.answer),
             self.sampler
         );
-        let judged = match means(&pairs, self.size, DRAWINGS.len() as u32) {
-            Means::Unasked => return None,
+        let is_drawn = self.is_drawn(found.maths);
+        if !is_drawn && !replicates::is_random(program, case, self.tracer, found.maths, until) {
+            return None;
+        }
+        match replicates::compared(program, case, self.tracer, found.maths, until) {
+            Ok(compared) => {
+                let (verdict, reason) = self.by_replicates(&differs, &compared, found, case);
+                let mistake = case
+                    .suspects
+                    .filter(|_| verdict == Verdict::Wrong)
+                    .and_then(|suspects| {
+                        let (tracer, places) = (self.tracer, suspects.places());
+                        let noisy =
+                            replicates::noisy(program, case, tracer, compared.reseeding, places, until)?;
+                        suspects.recognise_noisy(&noisy)
+                    });
+                Some(Judged {
+                    verdict,
+                    reason,
+                    mistake,
+                })
+            }
+            Err(Unfit::Unsalted) if is_drawn => {
+                let pairs = self.pairs(found.maths);
+                (!follows_scene(&pairs)).then(|| {
+                    let (verdict, reason) = self.by_one_picture(&differs, &pairs, found);
+                    Judged {
+                        verdict,
+                        reason,
+                        mistake: None,
+                    }
+                })
+            }
+            Err(Unfit::Unsalted | Unfit::Fixed | Unfit::Follows) => None,
+        }
+    }
+
+    /// By several pictures of the shader, each with other random numbers.
+    fn by_replicates(
+        &self,
+        differs: &str,
+        &Compared {
+            replicated, pixels, ..
+        }: &Compared,
+        found: Found,
+        case: &Case,
+    ) -> (Verdict, String) {
+        let Replicated {
+            bias: (deviations, [x, y]),
+            is_biased,
+            is_repeated,
+            variance,
+            is_uniform,
+            within,
+        } = replicated;
+        if is_biased {
+            let much = if deviations.is_finite() {
+                format!("by {deviations:.0} standard deviations")
+            } else {
+                "and nothing random is left to explain it".to_owned()
+            };
+            return (
+                Verdict::Wrong,
+                format!(
+                    "{differs}; but there its mean is another too, most of all around ({x}, {y}), {much}"
+                ),
+            );
+        }
+        if is_repeated {
+            return (Verdict::Inconclusive, repeated(differs));
+        }
+        if pixels < FEWEST || within > FINEST {
+            return (Verdict::Inconclusive, unseen(differs));
+        }
+        let samples = self.tracer.samples();
+        if variance > NOISIER
+            && is_uniform
+            && let Some(own) = fewer_samples(&case.checked.tree, samples, variance)
+        {
+            return (
+                Verdict::Wrong,
+                format!(
+                    "{differs}; the mean is the same, but it takes fewer samples, {own} where the scene has {samples}: its noise has \
+                     {variance:.1} times the variance"
+                ),
+            );
+        }
+        match found.without_chance() {
+            (Verdict::Correct, _) => {
+                let pixels = grouped(pixels as u64);
+                let mut reason = format!(
+                    "the same in the mean, to within {within:.4} over {pixels} pixels, with {REPLICATES} sets of random numbers; {differs}"
+                );
+                if variance > NOISIER {
+                    let _ = write!(
+                        reason,
+                        "; its noise has {variance:.1} times the variance of the scene's own sampler"
+                    );
+                }
+                (Verdict::Correct, reason)
+            }
+            other => other,
+        }
+    }
+
+    /// By the one picture that there is, where no way is found to give the shader other random numbers.
+    fn by_one_picture(&self, differs: &str, pairs: &[[DrawnPixel; 2]], found: Found) -> (Verdict, String) {
+        match means(pairs, self.size) {
             Means::Same(within) => match found.without_chance() {
                 (Verdict::Correct, _) => {
                     let pixels = grouped(2 * pairs.len() as u64);
@@ -131,39 +263,21 @@ impl<'a> Painted<'a> {
                 Verdict::Wrong,
                 format!("{differs}; but there its mean is another too, most of all around ({x}, {y})"),
             ),
-            Means::Noisier(times) => (
-                Verdict::Wrong,
-                format!(
-                    "{differs}; the mean is the same, but its noise has {times:.1} times the variance: it takes fewer samples, or spends them badly"
-                ),
-            ),
-            Means::Unseen => (
-                Verdict::Inconclusive,
-                format!(
-                    "random: {differs}, and samples or pixels are too few to compare means. Draw as docs/scenes.md tells, give the scene the sampler \
-                     that draws as the shader does, or ask for a larger picture"
-                ),
-            ),
-            Means::Repeated => (
-                Verdict::Inconclusive,
-                format!(
-                    "random: {differs}, and what they do in neighbouring pixels has much in common, so that means cannot be compared. Draw as docs/scenes.md \
-                     tells, or start each pixel's numbers from its place"
-                ),
-            ),
-        };
-        Some(judged)
+            Means::Unseen => (Verdict::Inconclusive, unseen(differs)),
+            Means::Repeated => (Verdict::Inconclusive, repeated(differs)),
+        }
     }
 
-    /// Whether other draws paint another colour wherever the shader differs.
+    fn is_redrawn(&self, at: [u32; 2]) -> bool {
+        let first = self.tracer.redrawn(at, 1);
+        (2..=TIMES).any(|set| moves(first, self.tracer.redrawn(at, set)))
+    }
+
+    /// Whether other draws paint another colour wherever the shader differs, and there is such a pixel.
     fn is_drawn(&self, maths: &Asked) -> bool {
         let asked = some(maths, self.size, ASKED);
-        let is_drawn = |&&at: &&[u32; 2]| {
-            let first = self.tracer.redrawn(at, 1);
-            (2..=TIMES).any(|set| moves(first, self.tracer.redrawn(at, set)))
-        };
-        let drawn = asked.par_iter().filter(is_drawn).count();
-        drawn as f64 >= MOST * asked.len() as f64
+        let drawn = asked.par_iter().filter(|&&at| self.is_redrawn(at)).count();
+        !asked.is_empty() && drawn as f64 >= MOST * asked.len() as f64
     }
 
     /// Pairs of neighbours one of which at least hangs on what is drawn, and what they are on the average. Each square of four has two: along an edge
@@ -198,7 +312,6 @@ impl<'a> Painted<'a> {
                         painted: colours[at][0].map(|part| f64::from(part).clamp(0.0, 1.0)),
                         reference: colours[at][1].map(|part| f64::from(part).clamp(0.0, 1.0)),
                         mean: drawn.mean(at),
-                        variance: drawn.variance(at),
                         spread: [0, 1, 2].map(|i| f64::midpoint(a[i], b[i])),
                         gain: drawn.gain(at),
                     };
@@ -208,6 +321,20 @@ impl<'a> Painted<'a> {
         });
         pairs.flatten_iter().collect()
     }
+}
+
+fn unseen(differs: &str) -> String {
+    format!(
+        "random: {differs}, and samples or pixels are too few to compare means. Draw as docs/scenes.md tells, give the scene the sampler \
+         that draws as the shader does, or ask for a larger picture"
+    )
+}
+
+fn repeated(differs: &str) -> String {
+    format!(
+        "random: {differs}, and what they do in neighbouring pixels has much in common, so that means cannot be compared. Draw as docs/scenes.md \
+         tells, or start each pixel's numbers from its place"
+    )
 }
 
 /// What the pixels of some rows are in several drawings.
@@ -280,12 +407,14 @@ impl Found<'_> {
     fn without_chance(self) -> (Verdict, String) {
         let maths = Answer {
             differing: 0,
+            undecided: 0,
+            tied: 0,
             ..self.maths.answer.clone()
         };
         let rounding = self.rounding.map(|rounding| {
             let standings = rounding.standings.iter().zip(&self.maths.standings);
             let left = standings.filter(|&standings| match standings {
-                (Standing::Differs, &maths) => maths != Standing::Differs,
+                (Standing::Differs, &maths) => !matches!(maths, Standing::Differs | Standing::Undecided),
                 _ => false,
             });
             Answer {

@@ -6,16 +6,46 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
+use crate::compare::{EXACT_TOLERANCE, SEEN};
 use crate::frame::Frame;
 use crate::image::Image;
 use crate::scene::{Moment, Scene};
-use crate::trace::{Hull, Styles, Tracer};
+use crate::trace::{Hull, RayStyles, StyleFamily, Styles, Tracer};
 
 /// Of pictures of more pixels nothing is kept, for they are many times this: one of 1920×1080 takes 32 MB.
 const MOST_PIXELS: u32 = 1 << 21;
 
 /// So many hulls of a scene are kept: one for each pixel of a picture of 640×360 in either style, and room to spare.
 const MOST_HULLS: usize = 1 << 19;
+
+/// In so many scenes whose numbers are moved a little, and in as many where they are moved the other way, a pixel is looked at.
+const PERTURBATIONS: u32 = 4;
+
+/// By how much of their size numbers are moved: a few units in the last place of what shaders compute with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Digits {
+    /// In f64.
+    Double,
+    /// In f32.
+    Single,
+}
+
+impl Digits {
+    fn share(self) -> f64 {
+        match self {
+            Self::Double => 4.0 * f64::EPSILON,
+            Self::Single => 2.0 * f64::from(f32::EPSILON),
+        }
+    }
+
+    /// A pixel that moves by more has another color.
+    fn tolerance(self) -> f64 {
+        match self {
+            Self::Double => EXACT_TOLERANCE,
+            Self::Single => SEEN,
+        }
+    }
+}
 
 /// What a pixel is asked for, and the answer.
 type Row = HashMap<(u32, Styles), Hull>;
@@ -34,6 +64,9 @@ pub struct Expected {
     /// By rows from the bottom, so that threads seldom wait for each other.
     hulls: Box<[Mutex<Row>]>,
     kept: AtomicUsize,
+    families: OnceLock<Vec<StyleFamily>>,
+    /// Of the scene with its numbers moved, for either digits.
+    perturbed: [OnceLock<Vec<Tracer<f64>>>; 2],
 }
 
 impl Expected {
@@ -58,6 +91,8 @@ impl Expected {
             room: if is_kept { MOST_HULLS } else { 0 },
             hulls: (0..height).map(|_| Mutex::default()).collect(),
             kept: AtomicUsize::new(0),
+            families: OnceLock::new(),
+            perturbed: Default::default(),
             scene,
             moment,
         }
@@ -95,6 +130,35 @@ impl Expected {
             Some(band) => Arc::clone(band.get_or_init(trace)),
             None => trace(),
         }
+    }
+
+    /// [`Tracer::style_families`]
+    pub(super) fn families(&self) -> &[StyleFamily] {
+        self.families.get_or_init(|| self.tracer.style_families())
+    }
+
+    /// [`Tracer::styled`]
+    pub(super) fn styled(&self, x: u32, y: u32, styles: &RayStyles) -> [f64; 3] {
+        self.tracer.styled([x, y], styles)
+    }
+
+    /// Whether the reference itself is another color in a pixel when the scene's numbers are moved by a few units in the last place: what
+    /// a shader paints there, rounding decides, whatever its formulas.
+    pub(super) fn is_tied(&self, x: u32, y: u32, digits: Digits) -> bool {
+        let perturbed = self.perturbed[digits as usize].get_or_init(|| {
+            let stilled = self.stilled();
+            let moved = (0..PERTURBATIONS).flat_map(|seed| {
+                let share = digits.share();
+                [share, -share].map(|share| Tracer::new(&stilled.perturbed(seed, share)))
+            });
+            moved.collect()
+        });
+        let clamped = |tracer: &Tracer<f64>| tracer.pixel(x, y).map(|part| part.clamp(0.0, 1.0));
+        let own = clamped(&self.tracer);
+        perturbed.iter().any(|tracer| {
+            let other = clamped(tracer);
+            (0..3).any(|i| (own[i] - other[i]).abs() > digits.tolerance())
+        })
     }
 
     /// [`Tracer::hull`]

@@ -1,22 +1,28 @@
 //! The questions while they are asked, one band of rows after the other: whole pictures are kept only as they are shown.
 
+use std::fmt::Write;
 use std::ops::Range;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use rayon::prelude::*;
+
+use super::acne;
 use super::cause::{self, NotFinite};
 use super::cpu::{Band, Evaluator};
 use super::drawn::{Found, Painted};
+use super::expected::Digits;
 use super::tangent::{self, Trap};
-use super::{Asked, Case, Expected, Failure, Findings, PATIENCE_FOR_TWO, Painter, join, notes, timed};
-use crate::compare::{self, Answers, Comparison, MAX_UNSTABLE, Mixed, Verdict};
+use super::{Asked, Case, Expected, Failure, Findings, PAIRS, Painter, join, notes, timed};
+use crate::compare::{self, Answers, Comparison, MAX_UNSTABLE, Mixed, Reference, Standing, Verdict};
 use crate::contain::{Panic, Part, contain};
 use crate::eval::{self, Observations, Program};
 use crate::gpu::FloatMode;
 use crate::image::{Image, Mark, Shown};
 use crate::scene::Scene;
+use crate::trace::{Hull, RayStyles, StyleFamily, Styles};
 
 /// Told after each band.
 #[derive(Debug, Clone, Copy)]
@@ -188,7 +194,14 @@ impl<'a> Inquiry<'a> {
                 painted.look(&band.double, reference, below);
             }
         }
-        let standings = compare::rounding(&band.double, actual, &band.undefined);
+        let mut standings = compare::rounding(&band.double, actual, &band.undefined);
+        if let Some(expected) = self.case.expected {
+            leave_out_tied(
+                &mut standings,
+                |x, y| expected.is_tied(x, below + y, Digits::Single),
+                actual.size()[0],
+            );
+        }
         self.rounding.extend(&band.double, actual, &standings, below);
         if let (Some(drawn), FloatMode::Strict) = (drawn, self.case.float) {
             let standings = compare::toolchain(&band.single, drawn, &band.undefined);
@@ -207,21 +220,15 @@ impl<'a> Inquiry<'a> {
             return;
         };
         let below = rows.start;
-        let hull = |x, y, styles| expected.hull(x, below + y, styles);
-        let derives = self.case.checked.takes_derivatives();
-        let edge = |x, y| derives && expected.tracer().is_quad_mixed(x, below + y);
+        let from_row = FromRow {
+            expected,
+            below,
+            derives: self.case.checked.takes_derivatives(),
+        };
         let (standings, shaking) = timed(|| {
             let shaken = |seed, wanted: &[bool]| evaluator.shaken(rows, seed, wanted);
             let mixed = &mut self.mixed;
-            compare::maths(
-                reference,
-                &band.double,
-                &band.undefined,
-                hull,
-                edge,
-                mixed,
-                shaken,
-            )
+            compare::maths(reference, &band.double, &band.undefined, &from_row, mixed, shaken)
         });
         self.eval += shaking;
         self.maths.extend(reference, &band.double, &standings, below);
@@ -275,6 +282,54 @@ impl<'a> Inquiry<'a> {
     }
 }
 
+/// What a band is compared with that begins at a row.
+struct FromRow<'a> {
+    expected: &'a Expected,
+    below: u32,
+    /// Whether the shader takes derivatives.
+    derives: bool,
+}
+
+impl Reference for FromRow<'_> {
+    fn hull(&self, x: u32, y: u32, styles: Styles) -> Hull {
+        self.expected.hull(x, self.below + y, styles)
+    }
+    fn families(&self) -> &[StyleFamily] {
+        self.expected.families()
+    }
+    fn styled(&self, x: u32, y: u32, styles: &RayStyles) -> [f64; 3] {
+        self.expected.styled(x, self.below + y, styles)
+    }
+    fn samples(&self) -> u32 {
+        self.expected.tracer().samples()
+    }
+    fn is_across_edge(&self, x: u32, y: u32) -> bool {
+        self.derives && self.expected.tracer().is_quad_mixed(x, self.below + y)
+    }
+    fn is_tied(&self, x: u32, y: u32) -> bool {
+        self.expected.is_tied(x, self.below + y, Digits::Double)
+    }
+}
+
+/// Where more pixels of a band change with the number type, no edges of the scene are to blame.
+const MAX_TIED: f64 = 0.05;
+
+/// Leaves out the pixels that change with the number type since the scene has an edge there: no shader's float32 could tell on which side of it
+/// they are.
+fn leave_out_tied(standings: &mut [Standing], is_tied: impl Fn(u32, u32) -> bool + Sync, width: u32) {
+    let differs = |standing: &&Standing| **standing == Standing::Differs;
+    let count = standings.iter().filter(differs).count();
+    if count as f64 > MAX_TIED * standings.len() as f64 {
+        return;
+    }
+    standings.par_iter_mut().enumerate().for_each(|(at, standing)| {
+        let at = at as u32;
+        if *standing == Standing::Differs && is_tied(at % width, at / width) {
+            *standing = Standing::Tied;
+        }
+    });
+}
+
 impl Findings {
     fn judge(&mut self, case: &Case, program: &Program, until: Instant, painted: Option<&Painted>) {
         (self.verdict, self.reason) = compare::judge(Answers {
@@ -282,23 +337,49 @@ impl Findings {
             rounding: self.rounding.as_ref().map(|asked| &asked.answer),
             toolchain: self.toolchain.as_ref().map(|asked| &asked.answer),
         });
-        if let (Verdict::Wrong, Some(suspects)) = (self.verdict, case.suspects) {
-            let patience = PATIENCE_FOR_TWO.min(until.saturating_duration_since(Instant::now()));
-            let named = contain(Part::Mistake, || {
-                suspects.recognise(program, case.frame, patience)
-            });
-            self.mistake = self.contained(named);
-        }
-        if let (Verdict::Wrong, None, Some(painted), Some(maths)) =
-            (self.verdict, &self.mistake, painted, &self.maths)
+        let mut is_judged = false;
+        if let (Verdict::Wrong | Verdict::Unstable, Some(painted), Some(maths)) =
+            (self.verdict, painted, &self.maths)
         {
             let found = Found {
                 maths,
                 rounding: self.rounding.as_ref(),
                 toolchain: self.toolchain.as_ref(),
             };
-            if let Some(judged) = painted.judged(found) {
-                (self.verdict, self.reason) = judged;
+            if let Some(judged) = painted.judged(found, program, case, until) {
+                is_judged = true;
+                (self.verdict, self.reason) = (judged.verdict, judged.reason);
+                self.mistake = judged.mistake;
+            }
+        }
+        if let (Verdict::Wrong, None, Some(suspects)) = (self.verdict, &self.mistake, case.suspects) {
+            // Where chance decides, two mistakes paint another picture than both together.
+            let pairs = if is_judged { 0 } else { PAIRS };
+            let named = contain(Part::Mistake, || suspects.recognise(program, case.frame, pairs));
+            self.mistake = self.contained(named);
+        }
+        if let (Verdict::Unstable | Verdict::Wrong, None, Some(expected)) =
+            (self.verdict, &self.mistake, case.expected)
+            && painted.is_none()
+            && let Some(asked) = acne::is_seen(
+                expected.tracer(),
+                case.frame.size,
+                self.maths.as_ref(),
+                self.rounding.as_ref(),
+            )
+        {
+            self.verdict = Verdict::Wrong;
+            self.reason = acne::reason(&asked.answer);
+            self.mistake = Some(vec![acne::named()]);
+        }
+        if let (Verdict::Correct, Some(suspects), Some(maths)) = (self.verdict, case.suspects, &self.maths)
+            && maths.answer.differing > 0
+            && !is_judged
+        {
+            let differing = cause::some(maths, case.frame.size, usize::MAX);
+            let named = contain(Part::Mistake, || suspects.explaining(program, &differing));
+            if let Some(named) = self.contained(named) {
+                let _ = write!(self.reason, "; they are what a tracer paints that {}", named.says);
             }
         }
         self.notes.extend(notes::unbound(case.checked, case.frame));

@@ -1,6 +1,7 @@
 //! The three questions, asked of one shader: the GPU, the evaluator and the tracer paint at once, and their pictures are
 //! compared.
 
+mod acne;
 mod cause;
 pub mod conversion;
 mod cpu;
@@ -8,8 +9,12 @@ mod drawn;
 mod expected;
 mod inquiry;
 mod notes;
+mod replicates;
+mod reseed;
+mod sample_loops;
 mod tangent;
 
+use std::collections::HashMap;
 use std::iter;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, SyncSender};
@@ -124,6 +129,8 @@ pub struct Asked {
     pub marks: Vec<Mark>,
     /// How each pixel stands.
     standings: Vec<Standing>,
+    /// The colors that are compared, of pixels that do not agree: by their place in the picture.
+    actual: HashMap<usize, [f32; 3]>,
 }
 
 impl Asked {
@@ -132,6 +139,14 @@ impl Asked {
         self.answer
             .extend(&Answer::new(expected, actual, standings), height);
         self.marks.extend(compare::marks(expected, actual, standings));
+        let below = self.standings.len();
+        let own = standings.iter().enumerate();
+        let own = own.filter(|&(_, &standing)| matches!(standing, Standing::Differs | Standing::Undecided));
+        let room = MOST_KEPT.saturating_sub(self.actual.len());
+        self.actual.extend(own.take(room).map(|(at, _)| {
+            let [r, g, b, _] = actual.pixels()[at];
+            (below + at, [r, g, b])
+        }));
         self.standings.extend(standings);
     }
 }
@@ -153,8 +168,11 @@ pub enum Failure {
     CutShort(u64),
 }
 
-/// How long two mistakes at once are looked for in a wrong picture.
-const PATIENCE_FOR_TWO: Duration = Duration::from_secs(4);
+/// So many pairs of mistakes are looked for in a wrong picture: a few seconds' work.
+const PAIRS: usize = 512;
+
+/// The colors of so many pixels that do not agree are kept.
+const MOST_KEPT: usize = 1 << 16;
 
 /// So many bands of a GPU's picture wait to be compared: a picture of 1920×1080. If a larger one must wait, so must the watching of its
 /// loops.

@@ -25,6 +25,7 @@ mod evaluator;
 mod evaluator_programs;
 mod exported;
 #[cfg(unix)]
+mod fair_verdicts;
 mod fuzzed;
 mod generate;
 mod generated;

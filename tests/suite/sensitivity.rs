@@ -1,11 +1,11 @@
 //! How small an error may be and is still found: a rung's shader stays as it is, and its scene is falsified.
 
-use toyproof::compare::{Answer, Answers, Mixed, SHAKES, Verdict, judge, maths};
+use toyproof::compare::{Answer, Answers, Mixed, Reference, SHAKES, Verdict, judge, maths};
 use toyproof::eval::{Jittered, Number, Program, Seed, Settings};
 use toyproof::frame::Frame;
 use toyproof::image::Image;
 use toyproof::scene::{Moment, Point, Projection, Scene, Shape};
-use toyproof::trace::Tracer;
+use toyproof::trace::{Hull, RayStyles, StyleFamily, Styles, Tracer};
 
 use crate::support::{RUNGS, Rung, checked, frame, scene};
 
@@ -117,6 +117,35 @@ fn by_size(scene: &mut Scene) -> Vec<usize> {
 }
 
 /// A shader in f64, whose picture is the same for all scenes that it is compared with.
+/// A tracer of a scene.
+struct Traced {
+    tracer: Tracer<f64>,
+    families: Vec<StyleFamily>,
+}
+
+impl Reference for Traced {
+    fn hull(&self, x: u32, y: u32, styles: Styles) -> Hull {
+        self.tracer.hull(x, y, styles)
+    }
+    fn families(&self) -> &[StyleFamily] {
+        &self.families
+    }
+    fn styled(&self, x: u32, y: u32, styles: &RayStyles) -> [f64; 3] {
+        self.tracer.styled([x, y], styles)
+    }
+    fn samples(&self) -> u32 {
+        self.tracer.samples()
+    }
+    /// The rungs take no derivatives.
+    fn is_across_edge(&self, _: u32, _: u32) -> bool {
+        false
+    }
+    /// No edge of a rung passes through the middle of a pixel.
+    fn is_tied(&self, _: u32, _: u32) -> bool {
+        false
+    }
+}
+
 struct Subject {
     scene: Scene,
     moment: Moment,
@@ -159,9 +188,10 @@ impl Subject {
             &expected,
             &self.exact,
             &vec![false; self.exact.pixels().len()],
-            |x, y, styles| tracer.hull(x, y, styles),
-            // The rungs take no derivatives.
-            |_, _| false,
+            &Traced {
+                families: tracer.style_families(),
+                tracer,
+            },
             &mut Mixed::of(self.exact.pixels().len() as u64),
             |seed, _| self.shaken.get(seed as usize).cloned(),
         );

@@ -4,7 +4,7 @@
 
 use toyproof::compare::Verdict;
 
-use crate::support::{Edit, MANY_OBJECTS, REFLECTIONS, Rung, SHADING, SPHERE, edit, judged, numbers, worker};
+use crate::support::{Edit, MANY_OBJECTS, Rung, SHADING, SPHERE, edit, judged, numbers, worker};
 
 /// A scene that asks much of float32, and two ways to paint it.
 struct Case {
@@ -122,39 +122,6 @@ static CASES: &[Case] = &[
         unstable: &[("if (t < hit.t)", "if (t <= hit.t && t < NO_HIT)")],
         blamed: &["if (t <= hit.t"],
         harmless: &[],
-    },
-    Case {
-        cause: "mirrors that see themselves: the least t lies below rounding",
-        rung: &REFLECTIONS,
-        scene: &[],
-        shader: &[],
-        unstable: &[("EPSILON = 0.001", "EPSILON = 1.0e-9")],
-        blamed: &["float c =", "float disc =", "float t =", "t = -b", "if (t >"],
-        harmless: &[("EPSILON = 0.001", "EPSILON = 0.0005")],
-    },
-    Case {
-        cause: "shadow rays that start too little off their surface",
-        rung: &MANY_OBJECTS,
-        scene: &[],
-        shader: &[(
-            "t > 0.00001) {\n            return t;\n        }\n        t =",
-            "t > 0.0) {\n            return t;\n        }\n        t =",
-        )],
-        unstable: &[
-            ("0.001 * normal", "1.0e-9 * normal"),
-            (
-                "+ root;\n        if (t > 0.00001)",
-                "+ root;\n        if (t > 0.0)",
-            ),
-        ],
-        blamed: &["float c =", "float disc =", "float t =", "t = -b", "if (t >"],
-        harmless: &[
-            ("0.001 * normal", "0.0005 * normal"),
-            (
-                "+ root;\n        if (t > 0.00001)",
-                "+ root;\n        if (t > 0.0)",
-            ),
-        ],
     },
     Case {
         cause: "underflow: the square of a tiny direction",

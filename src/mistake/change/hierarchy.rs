@@ -129,6 +129,5 @@ fn keep(scene: &mut Scene, nodes: &[Node], stays: impl Fn(&Node) -> bool) {
     for node in nodes {
         kept.push(stays(node) && node.parent.is_none_or(|parent| kept[parent]));
     }
-    let mut kept = kept.into_iter();
-    scene.objects.retain(|_| kept.next().unwrap_or(true));
+    scene.retain_objects(|at| kept[at]);
 }

@@ -62,6 +62,7 @@ impl<'a> Changes<'a> {
     fn add(&mut self, name: &'static str, says: impl Into<Cow<'static, str>>, edit: impl FnOnce(&mut Scene)) {
         let mut scene = self.scene.clone();
         edit(&mut scene);
+        scene.release_changed_scatters();
         if scene != *self.scene {
             self.all.push(Change {
                 named: Named {
@@ -99,5 +100,102 @@ fn ordinal(index: usize) -> String {
         1 => "second".to_owned(),
         2 => "third".to_owned(),
         _ => format!("{}th", index + 1),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::eval::{Program, Settings};
+    use crate::export;
+    use crate::frame::Frame;
+    use crate::glsl;
+    use crate::scene;
+    use crate::source::{File, Files};
+    use crate::trace::Tracer;
+
+    macro_rules! exercises {
+        ($($name:literal),* $(,)?) => {
+            [$(($name, include_str!(concat!("../../../glsl/", $name, ".toml")))),*]
+        };
+    }
+
+    fn scene_of(text: &str) -> Scene {
+        let mut files = Files::default();
+        let file = files.add(File::new("s", text));
+        scene::parse(&files, file).unwrap()
+    }
+
+    /// In how many pixels of a small picture the exported shader is not what the tracer makes of a scene.
+    fn differing(scene: &Scene, moment: Moment) -> usize {
+        let size = [24, 14];
+        let text = export::shader(scene).unwrap_or_else(|why| panic!("{why}"));
+        let mut files = Files::default();
+        let file = files.add(File::new("exported", text.as_str()));
+        let checked = glsl::check(&files, file, &glsl::Options::default()).unwrap();
+        let frame = Frame {
+            size,
+            frame: moment.frame,
+            time: moment.time as f32,
+            ..Frame::default()
+        };
+        let program = Program::new(&checked).unwrap();
+        let painted = program
+            .paint(&frame, &Settings::<f64>::default())
+            .unwrap()
+            .painting
+            .image();
+        let mut scene = scene.clone();
+        scene.film.size = size;
+        let traced = Tracer::<f64>::at(&scene, moment).picture(|| ());
+        let pairs = painted.pixels().iter().zip(traced.pixels());
+        let differs = |(a, b): &(&[f32; 4], &[f32; 4])| (0..3).any(|i| (a[i] - b[i]).abs() > 0.01);
+        pairs.filter(differs).count()
+    }
+
+    #[test]
+    fn every_changed_scene_is_whole_and_its_shader_shows_it() {
+        let grids = "[[light]]\nposition = [5.0, 5.0, 0.0]\ncolor = [1, 1, 1]\n\
+                     [[sphere]]\ncenter = [0.0, 0.0, -9.0]\nradius = 0.5\nmaterial = { model = \"mirror\", color = [1, 1, 1] }\n\
+                     [[scatter]]\ncorner = [-2.0, -1.0, -8.0]\ncells = [2, 2, 2]\nspacing = 1.0\nradius = [0.2, 0.4]\nseed = 7\n\
+                     material = { model = \"lambert\", color = [1, 1, 1] }\n\
+                     [[scatter]]\ncorner = [0.5, -1.0, -7.0]\ncells = [1, 2, 1]\nspacing = 1.0\nradius = [0.2, 0.4]\nseed = 9\n\
+                     material = { model = \"lambert\", color = [1, 1, 1] }\n";
+        let exercises = exercises![
+            "01-sampling",
+            "02-sphere",
+            "03-shading",
+            "04-many-objects",
+            "05-complex-scene",
+            "06-reflections",
+            "07-diffuse",
+            "08-disney",
+            "09-soft-shadows",
+            "10-quadrics",
+            "11-animation",
+            "12-whitted",
+            "13-importance-sampling",
+            "14-accelerator",
+            "15-parallel-rays",
+        ];
+        let moment = Moment { frame: 10, time: 1.3 };
+        for (name, text) in exercises.into_iter().chain([("two scatters", grids)]) {
+            let scene = scene_of(text);
+            let own = differing(&scene, moment);
+            for change in general(&scene, moment).into_iter().chain(all(&scene, moment)) {
+                let Change { named, scene, moment } = change;
+                for scattered in &scene.scatters {
+                    let objects = &scene.objects[scattered.objects.clone()];
+                    assert!(
+                        scattered.scatter.spheres().eq(objects.iter().cloned()),
+                        "{name}: {}",
+                        named.name
+                    );
+                }
+                let differing = differing(&scene, moment);
+                // An edge may fall on a pixel's middle.
+                assert!(differing <= own + 3, "{name}: {}: {differing} pixels", named.name);
+            }
+        }
     }
 }

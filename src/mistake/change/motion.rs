@@ -76,6 +76,20 @@ fn scaled(period: Period, factor: f64) -> Period {
     }
 }
 
+/// What the motion moved goes with the one that this is within, if any.
 fn stop(scene: &mut Scene, motion: usize) {
-    scene.motions[motion].period = Period::Seconds(f64::INFINITY);
+    let within = scene.motions[motion].within;
+    let lights = scene.lights.iter_mut().map(|light| &mut light.motion);
+    let objects = scene.objects.iter_mut().map(|object| &mut object.motion);
+    let motions = scene.motions.iter_mut().map(|motion| &mut motion.within);
+    for mover in lights.chain(objects).chain(motions) {
+        if *mover == Some(motion) {
+            *mover = within;
+        }
+    }
+    for scattered in &mut scene.scatters {
+        if scattered.scatter.motion == Some(motion) {
+            scattered.scatter.motion = within;
+        }
+    }
 }

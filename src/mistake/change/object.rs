@@ -11,7 +11,7 @@ pub(super) fn none(changes: &mut Changes) {
         "background-alone",
         "paints the background alone, as if no ray met anything: look at where rays go, where the scene stands, the sign of b, and \
          which t count as hits",
-        |scene| scene.objects.clear(),
+        |scene| scene.retain_objects(|_| false),
     );
 }
 
@@ -22,7 +22,7 @@ pub(super) fn changes(changes: &mut Changes) {
         for (index, what) in missing.iter().enumerate() {
             let says = format!("leaves out {what}");
             changes.add("object-missing", says, |scene| {
-                scene.objects.remove(index);
+                scene.retain_objects(|at| at != index);
             });
         }
     }

@@ -66,3 +66,35 @@ fn the_error_that_is_asked_for_is_kept() {
         "the sky needs fewer than the shadows: {spent:?}"
     );
 }
+
+#[test]
+fn every_sampler_and_number_of_samples_gives_finite_pictures() {
+    let finite = |picture: &Image| picture.pixels().iter().flatten().all(|part| part.is_finite());
+    for name in ["09", "13"] {
+        for sampler in [Sampler::Independent, Sampler::Stratified, Sampler::Sobol] {
+            for samples in [1, 2, 3, 7, 16, 37, 64, 257, 512] {
+                let mut scene = rung(name, [16, 9]);
+                scene.film.sampler = sampler;
+                scene.film.samples = samples;
+                let what = format!("{name} {sampler:?} {samples}");
+                assert!(finite(&Tracer::<f64>::new(&scene).picture(|| ())), "{what}");
+                assert!(finite(&Tracer::<f32>::new(&scene).picture(|| ())), "{what}, f32");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_pair_on_the_squares_edge_is_no_direction_without_density() {
+    // In these pixels Sobol's sequence has a pair with 0 in it, which is the edge of the disk that lobes are sampled by.
+    let mut scene = rung("13", [640, 360]);
+    scene.film.sampler = Sampler::Sobol;
+    scene.film.samples = 512;
+    for [column, row] in [[360, 172], [321, 181], [154, 256]] {
+        let (x, y) = (column, 359 - row);
+        let double = Tracer::<f64>::new(&scene).pixel(x, y);
+        let single = Tracer::<f32>::new(&scene).pixel(x, y);
+        assert!(double.iter().all(|part| part.is_finite()), "{double:?}");
+        assert!(single.iter().all(|part| part.is_finite()), "{single:?}");
+    }
+}

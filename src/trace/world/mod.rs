@@ -76,7 +76,11 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
             max_depth: scene.film.max_depth,
             ambient: T::Vec3::from_f64(scene.ambient),
             background: Background::new(&scene.background),
-            lights: scene.lights.iter().map(Light::new).collect(),
+            lights: scene
+                .lights
+                .iter()
+                .map(|light| Light::new(light, &scene.objects))
+                .collect(),
             shapes: scene.objects.iter().map(shape).collect(),
             spheres: match before {
                 Some(before) => before.moved(&spheres),
@@ -100,6 +104,31 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
             materials,
             level,
         }
+    }
+
+    /// Whether there are lights, and whether any of them has a surface.
+    pub(super) fn lights_and_surfaces(&self) -> [bool; 2] {
+        let lit = self.integrator == Integrator::Whitted && !self.lights.is_empty();
+        [
+            lit,
+            lit && self.lights.iter().any(|light| light.surface.is_some()),
+        ]
+    }
+
+    /// How many lights are looked for, and from how many surfaces one after the other a ray may go on.
+    pub(super) fn lights_and_bounces(&self) -> [u32; 2] {
+        let lights = match self.integrator {
+            Integrator::Whitted => self.lights.iter().filter(|light| light.shadow).count(),
+            Integrator::Path => usize::from(self.has_emitters()),
+        };
+        let goes_on = |material: &Material<T>| matches!(material.model, Model::Mirror | Model::Glass(_));
+        let goes_on = self.integrator == Integrator::Whitted && self.materials.iter().any(goes_on);
+        [lights as u32, if goes_on { self.max_depth - 1 } else { 0 }]
+    }
+
+    /// Whether any surface shines.
+    pub(super) fn has_emitters(&self) -> bool {
+        !self.emitters.is_empty()
     }
 
     /// The radiance along a camera ray, which meets that first.
@@ -129,7 +158,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
 
     /// The surface that a ray starts on, if it is not to meet it where it starts: off its surface, it starts on none.
     fn own(ray: &Ray<T>, style: &impl Style<T>) -> Option<usize> {
-        ray.from.filter(|_| style.offset() == T::zero())
+        ray.from.filter(|_| style.is_on_surface())
     }
 
     /// What the ray looks for among the spheres; its own surface is looked at apart.
@@ -200,8 +229,15 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         })
     }
 
-    /// Whether anything but the surface `light` lies strictly between the ray's origin and `distance`.
+    /// Whether anything but the surface `light` lies strictly between the ray's origin and `distance`, or the ray misses that surface,
+    /// where the style says that it must not.
     fn occluded(&self, ray: &Ray<T>, distance: T, light: Option<usize>, style: &impl Style<T>) -> bool {
+        if let Some(light) = light
+            && style.lamp().must_be_met
+            && self.shapes[light].intersect(ray, style).is_none()
+        {
+            return true;
+        }
         let own = Self::own(ray, style);
         let own_hides = |own: usize| {
             let t = self.shapes[own].intersect_own(ray, style);

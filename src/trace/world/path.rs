@@ -52,13 +52,15 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
                     sum = sum + throughput * self.emitted(&hit, (brdf, color), &frame, draws, style);
                     let direction = brdf.draw(&frame, draws.polar());
                     let cosine = hit.normal.dot(direction);
-                    if cosine <= T::zero() {
+                    let density = brdf.density(&frame, direction);
+                    // Only rounding draws a direction at the edge of a lobe, where it has no density.
+                    if cosine <= T::zero() || density <= T::zero() {
                         return sum;
                     }
-                    let density = brdf.density(&frame, direction);
                     throughput = throughput * brdf.value(color, &frame, direction) * (cosine / density);
                     ray = hit.leave(direction, style);
-                    drawn = Some((density, ray.origin));
+                    let at_surface = style.of_light_rays().lamp().weighed_at_surface;
+                    drawn = Some((density, if at_surface { hit.point } else { ray.origin }));
                 }
                 // Refused when the scene is read.
                 Model::Facing | Model::Glass(_) => return sum,
@@ -81,16 +83,17 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
     ) -> T::Vec3 {
         let style = &style.of_light_rays();
         let number = T::from_f64(self.emitters.len() as f64);
-        if self.emitters.is_empty() {
+        if self.emitters.is_empty() || style.acne().hidden_lights != 0 {
             return T::Vec3::ZERO;
         }
         let drawn: T = draws.number();
         let which = (drawn * number).to_usize().unwrap_or(0);
         let emitter = &self.emitters[which.min(self.emitters.len() - 1)];
-        let cone = Cone::new(emitter.center, emitter.radius, hit.point);
+        let cone = Cone::new(emitter.center, emitter.radius, hit.lit_from(style));
         let (direction, distance) = cone.draw(draws.polar());
         let cosine = hit.normal.dot(direction);
         let ray = hit.leave(direction, style);
+        let distance = distance - style.along();
         if cosine <= T::zero() || self.occluded(&ray, distance, Some(emitter.surface), style) {
             return T::Vec3::ZERO;
         }

@@ -1,13 +1,13 @@
 //! What several rays meet, each for itself: side by side where that is faster, and the same to the bit.
 
 use super::super::lanes::{Columns, Level, MOST_LANES};
-use super::super::ray::{Hit, Ray};
+use super::super::ray::{First, Hit, Ray};
 use super::super::real::{Real, Vector};
 use super::super::shape::{Primitive, Surfaces};
 use super::super::spheres::{Found, PACKET, Packet};
 use super::super::style::Style;
 use super::World;
-use super::walk::Walk;
+use super::walk::{Branch, Walk};
 
 /// Fewer rays go one by one, each past eight spheres at a time.
 const FEW: usize = 8;
@@ -25,8 +25,15 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
     /// Looks for what some samples' rays meet first, at most [`PACKET`], all secondary.
     pub(super) fn look(&self, walks: &mut [Walk<T>], some: &[usize], style: &impl Style<T>) {
         if !self.goes_together(some.len()) {
+            let own_met = style.acne().own_met;
             for &at in some {
-                walks[at].first = self.nearest(&walks[at].branch.ray, style);
+                let Branch { ray, segments, .. } = &walks[at].branch;
+                walks[at].first = match ray.from {
+                    Some(own) if own_met != 0 && own_met >> (segments - 2).min(31) & 1 != 0 => {
+                        First::new(T::zero(), own as u32)
+                    }
+                    _ => self.nearest(ray, style),
+                };
             }
             return;
         }
@@ -51,12 +58,18 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         }
     }
 
-    /// [`World::occluded`] of secondary rays, at most [`PACKET`], and the distances of what they go to: bit i tells of ray i.
-    pub(super) fn occluded_of(&self, rays: &[(Ray<T>, T)], style: &impl Style<T>) -> u64 {
+    /// [`World::occluded`] of secondary rays, at most [`PACKET`], and the distances of what they go to, which is perhaps the surface
+    /// `light`: bit i tells of ray i.
+    pub(super) fn occluded_of(
+        &self,
+        rays: &[(Ray<T>, T)],
+        light: Option<usize>,
+        style: &impl Style<T>,
+    ) -> u64 {
         let mut hidden = 0;
-        if !self.goes_together(rays.len()) {
+        if !self.goes_together(rays.len()) || light.is_some() {
             for (at, (ray, distance)) in rays.iter().enumerate() {
-                hidden |= u64::from(self.occluded(ray, *distance, None, style)) << at;
+                hidden |= u64::from(self.occluded(ray, *distance, light, style)) << at;
             }
             return hidden;
         }

@@ -192,7 +192,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
     /// Adds the light of every light that is seen from points, at most [`PACKET`].
     fn light(&self, walks: &mut [Walk<T>], points: &mut [Lit<T>], style: &impl Style<T>) {
         let style = &style.of_light_rays();
-        for light in &self.lights {
+        for (number, light) in self.lights.iter().enumerate() {
             // Those that face it: which, the direction to it and the cosine, and the way there.
             let mut facing: SmallVec<[(usize, T::Vec3, T); PACKET]> = SmallVec::new();
             let mut rays: SmallVec<[(Ray<T>, T); PACKET]> = SmallVec::new();
@@ -204,15 +204,11 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
             };
             if light.radius > T::zero() {
                 for (at, point) in points.iter().enumerate() {
-                    let cone = Cone::new(light.position, light.radius, point.hit.point);
+                    let cone = Cone::new(light.position, light.radius, point.hit.lit_from(style));
                     let (direction, distance) = cone.draw(walks[point.walk].draws.polar());
                     let cosine = point.hit.normal.dot(direction);
-                    take(
-                        at,
-                        direction,
-                        cosine,
-                        (point.hit.leave(direction, style), distance),
-                    );
+                    let way = (point.hit.leave(direction, style), distance - style.along());
+                    take(at, direction, cosine, way);
                 }
             } else {
                 for (chunk, some) in points.chunks(MOST_LANES).enumerate() {
@@ -221,8 +217,10 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
                     });
                 }
             }
-            let hidden = if light.shadow {
-                self.occluded_of(&rays, style)
+            let hidden = if style.acne().hidden_lights >> number.min(31) & 1 != 0 {
+                u64::MAX
+            } else if light.shadow {
+                self.occluded_of(&rays, light.surface, style)
             } else {
                 0
             };
@@ -271,13 +269,19 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         };
         T::run(self.level(from.len()), toward);
         for (at, point) in from.iter().enumerate() {
-            let ray = Ray {
+            let mut ray = Ray {
                 origin: T::Vec3::from_array(ways.rays[0].get(at)),
                 direction: T::Vec3::from_array(ways.rays[1].get(at)),
                 from: Some(point.hit.surface),
             };
-            let direction = T::Vec3::from_array(ways.directions.get(at));
-            take(at, direction, ways.cosines[at], (ray, ways.distances[at]));
+            let (mut direction, mut cosine) =
+                (T::Vec3::from_array(ways.directions.get(at)), ways.cosines[at]);
+            if style.lamp().from_start {
+                direction = ray.direction;
+                cosine = point.hit.normal.dot(direction);
+            }
+            ray.origin = ray.origin + ray.direction * style.along();
+            take(at, direction, cosine, (ray, ways.distances[at] - style.along()));
         }
     }
 }

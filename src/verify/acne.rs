@@ -1,0 +1,110 @@
+//! Rays that meet the surface that they start from: “acne”. Rounding decides in each pixel whether they do, so that it looks like a lack
+//! of digits; but no number of digits helps, and it is a mistake.
+
+use rayon::prelude::*;
+
+use super::Asked;
+use crate::compare::{Answer, MAX_UNSTABLE, Standing, grouped};
+use crate::mistake::Named;
+use crate::trace::{RayStyles, Tracer};
+
+/// So many pixels are looked at.
+const ASKED: usize = 64;
+
+/// So large a share of them must be what the tracer makes of rays that meet their own surface: where mirrors see each other, a ray may do so
+/// more often than is looked at. In double precision nothing else that rounding decides is seen in so many pixels.
+const MOST: f64 = 0.4;
+const MOST_IN_DOUBLE: f64 = 0.3;
+
+/// In float32 alone, fewer pixels than this may be a lack of digits at edges and at the rim of glass.
+const LEAST_IN_SINGLE: f64 = 0.01;
+
+/// Colors that are no farther apart are the same: of float32, too.
+const SAME: f64 = 4.0 / 255.0;
+
+/// The check in which pixels differ since rays meet the surfaces that they start from, if most that differ do so for this reason.
+pub(super) fn is_seen<'a>(
+    tracer: &Tracer<f64>,
+    size: [u32; 2],
+    maths: Option<&'a Asked>,
+    rounding: Option<&'a Asked>,
+) -> Option<&'a Asked> {
+    let styles = tracer.acne();
+    if styles.is_empty() {
+        return None;
+    }
+    // In f64, rounding decides where it is acne, and not where it is another mistake.
+    let decided_by_rounding =
+        |asked: &&Asked| asked.answer.undecided - asked.answer.tied > asked.answer.differing;
+    let maths = maths.into_iter().filter(decided_by_rounding);
+    let maths = maths.map(|asked| (asked, MAX_UNSTABLE, MOST_IN_DOUBLE));
+    let rounding = rounding.into_iter().map(|asked| (asked, LEAST_IN_SINGLE, MOST));
+    let seen = maths.chain(rounding).find(|&(asked, least, most)| {
+        let answer = &asked.answer;
+        let count = answer.differing + answer.undecided - answer.tied;
+        if answer.share(count) <= least {
+            return false;
+        }
+        let pixels = all(asked, size);
+        let explained = pixels
+            .par_iter()
+            .filter(|&&pixel| is_acne(tracer, &styles, asked, size, pixel));
+        explained.count() as f64 >= most * pixels.len() as f64 && !pixels.is_empty()
+    });
+    seen.map(|(asked, ..)| asked)
+}
+
+/// Pixels from all over the picture that rounding decides, or that differ if there are none, of those whose colors are kept.
+fn all(asked: &Asked, size: [u32; 2]) -> Vec<[u32; 2]> {
+    let is_undecided = asked.standings.contains(&Standing::Undecided);
+    let told = if is_undecided {
+        Standing::Undecided
+    } else {
+        Standing::Differs
+    };
+    let mut kept: Vec<usize> = asked.actual.keys().copied().collect();
+    kept.retain(|&at| asked.standings[at] == told);
+    kept.sort_unstable();
+    let step = kept.len().div_ceil(ASKED).max(1);
+    let place = |&at: &usize| [at as u32 % size[0], at as u32 / size[0]];
+    kept.iter().step_by(step).map(place).collect()
+}
+
+/// Whether a pixel's color is not the scene's, but comes of rays that meet their own surface.
+fn is_acne(
+    tracer: &Tracer<f64>,
+    styles: &[RayStyles],
+    asked: &Asked,
+    size: [u32; 2],
+    [x, y]: [u32; 2],
+) -> bool {
+    let Some(own) = asked.actual.get(&(y as usize * size[0] as usize + x as usize)) else {
+        return false;
+    };
+    let own = own.map(|part| f64::from(part).clamp(0.0, 1.0));
+    let exact = tracer.pixel(x, y).map(|part| part.clamp(0.0, 1.0));
+    let is_near = |a: f64, b: f64| (a - b).abs() <= SAME;
+    styles.iter().any(|styles| {
+        let other = tracer.styled([x, y], styles).map(|part| part.clamp(0.0, 1.0));
+        let changes = (0..3).any(|i| !is_near(other[i], exact[i]));
+        changes && (0..3).all(|i| is_near(own[i], other[i]))
+    })
+}
+
+/// Why the shader is wrong.
+pub(super) fn reason(answer: &Answer) -> String {
+    let count = answer.differing + answer.undecided - answer.tied;
+    format!(
+        "in {} of {} pixels rounding decides whether a ray meets the surface that it starts from",
+        grouped(count),
+        grouped(answer.pixels)
+    )
+}
+
+/// The mistake.
+pub(super) fn named() -> Named {
+    Named {
+        name: "self-intersection",
+        says: "lets rays meet the surface that they start from: start them a little off it, or do not count hits that are too near".into(),
+    }
+}
