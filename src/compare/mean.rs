@@ -53,6 +53,9 @@ const FINEST: f64 = 0.01;
 /// noise: it is 1 if each pixel draws its own.
 const REPEATED: f64 = 0.75;
 
+/// What neighbours have in common is no noise if it is more than so many times the variance of the scene's.
+const BEYOND_NOISE: f64 = 4.0;
+
 /// The shader draws the scene's numbers if its noise and the reference's are correlated more than this. It is 0.1 if they have only the mean in common
 /// which both are told from.
 const THE_SCENES: f64 = 0.5;
@@ -88,7 +91,7 @@ pub fn means(pairs: &[[DrawnPixel; 2]], size: [u32; 2]) -> Means {
     let farthest = farthest.unwrap_or(whole);
     let within = whole.within();
     if farthest.deviations().max(common(pairs)) > NO_CHANCE {
-        if own_noise(pairs) < REPEATED {
+        if own_noise(pairs) < REPEATED && !is_beyond_noise(pairs) {
             Means::Repeated
         } else {
             Means::Apart(farthest.middle())
@@ -148,6 +151,19 @@ fn own_noise(pairs: &[[DrawnPixel; 2]]) -> f64 {
         }
     }
     if all == 0.0 { 1.0 } else { own / all }
+}
+
+/// Whether what neighbours have in common is more than all noise that the scene has, whoever shares it.
+fn is_beyond_noise(pairs: &[[DrawnPixel; 2]]) -> bool {
+    let (mut common, mut noise) = (0.0, 0.0);
+    for [a, b] in pairs {
+        for i in 0..3 {
+            let weight = (a.weight(i) * b.weight(i)).sqrt();
+            common += weight * a.noise(i) * b.noise(i);
+            noise += weight * f64::midpoint(a.spread[i], b.spread[i]);
+        }
+    }
+    common > BEYOND_NOISE * noise
 }
 
 /// The correlation of the shader's noise and the reference's.

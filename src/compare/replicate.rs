@@ -56,6 +56,9 @@ const SIGMA_LIMIT: f64 = 5.0;
 /// seven degrees of freedom exceeds this once in 50,000 times.
 const REPEATED_LIMIT: f64 = 10.0;
 
+/// Means of eight pictures are not apart by more than so many times the variance of one, whoever shares its random numbers.
+const BEYOND_NOISE: f64 = 4.0;
+
 /// Means that are this much apart are the same, as far as two right formulas may be.
 const SAME: f64 = 2.0 * EXACT_TOLERANCE;
 
@@ -120,7 +123,7 @@ pub fn replicated(pixels: &[ReplicatedPixel], size: [u32; 2]) -> Replicated {
     let limit = if is_repeated { REPEATED_LIMIT } else { SIGMA_LIMIT };
     Replicated {
         bias,
-        is_biased: bias.0 > limit,
+        is_biased: bias.0 > limit || (is_repeated && is_beyond_noise(pixels)),
         within: within(pixels, limit),
         is_repeated,
         variance,
@@ -229,6 +232,18 @@ fn is_repeated(pixels: &[ReplicatedPixel]) -> bool {
     directions
         .into_iter()
         .any(|direction| correlation(direction) > CORRELATED)
+}
+
+/// Whether the means are farther apart than any noise of the scene would have them.
+fn is_beyond_noise(pixels: &[ReplicatedPixel]) -> bool {
+    let (mut squares, mut noise) = (0.0, 0.0);
+    for pixel in pixels {
+        for i in 0..3 {
+            squares += pixel.weight[i] * pixel.difference(i).powi(2);
+            noise += pixel.weight[i] * pixel.single_variance[i];
+        }
+    }
+    squares > BEYOND_NOISE * noise
 }
 
 /// How many times the tracer's variance the shader's is, and whether it is so everywhere.

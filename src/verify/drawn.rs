@@ -228,7 +228,7 @@ impl<'a> Painted<'a> {
                 ),
             );
         }
-        match found.without_chance() {
+        match found.without_chance(self) {
             (Verdict::Correct, _) => {
                 let pixels = grouped(pixels as u64);
                 let mut reason = format!(
@@ -249,7 +249,7 @@ impl<'a> Painted<'a> {
     /// By the one picture that there is, where no way is found to give the shader other random numbers.
     fn by_one_picture(&self, differs: &str, pairs: &[[DrawnPixel; 2]], found: Found) -> (Verdict, String) {
         match means(pairs, self.size) {
-            Means::Same(within) => match found.without_chance() {
+            Means::Same(within) => match found.without_chance(self) {
                 (Verdict::Correct, _) => {
                     let pixels = grouped(2 * pairs.len() as u64);
                     let reason = format!(
@@ -404,7 +404,7 @@ fn moves(a: [f64; 3], b: [f64; 3]) -> bool {
 
 impl Found<'_> {
     /// The verdict, if no pixel is held against the shader in which it differs from the scene: there, float32 may draw other numbers as well.
-    fn without_chance(self) -> (Verdict, String) {
+    fn without_chance(self, painted: &Painted) -> (Verdict, String) {
         let maths = Answer {
             differing: 0,
             undecided: 0,
@@ -413,10 +413,13 @@ impl Found<'_> {
         };
         let rounding = self.rounding.map(|rounding| {
             let standings = rounding.standings.iter().zip(&self.maths.standings);
-            let left = standings.filter(|&standings| match standings {
-                (Standing::Differs, &maths) => !matches!(maths, Standing::Differs | Standing::Undecided),
-                _ => false,
+            let left = standings.enumerate().filter(|&(_, (&rounding, &maths))| {
+                rounding == Standing::Differs && !matches!(maths, Standing::Differs | Standing::Undecided)
             });
+            // In float32, other random numbers may come of the same formula.
+            let width = painted.size[0] as usize;
+            let left =
+                left.filter(|&(at, _)| !painted.is_redrawn([(at % width) as u32, (at / width) as u32]));
             Answer {
                 differing: left.count() as u64,
                 ..rounding.answer.clone()
