@@ -45,10 +45,11 @@ pub(super) fn is_seen<'a>(
         if answer.share(count) <= least {
             return false;
         }
-        let pixels = all(asked, size);
-        let explained = pixels
-            .par_iter()
-            .filter(|&&pixel| is_acne(tracer, &styles, asked, size, pixel));
+        let pixels: Vec<Visible> = all(asked, size)
+            .into_par_iter()
+            .filter_map(|pixel| Visible::at(tracer, asked, size, pixel))
+            .collect();
+        let explained = pixels.par_iter().filter(|pixel| pixel.is_acne(tracer, &styles));
         explained.count() as f64 >= most * pixels.len() as f64 && !pixels.is_empty()
     });
     seen.map(|(asked, ..)| asked)
@@ -70,25 +71,41 @@ fn all(asked: &Asked, size: [u32; 2]) -> Vec<[u32; 2]> {
     kept.iter().step_by(step).map(place).collect()
 }
 
-/// Whether a pixel's color is not the scene's, but comes of rays that meet their own surface.
-fn is_acne(
-    tracer: &Tracer<f64>,
-    styles: &[RayStyles],
-    asked: &Asked,
-    size: [u32; 2],
-    [x, y]: [u32; 2],
-) -> bool {
-    let Some(own) = asked.actual.get(&(y as usize * size[0] as usize + x as usize)) else {
-        return false;
-    };
-    let own = own.map(|part| f64::from(part).clamp(0.0, 1.0));
-    let exact = tracer.pixel(x, y).map(|part| part.clamp(0.0, 1.0));
-    let is_near = |a: f64, b: f64| (a - b).abs() <= SAME;
-    styles.iter().any(|styles| {
-        let other = tracer.styled([x, y], styles).map(|part| part.clamp(0.0, 1.0));
-        let changes = (0..3).any(|i| !is_near(other[i], exact[i]));
-        changes && (0..3).all(|i| is_near(own[i], other[i]))
-    })
+/// A pixel that visibly differs from the scene's. Colors are clamped to [0, 1].
+struct Visible {
+    pixel: [u32; 2],
+    own: [f64; 3],
+    exact: [f64; 3],
+}
+
+impl Visible {
+    /// None if the pixel has the scene's color, or its own is not kept.
+    fn at(tracer: &Tracer<f64>, asked: &Asked, size: [u32; 2], pixel: [u32; 2]) -> Option<Self> {
+        let [x, y] = pixel;
+        let own = asked.actual.get(&(y as usize * size[0] as usize + x as usize))?;
+        let own = own.map(|part| f64::from(part).clamp(0.0, 1.0));
+        let exact = tracer.pixel(x, y).map(|part| part.clamp(0.0, 1.0));
+        (0..3)
+            .any(|i| !is_near(own[i], exact[i]))
+            .then_some(Self { pixel, own, exact })
+    }
+
+    /// Whether its color comes of rays that meet their own surface: in all of its samples, or in some of them.
+    fn is_acne(&self, tracer: &Tracer<f64>, styles: &[RayStyles]) -> bool {
+        let Self { own, exact, .. } = self;
+        styles.iter().any(|styles| {
+            let other = tracer.styled(self.pixel, styles).map(|part| part.clamp(0.0, 1.0));
+            let is_mixed = |i: usize| {
+                let (least, most) = (other[i].min(exact[i]), other[i].max(exact[i]));
+                tracer.samples() > 1 && (least - SAME..=most + SAME).contains(&own[i])
+            };
+            (0..3).all(|i| is_near(own[i], other[i]) || is_mixed(i))
+        })
+    }
+}
+
+fn is_near(a: f64, b: f64) -> bool {
+    (a - b).abs() <= SAME
 }
 
 /// Why the shader is wrong.

@@ -337,9 +337,24 @@ impl Findings {
             rounding: self.rounding.as_ref().map(|asked| &asked.answer),
             toolchain: self.toolchain.as_ref().map(|asked| &asked.answer),
         });
+        if let (Verdict::Unstable | Verdict::Wrong, Some(expected)) = (self.verdict, case.expected)
+            && let Some(asked) = acne::is_seen(
+                expected.tracer(),
+                case.frame.size,
+                self.maths.as_ref(),
+                self.rounding.as_ref(),
+            )
+        {
+            self.verdict = Verdict::Wrong;
+            self.reason = acne::reason(&asked.answer);
+            self.mistake = Some(vec![acne::named()]);
+        }
+        // A mistake that explains every pixel is one, whatever random numbers it uses. Two at once are searched for later: where chance
+        // decides, they make another image than both together.
+        self.search_for_mistake(case, program, if painted.is_some() { 0 } else { PAIRS });
         let mut is_judged = false;
-        if let (Verdict::Wrong | Verdict::Unstable, Some(painted), Some(maths)) =
-            (self.verdict, painted, &self.maths)
+        if let (Verdict::Wrong | Verdict::Unstable, None, Some(painted), Some(maths)) =
+            (self.verdict, &self.mistake, painted, &self.maths)
         {
             let found = Found {
                 maths,
@@ -352,25 +367,8 @@ impl Findings {
                 self.mistake = judged.mistake;
             }
         }
-        if let (Verdict::Wrong, None, Some(suspects)) = (self.verdict, &self.mistake, case.suspects) {
-            // Where chance decides, two mistakes paint another picture than both together.
-            let pairs = if is_judged { 0 } else { PAIRS };
-            let named = contain(Part::Mistake, || suspects.recognise(program, case.frame, pairs));
-            self.mistake = self.contained(named);
-        }
-        if let (Verdict::Unstable | Verdict::Wrong, None, Some(expected)) =
-            (self.verdict, &self.mistake, case.expected)
-            && painted.is_none()
-            && let Some(asked) = acne::is_seen(
-                expected.tracer(),
-                case.frame.size,
-                self.maths.as_ref(),
-                self.rounding.as_ref(),
-            )
-        {
-            self.verdict = Verdict::Wrong;
-            self.reason = acne::reason(&asked.answer);
-            self.mistake = Some(vec![acne::named()]);
+        if painted.is_some() && !is_judged {
+            self.search_for_mistake(case, program, PAIRS);
         }
         if let (Verdict::Correct, Some(suspects), Some(maths)) = (self.verdict, case.suspects, &self.maths)
             && maths.answer.differing > 0
@@ -407,6 +405,14 @@ impl Findings {
                 .iter()
                 .any(|warning| warning.span == self.cause);
             self.notes.extend(cause.filter(|_| !is_foreseen));
+        }
+    }
+
+    /// Looks for the mistake that explains a wrong image, or for two, of so many pairs at most.
+    fn search_for_mistake(&mut self, case: &Case, program: &Program, pairs: usize) {
+        if let (Verdict::Wrong, None, Some(suspects)) = (self.verdict, &self.mistake, case.suspects) {
+            let named = contain(Part::Mistake, || suspects.recognise(program, case.frame, pairs));
+            self.mistake = self.contained(named);
         }
     }
 

@@ -39,6 +39,10 @@ const LEAST_CHANGED: f64 = 0.1;
 /// With other random numbers, a shader is about as far from the reference as with its own: its squares are within this factor.
 const SAME_DISTANCE: f64 = 2.0;
 
+/// A pixel that is the same with all of a shader's random numbers may still be so by chance if it is within so many standard deviations of
+/// those around it.
+const RARE: f64 = 3.0;
+
 /// Why there is nothing to compare by chance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Unfit {
@@ -128,55 +132,28 @@ pub(super) fn compared(
     if follows(tracer, &pixels, &usual, &drawn) {
         return Err(Unfit::Follows);
     }
-    let (reseeding, mut sets) = shader.replicates(usual, &drawn, &moves).ok_or(Unfit::Unsalted)?;
-    let weighing = sets.split_off(REPLICATES);
-    let width = case.frame.size[0] as usize;
-    let standing = |[x, y]: [u32; 2]| maths.standings[y as usize * width + x as usize];
-    let is_random = |at: usize| {
-        moves[at]
-            || sets
-                .iter()
-                .any(|set| differ(set[at].developed, sets[0][at].developed))
-    };
-    let fixed = (0..pixels.len())
-        .filter(|&at| standing(pixels[at]) == Standing::Differs && !is_random(at))
-        .count();
-    if fixed as f64 > (MAX_DIFFERING * pixels.len() as f64).max(1.0) {
-        return Err(Unfit::Fixed);
+    let compare = |(reseeding, sets)| shader.compare(reseeding, sets, &pixels, &drawn, &moves, maths);
+    let mut first = None;
+    // A salt may take from a hash what tells neighbors apart, where another does not.
+    for reseeding in Reseeding::all() {
+        let Some(sets) = shader.replicates(reseeding, &usual, &drawn, &moves) else {
+            continue;
+        };
+        let compared = compare((reseeding, sets));
+        if compared
+            .as_ref()
+            .is_ok_and(|compared| !compared.replicated.is_repeated)
+        {
+            return compared;
+        }
+        first.get_or_insert(compared);
     }
-    let spread = smooth(&weighing, columns.len());
-    let clamps = clamps(tracer, &sets, &drawn);
-    let chosen = (0..pixels.len()).filter(|&at| is_random(at) && standing(pixels[at]) != Standing::Undefined);
-    let replicated_pixels: Vec<ReplicatedPixel> = chosen
-        .filter_map(|at| {
-            let drawn = &drawn[at];
-            let mean = drawn.mean();
-            let own: [[f64; 3]; REPLICATES] = std::array::from_fn(|set| sets[set][at].mean);
-            if is_white(tracer, mean, &own, drawn, clamps) {
-                return None;
-            }
-            let slope = tracer.slope(mean);
-            let scaled = |color: [f64; 3]| [0, 1, 2].map(|i| slope[i] * color[i]);
-            let squared = |color: [f64; 3]| scaled(scaled(color));
-            let chosen = squared(variance(&drawn.choosing));
-            let shaders = squared(spread[at]);
-            let sets = REPLICATES as f64;
-            let single_variance = squared(drawn.variance);
-            Some(ReplicatedPixel {
-                at: pixels[at],
-                weight: [0, 1, 2].map(|i| sets / (chosen[i] + shaders[i] + LEAST_NOISE * LEAST_NOISE)),
-                reference: drawn.halves.map(scaled),
-                reference_variance: single_variance.map(|one| one / sets),
-                single_variance,
-                own: own.map(scaled),
-            })
-        })
-        .collect();
-    Ok(Compared {
-        replicated: replicated(&replicated_pixels, case.frame.size),
-        pixels: replicated_pixels.len(),
-        reseeding,
-    })
+    if first.is_none() && is_without_chance(&case.checked.tree) {
+        // Nothing is random in it: it is the same with any numbers.
+        let [.., untouched] = Reseeding::all();
+        first = Some(compare((untouched, vec![usual; REPLICATES + WEIGHING])));
+    }
+    first.unwrap_or(Err(Unfit::Unsalted))
 }
 
 /// So many places a side are looked at to see whether a shader is random at all.
@@ -353,13 +330,83 @@ impl Shader<'_> {
         self.picture(&program, &self.places.shifted(Reseeding::shift(salt)))
     }
 
-    /// The usual pixels, and those with other random numbers; none if no way is found to give it such.
-    fn replicates(
+    /// Compares the pictures of a reseeding with the tracer's.
+    fn compare(
         &self,
-        usual: Vec<OwnPixel>,
+        reseeding: Reseeding,
+        mut sets: Vec<Vec<OwnPixel>>,
+        pixels: &[[u32; 2]],
         drawn: &[Drawn],
         moves: &[bool],
-    ) -> Option<(Reseeding, Vec<Vec<OwnPixel>>)> {
+        maths: &Asked,
+    ) -> Result<Compared, Unfit> {
+        let weighing = sets.split_off(REPLICATES);
+        let width = self.case.frame.size[0] as usize;
+        let standing = |[x, y]: [u32; 2]| maths.standings[y as usize * width + x as usize];
+        let is_random = |at: usize| {
+            moves[at]
+                || sets
+                    .iter()
+                    .any(|set| differ(set[at].developed, sets[0][at].developed))
+        };
+        let spread = smooth(&weighing, self.places.pixels()[0].len());
+        // A rare event: the scene's own samples met it and no others did, or the shader's neighbors do now and then.
+        let is_rare = |at: usize| {
+            let ([x, y], own, drawn) = (pixels[at], &sets[0][at], &drawn[at]);
+            let is_noise = |i: usize| {
+                (own.mean[i] - drawn.mean()[i]).abs() <= RARE * spread[at][i].sqrt() + EXACT_TOLERANCE
+            };
+            differ(self.tracer.pixel(x, y), self.tracer.developed(drawn.mean())) || (0..3).all(is_noise)
+        };
+        let fixed = (0..pixels.len())
+            .filter(|&at| standing(pixels[at]) == Standing::Differs && !is_random(at) && !is_rare(at))
+            .count();
+        if fixed as f64 > (MAX_DIFFERING * pixels.len() as f64).max(1.0) {
+            return Err(Unfit::Fixed);
+        }
+        let clamps = clamps(self.tracer, &sets, drawn);
+        let chosen =
+            (0..pixels.len()).filter(|&at| is_random(at) && standing(pixels[at]) != Standing::Undefined);
+        let replicated_pixels: Vec<ReplicatedPixel> = chosen
+            .filter_map(|at| {
+                let drawn = &drawn[at];
+                let mean = drawn.mean();
+                let own: [[f64; 3]; REPLICATES] = std::array::from_fn(|set| sets[set][at].mean);
+                if is_white(self.tracer, mean, &own, drawn, clamps) {
+                    return None;
+                }
+                let slope = self.tracer.slope(mean);
+                let scaled = |color: [f64; 3]| [0, 1, 2].map(|i| slope[i] * color[i]);
+                let squared = |color: [f64; 3]| scaled(scaled(color));
+                let chosen = squared(variance(&drawn.choosing));
+                let shaders = squared(spread[at]);
+                let sets = REPLICATES as f64;
+                let single_variance = squared(drawn.variance);
+                Some(ReplicatedPixel {
+                    at: pixels[at],
+                    weight: [0, 1, 2].map(|i| sets / (chosen[i] + shaders[i] + LEAST_NOISE * LEAST_NOISE)),
+                    reference: drawn.halves.map(scaled),
+                    reference_variance: single_variance.map(|one| one / sets),
+                    single_variance,
+                    own: own.map(scaled),
+                })
+            })
+            .collect();
+        Ok(Compared {
+            replicated: replicated(&replicated_pixels, self.case.frame.size),
+            pixels: replicated_pixels.len(),
+            reseeding,
+        })
+    }
+
+    /// The usual pixels, and those with other random numbers; none if the reseeding does not give it such.
+    fn replicates(
+        &self,
+        reseeding: Reseeding,
+        usual: &[OwnPixel],
+        drawn: &[Drawn],
+        moves: &[bool],
+    ) -> Option<Vec<Vec<OwnPixel>>> {
         let distance = |own: &[OwnPixel]| {
             let pixels = own.iter().zip(drawn).map(|(own, drawn)| {
                 let reference = self.tracer.developed(drawn.mean());
@@ -378,29 +425,20 @@ impl Shader<'_> {
             }
             changed as f64 >= LEAST_CHANGED * f64::from(all) && all > 0
         };
-        let own = distance(&usual);
+        let own = distance(usual);
         let is_as_far = |other: &[OwnPixel]| {
             let other = distance(other);
             other <= SAME_DISTANCE * own && own <= SAME_DISTANCE * other
         };
-        let salts = 2..(REPLICATES + WEIGHING) as u32;
-        let found = Reseeding::all().into_iter().find_map(|reseeding| {
-            let first = self.salted(reseeding, 1)?;
-            if !is_changed(&first) || !is_as_far(&first) {
-                return None;
-            }
-            let mut all = vec![usual.clone(), first];
-            for salt in salts.clone() {
-                all.push(self.salted(reseeding, salt).filter(|other| is_as_far(other))?);
-            }
-            Some((reseeding, all))
-        });
-        if found.is_some() || !is_without_chance(&self.case.checked.tree) {
-            return found;
+        let first = self.salted(reseeding, 1)?;
+        if !is_changed(&first) || !is_as_far(&first) {
+            return None;
         }
-        // Nothing is random in it: it is the same with any numbers.
-        let [.., untouched] = Reseeding::all();
-        Some((untouched, vec![usual; REPLICATES + WEIGHING]))
+        let mut all = vec![usual.to_vec(), first];
+        for salt in 2..(REPLICATES + WEIGHING) as u32 {
+            all.push(self.salted(reseeding, salt).filter(|other| is_as_far(other))?);
+        }
+        Some(all)
     }
 }
 

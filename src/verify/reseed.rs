@@ -30,7 +30,7 @@ pub(super) struct Reseeding {
 
 impl Reseeding {
     /// What is tried, one after the other.
-    pub(super) fn all() -> [Self; 4] {
+    pub(super) fn all() -> [Self; 5] {
         let [integers, conversions, fractions] = [true; 3];
         let none = Self {
             integers: false,
@@ -43,6 +43,7 @@ impl Reseeding {
                 conversions,
                 fractions,
             },
+            Self { integers, ..none },
             Self { fractions, ..none },
             Self { conversions, ..none },
             none,
@@ -57,6 +58,7 @@ impl Reseeding {
         for id in ids {
             self.change(tree, id, salt);
         }
+        tree.forget_values();
         checked
     }
 

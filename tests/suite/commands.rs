@@ -564,7 +564,9 @@ fn every_command_of_the_readme_works() {
         let needs_driver = ["check", "run", "doctor"]
             .iter()
             .any(|name| line.starts_with(&format!("toyproof {name}")));
-        if needs_driver && !driver {
+        let needs_browser = line.contains("--browser");
+        if (needs_driver && !driver) || (needs_browser && toyproof::browser::find().is_none()) {
+            eprintln!("skipped, for want of a driver or a browser: {line}");
             continue;
         }
         let ran = Command::new("sh")

@@ -165,10 +165,11 @@ fn fake_driver(folder: &Path, does: &str) -> Option<PathBuf> {
     }
     let manifest = folder.join("driver.json");
     let library = folder.join("driver.so");
-    let text = format!(
-        r#"{{"file_format_version": "1.0.0", "ICD": {{"library_path": {library:?}, "api_version": "1.3.0"}}}}"#
-    );
-    fs::write(&manifest, text).unwrap();
+    let text = serde_json::json!({
+        "file_format_version": "1.0.0",
+        "ICD": { "library_path": library, "api_version": "1.3.0" },
+    });
+    fs::write(&manifest, text.to_string()).unwrap();
     Some(manifest)
 }
 

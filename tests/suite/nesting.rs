@@ -18,9 +18,7 @@ const DEPTH: usize = 100;
 /// Wraps `DEPTH` levels around the innermost statement; what a level is, `level` says of the inside and its
 /// number, 0 for the outermost.
 fn nest(level: impl Fn(String, usize) -> String) -> String {
-    (0..DEPTH)
-        .rev()
-        .fold("g(x, 1.0);".to_owned(), |inside, at| level(inside, at))
+    (0..DEPTH).rev().fold("g(x, 1.0);".to_owned(), level)
 }
 
 /// One after the other.

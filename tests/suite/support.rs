@@ -18,7 +18,7 @@ use toyproof::trace::Tracer;
 use toyproof::verify::{Case, Expected, Findings, verify};
 
 /// A shader of the course and the scene that it paints.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Rung {
     pub(crate) name: &'static str,
     pub(crate) shader: &'static str,

@@ -161,13 +161,11 @@ impl Checker<'_> {
             return;
         }
         let value = self.tree.value(offset);
-        let too_far = value
-            .iter()
-            .flat_map(|value| value.components())
-            .find_map(|part| {
-                let Value::Int(part) = *part else { return None };
-                (!TEXEL_OFFSETS.contains(&part)).then_some(part)
-            });
+        let parts = value.as_ref().map_or(&[][..], |value| value.components());
+        let too_far = parts.iter().find_map(|part| {
+            let Value::Int(part) = *part else { return None };
+            (!TEXEL_OFFSETS.contains(&part)).then_some(part)
+        });
         if let Some(part) = too_far {
             let message = format!(
                 "the offset {part} is out of range: {} to {}",

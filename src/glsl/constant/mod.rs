@@ -59,6 +59,11 @@ impl Tree {
         }
     }
 
+    /// Forgets all values that were kept: expressions were rewritten that others are made of.
+    pub fn forget_values(&mut self) {
+        self.values.clear();
+    }
+
     /// What is known of a value without computing it: none of those that were not kept.
     #[expect(
         clippy::option_option,
