@@ -76,7 +76,7 @@ fn take(left: &mut f64, pixels: usize) -> bool {
 ///
 /// A pixel agrees if no component is farther than [`EXACT_TOLERANCE`] from the hull of the answers that the tracer gives in
 /// the legal styles of secondary rays. More styles are asked for only where pixels are still outside: `mixed` ones if few are, then the
-/// shader's own, which a few of the pixels tell ([`fit`]), then all that authors use, in each pixel by itself.
+/// shader's own, which a few of the pixels tell (`fit`), then all that authors use, in each pixel by itself.
 /// A pixel outside of all is left
 /// out if it lies on an edge across which the shader takes derivatives: what they are there, GLSL leaves to the driver. It is left out, too, if
 /// the reference itself is ill-conditioned there: an edge of the scene passes through the pixel's sample. Else it

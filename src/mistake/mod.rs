@@ -256,7 +256,7 @@ impl Suspects {
     }
 
     /// The mistake that explains a few pixels in which the `student`'s shader is another color than it should be, and all that are not: it
-    /// shows in nothing else. None with fewer than [`FEWEST_EXPLAINED`].
+    /// shows in nothing else. None with fewer than `FEWEST_EXPLAINED` pixels.
     #[must_use]
     pub fn explaining(&self, student: &Program, pixels: &[[u32; 2]]) -> Option<Named> {
         if pixels.len() < FEWEST_EXPLAINED {
