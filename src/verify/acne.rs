@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::Asked;
 use crate::compare::{Answer, MAX_UNSTABLE, Standing, grouped};
 use crate::mistake::Named;
+use crate::scene::Sampler;
 use crate::trace::{RayStyles, Tracer};
 
 /// So many pixels are looked at.
@@ -93,11 +94,13 @@ impl Visible {
     /// Whether its color comes of rays that meet their own surface: in all of its samples, or in some of them.
     fn is_acne(&self, tracer: &Tracer<f64>, styles: &[RayStyles]) -> bool {
         let Self { own, exact, .. } = self;
+        // Where lights and BRDFs are sampled, too, a color between the two says nothing.
+        let is_jittered = tracer.sampler() == Some(Sampler::SineHash);
         styles.iter().any(|styles| {
             let other = tracer.styled(self.pixel, styles).map(|part| part.clamp(0.0, 1.0));
             let is_mixed = |i: usize| {
                 let (least, most) = (other[i].min(exact[i]), other[i].max(exact[i]));
-                tracer.samples() > 1 && (least - SAME..=most + SAME).contains(&own[i])
+                is_jittered && (least - SAME..=most + SAME).contains(&own[i])
             };
             (0..3).all(|i| is_near(own[i], other[i]) || is_mixed(i))
         })

@@ -337,18 +337,6 @@ impl Findings {
             rounding: self.rounding.as_ref().map(|asked| &asked.answer),
             toolchain: self.toolchain.as_ref().map(|asked| &asked.answer),
         });
-        if let (Verdict::Unstable | Verdict::Wrong, Some(expected)) = (self.verdict, case.expected)
-            && let Some(asked) = acne::is_seen(
-                expected.tracer(),
-                case.frame.size,
-                self.maths.as_ref(),
-                self.rounding.as_ref(),
-            )
-        {
-            self.verdict = Verdict::Wrong;
-            self.reason = acne::reason(&asked.answer);
-            self.mistake = Some(vec![acne::named()]);
-        }
         // A mistake that explains every pixel is one, whatever random numbers it uses. Two at once are searched for later: where chance
         // decides, they make another image than both together.
         self.search_for_mistake(case, program, if painted.is_some() { 0 } else { PAIRS });
@@ -366,6 +354,19 @@ impl Findings {
                 (self.verdict, self.reason) = (judged.verdict, judged.reason);
                 self.mistake = judged.mistake;
             }
+        }
+        if let (Verdict::Unstable | Verdict::Wrong, None, Some(expected)) =
+            (self.verdict, &self.mistake, case.expected)
+            && let Some(asked) = acne::is_seen(
+                expected.tracer(),
+                case.frame.size,
+                self.maths.as_ref(),
+                self.rounding.as_ref(),
+            )
+        {
+            self.verdict = Verdict::Wrong;
+            self.reason = acne::reason(&asked.answer);
+            self.mistake = Some(vec![acne::named()]);
         }
         if painted.is_some() && !is_judged {
             self.search_for_mistake(case, program, PAIRS);

@@ -26,6 +26,7 @@ mod evaluator_programs;
 mod exported;
 #[cfg(unix)]
 mod fair_verdicts;
+mod fairness;
 mod fuzzed;
 mod generate;
 mod generated;
