@@ -29,6 +29,10 @@ pub struct Worker {
     manifest: Option<PathBuf>,
     compiles_plainly: bool,
     live: Option<Live>,
+    /// Whether a job has been done.
+    has_worked: bool,
+    /// Why the driver did not start, before it ever did: no other job waits for it.
+    not_started: Option<Failure>,
 }
 
 /// How long a driver may take to start, unless a shader may take longer: a busy machine needs a second or two.
@@ -56,6 +60,8 @@ impl Worker {
             manifest: None,
             compiles_plainly: false,
             live: None,
+            has_worked: false,
+            not_started: None,
         }
     }
 
@@ -229,8 +235,24 @@ impl Worker {
         self.run_in_bands(job, |_| ())
     }
 
+    /// Has a job done, whose picture `each` is given. A driver that did not start is not started again, unless it had done a job.
+    fn run_in_bands(&mut self, job: &Job, each: impl FnMut(Image)) -> Result<Output, Failure> {
+        if let Some(failure) = &self.not_started {
+            return Err(failure.clone());
+        }
+        let output = self.ask(job, each);
+        match &output {
+            Ok(_) => self.has_worked = true,
+            Err(failure @ Failure::NotStarted(_)) if !self.has_worked => {
+                self.not_started = Some(failure.clone());
+            }
+            Err(_) => {}
+        }
+        output
+    }
+
     /// Has a job done, under a deadline that does not pass while `each` works or the driver starts.
-    fn run_in_bands(&mut self, job: &Job, mut each: impl FnMut(Image)) -> Result<Output, Failure> {
+    fn ask(&mut self, job: &Job, mut each: impl FnMut(Image)) -> Result<Output, Failure> {
         let mut live = match self.live.take() {
             Some(live) => live,
             None => self.start()?,

@@ -9,6 +9,7 @@ use std::time::Duration;
 use serde_json::Value;
 
 use toyproof::compare::Verdict;
+use toyproof::emit::Target;
 use toyproof::eval;
 use toyproof::frame::Frame;
 use toyproof::glsl::{Checked, lower};
@@ -19,15 +20,17 @@ use crate::program::{Run, command, has_driver, run};
 use crate::support::{SPHERE, checked};
 
 /// A worker that is a script. It says in which phase it is by printing a message of the protocol: its length, that it is a
-/// phase, and which.
+/// phase, and which. TRANSLATED is the answer to a job of translating: no bytes.
 fn worker(script: &str) -> Worker {
+    let script = script.replace(
+        "TRANSLATED",
+        r"printf '\004\000\000\000\000\000\000\000\002\000\001\000'",
+    );
     let phases = ["STARTING", "TRANSLATING", "COMPILING", "DRAWING"];
-    let script = (0..)
-        .zip(phases)
-        .fold(script.to_owned(), |script, (number, name)| {
-            let says = format!(r"printf '\002\000\000\000\000\000\000\000\000\00{number}'");
-            script.replace(name, &says)
-        });
+    let script = (0..).zip(phases).fold(script, |script, (number, name)| {
+        let says = format!(r"printf '\002\000\000\000\000\000\000\000\000\00{number}'");
+        script.replace(name, &says)
+    });
     let arguments = vec!["-c".to_owned(), script];
     Worker::new("/bin/sh".into(), arguments, On::Auto, Duration::from_millis(300))
         .with_start_timeout(Duration::from_millis(300))
@@ -81,6 +84,30 @@ fn a_driver_that_does_not_start_is_told_from_a_shader_that_takes_too_long() {
     let failure = draw(&format!("TRANSLATING; {overflow}"));
     let phase = Phase::Translating;
     assert_eq!(failure, Failure::StackOverflow { phase });
+}
+
+#[test]
+fn a_driver_that_has_never_started_is_not_started_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let shader = lower(&checked(SPHERE.shader));
+    let script = |name: &str, first: &str| {
+        let file = folder.path().join(name).display().to_string();
+        worker(&format!("[ -e {file} ] && exit 4; touch {file}; {first} exit 3"))
+    };
+    let mut never = script("never", "");
+    for _ in 0..2 {
+        let drawn = never.draw(shader.clone(), Frame::default(), FloatMode::Strict);
+        let failure = drawn.unwrap_err().to_string();
+        assert!(failure.contains("(exit status: 3)"), "{failure}");
+    }
+
+    let mut once = script("once", "TRANSLATED;");
+    let mut translate = || once.translate(shader.clone(), Target::Wgsl, FloatMode::Strict);
+    assert_eq!(translate(), Ok(Vec::new()));
+    for status in [3, 4, 4] {
+        let failure = translate().unwrap_err().to_string();
+        assert!(failure.contains(&format!("(exit status: {status})")), "{failure}");
+    }
 }
 
 #[test]
@@ -149,7 +176,7 @@ fn a_shader_that_the_driver_does_not_finish_compiling_is_judged_by_the_evaluator
 /// A Vulkan driver whose entry points do that; none where there is no C compiler.
 fn fake_driver(folder: &Path, does: &str) -> Option<PathBuf> {
     let source = format!(
-        "#include <stdlib.h>\n#include <unistd.h>\n\
+        "#include <stdio.h>\n#include <stdlib.h>\n#include <unistd.h>\n\
          int vk_icdNegotiateLoaderICDInterfaceVersion(unsigned *version) {{ {does} return 0; }}\n\
          void *vk_icdGetInstanceProcAddr(void *instance, const char *name) {{ {does} return 0; }}\n"
     );
@@ -248,6 +275,13 @@ fn a_driver_that_is_asked_for_and_does_not_start_is_an_error_of_the_machine() {
         run.stdout.contains("error") && run.stdout.contains("driver was starting"),
         "{run:?}"
     );
+
+    // A batch does not start it again for each shader.
+    let first = "if (!access(\"started\", F_OK)) _exit(4); fclose(fopen(\"started\", \"w\")); _exit(3);";
+    let check = ["check", "hw", "--size", "16x9", "--on", "lavapipe", "--jobs", "1"];
+    let run = with_driver(first, &check).unwrap();
+    assert_eq!(run.code, 2, "{run:?}");
+    assert_eq!(run.stdout.matches("(exit status: 3)").count(), 3, "{run:?}");
 
     let doctor = with_driver("_exit(3);", &["doctor"]).unwrap();
     assert_eq!(doctor.code, 2, "{doctor:?}");
