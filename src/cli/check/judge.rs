@@ -200,9 +200,6 @@ impl<'a> Judge<'a> {
         let reference = found.and_then(|found| self.references.find(found));
         let mut judged = Judged::known(Record::new(shader.name.clone(), Verdict::Ok));
         judged.record.scene = reference.as_ref().map(|reference| reference.name.clone());
-        if let Some(skipped) = found.and_then(|found| self.references.skipped(found)) {
-            judged.said.push(Said::Warning(skipped.to_string()));
-        }
         let findings = self.verify(hand, &mut judged, shader, reference);
         if let (Some(out), Some(place)) = (&self.args.out, &submission.place) {
             keep(out, place, findings.as_ref().ok(), &mut judged);

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::cli::shader::Unusable;
 use crate::scene::{self, Scene};
-use crate::source::{self, File, Files, Found, FoundIn, Skipped, path_name};
+use crate::source::{self, File, Files, Found, FoundIn, ReadError, Skipped, path_name};
 
 /// The scene of a shader.
 pub(in crate::cli) struct Reference {
@@ -26,27 +26,24 @@ impl References {
         Self { named }
     }
 
-    /// Where the scene of a shader is, and its text: the one that `--scene` names, else the one beside the shader.
+    /// Where the scene of a shader is, and its text or why there is none: the one that `--scene` names, else the one beside the
+    /// shader, unless it is a link that leads out of the folder.
     pub(super) fn text(&self, found: &Found) -> Option<(PathBuf, Result<File, String>)> {
         match (&self.named, &found.place) {
             (Some(named), _) => Some(named.clone()),
             (None, FoundIn::File(shader)) => {
                 let beside = shader.with_extension("toml");
-                if !beside.is_file() || leaves(found, shader, &beside).is_some() {
+                if !beside.is_file() && !beside.is_symlink() {
                     return None;
                 }
-                let text = text(&beside);
+                let text = match leaves(found, shader, &beside) {
+                    Some(skipped) => Err(format!("there is no scene to compare with: {skipped}")),
+                    None if beside.is_file() => text(&beside),
+                    None => Err(ReadError::Missing(beside.clone()).to_string()),
+                };
                 Some((beside, text))
             }
             (None, FoundIn::Stream { .. }) => None,
-        }
-    }
-
-    /// The link that is not followed where the scene beside a shader would be.
-    pub(super) fn skipped(&self, found: &Found) -> Option<Skipped> {
-        match (&self.named, &found.place) {
-            (None, FoundIn::File(shader)) => leaves(found, shader, &shader.with_extension("toml")),
-            _ => None,
         }
     }
 
