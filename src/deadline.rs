@@ -75,6 +75,12 @@ impl Deadline {
         }
     }
 
+    /// How much time is left; none if it never ends.
+    #[must_use]
+    pub fn left(&self) -> Option<Duration> {
+        self.end.map(|end| end.saturating_duration_since(Instant::now()))
+    }
+
     /// How much time there was, all in all.
     #[must_use]
     pub fn limit(&self) -> Duration {
@@ -108,8 +114,10 @@ mod tests {
     fn none_is_never_over_and_none_at_all_is_over_at_once() {
         let never = Deadline::default();
         assert!(!never.is_over() && never.check().is_ok() && never.share(4).check().is_ok());
+        assert_eq!(never.left(), None);
         let over = Deadline::after(Duration::ZERO);
         assert!(over.is_over() && over.is_over() && over.share(4).is_over());
+        assert_eq!(over.left(), Some(Duration::ZERO));
         let text = over.check().unwrap_err().to_string();
         assert_eq!(text, "this shader takes longer than 0 s to compile");
     }

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use super::check::References;
 use super::inputs::{Format, FrameArgs, LanguageArgs, deadline};
-use super::run::place;
+use super::run::not_evaluated;
 use super::shader::{Shader, Unusable, find};
 use super::{Exit, Terminal};
 use crate::deadline::Deadline;
@@ -57,7 +57,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             return Exit::Trouble;
         }
     };
-    let shader = Shader::load(input, &args.language, Deadline::default());
+    let shader = Shader::load(input, &args.language, Deadline::after(args.timeout));
     terminal.diagnostics(&shader.warnings, &shader.files);
     match &shader.checked {
         Ok(checked) => tell(args, &shader, checked, &frame, terminal),
@@ -97,7 +97,7 @@ fn frame(args: &Args, input: &Result<Found, ReadError>) -> Result<Frame, String>
 fn tell(args: &Args, shader: &Shader, checked: &Checked, frame: &Frame, terminal: &Terminal) -> Exit {
     let spinner = terminal.spinner(&shader.name);
     let deadline = Instant::now() + args.timeout;
-    let program = Program::new(checked).map_err(Failure::from);
+    let program = Program::within(checked, args.timeout).map_err(Failure::from);
     let explained = match &program {
         Ok(program) => explain(program, frame, args.pixel, Some(deadline)),
         Err(failure) => Err(failure.clone()),
@@ -105,12 +105,7 @@ fn tell(args: &Args, shader: &Shader, checked: &Checked, frame: &Frame, terminal
     spinner.finish_and_clear();
     let explanation = match explained {
         Ok(explanation) => explanation,
-        Err(failure) => {
-            let place = place(&failure, &shader.files);
-            terminal.error(format_args!("{}: {failure}{place}", shader.name));
-            let ours = matches!(failure, Failure::Refused(_));
-            return if ours { Exit::Trouble } else { Exit::Bad };
-        }
+        Err(failure) => return not_evaluated(&failure, shader, terminal),
     };
     let subject = report::Subject {
         shader: &shader.name,

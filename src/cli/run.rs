@@ -241,7 +241,7 @@ impl Runner<'_> {
             deadline: Some(start + self.args.driver.timeout()),
             ..Settings::default()
         };
-        let painted = Program::new(checked)
+        let painted = Program::within(checked, self.args.driver.timeout())
             .map_err(eval::Failure::from)
             .and_then(|program| program.picture(&self.frame, self.frame.rows(), &settings));
         match painted {
@@ -250,13 +250,7 @@ impl Runner<'_> {
                 self.painted(&shader.name, start.elapsed().as_secs_f64(), &device);
                 Ok(painted.image)
             }
-            Err(failure) => {
-                let place = place(&failure, &shader.files);
-                self.terminal
-                    .error(format_args!("{}: {failure}{place}", shader.name));
-                let ours = matches!(failure, eval::Failure::Refused(_));
-                Err(if ours { Exit::Trouble } else { Exit::Bad })
-            }
+            Err(failure) => Err(not_evaluated(&failure, shader, self.terminal)),
         }
     }
 
@@ -264,6 +258,18 @@ impl Runner<'_> {
         self.terminal
             .detail(&format!("{name}: painted in {seconds:.3} s on {device}"));
     }
+}
+
+/// Says why the evaluator gave nothing.
+pub(super) fn not_evaluated(failure: &eval::Failure, shader: &Shader, terminal: &Terminal) -> Exit {
+    if let eval::Failure::Refused(eval::Refusal::TooSlow(overdue)) = failure {
+        terminal.diagnostics(&[glsl::overdue(*overdue)], &shader.files);
+        return Exit::Bad;
+    }
+    let place = place(failure, &shader.files);
+    terminal.error(format_args!("{}: {failure}{place}", shader.name));
+    let ours = matches!(failure, eval::Failure::Refused(_));
+    if ours { Exit::Trouble } else { Exit::Bad }
 }
 
 /// Where the evaluator stopped, to stand behind its message.

@@ -67,6 +67,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
 /// Measures; says why not.
 fn measure(args: &Args, interrupted: &AtomicBool, terminal: &Terminal) -> Result<Report, Exit> {
     let start = Instant::now();
+    let deadline = Deadline::after(args.budget);
     let fail = |error: String| {
         terminal.error(error);
         Exit::Trouble
@@ -76,9 +77,9 @@ fn measure(args: &Args, interrupted: &AtomicBool, terminal: &Terminal) -> Result
     let scene = (!is_shader).then(|| load(&args.subject, terminal).ok_or(Exit::Trouble));
     let scene = scene.transpose()?;
     let shader = if is_shader {
-        Some(from_file(&args.subject, args, terminal)?)
+        Some(from_file(&args.subject, args, &deadline, terminal)?)
     } else {
-        beside(&args.subject, scene.as_ref(), args)
+        beside(&args.subject, scene.as_ref(), args, &deadline)
     };
     let scene = scene.or_else(|| of_shader(&args.subject));
     let (scene, frame) = fitted(scene, frame, args.frame.size);
@@ -89,7 +90,7 @@ fn measure(args: &Args, interrupted: &AtomicBool, terminal: &Terminal) -> Result
         name: path_name(&args.subject),
         scene: scene.as_ref(),
         shader: checked.map(|(shader, checked)| (shader.text(checked), checked)),
-        options: args.language.options(Deadline::default()),
+        options: args.language.options(deadline),
         frame: &frame,
         workers: workers(&args.on, args.budget, terminal)?,
         start,
@@ -116,7 +117,7 @@ fn fitted(scene: Option<Scene>, mut frame: Frame, size: Option<[u32; 2]>) -> (Op
 }
 
 /// A shader that must be valid.
-fn from_file(path: &Path, args: &Args, terminal: &Terminal) -> Result<Shader, Exit> {
+fn from_file(path: &Path, args: &Args, deadline: &Deadline, terminal: &Terminal) -> Result<Shader, Exit> {
     let found = find(&[path.to_owned()], terminal);
     let [input] = found.as_slice() else {
         terminal.error(format_args!(
@@ -125,7 +126,7 @@ fn from_file(path: &Path, args: &Args, terminal: &Terminal) -> Result<Shader, Ex
         ));
         return Err(Exit::Trouble);
     };
-    let shader = Shader::load(input, &args.language, Deadline::default());
+    let shader = Shader::load(input, &args.language, deadline.clone());
     match &shader.checked {
         Ok(_) => Ok(shader),
         Err(Unusable::Invalid(diagnostics)) => {
@@ -140,18 +141,18 @@ fn from_file(path: &Path, args: &Args, terminal: &Terminal) -> Result<Shader, Ex
 }
 
 /// The shader beside a scene, else the one that is exported for it, if there is one.
-fn beside(path: &Path, scene: Option<&Scene>, args: &Args) -> Option<Shader> {
+fn beside(path: &Path, scene: Option<&Scene>, args: &Args, deadline: &Deadline) -> Option<Shader> {
     let shader = path.with_extension("glsl");
     if shader.is_file() {
         let found = source::find(&shader).inputs;
-        return Some(Shader::load(found.first()?, &args.language, Deadline::default()));
+        return Some(Shader::load(found.first()?, &args.language, deadline.clone()));
     }
     let text = export::shader(scene?).ok()?;
     let mut files = Files::default();
     let file = files.add(File::new("<exported>", text));
     Some(Shader {
         name: "<exported>".to_owned(),
-        checked: crate::glsl::check(&files, file, &args.language.options(Deadline::default()))
+        checked: crate::glsl::check(&files, file, &args.language.options(deadline.clone()))
             .map_err(Unusable::Invalid),
         files,
         warnings: Vec::new(),

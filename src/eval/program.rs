@@ -52,7 +52,7 @@ impl Program {
     /// # Errors
     /// If it is too large once its calls are inlined, or takes longer.
     pub fn within(checked: &Checked, limit: Duration) -> Result<Self, Refusal> {
-        Self::made_within(checked, Variant::Observed, Some(limit))
+        Self::prepared_within(checked, Variant::Observed, Some(limit))
     }
 
     /// The same of a shader that is to be painted in that variant; others are compiled when they are first asked for.
@@ -60,10 +60,18 @@ impl Program {
     /// # Errors
     /// If it is too large once its calls are inlined.
     pub fn prepared(checked: &Checked, variant: Variant) -> Result<Self, Refusal> {
-        Self::made_within(checked, variant, None)
+        Self::prepared_within(checked, variant, None)
     }
 
-    fn made_within(checked: &Checked, variant: Variant, limit: Option<Duration>) -> Result<Self, Refusal> {
+    /// The same; if there is a limit, none of a shader's variants may take longer to compile.
+    ///
+    /// # Errors
+    /// If it is too large once its calls are inlined, or takes longer.
+    pub fn prepared_within(
+        checked: &Checked,
+        variant: Variant,
+        limit: Option<Duration>,
+    ) -> Result<Self, Refusal> {
         let program = Self {
             checked: Arc::new(checked.clone()),
             observing: OnceLock::new(),

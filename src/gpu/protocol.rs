@@ -20,6 +20,8 @@ pub(super) enum Job {
     Probe(On),
     /// Translate and emit; strict decorations on SPIR-V if asked for.
     Translate(Lowered, Target, FloatMode),
+    /// Read WGSL.
+    Read(String),
     /// Translate, compile and paint a frame.
     Draw(Box<Shot>),
     /// Compile and paint a frame with another compiler's SPIR-V.

@@ -67,6 +67,7 @@ impl<W: Write> Server<W> {
                 Job::Translate(lowered, target, float) => {
                     self.guarded(|server| server.translate(lowered, target, float))
                 }
+                Job::Read(text) => self.guarded(|server| server.read(text)),
                 Job::Draw(shot) => self.guarded(|server| server.draw(*shot)),
                 Job::Run(foreign) => self.guarded(|server| server.run(*foreign)),
                 Job::Paint(written, frames, on) => {
@@ -166,6 +167,12 @@ impl<W: Write> Server<W> {
         };
         let output = &mut self.output;
         device.paint(scene, |band| say(&mut *output, &Reply::Band(band)))
+    }
+
+    fn read(&mut self, text: String) -> Result<Output, Failure> {
+        self.phase(Phase::Translating)?;
+        apart(move || ValidModule::of_wgsl(&text).map_err(Failure::Reread))?;
+        Ok(Output::Ran)
     }
 
     fn paint(&mut self, written: Written, frames: &[Frame], on: &On) -> Result<Output, Failure> {

@@ -121,6 +121,17 @@ impl Worker {
         }
     }
 
+    /// Has naga read WGSL.
+    ///
+    /// # Errors
+    /// [`Failure::Reread`] if it refuses it; else why it was not read to its end.
+    pub fn read_wgsl(&mut self, text: &str) -> Result<(), Failure> {
+        match self.run(&Job::Read(text.to_owned()))? {
+            Output::Ran => Ok(()),
+            _ => Err(out_of_turn()),
+        }
+    }
+
     /// The picture that the shader paints. Where the driver may end loops by force, the frame is painted again to
     /// see whether it did, under a deadline of its own.
     ///
@@ -161,7 +172,7 @@ impl Worker {
     /// know that no pixel runs more than [`SAFE_ROUNDS`](super::SAFE_ROUNDS).
     ///
     /// # Errors
-    /// Why there is no picture.
+    /// Why there is no picture: [`Failure::Invalid`] also of a shader that nests deeper than drivers count.
     pub fn draw_in_bands(
         &mut self,
         lowered: Lowered,

@@ -87,7 +87,8 @@ impl Shader {
         let mut files = Files::default();
         let file = files.add(File::new("<trade>", text));
         let checked = glsl::check(&files, file, options).ok()?;
-        let program = Program::prepared(&checked, Variant::Plain).ok()?;
+        let limit = options.deadline.left();
+        let program = Program::prepared_within(&checked, Variant::Plain, limit).ok()?;
         Some(Self {
             formula,
             checked,

@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 use std::{env, fs};
 
 use toyproof::browser::{Chromium, Failure, Text, as_shadertoy, find};
+use toyproof::deadline::Deadline;
 use toyproof::emit::{Target, emit};
 use toyproof::frame::Frame;
 use toyproof::glsl::wgsl::{Style, wgsl};
@@ -53,7 +54,7 @@ fn converted(shader: &str) -> Result<String, String> {
     let file = files.add(File::new("shader", shader));
     let checked = check(&files, file, &Options::default())
         .map_err(|errors| toyproof::diagnostic::short(&errors[0], &files))?;
-    wgsl(&checked, &files, Style::Plain).map_err(|why| why.to_string())
+    wgsl(&checked, &files, Style::Plain, &Deadline::default()).map_err(|why| why.to_string())
 }
 
 /// The author's shader with WebGL 2 beside its conversion with WebGPU.

@@ -7,6 +7,7 @@ use std::process::Command;
 use std::time::Duration;
 
 use ::spirv::Op;
+use toyproof::deadline::Deadline;
 use toyproof::emit::{Target, emit, reread, spirv};
 use toyproof::glsl::wgsl::{Style, wgsl};
 use toyproof::glsl::{Checked, Options, check, lower};
@@ -26,7 +27,8 @@ fn proof(worker: &mut Worker, shader: &str, style: Style, edit: impl Fn(String) 
     let mut files = Files::default();
     let file = files.add(File::new("shader", shader));
     let checked = check(&files, file, &Options::default()).expect("it is valid");
-    let text = wgsl(&checked, &files, style).unwrap_or_else(|why| panic!("{why}\n{shader}"));
+    let text =
+        wgsl(&checked, &files, style, &Deadline::default()).unwrap_or_else(|why| panic!("{why}\n{shader}"));
     let hosted = style.hosted(&edit(text));
     let whole = hosted.text.clone();
     proof_of(worker, &checked, Written::Wgsl(hosted)).unwrap_or_else(|failure| panic!("{failure}\n{whole}"))
@@ -128,11 +130,11 @@ fn texts_are_valid_as_they_stand_in_the_modules_that_their_hosts_make() {
         let file = files.add(File::new("shader", shader));
         let checked = check(&files, file, &Options::default()).expect("it is valid");
         let valid = |text: &str| ValidModule::of_wgsl(text).unwrap_or_else(|why| panic!("{why}\n{text}"));
-        let text = wgsl(&checked, &files, Style::ComputeToys).unwrap();
+        let text = wgsl(&checked, &files, Style::ComputeToys, &Deadline::default()).unwrap();
         let compute = valid(&format!("{COMPUTE_TOYS}{text}"));
         assert_eq!(compute.module().entry_points[0].name, "main_image");
         assert_eq!(compute.module().entry_points[0].workgroup_size, [16, 16, 1]);
-        let text = wgsl(&checked, &files, Style::Bevy).unwrap();
+        let text = wgsl(&checked, &files, Style::Bevy, &Deadline::default()).unwrap();
         let composed = BEVY.iter().fold(text, |text, (from, to)| text.replace(from, to));
         assert_eq!(valid(&composed).module().entry_points[0].name, "fragment");
     }

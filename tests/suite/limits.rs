@@ -50,27 +50,77 @@ fn a_shader_that_takes_too_long_to_compile_is_a_timeout_with_a_code() {
     let reason = shader["reason"].as_str().unwrap();
     assert!(reason.starts_with("this shader takes longer than"), "{reason}");
 
-    let convert = ["convert", "hw/000.glsl", "-o", "x.wgsl", "--timeout", "1ns"];
-    let convert = toyproof(folder.path(), &convert);
-    assert_eq!(convert.code, 1, "{convert:?}");
-    assert!(convert.stderr.contains("E0410"), "{convert:?}");
+    let others: [&[&str]; 4] = [
+        &["convert", "hw/000.glsl", "-o", "x.wgsl", "--timeout", "1ns"],
+        &["run", "hw/000.glsl", "-o", "x.png", "--timeout", "1ns"],
+        &["explain", "hw/000.glsl", "--pixel", "0,0", "--timeout", "1ns"],
+        &[
+            "trade",
+            "hw/000.glsl",
+            "-o",
+            "trade",
+            "--budget",
+            "1ns",
+            "--on",
+            "cpu",
+        ],
+    ];
+    for arguments in others {
+        let run = toyproof(folder.path(), arguments);
+        assert_eq!(run.code, 1, "{run:?}");
+        assert!(run.stderr.contains("E0410"), "{run:?}");
+    }
+}
+
+#[test]
+fn a_conversion_that_naga_reads_for_minutes_is_ended() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = format!(
+        "void mainImage(out vec4 c, in vec2 p) {{ bool b = {} true; c = vec4(b); }}",
+        "p.x > 1.0 && ".repeat(80_000)
+    );
+    fs::write(folder.path().join("x.glsl"), text).unwrap();
+    let convert = ["convert", "x.glsl", "-o", "x.wgsl", "--timeout", "5s"];
+    let run = toyproof(folder.path(), &convert);
+    assert_ne!(run.code, 0, "{run:?}");
+    assert!(
+        run.stderr.contains("naga was translating") || run.stderr.contains("E0410"),
+        "{run:?}"
+    );
 }
 
 #[cfg(unix)]
 #[test]
-fn links_out_of_the_submissions_are_skipped_with_a_warning() {
+fn links_out_of_the_submissions_are_not_followed() {
     use std::os::unix::fs::symlink;
-    let folder = homework(1);
+    let folder = homework(3);
     let secret = "[film]\nsize = [16, 9]\nsecret = 42\n";
     fs::write(folder.path().join("secret.toml"), secret).unwrap();
     symlink("/", folder.path().join("hw/root")).unwrap();
     symlink("../secret.toml", folder.path().join("hw/leak.glsl")).unwrap();
     symlink("../secret.toml", folder.path().join("hw/000.toml")).unwrap();
-    let run = run(&mut check(folder.path(), &["--out", "out"]));
-    assert_eq!(run.code, 0, "{run:?}");
-    for link in ["hw/root", "hw/leak.glsl", "hw/000.toml"] {
+    symlink("nothing.toml", folder.path().join("hw/001.toml")).unwrap();
+    let run = run(&mut check(folder.path(), &["--out", "out", "--format", "json"]));
+    assert_eq!(run.code, 2, "{run:?}");
+    for link in ["hw/root", "hw/leak.glsl"] {
         let wanted = format!("skipped `{link}`: it links to `");
         assert_eq!(run.stderr.matches(&wanted).count(), 1, "{run:?}");
+    }
+    // A shader whose scene cannot be read is not `ok`.
+    let report: Value = serde_json::from_str(&run.stdout).unwrap();
+    for (name, verdict, reason) in [
+        (
+            "hw/000.glsl",
+            "error",
+            "there is no scene to compare with: skipped `hw/000.toml`",
+        ),
+        ("hw/001.glsl", "error", "hw/001.toml: no such file"),
+        ("hw/002.glsl", "ok", ""),
+    ] {
+        let mut shaders = report["shaders"].as_array().unwrap().iter();
+        let shader = shaders.find(|shader| shader["shader"] == name).unwrap();
+        assert_eq!(shader["verdict"], verdict, "{shader}");
+        assert!(shader["reason"].as_str().unwrap().starts_with(reason), "{shader}");
     }
     for entry in fs::read_dir(folder.path().join("out")).unwrap() {
         let text = fs::read(entry.unwrap().path()).unwrap();

@@ -1,7 +1,6 @@
 //! One shader: translated, and proved where that is asked for.
 
 use std::path::PathBuf;
-use std::thread;
 
 use rayon::ThreadPool;
 
@@ -13,13 +12,12 @@ use super::args::To;
 use super::proof::{NAGA, Standing, in_browser};
 use super::{header, tool};
 use crate::browser::{Chromium, Text};
-use crate::deadline::Deadline;
+use crate::deadline::{Deadline, Overdue};
 use crate::diagnostic::Diagnostic;
 use crate::emit::Target;
 use crate::glsl::wgsl::{self, Style};
 use crate::glsl::{self, Checked, Lowered};
 use crate::gpu::{Failure, FloatMode, Worker, Written};
-use crate::module::ValidModule;
 use crate::source::{Found, ReadError};
 use crate::verify::conversion::FRAMES;
 
@@ -125,7 +123,7 @@ impl Converter<'_> {
             });
         };
         if target == Target::Wgsl && self.float == FloatMode::Fast {
-            let made = self.readable(hand, checked, shader);
+            let made = self.readable(hand, checked, shader)?;
             let why = match &made {
                 Err(why)
                 | Ok(Made {
@@ -158,11 +156,38 @@ impl Converter<'_> {
     }
 
     /// WGSL with the author's words; or why there is none.
-    fn readable(&self, hand: &mut Hand, checked: &Checked, shader: &Shader) -> Result<Made, String> {
-        let text = wgsl::wgsl(checked, &shader.files, self.style)
-            .map_err(|why| format!("cannot be written in the style {}: {why}", self.style.name()))?;
+    fn readable(
+        &self,
+        hand: &mut Hand,
+        checked: &Checked,
+        shader: &Shader,
+    ) -> Result<Result<Made, String>, Trouble> {
+        let deadline = Deadline::after(self.driver.timeout());
+        match wgsl::wgsl(checked, &shader.files, self.style, &deadline) {
+            Ok(text) => self.judged(hand, checked, shader, text),
+            Err(wgsl::Failure::Overdue(overdue)) => Err(too_slow(overdue)),
+            Err(wgsl::Failure::Unprintable(why)) => Ok(Err(format!(
+                "cannot be written in the style {}: {why}",
+                self.style.name()
+            ))),
+        }
+    }
+
+    /// That WGSL, proved if that is asked for; or why naga does not read it.
+    fn judged(
+        &self,
+        hand: &mut Hand,
+        checked: &Checked,
+        shader: &Shader,
+        text: String,
+    ) -> Result<Result<Made, String>, Trouble> {
         let hosted = self.style.hosted(&text);
-        is_read(&hosted.text)?;
+        match translator(hand)?.read_wgsl(&hosted.text) {
+            Ok(()) => {}
+            Err(failure @ Failure::Timeout { .. }) => return Err(trouble(failure)),
+            Err(Failure::Reread(why)) => return Ok(Err(why)),
+            Err(failure) => return Ok(Err(failure.to_string())),
+        }
         let mut bytes = text.into_bytes();
         let standing = if self.verify {
             // The other styles are whole only within their hosts.
@@ -183,17 +208,17 @@ impl Converter<'_> {
             Standing::Unasked
         };
         header::put(&mut bytes, Target::Wgsl, &shader.name, &standing);
-        Ok(Made {
+        Ok(Ok(Made {
             bytes,
             standing,
             instead: None,
-        })
+        }))
     }
 
     fn lower(&self, checked: &Checked) -> Result<Lowered, Trouble> {
         let deadline = Deadline::after(self.driver.timeout());
         let lowered = self.float.lower_within(checked, &deadline);
-        lowered.map_err(|overdue| Trouble::Told(vec![glsl::overdue(overdue)], Exit::Bad))
+        lowered.map_err(too_slow)
     }
 
     /// What naga writes of the shader.
@@ -205,11 +230,7 @@ impl Converter<'_> {
         shader: &Shader,
     ) -> Result<Made, Trouble> {
         let lowered = self.lower(checked)?;
-        let translator = hand
-            .translator
-            .as_mut()
-            .map_err(|error| Trouble::Said(error.clone(), Exit::Trouble))?;
-        let mut bytes = translator
+        let mut bytes = translator(hand)?
             .translate(lowered.clone(), target, self.float)
             .map_err(trouble)?;
         let standing = if self.verify {
@@ -233,18 +254,14 @@ impl Converter<'_> {
     }
 }
 
-/// naga recurses on what is nested.
-const READER_STACK: usize = 64 << 20;
+/// What translates, in a process of its own.
+fn translator(hand: &mut Hand) -> Result<&mut Worker, Trouble> {
+    let translator = hand.translator.as_mut();
+    translator.map_err(|error| Trouble::Said(error.clone(), Exit::Trouble))
+}
 
-/// Whether naga reads a text; no driver is asked, so that no process of its own is needed.
-fn is_read(text: &str) -> Result<(), String> {
-    let text = text.to_owned();
-    let reader = thread::Builder::new().stack_size(READER_STACK);
-    let read = reader
-        .spawn(move || ValidModule::of_wgsl(&text).map(|_| ()))
-        .map_err(|error| error.to_string())?;
-    read.join()
-        .unwrap_or_else(|_| Err("naga panics on it".to_owned()))
+fn too_slow(overdue: Overdue) -> Trouble {
+    Trouble::Told(vec![glsl::overdue(overdue)], Exit::Bad)
 }
 
 fn trouble(failure: Failure) -> Trouble {

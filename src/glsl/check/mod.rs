@@ -26,7 +26,7 @@ pub(crate) use declare::Declarator;
 pub(crate) use function::Parameter;
 pub(crate) use qualifier::{Qualifiers, Storage};
 pub(crate) use statement::Labels;
-pub(crate) use types::{Size, Specifier};
+pub(crate) use types::{Members, Size, Specifier};
 
 pub(crate) use self::channel::Channels;
 use std::collections::HashSet;

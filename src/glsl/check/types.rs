@@ -1,5 +1,7 @@
 //! Types as declarations spell them: arrays, structures, and what may be where (§4.1).
 
+use std::collections::HashMap;
+
 use super::Checker;
 use super::scope::Entity;
 use crate::glsl::codes::Code;
@@ -27,6 +29,14 @@ pub(crate) struct Specifier {
     /// The sizes that follow it, the outermost first.
     pub(crate) sizes: Vec<Size>,
     pub(crate) at: Place,
+}
+
+/// The members of a structure, as far as they are read.
+#[derive(Default)]
+pub(crate) struct Members {
+    pub(crate) all: Vec<Member>,
+    /// Where each name stands first.
+    places: HashMap<Symbol, Place>,
 }
 
 impl Checker<'_> {
@@ -145,7 +155,7 @@ impl Checker<'_> {
     /// One declarator of a member list.
     pub(crate) fn member(
         &mut self,
-        members: &mut Vec<Member>,
+        members: &mut Members,
         specifier: &Specifier,
         name: Symbol,
         sizes: &[Size],
@@ -159,13 +169,15 @@ impl Checker<'_> {
             self.error(Code::BadType, at, "a member cannot be `void`");
             return;
         }
-        if let Some(first) = members.iter().find(|member| member.name == text) {
+        if let Some(first) = members.places.get(&name) {
             let diagnostic = Code::Redeclared
                 .at(at, format!("this structure has two members `{text}`"))
-                .related(first.at.span, "the first");
+                .related(first.span, "the first");
             self.report(diagnostic);
+        } else {
+            members.places.insert(name, at);
         }
-        members.push(Member {
+        members.all.push(Member {
             name: text.to_owned(),
             ty,
             at,

@@ -1,10 +1,10 @@
 //! Declarations: types, variables, structures, functions (§4, §6.1).
 
 use super::{Halt, Parsed, Parser};
-use crate::glsl::check::{Declarator, Qualifiers, Size, Specifier};
+use crate::glsl::check::{Declarator, Members, Qualifiers, Size, Specifier};
 use crate::glsl::codes::Code;
 use crate::glsl::token::{Punctuator, Symbol, TokenKind};
-use crate::glsl::tree::{Item, Member, Place, Type, VariableId};
+use crate::glsl::tree::{Item, Place, Type, VariableId};
 use crate::glsl::words::{Keyword, Word};
 
 impl Parser<'_> {
@@ -201,7 +201,7 @@ impl Parser<'_> {
             let at = self.token().at;
             return self.halt(Code::Syntax, at, "a structure has at least one member");
         }
-        let mut members = Vec::new();
+        let mut members = Members::default();
         let mut complete = true;
         loop {
             complete &= self.recovering(|parser| parser.members(&mut members)).is_some();
@@ -212,7 +212,7 @@ impl Parser<'_> {
         let place = name.map_or(at, |(_, at)| at);
         let id = self
             .check
-            .declare_struct(name.map(|(name, _)| name), members, place);
+            .declare_struct(name.map(|(name, _)| name), members.all, place);
         if !complete {
             self.check.lacks_members(id);
         }
@@ -220,7 +220,7 @@ impl Parser<'_> {
     }
 
     /// `vec3 a, b[2];`.
-    fn members(&mut self, members: &mut Vec<Member>) -> Parsed<()> {
+    fn members(&mut self, members: &mut Members) -> Parsed<()> {
         let qualifiers = self.qualifiers()?;
         if let Some(at) = qualifiers.other_than_precision() {
             self.check

@@ -28,6 +28,7 @@ fn opposite(op: BinaryOp, scalar: Scalar) -> Option<BinaryOp> {
 impl Writer<'_> {
     /// The words for a value; lines for what it does are printed first.
     pub(super) fn value(&mut self, id: ExprId) -> Printed {
+        self.in_time()?;
         let tree = &self.draft.tree;
         let expr = &tree[id];
         match &expr.kind {

@@ -15,6 +15,7 @@ use crate::source::{File, Files};
 
 impl Writer<'_> {
     pub(super) fn item(&mut self, item: Item) -> Result<(), Unprintable> {
+        self.in_time()?;
         self.temporaries.clear();
         match item {
             Item::Struct(id) => self.structure(id),
@@ -222,7 +223,7 @@ impl Writer<'_> {
         let mut names = Names::of(&draft, &order, self.style);
         names.functions.insert(first, self.function(id).to_owned());
         let facts = Facts::of(&draft);
-        let mut writer = Writer::new(&draft, &names, &facts, self.style, &files);
+        let mut writer = Writer::new(&draft, &names, &facts, self.style, &files, self.deadline);
         writer.definition(first)?;
         self.derives |= writer.derives;
         self.helpers.append(&mut writer.helpers);

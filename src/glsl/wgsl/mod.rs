@@ -31,7 +31,7 @@ use thiserror::Error;
 use super::Checked;
 use super::lower::{Draft, Pass, Passes};
 use super::print::Order;
-use crate::deadline::Deadline;
+use crate::deadline::{Deadline, Overdue};
 use crate::source::Files;
 pub use host::Hosted;
 pub use style::Style;
@@ -41,19 +41,34 @@ pub use style::Style;
 #[error("{0}")]
 pub struct Unprintable(pub &'static str);
 
+/// Why there is no text.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum Failure {
+    /// This writer has no words for it.
+    #[error(transparent)]
+    Unprintable(#[from] Unprintable),
+    /// The deadline passed.
+    #[error(transparent)]
+    Overdue(#[from] Overdue),
+}
+
 /// A checked shader as WGSL for a kind of host; the author's comments are read from `files`.
 ///
 /// # Errors
-/// What cannot be said.
-pub fn wgsl(checked: &Checked, files: &Files, style: Style) -> Result<String, Unprintable> {
+/// What cannot be said, or that the deadline passed.
+pub fn wgsl(checked: &Checked, files: &Files, style: Style, deadline: &Deadline) -> Result<String, Failure> {
     let mut draft = Draft::new(checked.tree.clone(), checked.main_image);
-    // Without a deadline there is no failure.
-    let _ = passes().run(&mut draft, &Deadline::default());
+    passes().run(&mut draft, deadline)?;
     let order = Order::with_labels(&draft);
+    deadline.check()?;
     let names = names::Names::of(&draft, &order, style);
+    deadline.check()?;
     let facts = facts::Facts::of(&draft);
-    let writer = writer::Writer::new(&draft, &names, &facts, style, files);
-    writer.write(&order)
+    let writer = writer::Writer::new(&draft, &names, &facts, style, files, deadline);
+    let written = writer.write(&order);
+    // A writer that runs out of time gives up wherever it is.
+    deadline.check()?;
+    Ok(written?)
 }
 
 /// What WGSL, as GLSL in naga's reading, does not have. Loops, `?:` and assignments are printed here instead, locals begin

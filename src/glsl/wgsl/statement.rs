@@ -16,6 +16,7 @@ impl Writer<'_> {
             if matches!(statement.kind, StatementKind::Struct(_)) {
                 continue;
             }
+            self.in_time()?;
             let begin = self.out.len();
             if self.comments.is_apart(statement.at) && number > 0 {
                 self.line("");

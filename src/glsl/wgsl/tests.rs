@@ -1,6 +1,10 @@
 use expect_test::{Expect, expect};
 
-use super::{Style, wgsl};
+use super::facts::Facts;
+use super::names::Names;
+use super::writer::Writer;
+use super::{Draft, Failure, Order, Style, wgsl};
+use crate::deadline::Deadline;
 use crate::glsl::{Options, check};
 use crate::source::{File, Files};
 
@@ -8,7 +12,30 @@ fn printed(shader: &str, style: Style) -> String {
     let mut files = Files::default();
     let file = files.add(File::new("shader", shader));
     let checked = check(&files, file, &Options::default()).unwrap();
-    wgsl(&checked, &files, style).unwrap_or_else(|why| why.to_string())
+    wgsl(&checked, &files, style, &Deadline::default()).unwrap_or_else(|why| why.to_string())
+}
+
+#[test]
+fn a_deadline_ends_the_printing_at_its_next_value() {
+    let mut files = Files::default();
+    let shader = "void mainImage(out vec4 c, in vec2 p) { c = vec4(p, p); }";
+    let file = files.add(File::new("shader", shader));
+    let checked = check(&files, file, &Options::default()).unwrap();
+    let over = Deadline::after(std::time::Duration::ZERO);
+    let late = wgsl(&checked, &files, Style::Plain, &over);
+    assert!(matches!(late, Err(Failure::Overdue(_))), "{late:?}");
+
+    // Each value, statement and item asks for itself.
+    let draft = Draft::new(checked.tree.clone(), checked.main_image);
+    let order = Order::with_labels(&draft);
+    let names = Names::of(&draft, &order, Style::Plain);
+    let facts = Facts::of(&draft);
+    let mut writer = Writer::new(&draft, &names, &facts, Style::Plain, &files, &over);
+    let body = checked.tree[checked.main_image].body.as_ref().unwrap();
+    let value = checked.tree.exprs.ids().next().unwrap();
+    assert!(writer.value(value).is_err());
+    assert!(writer.statements(body).is_err());
+    assert!(writer.item(order.items[0]).is_err());
 }
 
 /// The function `f` of a shader that calls it.

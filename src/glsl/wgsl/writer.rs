@@ -12,6 +12,7 @@ use super::facts::Facts;
 use super::names::Names;
 use super::style::Style;
 use super::wrap;
+use crate::deadline::Deadline;
 use crate::source::Files;
 
 /// Prints a draft.
@@ -21,6 +22,7 @@ pub(super) struct Writer<'a> {
     pub(super) facts: &'a Facts,
     pub(super) style: Style,
     pub(super) comments: Comments<'a>,
+    pub(super) deadline: &'a Deadline,
     pub(super) out: String,
     pub(super) indent: usize,
     /// Names of our own that are in use in this function.
@@ -50,6 +52,7 @@ impl<'a> Writer<'a> {
         facts: &'a Facts,
         style: Style,
         files: &'a Files,
+        deadline: &'a Deadline,
     ) -> Self {
         Self {
             draft,
@@ -57,6 +60,7 @@ impl<'a> Writer<'a> {
             facts,
             style,
             comments: Comments::new(files),
+            deadline,
             out: String::new(),
             indent: 0,
             temporaries: HashSet::new(),
@@ -69,6 +73,14 @@ impl<'a> Writer<'a> {
             derives: false,
             reads_position: false,
         }
+    }
+
+    /// Fails if the time is over, to be told as such by whoever asked for the text.
+    pub(super) fn in_time(&self) -> Result<(), Unprintable> {
+        if self.deadline.is_over() {
+            return Err(Unprintable("what takes too long"));
+        }
+        Ok(())
     }
 
     /// A line at the present depth.

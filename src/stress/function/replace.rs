@@ -30,7 +30,8 @@ pub fn replacements(
         return Ok(Vec::new());
     };
     let asked = paint::checked(&subject(text, signature, options.clone()))?;
-    let program = Program::prepared(&asked, Variant::Plain).map_err(eval::Failure::from)?;
+    let limit = options.deadline.left();
+    let program = Program::prepared_within(&asked, Variant::Plain, limit).map_err(eval::Failure::from)?;
     let asked = Asked {
         program: &program,
         signature,
@@ -66,7 +67,9 @@ impl Asked<'_> {
         let Ok(checked) = paint::checked(&subject(text, signature, options.clone())) else {
             return Ok(false);
         };
-        let program = Program::prepared(&checked, Variant::Plain).map_err(eval::Failure::from)?;
+        let limit = options.deadline.left();
+        let program =
+            Program::prepared_within(&checked, Variant::Plain, limit).map_err(eval::Failure::from)?;
         let other = Asked {
             program: &program,
             signature,
