@@ -84,6 +84,7 @@ codes! {
     MisplacedJump "E0408" "A `break` or `continue` outside of a loop",
     NoMainImage "E0409" "No `void mainImage(out vec4, in vec2)`",
     TooSlow "E0410" "A shader that takes too long to compile",
+    TooDeepToRun "E0411" "A shader that nests deeper than drivers count",
     // Warnings.
     ReservedName "W0001" "A name that begins with what GLSL keeps for itself",
     UnknownExtension "W0002" "An `#extension` that does not exist",
@@ -118,7 +119,7 @@ codes! {
 #[must_use]
 pub fn overdue(overdue: Overdue) -> Diagnostic {
     Diagnostic::error(Code::TooSlow.as_str(), overdue.to_string())
-        .note("shorten its longest expressions, lists and functions, or give it more time with `--timeout`")
+        .note("shorten its longest expressions, lists and functions, or give it more time with `--timeout` (`trade`: `--budget`)")
 }
 
 /// How many errors of one file are told, and how many warnings; more would help nobody.

@@ -181,6 +181,9 @@ impl Worker {
         mut each: impl FnMut(Image),
         watch: impl FnOnce(&Drawn, Duration) -> bool,
     ) -> Result<Drawn, Failure> {
+        if let Some(told) = lowered.too_deep() {
+            return Err(Failure::Invalid(vec![told.clone()]));
+        }
         let shot = Box::new(Shot {
             lowered,
             frame,

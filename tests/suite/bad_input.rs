@@ -37,6 +37,18 @@ fn expect(run: &Run, code: i32, words: &[&str]) {
 }
 
 #[test]
+fn a_shader_that_drivers_lose_count_in() {
+    let loops = (0..90).map(|d| format!("for (int i{d} = 0; i{d} < 1; i{d}++) "));
+    let text = format!(
+        "void mainImage(out vec4 c, in vec2 p) {{ {} c += p.xyxy; }}",
+        loops.collect::<String>()
+    );
+    let said = ["invalid", "E0411", "nested too deeply", "in line 1, column"];
+    expect(&check(&text, &["--on", "lavapipe", "--size", "16x9"]), 1, &said);
+    expect(&check(&text, &["--on", "cpu", "--size", "16x9"]), 0, &["ok"]);
+}
+
+#[test]
 fn a_missing_file() {
     let run = toyproof(folder(&[]).path(), &["check", "nowhere.glsl"]);
     expect(&run, 2, &["error        nowhere.glsl", "no such file or folder"]);

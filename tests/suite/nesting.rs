@@ -1,11 +1,13 @@
 //! Statements, choices, jumps and calls nested deeper than lavapipe's stack of 80 conditions: the GPU must
 //! render what the evaluator computes, and does not without the pass that lays them side by side.
 
+use std::time::Duration;
+
 use toyproof::eval::{Program, Settings};
 use toyproof::frame::Frame;
 use toyproof::glsl::Checked;
 use toyproof::glsl::lower::{Pass, Passes, lower_with};
-use toyproof::gpu::{FloatMode, Worker};
+use toyproof::gpu::{Failure, FloatMode, On, Worker};
 use toyproof::image::Image;
 
 use crate::support;
@@ -164,6 +166,12 @@ fn drawn(worker: &mut Worker, checked: &Checked, passes: Passes) -> Image {
     drawn.unwrap_or_else(|failure| panic!("{failure}")).image()
 }
 
+fn evaluated(checked: &Checked) -> Image {
+    let program = Program::new(checked).unwrap();
+    let painted = program.paint::<f32>(&frame(), &Settings::default());
+    painted.unwrap().painting.image()
+}
+
 #[test]
 fn what_is_nested_deep_renders_as_it_evaluates() {
     let Some(worker) = support::worker() else {
@@ -178,12 +186,7 @@ fn what_is_nested_deep_renders_as_it_evaluates() {
              void mainImage(out vec4 c, in vec2 p) {{ float x = 0.0; {body} c = vec4(x, x * x, p.x, 1); }}"
         );
         let checked = support::checked(&text);
-        let evaluated = Program::new(&checked)
-            .unwrap()
-            .paint::<f32>(&frame(), &Settings::default())
-            .unwrap()
-            .painting
-            .image();
+        let evaluated = evaluated(&checked);
         if drawn(&mut worker, &checked, Passes::strict()).pixels() != evaluated.pixels() {
             wrong.push(name);
         }
@@ -200,4 +203,64 @@ fn what_is_nested_deep_renders_as_it_evaluates() {
         needless.len() <= 4,
         "no longer wrong without the pass: {needless:?}"
     );
+}
+
+/// A shader that calls `f`.
+fn calling(functions: &str) -> Checked {
+    support::checked(&format!(
+        "{functions}\nvoid mainImage(out vec4 c, in vec2 p) {{ c = vec4(f(p.x)); }}"
+    ))
+}
+
+fn loops(count: usize) -> Checked {
+    let body = (0..count).fold("x += 0.5;".to_owned(), |inside, d| {
+        format!("for (int i{d} = 0; i{d} < 1; i{d}++) {{ {inside} }}")
+    });
+    calling(&format!("float f(float x) {{ {body} return x; }}"))
+}
+
+fn calls(count: usize) -> Checked {
+    let calls = (0..count).map(|d| {
+        let callee = if d == 0 {
+            "g".to_owned()
+        } else {
+            format!("f{}", d - 1)
+        };
+        let name = if d == count - 1 {
+            "f".to_owned()
+        } else {
+            format!("f{d}")
+        };
+        format!("float {name}(float x) {{ if (x > {d}.0) x = {callee}(x); return x; }}\n")
+    });
+    calling(&format!(
+        "float g(float x) {{ return x + 0.5; }}\n{}",
+        calls.collect::<String>()
+    ))
+}
+
+#[test]
+fn what_stays_nested_too_deep_is_not_run_on_a_driver() {
+    let lowered = |checked: &Checked| lower_with(checked, Passes::strict());
+    for (name, deep, shallow) in [("loops", loops(73), loops(72)), ("calls", calls(73), calls(72))] {
+        assert_eq!(lowered(&shallow).too_deep(), None, "{name}");
+        let lowered = lowered(&deep);
+        let told = lowered.too_deep().expect(name);
+        assert!(told.code == "E0411" && told.span.is_some(), "{told:?}");
+        // No process is started for it.
+        let mut worker = Worker::new("/nothing".into(), Vec::new(), On::Auto, Duration::from_secs(1));
+        let failure = worker
+            .draw(lowered.clone(), frame(), FloatMode::Strict)
+            .unwrap_err();
+        assert_eq!(failure, Failure::Invalid(vec![told.clone()]));
+    }
+    let Some(worker) = support::worker() else {
+        return;
+    };
+    let mut worker = worker.with_plain_code();
+    for deepest in [loops(72), calls(72)] {
+        let evaluated = evaluated(&deepest);
+        let drawn = drawn(&mut worker, &deepest, Passes::strict());
+        assert_eq!(drawn.pixels(), evaluated.pixels());
+    }
 }

@@ -10,6 +10,7 @@ use super::build::Builder;
 use super::elementary::Spelled;
 use super::helper::Helper;
 use super::walk;
+use crate::diagnostic::Diagnostic;
 
 /// What every pass is given.
 pub(crate) struct Draft {
@@ -25,6 +26,8 @@ pub(crate) struct Draft {
     pub(crate) moved: HashSet<VariableId>,
     /// The bodies of functions of our own that are written as text.
     pub(crate) helpers: HashMap<FunctionId, String>,
+    /// That it nests deeper than drivers count, with the place.
+    pub(crate) too_deep: Option<Diagnostic>,
     helper_ids: HashMap<(Helper, Type, Type), FunctionId>,
     /// The functions of our own that stand for built-in ones, by the types of their arguments.
     pub(super) spelled: HashMap<(Spelled, Vec<Type>), FunctionId>,
@@ -40,6 +43,7 @@ impl Draft {
             temporaries: HashSet::new(),
             moved: HashSet::new(),
             helpers: HashMap::new(),
+            too_deep: None,
             helper_ids: HashMap::new(),
             spelled: HashMap::new(),
         }

@@ -30,5 +30,6 @@ pub(super) fn print(draft: &Draft, deadline: &Deadline) -> Result<Lowered, Overd
         printer.item(item);
     }
     printer.epilogue();
+    printer.out.refuse(draft.too_deep.clone());
     Ok(printer.out)
 }

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
+use crate::diagnostic::Diagnostic;
 use crate::source::Span;
 
 /// GLSL 450 in the subset that naga parses, and the way from it back to the author's text.
@@ -12,6 +13,8 @@ pub struct Lowered {
     text: String,
     /// Where a stretch begins, and the author's words that it prints; it ends where the next begins.
     runs: Vec<(u32, Option<Span>)>,
+    /// Why no driver is to run it.
+    too_deep: Option<Diagnostic>,
 }
 
 impl Lowered {
@@ -35,6 +38,18 @@ impl Lowered {
             .take_while(|&&(start, _)| (start as usize) < bytes.end.max(bytes.start + 1))
             .filter_map(|&(_, span)| span)
             .reduce(Span::to)
+    }
+
+    /// Why no driver is to run it: it nests deeper than they count, and they would paint something else. It can be
+    /// translated.
+    #[must_use]
+    pub fn too_deep(&self) -> Option<&Diagnostic> {
+        self.too_deep.as_ref()
+    }
+
+    /// Says why no driver is to run it, if there is a reason.
+    pub(super) fn refuse(&mut self, too_deep: Option<Diagnostic>) {
+        self.too_deep = too_deep;
     }
 
     /// Adds text that prints those words of the author, or none of his.

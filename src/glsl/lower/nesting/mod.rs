@@ -1,5 +1,6 @@
 //! Statements, choices and calls nested so deep that lavapipe loses count: those of a function side by side,
 //! each under a flag that tells whether it runs (`flags`), and long `a ? x : b ? y : …` likewise (`chain`).
+//! What still nests too deep (loops in loops, functions called under conditions that call others so) is not to be run on a driver.
 //!
 //! Mesa's software driver inlines all calls and keeps the conditions that pixels are under on a stack of 80,
 //! loops on another; what is nested deeper runs whatever its condition says. Its compiler nests what follows
@@ -10,13 +11,17 @@ mod flags;
 
 use std::collections::{HashMap, HashSet};
 
-use super::super::tree::{Block, ExprId, ExprKind, FunctionId, Statement, StatementKind};
+use super::super::Code;
+use super::super::tree::{Block, ExprId, ExprKind, FunctionId, Place, Statement, StatementKind};
 use super::draft::Draft;
 use super::walk;
 
 /// How deep the driver may nest what it is given: 79 with an `else`, less what helper functions and its own
 /// passes add.
 const DEEPEST: u32 = 64;
+/// Conditions or loops that nest deeper though they were flattened are not run: of 79 and 80 that are measured, a few are for helper
+/// functions.
+const DEEPEST_RUN: u32 = 72;
 /// Functions that nest no deeper by themselves are left as they are, first and then.
 const KEPT: [u32; 2] = [8, 2];
 
@@ -24,7 +29,10 @@ pub(super) fn run(draft: &mut Draft) {
     chain::run(draft);
     for kept in KEPT {
         let depths = Depths::of(draft);
-        if depths.whole(draft.main_image) <= DEEPEST {
+        if depths
+            .of_picture(draft)
+            .is_none_or(|whole| whole.both.0 <= DEEPEST)
+        {
             return;
         }
         draft.each_body(|draft, function, body| {
@@ -35,6 +43,78 @@ pub(super) fn run(draft: &mut Draft) {
             }
         });
     }
+    let Some(whole) = Depths::of(draft).of_picture(draft) else {
+        return;
+    };
+    let (what, (depth, at)) = if whole.loops.0 > DEEPEST_RUN {
+        ("loops", whole.loops)
+    } else if whole.conditions.0 > DEEPEST_RUN {
+        ("conditions", whole.conditions)
+    } else {
+        return;
+    };
+    let message =
+        format!("nested too deeply: this runs under {depth} {what}, those of its callers among them");
+    draft.too_deep =
+        Some(Code::TooDeepToRun.at(at, message).note(
+            "drivers lose count at 80; divide it into steps that stand side by side, or try `--on cpu`",
+        ));
+}
+
+/// What stands around a statement or an expression.
+#[derive(Clone, Copy, Default)]
+struct Depth {
+    conditions: u32,
+    loops: u32,
+}
+
+impl Depth {
+    fn in_condition(self) -> Self {
+        Self {
+            conditions: self.conditions + 1,
+            ..self
+        }
+    }
+
+    fn in_loop(self) -> Self {
+        Self {
+            loops: self.loops + 1,
+            ..self
+        }
+    }
+}
+
+/// The deepest places of a function, with what the functions that it calls nest.
+#[derive(Clone, Copy)]
+struct Whole {
+    conditions: (u32, Place),
+    loops: (u32, Place),
+    /// Conditions and loops.
+    both: (u32, Place),
+}
+
+impl Whole {
+    /// What nests nothing.
+    fn shallow(at: Place) -> Self {
+        Self {
+            conditions: (0, at),
+            loops: (0, at),
+            both: (0, at),
+        }
+    }
+
+    /// Notes what stands at a depth.
+    fn note(&mut self, depth: Depth, inner: Self) {
+        for (most, depth, inner) in [
+            (&mut self.conditions, depth.conditions, inner.conditions),
+            (&mut self.loops, depth.loops, inner.loops),
+            (&mut self.both, depth.conditions + depth.loops, inner.both),
+        ] {
+            if depth + inner.0 > most.0 {
+                *most = (depth + inner.0, inner.1);
+            }
+        }
+    }
 }
 
 /// How deep functions nest.
@@ -42,7 +122,7 @@ struct Depths {
     /// Without what the functions that they call nest.
     own: HashMap<FunctionId, u32>,
     /// With it.
-    whole: HashMap<FunctionId, u32>,
+    whole: HashMap<FunctionId, Whole>,
 }
 
 impl Depths {
@@ -64,9 +144,9 @@ impl Depths {
                         draft,
                         depths: &depths,
                         own: 0,
-                        whole: 0,
+                        whole: Whole::shallow(draft.tree[function].at),
                     };
-                    walk.block(body, 0);
+                    walk.block(body, Depth::default());
                     let (own, whole) = (walk.own, walk.whole);
                     depths.own.insert(function, own);
                     depths.whole.insert(function, whole);
@@ -79,8 +159,13 @@ impl Depths {
         depths
     }
 
-    fn whole(&self, function: FunctionId) -> u32 {
-        self.whole.get(&function).copied().unwrap_or(0)
+    /// Of all that runs for a picture.
+    fn of_picture(&self, draft: &Draft) -> Option<Whole> {
+        let mut all = *self.whole.get(&draft.main_image)?;
+        if let Some(begin) = draft.begin.and_then(|begin| self.whole.get(&begin)) {
+            all.note(Depth::default(), *begin);
+        }
+        Some(all)
     }
 }
 
@@ -95,36 +180,36 @@ fn callees(draft: &Draft, body: &Block) -> HashSet<FunctionId> {
         .collect()
 }
 
-/// One walk through a function, which finds its deepest place.
+/// One walk through a function, which finds its deepest places.
 struct Walk<'a> {
     draft: &'a Draft,
     depths: &'a Depths,
     own: u32,
-    whole: u32,
+    whole: Whole,
 }
 
 impl Walk<'_> {
     /// Statements at that depth; whether control may leave them in their midst.
-    fn block(&mut self, block: &[Statement], mut depth: u32) -> bool {
+    fn block(&mut self, block: &[Statement], mut depth: Depth) -> bool {
         let mut leaves = false;
         for statement in block {
             if self.statement(statement, depth) {
                 // The rest of the block nests in an `else` of it.
                 leaves = true;
-                depth += 1;
+                depth = depth.in_condition();
             }
         }
         leaves
     }
 
-    fn statement(&mut self, statement: &Statement, depth: u32) -> bool {
+    fn statement(&mut self, statement: &Statement, depth: Depth) -> bool {
         if let StatementKind::If { arms, otherwise } = &statement.kind {
             let mut leaves = false;
             let mut inner = depth;
             for arm in arms {
                 // Each `else if` nests in the `else` before.
                 self.expression(arm.condition, inner);
-                inner += 1;
+                inner = inner.in_condition();
                 leaves |= self.block(&arm.body, inner);
             }
             return leaves
@@ -136,32 +221,38 @@ impl Walk<'_> {
             self.expression(expr, depth);
         }
         let mut leaves = walk::jumps(statement) && !matches!(statement.kind, StatementKind::Discard);
-        let inner = depth + u32::from(!matches!(statement.kind, StatementKind::Block(_)));
+        let inner = match statement.kind {
+            StatementKind::Block(_) => depth,
+            StatementKind::Switch { .. } => depth.in_condition(),
+            _ => depth.in_loop(),
+        };
         for body in walk::inner(statement) {
             leaves |= self.block(body, inner);
         }
         leaves
     }
 
-    fn expression(&mut self, root: ExprId, depth: u32) {
-        self.note(depth, 0);
+    fn expression(&mut self, root: ExprId, depth: Depth) {
+        self.note(root, depth, None);
         let mut pending = vec![(root, depth)];
         while let Some((id, depth)) = pending.pop() {
             let kind = &self.draft.tree[id].kind;
             if let &ExprKind::Conditional { condition, yes, no } = kind {
-                self.note(depth + 1, 0);
-                pending.extend([(condition, depth), (yes, depth + 1), (no, depth + 1)]);
+                let inner = depth.in_condition();
+                self.note(id, inner, None);
+                pending.extend([(condition, depth), (yes, inner), (no, inner)]);
                 continue;
             }
             if let ExprKind::Call { function, .. } = kind {
-                self.note(depth, self.depths.whole(*function));
+                self.note(id, depth, self.depths.whole.get(function).copied());
             }
             kind.for_each_operand(|operand| pending.push((operand, depth)));
         }
     }
 
-    fn note(&mut self, depth: u32, called: u32) {
-        self.own = self.own.max(depth);
-        self.whole = self.whole.max(depth + called);
+    fn note(&mut self, id: ExprId, depth: Depth, called: Option<Whole>) {
+        self.own = self.own.max(depth.conditions + depth.loops);
+        let here = Whole::shallow(self.draft.tree[id].at);
+        self.whole.note(depth, called.unwrap_or(here));
     }
 }
