@@ -20,16 +20,16 @@ fn verdict(rung: &Rung, size: [u32; 2], edits: &[Edit]) -> (Verdict, String) {
 }
 
 /// Where secondary rays of the glass exercise start.
-fn glass(way: &str, offset: f64) -> Vec<(String, String)> {
+pub(crate) fn glass(way: &str, offset: f64) -> Vec<Edit> {
     let mirrored = "Ray mirrored = Ray(hit.point, reflect(ray.direction, hit.normal));";
     let refracted = "Branch(Ray(hit.point, refracted)";
     let epsilon = "const float EPSILON = 0.001;";
-    let least = ("const float EPSILON = 0.00001;".to_owned(), offset);
-    let own = |from: &str, to: String| (from.to_owned(), to);
+    let least = "const float EPSILON = 0.00001;".to_owned();
+    let own = |from: &'static str, to: String| -> Edit { (from, to.leak()) };
     match way {
         "least t" => vec![own(epsilon, format!("const float EPSILON = {offset:?};"))],
         "along the normal" => vec![
-            own(epsilon, least.0),
+            own(epsilon, least),
             own(
                 mirrored,
                 format!(
@@ -44,7 +44,7 @@ fn glass(way: &str, offset: f64) -> Vec<(String, String)> {
             ),
         ],
         "along the ray" => vec![
-            own(epsilon, least.0),
+            own(epsilon, least),
             own(
                 mirrored,
                 format!(
@@ -70,12 +70,7 @@ fn glass_is_correct(size: [u32; 2], offsets: &[f64]) {
     let mut wrong = Vec::new();
     for way in WAYS {
         for &offset in offsets {
-            let edits = glass(way, offset);
-            let edits: Vec<Edit> = edits
-                .iter()
-                .map(|(from, to)| (&*from.clone().leak(), &*to.clone().leak()))
-                .collect();
-            let (verdict, told) = verdict(&WHITTED, size, &edits);
+            let (verdict, told) = verdict(&WHITTED, size, &glass(way, offset));
             eprintln!("{way} {offset}: {told}");
             if verdict != Verdict::Correct {
                 wrong.push(format!("{way} {offset}: {told}"));
