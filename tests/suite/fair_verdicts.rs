@@ -370,7 +370,7 @@ fn told(cases: &[Case], size: [u32; 2], is_right: impl Fn(Verdict) -> bool) {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Right, and not accepted yet: few directions meet the lamp, so that eight sets of random numbers do not show the variance of what they bring.
+/// Right, and not accepted: few directions meet the lamp, so that eight sets of random numbers do not tell the mean.
 static RARE: &[Case] = &[(
     "the BRDF sampled alone",
     &IMPORTANCE_SAMPLING,
@@ -378,9 +378,10 @@ static RARE: &[Case] = &[(
 )];
 
 #[test]
-#[ignore = "taken for a bias: the variance of rare events is not seen"]
-fn estimators_with_rare_events_are_correct() {
-    told(RARE, [160, 90], |verdict| verdict == Verdict::Correct);
+fn estimators_with_rare_events_are_not_wrong() {
+    told(RARE, [160, 90], |verdict| {
+        matches!(verdict, Verdict::Correct | Verdict::Inconclusive)
+    });
 }
 
 #[test]
