@@ -25,7 +25,7 @@ pub use judge::{
 pub use maths::{Mixed, Reference, SHAKES, maths};
 pub use mean::{DrawnPixel, Means, follows_scene, means};
 pub use picture::{Comparison, Pixel, compare};
-pub use replicate::{REPLICATES, Replicated, ReplicatedPixel, replicated};
+pub use replicate::{RARE_EVENTS, REPLICATES, Replicated, ReplicatedPixel, replicated};
 pub use rounding::{SEEN, rounding};
 pub use tolerance::{EXACT_TOLERANCE, IN_BITS, SEEN_BY_EYE, TOLERANCE};
 pub use toolchain::toolchain;

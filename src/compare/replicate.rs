@@ -74,6 +74,10 @@ const FEWEST: usize = 48;
 /// The ratio of variances is the same everywhere if that of parts of the picture differs by less than this share of it, root mean square.
 const UNIFORM: f64 = 0.15;
 
+/// Noise of more than so many times the variance of the tracer's may be that of rare events: of an event of the same mean that is k times as
+/// rare, the variance is k times as large. With less, the tracer's own variance tells what a pixel has not met.
+pub const RARE_EVENTS: f64 = 4.0;
+
 impl ReplicatedPixel {
     fn mean(&self, i: usize, sets: std::ops::Range<usize>) -> f64 {
         let count = sets.len() as f64;
@@ -98,6 +102,11 @@ impl ReplicatedPixel {
 pub fn replicated(pixels: &[ReplicatedPixel], size: [u32; 2]) -> Replicated {
     let is_repeated = is_repeated(pixels);
     let (variance, is_uniform) = variances(pixels, size);
+    let events = if variance > RARE_EVENTS {
+        largest_events(pixels)
+    } else {
+        [0.0; 3]
+    };
     let mut bias = (0.0, [0; 2]);
     for blocks in BLOCKS {
         let mut parts = vec![Vec::new(); (blocks * blocks) as usize];
@@ -106,11 +115,11 @@ pub fn replicated(pixels: &[ReplicatedPixel], size: [u32; 2]) -> Replicated {
             parts[(row * blocks + column) as usize].push(pixel);
         }
         for part in parts.into_iter().filter(|part| part.len() >= FEWEST) {
-            let sums = sum(&part, is_repeated);
+            let sums = sum(&part, is_repeated, events);
             let most = if is_repeated {
                 sums
             } else {
-                sums.max(squares(&part))
+                sums.max(squares(&part, events))
             };
             if most > bias.0 {
                 let places = part.iter().fold([0u64; 2], |sum, pixel| {
@@ -124,70 +133,114 @@ pub fn replicated(pixels: &[ReplicatedPixel], size: [u32; 2]) -> Replicated {
     Replicated {
         bias,
         is_biased: bias.0 > limit || (is_repeated && is_beyond_noise(pixels)),
-        within: within(pixels, limit),
+        within: within(pixels, limit, events),
         is_repeated,
         variance,
         is_uniform,
     }
 }
 
-/// How far the means may be apart, in the component in which they may be farthest; infinite where there is nothing to tell it from.
-fn within(pixels: &[ReplicatedPixel], limit: f64) -> f64 {
-    let of = |i: usize| {
-        let [mut sum, mut variance, mut all] = [0.0; 3];
+/// The largest deviation of a picture from the mean of its pixel, in each component: the size of the rare events that other pixels may
+/// not have met yet.
+fn largest_events<'a>(pixels: impl IntoIterator<Item = &'a ReplicatedPixel>) -> [f64; 3] {
+    let mut largest = [0.0f64; 3];
+    for pixel in pixels {
+        for (i, largest) in largest.iter_mut().enumerate() {
+            let most = pixel.own.iter().map(|own| own[i]).fold(f64::MIN, f64::max);
+            *largest = largest.max(most - pixel.mean(i, 0..REPLICATES));
+        }
+    }
+    largest
+}
+
+/// A weighted sum of the differences in one component.
+struct Sum {
+    sum: f64,
+    variance: f64,
+    weight: f64,
+}
+
+impl Sum {
+    /// Variances are those of the pixels, and of events of the size `event` that were not met: the mean of n pictures is short by d where
+    /// n·d/event of them are missing. Their number has Poisson's distribution, so that the mean has the variance d·event/n.
+    fn of<'a>(pixels: impl IntoIterator<Item = &'a ReplicatedPixel>, i: usize, event: f64) -> Self {
+        let sets = REPLICATES as f64;
+        let [mut sum, mut variance, mut short, mut all] = [0.0; 4];
         for pixel in pixels {
             let weight = pixel.weight[i];
-            sum += weight * pixel.difference(i);
-            let own = pixel.variance(i) / REPLICATES as f64;
-            variance += weight * weight * (own + pixel.reference_variance[i]);
+            let difference = pixel.difference(i);
+            sum += weight * difference;
+            variance += weight * weight * (pixel.variance(i) / sets + pixel.reference_variance[i]);
+            // With its sign, so that noise cancels.
+            short -= weight * weight * difference;
             all += weight;
         }
-        SAME + sum.abs().max(limit * variance.sqrt()) / all
+        Self {
+            sum,
+            variance: variance + short.max(0.0) * event / sets,
+            weight: all,
+        }
+    }
+}
+
+/// How far the means may be apart, in the component in which they may be farthest; infinite where there is nothing to tell it from.
+fn within(pixels: &[ReplicatedPixel], limit: f64, events: [f64; 3]) -> f64 {
+    let of = |i: usize| {
+        let Sum {
+            sum,
+            variance,
+            weight,
+        } = Sum::of(pixels, i, events[i]);
+        SAME + sum.abs().max(limit * variance.sqrt()) / weight
     };
     let most = of(0).max(of(1)).max(of(2));
     if most.is_nan() { f64::INFINITY } else { most }
 }
 
 /// By how many standard deviations the sum of differences is too large, in the component in which it is largest.
-fn sum(pixels: &[&ReplicatedPixel], is_repeated: bool) -> f64 {
+fn sum(pixels: &[&ReplicatedPixel], is_repeated: bool, events: [f64; 3]) -> f64 {
     let of = |i: usize| {
-        let (mut sum, mut variance, mut may_be) = (0.0, 0.0, 0.0);
-        let mut of_each = [0.0; REPLICATES];
-        for pixel in pixels {
-            let weight = pixel.weight[i];
-            sum += weight * pixel.difference(i);
-            let own = pixel.variance(i) / REPLICATES as f64;
-            variance += weight * weight * (own + pixel.reference_variance[i]);
-            may_be += weight * SAME;
-            for (all, own) in of_each.iter_mut().zip(&pixel.own) {
-                *all += weight * own[i];
-            }
-        }
+        let Sum {
+            sum,
+            mut variance,
+            weight,
+        } = Sum::of(pixels.iter().copied(), i, events[i]);
         if is_repeated {
+            let of_set = |set: usize| -> f64 {
+                pixels
+                    .iter()
+                    .map(|pixel| pixel.weight[i] * pixel.own[set][i])
+                    .sum()
+            };
+            let of_each: [f64; REPLICATES] = std::array::from_fn(of_set);
             let mean = of_each.iter().sum::<f64>() / REPLICATES as f64;
             let squares = of_each.iter().map(|each| (each - mean).powi(2)).sum::<f64>();
             variance = variance.max(squares / ((REPLICATES - 1) * REPLICATES) as f64);
         }
-        deviations(sum.abs() - may_be, variance)
+        deviations(sum.abs() - SAME * weight, variance)
     };
     of(0).max(of(1)).max(of(2))
 }
 
 /// By how many standard deviations the sum of squared biases is too large.
-fn squares(pixels: &[&ReplicatedPixel]) -> f64 {
+fn squares(pixels: &[&ReplicatedPixel], events: [f64; 3]) -> f64 {
     const HALF: usize = REPLICATES / 2;
-    let (mut sum, mut variance) = (0.0, 0.0);
+    let [mut sum, mut variance, mut unmet] = [0.0; 3];
     for pixel in pixels {
         let mut of_pixel = 0.0;
         for i in 0..3 {
             let one = pixel.mean(i, 0..HALF) - pixel.reference[0][i];
             let other = pixel.mean(i, HALF..REPLICATES) - pixel.reference[1][i];
             of_pixel += pixel.weight[i] * (one * other - SAME * SAME);
+            if one + other < 0.0 {
+                // The product of the variances of two means that are short, for three components that go together.
+                unmet += 3.0 * one * other * (pixel.weight[i] * events[i] / HALF as f64).powi(2);
+            }
         }
         sum += of_pixel;
         variance += of_pixel * of_pixel;
     }
-    deviations(sum, variance)
+    deviations(sum, variance + unmet.max(0.0))
 }
 
 fn deviations(excess: f64, variance: f64) -> f64 {
@@ -332,6 +385,19 @@ mod tests {
         // No sum of it is anything, and neighbors have nothing in common.
         let found = replicated(&pixels(|at, set| noise(at, set) + 0.02 * checkers(at)), SIZE);
         assert!(found.is_biased && !found.is_repeated, "{found:?}");
+    }
+
+    #[test]
+    fn rare_events_that_were_not_met_are_no_bias() {
+        // Two in each sixteenth of the image on the average, and none in some.
+        let rare = |[x, y]: [u32; 2], set| {
+            let is_met = pcg((y * 64 + x) * 16 + set + 9_000_000) < u32::MAX / 1000;
+            if is_met { 10.0 - 0.01 } else { -0.01 }
+        };
+        let found = replicated(&pixels(rare), SIZE);
+        assert!(!found.is_biased && found.variance > RARE_EVENTS, "{found:?}");
+        let found = replicated(&pixels(|at, set| rare(at, set) - 0.05), SIZE);
+        assert!(found.is_biased, "{found:?}");
     }
 
     #[test]

@@ -14,8 +14,8 @@ use super::replicates::{self, Compared, Unfit};
 use super::sample_loops::fewer_samples;
 use super::{Asked, Case};
 use crate::compare::{
-    Answer, Answers, DrawnPixel, EXACT_TOLERANCE, Means, REPLICATES, Replicated, Standing, Verdict,
-    differing, follows_scene, grouped, judge, means,
+    Answer, Answers, DrawnPixel, EXACT_TOLERANCE, Means, RARE_EVENTS, REPLICATES, Replicated, Standing,
+    Verdict, differing, follows_scene, grouped, judge, means,
 };
 use crate::eval::Program;
 use crate::image::Image;
@@ -212,6 +212,9 @@ impl<'a> Painted<'a> {
         if is_repeated {
             return (Verdict::Inconclusive, repeated(differs));
         }
+        if pixels >= FEWEST && within > FINEST && variance > RARE_EVENTS && variance.is_finite() {
+            return (Verdict::Inconclusive, noisy(differs, variance));
+        }
         if pixels < FEWEST || within > FINEST {
             return (Verdict::Inconclusive, unseen(differs));
         }
@@ -327,6 +330,13 @@ fn unseen(differs: &str) -> String {
     format!(
         "random: {differs}, and samples or pixels are too few to compare means. Draw as docs/scenes.md tells, give the scene the sampler \
          that draws as the shader does, or ask for a larger picture"
+    )
+}
+
+fn noisy(differs: &str, variance: f64) -> String {
+    format!(
+        "random: {differs}, and its noise has {variance:.0} times the variance of the scene's own sampler: too much to compare means, as where \
+         directions seldom meet a light. Sample the lights as well, or take more samples"
     )
 }
 

@@ -148,7 +148,7 @@ pub(super) fn compared(
         }
         first.get_or_insert(compared);
     }
-    if first.is_none() && is_without_chance(&case.checked.tree) {
+    if first.is_none() && is_without_chance(case.checked) {
         // Nothing is random in it: it is the same with any numbers.
         let [.., untouched] = Reseeding::all();
         first = Some(compare((untouched, vec![usual; REPLICATES + WEIGHING])));

@@ -6,9 +6,12 @@
 //! of floats. Integers that make something else, such as a scene, may be changed by it as well: whoever compares must see that nothing but the
 //! noise is another ([`Reseeding::all`] gives several ways to try).
 
+use std::collections::HashSet;
+
 use crate::glsl::Checked;
+use crate::glsl::lower::walk;
 use crate::glsl::tree::{
-    BinaryOp, BuiltIn, Constructor, Expr, ExprId, ExprKind, Literal, Scalar, Tree, Type, Value,
+    BinaryOp, BuiltIn, Constructor, Expr, ExprId, ExprKind, FunctionId, Literal, Scalar, Tree, Type, Value,
 };
 
 /// Integers from this on are constants of hashes.
@@ -183,9 +186,11 @@ fn add(tree: &mut Tree, id: ExprId, salt: u32) {
     };
 }
 
-/// Whether a shader has nothing that a random number could come of: no hash, and no texture.
-pub(super) fn is_without_chance(tree: &Tree) -> bool {
-    tree.exprs.iter().all(|(_, expr)| {
+/// Whether nothing that runs could make a random number: no hash, and no texture.
+pub(super) fn is_without_chance(checked: &Checked) -> bool {
+    let tree = &checked.tree;
+    reached(tree, checked.main_image).into_iter().all(|id| {
+        let expr = &tree[id];
         let bits = match &expr.kind {
             ExprKind::Binary { op, .. } | ExprKind::Assign { op: Some(op), .. } => matches!(
                 op,
@@ -205,6 +210,32 @@ pub(super) fn is_without_chance(tree: &Tree) -> bool {
         };
         !bits && expr.ty.scalar() != Some(Scalar::Uint)
     })
+}
+
+/// All expressions that `main` evaluates, and what the variables that they name begin with.
+fn reached(tree: &Tree, main: FunctionId) -> Vec<ExprId> {
+    let (mut functions, mut variables) = (HashSet::new(), HashSet::new());
+    let roots_of = |function: FunctionId| {
+        let body = tree[function].body.as_ref();
+        body.map_or_else(Vec::new, |body| walk::roots(tree, body))
+    };
+    let mut roots = roots_of(main);
+    let mut all = Vec::new();
+    while let Some(root) = roots.pop() {
+        for id in tree.postorder(root) {
+            match tree[id].kind {
+                ExprKind::Call { function, .. } if functions.insert(function) => {
+                    roots.extend(roots_of(function));
+                }
+                ExprKind::Variable(variable) if variables.insert(variable) => {
+                    roots.extend(tree[variable].initialiser);
+                }
+                _ => {}
+            }
+            all.push(id);
+        }
+    }
+    all
 }
 
 fn is_integer(tree: &Tree, id: ExprId) -> bool {
@@ -321,6 +352,20 @@ mod tests {
                 assert!(common.abs() < 0.5, "{common} salt {salt} {hash}");
             }
         }
+    }
+
+    #[test]
+    fn chance_in_a_function_that_nothing_calls_is_none() {
+        let unused = format!("{}\n", HASHES[0].replace("random", "unused"));
+        for (random, is_without) in [
+            ("float random(vec2 p) { return p.x * 0.01; }", true),
+            ("float random(vec2 p) { return float(pcg(7u)); }", false),
+        ] {
+            let checked = checked(&format!("{unused}{random}"));
+            assert_eq!(is_without_chance(&checked), is_without, "{random}");
+        }
+        let global = checked("const int BITS = 6 ^ 3;\nfloat random(vec2 p) { return p.x * float(BITS); }");
+        assert!(!is_without_chance(&global));
     }
 
     #[test]

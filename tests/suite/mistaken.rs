@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use toyproof::compare::Verdict;
 use toyproof::eval::Program;
 use toyproof::frame::Frame;
 use toyproof::glsl;
@@ -9,8 +10,11 @@ use toyproof::mistake::Suspects;
 use toyproof::source::{File, Files};
 
 use crate::equivalent_rewrites::rewrites;
+use crate::fair_verdicts::glass;
 use crate::planted_faults::faults;
-use crate::support::{EVERY_RUNG, Rung, SPHERE, edited, scene, try_edit};
+use crate::support::{
+    EVERY_RUNG, REFLECTIONS, Rung, SPHERE, WHITTED, edit, edited, judged_with_names, scene, try_edit,
+};
 
 fn program(shader: &str) -> Program {
     let mut files = Files::default();
@@ -88,6 +92,46 @@ fn two_mistakes_at_once_are_named() {
         named(&SPHERE, &suspects, &shader, usize::MAX),
         "blue-is-red+no-aspect"
     );
+}
+
+/// Where secondary rays start otherwise than in the exported shader, the rims of glass are other pixels than those of its mistakes.
+#[test]
+fn mistakes_are_named_wherever_rays_start() {
+    let suspects = Suspects::of(&scene(&WHITTED), &frame(&WHITTED)).unwrap();
+    let style = glass("along the normal", 2e-4);
+    for (title, name) in [
+        ("Schlick instead of Fresnel", "schlick-for-fresnel"),
+        ("checker in one direction", "checker-in-one-direction"),
+        ("sign in Snell's law", "refraction-sign"),
+    ] {
+        let fault = faults().find(|fault| fault.0 == title && std::ptr::eq(fault.1, &WHITTED));
+        let (_, _, edits) = fault.expect("it is a planted fault");
+        let shader = try_edit(&edited(&WHITTED, edits), &style).unwrap();
+        assert_eq!(named(&WHITTED, &suspects, &shader, 0), name, "{title}");
+    }
+}
+
+/// A mistake that shows in so few pixels that the verdict is `correct` is told of there.
+#[test]
+fn a_mistake_that_explains_the_few_pixels_that_differ_is_told_of() {
+    let in_few = Rung {
+        scene: edit(
+            REFLECTIONS.scene,
+            &[("max_depth = 100", "max_depth = 5")],
+            "scene",
+        )
+        .leak(),
+        size: [160, 90],
+        ..REFLECTIONS
+    };
+    let one_short = edited(&REFLECTIONS, &[("DEPTH = 100", "DEPTH = 4")]);
+    let findings = judged_with_names(&one_short, &in_few);
+    assert_eq!(findings.verdict, Verdict::Correct, "{}", findings.reason);
+    let says = "they are what a tracer paints that follows one reflection";
+    assert!(findings.reason.contains(says), "{}", findings.reason);
+    let right = edited(&REFLECTIONS, &[("DEPTH = 100", "DEPTH = 5")]);
+    let findings = judged_with_names(&right, &in_few);
+    assert!(!findings.reason.contains("they are what"), "{}", findings.reason);
 }
 
 /// `cargo test --release --test suite -- --ignored every_fault --nocapture`: what each planted fault is called, as `mistaken.txt` has it.

@@ -232,6 +232,15 @@ pub(crate) fn judged_and_named(worker: &mut Worker, shader: &str, rung: &Rung) -
     judged_beside(Some(&suspects), Some(worker), shader, rung)
 }
 
+/// What `toyproof check` finds without a worker, classic mistakes included.
+///
+/// # Panics
+/// Likewise.
+pub(crate) fn judged_with_names(shader: &str, rung: &Rung) -> Findings {
+    let suspects = Suspects::of(&scene(rung), &frame(rung, rung.size)).unwrap();
+    judged_beside(Some(&suspects), None, shader, rung)
+}
+
 fn judged_beside(
     suspects: Option<&Suspects>,
     worker: Option<&mut Worker>,
