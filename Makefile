@@ -9,7 +9,7 @@ demo: setup
 	./target/release/toyproof check glsl --out out
 
 test:
-	cargo test
+	cargo test --workspace
 
 # Mesa's lavapipe, on which the shaders run; see `toyproof doctor`.
 setup:

@@ -10,11 +10,12 @@
 use std::fs;
 
 use rustix::time::{ClockId, clock_gettime};
+use toyproof::diagnostic::{File, Files};
 use toyproof::eval::{Jittered, Number, Program, Seed, Settings, Variant};
-use toyproof::frame::Frame;
-use toyproof::glsl::{Checked, Options, check, lower_strict};
-use toyproof::gpu::{FloatMode, On, Painter};
-use toyproof::source::{File, Files};
+use toyproof::glsl::{Checked, Options, check};
+use toyproof::gpu::{On, Painter};
+use toyproof::image::Frame;
+use toyproof::translate::{FloatMode, lower_strict};
 
 const RUNGS: [&str; 4] = [
     "02-sphere",

@@ -7,14 +7,16 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use divan::Bencher;
-use toyproof::frame::Frame;
-use toyproof::glsl::{Lowered, Options, check, lower};
-use toyproof::gpu::{FloatMode, On, Worker};
-use toyproof::module::ValidModule;
+use toyproof::diagnostic::{File, Files};
+use toyproof::glsl::{Options, check};
+use toyproof::gpu;
+use toyproof::gpu::{On, Worker};
+use toyproof::image::Frame;
 use toyproof::scene::{self, Scene};
-use toyproof::source::{File, Files};
-use toyproof::trace::{Real, Tracer};
-use toyproof::{emit, gpu};
+use toyproof::tracer::{Real, Tracer};
+use toyproof::translate::backend::spirv;
+use toyproof::translate::naga_ir::ValidModule;
+use toyproof::translate::{FloatMode, Lowered, lower};
 
 const RUNGS: [&str; 3] = ["02-sphere", "04-many-objects", "05-complex-scene"];
 
@@ -42,7 +44,7 @@ fn translate(bencher: Bencher, rung: &str) {
     let lowered = lowered(rung);
     bencher.bench(|| {
         let module = ValidModule::parse(&lowered).expect("the course is valid");
-        emit::spirv::strict(&emit::spirv::words(&module).expect("naga writes the course"))
+        spirv::strict(&spirv::words(&module).expect("naga writes the course"))
     });
 }
 

@@ -4,10 +4,11 @@ use std::fmt::Write;
 use std::fs;
 
 use divan::Bencher;
-use toyproof::emit;
-use toyproof::glsl::{Lowered, Options, check, lower};
-use toyproof::module::ValidModule;
-use toyproof::source::{File, FileId, Files};
+use toyproof::diagnostic::{File, FileId, Files};
+use toyproof::glsl::{Options, check};
+use toyproof::translate::backend::spirv;
+use toyproof::translate::naga_ir::ValidModule;
+use toyproof::translate::{Lowered, lower};
 
 const SHADERS: [&str; 4] = ["02-sphere", "04-many-objects", "06-reflections", "5,000 lines"];
 
@@ -54,7 +55,7 @@ fn lowered(files: &Files, file: FileId) -> Lowered {
 
 fn spirv(lowered: &Lowered) -> Vec<u32> {
     let module = ValidModule::parse(lowered).expect("naga takes what we print");
-    emit::spirv::words(&module).expect("naga writes what it takes")
+    spirv::words(&module).expect("naga writes what it takes")
 }
 
 /// Preprocess, parse, check.

@@ -6,10 +6,11 @@
 use std::fs;
 use std::time::{Duration, Instant};
 
-use toyproof::frame::Frame;
-use toyproof::glsl::{Lowered, Options, check, lower, lower_strict};
-use toyproof::gpu::{FloatMode, On, Painter};
-use toyproof::source::{File, Files};
+use toyproof::diagnostic::{File, Files};
+use toyproof::glsl::{Options, check};
+use toyproof::gpu::{On, Painter};
+use toyproof::image::Frame;
+use toyproof::translate::{FloatMode, Lowered, lower, lower_strict};
 
 /// Little else than transcendental functions: a dozen calls, 20 times.
 const HEAVY: &str = "void mainImage(out vec4 c, in vec2 p) {

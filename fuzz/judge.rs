@@ -7,9 +7,10 @@ use std::thread::{self, ScopedJoinHandle};
 use std::time::Duration;
 
 use rustix::time::{ClockId, clock_gettime};
-use toyproof::glsl::{Lowered, Options, check, lower};
-use toyproof::module::ValidModule;
-use toyproof::source::{File, Files};
+use toyproof::diagnostic::{File, Files};
+use toyproof::glsl::{Options, check};
+use toyproof::translate::naga_ir::ValidModule;
+use toyproof::translate::{Lowered, lower};
 
 /// The name of the thread on which naga runs: its panics are not ours.
 pub(crate) const NAGA: &str = "naga";

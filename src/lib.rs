@@ -1,28 +1,19 @@
-//! toyproof checks, renders and converts ShaderToy shaders, and says how far each picture can be trusted.
+//! Checks, renders and converts ShaderToy shaders, and states how far each image can be trusted.
+//!
+//! Each stage is a crate of its own; this one composes them into the command line.
 
-pub mod browser;
-pub mod chart;
 pub mod cli;
-pub mod compare;
-pub mod contain;
-pub mod deadline;
-pub mod diagnostic;
-pub mod elementary;
-pub mod emit;
-pub mod eval;
-pub mod explain;
-pub mod export;
-pub mod frame;
-pub mod glsl;
-pub mod gpu;
-pub mod image;
-pub mod mistake;
-pub mod module;
-pub mod output;
 pub mod report;
-pub mod scene;
-pub mod source;
-pub mod stress;
-pub mod trace;
-pub mod trade;
-pub mod verify;
+
+pub use toyproof_diagnostic as diagnostic;
+pub use toyproof_eval as eval;
+pub use toyproof_glsl as glsl;
+pub use toyproof_gpu as gpu;
+pub use toyproof_image as image;
+pub use toyproof_lab as lab;
+pub use toyproof_lint as lint;
+pub use toyproof_math as math;
+pub use toyproof_scene as scene;
+pub use toyproof_tracer as tracer;
+pub use toyproof_translate as translate;
+pub use toyproof_verify as verify;

@@ -19,16 +19,16 @@ use std::path::Path;
 use std::process::Command;
 
 use rustix::time::{ClockId, clock_gettime};
-use toyproof::chart::{Point, Scatter};
-use toyproof::export;
-use toyproof::frame::Frame;
-use toyproof::glsl::{Options, check, lower_strict};
-use toyproof::gpu::{FloatMode, On, Painter};
+use toyproof::diagnostic::{File, Files};
+use toyproof::glsl::{Options, check};
+use toyproof::gpu::{On, Painter};
+use toyproof::image::Frame;
+use toyproof::lab::chart::{Point, Scatter};
 use toyproof::scene::{
-    self, Fresnel, Integrator, Light, Model, Motion, Object, Period, Sampler, Scene, Shape,
+    self, Fresnel, Integrator, Light, Model, Motion, Object, Period, Sampler, Scene, Shape, export,
 };
-use toyproof::source::{File, Files};
-use toyproof::trace::{Real, Tracer};
+use toyproof::tracer::{Real, Tracer};
+use toyproof::translate::{FloatMode, lower_strict};
 
 use self::embree::{Embree, Ray};
 use self::scenes::{Random, light, material, spheres};

@@ -1,13 +1,16 @@
 //! `toyproof check --explain CODE`
 
+use toyproof_diagnostic::nearest;
+
 use super::{Exit, Terminal};
-use crate::diagnostic::{self, Explanation};
+use crate::report;
+use crate::report::Explanation;
 
 /// Prints what a code means.
 pub(super) fn run(code: &str, terminal: &Terminal) -> Exit {
-    let Some(Explanation { code, title, text }) = diagnostic::explain(code) else {
-        let codes = diagnostic::explanations().map(|explanation| explanation.code);
-        let hint = match diagnostic::nearest(code, codes) {
+    let Some(Explanation { code, title, text }) = report::explain(code) else {
+        let codes = report::explanations().map(|explanation| explanation.code);
+        let hint = match nearest(code, codes) {
             Some(near) => format!("did you mean {near}?"),
             None => "codes are E or W and four digits, as in error[E0301]".to_owned(),
         };

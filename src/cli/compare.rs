@@ -2,11 +2,12 @@
 
 use std::path::PathBuf;
 
+use toyproof_diagnostic::path_name;
+use toyproof_image::{self as image};
+use toyproof_verify::compare::{Legend, TOLERANCE, compare, grouped, magnitude};
+
 use super::inputs::may_write;
 use super::{Exit, Terminal};
-use crate::compare::{TOLERANCE, compare, grouped, magnitude};
-use crate::image::{self, Legend};
-use crate::source::path_name;
 
 /// Compare two pictures: exit code 0 if they agree, 1 if they differ
 #[derive(Debug, clap::Args)]
@@ -47,7 +48,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     }
     let (comparison, marks) = compare(&a, &b);
     if let Some(path) = &args.diff {
-        let picture = image::difference(
+        let picture = toyproof_verify::compare::difference(
             a.size(),
             &marks,
             Legend {

@@ -3,13 +3,14 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use super::inputs::{self, Place};
-use super::{Exit, Terminal};
-use crate::compare::grouped;
-use crate::gpu::{
+use toyproof_diagnostic::path_name;
+use toyproof_gpu::{
     Driver, Failure, INSTALL_HINT, LoopCap, On, is_pinned_by_user, lavapipe_manifest, manifests, pinned,
 };
-use crate::source::path_name;
+use toyproof_verify::compare::grouped;
+
+use super::inputs::{self, Place};
+use super::{Exit, Terminal};
 
 /// Say which Vulkan drivers are installed, which is chosen and why, what is missing and how to get it
 #[derive(Debug, clap::Args)]

@@ -3,19 +3,20 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
+use toyproof_diagnostic::{Deadline, path_name};
+use toyproof_eval::{Failure, Program};
+use toyproof_glsl::Checked;
+use toyproof_image::Frame;
+use toyproof_scene::Scene;
+use toyproof_verify::explain::explain;
+
 use super::check::References;
 use super::inputs::{Format, FrameArgs, LanguageArgs, deadline};
 use super::run::not_evaluated;
 use super::shader::{Shader, Unusable, find};
 use super::{Exit, Terminal};
-use crate::deadline::Deadline;
-use crate::eval::{Failure, Program};
-use crate::explain::explain;
-use crate::frame::Frame;
-use crate::glsl::Checked;
+use crate::cli::files::{Found, ReadError};
 use crate::report;
-use crate::scene::Scene;
-use crate::source::{Found, ReadError, path_name};
 
 /// Tell what one pixel does, line by line, in f32 beside f64, and where the two part
 #[derive(Debug, clap::Args)]
@@ -58,7 +59,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         }
     };
     let shader = Shader::load(input, &args.language, Deadline::after(args.timeout));
-    terminal.diagnostics(&shader.warnings, &shader.files);
+    terminal.diagnostics(&shader.lints.warnings, &shader.files);
     match &shader.checked {
         Ok(checked) => tell(args, &shader, checked, &frame, terminal),
         Err(Unusable::Invalid(diagnostics)) => {

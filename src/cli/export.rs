@@ -3,11 +3,12 @@
 use std::iter;
 use std::path::PathBuf;
 
+use toyproof_diagnostic::path_name;
+use toyproof_scene::export;
+
 use super::inputs::may_write;
 use super::render::load;
 use super::{Exit, Terminal};
-use crate::export;
-use crate::source::path_name;
 
 /// Write the shader that paints a scene
 #[derive(Debug, clap::Args)]

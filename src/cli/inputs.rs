@@ -5,15 +5,14 @@ use std::str::FromStr;
 use std::time::Duration;
 
 use clap::ValueEnum;
+use toyproof_diagnostic::{Deadline, path_name};
+use toyproof_glsl as glsl;
+use toyproof_gpu::{On, Worker};
+use toyproof_image::output::Originals;
+use toyproof_image::{self as image, Frame, Image, check_size};
+use toyproof_translate::FloatMode;
 
 use super::Terminal;
-use crate::deadline::Deadline;
-use crate::frame::Frame;
-use crate::glsl;
-use crate::gpu::{FloatMode, On, Worker};
-use crate::image::{self, Image, check_size};
-use crate::output::Originals;
-use crate::source::path_name;
 
 /// A longer deadline is none.
 const LONGEST: Duration = Duration::from_secs(24 * 60 * 60);

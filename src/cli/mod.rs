@@ -9,6 +9,7 @@ mod course;
 mod doctor;
 mod explain;
 mod export;
+mod files;
 mod inputs;
 mod interrupt;
 mod names;
@@ -26,9 +27,9 @@ mod worker;
 use std::panic;
 
 use clap::{Parser, Subcommand};
+use toyproof_verify::contain::{Part, contain};
 
 use self::terminal::Terminal;
-use crate::contain::{Part, contain};
 
 /// Checks, renders and converts ShaderToy shaders.
 #[derive(Debug, Parser)]

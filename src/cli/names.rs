@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
-use crate::source::Found;
+use crate::cli::files::Found;
 
 /// Gives every input a place of its own below an output folder: its own relative path where that is free. No file of one input has the name of
 /// another's, of a folder on the way to another's, or of a report.
@@ -111,8 +111,10 @@ pub(super) fn with_suffix(place: &Path, suffix: &str) -> PathBuf {
 
 #[cfg(test)]
 mod tests {
+    use toyproof_diagnostic::path_name;
+
     use super::*;
-    use crate::source::{FoundIn, path_name};
+    use crate::cli::files::FoundIn;
 
     fn place(names: &mut Names, folder: &str, relative: &str) -> String {
         let place = FoundIn::File(Path::new(folder).join(relative));

@@ -5,14 +5,15 @@ use std::time::Instant;
 
 use clap::ValueEnum;
 use indicatif::ProgressBar;
+use toyproof_diagnostic::{Files, path_name};
+use toyproof_image::{self as image, Image};
+use toyproof_scene::{self as scene, Moment, Requirements, Sampler, Scene};
+use toyproof_tracer::{Real, Tracer};
+use toyproof_verify::compare::{grouped, magnitude};
 
 use super::sequence::{self, Frames, Sequence};
 use super::{Exit, Terminal, inputs};
-use crate::compare::{grouped, magnitude};
-use crate::image::{self, Image};
-use crate::scene::{self, Moment, Requirements, Sampler, Scene};
-use crate::source::{self, Files, path_name};
-use crate::trace::{Real, Tracer};
+use crate::cli::files;
 
 /// Render a scene with the reference tracer
 #[derive(Debug, clap::Args)]
@@ -166,7 +167,7 @@ fn picture(
 
 /// A scene from its file; says what is wrong with it.
 pub(super) fn load(path: &Path, terminal: &Terminal) -> Option<Scene> {
-    if source::is_shader(path) {
+    if files::is_shader(path) {
         let path = path_name(path);
         terminal.error(format_args!(
             "{path} is a shader, and `render` takes a scene; paint the shader with `toyproof run {path} -o PICTURE`"
@@ -174,7 +175,7 @@ pub(super) fn load(path: &Path, terminal: &Terminal) -> Option<Scene> {
         return None;
     }
     let mut files = Files::default();
-    let file = match source::read_text(path) {
+    let file = match files::read_text(path) {
         Ok(text) => files.add(text),
         Err(error) => {
             terminal.error(error);

@@ -5,6 +5,12 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::ValueEnum;
+use toyproof_diagnostic::{Deadline, Files, path_name};
+use toyproof_eval::{self as eval, Number, Program, Settings, Variant};
+use toyproof_glsl::{self as glsl, Checked};
+use toyproof_gpu::{Drawn, Failure, Worker};
+use toyproof_image::{self as image, Frame, Image};
+use toyproof_verify::unbound;
 
 use super::check::cut_short;
 use super::inputs::{DriverArgs, FrameArgs, LanguageArgs, may_write};
@@ -12,14 +18,6 @@ use super::names::{Names, with_suffix};
 use super::sequence::{self, Frames, Sequence};
 use super::shader::{Shader, Unusable, find, is_invalid};
 use super::{Exit, Terminal};
-use crate::deadline::Deadline;
-use crate::eval::{self, Number, Program, Settings, Variant};
-use crate::frame::Frame;
-use crate::glsl::{self, Checked};
-use crate::gpu::{Drawn, Failure, Worker};
-use crate::image::{self, Image};
-use crate::source::{Files, path_name};
-use crate::verify::unbound;
 
 /// Run shaders and keep the pictures that they paint
 #[derive(Debug, clap::Args)]
@@ -98,9 +96,9 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             (true, _) | (false, Err(_)) => args.output.clone(),
             (false, Ok(found)) => with_suffix(&args.output.join(names.place(found)), ".png"),
         };
-        terminal.diagnostics(&shader.warnings, &shader.files);
+        terminal.diagnostics(&shader.lints.warnings, &shader.files);
         if let Ok(checked) = &shader.checked {
-            terminal.diagnostics(&unbound(checked, &runner.frame), &shader.files);
+            terminal.diagnostics(&unbound(checked, &shader.lints, &runner.frame), &shader.files);
         }
         exit = exit.max(match args.frames {
             None => {

@@ -3,9 +3,10 @@
 use std::fs;
 use std::path::PathBuf;
 
+use toyproof_diagnostic::{File, Files, path_name};
+use toyproof_scene as scene;
+
 use super::{Exit, Terminal, course};
-use crate::scene;
-use crate::source::{File, Files, path_name};
 
 /// List the course's scenes and shaders, or write them to a folder
 #[derive(Debug, clap::Args)]

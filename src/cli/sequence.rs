@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use toyproof_image::FRAME_RATE;
+use toyproof_verify::compare::grouped;
+
 use super::Terminal;
-use crate::compare::grouped;
-use crate::frame::FRAME_RATE;
 
 /// The numbers of the frames of a sequence, both ends included.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -118,8 +119,9 @@ impl Sequence {
 
 #[cfg(test)]
 mod tests {
+    use toyproof_diagnostic::path_name;
+
     use super::*;
-    use crate::source::path_name;
 
     #[test]
     fn a_range_has_both_ends_and_its_files_sort_by_number() {

@@ -2,21 +2,25 @@
 
 use std::path::{Path, PathBuf};
 
+use toyproof_diagnostic::{Deadline, Diagnostic, Files, Severity, path_name};
+use toyproof_glsl::{self as glsl, Checked};
+use toyproof_gpu::{Failure, Phase};
+use toyproof_lint::{Lints, lint};
+
 use super::Terminal;
 use super::inputs::{Deny, LanguageArgs};
-use crate::deadline::Deadline;
-use crate::diagnostic::{self, Diagnostic, Severity};
-use crate::glsl::{self, Checked};
-use crate::gpu::{Failure, Phase};
-use crate::source::{self, Files, Found, ReadError, path_name};
+use crate::cli::files;
+use crate::cli::files::{Found, ReadError, of_content};
+
+/// The lints have this part of the time limit of a shader.
+const LINTS: u32 = 4;
 
 /// A shader's text and its tree, or why there is none.
 pub(super) struct Shader {
     pub(super) name: String,
     pub(super) files: Files,
     pub(super) checked: Result<Checked, Unusable>,
-    /// What is legal and worth a word.
-    pub(super) warnings: Vec<Diagnostic>,
+    pub(super) lints: Lints,
 }
 
 /// Why a shader cannot be used.
@@ -34,14 +38,15 @@ impl Shader {
         deadline: Deadline,
     ) -> Self {
         let mut files = Files::default();
-        let mut warnings = Vec::new();
+        let mut lints = Lints::default();
         let (name, checked) = match found {
             Err(error) => (subject(error), Err(Unusable::Trouble(error.to_string()))),
             Ok(found) => {
+                let share = deadline.share(LINTS);
                 let checked = read(found, &mut files, &language.options(deadline));
                 let checked = checked.and_then(|checked| {
-                    warnings.clone_from(&checked.warnings);
-                    let denied = denied(&mut warnings, language.denied());
+                    lints = lint(&files, &checked, &share);
+                    let denied = denied(&mut lints.warnings, language.denied());
                     if denied.is_empty() {
                         Ok(checked)
                     } else {
@@ -55,7 +60,7 @@ impl Shader {
             name,
             files,
             checked,
-            warnings,
+            lints,
         }
     }
 
@@ -80,12 +85,12 @@ pub(super) fn denied(warnings: &mut Vec<Diagnostic>, denied: &[Deny]) -> Vec<Dia
 }
 
 fn read(found: &Found, files: &mut Files, options: &glsl::Options) -> Result<Checked, Unusable> {
-    match source::read(found) {
+    match files::read(found) {
         Ok(text) => {
             let file = files.add(text);
             glsl::check(files, file, options).map_err(Unusable::Invalid)
         }
-        Err(error) => Err(match diagnostic::of_content(error, files) {
+        Err(error) => Err(match of_content(error, files) {
             Ok(diagnostic) => Unusable::Invalid(vec![diagnostic]),
             Err(error) => Unusable::Trouble(error.to_string()),
         }),
@@ -108,7 +113,7 @@ pub(super) fn find(arguments: &[PathBuf], terminal: &Terminal) -> Vec<Result<Fou
         .enumerate()
         .filter(|&(at, argument)| argument != Path::new("-") || Some(at) == first)
         .flat_map(|(_, argument)| {
-            let search = source::find(argument);
+            let search = files::find(argument);
             for skipped in &search.skipped {
                 terminal.warn(skipped);
             }

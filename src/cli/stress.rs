@@ -3,14 +3,14 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
+use toyproof_diagnostic::{Deadline, path_name};
+use toyproof_gpu::Worker;
+use toyproof_lab::stress::function::{self, Findings, Map, Role, Signature};
+use toyproof_lab::stress::{self, Report, Settings, formula};
+
 use super::inputs::{DriverArgs, LanguageArgs};
 use super::shader::{Shader, Unusable, find};
 use super::{Exit, Terminal, interrupt};
-use crate::deadline::Deadline;
-use crate::gpu::Worker;
-use crate::source::path_name;
-use crate::stress::function::{self, Findings, Map, Role, Signature};
-use crate::stress::{self, Report, Settings, formula};
 
 /// Find out where formulas for rays and surfaces fail: numerical stability at the extremes
 ///
@@ -221,7 +221,7 @@ fn keep(report: &Report, json: String, args: &Args, terminal: &Terminal) -> Exit
     ];
     for (name, picture) in report.pictures() {
         let name = format!("{name}.png");
-        match crate::image::encode(&picture, name.as_ref()) {
+        match toyproof_image::encode(&picture, name.as_ref()) {
             Ok(bytes) => files.push((name, bytes)),
             Err(error) => {
                 terminal.error(error);

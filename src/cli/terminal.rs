@@ -9,11 +9,9 @@ use std::time::Duration;
 
 use anstyle::{AnsiColor, Style};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-
-use crate::contain;
-use crate::diagnostic::{self, Diagnostic, Severity};
-use crate::output;
-use crate::source::Files;
+use toyproof_diagnostic::{self as diagnostic, Diagnostic, Files, Severity};
+use toyproof_image::output;
+use toyproof_verify::contain;
 
 /// How many warnings of one code a terminal is shown for one shader.
 const WARNINGS_SHOWN: usize = 3;

@@ -4,20 +4,21 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
+use toyproof_diagnostic::{Deadline, File, Files, path_name};
+use toyproof_gpu::{On, Worker};
+use toyproof_image as image;
+use toyproof_image::Frame;
+use toyproof_lab::trade::{self, ERRORS, Report, Subject};
+use toyproof_lint::Lints;
+use toyproof_scene::{Scene, export};
+use toyproof_verify::compare::{grouped, plural};
+
 use super::check::References;
 use super::inputs::{FrameArgs, LanguageArgs, deadline, on, worker};
 use super::render::load;
 use super::shader::{Shader, Unusable, find};
 use super::{Exit, Terminal, interrupt};
-use crate::compare::{grouped, plural};
-use crate::deadline::Deadline;
-use crate::export;
-use crate::frame::Frame;
-use crate::gpu::{On, Worker};
-use crate::image;
-use crate::scene::Scene;
-use crate::source::{self, File, Files, path_name};
-use crate::trade::{self, ERRORS, Report, Subject};
+use crate::cli::files;
 
 /// Measure what accuracy costs: every way to the picture of a scene, or of a shader, with its time and its error
 ///
@@ -73,7 +74,7 @@ fn measure(args: &Args, interrupted: &AtomicBool, terminal: &Terminal) -> Result
         Exit::Trouble
     };
     let frame = args.frame.frame().map_err(fail)?;
-    let is_shader = source::is_shader(&args.subject);
+    let is_shader = files::is_shader(&args.subject);
     let scene = (!is_shader).then(|| load(&args.subject, terminal).ok_or(Exit::Trouble));
     let scene = scene.transpose()?;
     let shader = if is_shader {
@@ -144,7 +145,7 @@ fn from_file(path: &Path, args: &Args, deadline: &Deadline, terminal: &Terminal)
 fn beside(path: &Path, scene: Option<&Scene>, args: &Args, deadline: &Deadline) -> Option<Shader> {
     let shader = path.with_extension("glsl");
     if shader.is_file() {
-        let found = source::find(&shader).inputs;
+        let found = files::find(&shader).inputs;
         return Some(Shader::load(found.first()?, &args.language, deadline.clone()));
     }
     let text = export::shader(scene?).ok()?;
@@ -152,16 +153,16 @@ fn beside(path: &Path, scene: Option<&Scene>, args: &Args, deadline: &Deadline) 
     let file = files.add(File::new("<exported>", text));
     Some(Shader {
         name: "<exported>".to_owned(),
-        checked: crate::glsl::check(&files, file, &args.language.options(deadline.clone()))
+        checked: toyproof_glsl::check(&files, file, &args.language.options(deadline.clone()))
             .map_err(Unusable::Invalid),
         files,
-        warnings: Vec::new(),
+        lints: Lints::default(),
     })
 }
 
 /// The scene beside a shader.
 fn of_shader(path: &Path) -> Option<Scene> {
-    let found = source::find(path).inputs;
+    let found = files::find(path).inputs;
     let found = found.first()?.as_ref().ok()?;
     References::new(None).find(found)?.scene.ok()
 }

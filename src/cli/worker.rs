@@ -3,8 +3,9 @@
 use std::io;
 use std::thread::{self, JoinHandle};
 
+use toyproof_gpu as gpu;
+
 use super::Exit;
-use crate::gpu;
 
 /// What Linux gives a main thread unless told otherwise.
 const STACK_BYTES: usize = 8 << 20;

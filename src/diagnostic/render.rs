@@ -3,11 +3,12 @@
 use std::fmt;
 
 use codespan_reporting::diagnostic::{Diagnostic as Report, Label, Severity as Level};
-use codespan_reporting::term::{self, termcolor::Buffer};
+use codespan_reporting::term::termcolor::Buffer;
+use codespan_reporting::term::{self};
 use serde::{Deserialize, Serialize};
 
 use super::{Diagnostic, Severity};
-use crate::source::Files;
+use crate::Files;
 
 /// The longest source line that is shown, in bytes; a longer one hides what it should show.
 const MAX_LINE: usize = 400;
@@ -124,7 +125,7 @@ pub fn json(diagnostic: &Diagnostic, files: &Files) -> Json {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::source::{File, Span};
+    use crate::{File, Span};
 
     fn example() -> (Diagnostic, Files) {
         let mut files = Files::default();

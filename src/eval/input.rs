@@ -1,11 +1,12 @@
 //! The frame's inputs as numbers.
 
+use toyproof_glsl::tree::Input;
+use toyproof_image::{FRAME_RATE, Frame, SAMPLE_RATE};
+
 use super::number::Number;
-use crate::frame::{FRAME_RATE, Frame, SAMPLE_RATE};
-use crate::glsl::tree::Input;
 
 /// One component of a float input.
-pub(super) fn float<N: Number>(frame: &Frame, input: Input, component: u8) -> N {
+pub(crate) fn float<N: Number>(frame: &Frame, input: Input, component: u8) -> N {
     let at = usize::from(component);
     let value = match input {
         Input::Resolution => [frame.size[0] as f32, frame.size[1] as f32, 1.0][at],
@@ -26,6 +27,6 @@ pub(super) fn float<N: Number>(frame: &Frame, input: Input, component: u8) -> N 
 }
 
 /// The one input that is an integer.
-pub(super) fn word(frame: &Frame) -> u32 {
+pub(crate) fn word(frame: &Frame) -> u32 {
     frame.frame.cast_unsigned()
 }

@@ -2,12 +2,13 @@
 
 use std::fmt::Debug;
 
+use toyproof_math::native::{self, flush};
+
 use super::program::Backend;
-use crate::elementary::native::{self, flush};
 
 macro_rules! functions {
     ($($method:ident: $double:path, $single:path;)*) => {
-        /// A number type: f32 with denormals flushed and the spelled functions of [`elementary`](crate::elementary), as strict
+        /// A number type: f32 with denormals flushed and the spelled functions of [`elementary`](toyproof_math), as strict
         /// shaders run; f64 with libm's functions; or f64 perturbed. What rounding needs to know beside the operands, `Noise`
         /// tells.
         pub trait Number: Backend + Copy + Debug + Default + PartialOrd + Send + Sync + 'static {

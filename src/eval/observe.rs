@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use super::batch::{LANES, Lanes};
-use crate::glsl::tree::Place;
+use toyproof_glsl::tree::Place;
+
+use crate::batch::{LANES, Lanes};
 
 /// Names a place where something may be noted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub(super) struct SiteId(pub(super) u32);
+pub(crate) struct SiteId(pub(crate) u32);
 
 /// What can be wrong with an operation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -107,7 +108,7 @@ pub struct Site {
 
 /// When it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) enum Predicate {
+pub(crate) enum Predicate {
     /// The index is this or more, or negative.
     From(u32),
     /// The word is zero.
@@ -144,14 +145,14 @@ pub(super) enum Predicate {
 
 /// What a batch noted: of each site, a bit for each pixel.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Notes {
-    pub(super) sites: BTreeMap<SiteId, Vec<u16>>,
+pub(crate) struct Notes {
+    pub(crate) sites: BTreeMap<SiteId, Vec<u16>>,
 }
 
 impl Notes {
     /// Adds the pixels of a chunk whose bits are set.
     #[cold]
-    pub(super) fn add(&mut self, site: SiteId, chunk: usize, hit: &Lanes<u32>) {
+    pub(crate) fn add(&mut self, site: SiteId, chunk: usize, hit: &Lanes<u32>) {
         let chunks = self.sites.entry(site).or_default();
         if chunks.len() <= chunk {
             chunks.resize(chunk + 1, 0);
@@ -209,6 +210,6 @@ impl Observations {
 }
 
 /// The pixel that comes first, row by row from the bottom.
-pub(super) fn earlier(a: [u32; 2], b: [u32; 2]) -> [u32; 2] {
+pub(crate) fn earlier(a: [u32; 2], b: [u32; 2]) -> [u32; 2] {
     if (b[1], b[0]) < (a[1], a[0]) { b } else { a }
 }

@@ -3,24 +3,25 @@
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
-use super::allocate::{Homes, allocate};
-use super::compile::{self, Choice, Extras, Refusal, compile, with_stack};
-use super::flatten::{Flat, flatten};
-use super::flow::Flow;
-use super::forward::forward;
-use super::fuse::fuse;
-use super::group::Groups;
+use toyproof_diagnostic::Deadline;
+use toyproof_glsl::Checked;
+use toyproof_glsl::tree::Place;
+use toyproof_image::Frame;
+
 use super::number::{Jittered, Number};
-use super::observe::Site;
-use super::paint::{Other, Variant};
-use super::prepare::Prepared;
-use super::prune::prune;
-use super::story::Plot;
-use super::uniform::Varying;
-use crate::deadline::Deadline;
-use crate::frame::Frame;
-use crate::glsl::Checked;
-use crate::glsl::tree::Place;
+use crate::build::{self, Choice, Extras, Refusal, compile, with_stack};
+use crate::ir::alias::Groups;
+use crate::ir::function::Flow;
+use crate::lower::isel::Prepared;
+use crate::lower::linearize::{Flat, flatten};
+use crate::lower::regalloc::{Homes, allocate};
+use crate::observe::Site;
+use crate::opt::dce::prune;
+use crate::opt::divergence::Varying;
+use crate::opt::fuse::fuse;
+use crate::opt::gvn::forward;
+use crate::render::{Other, Variant};
+use crate::trace::story::Plot;
 
 /// A shader, compiled for the CPU: for any number type, frame and size.
 #[derive(Debug)]
@@ -85,7 +86,7 @@ impl Program {
     }
 
     /// The code of a variant.
-    pub(super) fn code(&self, variant: Variant) -> Result<&Compiled, Refusal> {
+    pub(crate) fn code(&self, variant: Variant) -> Result<&Compiled, Refusal> {
         match variant {
             Variant::Observed => self.made(
                 &self.observing,
@@ -116,7 +117,7 @@ impl Program {
     }
 
     /// The code that tells what a pixel does.
-    pub(super) fn telling(&self) -> Result<&Compiled, Refusal> {
+    pub(crate) fn telling(&self) -> Result<&Compiled, Refusal> {
         let extras = Extras {
             story: true,
             ..Extras::default()
@@ -154,19 +155,19 @@ backends!(f32, f64, Jittered);
 /// Code for any number type.
 #[derive(Debug)]
 pub struct Compiled {
-    pub(super) flow: Flow,
-    pub(super) flat: Flat,
-    pub(super) homes: Homes,
+    pub(crate) flow: Flow,
+    pub(crate) flat: Flat,
+    pub(crate) homes: Homes,
     /// Whether stores to a cell leave alone the pixels that are elsewhere.
-    pub(super) shared: Vec<bool>,
-    pub(super) sites: Vec<Site>,
-    pub(super) plot: Plot,
+    pub(crate) shared: Vec<bool>,
+    pub(crate) sites: Vec<Site>,
+    pub(crate) plot: Plot,
 }
 
 impl Compiled {
     fn new(checked: &Checked, extras: Extras, deadline: &Deadline) -> Result<Self, Refusal> {
         with_stack(|| {
-            let compile::Program {
+            let build::Program {
                 mut flow,
                 sites,
                 plot,
@@ -183,7 +184,7 @@ impl Compiled {
             let flat = flatten(&flow, &varying, extras.story);
             deadline.check()?;
             let homes = allocate(&flow, &flat, &varying, &groups);
-            let cells = (0..flow.cells.len() as u32).map(super::flow::Cell);
+            let cells = (0..flow.cells.len() as u32).map(crate::ir::function::Cell);
             let shared = cells.map(|cell| varying.is_shared(cell)).collect();
             flow.body.clear();
             Ok(Self {
@@ -198,7 +199,7 @@ impl Compiled {
     }
 
     /// Where a loop stands.
-    pub(super) fn loop_at(&self, id: u32) -> Place {
+    pub(crate) fn loop_at(&self, id: u32) -> Place {
         self.flow.loops[id as usize]
     }
 }

@@ -1,16 +1,17 @@
 //! What a shader that means harm is made into, and that this takes no longer than the shader is long: each program here is so large that
 //! whatever looks at it again for each of its parts would take minutes, or more memory than there is.
 
-use super::compile::with_stack;
-use super::flatten::{Flat, Step, flatten};
-use super::flow::{Axis, Block, Cell, Flow, LoopId, NONE, Node, Origin, Scope, Value};
-use super::forward::forward;
-use super::group::Groups;
-use super::operation::{Kind, Operation};
-use super::prune::prune;
-use super::uniform::Varying;
-use crate::glsl::tree::Place;
-use crate::source::{File, Files, Span};
+use toyproof_diagnostic::{File, Files, Span};
+use toyproof_glsl::tree::Place;
+
+use crate::build::with_stack;
+use crate::ir::alias::Groups;
+use crate::ir::function::{Axis, Block, Cell, Flow, LoopId, NONE, Node, Origin, Scope, Value};
+use crate::ir::operation::{Kind, Operation};
+use crate::lower::linearize::{Flat, Step, flatten};
+use crate::opt::dce::prune;
+use crate::opt::divergence::Varying;
+use crate::opt::gvn::forward;
 
 /// A program of words that is being written, with a condition that varies.
 struct Draft {
@@ -315,7 +316,7 @@ fn compiling_ends_when_its_time_is_over() {
         "a",
         "void mainImage(out vec4 c, in vec2 p) { c = vec4(p, 0, 1); }",
     ));
-    let checked = crate::glsl::check(&files, file, &crate::glsl::Options::default()).unwrap();
+    let checked = toyproof_glsl::check(&files, file, &toyproof_glsl::Options::default()).unwrap();
     let late = super::Program::within(&checked, Duration::ZERO).map(drop);
     assert!(matches!(late, Err(super::Refusal::TooSlow(_))), "{late:?}");
     assert!(super::Program::within(&checked, Duration::from_secs(3600)).is_ok());

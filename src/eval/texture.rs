@@ -1,22 +1,23 @@
 //! A channel's texture: one level of texels, repeated in both directions.
 
+use toyproof_image::Image;
+
 use super::number::Number;
-use crate::image::Image;
 
 /// A picture that is read by its coordinates: row 0 is the bottom.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Texture<'a>(pub(super) &'a Image);
+pub(crate) struct Texture<'a>(pub(crate) &'a Image);
 
 impl Texture<'_> {
     /// One component of a texel; the nearest one where there is none, as naga holds it.
-    pub(super) fn fetched(self, place: [i32; 2], component: usize) -> f32 {
+    pub(crate) fn fetched(self, place: [i32; 2], component: usize) -> f32 {
         let size = self.0.size();
         let held = |axis: usize| (place[axis] as u32).min(size[axis] - 1);
         self.0.get(held(0), held(1))[component]
     }
 
     /// One component between four texels, weighed by how near they are: 1 in a coordinate is the whole texture.
-    pub(super) fn filtered<N: Number>(
+    pub(crate) fn filtered<N: Number>(
         self,
         at: [N; 2],
         offset: [i32; 2],

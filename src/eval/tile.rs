@@ -3,28 +3,28 @@
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 
-use super::allocate::Home;
-use super::batch::{Batch, COLUMNS, FUEL, Here, LANES, Lanes, Stop, Watch, lane_at, place};
-use super::handler::run;
 use super::number::Number;
-use super::observe::{MESA_CAP, Observations, Observed, Site, earlier};
-use super::paint::{Failure, Limits, Places, Settings};
-use super::painting::{DISCARDED, UNDEFINED};
-use super::prepare::Prepared;
 use super::program::Compiled;
-use super::story::{Lead, Scribe, Story};
 use super::texture::Texture;
+use crate::batch::{Batch, COLUMNS, FUEL, Here, LANES, Lanes, Stop, Watch, lane_at, place};
+use crate::framebuffer::{DISCARDED, UNDEFINED};
+use crate::lower::isel::Prepared;
+use crate::lower::regalloc::Home;
+use crate::observe::{MESA_CAP, Observations, Observed, Site, earlier};
+use crate::ops::run;
+use crate::render::{Failure, Limits, Places, Settings};
+use crate::trace::story::{Lead, Scribe, Story};
 
 /// Why a band was not painted.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum End {
+pub(crate) enum End {
     Late,
     Loop(Stop),
 }
 
 impl End {
     /// The same for those who wait for the picture.
-    pub(super) fn failure(self, compiled: &Compiled, limits: &Limits<'_>, rounds: u32) -> Failure {
+    pub(crate) fn failure(self, compiled: &Compiled, limits: &Limits<'_>, rounds: u32) -> Failure {
         match self {
             Self::Loop(stop) if stop.too_often => Failure::TooOften {
                 rounds,
@@ -44,7 +44,7 @@ const CHUNK_COLUMNS: usize = COLUMNS / 2;
 const CHUNK_ROWS: usize = LANES / CHUNK_COLUMNS;
 
 /// A frame that is being painted.
-pub(super) struct Job<'a, N: Number> {
+pub(crate) struct Job<'a, N: Number> {
     prepared: &'a Prepared<N>,
     textures: &'a [Option<Texture<'a>>; 4],
     limits: &'a Limits<'a>,
@@ -58,7 +58,7 @@ pub(super) struct Job<'a, N: Number> {
 }
 
 impl<'a, N: Number> Job<'a, N> {
-    pub(super) fn new(
+    pub(crate) fn new(
         compiled: &'a Compiled,
         prepared: &'a Prepared<N>,
         textures: &'a [Option<Texture<'a>>; 4],
@@ -81,16 +81,16 @@ impl<'a, N: Number> Job<'a, N> {
     }
 
     /// The same at places of the frame, not at all its pixels.
-    pub(super) fn at(self, places: Option<&'a Places>) -> Self {
+    pub(crate) fn at(self, places: Option<&'a Places>) -> Self {
         Self { places, ..self }
     }
 
     /// How many rows of pixels a tile has.
-    pub(super) fn rows(&self) -> usize {
+    pub(crate) fn rows(&self) -> usize {
         self.prepared.width * LANES / COLUMNS
     }
 
-    pub(super) fn batch(&self) -> Batch<'_, N> {
+    pub(crate) fn batch(&self) -> Batch<'_, N> {
         let prepared = self.prepared;
         let width = prepared.width;
         let mut here = vec![Here::default(); prepared.masks];
@@ -122,7 +122,7 @@ impl<'a, N: Number> Job<'a, N> {
     }
 
     /// Paints the row of tiles that begins at that row of the frame.
-    pub(super) fn band(
+    pub(crate) fn band(
         &self,
         batch: &mut Batch<'_, N>,
         first: u32,
@@ -157,7 +157,7 @@ impl<'a, N: Number> Job<'a, N> {
     }
 
     /// Runs the tile of a pixel, and takes down what that one does, led by another story.
-    pub(super) fn story(&self, pixel: [u32; 2], lead: Option<Lead<'_>>) -> Result<Story, End> {
+    pub(crate) fn story(&self, pixel: [u32; 2], lead: Option<Lead<'_>>) -> Result<Story, End> {
         let sides = [COLUMNS, self.rows()];
         let own = [0, 1].map(|axis| pixel[axis] as usize % sides[axis]);
         let corner = [0, 1].map(|axis| pixel[axis] - own[axis] as u32);

@@ -1,8 +1,8 @@
 //! The stable codes of the front end's diagnostics.
 
+use toyproof_diagnostic::{Diagnostic, Overdue};
+
 use super::tree::Place;
-use crate::deadline::Overdue;
-use crate::diagnostic::Diagnostic;
 
 macro_rules! codes {
     ($($variant:ident $code:literal $doc:literal,)*) => {
@@ -123,7 +123,7 @@ pub fn overdue(overdue: Overdue) -> Diagnostic {
 }
 
 /// How many errors of one file are told, and how many warnings; more would help nobody.
-pub(crate) const MAX_TOLD: usize = 50;
+pub const MAX_TOLD: usize = 50;
 
 /// Adds a diagnostic unless enough of its severity were told.
 pub(crate) fn tell(told: &mut Vec<Diagnostic>, diagnostic: Diagnostic) {
@@ -134,16 +134,18 @@ pub(crate) fn tell(told: &mut Vec<Diagnostic>, diagnostic: Diagnostic) {
 }
 
 /// What is said of the place where the characters stand that come out of a macro.
-pub(crate) const IN_MACRO: &str = "written in this macro";
+pub const IN_MACRO: &str = "written in this macro";
 
 impl Code {
     /// Whether `// toyproof: allow(…)` may silence it.
-    pub(crate) fn can_be_allowed(self) -> bool {
+    #[must_use]
+    pub fn can_be_allowed(self) -> bool {
         self.as_str().starts_with('W') && !matches!(self, Self::BadAllow | Self::UnusedAllow)
     }
 
     /// Whether it is told of what a shader does, rather than of its text.
-    pub(crate) fn is_of_runs(self) -> bool {
+    #[must_use]
+    pub fn is_of_runs(self) -> bool {
         self.as_str().starts_with("W06")
     }
 

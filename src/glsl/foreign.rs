@@ -175,8 +175,8 @@ fn rows() -> impl Iterator<Item = Foreign> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::glsl::tree::BuiltIn;
-    use crate::glsl::words::{Word, Words};
+    use crate::tree::BuiltIn;
+    use crate::words::{Word, Words};
 
     #[test]
     fn every_line_is_read_and_no_name_is_our_own() {

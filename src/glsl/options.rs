@@ -1,7 +1,8 @@
 //! What a check is told about the shader's surroundings.
 
+use toyproof_diagnostic::Deadline;
+
 use super::tree::SamplerShape;
-use crate::deadline::Deadline;
 
 /// How to judge a shader.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]

@@ -1,7 +1,6 @@
 //! Choosing and opening a Vulkan adapter, and what is worth knowing of each.
 
-use std::sync::Arc;
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 
 use serde::{Deserialize, Serialize};
 use wgpu::{Adapter, Backends, DeviceType, Features, Instance, InstanceDescriptor};

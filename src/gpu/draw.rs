@@ -5,16 +5,17 @@ use std::ops::Range;
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
+use toyproof_diagnostic::{File, Files};
+use toyproof_glsl::{self as glsl};
+use toyproof_image::{Frame, Image};
+use toyproof_translate::backend::spirv;
+use toyproof_translate::naga_ir::{Shape, ValidModule};
+use toyproof_translate::{FloatMode, Lowered};
 use wgpu::{BindGroup, Buffer, BufferUsages, PollType, RenderPipeline, Texture, TextureUsages};
 
 use super::device::{Device, LoopCap, PROBED_ITERATIONS};
 use super::pipeline::{FORMAT, Layout};
-use super::{Failure, FloatMode, On};
-use crate::frame::Frame;
-use crate::glsl::{self, Lowered};
-use crate::image::Image;
-use crate::module::{Shape, ValidModule};
-use crate::{emit, source};
+use super::{Failure, On};
 
 /// A picture that a shader painted.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -79,7 +80,7 @@ pub(super) struct Program {
 impl Program {
     /// naga's words for a module, held to its arithmetic if strict.
     pub(super) fn new(module: &ValidModule, float: FloatMode) -> Result<Self, Failure> {
-        let words = emit::spirv::words(module).map_err(Failure::Naga)?;
+        let words = spirv::words(module).map_err(Failure::Naga)?;
         Ok(Self {
             words: held_to(words, float),
             channels: module.channels(),
@@ -98,13 +99,13 @@ impl Program {
 
     /// As the bytes of a `.spv` file.
     pub(super) fn bytes(&self) -> Vec<u8> {
-        emit::spirv::bytes(&self.words)
+        spirv::bytes(&self.words)
     }
 }
 
 fn held_to(words: Vec<u32>, float: FloatMode) -> Vec<u32> {
     match float {
-        FloatMode::Strict => emit::spirv::strict(&words),
+        FloatMode::Strict => spirv::strict(&words),
         FloatMode::Fast => words,
     }
 }
@@ -174,9 +175,7 @@ impl Device {
     /// A program's words as this driver gets them: Mesa's compiler must not take what strict ones spell out for made of uniforms.
     fn run_words<'a>(&self, program: &'a Program) -> Cow<'a, [u32]> {
         match program.float {
-            FloatMode::Strict if self.is_lavapipe() => {
-                emit::spirv::with_opaque_numbers(&program.words).into()
-            }
+            FloatMode::Strict if self.is_lavapipe() => spirv::with_opaque_numbers(&program.words).into(),
             _ => (&program.words).into(),
         }
     }
@@ -403,10 +402,10 @@ const COUNT: &str = "void mainImage(out vec4 c, in vec2 p) {
 
 /// Measures whether the driver ends loops by force.
 pub(super) fn measure_cap(device: &Device) -> Result<LoopCap, Failure> {
-    let mut files = source::Files::default();
-    let file = files.add(source::File::new("<loop cap>", COUNT));
+    let mut files = Files::default();
+    let file = files.add(File::new("<loop cap>", COUNT));
     let checked = glsl::check(&files, file, &glsl::Options::default()).map_err(Failure::Invalid)?;
-    let lowered = glsl::lower(&checked);
+    let lowered = toyproof_translate::lower(&checked);
     let module = ValidModule::parse(&lowered).map_err(Failure::Refused)?;
     let program = Program::new(&module, FloatMode::Strict)?;
     let frame = Frame {

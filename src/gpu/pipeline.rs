@@ -2,15 +2,13 @@
 
 use std::num::NonZeroU64;
 
+use toyproof_image::{BLOCK_BYTES, Frame, Image};
+use toyproof_translate::naga_ir::Shape;
 use wgpu::{
     BindGroup, BindGroupLayout, BindGroupLayoutEntry, BindingType, Buffer, BufferUsages, Device, Extent3d,
     PipelineLayout, RenderPipeline, ShaderModule, ShaderStages, TextureFormat, TextureUsages, TextureView,
     TextureViewDimension,
 };
-
-use crate::frame::{BLOCK_BYTES, Frame};
-use crate::image::Image;
-use crate::module::Shape;
 
 /// The format of every target and texture: 32-bit floats, so that nothing is rounded on the way.
 pub(super) const FORMAT: TextureFormat = TextureFormat::Rgba32Float;

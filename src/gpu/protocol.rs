@@ -4,14 +4,13 @@ use std::io::{self, Read, Write};
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use toyproof_image::{Frame, Image};
+use toyproof_translate::backend::Target;
+use toyproof_translate::naga_ir::Shape;
+use toyproof_translate::wgsl::Hosted;
+use toyproof_translate::{FloatMode, Lowered};
 
-use super::{Drawn, Driver, Failure, FloatMode, On, Phase};
-use crate::emit::Target;
-use crate::frame::Frame;
-use crate::glsl::Lowered;
-use crate::glsl::wgsl::Hosted;
-use crate::image::Image;
-use crate::module::Shape;
+use super::{Drawn, Driver, Failure, On, Phase};
 
 /// What the parent asks for.
 #[derive(Debug, Serialize, Deserialize)]

@@ -6,14 +6,15 @@ use std::panic::{self, AssertUnwindSafe};
 use std::thread;
 use std::time::Instant;
 
+use toyproof_image::Frame;
+use toyproof_translate::backend::{Target, emit, spirv};
+use toyproof_translate::naga_ir::{Probe, Shape, ValidModule};
+use toyproof_translate::{FloatMode, Lowered};
+
 use super::device::{self, Device};
 use super::draw::{Program, Scene};
 use super::protocol::{Foreign, Job, Output, Reply, Shot, Written, receive, send};
-use super::{Failure, FloatMode, On, Phase, draw};
-use crate::emit::{self, Target};
-use crate::frame::Frame;
-use crate::glsl::Lowered;
-use crate::module::{Probe, Shape, ValidModule};
+use super::{Failure, On, Phase, draw};
 
 /// The most memory that a worker may map, in bytes.
 pub const MEMORY_BYTES: u64 = 6 << 30;
@@ -104,7 +105,7 @@ impl<W: Write> Server<W> {
             let module = ValidModule::parse(&lowered).map_err(Failure::Refused)?;
             match target {
                 Target::Spirv => Ok(Program::new(&module, float)?.bytes()),
-                _ => emit::emit(&module, target).map_err(Failure::Naga),
+                _ => emit(&module, target).map_err(Failure::Naga),
             }
         })
         .map(Output::Translated)
@@ -186,7 +187,7 @@ impl<W: Write> Server<W> {
                 }
                 Written::Lowered(lowered) => ValidModule::parse(&lowered).map_err(Failure::Refused)?,
                 Written::Words(words, channels) => {
-                    let words = emit::spirv::spelled(&words).map_err(Failure::Naga)?;
+                    let words = spirv::spelled(&words).map_err(Failure::Naga)?;
                     return Ok(Program::foreign(words, channels, FloatMode::Strict));
                 }
             };

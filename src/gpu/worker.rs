@@ -9,13 +9,13 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
+use toyproof_diagnostic::path_name;
+use toyproof_image::{Frame, Image};
+use toyproof_translate::backend::Target;
+use toyproof_translate::{FloatMode, Lowered};
+
 use super::protocol::{Foreign, Job, Output, Reply, Shot, Written, receive, send};
-use super::{Drawn, Driver, Failure, FloatMode, On, Phase, driver};
-use crate::emit::Target;
-use crate::frame::Frame;
-use crate::glsl::Lowered;
-use crate::image::Image;
-use crate::source::path_name;
+use super::{Drawn, Driver, Failure, On, Phase, driver};
 
 /// A worker process that is started when it is first needed, and anew after each that died.
 #[derive(Debug)]
@@ -214,7 +214,7 @@ impl Worker {
     }
 
     /// The picture that another compiler's SPIR-V paints: one entry point `main`, the frame's block and its two-dimensional channels at
-    /// the bindings that [`crate::emit`] tells of. For comparing compilers.
+    /// the bindings that [`toyproof_translate::backend`] tells of. For comparing compilers.
     ///
     /// # Errors
     /// Why there is none.

@@ -16,7 +16,8 @@ pub fn noise() -> Image {
 
 /// The PCG hash of Jarzynski and Olano, “Hash Functions for GPU Rendering”, JCGT 9(3), 2020.
 #[inline]
-pub(crate) fn pcg(input: u32) -> u32 {
+#[must_use]
+pub fn pcg(input: u32) -> u32 {
     let state = input.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
     let word = ((state >> ((state >> 28) + 4)) ^ state).wrapping_mul(277_803_737);
     (word >> 22) ^ word

@@ -1,8 +1,9 @@
 //! `report.csv`: a row for each shader, for spreadsheets (RFC 4180).
 
+use toyproof_diagnostic::Severity;
+use toyproof_verify::compare::Answer;
+
 use super::{Mark, Record, Rubric};
-use crate::compare::Answer;
-use crate::diagnostic::Severity;
 
 const COLUMNS: [&str; 21] = [
     "shader",

@@ -4,9 +4,9 @@ use std::io;
 
 use quick_xml::Writer;
 use quick_xml::events::BytesText;
+use toyproof_verify::compare::Verdict;
 
 use super::{Record, details};
-use crate::compare::Verdict;
 
 /// The file. What is wrong with a shader is a failure; what kept it from being judged an error; what cannot be told is skipped.
 #[must_use]

@@ -1,6 +1,7 @@
 //! What was found, for people and for programs: a file for each format, all of them functions of the records.
 
 mod csv;
+mod explain;
 mod gradescope;
 mod html;
 mod junit;
@@ -13,6 +14,7 @@ mod terminal;
 mod tests;
 
 pub use csv::csv;
+pub use explain::{Explanation, explain, explanations};
 pub use gradescope::gradescope;
 pub use html::{BUDGET, Exhibit, Gallery, every, html};
 pub use junit::junit;
@@ -21,5 +23,4 @@ pub use rubric::{Mark, Rubric, Visibility};
 pub use sarif::sarif;
 pub use story::{Story, Subject};
 pub use terminal::{Tally, line, place, summary};
-
 use terminal::{details, plain};

@@ -1,10 +1,9 @@
 //! The report as programs read it: `verdict.json`, and `--format json` on standard output.
 
 use serde::{Deserialize, Serialize};
-
-use crate::compare::{Answer, Comparison, Verdict};
-use crate::diagnostic;
-use crate::mistake::Named;
+use toyproof_diagnostic as diagnostic;
+use toyproof_verify::compare::{Answer, Comparison, Verdict};
+use toyproof_verify::mistake::Named;
 
 /// The JSON Schema of a [`Report`].
 pub const SCHEMA: &str = include_str!("verdict.schema.json");
@@ -166,10 +165,10 @@ mod tests {
     fn reports_follow_the_schema_and_other_things_do_not() {
         let schema = serde_json::from_str(SCHEMA).unwrap();
         let validator = jsonschema::validator_for(&schema).unwrap();
-        let black = crate::image::Image::new(1, 1, vec![[0.0; 4]]);
-        let white = crate::image::Image::new(1, 1, vec![[1.0; 4]]);
-        let (comparison, _) = crate::compare::compare(&black, &white);
-        let answer = Answer::new(&black, &white, &[crate::compare::Standing::Differs]);
+        let black = toyproof_image::Image::new(1, 1, vec![[0.0; 4]]);
+        let white = toyproof_image::Image::new(1, 1, vec![[1.0; 4]]);
+        let (comparison, _) = toyproof_verify::compare::compare(&black, &white);
+        let answer = Answer::new(&black, &white, &[toyproof_verify::compare::Standing::Differs]);
         let asked = Record {
             maths: Some(answer.clone()),
             rounding: Some(answer.clone()),

@@ -4,11 +4,11 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
+use toyproof_diagnostic::{Diagnostic, FileId, Files, Span};
+use toyproof_scene::of_toml;
+use toyproof_verify::compare::{Answer, MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABLE, Verdict};
 
 use super::{Record, details, terminal};
-use crate::compare::{Answer, MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABLE, Verdict};
-use crate::diagnostic::{self, Diagnostic};
-use crate::source::{FileId, Files, Span};
 
 /// The most points of a question.
 const MAX_POINTS: f64 = 1e6;
@@ -90,7 +90,7 @@ impl Rubric {
     /// that is out of range.
     pub fn parse(files: &Files, file: FileId) -> Result<Self, Vec<Diagnostic>> {
         let document: Document = toml::from_str(files.get(file).text())
-            .map_err(|error| vec![diagnostic::of_toml("E0503", &error, files, file)])?;
+            .map_err(|error| vec![of_toml("E0503", &error, files, file)])?;
         let mut refused = Vec::new();
         let mut checks = Checks {
             file,
@@ -271,10 +271,10 @@ fn rounding(question: Question, record: &Record) -> Mark {
 
 #[cfg(test)]
 mod tests {
+    use toyproof_diagnostic::{File, short};
+
     use super::*;
-    use crate::diagnostic::short;
     use crate::report::tests::{correct, invalid, question, record};
-    use crate::source::File;
 
     fn read(text: &str) -> Result<Rubric, Vec<String>> {
         let mut files = Files::default();

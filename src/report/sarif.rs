@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use serde_json::{Value, json};
+use toyproof_diagnostic as diagnostic;
+use toyproof_verify::compare::Verdict;
 
 use super::{Record, terminal};
-use crate::compare::Verdict;
-use crate::diagnostic;
 
 /// What stands for itself in a path: letters, digits, and what RFC 3986 reserves for nothing.
 const PATH: &AsciiSet = &NON_ALPHANUMERIC
@@ -108,7 +108,7 @@ fn rule(id: &str, title: &str, help: &str) -> Value {
 }
 
 fn of_diagnostic(record: &Record, told: &diagnostic::Json, rules: &mut Rules) -> Value {
-    let index = rules.place(&told.code, || match diagnostic::explain(&told.code) {
+    let index = rules.place(&told.code, || match super::explain(&told.code) {
         Some(explanation) => rule(&told.code, explanation.title, explanation.text),
         None => json!({ "id": told.code }),
     });

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use anstyle::{AnsiColor, Style};
+use toyproof_diagnostic::Json;
+use toyproof_verify::compare::{Answer, Comparison, Pixel, Verdict, grouped, magnitude, plural};
 
 use super::Record;
-use crate::compare::{Answer, Comparison, Pixel, Verdict, grouped, magnitude, plural};
-use crate::diagnostic::Json;
 
 /// One shader: verdict, name, reason, and a line for each question whose answer is worth reading.
 #[must_use]

@@ -1,9 +1,9 @@
 //! Records to try the formats with.
 
+use toyproof_diagnostic::{self as diagnostic, File, Files, Severity};
+use toyproof_verify::compare::{Answer, Verdict};
+
 use super::*;
-use crate::compare::{Answer, Verdict};
-use crate::diagnostic::{self, Severity};
-use crate::source::{File, Files};
 
 /// A record of that verdict, which is its name too, with nothing asked.
 pub(super) fn record(verdict: Verdict) -> Record {

@@ -1,7 +1,8 @@
 //! The same scene with its numbers moved a little: what changes then, no shader can be held to.
 
+use toyproof_image::pcg;
+
 use super::{Camera, Checker, Light, Model, Object, Outline, Point, Projection, QuadricKind, Scene, Shape};
-use crate::image::pcg;
 
 /// Lengths of a scene are moved by a share of themselves, or of this if that is larger, or of the scene's size if that is smaller
 /// than this: what is 0 as written is a computed number in a shader.
@@ -172,8 +173,9 @@ impl Random {
 
 #[cfg(test)]
 mod tests {
+    use toyproof_diagnostic::{File, Files};
+
     use super::super::parse;
-    use crate::source::{File, Files};
 
     #[test]
     fn all_lengths_move_by_their_share_and_what_shines_stays_with_its_light() {

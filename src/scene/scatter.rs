@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
+use toyproof_image::pcg;
+
 use super::{Material, Object, Point, Shape};
-use crate::image::pcg;
 
 /// A grid of cubic cells with one sphere in each, wholly inside of it.
 #[derive(Debug, Clone, Copy, PartialEq)]

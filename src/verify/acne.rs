@@ -2,12 +2,12 @@
 //! of digits; but no number of digits helps, and it is a mistake.
 
 use rayon::prelude::*;
+use toyproof_scene::Sampler;
+use toyproof_tracer::{RayStyles, Tracer};
 
 use super::Asked;
 use crate::compare::{Answer, MAX_UNSTABLE, Standing, grouped};
 use crate::mistake::Named;
-use crate::scene::Sampler;
-use crate::trace::{RayStyles, Tracer};
 
 /// So many pixels are looked at.
 const ASKED: usize = 64;

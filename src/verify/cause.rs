@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
+use toyproof_diagnostic::{Diagnostic, Span};
+use toyproof_eval::{Program, Told, What};
+use toyproof_glsl::Code;
+use toyproof_image::Image;
+
 use super::{Asked, Case};
 use crate::compare::{Standing, grouped};
-use crate::diagnostic::Diagnostic;
-use crate::eval::{Program, Told, What};
 use crate::explain::{Explanation, digits, explain};
-use crate::glsl::Code;
-use crate::image::Image;
-use crate::source::Span;
 
 /// So many of the pixels that differ are asked for their cause.
 const ASKED: usize = 5;

@@ -9,16 +9,17 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use rayon::ThreadPool;
+use toyproof_eval::{self as eval, Observed, Program};
+use toyproof_glsl::Checked;
+use toyproof_glsl::tree::SamplerShape;
+use toyproof_gpu::{self as gpu, Worker, Written};
+use toyproof_image::{self as image, Frame, Image};
+use toyproof_lint::Lints;
+use toyproof_translate::FloatMode;
 
 use super::cpu::{Evaluator, Single};
 use super::{ALL, Case, Failure, PATIENCE, join, within};
 use crate::compare::{self, Answer};
-use crate::eval::{self, Observed, Program};
-use crate::frame::Frame;
-use crate::glsl::Checked;
-use crate::glsl::tree::SamplerShape;
-use crate::gpu::{self, FloatMode, Worker, Written};
-use crate::image::{self, Image};
 
 /// What came of running a converted shader.
 #[derive(Debug, Clone)]
@@ -242,6 +243,7 @@ fn evaluate(
     let single = |frame: &Frame| {
         let case = Case {
             checked,
+            lints: &Lints::default(),
             expected: None,
             suspects: None,
             frame,

@@ -5,12 +5,13 @@ use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-use super::{Case, PATIENCE};
-use crate::eval::{
+use toyproof_eval::{
     Failure, Fault, Jittered, Number, Observations, Observed, Other, Pictured, Program, Seed, Settings,
     Variant,
 };
-use crate::image::Image;
+use toyproof_image::Image;
+
+use super::{Case, PATIENCE};
 
 /// Paints a shader, one band of rows after the other.
 pub(super) struct Evaluator<'a> {

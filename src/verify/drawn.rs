@@ -8,6 +8,10 @@ use std::ops::Range;
 use std::time::Instant;
 
 use rayon::prelude::*;
+use toyproof_eval::Program;
+use toyproof_image::Image;
+use toyproof_scene::Sampler;
+use toyproof_tracer::{REDRAWN_ROWS, Tracer};
 
 use super::cause::some;
 use super::replicates::{self, Compared, Unfit};
@@ -17,11 +21,7 @@ use crate::compare::{
     Answer, Answers, DrawnPixel, EXACT_TOLERANCE, Means, RARE_EVENTS, REPLICATES, Replicated, Standing,
     Verdict, differing, follows_scene, grouped, judge, means,
 };
-use crate::eval::Program;
-use crate::image::Image;
 use crate::mistake::Named;
-use crate::scene::Sampler;
-use crate::trace::{REDRAWN_ROWS, Tracer};
 
 /// So many of the pixels that differ are drawn anew.
 const ASKED: usize = 256;

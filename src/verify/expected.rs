@@ -6,11 +6,11 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
+use toyproof_image::{Frame, Image};
+use toyproof_scene::{Moment, Scene};
+use toyproof_tracer::{Hull, RayStyles, StyleFamily, Styles, Tracer};
+
 use crate::compare::{EXACT_TOLERANCE, SEEN};
-use crate::frame::Frame;
-use crate::image::Image;
-use crate::scene::{Moment, Scene};
-use crate::trace::{Hull, RayStyles, StyleFamily, Styles, Tracer};
 
 /// Of pictures of more pixels nothing is kept, for they are many times this: one of 1920×1080 takes 32 MB.
 const MOST_PIXELS: u32 = 1 << 21;
@@ -180,9 +180,10 @@ impl Expected {
 
 #[cfg(test)]
 mod tests {
+    use toyproof_diagnostic::{File, Files};
+    use toyproof_scene as scene;
+
     use super::*;
-    use crate::scene;
-    use crate::source::{File, Files};
 
     fn expected(size: [u32; 2]) -> Expected {
         let mut files = Files::default();

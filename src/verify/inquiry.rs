@@ -8,21 +8,20 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
+use toyproof_eval::{self as eval, Observations, Program};
+use toyproof_image::{Image, Shown};
+use toyproof_scene::Scene;
+use toyproof_tracer::{Hull, RayStyles, StyleFamily, Styles};
+use toyproof_translate::FloatMode;
 
-use super::acne;
 use super::cause::{self, NotFinite};
 use super::cpu::{Band, Evaluator};
 use super::drawn::{Found, Painted};
 use super::expected::Digits;
 use super::tangent::{self, Trap};
-use super::{Asked, Case, Expected, Failure, Findings, PAIRS, Painter, join, notes, timed};
-use crate::compare::{self, Answers, Comparison, MAX_UNSTABLE, Mixed, Reference, Standing, Verdict};
+use super::{Asked, Case, Expected, Failure, Findings, PAIRS, Painter, acne, join, notes, timed};
+use crate::compare::{self, Answers, Comparison, MAX_UNSTABLE, Mark, Mixed, Reference, Standing, Verdict};
 use crate::contain::{Panic, Part, contain};
-use crate::eval::{self, Observations, Program};
-use crate::gpu::FloatMode;
-use crate::image::{Image, Mark, Shown};
-use crate::scene::Scene;
-use crate::trace::{Hull, RayStyles, StyleFamily, Styles};
 
 /// Told after each band.
 #[derive(Debug, Clone, Copy)]
@@ -70,7 +69,7 @@ impl<'a> Inquiry<'a> {
         let empty = || Shown::empty(width, height);
         let traps = case
             .expected
-            .filter(|_| !case.checked.discriminants.is_empty())
+            .filter(|_| !case.lints.discriminants.is_empty())
             .map(|expected| {
                 let scene = expected.stilled();
                 let suspected = tangent::suspected(&scene);
@@ -260,12 +259,12 @@ impl<'a> Inquiry<'a> {
                 findings.rounding = Some(self.rounding);
                 findings.toolchain = self.toolchain;
                 let (case, program) = (self.case, evaluator.program());
-                findings.notes = notes::notes(&self.noted, self.leaves_out, &case.checked.warnings);
+                findings.notes = notes::notes(&self.noted, self.leaves_out, &case.lints.warnings);
                 let (not_finite, traps, actual) = (self.not_finite, self.traps, &findings.actual);
                 let notes = contain(Part::Notes, || {
                     let mut notes: Vec<_> = not_finite.told(program, case, self.until).into_iter().collect();
                     if let (Some((scene, traps, double)), Some(&at)) =
-                        (traps, case.checked.discriminants.first())
+                        (traps, case.lints.discriminants.first())
                     {
                         let traps = tangent::shown(traps, &scene, actual, &double);
                         notes.extend(tangent::told(&traps, at));
@@ -275,7 +274,7 @@ impl<'a> Inquiry<'a> {
                 let notes = findings.contained(notes);
                 findings.notes.extend(notes);
                 findings.judge(case, program, self.until, self.painted.as_ref());
-                findings.notes.retain(|note| !case.checked.allows(note));
+                findings.notes.retain(|note| !case.lints.allows(note));
             }
         }
         findings
@@ -381,7 +380,8 @@ impl Findings {
                 let _ = write!(self.reason, "; they are what a tracer paints that {}", named.says);
             }
         }
-        self.notes.extend(notes::unbound(case.checked, case.frame));
+        self.notes
+            .extend(notes::unbound(case.checked, case.lints, case.frame));
         if let (Verdict::Wrong, None, Some(colour)) = (self.verdict, &self.mistake, self.actual.only_colour())
         {
             let [r, g, b] = colour;
@@ -401,7 +401,7 @@ impl Findings {
             let cause = self.contained(cause);
             self.cause = cause.as_ref().and_then(|cause| cause.span);
             let is_foreseen = case
-                .checked
+                .lints
                 .warnings
                 .iter()
                 .any(|warning| warning.span == self.cause);

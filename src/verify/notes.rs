@@ -2,12 +2,14 @@
 
 use std::time::Duration;
 
+use toyproof_diagnostic::{Diagnostic, Severity};
+use toyproof_eval::{Fault, MESA_CAP, Observations, Observed};
+use toyproof_glsl::tree::{ExprKind, Input, SamplerShape, VariableKind};
+use toyproof_glsl::{Checked, Code};
+use toyproof_image::Frame;
+use toyproof_lint::Lints;
+
 use crate::compare::{grouped, plural};
-use crate::diagnostic::{Diagnostic, Severity};
-use crate::eval::{Fault, MESA_CAP, Observations, Observed};
-use crate::frame::Frame;
-use crate::glsl::tree::{ExprKind, Input, SamplerShape, VariableKind};
-use crate::glsl::{Checked, Code};
 
 /// What was seen, but for what was foreseen: `warned` before the run. Pixels may be left out because of it.
 pub(super) fn notes(noted: &Observations, leaves_out: bool, warned: &[Diagnostic]) -> Vec<Diagnostic> {
@@ -45,7 +47,7 @@ pub(super) fn notes(noted: &Observations, leaves_out: bool, warned: &[Diagnostic
 
 /// The channels that a shader names and a frame has no picture for, each where it is named first.
 #[must_use]
-pub fn unbound(checked: &Checked, frame: &Frame) -> Vec<Diagnostic> {
+pub fn unbound(checked: &Checked, lints: &Lints, frame: &Frame) -> Vec<Diagnostic> {
     let mut named = [None; 4];
     for (_, expr) in checked.tree.exprs.iter() {
         if let ExprKind::Variable(variable) = expr.kind
@@ -69,7 +71,7 @@ pub fn unbound(checked: &Checked, frame: &Frame) -> Vec<Diagnostic> {
         let diagnostic = Diagnostic::warning(Code::UnboundChannel.as_str(), message);
         Some(diagnostic.at(span).note(note))
     });
-    told.filter(|note| !checked.allows(note)).collect()
+    told.filter(|note| !lints.allows(note)).collect()
 }
 
 /// Why no GPU ran the shader.

@@ -3,16 +3,16 @@
 use std::time::Instant;
 
 use rayon::prelude::*;
+use toyproof_eval::{Places, Program, Settings, Variant};
+use toyproof_image::Image;
+use toyproof_tracer::Tracer;
 
 use super::reseed::{Reseeding, is_without_chance};
 use super::{Asked, Case};
 use crate::compare::{
     EXACT_TOLERANCE, MAX_DIFFERING, REPLICATES, Replicated, ReplicatedPixel, Standing, replicated,
 };
-use crate::eval::{Places, Program, Settings, Variant};
-use crate::image::Image;
 use crate::mistake::NoisyPixel;
-use crate::trace::Tracer;
 
 /// So many further pictures say what each pixel counts, so that what is compared has no part in it.
 const WEIGHING: usize = 4;

@@ -8,10 +8,10 @@
 
 use std::collections::HashSet;
 
-use crate::glsl::Checked;
-use crate::glsl::lower::walk;
-use crate::glsl::tree::{
+use toyproof_glsl::Checked;
+use toyproof_glsl::tree::{
     BinaryOp, BuiltIn, Constructor, Expr, ExprId, ExprKind, FunctionId, Literal, Scalar, Tree, Type, Value,
+    walk,
 };
 
 /// Integers from this on are constants of hashes.
@@ -282,11 +282,12 @@ fn has_components(tree: &Tree, id: ExprId, is_such: impl Fn(&Value) -> bool) -> 
 
 #[cfg(test)]
 mod tests {
+    use toyproof_diagnostic::{File, Files};
+    use toyproof_eval::{Program, Settings};
+    use toyproof_glsl as glsl;
+    use toyproof_image::Frame;
+
     use super::*;
-    use crate::eval::{Program, Settings};
-    use crate::frame::Frame;
-    use crate::glsl;
-    use crate::source::{File, Files};
 
     fn picture(checked: &Checked) -> Vec<f64> {
         let frame = Frame {
@@ -332,7 +333,7 @@ mod tests {
                 let salted = Reseeding::all()[0].of(&checked, salt);
                 let program = Program::new(&salted).unwrap();
                 let [x, y] = Reseeding::shift(salt);
-                let places = crate::eval::Places {
+                let places = toyproof_eval::Places {
                     columns: (0..32).map(|at| f64::from(at) + 0.5 + x).collect(),
                     rows: (0..32).map(|at| f64::from(at) + 0.5 + y).collect(),
                 };

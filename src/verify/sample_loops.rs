@@ -1,6 +1,6 @@
 //! How many samples a shader takes in each pixel, as far as its loops say.
 
-use crate::glsl::tree::{
+use toyproof_glsl::tree::{
     BinaryOp, Block, Condition, ExprId, ExprKind, StatementKind, StepOp, Tree, Value, VariableId,
 };
 
@@ -120,9 +120,10 @@ fn number(tree: &Tree, expr: ExprId) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
+    use toyproof_diagnostic::{File, Files};
+    use toyproof_glsl as glsl;
+
     use super::*;
-    use crate::glsl;
-    use crate::source::{File, Files};
 
     fn told(loops: &str, samples: u32, ratio: f64) -> Option<u32> {
         let text = format!(

@@ -4,12 +4,10 @@
 //! L², whatever is left of it. Where the rest is smaller than the error, on both sides of the edge, rays hit or miss by chance.
 
 use glam::DVec3;
-
-use crate::diagnostic::Diagnostic;
-use crate::glsl::Code;
-use crate::image::Shown;
-use crate::scene::{Projection, Scene, Shape};
-use crate::source::Span;
+use toyproof_diagnostic::{Diagnostic, Span};
+use toyproof_glsl::Code;
+use toyproof_image::Shown;
+use toyproof_scene::{Projection, Scene, Shape};
 
 /// Half of an f32's unit in the last place, relative.
 const U: f64 = 1.0 / 16_777_216.0;
@@ -171,20 +169,21 @@ impl View {
 
 #[cfg(test)]
 mod tests {
+    use toyproof_diagnostic::{Deadline, File, Files};
+    use toyproof_eval::{Number, Program, Settings};
+    use toyproof_glsl::{Checked, Options, check};
+    use toyproof_image::{Frame, Image};
+    use toyproof_lint::lint;
+    use toyproof_scene as scene;
+
     use super::*;
-    use crate::eval::{Number, Program, Settings};
-    use crate::frame::Frame;
-    use crate::glsl::{Checked, Options, check};
-    use crate::image::Image;
-    use crate::scene;
-    use crate::source::{File, Files};
 
     const SIZE: [u32; 2] = [320, 180];
     const TEXTBOOK: &str = "float k = dot(f, f) - 1.0; float disc = b * b - k;";
     const RECENTRED: &str = "vec3 h = f - b * d; float disc = 1.0 - dot(h, h);";
 
     /// A shader of white where rays meet the sphere of radius 1 around (0.1, 0.05, −distance), and its scene.
-    fn case(discriminant: &str, distance: f64, camera: &str, ray: &str) -> (Checked, Scene) {
+    fn case(discriminant: &str, distance: f64, camera: &str, ray: &str) -> (Checked, Vec<Span>, Scene) {
         let mut files = Files::default();
         let shader = format!(
             "void mainImage(out vec4 c, in vec2 p) {{
@@ -204,7 +203,9 @@ mod tests {
         let scene = files.add(File::new("a.toml", scene));
         let mut scene = scene::parse(&files, scene).unwrap();
         scene.film.size = SIZE;
-        (check(&files, shader, &Options::default()).unwrap(), scene)
+        let checked = check(&files, shader, &Options::default()).unwrap();
+        let lints = lint(&files, &checked, &Deadline::default());
+        (checked, lints.discriminants, scene)
     }
 
     fn paint<N: Number>(checked: &Checked) -> Image {
@@ -264,8 +265,8 @@ mod tests {
                     "vec3 o = vec3(s * 2.5, 0.0), d = vec3(0.0, 0.0, -1.0);".to_owned(),
                 )
             };
-            let (checked, scene) = case(TEXTBOOK, distance, &camera, &ray);
-            assert_eq!(checked.discriminants.len(), 1);
+            let (checked, discriminants, scene) = case(TEXTBOOK, distance, &camera, &ray);
+            assert_eq!(discriminants.len(), 1);
             let (single, double) = (paint::<f32>(&checked), paint::<f64>(&checked));
             let trap = View::new(&scene).trap(DVec3::new(0.1, 0.05, -distance), 1.0);
             let trap = trap.unwrap();
@@ -284,8 +285,8 @@ mod tests {
                 "{distance} {trap:?} {seen}"
             );
 
-            let (checked, _) = case(RECENTRED, distance, &camera, &ray);
-            assert!(checked.discriminants.is_empty());
+            let (checked, discriminants, _) = case(RECENTRED, distance, &camera, &ray);
+            assert!(discriminants.is_empty());
             assert_eq!(paint::<f32>(&checked), paint::<f64>(&checked), "{distance}");
         }
     }
@@ -294,13 +295,10 @@ mod tests {
     fn what_the_picture_does_not_show_is_not_told() {
         let camera = "screen_distance = 400.0";
         let ray = "vec3 o = vec3(0.0), d = normalize(vec3(s, -400.0));";
-        let (checked, scene) = case(TEXTBOOK, 1_000.0, camera, ray);
+        let (checked, discriminants, scene) = case(TEXTBOOK, 1_000.0, camera, ray);
         let single = paint::<f32>(&checked);
         assert!(traps(&scene, &single, &single).is_empty());
-        let told = told(
-            &traps(&scene, &single, &paint::<f64>(&checked)),
-            checked.discriminants[0],
-        );
+        let told = told(&traps(&scene, &single, &paint::<f64>(&checked)), discriminants[0]);
         assert_eq!(
             told.unwrap().message,
             "this discriminant loses the edge of the sphere at (0.1, 0.05, -1000) with radius 1: \

@@ -5,8 +5,9 @@ use std::fs;
 use std::path::Path;
 use std::time::Instant;
 
-use crate::program::{Run, command, has_driver, run, toyproof};
 use tempfile::TempDir;
+
+use crate::program::{Run, command, has_driver, run, toyproof};
 
 const MAIN: &str = "void mainImage(out vec4 c, in vec2 p)";
 /// On lavapipe; a large array in registers.

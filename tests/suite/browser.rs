@@ -10,15 +10,15 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use std::{env, fs};
 
-use toyproof::browser::{Chromium, Failure, Text, as_shadertoy, find};
-use toyproof::deadline::Deadline;
-use toyproof::emit::{Target, emit};
-use toyproof::frame::Frame;
-use toyproof::glsl::wgsl::{Style, wgsl};
-use toyproof::glsl::{Options, check, lower};
-use toyproof::gpu::{FloatMode, Worker};
-use toyproof::module::ValidModule;
-use toyproof::source::{File, Files};
+use toyproof::diagnostic::{Deadline, File, Files};
+use toyproof::glsl::{Options, check};
+use toyproof::gpu::Worker;
+use toyproof::gpu::browser::{Chromium, Failure, Text, as_shadertoy, find};
+use toyproof::image::Frame;
+use toyproof::translate::backend::{Target, emit};
+use toyproof::translate::naga_ir::ValidModule;
+use toyproof::translate::wgsl::{Style, wgsl};
+use toyproof::translate::{FloatMode, lower};
 
 use crate::page::devtools::Page;
 use crate::support::{RUNGS, setting, swiftshader};

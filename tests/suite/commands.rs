@@ -4,8 +4,9 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use crate::program::{command, has_driver, run, toyproof};
 use serde_json::Value;
+
+use crate::program::{command, has_driver, run, toyproof};
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -565,7 +566,7 @@ fn every_command_of_the_readme_works() {
             .iter()
             .any(|name| line.starts_with(&format!("toyproof {name}")));
         let needs_browser = line.contains("--browser");
-        if (needs_driver && !driver) || (needs_browser && toyproof::browser::find().is_none()) {
+        if (needs_driver && !driver) || (needs_browser && toyproof::gpu::browser::find().is_none()) {
             eprintln!("skipped, for want of a driver or a browser: {line}");
             continue;
         }

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use serde_json::Value;
-use toyproof::contain::{INJECTION, Part};
+use toyproof::verify::contain::{INJECTION, Part};
 
 use crate::program::{Run, command, output};
 use crate::support::SPHERE;

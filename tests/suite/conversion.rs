@@ -1,19 +1,18 @@
 //! Conversions and their proofs: what is right is proved, in every style, and what is wrong is not.
 
-use std::env;
-use std::fs;
 use std::path::Path;
 use std::process::Command;
 use std::time::Duration;
+use std::{env, fs};
 
 use ::spirv::Op;
-use toyproof::deadline::Deadline;
-use toyproof::emit::{Target, emit, reread, spirv};
-use toyproof::glsl::wgsl::{Style, wgsl};
-use toyproof::glsl::{Checked, Options, check, lower};
+use toyproof::diagnostic::{Deadline, File, Files};
+use toyproof::glsl::{Checked, Options, check};
 use toyproof::gpu::{Worker, Written};
-use toyproof::module::{Shape, ValidModule};
-use toyproof::source::{File, Files};
+use toyproof::translate::backend::{Target, emit, reread, spirv};
+use toyproof::translate::lower;
+use toyproof::translate::naga_ir::{Shape, ValidModule};
+use toyproof::translate::wgsl::{Style, wgsl};
 use toyproof::verify::Failure;
 use toyproof::verify::conversion::{Proof, frames, prove};
 
@@ -563,7 +562,7 @@ fn a_file_is_written_while_others_are_still_at_work() {
 
 #[test]
 fn a_browser_is_asked_where_it_is_wanted_and_leaves_nothing_behind() {
-    if worker().is_none() || toyproof::browser::find().is_none() {
+    if worker().is_none() || toyproof::gpu::browser::find().is_none() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();

@@ -1,6 +1,6 @@
 //! Normals by derivatives are exact on planes, and anything where a quad sees two things.
 
-use toyproof::compare::Verdict;
+use toyproof::verify::compare::Verdict;
 
 use crate::support::{Edit, Rung, STILL, edit, judged, maths, numbers, worker};
 

@@ -5,17 +5,17 @@ use std::fs;
 use std::path::Path;
 use std::time::Duration;
 
+use toyproof::diagnostic::{Deadline, Diagnostic, File, Files, human};
+use toyproof::glsl::{self, Checked, Code};
+use toyproof::image::{Frame, noise};
+use toyproof::lint::lint;
+use toyproof::report::{Explanation, Rubric, explanations};
+use toyproof::scene::{self, Scene};
+use toyproof::translate::FloatMode;
+use toyproof::verify::{Case, Expected, verify};
+
 use crate::architecture::sources;
 use crate::program::toyproof;
-use toyproof::diagnostic::{self, Diagnostic, Explanation, explanations};
-use toyproof::frame::Frame;
-use toyproof::glsl::{self, Checked, Code};
-use toyproof::gpu::FloatMode;
-use toyproof::image::noise;
-use toyproof::report::Rubric;
-use toyproof::scene::{self, Scene};
-use toyproof::source::{File, Files};
-use toyproof::verify::{Case, Expected, verify};
 
 /// Codes that no text of an example can give: what hangs on time, bytes that are no text, and what toyproof itself gets wrong.
 const WITHOUT_EXAMPLE: [&str; 7] = ["E0410", "E0411", "E0500", "E0900", "E0901", "W0017", "W0606"];
@@ -74,7 +74,7 @@ fn told(example: &Example, scene: Option<&Scene>) -> (Vec<Diagnostic>, Files) {
             let file = files.add(File::new("example.glsl", format!("{}{rest}", example.text)));
             let checked = glsl::check(&files, file, &glsl::Options::default());
             (
-                checked.map_or_else(|told| told, |checked| seen(&checked, scene)),
+                checked.map_or_else(|told| told, |checked| seen(&files, &checked, scene)),
                 files,
             )
         }
@@ -91,7 +91,7 @@ fn told(example: &Example, scene: Option<&Scene>) -> (Vec<Diagnostic>, Files) {
 }
 
 /// The warnings about a shader, and those about its run.
-fn seen(checked: &Checked, scene: Option<&Scene>) -> Vec<Diagnostic> {
+fn seen(files: &Files, checked: &Checked, scene: Option<&Scene>) -> Vec<Diagnostic> {
     let frame = Frame {
         size: scene.map_or([16, 9], |scene| scene.film.size),
         // The fourth channel stays without a picture.
@@ -99,8 +99,10 @@ fn seen(checked: &Checked, scene: Option<&Scene>) -> Vec<Diagnostic> {
         ..Frame::default()
     };
     let expected = scene.map(|scene| Expected::new(scene.clone(), &frame));
+    let lints = lint(files, checked, &Deadline::default());
     let case = Case {
         checked,
+        lints: &lints,
         expected: expected.as_ref(),
         suspects: None,
         frame: &frame,
@@ -108,7 +110,7 @@ fn seen(checked: &Checked, scene: Option<&Scene>) -> Vec<Diagnostic> {
         timeout: Duration::from_secs(60),
         pool: None,
     };
-    let mut all = checked.warnings.clone();
+    let mut all = lints.warnings.clone();
     // Of one that never ends there is no run to tell of.
     all.extend(
         verify(None, &case)
@@ -139,7 +141,7 @@ fn every_code_has_its_section_and_every_section_its_code() {
         .collect();
     assert_eq!(spelled, explained);
     for &code in Code::ALL {
-        let title = diagnostic::explain(code.as_str()).unwrap().title;
+        let title = toyproof::report::explain(code.as_str()).unwrap().title;
         assert_eq!(title, code.about(), "{}", code.as_str());
     }
 }
@@ -173,10 +175,7 @@ fn wrong_examples_give_their_code_alone_and_right_ones_nothing() {
                 Vec::new()
             };
             if codes != wanted {
-                let lines: Vec<_> = told
-                    .iter()
-                    .map(|told| diagnostic::human(told, &files, false))
-                    .collect();
+                let lines: Vec<_> = told.iter().map(|told| human(told, &files, false)).collect();
                 mistakes.push(format!(
                     "{} {}\n{}",
                     explanation.code,

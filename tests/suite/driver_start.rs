@@ -1,19 +1,19 @@
 //! Drivers that do not start, and drivers that do not finish compiling: neither is ever the shader's fault.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::thread;
 use std::time::Duration;
+use std::{fs, thread};
 
 use serde_json::Value;
-
-use toyproof::compare::Verdict;
-use toyproof::emit::Target;
 use toyproof::eval;
-use toyproof::frame::Frame;
-use toyproof::glsl::{Checked, lower};
-use toyproof::gpu::{Failure, FloatMode, On, Phase, Worker};
+use toyproof::glsl::Checked;
+use toyproof::gpu::{Failure, On, Phase, Worker};
+use toyproof::image::Frame;
+use toyproof::lint::Lints;
+use toyproof::translate::backend::Target;
+use toyproof::translate::{FloatMode, lower};
+use toyproof::verify::compare::Verdict;
 use toyproof::verify::{self, Case, Findings, verify};
 
 use crate::program::{Run, command, has_driver, run};
@@ -128,6 +128,7 @@ fn judge(script: &str, checked: &Checked, timeout: Duration) -> Result<Findings,
     };
     let case = Case {
         checked,
+        lints: &Lints::default(),
         expected: None,
         suspects: None,
         frame: &frame,

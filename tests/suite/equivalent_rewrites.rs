@@ -4,15 +4,16 @@
 use std::fmt;
 use std::sync::LazyLock;
 
+use toyproof::eval::{Program, Settings};
+use toyproof::tracer::{Hull, Styles};
+use toyproof::verify::Findings;
+use toyproof::verify::compare::{EXACT_TOLERANCE, Verdict};
+
 use crate::rungs::{EDITED, Edited};
 use crate::support::{
     COMPLEX_SCENE, DISNEY, Edit, MANY_OBJECTS, REFLECTIONS, RUNGS, Rung, SHADING, SPHERE, checked, edited,
     frame, judged, maths, numbers, tracer,
 };
-use toyproof::compare::{EXACT_TOLERANCE, Verdict};
-use toyproof::eval::{Program, Settings};
-use toyproof::trace::{Hull, Styles};
-use toyproof::verify::Findings;
 
 /// What is said otherwise, the rungs that say it, and how.
 type Rewrite = (&'static str, &'static [&'static Rung], &'static [Edit]);

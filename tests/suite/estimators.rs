@@ -4,10 +4,10 @@
 use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
+use toyproof::diagnostic::{File, Files};
 use toyproof::image::Image;
 use toyproof::scene::{Background, Integrator, Model, Projection, Sampler, Scene, Shape, ToneMap, parse};
-use toyproof::source::{File, Files};
-use toyproof::trace::Tracer;
+use toyproof::tracer::Tracer;
 
 const SIZE: [u32; 2] = [16, 9];
 /// Of ours in each pixel.

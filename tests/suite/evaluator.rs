@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
+use toyproof::diagnostic::{File, Files};
 use toyproof::eval::{Painted, Program, Settings};
-use toyproof::frame::Frame;
-use toyproof::glsl::{Checked, Options, check, lower_strict};
-use toyproof::gpu::{FloatMode, On, Worker};
-use toyproof::image::Image;
-use toyproof::source::{File, Files};
+use toyproof::glsl::{Checked, Options, check};
+use toyproof::gpu::{On, Worker};
+use toyproof::image::{Frame, Image};
+use toyproof::translate::{FloatMode, lower_strict};
 
 use crate::support::{self, RUNGS, checked};
 

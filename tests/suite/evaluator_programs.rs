@@ -1,11 +1,10 @@
 //! Small programs with what they must paint: what GLSL says, told of the evaluator in f32 and f64, and of the GPU.
 
+use toyproof::diagnostic::{File, Files};
 use toyproof::eval::{Failure, Fault, Jittered, Number, Other, Program, Settings, Variant};
-use toyproof::frame::Frame;
-use toyproof::glsl::{Checked, Options, check, lower_strict};
-use toyproof::gpu::FloatMode;
-use toyproof::image::Image;
-use toyproof::source::{File, Files};
+use toyproof::glsl::{Checked, Options, check};
+use toyproof::image::{Frame, Image};
+use toyproof::translate::{FloatMode, lower_strict};
 
 /// What stands before `mainImage`, what stands in it, and what `o.x` is then. `p` is (0.5, 0.5); `iTime` is 2; texel (1, 2) of
 /// `iChannel0` is 0.75, the others are 0.

@@ -1,8 +1,10 @@
 //! Random scenes, each painted by the shader that is exported for it: the tracer, the front end and the evaluator must
 //! agree on all of them.
 
-use toyproof::compare::Verdict;
-use toyproof::{export, scene, source};
+use toyproof::diagnostic::{File, Files};
+use toyproof::scene;
+use toyproof::scene::export;
+use toyproof::verify::compare::Verdict;
 
 use crate::support::{Rung, judged_by, numbers};
 
@@ -252,8 +254,8 @@ fn random_surfaces(random: &mut Random, motions: u32, traces_paths: bool) -> Vec
 }
 
 fn exported(text: &str) -> Result<String, String> {
-    let mut files = source::Files::default();
-    let file = files.add(source::File::new("<scene>", text));
+    let mut files = Files::default();
+    let file = files.add(File::new("<scene>", text));
     export::shader(&scene::parse(&files, file).unwrap())
 }
 

@@ -2,7 +2,7 @@
 //!
 //! The evaluator alone judges them: what a driver makes of a shader is asked elsewhere.
 
-use toyproof::compare::Verdict;
+use toyproof::verify::compare::Verdict;
 
 use crate::support::{
     Edit, IMPORTANCE_SAMPLING, MANY_OBJECTS, REFLECTIONS, Rung, SOFT_SHADOWS, STILL, WHITTED, edited,
@@ -419,7 +419,7 @@ fn an_edge_of_the_scene_in_a_row_of_pixels_is_not_the_shaders_fault() {
         size: [160, 90],
         ..STILL
     };
-    let shader = toyproof::export::shader(&scene(&rung)).unwrap();
+    let shader = toyproof::scene::export::shader(&scene(&rung)).unwrap();
     let findings = judged_by(None, &shader, &rung);
     let told = format!("{}: {}", numbers(&findings), findings.reason);
     eprintln!("{told}");

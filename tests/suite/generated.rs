@@ -14,12 +14,12 @@ use std::time::Instant;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestError, TestRng, TestRunner};
+use toyproof::diagnostic::{File, Files};
 use toyproof::eval::{Program, Settings};
-use toyproof::frame::Frame;
-use toyproof::glsl::{Checked, Options, check, lower, lower_strict};
-use toyproof::gpu::{Drawn, Failure, FloatMode, Worker};
-use toyproof::image::Image;
-use toyproof::source::{File, Files};
+use toyproof::glsl::{Checked, Options, check};
+use toyproof::gpu::{Drawn, Failure, Worker};
+use toyproof::image::{Frame, Image};
+use toyproof::translate::{FloatMode, lower, lower_strict};
 
 use crate::generate::Effects;
 use crate::support::setting;

@@ -18,7 +18,6 @@ mod derivatives;
 mod diagnostics;
 #[cfg(unix)]
 mod driver_start;
-mod elementary;
 mod equivalent_rewrites;
 mod estimators;
 mod evaluator;
@@ -35,6 +34,7 @@ mod glslang;
 mod hostile;
 mod limits;
 mod literals;
+mod math;
 mod miscompiles;
 mod mistaken;
 mod mistakes;

@@ -1,11 +1,11 @@
 //! What naga or lavapipe takes and gets wrong: on the GPU the picture is wrong without the pass that mends it, and right with it.
 
-use toyproof::frame::Frame;
-use toyproof::glsl::lower::{Pass, Passes, lower_with};
+use toyproof::diagnostic::{File, Files};
 use toyproof::glsl::{Options, check};
-use toyproof::gpu::{FloatMode, Worker};
-use toyproof::image::Image;
-use toyproof::source::{File, Files};
+use toyproof::gpu::Worker;
+use toyproof::image::{Frame, Image};
+use toyproof::translate::FloatMode;
+use toyproof::translate::lower::{Pass, Passes, lower_with};
 
 /// A miscompilation: the pass that mends it, what stands before `mainImage` and in it, and what `o.x` must be.
 type Case = (Pass, &'static str, &'static str, f32);

@@ -2,12 +2,12 @@
 
 use std::time::Duration;
 
-use toyproof::compare::Verdict;
+use toyproof::diagnostic::{File, Files};
 use toyproof::eval::Program;
-use toyproof::frame::Frame;
 use toyproof::glsl;
-use toyproof::mistake::Suspects;
-use toyproof::source::{File, Files};
+use toyproof::image::Frame;
+use toyproof::verify::compare::Verdict;
+use toyproof::verify::mistake::Suspects;
 
 use crate::equivalent_rewrites::rewrites;
 use crate::fair_verdicts::glass;
@@ -104,7 +104,7 @@ fn mistakes_are_named_wherever_rays_start() {
         ("checker in one direction", "checker-in-one-direction"),
         ("sign in Snell's law", "refraction-sign"),
     ] {
-        let fault = faults().find(|fault| fault.0 == title && std::ptr::eq(fault.1, &WHITTED));
+        let fault = faults().find(|fault| fault.0 == title && std::ptr::eq(fault.1, &raw const WHITTED));
         let (_, _, edits) = fault.expect("it is a planted fault");
         let shader = try_edit(&edited(&WHITTED, edits), &style).unwrap();
         assert_eq!(named(&WHITTED, &suspects, &shader, 0), name, "{title}");

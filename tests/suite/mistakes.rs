@@ -5,8 +5,8 @@
 
 use expect_test::{Expect, expect};
 use toyproof::diagnostic;
+use toyproof::diagnostic::{File, Files};
 use toyproof::glsl::{Options, check};
-use toyproof::source::{File, Files};
 
 /// The shader around statements that need one.
 fn in_main(statements: &str) -> String {

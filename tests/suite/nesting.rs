@@ -4,11 +4,11 @@
 use std::time::Duration;
 
 use toyproof::eval::{Program, Settings};
-use toyproof::frame::Frame;
 use toyproof::glsl::Checked;
-use toyproof::glsl::lower::{Pass, Passes, lower_with};
-use toyproof::gpu::{Failure, FloatMode, On, Worker};
-use toyproof::image::Image;
+use toyproof::gpu::{Failure, On, Worker};
+use toyproof::image::{Frame, Image};
+use toyproof::translate::FloatMode;
+use toyproof::translate::lower::{Pass, Passes, lower_with};
 
 use crate::support;
 

@@ -1,12 +1,13 @@
 //! A checker is itself checked: mistakes that students make in the course's shaders must all be found.
 //! `equivalent_rewrites` is the other half.
 
+use toyproof::verify::compare::Verdict;
+
 use crate::rungs::EDITED;
 use crate::support::{
     COMPLEX_SCENE, Edit, MANY_OBJECTS, REFLECTIONS, RUNGS, Rung, SHADING, SIZE, SPHERE, edited, judged,
     judged_and_named, maths, numbers,
 };
-use toyproof::compare::Verdict;
 
 /// What the mistake is, the rung that it is made in, and how.
 pub(crate) type Fault = (&'static str, &'static Rung, &'static [Edit]);

@@ -1,6 +1,6 @@
 //! Shaders that draw other numbers than their scene are judged by their mean.
 
-use toyproof::compare::Verdict;
+use toyproof::verify::compare::Verdict;
 
 use crate::support::{Edit, MANY_OBJECTS, Rung, SIZE, SOFT_SHADOWS, edited, judged};
 

@@ -1,11 +1,10 @@
 //! How small an error may be and is still found: a rung's shader stays as it is, and its scene is falsified.
 
-use toyproof::compare::{Answer, Answers, Mixed, Reference, SHAKES, Verdict, judge, maths};
 use toyproof::eval::{Jittered, Number, Program, Seed, Settings};
-use toyproof::frame::Frame;
-use toyproof::image::Image;
+use toyproof::image::{Frame, Image};
 use toyproof::scene::{Moment, Point, Projection, Scene, Shape};
-use toyproof::trace::{Hull, RayStyles, StyleFamily, Styles, Tracer};
+use toyproof::tracer::{Hull, RayStyles, StyleFamily, Styles, Tracer};
+use toyproof::verify::compare::{Answer, Answers, Mixed, Reference, SHAKES, Verdict, judge, maths};
 
 use crate::support::{RUNGS, Rung, checked, frame, scene};
 

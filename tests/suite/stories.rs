@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::Value;
 use toyproof::eval::{Lead, Number, Program, Settings};
-use toyproof::frame::Frame;
+use toyproof::image::Frame;
 
 use crate::program::toyproof;
 use crate::support::{self, EVERY_RUNG, Rung};

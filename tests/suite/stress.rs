@@ -6,9 +6,9 @@ use std::sync::atomic::AtomicBool;
 
 use serde_json::Value;
 use toyproof::glsl::Options;
-use toyproof::gpu::FloatMode;
-use toyproof::stress::function::{self, Findings, Map, Role, Signature};
-use toyproof::stress::{self, Settings, formula};
+use toyproof::lab::stress::function::{self, Findings, Map, Role, Signature};
+use toyproof::lab::stress::{self, Settings, formula};
+use toyproof::translate::FloatMode;
 
 use crate::program::{command, has_driver, toyproof};
 use crate::support::{EVERY_RUNG, Edit, QUADRICS, SPHERE, checked, edited, worker};

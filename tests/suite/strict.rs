@@ -1,9 +1,10 @@
 //! What runs is what was written: strict shaders compute the same bits as Rust's f32.
 
-use toyproof::frame::Frame;
-use toyproof::glsl::{Options, check, lower};
-use toyproof::gpu::{Drawn, FloatMode, Worker};
-use toyproof::source::{File, Files};
+use toyproof::diagnostic::{File, Files};
+use toyproof::glsl::{Options, check};
+use toyproof::gpu::{Drawn, Worker};
+use toyproof::image::Frame;
+use toyproof::translate::{FloatMode, lower};
 
 /// Sums and products that a driver likes to rearrange, contract or fold.
 const SHADER: &str = "void mainImage(out vec4 c, in vec2 p) {

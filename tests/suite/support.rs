@@ -6,15 +6,16 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::time::Duration;
 
-use toyproof::compare::Answer;
-use toyproof::diagnostic::{self, Diagnostic};
-use toyproof::frame::Frame;
+use toyproof::diagnostic::{self, Deadline, Diagnostic, File, Files};
 use toyproof::glsl::{self, Checked};
-use toyproof::gpu::{Failure, FloatMode, On, Worker};
-use toyproof::mistake::Suspects;
+use toyproof::gpu::{Failure, On, Worker};
+use toyproof::image::Frame;
+use toyproof::lint::{Lints, lint};
 use toyproof::scene::{self, Moment, Scene};
-use toyproof::source::{File, Files};
-use toyproof::trace::Tracer;
+use toyproof::tracer::Tracer;
+use toyproof::translate::FloatMode;
+use toyproof::verify::compare::Answer;
+use toyproof::verify::mistake::Suspects;
 use toyproof::verify::{Case, Expected, Findings, verify};
 
 /// A shader of the course and the scene that it paints.
@@ -197,6 +198,19 @@ pub(crate) fn checked(shader: &str) -> Checked {
         .unwrap_or_else(|errors| panic!("{}\n{shader}", told(&errors, &files)))
 }
 
+/// The same with the lints' findings.
+///
+/// # Panics
+/// Likewise.
+pub(crate) fn linted(shader: &str) -> (Checked, Lints) {
+    let mut files = Files::default();
+    let file = files.add(File::new("<shader>", shader));
+    let checked = checked(shader);
+    debug_assert_eq!(file, checked.tree[checked.main_image].at.span.file);
+    let lints = lint(&files, &checked, &Deadline::default());
+    (checked, lints)
+}
+
 /// The frame that a rung is judged at, in a size.
 pub(crate) fn frame(rung: &Rung, size: [u32; 2]) -> Frame {
     Frame {
@@ -248,8 +262,10 @@ fn judged_beside(
     rung: &Rung,
 ) -> Findings {
     let frame = frame(rung, rung.size);
+    let (checked, lints) = linted(shader);
     let case = Case {
-        checked: &checked(shader),
+        checked: &checked,
+        lints: &lints,
         expected: Some(&Expected::new(scene(rung), &frame)),
         suspects,
         frame: &frame,

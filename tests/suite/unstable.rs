@@ -2,7 +2,7 @@
 //! formula that paints the same scene without harm. The first must be `unstable` with the line that loses the digits, the
 //! second `correct`.
 
-use toyproof::compare::Verdict;
+use toyproof::verify::compare::Verdict;
 
 use crate::support::{Edit, MANY_OBJECTS, Rung, SHADING, SPHERE, edit, judged, numbers, worker};
 

@@ -3,12 +3,13 @@
 use std::fs;
 use std::path::Path;
 
+use toyproof_image::{self as image, ImageError};
+
 use super::judge::Submission;
 use super::pictures::PICTURES;
+use crate::cli::files;
 use crate::cli::names::with_suffix;
-use crate::image::{self, ImageError};
 use crate::report::{BUDGET, Exhibit, Gallery, every};
-use crate::source;
 
 /// The gallery of all shaders, of whose pictures so many pixels are left out that it fits the page.
 pub(super) fn gallery(submissions: &[&Submission]) -> Gallery {
@@ -37,7 +38,7 @@ fn thinned(submissions: &[&Submission], step: u32) -> Gallery {
 fn exhibit(submission: &Submission, step: u32, gallery: &mut Gallery) -> Exhibit {
     let mut exhibit = Exhibit::default();
     if let Ok(found) = &submission.input
-        && let Ok(file) = source::read(found)
+        && let Ok(file) = files::read(found)
     {
         exhibit.source = Some(file.text().to_owned());
     }

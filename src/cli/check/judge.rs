@@ -6,27 +6,25 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::ThreadPool;
 use sha2::{Digest, Sha256};
+use toyproof_diagnostic::{self as diagnostic, Deadline, Diagnostic, Files, path_name};
+use toyproof_gpu::Worker;
+use toyproof_image as image;
+use toyproof_image::{Frame, output};
+use toyproof_scene::Scene;
+use toyproof_verify::compare::Verdict;
+use toyproof_verify::contain::{Part, contain};
+use toyproof_verify::{self as verify, Case, Findings, verify};
 
 use super::Args;
 use super::pictures::PICTURES;
 use super::reference::{Reference, References};
 use super::scenes::Scenes;
 use super::stopped::Stopped;
+use crate::cli::files::{Found, ReadError};
 use crate::cli::names::{Names, with_suffix};
 use crate::cli::shader::{Shader, Unusable, denied};
-use crate::cli::{Terminal, pool};
-use crate::compare::Verdict;
-use crate::contain::{Part, contain};
-use crate::deadline::Deadline;
-use crate::diagnostic::{self, Diagnostic};
-use crate::frame::Frame;
-use crate::gpu::Worker;
-use crate::image;
-use crate::output;
+use crate::cli::{Terminal, files, pool};
 use crate::report::{Mistake, Record};
-use crate::scene::Scene;
-use crate::source::{self, Files, Found, ReadError, path_name};
-use crate::verify::{self, Case, Findings, verify};
 
 /// A shader that is to be judged.
 pub(super) struct Submission {
@@ -71,7 +69,7 @@ fn key(found: &Found, args: &Args, references: &References) -> Option<String> {
     let settings = (&args.frame, &args.language, &args.driver);
     add(env!("CARGO_PKG_VERSION").as_bytes());
     add(format!("{settings:?} {:?} {}", args.scene, found.name()).as_bytes());
-    add(source::read(found).ok()?.text().as_bytes());
+    add(files::read(found).ok()?.text().as_bytes());
     if let Some((_, scene)) = references.text(found) {
         add(scene.ok()?.text().as_bytes());
     }
@@ -230,10 +228,10 @@ impl<'a> Judge<'a> {
         let Shader {
             files,
             checked,
-            warnings,
+            lints,
             ..
         } = shader;
-        judged.tell(warnings, &files);
+        judged.tell(lints.warnings.clone(), &files);
         let checked = match checked {
             Ok(checked) => checked,
             Err(unusable) => return Err(Stopped::unusable(unusable, files, Verdict::Invalid)),
@@ -254,6 +252,7 @@ impl<'a> Judge<'a> {
         });
         let case = Case {
             checked: &checked,
+            lints: &lints,
             expected: known.as_ref().map(|known| &known.expected),
             suspects,
             frame: &frame,

@@ -13,6 +13,11 @@ use std::num::NonZero;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
+use toyproof_diagnostic::path_name;
+use toyproof_gpu::INSTALL_HINT;
+use toyproof_verify::compare::{Verdict, grouped, plural};
+use toyproof_verify::contain::{Part, contain};
+
 use self::judge::{Hand, Judge, Judged, Submission};
 use self::pictures::PICTURES;
 pub(super) use self::reference::References;
@@ -22,11 +27,7 @@ use super::names::Names;
 use super::pool::{self, InOrder};
 use super::shader::find;
 use super::{Exit, Terminal, codes, interrupt};
-use crate::compare::{Verdict, grouped, plural};
-use crate::contain::{Part, contain};
-use crate::gpu::INSTALL_HINT;
 use crate::report::{self, Record, Report, Rubric};
-use crate::source::path_name;
 
 /// Compare what shaders paint with the reference tracer, and give a verdict on each
 ///

@@ -2,9 +2,9 @@
 
 use std::borrow::Cow;
 
-use crate::compare::{IN_BITS, SEEN_BY_EYE};
-use crate::image::{self, Legend, Mark, Shown};
-use crate::verify::{Asked, Findings};
+use toyproof_image::Shown;
+use toyproof_verify::compare::{IN_BITS, Legend, Mark, SEEN_BY_EYE};
+use toyproof_verify::{Asked, Findings};
 
 /// A picture that there may be.
 pub(super) struct Picture {
@@ -51,5 +51,9 @@ fn asked<'a>(findings: &Findings, asked: Option<&Asked>, legend: Legend) -> Opti
 }
 
 fn difference<'a>(findings: &Findings, marks: &[Mark], legend: Legend) -> Cow<'a, Shown> {
-    Cow::Owned(image::difference(findings.actual.size(), marks, legend))
+    Cow::Owned(toyproof_verify::compare::difference(
+        findings.actual.size(),
+        marks,
+        legend,
+    ))
 }

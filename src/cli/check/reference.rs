@@ -2,9 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use toyproof_diagnostic::{File, Files, path_name};
+use toyproof_scene::{self as scene, Scene};
+
+use crate::cli::files::{self, Found, FoundIn, ReadError, Skipped};
 use crate::cli::shader::Unusable;
-use crate::scene::{self, Scene};
-use crate::source::{self, File, Files, Found, FoundIn, ReadError, Skipped, path_name};
 
 /// The scene of a shader.
 pub(in crate::cli) struct Reference {
@@ -70,5 +72,5 @@ fn leaves(found: &Found, shader: &Path, beside: &Path) -> Option<Skipped> {
 }
 
 fn text(path: &Path) -> Result<File, String> {
-    source::read_text(path).map_err(|error| error.to_string())
+    files::read_text(path).map_err(|error| error.to_string())
 }

@@ -2,15 +2,16 @@
 
 use std::path::Path;
 
+use toyproof_diagnostic::Files;
+use toyproof_verify::contain::{Part, contain};
+
 use super::Args;
 use super::gallery::gallery;
 use super::judge::Submission;
-use crate::cli::Terminal;
+use crate::cli::files::of_content;
 use crate::cli::shader::Unusable;
-use crate::contain::{Part, contain};
-use crate::diagnostic::of_content;
+use crate::cli::{Terminal, files};
 use crate::report::{Report, Rubric, csv, gradescope, html, junit, sarif};
-use crate::source::{self, Files};
 
 /// The rubric that the arguments name, if they name one.
 ///
@@ -21,7 +22,7 @@ pub(super) fn rubric(args: &Args, terminal: &Terminal) -> Result<Option<Rubric>,
         return Ok(None);
     };
     let mut files = Files::default();
-    let rubric = match source::read_text(path) {
+    let rubric = match files::read_text(path) {
         Ok(text) => {
             let file = files.add(text);
             Rubric::parse(&files, file).map_err(Unusable::Invalid)

@@ -6,10 +6,10 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
+use toyproof_diagnostic::path_name;
+use toyproof_image::output;
 
-use crate::output;
 use crate::report::Record;
-use crate::source::path_name;
 
 /// The name of the file.
 pub(super) const NAME: &str = "results.jsonl";

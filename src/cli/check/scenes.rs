@@ -3,10 +3,10 @@
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use crate::frame::Frame;
-use crate::mistake::Suspects;
-use crate::scene::Scene;
-use crate::verify::Expected;
+use toyproof_image::Frame;
+use toyproof_scene::Scene;
+use toyproof_verify::Expected;
+use toyproof_verify::mistake::Suspects;
 
 /// So many scenes are kept, those that were asked for last, and fewer if they take more than so many bytes.
 const MOST: usize = 8;
@@ -58,9 +58,10 @@ impl Scenes {
 
 #[cfg(test)]
 mod tests {
+    use toyproof_diagnostic::{File, Files};
+    use toyproof_scene as scene;
+
     use super::*;
-    use crate::scene;
-    use crate::source::{File, Files};
 
     fn scene(title: &str) -> Scene {
         let mut files = Files::default();

@@ -1,15 +1,15 @@
 //! Why a shader got no further.
 
+use toyproof_diagnostic::{Diagnostic, Files, Severity};
+use toyproof_eval as eval;
+use toyproof_glsl::{self as glsl, Code};
+use toyproof_gpu::Failure;
+use toyproof_verify as verify;
+use toyproof_verify::compare::Verdict;
+
 use super::cut_short;
 use crate::cli::run::place;
 use crate::cli::shader::{Unusable, is_invalid};
-use crate::compare::Verdict;
-use crate::diagnostic::{Diagnostic, Severity};
-use crate::eval;
-use crate::glsl::{self, Code};
-use crate::gpu::Failure;
-use crate::source::Files;
-use crate::verify;
 
 /// Why a shader got no further.
 pub(super) struct Stopped {

@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
+use toyproof_translate::backend::Target;
+use toyproof_translate::wgsl::Style;
 
 use super::super::inputs::{DriverArgs, LanguageArgs};
-use crate::emit::Target;
-use crate::glsl::wgsl::Style;
 
 const HOSTS: &str = "\
 Examples:

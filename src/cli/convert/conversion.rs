@@ -3,23 +3,22 @@
 use std::path::PathBuf;
 
 use rayon::ThreadPool;
+use toyproof_diagnostic::{Deadline, Diagnostic, Overdue};
+use toyproof_glsl::{self as glsl, Checked};
+use toyproof_gpu::browser::{Chromium, Text};
+use toyproof_gpu::{Failure, Worker, Written};
+use toyproof_translate::backend::Target;
+use toyproof_translate::wgsl::{self, Style};
+use toyproof_translate::{FloatMode, Lowered};
+use toyproof_verify::conversion::FRAMES;
 
-use super::super::Exit;
 use super::super::inputs::{DriverArgs, LanguageArgs};
-use super::super::pool;
 use super::super::shader::{Shader, Unusable, is_invalid};
+use super::super::{Exit, pool};
 use super::args::To;
 use super::proof::{NAGA, Standing, in_browser};
 use super::{header, tool};
-use crate::browser::{Chromium, Text};
-use crate::deadline::{Deadline, Overdue};
-use crate::diagnostic::Diagnostic;
-use crate::emit::Target;
-use crate::glsl::wgsl::{self, Style};
-use crate::glsl::{self, Checked, Lowered};
-use crate::gpu::{Failure, FloatMode, Worker, Written};
-use crate::source::{Found, ReadError};
-use crate::verify::conversion::FRAMES;
+use crate::cli::files::{Found, ReadError};
 
 /// What is to be made of every shader.
 pub(super) struct Converter<'a> {

@@ -2,10 +2,11 @@
 
 use std::fmt::Write as _;
 
+use toyproof_translate::backend::{Target, spirv};
+use toyproof_verify::compare::grouped;
+use toyproof_verify::conversion::{Against, FRAMES, Proof, Shown};
+
 use super::proof::Standing;
-use crate::compare::grouped;
-use crate::emit::{Target, spirv};
-use crate::verify::conversion::{Against, FRAMES, Proof, Shown};
 
 /// The version of naga that translates.
 const NAGA: &str = "30.0.1";

@@ -11,6 +11,11 @@ use std::num::NonZero;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
+use toyproof_diagnostic::path_name;
+use toyproof_gpu::browser;
+use toyproof_translate::FloatMode;
+use toyproof_verify::compare::{grouped, plural};
+
 pub(super) use self::args::Args;
 use self::args::{StyleName, To};
 use self::conversion::{Converter, Made, Trouble};
@@ -20,10 +25,7 @@ use super::names::{Names, with_suffix};
 use super::pool::{self, InOrder};
 use super::shader::{Shader, find};
 use super::{Exit, Terminal, interrupt};
-use crate::browser;
-use crate::compare::{grouped, plural};
-use crate::gpu::FloatMode;
-use crate::source::{Found, ReadError, path_name};
+use crate::cli::files::{Found, ReadError};
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let inputs = find(&args.shaders, terminal);
@@ -208,7 +210,7 @@ impl Batch<'_> {
 
     /// Says what came of one.
     fn finish(&mut self, job: &Job, (shader, made, written): Done) {
-        self.terminal.diagnostics(&shader.warnings, &shader.files);
+        self.terminal.diagnostics(&shader.lints.warnings, &shader.files);
         self.tally.written += usize::from(written);
         let exit = match made {
             Ok(made) => self.tell_standing(job, &made, written),

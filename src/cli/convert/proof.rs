@@ -1,21 +1,22 @@
 //! What is proved of a conversion: who reads again what was written, and what comes of running what they read.
 
+use toyproof_diagnostic::{File, Files, short};
+use toyproof_glsl::tree::SamplerShape;
+use toyproof_glsl::{self as glsl, Checked};
+use toyproof_gpu::browser::{self, Text};
+use toyproof_gpu::{Failure, Written};
+use toyproof_image::Image;
+use toyproof_translate::backend::{Target, reread, spirv};
+use toyproof_translate::naga_ir::Shape;
+use toyproof_translate::wgsl::Style;
+use toyproof_translate::{FloatMode, Lowered};
+use toyproof_verify as verify;
+use toyproof_verify::compare::{grouped, plural};
+use toyproof_verify::conversion::{Against, Proof, Shown, frames, prove};
+
 use super::super::shader::Shader;
 use super::conversion::{Converter, Hand};
 use super::tool;
-use crate::browser::{self, Text};
-use crate::compare::{grouped, plural};
-use crate::diagnostic::short;
-use crate::emit::{Target, reread, spirv};
-use crate::glsl::tree::SamplerShape;
-use crate::glsl::wgsl::Style;
-use crate::glsl::{self, Checked, Lowered};
-use crate::gpu::{Failure, FloatMode, Written};
-use crate::image::Image;
-use crate::module::Shape;
-use crate::source::{File, Files};
-use crate::verify;
-use crate::verify::conversion::{Against, Proof, Shown, frames, prove};
 
 /// Who reads WGSL, and what is fed to naga.
 pub(super) const NAGA: &str = "naga";

@@ -7,8 +7,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use tempfile::{NamedTempFile, tempfile};
-
-use crate::emit::{Target, reread, spirv};
+use toyproof_translate::backend::{Target, reread, spirv};
 
 /// A tool that judges a language: its program and arguments; the file's name follows.
 struct Tool {

@@ -1,11 +1,12 @@
 //! Names, members, swizzles and indices (§5.5–§5.7).
 
+use toyproof_diagnostic::nearest;
+
 use super::Checker;
 use super::scope::Entity;
-use crate::diagnostic::nearest;
-use crate::glsl::codes::Code;
-use crate::glsl::token::Symbol;
-use crate::glsl::tree::{BuiltIn, ExprId, ExprKind, Place, Scalar, StructId, Swizzle, Type, VariableKind};
+use crate::codes::Code;
+use crate::token::Symbol;
+use crate::tree::{BuiltIn, ExprId, ExprKind, Place, Scalar, StructId, Swizzle, Type, VariableKind};
 
 /// The three sets of names for components; one selection takes all of its names from one (§5.5).
 const COMPONENT_NAMES: [&str; 3] = ["xyzw", "rgba", "stpq"];

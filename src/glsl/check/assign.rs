@@ -1,8 +1,8 @@
 //! What may be written (§5.8).
 
 use super::Checker;
-use crate::glsl::codes::Code;
-use crate::glsl::tree::{
+use crate::codes::Code;
+use crate::tree::{
     BinaryOp, BuiltInVariable, Direction, ExprId, ExprKind, Input, Place, Scalar, StepOp, Type, VariableKind,
 };
 

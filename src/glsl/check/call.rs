@@ -4,9 +4,9 @@ use super::Checker;
 use super::prelude::TEXEL_OFFSETS;
 use super::scope::Entity;
 use super::signature::{self, Match};
-use crate::glsl::codes::Code;
-use crate::glsl::token::Symbol;
-use crate::glsl::tree::{BuiltIn, Direction, ExprId, ExprKind, FunctionId, Place, Type, Value, VariableKind};
+use crate::codes::Code;
+use crate::token::Symbol;
+use crate::tree::{BuiltIn, Direction, ExprId, ExprKind, FunctionId, Place, Type, Value, VariableKind};
 
 impl Checker<'_> {
     /// `name(arguments)`: a call of a function or built-in function, or a structure's constructor.

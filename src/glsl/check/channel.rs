@@ -1,8 +1,8 @@
 //! The shapes of the channels, where nobody told them.
 
 use super::Checker;
-use crate::glsl::options::Options;
-use crate::glsl::tree::{ExprId, ExprKind, Input, Sampler, SamplerShape, Type, VariableKind};
+use crate::options::Options;
+use crate::tree::{ExprId, ExprKind, Input, Sampler, SamplerShape, Type, VariableKind};
 
 /// What is known of the four channels.
 #[derive(Debug, Clone)]

@@ -1,8 +1,8 @@
 //! Constructors (§5.4).
 
 use super::{Checker, Specifier};
-use crate::glsl::codes::Code;
-use crate::glsl::tree::{Constructor, ExprId, ExprKind, Place, Scalar, StructId, Type};
+use crate::codes::Code;
+use crate::tree::{Constructor, ExprId, ExprKind, Place, Scalar, StructId, Type};
 
 /// The constructor that converts a scalar or vector to a type of the same shape.
 pub(super) fn conversion(to: Type) -> Constructor {

@@ -2,9 +2,9 @@
 
 use super::scope::Entity;
 use super::{Checker, Qualifiers, Size, Specifier, liberal_conversion};
-use crate::glsl::codes::{Code, tell};
-use crate::glsl::token::Symbol;
-use crate::glsl::tree::{ExprId, Place, Scalar, Type, Variable, VariableId, VariableKind};
+use crate::codes::{Code, tell};
+use crate::token::Symbol;
+use crate::tree::{ExprId, Place, Scalar, Type, Variable, VariableId, VariableKind};
 
 /// One name of a declaration with what belongs to it alone.
 #[derive(Debug)]

@@ -1,9 +1,9 @@
 //! How large and how deep types are.
 
 use super::Checker;
-use crate::glsl::MAX_NESTING;
-use crate::glsl::codes::Code;
-use crate::glsl::tree::{Member, Place, Type};
+use crate::MAX_NESTING;
+use crate::codes::Code;
+use crate::tree::{Member, Place, Type};
 
 /// How deep WebGL lets structures stand in structures.
 const MAX_STRUCT_NESTING: usize = 4;

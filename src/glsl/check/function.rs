@@ -4,9 +4,9 @@ use std::collections::HashSet;
 
 use super::scope::Entity;
 use super::{Checker, Specifier};
-use crate::glsl::codes::Code;
-use crate::glsl::token::Symbol;
-use crate::glsl::tree::{
+use crate::codes::Code;
+use crate::token::Symbol;
+use crate::tree::{
     Block, BuiltIn, Direction, Function, FunctionId, Item, Place, Type, Variable, VariableId, VariableKind,
 };
 

@@ -1,8 +1,9 @@
 //! What to write instead: the mends that messages propose.
 
+use toyproof_diagnostic::Diagnostic;
+
 use super::{Checker, liberal_conversion};
-use crate::diagnostic::Diagnostic;
-use crate::glsl::tree::{BinaryOp, ExprId, ExprKind, Scalar, Type, UnaryOp};
+use crate::tree::{BinaryOp, ExprId, ExprKind, Scalar, Type, UnaryOp};
 
 impl Checker<'_> {
     /// The diagnostic with what makes a value of that type of the expression, where one way is likely.

@@ -22,15 +22,16 @@ mod types;
 mod unknown;
 mod whole;
 
+use std::collections::HashSet;
+
 pub(crate) use declare::Declarator;
 pub(crate) use function::Parameter;
 pub(crate) use qualifier::{Qualifiers, Storage};
 pub(crate) use statement::Labels;
+use toyproof_diagnostic::{Deadline, Diagnostic};
 pub(crate) use types::{Members, Size, Specifier};
 
 pub(crate) use self::channel::Channels;
-use std::collections::HashSet;
-
 use self::extent::Extent;
 use self::function::Context;
 use self::scope::Scopes;
@@ -40,8 +41,6 @@ use super::preprocess::Preprocessed;
 use super::token::Symbol;
 use super::tree::{Expr, ExprId, ExprKind, FunctionId, Literal, Place, Scalar, StructId, Tree, Type, Value};
 use super::words::Words;
-use crate::deadline::Deadline;
-use crate::diagnostic::Diagnostic;
 
 /// Builds the tree and keeps the rules.
 pub(crate) struct Checker<'a> {

@@ -1,8 +1,8 @@
 //! Operators without side effects (§5.9), `?:` and `,`.
 
 use super::{Checker, liberal_conversion};
-use crate::glsl::codes::Code;
-use crate::glsl::tree::{BinaryOp, ExprId, ExprKind, Place, Scalar, Type, UnaryOp};
+use crate::codes::Code;
+use crate::tree::{BinaryOp, ExprId, ExprKind, Place, Scalar, Type, UnaryOp};
 
 impl Checker<'_> {
     pub(crate) fn unary(&mut self, op: UnaryOp, operand: ExprId, at: Place) -> ExprId {

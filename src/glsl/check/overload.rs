@@ -1,9 +1,10 @@
 //! What is said of a call that no overload takes.
 
+use toyproof_diagnostic::Diagnostic;
+
 use super::{Checker, liberal_conversion, signature};
-use crate::diagnostic::Diagnostic;
-use crate::glsl::codes::Code;
-use crate::glsl::tree::{BuiltIn, ExprId, FunctionId, Place, Type};
+use crate::codes::Code;
+use crate::tree::{BuiltIn, ExprId, FunctionId, Place, Type};
 
 /// How many overloads are listed.
 const MAX_LISTED: usize = 6;

@@ -4,9 +4,7 @@ use std::ops::RangeInclusive;
 
 use super::Checker;
 use super::scope::Entity;
-use crate::glsl::tree::{
-    BuiltInVariable, Constant, Input, Sampler, Scalar, Type, Value, Variable, VariableKind,
-};
+use crate::tree::{BuiltInVariable, Constant, Input, Sampler, Scalar, Type, Value, Variable, VariableKind};
 
 /// The smallest values that WebGL 2 promises (§7.3).
 const LIMITS: [(&str, i32); 9] = [

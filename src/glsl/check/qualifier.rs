@@ -1,10 +1,10 @@
 //! Qualifiers: what stands before the type of a declaration (§4.3, §4.5, §4.6).
 
 use super::{Checker, Specifier};
-use crate::glsl::codes::Code;
-use crate::glsl::token::Symbol;
-use crate::glsl::tree::{BuiltInVariable, Place, Scalar, Type, VariableKind};
-use crate::glsl::words::Keyword;
+use crate::codes::Code;
+use crate::token::Symbol;
+use crate::tree::{BuiltInVariable, Place, Scalar, Type, VariableKind};
+use crate::words::Keyword;
 
 /// What stands before the type of a declaration.
 #[derive(Debug, Clone, Default)]

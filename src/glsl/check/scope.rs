@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use crate::glsl::token::Symbol;
-use crate::glsl::tree::{FunctionId, StructId, VariableId};
+use crate::token::Symbol;
+use crate::tree::{FunctionId, StructId, VariableId};
 
 /// What a name can mean. Types, variables and functions share their names (§4.2.2).
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -3,8 +3,8 @@
 use std::collections::HashSet;
 
 use super::Checker;
-use crate::glsl::codes::Code;
-use crate::glsl::tree::{ExprId, Label, Place, Type};
+use crate::codes::Code;
+use crate::tree::{ExprId, Label, Place, Type};
 
 /// How many labels a `switch` may have: lavapipe loses the device at 50,000.
 const MAX_LABELS: usize = 20_000;

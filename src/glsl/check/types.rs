@@ -4,9 +4,9 @@ use std::collections::HashMap;
 
 use super::Checker;
 use super::scope::Entity;
-use crate::glsl::codes::Code;
-use crate::glsl::token::Symbol;
-use crate::glsl::tree::{ExprId, ExprKind, Member, Place, Struct, StructId, Type, VariableKind};
+use crate::codes::Code;
+use crate::token::Symbol;
+use crate::tree::{ExprId, ExprKind, Member, Place, Struct, StructId, Type, VariableKind};
 
 /// The largest array that WebGL takes.
 const MAX_ARRAY_SIZE: i64 = 65_536;

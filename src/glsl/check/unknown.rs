@@ -1,13 +1,14 @@
 //! Names that mean nothing here, and what may have been meant.
 
+use toyproof_diagnostic::nearest;
+
 use super::Checker;
 use super::scope::Entity;
-use crate::diagnostic::nearest;
-use crate::glsl::codes::Code;
-use crate::glsl::foreign::Foreign;
-use crate::glsl::token::Symbol;
-use crate::glsl::tree::{BuiltIn, ExprId, Place, Type};
-use crate::glsl::words::Word;
+use crate::codes::Code;
+use crate::foreign::Foreign;
+use crate::token::Symbol;
+use crate::tree::{BuiltIn, ExprId, Place, Type};
+use crate::words::Word;
 
 impl Checker<'_> {
     /// Tells that a variable is not declared, once in each function.

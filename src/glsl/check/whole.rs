@@ -3,8 +3,8 @@
 use std::collections::HashSet;
 
 use super::Checker;
-use crate::glsl::codes::Code;
-use crate::glsl::tree::{Direction, FunctionId, Place, Type, VariableKind};
+use crate::codes::Code;
+use crate::tree::{Direction, FunctionId, Place, Type, VariableKind};
 
 impl Checker<'_> {
     /// What can be told once all functions are known: every call has a body, and none comes back (§6.1.2).
@@ -91,7 +91,7 @@ impl Checker<'_> {
 
     /// `void mainImage(out vec4, in vec2)`, as the call that `ShaderToy` makes asks for it.
     fn main_image(&mut self) -> Option<FunctionId> {
-        use crate::glsl::tree::Scalar::Float;
+        use crate::tree::Scalar::Float;
         let mut near = None;
         for (id, function) in self.tree.functions.iter() {
             if function.name != "mainImage" || function.body.is_none() {

@@ -1,6 +1,6 @@
 //! Binary operators on constants (§5.9).
 
-use crate::glsl::tree::{BinaryOp, Constant, Type, Value};
+use crate::tree::{BinaryOp, Constant, Type, Value};
 
 /// The most scalars that are compared: constants share their parts, so that a short text may compare large ones often.
 const MAX_COMPARED: usize = 1 << 12;

@@ -1,8 +1,9 @@
 //! Built-in functions of constants (§8).
 
+use toyproof_math::{Matrix, determinant, inverse, outer_product};
+
 use super::arithmetic::order;
-use crate::elementary::{Matrix, determinant, inverse, outer_product};
-use crate::glsl::tree::{BuiltIn, Constant, Type, Value};
+use crate::tree::{BuiltIn, Constant, Type, Value};
 
 /// The scalars of the result; none where they are undefined or not worth computing.
 pub(super) fn call(function: BuiltIn, ty: Type, arguments: &[Constant]) -> Option<Vec<Value>> {

@@ -1,11 +1,12 @@
 //! Braces that do not pair. Which one is at fault, no grammar can tell; how the author indented the lines often can.
 
+use toyproof_diagnostic::Diagnostic;
+
 use super::bracket::{missing, stray};
 use super::layout::Layout;
-use crate::diagnostic::Diagnostic;
-use crate::glsl::codes::Code;
-use crate::glsl::token::{Punctuator, Token, TokenKind};
-use crate::glsl::words::{Keyword, Word, Words};
+use crate::codes::Code;
+use crate::token::{Punctuator, Token, TokenKind};
+use crate::words::{Keyword, Word, Words};
 
 /// How many faults are put right one by one.
 const MAX_REPAIRS: usize = 16;

@@ -1,14 +1,14 @@
 //! Round and square brackets that do not pair: told, and put right, so that the rest can be read.
 
+use toyproof_diagnostic::{Diagnostic, File, Span};
+
 use super::brace;
 use super::layout::Layout;
-use crate::diagnostic::Diagnostic;
-use crate::glsl::codes::{Code, tell};
-use crate::glsl::preprocess::Preprocessed;
-use crate::glsl::token::{Punctuator, Token, TokenKind};
-use crate::glsl::tree::Place;
-use crate::glsl::words::{Keyword, Word, Words};
-use crate::source::{File, Span};
+use crate::codes::{Code, tell};
+use crate::preprocess::Preprocessed;
+use crate::token::{Punctuator, Token, TokenKind};
+use crate::tree::Place;
+use crate::words::{Keyword, Word, Words};
 
 /// Pairs the brackets of a text. What stands too much becomes [`TokenKind::Stray`], what is missing is put in; both are told. After that, every
 /// bracket has its partner.

@@ -1,10 +1,10 @@
 //! `if`, `switch` and loops (§6.2, §6.3).
 
 use super::{Parsed, Parser};
-use crate::glsl::check::Labels;
-use crate::glsl::token::{Punctuator, Token};
-use crate::glsl::tree::{Arm, Block, Case, Condition, Label, StatementKind};
-use crate::glsl::words::Keyword;
+use crate::check::Labels;
+use crate::token::{Punctuator, Token};
+use crate::tree::{Arm, Block, Case, Condition, Label, StatementKind};
+use crate::words::Keyword;
 
 impl Parser<'_> {
     /// `if … else if … else …`, the whole chain in one loop.

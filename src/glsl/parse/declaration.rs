@@ -1,11 +1,11 @@
 //! Declarations: types, variables, structures, functions (§4, §6.1).
 
 use super::{Halt, Parsed, Parser};
-use crate::glsl::check::{Declarator, Members, Qualifiers, Size, Specifier};
-use crate::glsl::codes::Code;
-use crate::glsl::token::{Punctuator, Symbol, TokenKind};
-use crate::glsl::tree::{Item, Place, Type, VariableId};
-use crate::glsl::words::{Keyword, Word};
+use crate::check::{Declarator, Members, Qualifiers, Size, Specifier};
+use crate::codes::Code;
+use crate::token::{Punctuator, Symbol, TokenKind};
+use crate::tree::{Item, Place, Type, VariableId};
+use crate::words::{Keyword, Word};
 
 impl Parser<'_> {
     /// One declaration at global scope, or a function.

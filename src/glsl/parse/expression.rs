@@ -1,11 +1,11 @@
 //! Expressions (§5.1): one function for each kind of operator; chains are loops.
 
 use super::{Parsed, Parser};
-use crate::glsl::check::Specifier;
-use crate::glsl::codes::Code;
-use crate::glsl::token::{Punctuator, TokenKind};
-use crate::glsl::tree::{ExprId, Literal, Place, StepOp, Type, UnaryOp, Value};
-use crate::glsl::words::{Keyword, Word};
+use crate::check::Specifier;
+use crate::codes::Code;
+use crate::token::{Punctuator, TokenKind};
+use crate::tree::{ExprId, Literal, Place, StepOp, Type, UnaryOp, Value};
+use crate::words::{Keyword, Word};
 
 impl Parser<'_> {
     /// `a, b, c`.

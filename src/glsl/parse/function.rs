@@ -1,11 +1,11 @@
 //! Functions (§6.1).
 
 use super::{Parsed, Parser};
-use crate::glsl::check::{Parameter, Qualifiers, Specifier, Storage};
-use crate::glsl::codes::Code;
-use crate::glsl::token::{Punctuator, Symbol, TokenKind};
-use crate::glsl::tree::{Direction, Place, Type};
-use crate::glsl::words::Word;
+use crate::check::{Parameter, Qualifiers, Specifier, Storage};
+use crate::codes::Code;
+use crate::token::{Punctuator, Symbol, TokenKind};
+use crate::tree::{Direction, Place, Type};
+use crate::words::Word;
 
 impl Parser<'_> {
     /// The rest of a prototype or definition, from its `(`.

@@ -1,11 +1,12 @@
 //! Habits from other languages, of programmers and of people: what to write instead.
 
+use toyproof_diagnostic::Diagnostic;
+
 use super::Parser;
-use crate::diagnostic::Diagnostic;
-use crate::glsl::codes::Code;
-use crate::glsl::foreign::Foreign;
-use crate::glsl::token::{Punctuator, Token, TokenKind};
-use crate::glsl::words::{Keyword, Word};
+use crate::codes::Code;
+use crate::foreign::Foreign;
+use crate::token::{Punctuator, Token, TokenKind};
+use crate::words::{Keyword, Word};
 
 impl Parser<'_> {
     /// The diagnostic about the next token with what to write, where a habit from another language is at work.

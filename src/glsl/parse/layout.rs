@@ -1,8 +1,9 @@
 //! How the author laid the text out: where lines begin, and how deep they are indented. GLSL does not ask; it tells what was meant where
 //! brackets do not.
 
-use crate::glsl::token::Token;
-use crate::source::File;
+use toyproof_diagnostic::File;
+
+use crate::token::Token;
 
 /// As wide as most editors show a tab.
 const TAB: usize = 4;

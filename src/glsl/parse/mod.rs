@@ -17,6 +17,8 @@ mod recover;
 mod statement;
 
 pub(super) use bracket::balance;
+use layout::Layout;
+use toyproof_diagnostic::{Diagnostic, File, Span};
 
 use super::MAX_NESTING;
 use super::check::Checker;
@@ -26,9 +28,6 @@ use super::preprocess::Preprocessed;
 use super::token::{Punctuator, Symbol, Token, TokenKind};
 use super::tree::Place;
 use super::words::{Keyword, Word, Words};
-use crate::diagnostic::Diagnostic;
-use crate::source::{File, Span};
-use layout::Layout;
 
 /// The reason was told; this construct cannot be read.
 #[derive(Debug, Clone, Copy)]

@@ -1,7 +1,7 @@
 //! Numbers as written (§4.1.3, §4.1.4).
 
-use crate::glsl::codes::Code;
-use crate::glsl::tree::{Literal, Value};
+use crate::codes::Code;
+use crate::tree::{Literal, Value};
 
 /// What a number stands for; or why it stands for nothing.
 pub(super) fn literal(text: &str) -> Result<Literal, (Code, String)> {

@@ -1,10 +1,10 @@
 //! Qualifiers (§4.3–§4.7).
 
 use super::{Parsed, Parser};
-use crate::glsl::check::{Qualifiers, Storage};
-use crate::glsl::codes::Code;
-use crate::glsl::token::{Punctuator, TokenKind};
-use crate::glsl::words::Keyword;
+use crate::check::{Qualifiers, Storage};
+use crate::codes::Code;
+use crate::token::{Punctuator, TokenKind};
+use crate::words::Keyword;
 
 impl Parser<'_> {
     /// What stands before a type, in the order of §4.7: `invariant`, interpolation, layout, storage, precision.

@@ -2,8 +2,8 @@
 
 use super::bracket::closing;
 use super::{Halt, Parsed, Parser};
-use crate::glsl::token::{Punctuator, TokenKind};
-use crate::glsl::words::{Keyword, Word};
+use crate::token::{Punctuator, TokenKind};
+use crate::words::{Keyword, Word};
 
 impl Parser<'_> {
     /// Reads one of a list of statements or declarations; if it cannot be read, passes over it.

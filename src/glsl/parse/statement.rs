@@ -1,10 +1,10 @@
 //! Statements (§6).
 
 use super::{Parsed, Parser};
-use crate::glsl::codes::Code;
-use crate::glsl::token::{Punctuator, TokenKind};
-use crate::glsl::tree::{Block, Place, Statement, StatementKind};
-use crate::glsl::words::{Keyword, Word};
+use crate::codes::Code;
+use crate::token::{Punctuator, TokenKind};
+use crate::tree::{Block, Place, Statement, StatementKind};
+use crate::words::{Keyword, Word};
 
 impl Parser<'_> {
     /// `{ … }` without a scope of its own: the caller has opened one.

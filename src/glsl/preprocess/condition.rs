@@ -1,11 +1,12 @@
 //! `#if` and its kin: which groups of lines are read, and the integers that decide it.
 
+use toyproof_diagnostic::Diagnostic;
+
 use super::define::nothing_left;
 use super::{PpToken, Preprocessor};
-use crate::diagnostic::Diagnostic;
-use crate::glsl::codes::Code;
-use crate::glsl::token::{Punctuator, TokenKind};
-use crate::glsl::tree::Place;
+use crate::codes::Code;
+use crate::token::{Punctuator, TokenKind};
+use crate::tree::Place;
 
 /// An `#if` that waits for its `#endif`.
 pub(super) struct Group {

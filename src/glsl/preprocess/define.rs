@@ -1,11 +1,12 @@
 //! `#define` and `#undef`.
 
+use toyproof_diagnostic::Diagnostic;
+
 use super::macros::{Body, Macro};
 use super::{PpToken, Preprocessor};
-use crate::diagnostic::Diagnostic;
-use crate::glsl::codes::Code;
-use crate::glsl::token::{Punctuator, Symbol, TokenKind};
-use crate::glsl::tree::Place;
+use crate::codes::Code;
+use crate::token::{Punctuator, Symbol, TokenKind};
+use crate::tree::Place;
 
 impl Preprocessor<'_> {
     pub(super) fn define(&mut self, line: &[PpToken], at: Place) -> Result<(), Box<Diagnostic>> {

@@ -1,11 +1,12 @@
 //! The lines that begin with `#`.
 
+use toyproof_diagnostic::Diagnostic;
+
 use super::define::nothing_left;
 use super::{Past, PpToken, Preprocessor};
-use crate::diagnostic::Diagnostic;
-use crate::glsl::codes::Code;
-use crate::glsl::token::TokenKind;
-use crate::glsl::tree::Place;
+use crate::codes::Code;
+use crate::token::TokenKind;
+use crate::tree::Place;
 
 impl Preprocessor<'_> {
     /// Obeys the directive whose `#` has been read, up to and including its newline.

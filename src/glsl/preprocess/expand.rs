@@ -2,9 +2,9 @@
 
 use super::macros::Body;
 use super::{PpToken, Preprocessor};
-use crate::glsl::codes::Code;
-use crate::glsl::token::{Punctuator, Symbol, TokenKind};
-use crate::glsl::tree::Place;
+use crate::codes::Code;
+use crate::token::{Punctuator, Symbol, TokenKind};
+use crate::tree::Place;
 
 /// How many tokens all macros of a file together may produce. Honest shaders stay under 200,000; what doubles with each macro
 /// does not.

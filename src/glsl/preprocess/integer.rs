@@ -1,10 +1,11 @@
 //! The integers that decide conditions (§3.4).
 
+use toyproof_diagnostic::Diagnostic;
+
 use super::{PpToken, Preprocessor};
-use crate::diagnostic::Diagnostic;
-use crate::glsl::codes::Code;
-use crate::glsl::token::{Punctuator, TokenKind};
-use crate::glsl::tree::{BinaryOp, Place, UnaryOp};
+use crate::codes::Code;
+use crate::token::{Punctuator, TokenKind};
+use crate::tree::{BinaryOp, Place, UnaryOp};
 
 impl Preprocessor<'_> {
     /// The integer constant expression that a list begins with, and what follows it.

@@ -1,11 +1,11 @@
 //! From characters to tokens (GLSL ES 3.00.6 §3.1–3.4): line continuation, comments, words, numbers, punctuators.
 
-use crate::diagnostic::Diagnostic;
-use crate::glsl::codes::Code;
-use crate::glsl::token::{Punctuator, TokenKind};
-use crate::glsl::tree::Place;
-use crate::glsl::words::Words;
-use crate::source::{FileId, Span};
+use toyproof_diagnostic::{Diagnostic, FileId, Span};
+
+use crate::codes::Code;
+use crate::token::{Punctuator, TokenKind};
+use crate::tree::Place;
+use crate::words::Words;
 
 /// A token with what only the preprocessor asks about.
 #[derive(Debug, Clone, Copy)]
@@ -20,13 +20,13 @@ pub(super) struct PpToken {
 
 /// A comment `// toyproof: …`.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Remark {
+pub struct Remark {
     /// Where it stands, from its `//` to the end of its line.
-    pub(crate) at: Span,
+    pub at: Span,
     /// Whether nothing but comments stands before it in the file.
-    pub(crate) first: bool,
+    pub first: bool,
     /// Whether nothing else stands on its line.
-    pub(crate) alone: bool,
+    pub alone: bool,
 }
 
 /// Reads one file, token by token. Newlines are tokens; at the end it gives `End` for ever.

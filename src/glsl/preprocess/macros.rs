@@ -3,11 +3,12 @@
 use std::collections::HashMap;
 use std::rc::Rc;
 
+use toyproof_diagnostic::{FileId, Span};
+
 use super::PpToken;
-use crate::glsl::token::{Symbol, TokenKind};
-use crate::glsl::tree::Place;
-use crate::glsl::words::Words;
-use crate::source::{FileId, Span};
+use crate::token::{Symbol, TokenKind};
+use crate::tree::Place;
+use crate::words::Words;
 
 /// A macro.
 #[derive(Debug, Clone)]

@@ -13,17 +13,16 @@ mod macros;
 
 use std::collections::HashMap;
 
+use toyproof_diagnostic::{Deadline, Diagnostic, FileId, Files};
+
 use self::condition::Group;
 use self::expand::Stream;
-pub(crate) use self::lexer::Remark;
+pub use self::lexer::Remark;
 use self::lexer::{Lexer, PpToken};
 use self::macros::Macro;
 use super::codes::{Code, tell};
 use super::token::{Punctuator, Symbol, Token, TokenKind};
 use super::words::Words;
-use crate::deadline::Deadline;
-use crate::diagnostic::Diagnostic;
-use crate::source::{FileId, Files};
 
 /// How long a name may be (WebGL 2, §4.3.1).
 const MAX_NAME: usize = 1024;

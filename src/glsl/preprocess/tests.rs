@@ -1,5 +1,6 @@
+use toyproof_diagnostic::File;
+
 use super::*;
-use crate::source::File;
 
 /// The tokens' texts with blanks between them, or the code of the first diagnostic.
 fn expand(text: &str) -> String {

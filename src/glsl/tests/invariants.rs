@@ -3,10 +3,10 @@
 use std::collections::HashSet;
 
 use super::{MAIN, check_text};
-use crate::glsl::tree::{
+use crate::tree::{
     Block, Condition, ExprId, ExprKind, Item, Label, Place, StatementKind, Tree, Type, VariableId,
 };
-use crate::glsl::{Checked, Options};
+use crate::{Checked, Options};
 
 const TEXT: &str = "
     struct Ray { vec3 o, d; float t[2]; };

@@ -1,7 +1,7 @@
 //! Inputs of any size and depth end in a tree or a diagnostic, soon and on a small stack.
 
 use super::{MAIN, check_text};
-use crate::glsl::{Options, tree};
+use crate::{Options, tree};
 
 /// On a stack of 2 MB, as threads have it.
 fn on_a_small_stack<T: Send>(work: impl FnOnce() -> T + Send) -> T {
@@ -205,19 +205,17 @@ fn a_megabyte_of_one_construct_takes_time_in_proportion() {
             "void mainImage(out vec4 c, in vec2 p) {{ float x = p.x, y = p.y; vec4 v; bool b = x > y; int i; {statements} c = vec4(x); }}"
         );
         let checked = check_text(&text, &Options::default());
-        let checked = checked.unwrap_or_else(|errors| panic!("{name}: {}", errors[0].message));
-        let lowered = crate::glsl::lower_strict(&checked);
-        assert!(lowered.text().contains("mainImage"), "{name}");
+        assert!(checked.is_ok(), "{name}: {}", checked.unwrap_err()[0].message);
     }
 }
 
 #[test]
 fn every_stage_ends_when_its_time_is_over() {
-    use crate::deadline::Deadline;
-    use crate::glsl::check::{Channels, Checker};
-    use crate::glsl::parse::Parser;
-    use crate::glsl::{lower, preprocess, print, warn};
-    use crate::source::{File, Files};
+    use toyproof_diagnostic::{Deadline, File, Files};
+
+    use crate::check::{Channels, Checker};
+    use crate::parse::Parser;
+    use crate::preprocess;
 
     let over = Deadline::after(std::time::Duration::ZERO);
     let in_time = Options::default();
@@ -246,13 +244,4 @@ fn every_stage_ends_when_its_time_is_over() {
     };
     assert!(parse(&in_time) > 0);
     assert_eq!(parse(&late), 0);
-
-    let checked = check_text(&text, &in_time).unwrap();
-    let warned = warn::warn(&files, &checked.tree, checked.main_image, &[], Vec::new(), &over);
-    let codes: Vec<_> = warned.warnings.iter().map(|told| &*told.code).collect();
-    assert_eq!(codes, ["W0017"]);
-    assert!(lower::lower_within(&checked, lower::Passes::all(), &over).is_err());
-    let draft = lower::Draft::new(checked.tree.clone(), checked.main_image);
-    assert!(print::print(&draft, &over).is_err());
-    assert!(print::print(&draft, &in_time.deadline).is_ok());
 }

@@ -4,8 +4,9 @@ mod invariants;
 mod limits;
 mod recovery;
 
+use toyproof_diagnostic::File;
+
 use super::*;
-use crate::source::File;
 
 const MAIN: &str = "void mainImage(out vec4 c, in vec2 f) { c = vec4(0.0); }\n";
 
@@ -409,7 +410,7 @@ fn errors_stand_on_their_line_and_know_their_macro() {
     let file = files.add(File::new("a", text));
     let errors = check(&files, file, &Options::default()).unwrap_err();
     assert_eq!(
-        crate::diagnostic::short(&errors[0], &files),
+        toyproof_diagnostic::short(&errors[0], &files),
         "a:3:14: error[E0200]: `oops` is not declared"
     );
     assert_eq!(files.text(errors[0].related[0].0), "oops");

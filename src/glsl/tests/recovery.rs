@@ -1,9 +1,10 @@
 //! Every mistake of a text is told, and nothing that only follows from one.
 
+use toyproof_diagnostic as diagnostic;
+use toyproof_diagnostic::{File, Files};
+
 use super::{MAIN, check_text};
-use crate::diagnostic;
-use crate::glsl::{Options, check};
-use crate::source::{File, Files};
+use crate::{Options, check};
 
 /// `line: code` of each error, in order.
 fn told(text: &str) -> Vec<String> {

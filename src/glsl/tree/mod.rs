@@ -20,6 +20,7 @@ mod operator;
 mod place;
 mod statement;
 mod types;
+pub mod walk;
 
 use std::collections::HashMap;
 use std::ops::{Index, IndexMut};
@@ -179,8 +180,9 @@ impl<T: Node> IndexMut<Id<T>> for Tree {
 
 #[cfg(test)]
 mod tests {
+    use toyproof_diagnostic::{File, Files, Span};
+
     use super::*;
-    use crate::source::{File, Files, Span};
 
     #[test]
     fn an_array_type_is_made_once_and_named_outside_in() {

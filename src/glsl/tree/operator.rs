@@ -67,7 +67,8 @@ pub enum BinaryOp {
 
 impl BinaryOp {
     /// The operator that says the same with its sides exchanged: `a < b` is `b > a`. Itself for all that are no order.
-    pub(crate) fn mirrored(self) -> Self {
+    #[must_use]
+    pub fn mirrored(self) -> Self {
         match self {
             Self::Less => Self::Greater,
             Self::Greater => Self::Less,

@@ -1,6 +1,6 @@
 //! Where a node stands in the author's text, through macros.
 
-use crate::source::Span;
+use toyproof_diagnostic::Span;
 
 /// Where the author used something, and where its characters stand.
 ///

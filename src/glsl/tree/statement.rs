@@ -2,7 +2,7 @@
 
 use super::{ExprId, Place, StructId, VariableId};
 
-/// Statements in order. Its nesting is bounded by [`MAX_NESTING`](crate::glsl::MAX_NESTING); `else if` chains do not nest.
+/// Statements in order. Its nesting is bounded by [`MAX_NESTING`](crate::MAX_NESTING); `else if` chains do not nest.
 pub type Block = Vec<Statement>;
 
 /// A statement.

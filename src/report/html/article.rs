@@ -1,9 +1,10 @@
 //! All that there is to say of one shader.
 
+use toyproof_verify::compare::{Answer, Pixel, grouped, magnitude};
+
 use super::messages::messages;
 use super::text::Text;
 use super::{Exhibit, verdict};
-use crate::compare::{Answer, Pixel, grouped, magnitude};
 use crate::report::Record;
 
 pub(super) fn article(index: usize, record: &Record, exhibit: &Exhibit) -> String {

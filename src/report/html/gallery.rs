@@ -3,8 +3,7 @@
 use std::collections::HashMap;
 
 use sha2::{Digest, Sha256};
-
-use crate::image::Shown;
+use toyproof_image::Shown;
 
 /// How many bytes of PNGs a page may hold. As text they are a third longer, and the rest of a page for 500 shaders is about 2 MB: so
 /// the whole stays below 20 MB.

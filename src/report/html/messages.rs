@@ -1,7 +1,8 @@
 //! What was said of a shader, in its lines.
 
+use toyproof_diagnostic::Json;
+
 use super::text::Text;
-use crate::diagnostic::Json;
 
 /// How many messages a page has of one shader.
 const SHOWN: usize = 50;
@@ -89,8 +90,9 @@ fn marked(line: &str, column: usize) -> String {
 
 #[cfg(test)]
 mod tests {
+    use toyproof_diagnostic::Severity;
+
     use super::*;
-    use crate::diagnostic::Severity;
 
     fn told(line: usize, column: usize) -> Json {
         Json {

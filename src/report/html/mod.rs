@@ -10,12 +10,12 @@ mod text;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use sha2::{Digest, Sha256};
+use toyproof_image::quantise;
+use toyproof_verify::compare::{IN_BITS, Legend, SEEN_BY_EYE, Verdict};
 
 pub use self::gallery::{BUDGET, Exhibit, Gallery, every};
 use self::text::Text;
 use super::{Report, Rubric, plain, summary};
-use crate::compare::{IN_BITS, SEEN_BY_EYE, Verdict};
-use crate::image::{Legend, quantise};
 
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");

@@ -1,8 +1,9 @@
 //! The table of all shaders, and what chooses its rows.
 
+use toyproof_verify::compare::Answer;
+
 use super::text::Text;
 use super::verdict;
-use crate::compare::Answer;
 use crate::report::{Record, Rubric};
 
 pub(super) fn table(records: &[Record], rubric: Option<&Rubric>) -> String {

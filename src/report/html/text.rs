@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display, Formatter, Write};
 
-use crate::source::printable;
+use toyproof_diagnostic::printable;
 
 /// Shows a value with what means something in HTML spelt out.
 pub(super) struct Text<T>(pub(super) T);

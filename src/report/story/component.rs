@@ -1,10 +1,9 @@
 //! One number of a value, as its type says.
 
 use serde::{Serialize, Serializer};
-
-use crate::eval::Told;
-use crate::explain::digits;
-use crate::glsl::tree::{Scalar, Tree, Type};
+use toyproof_eval::Told;
+use toyproof_glsl::tree::{Scalar, Tree, Type};
+use toyproof_verify::explain::digits;
 
 /// A component.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,8 +2,9 @@
 
 use std::fmt::Write;
 
+use toyproof_verify::compare::grouped;
+
 use super::{Component, Line, Story};
-use crate::compare::grouped;
 
 /// So many steps before and after the parting are shown of a long story, and as many at its beginning and end.
 const CONTEXT: usize = 40;
@@ -170,7 +171,7 @@ impl Writer {
                 |values: &Option<Vec<Component>>| values.as_ref().and_then(|values| values.get(at).copied());
             let distance = match (pair(&line.f32), pair(&line.f64)) {
                 (Some(Component::Float(single)), Some(Component::Float(double))) => {
-                    in_ulps(crate::explain::ulps(single, double))
+                    in_ulps(toyproof_verify::explain::ulps(single, double))
                 }
                 _ => String::new(),
             };

@@ -4,12 +4,12 @@ mod component;
 mod human;
 
 use serde::Serialize;
+use toyproof_diagnostic::{Files, Span};
+use toyproof_eval::{Event, Plot, Told, What};
+use toyproof_glsl::tree::Tree;
+use toyproof_verify::explain::{Explanation, Step};
 
 use self::component::{Component, components, typed};
-use crate::eval::{Event, Plot, Told, What};
-use crate::explain::{Explanation, Step};
-use crate::glsl::tree::Tree;
-use crate::source::{Files, Span};
 
 /// What a pixel does in f32 and in f64, with the author's words and lines.
 #[derive(Debug, Serialize)]

@@ -4,11 +4,10 @@ use std::ops::Range;
 
 use glam::DVec3;
 use toml::Spanned;
+use toyproof_diagnostic::{Diagnostic, FileId, Span};
+use toyproof_image::check_size;
 
 use super::super::{Color, Point, Scene};
-use crate::diagnostic::Diagnostic;
-use crate::image::check_size;
-use crate::source::{FileId, Span};
 
 pub(super) type Pair = Spanned<[f64; 2]>;
 pub(super) type Triple = Spanned<[f64; 3]>;

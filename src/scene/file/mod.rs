@@ -11,13 +11,11 @@ mod tests;
 
 use serde::Deserialize;
 use toml::Spanned;
-
-use super::{Background, Integrator, Light, Model, Object, Scattered, Scene, Shape};
-use crate::diagnostic::{self, Diagnostic};
-use crate::source::{FileId, Files};
+use toyproof_diagnostic::{Diagnostic, FileId, Files};
 
 use self::checks::{Checks, Triple};
 use self::motion::Names;
+use super::{Background, Integrator, Light, Model, Object, Scattered, Scene, Shape, of_toml};
 
 /// Reads a scene.
 ///
@@ -27,7 +25,7 @@ use self::motion::Names;
 pub fn parse(files: &Files, file: FileId) -> Result<Scene, Vec<Diagnostic>> {
     let text = files.get(file).text();
     let document: Document =
-        toml::from_str(text).map_err(|error| vec![diagnostic::of_toml("E0501", &error, files, file)])?;
+        toml::from_str(text).map_err(|error| vec![of_toml("E0501", &error, files, file)])?;
     let mut checks = Checks::new(file);
     let scene = document.check(&mut checks);
     checks.finish(scene)

@@ -6,10 +6,9 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::super::{Object, Point, Quadric, QuadricKind, Scatter, Shape};
-use super::Surface;
 use super::checks::{Checks, Pair, Triple};
-use super::material;
 use super::motion::Names;
+use super::{Surface, material};
 
 /// The most spheres of one scatter.
 const MAX_SCATTER: u64 = 65_536;

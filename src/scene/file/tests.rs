@@ -1,7 +1,7 @@
+use toyproof_diagnostic::{File, short};
+
 use super::super::*;
 use super::*;
-use crate::diagnostic::short;
-use crate::source::File;
 
 fn read(text: &str) -> Result<Scene, Vec<String>> {
     let mut files = Files::default();

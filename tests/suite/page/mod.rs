@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 use serde_json::{Value, json};
-use toyproof::compare::Verdict;
 use toyproof::image::{self, Image, quantise};
 use toyproof::report::{Exhibit, Gallery, Record, Report, Seconds, html};
+use toyproof::verify::compare::Verdict;
 
 use self::devtools::Page;
 use crate::program::toyproof;
@@ -58,7 +58,7 @@ fn report(folder: &Path, rest: &[&str]) -> Vec<Value> {
 }
 
 fn page() -> Option<Page> {
-    let Some(program) = toyproof::browser::find() else {
+    let Some(program) = toyproof::gpu::browser::find() else {
         eprintln!("skipped: no Chromium here");
         return None;
     };

@@ -6,10 +6,10 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+use toyproof::diagnostic::{File, Files};
 use toyproof::image::{self, Image};
 use toyproof::scene::{self, Moment, Sampler, Scene, ToneMap};
-use toyproof::source::{File, Files};
-use toyproof::trace::Tracer;
+use toyproof::tracer::Tracer;
 
 const SIZE: [u32; 2] = [320, 180];
 

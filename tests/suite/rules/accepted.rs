@@ -1,12 +1,12 @@
 //! Who keeps a rule is accepted, and paints what the rule says.
 
-use toyproof::diagnostic::{Diagnostic, short};
+use toyproof::diagnostic::{Diagnostic, File, Files, short};
 use toyproof::eval::{self, Settings};
-use toyproof::glsl::{Checked, Lowered, Options, check, lower};
-use toyproof::gpu::{FloatMode, Worker};
+use toyproof::glsl::{Checked, Options, check};
+use toyproof::gpu::Worker;
 use toyproof::image::Image;
-use toyproof::module::ValidModule;
-use toyproof::source::{File, Files};
+use toyproof::translate::naga_ir::ValidModule;
+use toyproof::translate::{FloatMode, Lowered, lower};
 
 use super::{Expectation, Program, frame, programs};
 

@@ -14,8 +14,7 @@ mod refused;
 
 use std::fs;
 
-use toyproof::frame::Frame;
-use toyproof::image::Image;
+use toyproof::image::{Frame, Image};
 
 /// What is to come of a program.
 #[derive(Debug, Clone, PartialEq, Eq)]

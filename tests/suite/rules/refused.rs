@@ -1,8 +1,7 @@
 //! Who breaks a rule is told on the line where it is broken, and nowhere else.
 
-use toyproof::diagnostic::{Severity, short};
+use toyproof::diagnostic::{File, Files, Severity, short};
 use toyproof::glsl::{Options, check};
-use toyproof::source::{File, Files};
 
 use super::{Expectation, Program, programs};
 

@@ -5,8 +5,8 @@ mod table;
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
-use crate::glsl::tree::{BuiltIn, Sampler, SamplerShape, Scalar, Type};
-use crate::glsl::words::{Word, Words};
+use crate::tree::{BuiltIn, Sampler, SamplerShape, Scalar, Type};
+use crate::words::{Word, Words};
 
 /// A signature that takes some arguments.
 pub(super) struct Match {

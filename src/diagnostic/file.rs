@@ -1,0 +1,205 @@
+//! Named texts and the way from a byte to a line and a column.
+
+use std::ops::Range;
+
+use serde::{Deserialize, Serialize};
+
+use crate::Span;
+use crate::printable::{masked, printable};
+
+/// Names one file of a [`Files`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct FileId(u16);
+
+/// A named text with its lines found.
+#[derive(Debug, Clone)]
+pub struct File {
+    name: String,
+    text: String,
+    /// The text as it is shown to people, where that is another.
+    shown: Option<String>,
+    line_starts: Vec<usize>,
+}
+
+/// A place as people count it: lines and columns from 1, columns in characters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Position {
+    /// Line, from 1.
+    pub line: usize,
+    /// Column in characters, from 1.
+    pub column: usize,
+}
+
+impl File {
+    /// A text under the name that messages give it (a path as the user typed it, or `<stdin>`), in which control characters are escaped.
+    #[must_use]
+    pub fn new(name: impl AsRef<str>, text: impl Into<String>) -> Self {
+        let text = text.into();
+        // Lines end in LF, CR LF, or CR alone (GLSL ES 3.00.6 §3.1).
+        let bytes = text.as_bytes();
+        let is_end = |at: &usize| match bytes[*at] {
+            b'\n' => true,
+            b'\r' => bytes.get(at + 1) != Some(&b'\n'),
+            _ => false,
+        };
+        let line_starts = std::iter::once(0)
+            .chain((0..bytes.len()).filter(is_end).map(|at| at + 1))
+            .collect();
+        Self {
+            name: printable(name.as_ref()).into_owned(),
+            shown: masked(&text),
+            text,
+            line_starts,
+        }
+    }
+
+    /// The name that messages use.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The whole text.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The line and column of a byte; bytes past the end count as the end.
+    #[must_use]
+    pub fn position(&self, byte: usize) -> Position {
+        let mut byte = byte.min(self.text.len());
+        while !self.text.is_char_boundary(byte) {
+            byte -= 1;
+        }
+        let line = self.line_starts.partition_point(|&start| start <= byte);
+        let start = self.line_starts[line - 1];
+        Position {
+            line,
+            column: self.text[start..byte].chars().count() + 1,
+        }
+    }
+
+    /// The length in bytes of the longest line that bytes `start..end` touch.
+    #[must_use]
+    pub fn longest_line(&self, start: u32, end: u32) -> usize {
+        let line = |byte: u32| self.position(byte as usize).line - 1;
+        (line(start)..=line(end))
+            .filter_map(|index| self.line_range(index))
+            .map(|range| range.len())
+            .max()
+            .unwrap_or(0)
+    }
+
+    fn line_range(&self, index: usize) -> Option<Range<usize>> {
+        let start = *self.line_starts.get(index)?;
+        let end = self
+            .line_starts
+            .get(index + 1)
+            .copied()
+            .unwrap_or(self.text.len());
+        Some(start..end)
+    }
+}
+
+/// The texts that one command works on.
+#[derive(Debug, Clone, Default)]
+pub struct Files {
+    files: Vec<File>,
+}
+
+impl Files {
+    /// Adds a text and names it.
+    ///
+    /// # Panics
+    /// On the 65,537th file: each shader or scene that is judged has a `Files` of its own.
+    pub fn add(&mut self, file: File) -> FileId {
+        let id = u16::try_from(self.files.len()).expect("fewer than 65,537 files in one shader");
+        self.files.push(file);
+        FileId(id)
+    }
+
+    /// The file of that name.
+    #[must_use]
+    pub fn get(&self, id: FileId) -> &File {
+        &self.files[usize::from(id.0)]
+    }
+
+    /// Where a span begins.
+    #[must_use]
+    pub fn position(&self, span: Span) -> Position {
+        self.get(span.file).position(span.start as usize)
+    }
+
+    /// The text that a span covers.
+    #[must_use]
+    pub fn text(&self, span: Span) -> &str {
+        &self.get(span.file).text()[span.start as usize..span.end as usize]
+    }
+}
+
+/// What codespan-reporting asks of a set of files.
+impl<'a> codespan_reporting::files::Files<'a> for Files {
+    type FileId = FileId;
+    type Name = &'a str;
+    type Source = &'a str;
+
+    fn name(&'a self, id: FileId) -> Result<&'a str, codespan_reporting::files::Error> {
+        Ok(self.get(id).name())
+    }
+
+    fn source(&'a self, id: FileId) -> Result<&'a str, codespan_reporting::files::Error> {
+        let file = self.get(id);
+        Ok(file.shown.as_deref().unwrap_or(&file.text))
+    }
+
+    fn line_index(&'a self, id: FileId, byte: usize) -> Result<usize, codespan_reporting::files::Error> {
+        Ok(self.get(id).position(byte).line - 1)
+    }
+
+    fn line_range(
+        &'a self,
+        id: FileId,
+        index: usize,
+    ) -> Result<Range<usize>, codespan_reporting::files::Error> {
+        let file = self.get(id);
+        file.line_range(index)
+            .ok_or(codespan_reporting::files::Error::LineTooLarge {
+                given: index,
+                max: file.line_starts.len() - 1,
+            })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_and_columns_count_from_one_in_characters() {
+        let file = File::new("a", "ab\né€x\n");
+        let at = |needle: &str| file.position(file.text().find(needle).unwrap());
+        assert_eq!(at("a"), Position { line: 1, column: 1 });
+        assert_eq!(at("\n"), Position { line: 1, column: 3 });
+        assert_eq!(at("€"), Position { line: 2, column: 2 });
+        assert_eq!(at("x"), Position { line: 2, column: 3 });
+        assert_eq!(file.position(usize::MAX), Position { line: 3, column: 1 });
+    }
+
+    #[test]
+    fn lines_end_as_on_any_system() {
+        let file = File::new("a", "a\r\nb\rc\n\rd");
+        let lines: Vec<_> = ["a", "b", "c", "d"]
+            .iter()
+            .map(|needle| file.position(file.text().find(needle).unwrap()))
+            .map(|place| (place.line, place.column))
+            .collect();
+        assert_eq!(lines, [(1, 1), (2, 1), (3, 1), (5, 1)]);
+    }
+
+    #[test]
+    fn a_byte_inside_a_character_counts_as_that_character() {
+        let file = File::new("a", "€");
+        assert_eq!(file.position(2), Position { line: 1, column: 1 });
+    }
+}

@@ -1,0 +1,275 @@
+//! Expressions: their components, in order. Chains of thousands of operators are walked without recursion.
+
+use toyproof_glsl::tree::{BinaryOp, ExprId, ExprKind, Scalar, StepOp, Type};
+
+use super::place::Home;
+use super::{Builder, Result, layout};
+use crate::ir::function::{NONE, Node, Value};
+use crate::ir::operation::Operation;
+use crate::trace::story::What;
+
+/// The most nodes of a side of `?:`, `&&` or `||` that is computed for all pixels rather than jumped over.
+const SMALL: usize = 12;
+
+impl Builder<'_> {
+    /// The components of an expression's value; none of `void`.
+    pub(super) fn expression(&mut self, root: ExprId) -> Result<Vec<Value>> {
+        self.deeper(|builder| builder.chain(root))
+    }
+
+    fn chain(&mut self, root: ExprId) -> Result<Vec<Value>> {
+        self.bounded()?;
+        // What each expression of a chain begins with, down to one that begins with itself.
+        let mut chain = vec![root];
+        while let Some(first) = chain.last().and_then(|&last| self.first_operand(last)) {
+            chain.push(first);
+        }
+        let mut values = match chain.pop() {
+            Some(leaf) => {
+                let values = self.leaf(leaf)?;
+                self.tell_part(leaf, &values);
+                values
+            }
+            None => Vec::new(),
+        };
+        while let Some(expr) = chain.pop() {
+            values = self.go_on(expr, values)?;
+            self.tell_part(expr, &values);
+        }
+        Ok(values)
+    }
+
+    /// The one component of a scalar.
+    pub(super) fn scalar(&mut self, expr: ExprId) -> Result<Value> {
+        let values = self.expression(expr)?;
+        Ok(values.first().copied().unwrap_or_else(|| self.word(0)))
+    }
+
+    /// The value of a `bool` that decides what runs.
+    pub(super) fn condition(&mut self, expr: ExprId) -> Result<Value> {
+        let value = self.scalar(expr)?;
+        self.tell(What::Branch, self.at(expr), Type::BOOL, &[value]);
+        Ok(value)
+    }
+
+    /// The operand that is evaluated first and then no more than its value is asked for.
+    fn first_operand(&self, expr: ExprId) -> Option<ExprId> {
+        match self.tree[expr].kind {
+            ExprKind::Binary { left: first, .. } | ExprKind::Sequence { first, .. } => Some(first),
+            ExprKind::Swizzle { vector: base, .. }
+            | ExprKind::Member { structure: base, .. }
+            | ExprKind::Index { base, .. }
+                if !self.is_in_cells(expr) =>
+            {
+                Some(base)
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether it is a variable in cells, or a part of one.
+    fn is_in_cells(&self, expr: ExprId) -> bool {
+        let root = self.tree.root_variable(expr);
+        root.is_some_and(|variable| matches!(self.homes.get(&variable), Some(Home::Cells(_))))
+    }
+
+    fn leaf(&mut self, expr: ExprId) -> Result<Vec<Value>> {
+        let tree = self.tree;
+        Ok(match &tree[expr].kind {
+            ExprKind::Literal(literal) => vec![self.literal(literal.value)],
+            ExprKind::Variable(variable) => match self.home(*variable) {
+                Home::Cells(cells) => {
+                    let own: Vec<u32> = (cells.first..cells.first + cells.count).collect();
+                    self.note_read(tree[expr].ty, &own, None);
+                    self.load_all(cells)
+                }
+                Home::Values(values) => values,
+                Home::Channel(_) => Vec::new(),
+            },
+            ExprKind::Swizzle { .. } | ExprKind::Member { .. } | ExprKind::Index { .. } => {
+                match self.target(expr)? {
+                    Some(target) => self.read(&target),
+                    None => Vec::new(),
+                }
+            }
+            &ExprKind::Unary { op, operand } => {
+                let values = self.expression(operand)?;
+                self.unary_operator(op, tree[operand].ty, &values)
+            }
+            &ExprKind::Assign { op, target, value } => self.assign(op, target, value, expr)?,
+            &ExprKind::Step { op, postfix, target } => self.step(op, postfix, target)?,
+            &ExprKind::Conditional { condition, yes, no } => {
+                let condition = self.condition(condition)?;
+                let ty = tree[expr].ty;
+                self.choose(
+                    condition,
+                    ty,
+                    |builder| builder.expression(yes),
+                    |builder| builder.expression(no),
+                )?
+            }
+            ExprKind::Call { function, arguments } => self.call(*function, arguments, tree[expr].at)?,
+            ExprKind::BuiltIn { function, arguments } => self.built_in(*function, arguments, expr)?,
+            ExprKind::Construct {
+                constructor,
+                arguments,
+            } => self.construct(*constructor, tree[expr].ty, arguments)?,
+            &ExprKind::Length { array } => {
+                let (_, count) = layout::element(tree, tree[array].ty);
+                vec![self.word(count)]
+            }
+            ExprKind::Binary { .. } | ExprKind::Sequence { .. } => Vec::new(),
+        })
+    }
+
+    /// The value of an expression whose first operand has those components.
+    fn go_on(&mut self, expr: ExprId, first: Vec<Value>) -> Result<Vec<Value>> {
+        let tree = self.tree;
+        match tree[expr].kind {
+            ExprKind::Sequence { second, .. } => self.expression(second),
+            ExprKind::Binary { op, right, .. } if matches!(op, BinaryOp::And | BinaryOp::Or) => {
+                let left = first.first().copied().unwrap_or(NONE);
+                let (yes, no) = (self.truth(true), self.truth(false));
+                if op == BinaryOp::And {
+                    self.choose(
+                        left,
+                        Type::BOOL,
+                        |builder| builder.expression(right),
+                        |_| Ok(vec![no]),
+                    )
+                } else {
+                    self.choose(
+                        left,
+                        Type::BOOL,
+                        |_| Ok(vec![yes]),
+                        |builder| builder.expression(right),
+                    )
+                }
+            }
+            ExprKind::Binary { op, left, right } => {
+                let second = self.expression(right)?;
+                let types = (tree[left].ty, tree[right].ty);
+                Ok(self.binary_operator(op, types, &first, &second, tree[expr].at))
+            }
+            ExprKind::Swizzle { components, .. } => {
+                let chosen = components.components().iter();
+                Ok(chosen.map(|&at| first[usize::from(at)]).collect())
+            }
+            ExprKind::Member { structure, member } => {
+                let Type::Struct(id) = tree[structure].ty else {
+                    return Ok(first);
+                };
+                let start = layout::offset(tree, id, member);
+                Ok(first[start..start + layout::size(tree, tree[expr].ty)].to_vec())
+            }
+            ExprKind::Index { base, index } => self.pick(&first, tree[base].ty, index),
+            _ => Ok(first),
+        }
+    }
+
+    /// One or the other, of which only the chosen one is evaluated, unless nothing tells that both were.
+    fn choose(
+        &mut self,
+        condition: Value,
+        ty: Type,
+        yes: impl FnOnce(&mut Self) -> Result<Vec<Value>>,
+        no: impl FnOnce(&mut Self) -> Result<Vec<Value>>,
+    ) -> Result<Vec<Value>> {
+        let (mut yes_values, mut no_values) = (Vec::new(), Vec::new());
+        let mut yes_block = self.inner(|builder| {
+            yes_values = yes(builder)?;
+            Ok(())
+        })?;
+        let mut no_block = self.inner(|builder| {
+            no_values = no(builder)?;
+            Ok(())
+        })?;
+        let scalars = self.tree.scalars(ty);
+
+        let is_silent =
+            |block: &[Node]| block.len() <= SMALL && block.iter().all(|node| matches!(node, Node::Let(_)));
+        if is_silent(&yes_block) && is_silent(&no_block) {
+            for node in yes_block.into_iter().chain(no_block) {
+                self.push(node);
+            }
+            let pairs = yes_values.into_iter().zip(no_values).zip(scalars);
+            return Ok(pairs
+                .map(|((yes, no), scalar)| match scalar {
+                    _ if yes == no => yes,
+                    Scalar::Bool if self.truth(false) == no => self.binary(Operation::And, condition, yes),
+                    Scalar::Bool if self.truth(true) == yes => self.binary(Operation::Or, condition, no),
+                    _ => self.select(condition, yes, no, layout::kind(scalar)),
+                })
+                .collect());
+        }
+        let cells = self.allocate_type(ty)?;
+        // Told of on every way to here, so that the cells begin where they are used.
+        let zeros = self.zeros(ty);
+        self.store_all(cells, &zeros);
+        for (block, values) in [(&mut yes_block, &yes_values), (&mut no_block, &no_values)] {
+            let outer = std::mem::replace(&mut self.draft.borrow_mut().block, std::mem::take(block));
+            self.store_all(cells, values);
+            *block = std::mem::replace(&mut self.draft.borrow_mut().block, outer);
+        }
+        self.push(Node::If {
+            condition,
+            yes: yes_block,
+            no: no_block,
+        });
+        Ok(self.load_all(cells))
+    }
+
+    /// Evaluates the indices of the target, then the value, then reads the target, as WebGL2 does.
+    fn assign(
+        &mut self,
+        op: Option<BinaryOp>,
+        target: ExprId,
+        value: ExprId,
+        whole: ExprId,
+    ) -> Result<Vec<Value>> {
+        let types = (self.ty(target), self.ty(value));
+        let Some(place) = self.target(target)? else {
+            return self.expression(value);
+        };
+        let mut values = self.expression(value)?;
+        if let Some(op) = op {
+            let old = self.read(&place);
+            values = self.binary_operator(op, types, &old, &values, self.at(whole));
+        }
+        let what = What::Stored(self.at(target));
+        self.tell(what, self.at(whole), types.0, &values);
+        self.write(&place, &values);
+        Ok(values)
+    }
+
+    fn step(&mut self, op: StepOp, postfix: bool, target: ExprId) -> Result<Vec<Value>> {
+        let ty = self.ty(target);
+        let Some(place) = self.target(target)? else {
+            return self.expression(target);
+        };
+        let old = self.read(&place);
+        let float = ty.scalar() == Some(Scalar::Float);
+        let one = if float { self.float(1.0) } else { self.word(1) };
+        let operation = match (op, float) {
+            (StepOp::Increment, true) => Operation::Add,
+            (StepOp::Decrement, true) => Operation::Sub,
+            (StepOp::Increment, false) => Operation::AddWord,
+            (StepOp::Decrement, false) => Operation::SubWord,
+        };
+        let new: Vec<Value> = old.iter().map(|&old| self.binary(operation, old, one)).collect();
+        let at = self.at(target);
+        self.tell(What::Stored(at), at, ty, &new);
+        self.write(&place, &new);
+        Ok(if postfix { old } else { new })
+    }
+
+    fn literal(&self, value: toyproof_glsl::tree::Value) -> Value {
+        use toyproof_glsl::tree::Value as Literal;
+        match value {
+            Literal::Bool(value) => self.truth(value),
+            Literal::Int(value) => self.word(value.cast_unsigned()),
+            Literal::Uint(value) => self.word(value),
+            Literal::Float(value) => self.float(value),
+        }
+    }
+}

@@ -1,0 +1,345 @@
+//! Code for one number type and frame: each step becomes an instruction with the function that does it.
+
+use toyproof_glsl::tree::Input;
+use toyproof_image::Frame;
+
+use crate::batch::LANES;
+use crate::input;
+use crate::ir::function::{Lookup, NONE, Origin, Value};
+use crate::ir::operation::Kind;
+use crate::lower::linearize::Step;
+use crate::lower::regalloc::Home;
+use crate::number::Number;
+use crate::observe::Predicate;
+use crate::ops::{self, Instruction, Level};
+use crate::program::Compiled;
+
+/// Code for one number type and frame.
+#[derive(Debug)]
+pub struct Prepared<N: Number> {
+    pub(crate) code: Vec<Instruction<N>>,
+    /// What scalars begin with; the last of them are computed by `prologue`.
+    pub(crate) floats: Vec<N>,
+    pub(crate) words: Vec<u32>,
+    pub(crate) prologue: Vec<Instruction<N>>,
+    /// How many rows there are.
+    pub(crate) float_rows: usize,
+    pub(crate) word_rows: usize,
+    pub(crate) masks: usize,
+    /// Chunks in a row.
+    pub(crate) width: usize,
+    /// Red, green, blue.
+    pub(crate) colour: [Home; 3],
+    pub(crate) discarded: Home,
+    /// `gl_FragCoord`, where it is asked for.
+    pub(crate) coordinates: [Option<u32>; 2],
+}
+
+/// A row takes this many chunks, or fewer where rows are many.
+const MAX_WIDTH: usize = 16;
+
+/// All rows of a batch should stay in a processor's second cache.
+const CACHE_BYTES: usize = 768 << 10;
+
+/// Rows that lookups take their coordinates from, where those are scalars.
+const SPARE: u32 = 2;
+
+impl Compiled {
+    /// Code for a frame in a number type.
+    pub(crate) fn prepare<N: Number>(&self, frame: &Frame) -> Prepared<N> {
+        let (flow, homes) = (&self.flow, &self.homes);
+        let rows = homes.rows;
+        let row_bytes = rows.floats as usize * size_of::<N>() + rows.words as usize * size_of::<u32>();
+        let mut width = MAX_WIDTH;
+        while width > 2 && row_bytes * width * LANES > CACHE_BYTES {
+            width /= 2;
+        }
+        let mut writer = Writer {
+            compiled: self,
+            level: Level::detect(),
+            width: width as u32,
+            code: Vec::new(),
+            mask: 0,
+        };
+        for &value in &self.flat.constants {
+            writer.compute(value);
+        }
+        let prologue = std::mem::take(&mut writer.code);
+        let code = writer.steps();
+        let mut floats = vec![N::default(); homes.scalars.floats as usize];
+        let mut words = vec![0; homes.scalars.words as usize];
+        let mut coordinates = [None; 2];
+        for (at, origin) in flow.origins.iter().enumerate() {
+            let home = homes.value(Value(at as u32));
+            match (*origin, home) {
+                (Origin::Float(bits), Some(Home::Scalar(to))) => {
+                    floats[to as usize] = N::from_f64(f64::from_bits(bits));
+                }
+                (Origin::Word(word), Some(Home::Scalar(to))) => words[to as usize] = word,
+                (Origin::Input(Input::Frame, _), Some(Home::Scalar(to))) => {
+                    words[to as usize] = input::word(frame);
+                }
+                (Origin::Input(input, component), Some(Home::Scalar(to))) => {
+                    floats[to as usize] = input::float(frame, input, component);
+                }
+                (Origin::FragCoord(axis), Some(Home::Row(row))) => {
+                    coordinates[axis as usize] = Some(row * width as u32);
+                }
+                _ => {}
+            }
+        }
+        let place = |value| match homes.value(value) {
+            Some(Home::Row(row)) => Home::Row(row * width as u32),
+            Some(home) => home,
+            None => Home::Scalar(0),
+        };
+        let [red, green, blue, discarded] = flow.output;
+        Prepared {
+            code,
+            floats,
+            words,
+            prologue,
+            float_rows: (rows.floats + SPARE) as usize,
+            word_rows: (rows.words + SPARE) as usize,
+            masks: usize::from(self.flat.masks),
+            width,
+            colour: [red, green, blue].map(place),
+            discarded: place(discarded),
+            coordinates,
+        }
+    }
+}
+
+/// Writes instructions.
+struct Writer<'a, N: Number> {
+    compiled: &'a Compiled,
+    level: Level,
+    width: u32,
+    code: Vec<Instruction<N>>,
+    mask: u32,
+}
+
+impl<N: Number> Writer<'_, N> {
+    /// A home as instructions name it, and whether it is a row.
+    fn place(&self, home: Option<Home>) -> (u32, bool) {
+        match home {
+            Some(Home::Row(row)) => (row * self.width, true),
+            Some(Home::Scalar(scalar)) => (scalar, false),
+            // Of values that nobody computes.
+            None => (0, false),
+        }
+    }
+
+    fn value(&self, value: Value) -> (u32, bool) {
+        self.place(self.compiled.homes.value(value))
+    }
+
+    fn push(&mut self, run: ops::Handler<N>, out: u32, operands: [u32; 3], to: u32) {
+        let mask = self.mask;
+        self.code.push(Instruction {
+            run,
+            out,
+            operands,
+            mask,
+            to,
+        });
+    }
+
+    fn steps(&mut self) -> Vec<Instruction<N>> {
+        let flat = &self.compiled.flat;
+        let mut positions = Vec::with_capacity(flat.steps.len() + 1);
+        for (at, (step, mask)) in flat.steps.iter().enumerate() {
+            positions.push(self.code.len() as u32);
+            self.mask = u32::from(mask.0);
+            if !self.compiled.homes.idle[at] {
+                self.step(step);
+            }
+        }
+        positions.push(self.code.len() as u32);
+        let mut code = std::mem::take(&mut self.code);
+        for (at, (step, _)) in flat.steps.iter().enumerate() {
+            if let Step::Split { empty: to, .. }
+            | Step::Remove { empty: to, .. }
+            | Step::JumpIfEmpty(to)
+            | Step::Jump(to)
+            | Step::JumpIf { to, .. } = step
+            {
+                code[positions[at] as usize].to = positions[*to as usize];
+            }
+        }
+        code
+    }
+
+    fn step(&mut self, step: &Step) {
+        match *step {
+            Step::Compute(value) => self.compute(value),
+            Step::Store { cell, value } => {
+                let kind = self.compiled.flow.cells[cell.0 as usize];
+                let (to, to_row) = self.place(self.compiled.homes.cell(cell));
+                let (from, from_row) = self.value(value);
+                let run = if to_row && self.compiled.shared[cell.0 as usize] {
+                    ops::store(self.level, kind, from_row)
+                } else {
+                    ops::copy(self.level, kind, from_row, to_row)
+                };
+                self.push(run, to, [from, 0, 0], 0);
+            }
+            Step::StoreAt {
+                cells,
+                offset,
+                index,
+                value,
+            } => {
+                let kind = self.compiled.flow.kind(value);
+                let (index, index_is_row) = self.value(index);
+                let (from, value_is_row) = self.value(value);
+                let (first, cells_are_rows) = self.indexed(cells, offset);
+                let run = ops::store_at(self.level, kind, cells_are_rows, index_is_row, value_is_row);
+                self.push(run, from, [index, first, cells.count - 1 - offset], 0);
+            }
+            Step::Split {
+                condition,
+                yes,
+                no,
+                when,
+                ..
+            } => {
+                let (condition, _) = self.value(condition);
+                let run = ops::split(self.level, when, yes != no);
+                self.push(run, 0, [condition, yes.0.into(), no.0.into()], 0);
+            }
+            Step::Copy { to } => {
+                let run = ops::copy_mask(self.level);
+                self.push(run, 0, [to.0.into(), 0, 0], 0);
+            }
+            Step::Remove {
+                condition,
+                masks: (_, outer),
+                ..
+            } => {
+                let word = condition.map_or(0, |(condition, _)| self.value(condition).0);
+                let run = ops::remove(self.level, condition.map(|(_, when)| when));
+                self.push(run, 0, [word, outer.0.into(), 0], 0);
+            }
+            Step::JumpIfEmpty(_) => self.push(ops::jump_if_empty(), 0, [0; 3], 0),
+            Step::Jump(_) => self.push(ops::jump(), 0, [0; 3], 0),
+            Step::JumpIf { condition, when, .. } => {
+                let (condition, _) = self.value(condition);
+                self.push(ops::jump_if(when), 0, [condition, 0, 0], 0);
+            }
+            Step::Iterate(id) => {
+                let run = ops::iterate(self.level);
+                self.push(run, 0, [id.0, 0, 0], 0);
+            }
+            Step::Check {
+                predicate,
+                values,
+                site,
+            } => self.check(predicate, values, site.0),
+            Step::Tell {
+                event, value: NONE, ..
+            } => self.push(ops::mention(), event, [0; 3], 0),
+            Step::Tell {
+                event,
+                component,
+                value,
+            } => {
+                let (from, row) = self.value(value);
+                let run = ops::tell(self.compiled.flow.kind(value), row);
+                self.push(run, event, [from, 0, 0], component);
+            }
+        }
+    }
+
+    fn check(&mut self, predicate: Predicate, [a, b]: [Value; 2], site: u32) {
+        let limit = match predicate {
+            Predicate::From(limit) => limit,
+            _ => 0,
+        };
+        let (mut first, mut second) = ((0, false), (0, false));
+        if a != NONE {
+            first = self.value(a);
+            second = if b == NONE { first } else { self.value(b) };
+        }
+        let run = ops::check(self.level, predicate, [first.1, second.1]);
+        self.push(run, site, [first.0, second.0, 0], limit);
+    }
+
+    /// The first row or scalar that an index is added to, in rows; and whether it is a row.
+    fn indexed(&self, cells: crate::ir::function::Cells, offset: u32) -> (u32, bool) {
+        match self.compiled.homes.cell(crate::ir::function::Cell(cells.first)) {
+            Some(Home::Row(row)) => (row + offset, true),
+            Some(Home::Scalar(scalar)) => (scalar + offset, false),
+            None => (0, false),
+        }
+    }
+
+    fn compute(&mut self, value: Value) {
+        let flow = &self.compiled.flow;
+        let (out, out_row) = self.value(value);
+        match flow.origin(value) {
+            Origin::Operation(operation, operands) => {
+                let (mut places, mut rows) = ([0; 3], [false; 3]);
+                let count = operation.operands().len();
+                for (at, &operand) in operands.iter().enumerate().take(count) {
+                    (places[at], rows[at]) = self.value(operand);
+                }
+                let run = ops::compute(self.level, operation, rows);
+                self.push(run, out, places, 0);
+            }
+            Origin::Load(cell) => {
+                let kind = flow.cells[cell.0 as usize];
+                let (from, from_row) = self.place(self.compiled.homes.cell(cell));
+                let run = ops::copy(self.level, kind, from_row, out_row);
+                self.push(run, out, [from, 0, 0], 0);
+            }
+            Origin::LoadAt {
+                cells,
+                offset,
+                index,
+                kind,
+            } => {
+                let (index, index_is_row) = self.value(index);
+                let (first, cells_are_rows) = self.indexed(cells, offset);
+                let run = ops::load_at(self.level, kind, cells_are_rows, index_is_row);
+                self.push(run, out, [index, first, cells.count - 1 - offset], 0);
+            }
+            Origin::Texel {
+                channel,
+                lookup,
+                component,
+                at,
+            } => {
+                let kind = match lookup {
+                    Lookup::Filtered { .. } => Kind::Float,
+                    Lookup::Fetched => Kind::Word,
+                };
+                let rows = self.compiled.homes.rows;
+                let spare = match kind {
+                    Kind::Float => rows.floats,
+                    Kind::Word => rows.words,
+                };
+                let mut places = [0; 2];
+                for (axis, &value) in at.iter().enumerate() {
+                    let (place, is_row) = self.value(value);
+                    places[axis] = if is_row {
+                        place
+                    } else {
+                        let to = (spare + axis as u32) * self.width;
+                        let run = ops::copy(self.level, kind, false, true);
+                        self.push(run, to, [place, 0, 0], 0);
+                        to
+                    };
+                }
+                let offset = match lookup {
+                    Lookup::Filtered { offset: [x, y] } => x as u16 as u32 | (y as u16 as u32) << 16,
+                    Lookup::Fetched => 0,
+                };
+                let which = u32::from(channel) * 4 + u32::from(component);
+                let run = ops::texel(kind == Kind::Float);
+                self.push(run, out, [places[0], places[1], which], offset);
+            }
+            Origin::Float(_) | Origin::Word(_) | Origin::Input(..) | Origin::FragCoord(_) => {}
+        }
+    }
+}

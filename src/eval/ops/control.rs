@@ -1,0 +1,254 @@
+//! Masks and jumps.
+
+use super::{Handler, Instruction, Level, Run, for_each_chunk, handler};
+use crate::batch::{Batch, FUEL, Here, LANES, Stop, any};
+use crate::number::Number;
+
+/// Divides the pixels that are here by a word: those whose bits are all set go to one mask, the others to another. Operands: the word, the
+/// two masks.
+struct Split<const WHEN: bool>;
+
+impl<N: Number, const WHEN: bool> Run<N> for Split<WHEN> {
+    #[inline(always)]
+    fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
+        let [word, yes, no] = instruction.operands;
+        let condition = batch.word_row(word);
+        let from = batch.mask_row(instruction.mask);
+        let (yes_row, no_row) = (batch.mask_row(yes), batch.mask_row(no));
+        let here = batch.here[instruction.mask as usize].get();
+        // Of different sizes, or LLVM takes both tests apart to do them at once, which takes three times as long.
+        let (mut any_chosen, mut any_other) = (0_u32, 0_u64);
+        for_each_chunk!(batch, instruction.mask, chunk => {
+            let (condition, from) = (condition[chunk].get(), from[chunk].get());
+            let (mut chosen, mut others) = ([0; LANES], [0; LANES]);
+            for lane in 0..LANES {
+                chosen[lane] = from[lane] & if WHEN { condition[lane] } else { !condition[lane] };
+                others[lane] = from[lane] ^ chosen[lane];
+            }
+            any_chosen |= u32::from(any(&chosen)) << chunk;
+            any_other |= u64::from(any(&others)) << chunk;
+            no_row[chunk].set(others);
+            yes_row[chunk].set(chosen);
+        });
+        let no_here = Here {
+            chunks: any_other as u32,
+            all: here.all && any_chosen == 0,
+        };
+        let yes_here = Here {
+            chunks: any_chosen,
+            all: here.all && any_other == 0,
+        };
+        batch.here[no as usize].set(no_here);
+        batch.here[yes as usize].set(yes_here);
+        if yes_here.chunks == 0 {
+            instruction.to as usize
+        } else {
+            at + 1
+        }
+    }
+}
+
+/// Puts the pixels that are here and whose bits of a word are all set, or none, into another mask. Operands: the word, the mask.
+struct Choose<const WHEN: bool>;
+
+impl<N: Number, const WHEN: bool> Run<N> for Choose<WHEN> {
+    #[inline(always)]
+    fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
+        let [word, to, _] = instruction.operands;
+        let condition = batch.word_row(word);
+        let (from, to_row) = (batch.mask_row(instruction.mask), batch.mask_row(to));
+        let (mut chunks, mut every) = (0_u32, [u32::MAX; LANES]);
+        for_each_chunk!(batch, instruction.mask, chunk => {
+            let (condition, from) = (condition[chunk].get(), from[chunk].get());
+            let mut chosen = [0; LANES];
+            for lane in 0..LANES {
+                chosen[lane] = from[lane] & if WHEN { condition[lane] } else { !condition[lane] };
+                every[lane] &= chosen[lane];
+            }
+            chunks |= u32::from(any(&chosen)) << chunk;
+            to_row[chunk].set(chosen);
+        });
+        let all = batch.here[instruction.mask as usize].get().all && every == [u32::MAX; LANES];
+        batch.here[to as usize].set(Here { chunks, all });
+        if chunks == 0 {
+            instruction.to as usize
+        } else {
+            at + 1
+        }
+    }
+}
+
+/// The handler that divides; `when` is the condition of the first mask, `both` whether there are two.
+pub(crate) fn split<N: Number>(level: Level, when: bool, both: bool) -> Handler<N> {
+    match (when, both) {
+        (true, true) => handler::<N, Split<true>>(level),
+        (false, true) => handler::<N, Split<false>>(level),
+        (true, false) => handler::<N, Choose<true>>(level),
+        (false, false) => handler::<N, Choose<false>>(level),
+    }
+}
+
+/// The pixels that are here, in another mask: operand 0.
+struct CopyMask;
+
+impl<N: Number> Run<N> for CopyMask {
+    #[inline(always)]
+    fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
+        let to = instruction.operands[0];
+        let (from_row, to_row) = (batch.mask_row(instruction.mask), batch.mask_row(to));
+        for_each_chunk!(batch, instruction.mask, chunk => {
+            to_row[chunk].set(from_row[chunk].get());
+        });
+        batch.here[to as usize].set(batch.here[instruction.mask as usize].get());
+        at + 1
+    }
+}
+
+pub(crate) fn copy_mask<N: Number>(level: Level) -> Handler<N> {
+    handler::<N, CopyMask>(level)
+}
+
+/// Takes pixels that are here out of this mask and those before it, down to operand 1: all, or those for which the word of
+/// operand 0 is all bits (1) or none (0).
+struct Remove<const WHICH: u8>;
+
+const ALL: u8 = 2;
+
+impl<N: Number, const WHICH: u8> Run<N> for Remove<WHICH> {
+    #[inline(always)]
+    fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
+        let [word, outer, _] = instruction.operands;
+        let condition = (WHICH != ALL).then(|| batch.word_row(word));
+        let inner = batch.mask_row(instruction.mask);
+        for_each_chunk!(batch, instruction.mask, chunk => {
+            let mut gone = inner[chunk].get();
+            if let Some(condition) = condition {
+                let condition = condition[chunk].get();
+                for lane in 0..LANES {
+                    gone[lane] &= if WHICH == 1 {
+                        condition[lane]
+                    } else {
+                        !condition[lane]
+                    };
+                }
+            }
+            if any(&gone) {
+                for mask in outer..=instruction.mask {
+                    batch.take_out(mask, chunk, &gone);
+                }
+            }
+        });
+        if batch.here[instruction.mask as usize].get().chunks == 0 {
+            instruction.to as usize
+        } else {
+            at + 1
+        }
+    }
+}
+
+/// The handler that takes pixels out of masks.
+pub(crate) fn remove<N: Number>(level: Level, when: Option<bool>) -> Handler<N> {
+    match when {
+        None => handler::<N, Remove<ALL>>(level),
+        Some(true) => handler::<N, Remove<1>>(level),
+        Some(false) => handler::<N, Remove<0>>(level),
+    }
+}
+
+struct JumpIfEmpty;
+
+impl<N: Number> Run<N> for JumpIfEmpty {
+    #[inline(always)]
+    fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
+        if batch.here[instruction.mask as usize].get().chunks == 0 {
+            instruction.to as usize
+        } else {
+            at + 1
+        }
+    }
+}
+
+pub(crate) fn jump_if_empty<N: Number>() -> Handler<N> {
+    handler::<N, JumpIfEmpty>(Level::Base)
+}
+
+struct Jump;
+
+impl<N: Number> Run<N> for Jump {
+    #[inline(always)]
+    fn run(_: &Batch<'_, N>, instruction: &Instruction<N>, _: usize) -> usize {
+        instruction.to as usize
+    }
+}
+
+pub(crate) fn jump<N: Number>() -> Handler<N> {
+    handler::<N, Jump>(Level::Base)
+}
+
+/// Jumps if a scalar word is all bits, or none.
+struct JumpIf<const WHEN: bool>;
+
+impl<N: Number, const WHEN: bool> Run<N> for JumpIf<WHEN> {
+    #[inline(always)]
+    fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
+        let condition = batch.word_scalars[instruction.operands[0] as usize].get();
+        if (condition != 0) == WHEN {
+            instruction.to as usize
+        } else {
+            at + 1
+        }
+    }
+}
+
+pub(crate) fn jump_if<N: Number>(when: bool) -> Handler<N> {
+    if when {
+        handler::<N, JumpIf<true>>(Level::Base)
+    } else {
+        handler::<N, JumpIf<false>>(Level::Base)
+    }
+}
+
+/// One more round of the loop of operand 0, for the pixels that are here; goes to the end of all when somebody stops the run.
+struct Iterate;
+
+impl<N: Number> Run<N> for Iterate {
+    #[inline(always)]
+    fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
+        if batch.here[instruction.mask as usize].get().all {
+            batch.rounds.set(batch.rounds.get() + 1);
+        } else {
+            let mask = batch.mask_row(instruction.mask);
+            for_each_chunk!(batch, instruction.mask, chunk => {
+                let (mask, mut rounds) = (mask[chunk].get(), batch.own_rounds[chunk].get());
+                for lane in 0..LANES {
+                    rounds[lane] = rounds[lane].wrapping_sub(mask[lane]);
+                }
+                batch.own_rounds[chunk].set(rounds);
+            });
+        }
+        let fuel = batch.fuel.get();
+        if fuel > 0 {
+            batch.fuel.set(fuel - 1);
+            return at + 1;
+        }
+        refuel(batch, instruction, at)
+    }
+}
+
+#[cold]
+fn refuel<N: Number>(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
+    batch.fuel.set(FUEL);
+    let too_often = batch.most_rounds() > batch.limit;
+    if !too_often && !batch.watch.is_over() {
+        return at + 1;
+    }
+    batch.stopped.set(Some(Stop {
+        id: instruction.operands[0],
+        too_often,
+    }));
+    usize::MAX
+}
+
+pub(crate) fn iterate<N: Number>(level: Level) -> Handler<N> {
+    handler::<N, Iterate>(level)
+}

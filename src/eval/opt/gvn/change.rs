@@ -1,0 +1,65 @@
+//! What the loops and scopes of a program change, found in one walk: that of those inside is part of the same list.
+
+use std::ops::Range;
+
+use crate::ir::function::{Block, Cell, Cells, LoopId, Node, Scope, Value};
+
+/// What a node changes.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Change {
+    Computed(Value),
+    Stored(Cell, Value),
+    StoredAt(Cells),
+}
+
+/// All that a program changes, in order.
+#[derive(Debug)]
+pub(super) struct Changes {
+    list: Vec<Change>,
+    /// Of each loop, its part of the list.
+    loops: Vec<Range<usize>>,
+    scopes: Vec<Range<usize>>,
+}
+
+impl Changes {
+    pub(super) fn of(body: &Block, scopes: u32, loops: usize) -> Self {
+        let mut changes = Self {
+            list: Vec::new(),
+            loops: vec![0..0; loops],
+            scopes: vec![0..0; scopes as usize],
+        };
+        changes.collect(body);
+        changes
+    }
+
+    pub(super) fn of_scope(&self, scope: Scope) -> Range<usize> {
+        self.scopes[scope.0 as usize].clone()
+    }
+
+    pub(super) fn of_loop(&self, id: LoopId) -> Range<usize> {
+        self.loops[id.0 as usize].clone()
+    }
+
+    pub(super) fn get(&self, at: usize) -> Change {
+        self.list[at]
+    }
+
+    fn collect(&mut self, block: &Block) {
+        for node in block {
+            match node {
+                Node::Let(value) => self.list.push(Change::Computed(*value)),
+                Node::Store { cell, value } => self.list.push(Change::Stored(*cell, *value)),
+                Node::StoreAt { cells, .. } => self.list.push(Change::StoredAt(*cells)),
+                _ => {}
+            }
+            let start = self.list.len();
+            node.for_each_block(|block| self.collect(block));
+            let part = start..self.list.len();
+            match node {
+                Node::Scope { scope, .. } => self.scopes[scope.0 as usize] = part,
+                Node::Loop { id, .. } => self.loops[id.0 as usize] = part,
+                _ => {}
+            }
+        }
+    }
+}

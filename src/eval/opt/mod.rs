@@ -1,0 +1,6 @@
+//! Passes from the intermediate representation to the same with less work; none changes a bit of the image.
+
+pub(crate) mod dce;
+pub(crate) mod divergence;
+pub(crate) mod fuse;
+pub(crate) mod gvn;

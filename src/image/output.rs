@@ -1,0 +1,210 @@
+//! Files that appear whole or not at all; a device or a pipe is written to, never replaced.
+
+use std::collections::HashSet;
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use toyproof_diagnostic::path_name;
+
+/// Writes a file that the user named under a temporary name beside its place and renames it, so that neither a crash nor a
+/// reader ever sees half of it. Missing folders are made. A link is followed, and what is there but is no file
+/// (`/dev/null`, `/dev/stdout`, a named pipe) is written into: a rename would put a file in its place.
+///
+/// # Errors
+/// The system's, with the path before it.
+pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    // What does not exist yet, or cannot be looked at, is for the steps below to make or to name.
+    let followed = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    let kind = fs::metadata(&followed).map(|found| found.file_type());
+    if kind.is_ok_and(|kind| !kind.is_file() && !kind.is_dir()) {
+        return fs::OpenOptions::new()
+            .write(true)
+            .open(&followed)
+            .and_then(|mut stream| stream.write_all(bytes))
+            .map_err(|error| named(path, &error));
+    }
+    replace(&followed, bytes).map_err(|error| named(path, &error))
+}
+
+/// Writes a file into an output folder, whose content may be a stranger's: a link at the file's place is replaced, not followed, and no link
+/// below the folder leads out of it. `path` begins with `folder`, which may be a link itself.
+///
+/// # Errors
+/// The system's, with the path before it, or that a folder on the way is a link.
+pub fn write_inside(folder: &Path, path: &Path, bytes: &[u8]) -> io::Result<()> {
+    no_link_on_the_way(folder, path)
+        .and_then(|()| replace(path, bytes))
+        .map_err(|error| named(path, &error))
+}
+
+/// Removes a file of an earlier run from an output folder, if it is there.
+///
+/// # Errors
+/// As for [`write_inside`].
+pub fn remove_inside(folder: &Path, path: &Path) -> io::Result<()> {
+    let removed = no_link_on_the_way(folder, path).and_then(|()| fs::remove_file(path));
+    match removed {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+        removed => removed.map_err(|error| named(path, &error)),
+    }
+}
+
+fn no_link_on_the_way(folder: &Path, path: &Path) -> io::Result<()> {
+    let below = path.ancestors().skip(1).take_while(|way| *way != folder);
+    for way in below {
+        if fs::symlink_metadata(way).is_ok_and(|found| found.is_symlink()) {
+            let reason = format!(
+                "`{}` is a symbolic link, which outputs do not follow",
+                path_name(way)
+            );
+            return Err(io::Error::other(reason));
+        }
+    }
+    Ok(())
+}
+
+fn named(path: &Path, error: &io::Error) -> io::Error {
+    io::Error::new(error.kind(), format!("{}: {error}", path_name(path)))
+}
+
+/// Puts a file at a path, in place of what is there.
+fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let folder = match path.parent() {
+        Some(parent) if parent != Path::new("") => parent,
+        _ => Path::new("."),
+    };
+    fs::create_dir_all(folder)?;
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".toyproof-");
+    #[cfg(unix)]
+    {
+        // As an ordinary new file: the umask takes what it takes.
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    let mut file = builder.tempfile_in(folder)?;
+    file.write_all(bytes)?;
+    file.persist(path).map_err(|error| error.error)?;
+    Ok(())
+}
+
+/// Files that must not be lost, by whatever way one comes to them.
+#[derive(Debug, Default)]
+pub struct Originals(HashSet<PathBuf>);
+
+impl<'a> FromIterator<&'a Path> for Originals {
+    fn from_iter<T: IntoIterator<Item = &'a Path>>(paths: T) -> Self {
+        let places = paths.into_iter().filter_map(|path| path.canonicalize().ok());
+        Self(places.collect())
+    }
+}
+
+impl Originals {
+    /// Whether a file that is written there would replace one of them.
+    #[must_use]
+    pub fn would_lose(&self, path: &Path) -> bool {
+        path.canonicalize()
+            .is_ok_and(|place| place.is_file() && self.0.contains(&place))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn replaces_a_file_whole_and_leaves_nothing_beside_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("new/a.txt");
+        write(&path, b"one").unwrap();
+        write(&path, b"two").unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"two");
+        assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_file_is_the_same_by_whatever_way() {
+        let folder = tempfile::tempdir().unwrap();
+        let [file, link, other] = ["file", "link", "other"].map(|name| folder.path().join(name));
+        fs::write(&file, b"").unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        let null = Path::new("/dev/null");
+        let originals: Originals = [&*other, &*file, null].into_iter().collect();
+        assert!(originals.would_lose(&link));
+        assert!(!originals.would_lose(&other), "there is none yet");
+        assert!(!originals.would_lose(null), "nothing is replaced there");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_is_followed_and_a_pipe_is_written_into() {
+        use std::os::unix::fs::FileTypeExt;
+        let folder = tempfile::tempdir().unwrap();
+        let (file, link) = (folder.path().join("file"), folder.path().join("link"));
+        fs::write(&file, b"old").unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        write(&link, b"new").unwrap();
+        assert_eq!(fs::read(&file).unwrap(), b"new");
+        assert!(fs::symlink_metadata(&link).unwrap().file_type().is_symlink());
+
+        let pipe = folder.path().join("pipe");
+        let made = std::process::Command::new("mkfifo").arg(&pipe).status().unwrap();
+        assert!(made.success());
+        let reader = std::thread::spawn({
+            let pipe = pipe.clone();
+            move || fs::read(pipe).unwrap()
+        });
+        write(&pipe, b"through").unwrap();
+        assert_eq!(reader.join().unwrap(), b"through");
+        assert!(fs::metadata(&pipe).unwrap().file_type().is_fifo());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn no_link_leads_out_of_an_output_folder() {
+        use std::os::unix::fs::symlink;
+        let folder = tempfile::tempdir().unwrap();
+        let [victim, away, out] = ["victim", "away", "out"].map(|name| folder.path().join(name));
+        fs::write(&victim, b"mine").unwrap();
+        fs::create_dir(&away).unwrap();
+        fs::create_dir(&out).unwrap();
+        let [report, below, linked] = ["report.csv", "below", "linked"].map(|name| out.join(name));
+        symlink(&victim, &report).unwrap();
+        symlink(&away, &below).unwrap();
+        symlink(&out, folder.path().join("link")).unwrap();
+
+        write_inside(&out, &report, b"marks").unwrap();
+        assert_eq!(fs::read(&report).unwrap(), b"marks");
+        assert!(!fs::symlink_metadata(&report).unwrap().is_symlink());
+        assert_eq!(fs::read(&victim).unwrap(), b"mine");
+
+        let error = write_inside(&out, &below.join("deeper/a.png"), b"x").unwrap_err();
+        assert!(error.to_string().contains("is a symbolic link"), "{error}");
+        assert_eq!(fs::read_dir(&away).unwrap().count(), 0);
+
+        fs::write(away.join("a.png"), b"x").unwrap();
+        assert!(remove_inside(&out, &below.join("a.png")).is_err());
+        assert!(away.join("a.png").exists());
+        symlink(&victim, &linked).unwrap();
+        remove_inside(&out, &linked).unwrap();
+        remove_inside(&out, &linked).unwrap();
+        assert!(victim.exists() && !linked.exists());
+
+        // The folder that the user names may be a link.
+        let link = folder.path().join("link");
+        write_inside(&link, &link.join("b.png"), b"x").unwrap();
+        assert!(out.join("b.png").exists());
+    }
+
+    #[test]
+    fn an_error_names_the_path_and_leaves_nothing_behind() {
+        let folder = tempfile::tempdir().unwrap();
+        let target = folder.path().join("taken");
+        fs::create_dir_all(target.join("child")).unwrap();
+        let error = write(&target, b"x").unwrap_err();
+        assert!(error.to_string().contains("taken"), "{error}");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+}

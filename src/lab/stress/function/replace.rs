@@ -1,0 +1,339 @@
+//! An author's shader with another formula in the place of its own.
+
+use std::ops::Range;
+
+use toyproof_eval::{self as eval, Program, Variant};
+use toyproof_glsl::tree::{Scalar, Type};
+use toyproof_glsl::{self as glsl, Checked};
+
+use super::super::axis::Shot;
+use super::super::formula::{FORMULAS, Formula, RECENTRED};
+use super::super::tally::Outcome;
+use super::super::{Failure, paint};
+use super::{Answers, Asked, Map, Role, Signature, subject};
+
+/// The shader with each of the formulas in the place of the one that it meets spheres with, under the formula's name; none of them where that
+/// function cannot be recognised, or answers ordinary rays otherwise than the formulas do.
+///
+/// # Errors
+/// If the function cannot be asked how it says no.
+pub fn replacements(
+    text: &str,
+    checked: &Checked,
+    options: &glsl::Options,
+) -> Result<Vec<(&'static str, String)>, Failure> {
+    let all = Signature::all(checked, &Map::new());
+    let of_spheres = |one: &&Signature| one.name.to_lowercase().contains("sph");
+    let Some(signature) = all.iter().find(of_spheres).or(all.first()) else {
+        return Ok(Vec::new());
+    };
+    let Some(body) = body(text, checked, &signature.name) else {
+        return Ok(Vec::new());
+    };
+    let asked = paint::checked(&subject(text, signature, options.clone()))?;
+    let limit = options.deadline.left();
+    let program = Program::prepared_within(&asked, Variant::Plain, limit).map_err(eval::Failure::from)?;
+    let asked = Asked {
+        program: &program,
+        signature,
+    };
+    let Some(new) = asked.body()? else {
+        return Ok(Vec::new());
+    };
+    let with = |formula: &Formula| {
+        let (function, helper) = (own_name(formula.function()), own_name("powerOfTwo"));
+        let words = formula
+            .text
+            .replace(formula.function(), &function)
+            .replace("powerOfTwo", &helper);
+        let (before, after) = (&text[..body.start], &text[body.end..]);
+        let new = new.replace("FORMULA", &function);
+        format!("{words}\n{before}{new}{after}")
+    };
+    if !asked.agrees(&with(&RECENTRED), signature, options)? {
+        return Ok(Vec::new());
+    }
+    let made = FORMULAS.iter().map(|formula| (formula.name, with(formula)));
+    Ok(made.collect())
+}
+
+/// A name that no author uses.
+fn own_name(name: &str) -> String {
+    format!("toyproof_{name}")
+}
+
+impl Asked<'_> {
+    /// Whether a shader's function of the same signature says the same of ordinary rays.
+    fn agrees(&self, text: &str, signature: &Signature, options: &glsl::Options) -> Result<bool, Failure> {
+        let Ok(checked) = paint::checked(&subject(text, signature, options.clone())) else {
+            return Ok(false);
+        };
+        let limit = options.deadline.left();
+        let program =
+            Program::prepared_within(&checked, Variant::Plain, limit).map_err(eval::Failure::from)?;
+        let other = Asked {
+            program: &program,
+            signature,
+        };
+        let shots = super::ordinary(true);
+        let ours = self.ask::<f64>(&shots, &self.answers::<f64>()?)?;
+        let theirs = other.ask::<f64>(&shots, &other.answers::<f64>()?)?;
+        let same = |(one, other): (&Outcome, &Outcome)| match (one, other) {
+            (Outcome::Hit(one), Outcome::Hit(other)) => (one - other).abs() < 1e-6 * one.abs(),
+            (one, other) => one == other,
+        };
+        let agreeing = ours.iter().zip(&theirs).filter(|pair| same(*pair)).count();
+        // The author's may be wrong in its own way about some: rays from inside, say, or spheres behind.
+        Ok(agreeing * 2 > shots.len())
+    }
+
+    /// The body that calls `FORMULA` and answers as the function does; none where that is not simple.
+    fn body(&self) -> Result<Option<String>, Failure> {
+        let answers: Answers = self.answers::<f32>()?;
+        let path = |role: Role| {
+            let mut inputs = self.signature.inputs.iter();
+            inputs
+                .find(|(_, found)| *found == role)
+                .map(|(path, _)| path.clone())
+        };
+        let (Some(o), Some(d)) = (path(Role::Origin), path(Role::Direction)) else {
+            return Ok(None);
+        };
+        let (c, r) = match (path(Role::Center), path(Role::Radius), path(Role::Sphere)) {
+            (_, _, Some(sphere)) => (format!("{sphere}.xyz"), format!("{sphere}.w")),
+            (Some(c), Some(r), _) => (c, r),
+            _ => return Ok(None),
+        };
+        let t_min = match path(Role::TMin) {
+            Some(path) => path,
+            None => number(self.smallest_t(&answers)?),
+        };
+        let call = |t_min: &str| format!("FORMULA({o}, {d}, {c}, {r}, {t_min})");
+        let pair = Type::vector(Scalar::Float, 2);
+        let statements = match &self.signature.outputs[..] {
+            [(path, Role::T, ty)] if path == "return" && *ty == Type::FLOAT => {
+                let miss = match answers.positive_miss() {
+                    Some(miss) => number(miss),
+                    None if answers.behind_is_miss() => "-1.0".to_owned(),
+                    None => return Ok(None),
+                };
+                vec![
+                    format!("float toyproof_t = {};", call(&t_min)),
+                    format!("return toyproof_t > {t_min} ? toyproof_t : {miss};"),
+                ]
+            }
+            [(path, Role::T, ty)] if path == "return" && *ty == pair => {
+                let Some([near, _, far]) = answers.miss() else {
+                    return Ok(None);
+                };
+                vec![
+                    format!("float toyproof_near = {};", call("-1.0e30")),
+                    format!("float toyproof_far = {};", call("toyproof_near")),
+                    // What the formulas say of a miss; a ray that only touches a sphere behind it is none to anybody.
+                    "bool toyproof_miss = toyproof_near == -1.0 && toyproof_far == -1.0;".to_owned(),
+                    format!(
+                        "return toyproof_miss ? vec2({}, {}) : vec2(toyproof_near, toyproof_far);",
+                        number(near),
+                        number(far)
+                    ),
+                ]
+            }
+            [(t, Role::T, Type::FLOAT), (flag, Role::Flag, Type::BOOL)]
+            | [(flag, Role::Flag, Type::BOOL), (t, Role::T, Type::FLOAT)]
+                if flag == "return" =>
+            {
+                // What is 0 was most likely never written.
+                let miss = answers.miss().map_or(0.0, |[t, ..]| t);
+                let otherwise = if miss == 0.0 {
+                    String::new()
+                } else {
+                    format!(" else {t} = {};", number(miss))
+                };
+                vec![
+                    format!("float toyproof_t = {};", call(&t_min)),
+                    format!("if (toyproof_t > {t_min}) {t} = toyproof_t;{otherwise}"),
+                    format!("return toyproof_t > {t_min};"),
+                ]
+            }
+            _ => return Ok(None),
+        };
+        Ok(Some(format!("{{\n    {}\n}}", statements.join("\n    "))))
+    }
+
+    /// What t must be larger than to count, of 0 and 1, 2 and 5 times the powers of ten.
+    fn smallest_t(&self, answers: &Answers) -> Result<f64, Failure> {
+        let decades = (1..=8).rev().map(|decade| 10f64.powi(-decade));
+        let steps: Vec<f64> = decades
+            .flat_map(|ten| [1.0, 2.0, 5.0].map(|step| step * ten))
+            .collect();
+        // A sphere so small that f32 tells where it begins to a hundredth of the smallest step.
+        let r = 2f64.powi(-10);
+        let shots: Vec<Shot> = steps
+            .iter()
+            .map(|step| Shot {
+                o: [0.0; 3],
+                d: [0.0, 0.0, -1.0],
+                c: [0.0, 0.0, -(r + 1.01 * step) as f32],
+                r: r as f32,
+            })
+            .collect();
+        let told = self.ask::<f64>(&shots, answers)?;
+        let counts = |(step, told): (&f64, &Outcome)| matches!(told, Outcome::Hit(t) if (t - 1.01 * step).abs() < 0.01 * step);
+        let first = steps.iter().zip(&told).position(counts);
+        Ok(match first {
+            Some(0) | None => 0.0,
+            Some(at) => steps[at],
+        })
+    }
+}
+
+/// A literal of float.
+fn number(value: f64) -> String {
+    let text = format!("{:?}", value as f32);
+    if text.contains(['.', 'e']) {
+        text
+    } else {
+        text + ".0"
+    }
+}
+
+/// Where the body of a function stands, braces included.
+fn body(text: &str, checked: &Checked, name: &str) -> Option<Range<usize>> {
+    let functions = checked.tree.functions.iter();
+    let mut named = functions.filter(|(_, function)| function.name == name && function.body.is_some());
+    let (Some((_, function)), None) = (named.next(), named.next()) else {
+        return None;
+    };
+    let start = function.at.span.start as usize;
+    let (mut depth, mut begin) = (0usize, None);
+    let mut rest = text.get(start..)?.char_indices();
+    while let Some((at, letter)) = rest.next() {
+        let after = &text[start + at..];
+        let comment = ["//", "/*"].into_iter().zip(["\n", "*/"]);
+        if let Some((_, end)) = comment.into_iter().find(|(begin, _)| after.starts_with(begin)) {
+            let length = after[2..].find(end)? + 2 + end.len();
+            let next = start + at + length;
+            while rest.clone().next().is_some_and(|(at, _)| start + at < next) {
+                rest.next();
+            }
+            continue;
+        }
+        match letter {
+            '{' => {
+                begin.get_or_insert(start + at);
+                depth += 1;
+            }
+            '}' => {
+                depth = depth.checked_sub(1)?;
+                if depth == 0 {
+                    return Some(begin?..start + at + 1);
+                }
+            }
+            _ => {}
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use toyproof_diagnostic::{File, Files};
+
+    use super::*;
+
+    fn checked(text: &str) -> Checked {
+        let mut files = Files::default();
+        let file = files.add(File::new("t", text));
+        glsl::check(&files, file, &glsl::Options::default())
+            .unwrap_or_else(|errors| panic!("{errors:?}\n{text}"))
+    }
+
+    #[test]
+    fn each_formula_takes_the_place_of_the_rungs_own() {
+        let text = include_str!("../../../../glsl/03-shading.glsl");
+        let made = replacements(text, &checked(text), &glsl::Options::default()).unwrap();
+        assert_eq!(made.len(), FORMULAS.len());
+        for (name, text) in made {
+            assert!(
+                text.contains("return toyproof_t > 1e-5 ? toyproof_t : 1000000.0;"),
+                "{name}: {text}"
+            );
+            checked(&text);
+        }
+    }
+
+    /// The ground of a shader that meets spheres by that function.
+    fn shader(function: &str, call: &str) -> String {
+        format!(
+            "{function}\nvoid mainImage(out vec4 c, in vec2 p) {{\n    vec3 ro = vec3(0.0, 0.0, 2.0);\n    \
+             vec3 rd = normalize(vec3(p / iResolution.xy - 0.5, -1.0));\n    float t;\n    {call}\n}}\n"
+        )
+    }
+
+    #[test]
+    fn both_roots_and_a_yes_with_a_t_are_replaced_too() {
+        let pair = shader(
+            "vec2 sphere(vec3 ro, vec3 rd, vec3 center, float radius) {
+                vec3 oc = ro - center;
+                float b = dot(oc, rd);
+                float h = b * b - (dot(oc, oc) - radius * radius);
+                if (h < 0.0) return vec2(-1.0, -2.0);
+                h = sqrt(h);
+                return vec2(-b - h, -b + h);
+            }",
+            "c = vec4(sphere(ro, rd, vec3(0.0), 1.0), 0.0, 1.0);",
+        );
+        let flag = shader(
+            "bool sphere(vec3 ro, vec3 rd, vec3 center, float radius, out float t) {
+                vec3 oc = ro - center;
+                float b = dot(oc, rd);
+                float h = b * b - (dot(oc, oc) - radius * radius);
+                t = 1e6;
+                if (h < 0.0) return false;
+                t = -b - sqrt(h);
+                if (t < 0.0) t = -b + sqrt(h);
+                return t > 0.0;
+            }",
+            "c = vec4(sphere(ro, rd, vec3(0.0), 1.0, t) ? t : 0.0);",
+        );
+        for (text, line) in [
+            (pair, "toyproof_miss ? vec2(-1.0, -2.0)"),
+            (flag, "if (toyproof_t > 0.0) t = toyproof_t; else t = 1000000.0;"),
+        ] {
+            let made = replacements(&text, &checked(&text), &glsl::Options::default()).unwrap();
+            assert_eq!(made.len(), FORMULAS.len(), "{text}");
+            for (name, text) in made {
+                assert!(text.contains(line), "{name}: {text}");
+                checked(&text);
+            }
+        }
+    }
+
+    #[test]
+    fn what_answers_otherwise_is_left_alone() {
+        // It keeps what is nearer already, and nothing is in a fresh variable.
+        let text = shader(
+            "bool sphere(vec3 ro, vec3 rd, vec3 center, float radius, inout float t) {
+                vec3 oc = ro - center;
+                float b = dot(oc, rd);
+                float h = b * b - (dot(oc, oc) - radius * radius);
+                if (h < 0.0) return false;
+                float near = -b - sqrt(h);
+                if (near < 0.0 || near > t) return false;
+                t = near;
+                return true;
+            }",
+            "t = 100.0; c = vec4(sphere(ro, rd, vec3(0.0), 1.0, t) ? t : 0.0);",
+        );
+        let made = replacements(&text, &checked(&text), &glsl::Options::default()).unwrap();
+        assert_eq!(made, []);
+    }
+
+    #[test]
+    fn a_body_ends_where_its_brace_closes_and_comments_do_not_count() {
+        let text = "float f(float x) { // }\n if (x > 0.) { return 1.; } /* } */ return 2.; }\n\
+                    void mainImage(out vec4 c, in vec2 p) { c = vec4(f(p.x)); }";
+        let body = body(text, &checked(text), "f").unwrap();
+        assert!(text[body].ends_with("return 2.; }"));
+    }
+}

@@ -1,0 +1,202 @@
+//! Floats on a grid of whole numbers, halves and the like, where `+ - *` do not round.
+
+use std::cell::RefCell;
+use std::collections::{HashMap, HashSet};
+
+use toyproof_glsl::tree::{
+    BinaryOp, BuiltIn, Constructor, ExprId, ExprKind, Input, UnaryOp, Value, VariableId, VariableKind,
+};
+
+use super::super::program::{Definition, Program, is_float, last};
+
+const BUDGET: usize = 500;
+
+/// Multiples of this count as on the grid.
+const STEP: f64 = 1.0 / 1024.0;
+
+/// What is known of the expressions of a program, each looked at once.
+pub(super) struct Grid<'a> {
+    pub(super) program: &'a Program<'a>,
+    known: RefCell<HashMap<ExprId, bool>>,
+    /// Whether a variable is anywhere given what a function rounded to a whole number.
+    rounded: RefCell<HashMap<VariableId, bool>>,
+}
+
+impl<'a> Grid<'a> {
+    pub(super) fn new(program: &'a Program<'a>) -> Self {
+        Self {
+            program,
+            known: RefCell::default(),
+            rounded: RefCell::default(),
+        }
+    }
+
+    /// Whether all that an expression may be lies on the grid, or cannot be told to lie elsewhere.
+    pub(super) fn holds(&self, expr: ExprId) -> bool {
+        if let Some(&known) = self.known.borrow().get(&expr) {
+            return known;
+        }
+        let holds = self.holds_within_budget(expr);
+        self.known.borrow_mut().insert(expr, holds);
+        holds
+    }
+
+    fn holds_within_budget(&self, expr: ExprId) -> bool {
+        let mut pending = vec![expr];
+        let mut seen: HashSet<VariableId> = HashSet::new();
+        for left in (0..BUDGET).rev() {
+            match pending.pop() {
+                None => return true,
+                Some(expr) if !stays(self, expr, &mut seen, left, &mut pending) => return false,
+                Some(_) => {}
+            }
+        }
+        true
+    }
+
+    /// `x = floor(x);`: which of its values is asked for, is not known.
+    fn is_rounded_somewhere(&self, variable: VariableId) -> bool {
+        *self.rounded.borrow_mut().entry(variable).or_insert_with(|| {
+            let mut definitions = self.program.definitions(variable).iter();
+            definitions.any(|definition| match definition {
+                Definition::Value(value) => rounds_to_whole(self.program, *value),
+                _ => false,
+            })
+        })
+    }
+}
+
+/// Whether an expression stays on the grid if what it pushes does, of which no more than `left` will be looked at.
+fn stays(
+    grid: &Grid,
+    expr: ExprId,
+    seen: &mut HashSet<VariableId>,
+    left: usize,
+    pending: &mut Vec<ExprId>,
+) -> bool {
+    let program = grid.program;
+    let tree = program.tree;
+    if !is_float(tree[expr].ty) {
+        return true;
+    }
+    if let Some(constant) = tree.value(expr) {
+        return constant.components().iter().all(|scalar| match scalar {
+            Value::Float(value) => (value / STEP).fract() == 0.0 && value.abs() < 65536.0,
+            _ => true,
+        });
+    }
+    match &tree[expr].kind {
+        ExprKind::Variable(variable) => {
+            let kind = tree[*variable].kind;
+            if let VariableKind::Input(Input::Time | Input::TimeDelta | Input::FrameRate | Input::Date) = kind
+            {
+                return false;
+            }
+            if seen.insert(*variable) && !grid.is_rounded_somewhere(*variable) {
+                for definition in last(program.definitions(*variable), left) {
+                    match definition {
+                        Definition::Value(value) => pending.push(*value),
+                        Definition::Change(change) => match tree[*change].kind {
+                            ExprKind::Assign {
+                                op: Some(BinaryOp::Divide),
+                                value,
+                                ..
+                            } if !is_power_of_two(program, value) => {
+                                return false;
+                            }
+                            ExprKind::Assign {
+                                op: Some(BinaryOp::Divide),
+                                ..
+                            } => {}
+                            ExprKind::Assign { value, .. } => pending.push(value),
+                            _ => {}
+                        },
+                        Definition::Outside => {}
+                    }
+                }
+            }
+            true
+        }
+        ExprKind::Binary {
+            op: BinaryOp::Divide,
+            left,
+            right,
+        } => {
+            pending.push(*left);
+            is_power_of_two(program, *right)
+        }
+        ExprKind::Binary { left, right, .. } => {
+            pending.extend([*left, *right]);
+            true
+        }
+        ExprKind::Unary {
+            op: UnaryOp::Minus | UnaryOp::Plus,
+            operand: only,
+        }
+        | ExprKind::Swizzle { vector: only, .. }
+        | ExprKind::Index { base: only, .. }
+        | ExprKind::Sequence { second: only, .. }
+        | ExprKind::Assign {
+            op: None,
+            value: only,
+            ..
+        } => {
+            pending.push(*only);
+            true
+        }
+        ExprKind::Conditional { yes, no, .. } => {
+            pending.extend([*yes, *no]);
+            true
+        }
+        ExprKind::Construct {
+            constructor,
+            arguments,
+        } => {
+            if !matches!(constructor, Constructor::Struct | Constructor::Array) {
+                pending.extend(arguments);
+            }
+            true
+        }
+        ExprKind::Call { function, .. } => {
+            pending.extend(last(program.returned(*function), left));
+            true
+        }
+        ExprKind::BuiltIn { function, arguments } => {
+            let keeps = keeps_to_grid(*function);
+            if keeps {
+                pending.extend(arguments);
+            }
+            keeps || function.is_texture() || rounds_to_whole(program, expr)
+        }
+        _ => true,
+    }
+}
+
+/// Whether a function gives what lies on the grid if its arguments do.
+fn keeps_to_grid(function: BuiltIn) -> bool {
+    use BuiltIn as B;
+    matches!(
+        function,
+        B::Min | B::Max | B::Clamp | B::Abs | B::Mod | B::Fract | B::Dot | B::Mix
+    )
+}
+
+fn rounds_to_whole(program: &Program, expr: ExprId) -> bool {
+    use BuiltIn as B;
+    matches!(
+        program.tree[expr].kind,
+        ExprKind::BuiltIn {
+            function: B::Floor | B::Ceil | B::Trunc | B::Round | B::RoundEven | B::Sign | B::Step,
+            ..
+        }
+    )
+}
+
+fn is_power_of_two(program: &Program, expr: ExprId) -> bool {
+    program.constant(expr).is_some_and(|constant| {
+        constant.components().iter().all(|scalar| match scalar {
+            Value::Float(value) => value.abs().log2().fract() == 0.0,
+            _ => false,
+        })
+    })
+}

@@ -1,0 +1,164 @@
+//! What is told of all warnings, and how long it takes to find them.
+
+use super::*;
+
+#[test]
+fn a_macro_used_often_is_told_once() {
+    let text = "#define R(x) fract(sin(x) * 43758.5)\nvoid mainImage(out vec4 c, in vec2 f) { c = vec4(R(f.x), R(f.y), 0, 1); }";
+    assert_eq!(warned(text), ["W0005:2"]);
+}
+
+#[test]
+fn what_is_allowed_is_not_told() {
+    let hash = "fract(sin(f.x) * 43758.5)";
+    let main = |before: &str, line: &str| {
+        format!("{before}void mainImage(out vec4 c, in vec2 f) {{\n{line}\nc.y = {hash};\n}}\n")
+    };
+    let warned = |before: &str, line: &str| warned(&main(before, line)).join(" ");
+    let set = format!("c = vec4({hash});");
+    assert_eq!(warned("", &set), "W0005:2 W0005:3");
+    // At the end of a line, for that line.
+    assert_eq!(
+        warned("", &format!("{set} // toyproof: allow(W0005) it is only noise")),
+        "W0005:3"
+    );
+    // On its own line, for the next statement, with all that is in it.
+    assert_eq!(
+        warned("", &format!("// toyproof: allow(W0005)\n\n// words\n{set}")),
+        "W0005:6"
+    );
+    assert_eq!(
+        warned(
+            "",
+            &format!("  //toyproof: allow( W0010 , W0005 )\n{{ {set}\n f.x; }}")
+        ),
+        "W0005:5"
+    );
+    // For the next declaration: here the whole function.
+    assert_eq!(warned("const int N = 3;\n// toyproof: allow(W0005)\n", &set), "");
+    // Before all else, for the whole file.
+    assert_eq!(
+        warned(
+            "/* a */ // b\n\n// toyproof: allow(W0005)\nconst int N = 3;\n",
+            &set
+        ),
+        ""
+    );
+    // What was not read does not count.
+    assert_eq!(
+        warned(
+            "",
+            &format!("{set}\n#if 0\n// toyproof: allow(W0005, W9)\n#endif")
+        ),
+        "W0005:2 W0005:6"
+    );
+    // Unused, unknown, not to be allowed, not understood.
+    assert_eq!(
+        warned("", &format!("{set}\nf; // toyproof: allow(W0010, W0005)")),
+        "W0005:2 W0015:3 W0005:4"
+    );
+    assert_eq!(
+        warned("", &format!("{set} // toyproof: allow(W1234)")),
+        "W0005:2 W0014:2 W0005:3"
+    );
+    assert_eq!(
+        warned("", &format!("{set} // toyproof: allow(E0001,)")),
+        "W0005:2 W0014:2 W0014:2 W0005:3"
+    );
+    assert_eq!(
+        warned("", &format!("{set} // toyproof: please")),
+        "W0005:2 W0014:2 W0005:3"
+    );
+    // A macro may be allowed where it is written.
+    let text = "#define R fract(sin(f.x) * 43758.5) // toyproof: allow(W0005)\nvoid mainImage(out vec4 c, in vec2 f) { c = vec4(R); }";
+    assert!(super::warned(text).is_empty());
+    let text = "int a;\n// toyproof: allow(W0001)\n#define a__b 1\nvoid mainImage(out vec4 c, in vec2 f) { c = vec4(a__b); }";
+    assert!(super::warned(text).is_empty());
+}
+
+#[test]
+fn analyses_are_linear_in_the_size_of_a_shader() {
+    let lines = |line: fn(usize) -> String| (0..5_000).map(line).collect::<String>();
+    let texts = [
+        lines(|i| format!("float a{i}; if (f.x > {i}.0) a{i} = 1.0; c.x += a{i};\n")),
+        lines(|i| format!("float a{i};\n"))
+            + &lines(|i| format!("if (f.x > {i}.0) a{i} = 1.0;\n"))
+            + &lines(|i| format!("c.x += a{i};\n")),
+        "float a; if (f.x < 1.0) a = 2.0;".to_owned()
+            + &" else if (f.x == c.y * 0.1) a = 2.0;".repeat(5_000)
+            + "c.x = a;",
+        format!("float a; c.x = {} a;", "f.x + ".repeat(20_000)),
+        format!(
+            "float a; c.x = float({} a > 1.0);",
+            "f.x > 1.0 || ".repeat(20_000)
+        ),
+        lines(|i| format!("for (int i = 0; i < {i}; i++) {{ if (f.x == 0.1 * c.y) break; }}\n")),
+    ];
+    for text in texts {
+        let start = std::time::Instant::now();
+        let builder = std::thread::Builder::new().stack_size(2 << 20);
+        let told = std::thread::scope(|scope| {
+            let text = shader("", &text);
+            builder
+                .spawn_scoped(scope, move || warned(&text).len())
+                .unwrap()
+                .join()
+                .unwrap()
+        });
+        assert!(
+            told <= 50 && start.elapsed().as_secs() < 20,
+            "{:?} {}",
+            start.elapsed(),
+            &text[..60]
+        );
+    }
+}
+
+#[test]
+fn the_course_has_nothing_to_be_warned_of() {
+    let mut told = Vec::new();
+    for entry in std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../../glsl")).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|extension| extension == "glsl") {
+            let (found, files) = diagnostics(&std::fs::read_to_string(&path).unwrap());
+            let lines = found
+                .iter()
+                .map(|found| toyproof_diagnostic::short(found, &files));
+            told.extend(lines.map(|line| format!("{}: {line}", toyproof_diagnostic::path_name(&path))));
+        }
+    }
+    assert!(told.is_empty(), "{}", told.join("\n"));
+}
+
+#[test]
+fn a_discriminant_waits_for_its_scene_unless_it_is_allowed() {
+    let discriminants = |remark: &str| {
+        let mut files = Files::default();
+        let text = format!(
+            "void mainImage(out vec4 c, in vec2 p) {{
+                vec3 f = vec3(p, 1.0), d = normalize(vec3(p, -1.0));
+                float b = dot(f, d);
+                float disc = b * b - (dot(f, f) - 4.0); {remark}
+                c = vec4(disc);
+            }}"
+        );
+        let file = files.add(File::new("a", text));
+        let checked = check(&files, file, &Options::default()).unwrap();
+        let lints = lint(&files, &checked, &Deadline::default());
+        assert!(lints.warnings.is_empty(), "{:#?}", lints.warnings);
+        lints.discriminants.len()
+    };
+    assert_eq!(discriminants(""), 1);
+    assert_eq!(discriminants("// toyproof: allow(W0013) it is near"), 0);
+}
+
+#[test]
+fn lints_out_of_time_leave_a_note_instead_of_findings() {
+    let mut files = Files::default();
+    let text = "void mainImage(out vec4 c, in vec2 p) { float unset; c = vec4(unset); }";
+    let file = files.add(File::new("a", text));
+    let checked = check(&files, file, &Options::default()).unwrap();
+    let lints = lint(&files, &checked, &Deadline::after(std::time::Duration::ZERO));
+    let codes: Vec<_> = lints.warnings.iter().map(|warning| &*warning.code).collect();
+    assert_eq!(codes, ["W0017"]);
+}

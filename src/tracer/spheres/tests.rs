@@ -1,0 +1,336 @@
+//! However spheres are looked for, the answer is that of one ray and one sphere after the other, to the bit.
+
+use glam::DVec3;
+use toyproof_image::pcg;
+use toyproof_scene::unit as between_0_and_1;
+
+use super::super::lanes::Level;
+use super::super::ray::Ray;
+use super::super::real::{Real, Vector};
+use super::*;
+
+/// Numbers drawn by hashing, the same in every run.
+struct Random(u32);
+
+impl Random {
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        self.0 = pcg(self.0);
+        low + (high - low) * between_0_and_1(self.0)
+    }
+
+    /// 0, 1, … below a number.
+    fn below(&mut self, number: u32) -> u32 {
+        self.between(0.0, f64::from(number)) as u32
+    }
+
+    fn place(&mut self, size: f64) -> DVec3 {
+        DVec3::from_array([0; 3].map(|_| self.between(-size, size)))
+    }
+
+    fn direction(&mut self) -> DVec3 {
+        loop {
+            let v = self.place(1.0);
+            if (0.01..1.0).contains(&v.length_squared()) {
+                return v.normalize();
+            }
+        }
+    }
+}
+
+/// Spheres of one scene: far apart, overlapping, one in another, twice the same, one as large as a world.
+fn scene(random: &mut Random, count: u32, scale: f64) -> Vec<(DVec3, f64)> {
+    let size = 10.0 * scale;
+    let mut spheres: Vec<(DVec3, f64)> = Vec::new();
+    for _ in 0..count {
+        let radius = scale * 10f64.powf(random.between(-3.0, 0.5));
+        let sphere = match (random.below(12), spheres.last()) {
+            (0, Some(&last)) => last,
+            (1, Some(&(center, radius))) => (center, 0.5 * radius),
+            (2, _) => (DVec3::new(0.0, -1001.0 * size, 0.0), 1000.0 * size),
+            _ => (random.place(size), radius),
+        };
+        spheres.push(sphere);
+    }
+    spheres
+}
+
+/// Where a ray of a packet that starts in `origin` goes: anywhere, along an axis, or closely by an edge of a sphere.
+fn target(random: &mut Random, spheres: &[(DVec3, f64)], origin: DVec3) -> DVec3 {
+    let (center, radius) = spheres[random.below(spheres.len() as u32) as usize];
+    let toward = center - origin;
+    let across = toward.cross(random.direction()).normalize_or(DVec3::X);
+    match random.below(5) {
+        0 => origin + random.direction(),
+        1 => origin + [DVec3::X, DVec3::NEG_Y, DVec3::NEG_Z][random.below(3) as usize],
+        2 => center + across * (radius * (1.0 + random.between(-1e-6, 1e-6))),
+        _ => center + across * (radius * random.between(0.0, 1.5)),
+    }
+}
+
+fn rounded<T: Real>(v: DVec3) -> [T; 3] {
+    v.to_array().map(T::from_f64)
+}
+
+fn toward<T: Real>(origin: DVec3, target: DVec3) -> [T; 3] {
+    // Scaled first, as no square of the smallest numbers is.
+    let away = target - origin;
+    rounded((away / away.abs().max_element()).normalize_or(DVec3::NEG_Z))
+}
+
+/// One after the other; the ray starts on the sphere `own`.
+fn oracle<T: Real>(spheres: &[Numbered<T>], query: &Query<T>, own: u32) -> Option<(T, u32)> {
+    let mut nearest: Option<(T, u32)> = None;
+    for sphere in spheres
+        .iter()
+        .filter(|sphere| !query.but.contains(&sphere.number))
+    {
+        let meet = Meet {
+            origin: query.origin,
+            direction: query.direction,
+            center: sphere.center,
+            radius: sphere.radius,
+            t_min: query.t_min,
+            is_own: sphere.number == own,
+        };
+        if let Some(t) = T::run(Level::Base, meet)
+            && t < query.t_max
+            && nearest.is_none_or(|(before, _)| t < before)
+        {
+            nearest = Some((t, sphere.number));
+        }
+    }
+    nearest
+}
+
+fn of<T: Real>(found: &Found<T>, ray: usize) -> Option<(T, u32)> {
+    found.of(ray).get().map(|(t, surface)| (t, surface as u32))
+}
+
+fn numbered<T: Real>(described: &[(DVec3, f64)], number: impl Fn(u32) -> u32) -> Vec<Numbered<T>> {
+    (0..)
+        .zip(described)
+        .map(|(at, &(center, radius))| Numbered {
+            center: rounded(center),
+            radius: T::from_f64(radius),
+            number: number(at),
+        })
+        .collect()
+}
+
+/// How many rays were compared, and how many of them met something. The scene's size has an exponent between those, the rays
+/// start up to ten to the `away` times that from its middle.
+fn compare<T: Real>(seeds: u32, exponents: f64, away: f64) -> [u32; 2] {
+    let mut told = [0; 2];
+    for seed in 0..seeds {
+        let random = &mut Random(seed);
+        let scale = 10f64.powf(random.between(-exponents, exponents));
+        let count = [1, 3, 8, 9, 20, 150][random.below(6) as usize];
+        let described = scene(random, count, scale);
+        // Not in the order of the places.
+        let spheres = numbered::<T>(&described, |number| number ^ 1);
+        let mut sorted = spheres.clone();
+        sorted.sort_by_key(|sphere| sphere.number);
+        let distance = scale * 10f64.powf(random.between(0.0, away));
+        let eye = random.place(distance);
+        let is_narrow = random.below(2) == 0;
+        let aim = target(random, &described, eye);
+        let rays: [_; PACKET] = std::array::from_fn(|_| {
+            let target = if is_narrow {
+                aim + random.place(0.1 * scale)
+            } else {
+                target(random, &described, eye)
+            };
+            let start = eye + random.place(scale);
+            (start, toward::<T>(eye, target), random.below(count))
+        });
+        let query = |at: usize, origin: DVec3| Query {
+            origin: rounded(origin),
+            direction: rays[at].1,
+            t_min: T::zero(),
+            t_max: T::infinity(),
+            but: [NONE; 2],
+        };
+        let directions = [0, 1, 2].map(|axis| std::array::from_fn(|at| rays[at].1[axis]));
+        let packets = [
+            Packet::full(Origins::One(rounded(eye)), directions),
+            Packet::full(
+                Origins::Each([0, 1, 2].map(|axis| std::array::from_fn(|at| rounded::<T>(rays[at].0)[axis]))),
+                directions,
+            ),
+        ];
+        let expected = [0, 1].map(|kind| {
+            [(); PACKET]
+                .iter()
+                .enumerate()
+                .map(|(at, ())| {
+                    let origin = if kind == 0 { eye } else { rays[at].0 };
+                    oracle(&sorted, &query(at, origin), NONE)
+                })
+                .collect::<Vec<_>>()
+        });
+        for (level, tree) in Level::all().flat_map(|level| [(level, false), (level, true)]) {
+            let way = format!("seed {seed}, {level:?}, tree: {tree}");
+            let all = Spheres::new(&spheres, tree, level);
+            for (packet, expected) in packets.iter().zip(&expected) {
+                let mut found = Found::nothing();
+                all.nearest_of_packet(packet, &mut found);
+                for (at, expected) in expected.iter().enumerate() {
+                    assert_eq!(of(&found, at), *expected, "{way}, ray {at} of a packet");
+                }
+            }
+            for (at, &expected) in expected[1].iter().enumerate() {
+                let (start, _, but) = rays[at];
+                let mut query = query(at, start);
+                assert_eq!(all.nearest(&query), expected, "{way}, ray {at}");
+                assert_eq!(all.any(&query), expected.is_some(), "{way}, ray {at}");
+                told[0] += 1;
+                let Some((t, number)) = expected else { continue };
+                told[1] += 1;
+                // Up to a hit, it is not there; without the sphere, or beyond its t, another may be.
+                query.t_max = t;
+                assert!(!all.any(&query), "{way}, ray {at}");
+                query.t_max = T::infinity();
+                query.but = [but, number];
+                assert_eq!(
+                    all.nearest(&query),
+                    oracle(&sorted, &query, NONE),
+                    "{way}, ray {at}"
+                );
+                query.but = [NONE; 2];
+                query.t_min = t;
+                assert_eq!(
+                    all.nearest(&query),
+                    oracle(&sorted, &query, NONE),
+                    "{way}, ray {at}"
+                );
+            }
+        }
+    }
+    told
+}
+
+/// The same of rays that leave spheres, beyond some t, and of what lies before another t: as many as the numbers told.
+fn compare_secondary<T: Real>(seeds: u32, exponents: f64) -> [u32; 2] {
+    let mut told = [0; 2];
+    for seed in 0..seeds {
+        let random = &mut Random(seed);
+        let scale = 10f64.powf(random.between(-exponents, exponents));
+        let count = [1, 3, 8, 9, 20, 100][random.below(6) as usize];
+        let described = scene(random, count, scale);
+        let spheres = numbered::<T>(&described, |number| number);
+        let t_min = T::from_f64([0.0, scale * random.between(0.0, 1.0)][random.below(2) as usize]);
+        let rays: Vec<(Ray<T>, Option<u32>)> = (0..=random.below(PACKET as u32))
+            .map(|at| {
+                let own = random.below(count);
+                let (center, radius) = described[own as usize];
+                let start = center + random.direction() * radius;
+                let ray = Ray {
+                    origin: T::Vec3::from_array(rounded(start)),
+                    direction: T::Vec3::from_array(toward::<T>(start, target(random, &described, start))),
+                    from: None,
+                };
+                (ray, (at % 4 != 3).then_some(own))
+            })
+            .collect();
+        let expected: Vec<_> = rays
+            .iter()
+            .map(|(ray, own)| {
+                let query = Query {
+                    origin: ray.origin.to_array(),
+                    direction: ray.direction.to_array(),
+                    t_min,
+                    t_max: T::infinity(),
+                    but: [NONE; 2],
+                };
+                oracle(&spheres, &query, own.unwrap_or(NONE))
+            })
+            .collect();
+        let factors = [0.5, 1.0, 1.5].map(T::from_f64);
+        let limits: Vec<_> = (expected.iter().enumerate())
+            .map(|(at, expected)| expected.map_or(T::one(), |(t, _)| t) * factors[at % 3])
+            .collect();
+        let owned = rays.iter().map(|(ray, own)| (ray, own.map(|own| own as usize)));
+        let packet = Packet::some(owned, t_min);
+        for level in Level::all() {
+            let all = Spheres::new(&spheres, false, level);
+            let (mut found, mut limited) = (Found::nothing(), Found::before(limits.iter().copied()));
+            all.nearest_of_packet(&packet, &mut found);
+            all.nearest_of_packet(&packet, &mut limited);
+            for (at, (&expected, &limit)) in expected.iter().zip(&limits).enumerate() {
+                let way = format!("seed {seed}, {level:?}, ray {at}");
+                assert_eq!(of(&found, at), expected, "{way}");
+                let is_before = expected.is_some_and(|(t, _)| t < limit);
+                assert_eq!(limited.is_before(at, limit), is_before, "{way}");
+                told[0] += 1;
+                told[1] += u32::from(expected.is_some_and(|(_, number)| Some(number) == rays[at].1));
+            }
+        }
+    }
+    told
+}
+
+#[test]
+fn rays_that_leave_spheres_find_the_same_together() {
+    for [rays, own] in [
+        compare_secondary::<f32>(1500, 15.0),
+        compare_secondary::<f64>(1500, 30.0),
+    ] {
+        assert!(
+            own > rays / 50,
+            "{own} of {rays} rays meet their own sphere again"
+        );
+    }
+}
+
+#[test]
+fn every_way_gives_the_same_bits_at_every_size() {
+    for [rays, hits] in [
+        compare::<f32>(1500, 30.0, 3.0),
+        compare::<f64>(1500, 30.0, 3.0),
+        compare::<f64>(300, 150.0, 3.0),
+    ] {
+        assert!(
+            hits > rays / 4 && hits < rays,
+            "{hits} of {rays} rays meet something"
+        );
+    }
+}
+
+/// From so far away, rounding takes rays past spheres that they meet and into others: the margins of boxes are for that.
+#[test]
+fn every_way_gives_the_same_bits_from_far_away() {
+    for [_, hits] in [compare::<f32>(300, 3.0, 8.0), compare::<f64>(100, 3.0, 16.0)] {
+        assert!(hits > 300, "{hits}");
+    }
+}
+
+#[test]
+fn one_ray_that_is_no_number_leaves_the_others_alone() {
+    let spheres: Vec<_> = (0..200u32)
+        .map(|number| Numbered {
+            center: [f64::from(number % 20) - 10.0, f64::from(number / 20) - 5.0, -20.0],
+            radius: 0.4,
+            number,
+        })
+        .collect();
+    let grid = |at: usize| f64::from(at as u32) - 4.0;
+    let directions = [
+        std::array::from_fn(|at| grid(at % 8)),
+        std::array::from_fn(|at| grid(at / 8)),
+        [-20.0; PACKET],
+    ];
+    for (level, tree) in Level::all().flat_map(|level| [(level, false), (level, true)]) {
+        let all = Spheres::new(&spheres, tree, level);
+        let found = |directions| {
+            let origins = Origins::One([0.0; 3]);
+            let mut found = Found::nothing();
+            all.nearest_of_packet(&Packet::full(origins, directions), &mut found);
+            (1..PACKET).map(|at| of(&found, at)).collect::<Vec<_>>()
+        };
+        let before = found(directions);
+        assert!(before.iter().flatten().count() > 10);
+        let mut broken = directions;
+        broken[1][0] = f64::NAN;
+        assert_eq!(found(broken), before);
+    }
+}

@@ -1,0 +1,234 @@
+//! Structures, globals and functions, in the author's order.
+
+use toyproof_diagnostic::{File, Files};
+use toyproof_glsl::tree::{
+    Block, Direction, ExprKind, FunctionId, Item, Statement, StatementKind, StructId, Type, VariableId,
+    VariableKind, walk,
+};
+use toyproof_glsl::{self as glsl, Options};
+
+use super::Unprintable;
+use super::facts::{Facts, is_out};
+use super::names::Names;
+use super::writer::Writer;
+use crate::lower::Draft;
+use crate::print::Order;
+
+impl Writer<'_> {
+    pub(super) fn item(&mut self, item: Item) -> Result<(), Unprintable> {
+        self.in_time()?;
+        self.temporaries.clear();
+        match item {
+            Item::Struct(id) => self.structure(id),
+            Item::Variable(id) => self.global(id),
+            Item::Function(id) => {
+                if let Some(text) = self.draft.helpers.get(&id) {
+                    return self.helper(id, text);
+                }
+                self.definition(id)
+            }
+            Item::Prototype(_) => Ok(()),
+        }
+    }
+
+    fn structure(&mut self, id: StructId) -> Result<(), Unprintable> {
+        let tree = &self.draft.tree;
+        self.line("");
+        self.comment(tree[id].at);
+        let name = self.names.structs.get(&id).cloned().unwrap_or_default();
+        self.line(&format!("struct {name} {{"));
+        for (at, member) in tree[id].members.iter().enumerate() {
+            if matches!(member.ty, Type::Sampler(_)) {
+                return Err(Unprintable("a sampler in a structure"));
+            }
+            let name = self.names.members.get(&(id, at)).cloned().unwrap_or_default();
+            let ty = self.type_name(member.ty);
+            self.inset(|writer| {
+                writer.comment(member.at);
+                let from = writer.out.len();
+                writer.line(&format!("{name}: {ty},"));
+                writer.comment_behind(member.at, from);
+            });
+        }
+        self.line("}");
+        Ok(())
+    }
+
+    fn global(&mut self, id: VariableId) -> Result<(), Unprintable> {
+        let variable = &self.draft.tree[id];
+        if matches!(variable.ty, Type::Sampler(_)) {
+            return Err(Unprintable("a sampler that nobody feeds"));
+        }
+        let is_apart = variable.at.is_some_and(|at| self.comments.is_apart(at));
+        if is_apart || self.out.ends_with("}\n") {
+            self.line("");
+        }
+        if let Some(at) = variable.at {
+            self.comment(at);
+        }
+        let from = self.out.len();
+        let name = self.variable(id);
+        let word = match variable.kind {
+            VariableKind::Const => "const",
+            _ => "var<private>",
+        };
+        let line = match variable.initialiser {
+            Some(initialiser) => {
+                let value = self.value(initialiser)?;
+                self.typed(word, name, variable.ty, &value.words)
+            }
+            None => format!("{word} {name}: {};", self.type_name(variable.ty)),
+        };
+        self.line(&line);
+        if let Some(at) = variable.at {
+            self.comment_behind(at, from);
+        }
+        Ok(())
+    }
+
+    fn definition(&mut self, id: FunctionId) -> Result<(), Unprintable> {
+        let function = &self.draft.tree[id];
+        let Some(body) = &function.body else {
+            return Err(Unprintable("a function without a body"));
+        };
+        self.line("");
+        self.comment(function.at);
+        self.head(id)?;
+        self.indent += 1;
+        for &parameter in &function.parameters {
+            let variable = &self.draft.tree[parameter];
+            if is_out(self.draft, parameter) {
+                // Its caller's variable begins with zeros.
+                let is_new = id == self.draft.main_image && !self.facts.called.contains(&id);
+                let is_read_first = !is_new
+                    && variable.kind == VariableKind::Parameter(Direction::Out)
+                    && !self.is_set_first(body, parameter);
+                if is_read_first {
+                    let zero = self.zero(variable.ty);
+                    self.line(&format!("*{} = {zero};", self.variable(parameter)));
+                }
+            } else if self.facts.is_memory(parameter) {
+                let argument = self.names.arguments.get(&parameter).cloned().unwrap_or_default();
+                self.line(&format!("var {} = {argument};", self.variable(parameter)));
+            }
+        }
+        self.statements(body)?;
+        if function.return_type != Type::Void && self.may_end(body) {
+            let zero = self.zero(function.return_type);
+            self.line(&format!("return {zero};"));
+        }
+        self.indent -= 1;
+        self.line("}");
+        Ok(())
+    }
+
+    fn head(&mut self, id: FunctionId) -> Result<(), Unprintable> {
+        let function = &self.draft.tree[id];
+        let mut parameters = Vec::new();
+        for &parameter in &function.parameters {
+            let variable = &self.draft.tree[parameter];
+            if matches!(variable.ty, Type::Sampler(_)) {
+                return Err(Unprintable("a sampler as a parameter"));
+            }
+            let ty = self.type_name(variable.ty);
+            let own = self.variable(parameter);
+            parameters.push(if is_out(self.draft, parameter) {
+                format!("{own}: ptr<function, {ty}>")
+            } else if self.facts.is_memory(parameter) {
+                format!(
+                    "{}: {ty}",
+                    self.names.arguments.get(&parameter).cloned().unwrap_or_default()
+                )
+            } else {
+                format!("{own}: {ty}")
+            });
+        }
+        let returns = match function.return_type {
+            Type::Void => String::new(),
+            ty => format!(" -> {}", self.type_name(ty)),
+        };
+        self.line(&format!(
+            "fn {}({}){returns} {{",
+            self.function(id),
+            parameters.join(", ")
+        ));
+        Ok(())
+    }
+
+    /// Whether an `out` parameter is written as a whole before anything else is done with it, on every way.
+    fn is_set_first(&self, body: &Block, parameter: VariableId) -> bool {
+        let tree = &self.draft.tree;
+        for statement in body {
+            if let StatementKind::Expression(expr) = statement.kind
+                && let ExprKind::Assign {
+                    op: None,
+                    target,
+                    value,
+                } = tree[expr].kind
+                && matches!(tree[target].kind, ExprKind::Variable(id) if id == parameter)
+            {
+                return !walk::mentions(tree, value, parameter);
+            }
+            let block = std::slice::from_ref(statement);
+            let mut leaves = false;
+            walk::each(block, &mut |inner: &Statement| {
+                leaves |= matches!(inner.kind, StatementKind::Return(_) | StatementKind::Discard);
+            });
+            let block: Block = vec![statement.clone()];
+            let mentions = walk::roots(tree, &block)
+                .into_iter()
+                .any(|root| walk::mentions(tree, root, parameter));
+            if leaves || mentions {
+                return false;
+            }
+        }
+        false
+    }
+
+    /// A function of lowering's own, whose body is text: read as GLSL and printed as any other.
+    fn helper(&mut self, id: FunctionId, text: &str) -> Result<(), Unprintable> {
+        const BROKEN: Unprintable = Unprintable("a function of lowering's own");
+        let tree = &self.draft.tree;
+        let function = &tree[id];
+        let parameters = function.parameters.iter().map(|&parameter| {
+            let variable = &tree[parameter];
+            let direction = if is_out(self.draft, parameter) { "out " } else { "" };
+            format!("{direction}{} {}", tree.type_name(variable.ty), variable.name)
+        });
+        let parameters: Vec<_> = parameters.collect();
+        // What the name does not say.
+        let about = if function.name.ends_with("_remainder") {
+            "// `a % b` of GLSL as Mesa and SwiftShader round it, down: WGSL's rounds towards zero.\n"
+        } else {
+            ""
+        };
+        let source = format!(
+            "{about}{} {}({}) {{ {text} }}\nvoid mainImage(out vec4 c, in vec2 p) {{}}",
+            tree.type_name(function.return_type),
+            function.name,
+            parameters.join(", ")
+        );
+        let mut files = Files::default();
+        let file = files.add(File::new("<helper>", source));
+        let checked = glsl::check(&files, file, &Options::default()).map_err(|_| BROKEN)?;
+        let draft = Draft::new(checked.tree, checked.main_image);
+        let first = draft.tree.items.iter().find_map(|item| match item {
+            Item::Function(id) => Some(*id),
+            _ => None,
+        });
+        let first = first.ok_or(BROKEN)?;
+        let order = Order {
+            items: vec![Item::Function(first)],
+            inputs: Vec::new(),
+        };
+        let mut names = Names::of(&draft, &order, self.style);
+        names.functions.insert(first, self.function(id).to_owned());
+        let facts = Facts::of(&draft);
+        let mut writer = Writer::new(&draft, &names, &facts, self.style, &files, self.deadline);
+        writer.definition(first)?;
+        self.derives |= writer.derives;
+        self.helpers.append(&mut writer.helpers);
+        self.out.push_str(&writer.out);
+        Ok(())
+    }
+}

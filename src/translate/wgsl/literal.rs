@@ -1,0 +1,163 @@
+//! Numbers. WGSL computes what stands among numbers without suffix in 64 bits; GLSL in 32.
+
+use toyproof_glsl::tree::{ExprId, ExprKind, Literal, Place, Type, UnaryOp, Value};
+
+use super::writer::Writer;
+
+impl Writer<'_> {
+    /// Whether an expression is made of numbers only, so that WGSL knows no width for it. Each is looked at once, and with a loop:
+    /// chains are asked about for each of their operators.
+    pub(super) fn is_abstract(&mut self, root: ExprId) -> bool {
+        let tree = &self.draft.tree;
+        let mut pending = vec![(root, false)];
+        while let Some((id, operands_done)) = pending.pop() {
+            if self.abstract_numbers.contains_key(&id) {
+                continue;
+            }
+            let may_be = match &tree[id].kind {
+                ExprKind::Literal(literal) => {
+                    matches!(literal.value, Value::Float(_) | Value::Int(_)) && !self.is_macro(id)
+                }
+                ExprKind::Unary { op, .. } => matches!(op, UnaryOp::Minus | UnaryOp::Plus),
+                ExprKind::Binary { .. } | ExprKind::BuiltIn { .. } => true,
+                _ => false,
+            };
+            if may_be && !operands_done {
+                pending.push((id, true));
+                tree[id]
+                    .kind
+                    .for_each_operand(|operand| pending.push((operand, false)));
+                continue;
+            }
+            let mut is_abstract = may_be;
+            if may_be {
+                tree[id]
+                    .kind
+                    .for_each_operand(|operand| is_abstract &= self.abstract_numbers[&operand]);
+            }
+            self.abstract_numbers.insert(id, is_abstract);
+        }
+        self.abstract_numbers[&root]
+    }
+
+    /// A number as WGSL writes it.
+    pub(super) fn literal(&mut self, literal: &Literal, at: Place) -> String {
+        if let Some(name) = self.macro_of(literal, at) {
+            return name;
+        }
+        self.number(literal)
+    }
+
+    fn number(&self, literal: &Literal) -> String {
+        match literal.value {
+            Value::Bool(value) => value.to_string(),
+            Value::Float(value) => {
+                let suffix = if self.suffixed { "f" } else { "" };
+                float(&literal.text, value) + suffix
+            }
+            Value::Int(value) => {
+                let suffix = if self.suffixed { "i" } else { "" };
+                if value == i32::MIN {
+                    "i32(-2147483648)".to_owned()
+                } else if value > 0 && is_hexadecimal(&literal.text) {
+                    format!("{}{suffix}", literal.text)
+                } else {
+                    format!("{value}{suffix}")
+                }
+            }
+            Value::Uint(_) if is_hexadecimal(&literal.text) => {
+                format!("{}u", literal.text.trim_end_matches(['u', 'U']))
+            }
+            Value::Uint(value) => format!("{value}u"),
+        }
+    }
+
+    /// The macro that a number came of, if that is the whole of it; it is then a constant of that name.
+    fn macro_of(&mut self, literal: &Literal, at: Place) -> Option<String> {
+        let name = self.macro_name(at)?;
+        let ty = match literal.value {
+            Value::Float(_) => "f32",
+            Value::Int(_) => "i32",
+            Value::Uint(_) => "u32",
+            Value::Bool(_) => "bool",
+        };
+        let suffixed = std::mem::take(&mut self.suffixed);
+        let declaration = format!("const {name}: {ty} = {};", self.number(literal));
+        self.suffixed = suffixed;
+        let known = self
+            .macros
+            .entry(name.clone())
+            .or_insert_with(|| declaration.clone());
+        // A name may be defined twice; the first keeps it.
+        (*known == declaration).then_some(name)
+    }
+
+    /// Whether a number is printed as a name.
+    fn is_macro(&self, id: ExprId) -> bool {
+        self.macro_name(self.draft.tree[id].at).is_some()
+    }
+
+    fn macro_name(&self, at: Place) -> Option<String> {
+        if !at.is_expanded() {
+            return None;
+        }
+        let text = self.comments.text(at.span)?;
+        let is_name = text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+            && text.starts_with(|c: char| c.is_ascii_alphabetic());
+        let is_free = !super::word::is_taken(text) && !self.names.all.contains(text);
+        (is_name && is_free && self.comments.is_whole_macro(text, at)).then(|| text.to_owned())
+    }
+
+    /// Zero of a type.
+    pub(super) fn zero(&self, ty: Type) -> String {
+        match ty {
+            Type::Scalar(scalar) => match scalar {
+                toyproof_glsl::tree::Scalar::Bool => "false".to_owned(),
+                toyproof_glsl::tree::Scalar::Float => "0.0".to_owned(),
+                toyproof_glsl::tree::Scalar::Int => "0".to_owned(),
+                toyproof_glsl::tree::Scalar::Uint => "0u".to_owned(),
+            },
+            _ => format!("{}()", self.type_name(ty)),
+        }
+    }
+}
+
+fn is_hexadecimal(text: &str) -> bool {
+    text.starts_with("0x") || text.starts_with("0X")
+}
+
+/// A float as written, with digits on both sides of its point; by its value if WGSL reads the text otherwise.
+fn float(text: &str, value: f64) -> String {
+    let text = text.trim_end_matches(['f', 'F']);
+    let is_plain = text
+        .chars()
+        .all(|c| c.is_ascii_digit() || matches!(c, '.' | 'e' | 'E' | '+' | '-'));
+    if !is_plain {
+        return format!("{:?}", value as f32);
+    }
+    let (mantissa, exponent) = text.find(['e', 'E']).map_or((text, ""), |at| text.split_at(at));
+    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+    let whole = whole.trim_start_matches('0');
+    let whole = if whole.is_empty() { "0" } else { whole };
+    let fraction = if fraction.is_empty() { "0" } else { fraction };
+    format!("{whole}.{fraction}{exponent}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::float;
+
+    #[test]
+    fn a_float_has_digits_on_both_sides() {
+        for (glsl, wgsl) in [
+            ("1.", "1.0"),
+            (".5", "0.5"),
+            ("1e3", "1.0e3"),
+            ("1.5f", "1.5"),
+            ("00.10", "0.10"),
+            ("2.E-3", "2.0E-3"),
+        ] {
+            assert_eq!(float(glsl, 0.0), wgsl);
+        }
+    }
+}

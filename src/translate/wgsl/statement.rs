@@ -1,0 +1,327 @@
+//! Statements, one to a line.
+
+use toyproof_glsl::tree::{
+    Arm, Block, Case, Condition, ExprId, ExprKind, Label, Scalar, Statement, StatementKind, Tree, Type,
+    Value, VariableId, VariableKind, walk,
+};
+
+use super::Unprintable;
+use super::writer::Writer;
+
+type Done = Result<(), Unprintable>;
+
+impl Writer<'_> {
+    pub(super) fn statements(&mut self, block: &Block) -> Done {
+        for (number, statement) in block.iter().enumerate() {
+            if matches!(statement.kind, StatementKind::Struct(_)) {
+                continue;
+            }
+            self.in_time()?;
+            let begin = self.out.len();
+            if self.comments.is_apart(statement.at) && number > 0 {
+                self.line("");
+            }
+            self.comment(statement.at);
+            let from = self.out.len();
+            self.statement(statement)?;
+            if self.out.len() == from {
+                self.out.truncate(begin);
+            } else if !statement.kind.is_compound() {
+                self.comment_behind(statement.at, from);
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn block(&mut self, block: &Block) -> Done {
+        self.inset(|writer| writer.statements(block))
+    }
+
+    fn statement(&mut self, statement: &Statement) -> Done {
+        match &statement.kind {
+            StatementKind::Expression(expr) => self.stepping_later(*expr, |writer| writer.effect(*expr)),
+            StatementKind::Declare(variable) => self.declare(*variable),
+            StatementKind::Struct(_) => Ok(()),
+            StatementKind::Block(body) if is_switch(body) => self.statements(body),
+            StatementKind::Block(body) => {
+                self.line("{");
+                self.block(body)?;
+                self.line("}");
+                Ok(())
+            }
+            StatementKind::If { arms, otherwise } => self.branches(arms, otherwise.as_ref()),
+            StatementKind::Switch { selector, cases } => self.switch(*selector, cases),
+            StatementKind::For {
+                init,
+                condition,
+                step,
+                body,
+            } => {
+                let condition = match condition {
+                    Some(Condition::Expression(condition)) => Some(*condition),
+                    Some(Condition::Declare(_)) => return Err(Unprintable("a declaration as a condition")),
+                    None => None,
+                };
+                self.for_loop(init, condition, *step, body)
+            }
+            StatementKind::While { condition, body } => match *condition {
+                Condition::Expression(condition) => self.while_loop(condition, body),
+                Condition::Declare(_) => Err(Unprintable("a declaration as a condition")),
+            },
+            StatementKind::DoWhile { body, condition } => self.do_while(body, *condition),
+            StatementKind::Break => {
+                self.line("break;");
+                Ok(())
+            }
+            StatementKind::Continue => {
+                self.line("continue;");
+                Ok(())
+            }
+            StatementKind::Discard => {
+                self.line("discard;");
+                Ok(())
+            }
+            StatementKind::Return(None) => {
+                self.line("return;");
+                Ok(())
+            }
+            StatementKind::Return(Some(value)) => {
+                if self.draft.tree[*value].ty == Type::Void {
+                    self.effect(*value)?;
+                    self.line("return;");
+                    return Ok(());
+                }
+                self.give_back(*value)
+            }
+        }
+    }
+
+    /// `let a = 1.0;`, or `var` for what is written later.
+    pub(super) fn declaration(&mut self, id: VariableId) -> Result<String, Unprintable> {
+        let variable = &self.draft.tree[id];
+        let name = self.variable(id);
+        let Some(initialiser) = variable.initialiser else {
+            return Ok(format!("var {name}: {};", self.type_name(variable.ty)));
+        };
+        let value = self.value(initialiser)?.words;
+        let word = if self.facts.is_memory(id) { "var" } else { "let" };
+        if variable.kind == VariableKind::Const && variable.value.is_some() && is_constant(self, initialiser)
+        {
+            return Ok(self.typed("const", name, variable.ty, &value));
+        }
+        Ok(format!("{word} {name} = {value};"))
+    }
+
+    /// A declaration with its type, unless a constructor says it: a number alone would not.
+    pub(super) fn typed(&self, word: &str, name: &str, ty: Type, value: &str) -> String {
+        let ty = self.type_name(ty);
+        let says_it = value.strip_prefix(&ty).is_some_and(|rest| rest.starts_with('('));
+        if says_it {
+            format!("{word} {name} = {value};")
+        } else {
+            format!("{word} {name}: {ty} = {value};")
+        }
+    }
+
+    fn declare(&mut self, id: VariableId) -> Done {
+        let name = self.variable(id);
+        let Some(initialiser) = self.draft.tree[id].initialiser else {
+            let text = self.declaration(id)?;
+            self.line(&text);
+            return Ok(());
+        };
+        // The initialiser may mean another variable of that name, which is no longer in sight behind the declaration.
+        let meets = walk::any(&self.draft.tree, initialiser, |kind| match kind {
+            ExprKind::Variable(other) => self.variable(*other) == name,
+            _ => false,
+        });
+        if !meets && self.branching(initialiser).is_some() {
+            let ty = self.type_name(self.draft.tree[id].ty);
+            self.line(&format!("var {name}: {ty};"));
+            return self.stepping_later(initialiser, |writer| writer.give(name, initialiser));
+        }
+        let print = |writer: &mut Self| {
+            let text = writer.declaration(id)?;
+            writer.line(&text);
+            Ok(())
+        };
+        if meets {
+            print(self)
+        } else {
+            self.stepping_later(initialiser, print)
+        }
+    }
+
+    fn branches(&mut self, arms: &[Arm], otherwise: Option<&Block>) -> Done {
+        let mut depth = 0;
+        for (at, arm) in arms.iter().enumerate() {
+            if at > 0 && self.hoists(arm.condition) {
+                // What the condition does is done only where the others did not hold.
+                self.line("} else {");
+                self.indent += 1;
+                depth += 1;
+                let condition = self.value(arm.condition)?;
+                self.line(&format!("if {} {{", condition.words));
+            } else {
+                let condition = self.value(arm.condition)?;
+                let word = if at == 0 { "if" } else { "} else if" };
+                self.line(&format!("{word} {} {{", condition.words));
+            }
+            self.block(&arm.body)?;
+        }
+        if let Some(body) = otherwise {
+            self.line("} else {");
+            self.block(body)?;
+        }
+        self.line("}");
+        for _ in 0..depth {
+            self.indent -= 1;
+            self.line("}");
+        }
+        Ok(())
+    }
+
+    fn case(&mut self, head: &str, body: &Block) -> Done {
+        let from = self.out.len();
+        self.line(&format!("{head}: {{"));
+        let inner = self.out.len();
+        self.block(body)?;
+        if self.out.len() == inner {
+            self.out.truncate(from);
+            self.line(&format!("{head}: {{}}"));
+        } else {
+            self.line("}");
+        }
+        Ok(())
+    }
+
+    /// Whether a label is a constant's name, or made of such.
+    fn is_named(&self, label: ExprId) -> bool {
+        let names_something = walk::any(&self.draft.tree, label, |kind| {
+            matches!(kind, ExprKind::Variable(_))
+        });
+        names_something && is_constant(self, label)
+    }
+
+    fn switch(&mut self, selector: ExprId, cases: &[Case]) -> Done {
+        let unsigned = self.draft.tree[selector].ty.scalar() == Some(Scalar::Uint);
+        let selector = self.value(selector)?;
+        self.line(&format!("switch {} {{", selector.words));
+        self.indent += 1;
+        let mut has_default = false;
+        for case in cases {
+            let labels: Vec<String> = case
+                .labels
+                .iter()
+                .map(|label| match *label {
+                    Label::Default => {
+                        has_default = true;
+                        "default".to_owned()
+                    }
+                    Label::Case { expr, .. } if self.is_named(expr) => match self.value(expr) {
+                        Ok(text) => text.words,
+                        Err(_) => String::new(),
+                    },
+                    Label::Case { value, .. } if unsigned => format!("{value}u"),
+                    Label::Case { value, .. } => value.cast_signed().to_string(),
+                })
+                .collect();
+            let head = match labels.as_slice() {
+                [one] if one == "default" => "default".to_owned(),
+                _ => format!("case {}", labels.join(", ")),
+            };
+            self.case(&head, &body_of(&self.draft.tree, case))?;
+        }
+        if !has_default {
+            self.line("default: {}");
+        }
+        self.indent -= 1;
+        self.line("}");
+        Ok(())
+    }
+
+    /// Whether a block may come to its end, as WGSL's analysis of behaviours sees it (§9.7).
+    pub(super) fn may_end(&self, block: &Block) -> bool {
+        !block.iter().any(|statement| self.never_ends(statement))
+    }
+
+    fn never_ends(&self, statement: &Statement) -> bool {
+        match &statement.kind {
+            StatementKind::Return(_) => true,
+            StatementKind::Block(body) => !self.may_end(body),
+            StatementKind::If {
+                arms,
+                otherwise: Some(otherwise),
+            } => !self.may_end(otherwise) && arms.iter().all(|arm| !self.may_end(&arm.body)),
+            StatementKind::Switch { cases, .. } => {
+                let has_default = cases.iter().any(|case| case.labels.contains(&Label::Default));
+                has_default
+                    && cases.iter().all(|case| {
+                        let body = body_of(&self.draft.tree, case);
+                        !self.may_end(&body) && !leaves(&body)
+                    })
+            }
+            _ => false,
+        }
+    }
+}
+
+/// Whether a block is a `switch` that lowering gave a scope.
+fn is_switch(block: &Block) -> bool {
+    matches!(block.as_slice(), [only] if matches!(only.kind, StatementKind::Switch { .. }))
+}
+
+/// What a case does: WGSL's ends by itself, and a jump at its end needs no `if (true)` round it, as naga's GLSL does.
+fn body_of(tree: &Tree, case: &Case) -> Block {
+    let mut body = case.body.clone();
+    body.pop_if(|last| matches!(last.kind, StatementKind::Break));
+    let always = body.pop_if(|last| match &last.kind {
+        StatementKind::If { arms, otherwise: None } => match arms.as_slice() {
+            [arm] => {
+                let declares = arm.body.iter().any(|statement| walk::declared(statement).is_some());
+                let is_true = matches!(&tree[arm.condition].kind, ExprKind::Literal(literal) if literal.value == Value::Bool(true));
+                is_true && !declares
+            }
+            _ => false,
+        },
+        _ => false,
+    });
+    if let Some(StatementKind::If { arms, .. }) = always.map(|statement| statement.kind) {
+        body.extend(arms.into_iter().flat_map(|arm| arm.body));
+    }
+    body
+}
+
+/// Whether a `break` of the block's own stands in it.
+pub(super) fn leaves(block: &Block) -> bool {
+    block.iter().any(|statement| match &statement.kind {
+        StatementKind::Break => true,
+        StatementKind::For { .. }
+        | StatementKind::While { .. }
+        | StatementKind::DoWhile { .. }
+        | StatementKind::Switch { .. } => false,
+        _ => walk::inner(statement).into_iter().any(leaves),
+    })
+}
+
+/// Whether WGSL, too, takes an initialiser for constant: numbers, operators and constants, no calls, no arrays.
+fn is_constant(writer: &Writer<'_>, id: ExprId) -> bool {
+    let tree = &writer.draft.tree;
+    !walk::any(tree, id, |kind| match kind {
+        ExprKind::Literal(_)
+        | ExprKind::Unary { .. }
+        | ExprKind::Binary { .. }
+        | ExprKind::Swizzle { .. }
+        | ExprKind::Construct { .. } => false,
+        // One of another that is computed by a call is printed with `let`.
+        ExprKind::Variable(variable) => {
+            let variable = &tree[*variable];
+            variable.kind != VariableKind::Const
+                || variable.value.is_none()
+                || variable
+                    .initialiser
+                    .is_none_or(|value| !is_constant(writer, value))
+        }
+        _ => true,
+    }) && matches!(tree[id].ty, Type::Scalar(_) | Type::Vector(..))
+}

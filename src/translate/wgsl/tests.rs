@@ -1,0 +1,367 @@
+use expect_test::{Expect, expect};
+use toyproof_diagnostic::{Deadline, File, Files};
+use toyproof_glsl::{Options, check};
+
+use super::facts::Facts;
+use super::names::Names;
+use super::writer::Writer;
+use super::{Draft, Failure, Order, Style, wgsl};
+
+fn printed(shader: &str, style: Style) -> String {
+    let mut files = Files::default();
+    let file = files.add(File::new("shader", shader));
+    let checked = check(&files, file, &Options::default()).unwrap();
+    wgsl(&checked, &files, style, &Deadline::default()).unwrap_or_else(|why| why.to_string())
+}
+
+#[test]
+fn a_deadline_ends_the_printing_at_its_next_value() {
+    let mut files = Files::default();
+    let shader = "void mainImage(out vec4 c, in vec2 p) { c = vec4(p, p); }";
+    let file = files.add(File::new("shader", shader));
+    let checked = check(&files, file, &Options::default()).unwrap();
+    let over = Deadline::after(std::time::Duration::ZERO);
+    let late = wgsl(&checked, &files, Style::Plain, &over);
+    assert!(matches!(late, Err(Failure::Overdue(_))), "{late:?}");
+
+    // Each value, statement and item asks for itself.
+    let draft = Draft::new(checked.tree.clone(), checked.main_image);
+    let order = Order::with_labels(&draft);
+    let names = Names::of(&draft, &order, Style::Plain);
+    let facts = Facts::of(&draft);
+    let mut writer = Writer::new(&draft, &names, &facts, Style::Plain, &files, &over);
+    let body = checked.tree[checked.main_image].body.as_ref().unwrap();
+    let value = checked.tree.exprs.ids().next().unwrap();
+    assert!(writer.value(value).is_err());
+    assert!(writer.statements(body).is_err());
+    assert!(writer.item(order.items[0]).is_err());
+}
+
+/// The function `f` of a shader that calls it.
+fn function(text: &str, expected: &Expect) {
+    let shader = format!("{text}\nvoid mainImage(out vec4 c, in vec2 p) {{ c = vec4(f(p)); }}");
+    let whole = printed(&shader, Style::Plain);
+    let from = whole.find("fn f(").unwrap_or_else(|| panic!("{whole}"));
+    let to = whole[from..].find("\n}\n").unwrap() + from;
+    expected.assert_eq(&format!("{}\n}}\n", &whole[from..to]));
+}
+
+#[test]
+fn a_shader_keeps_its_names_and_comments() {
+    let shader = "// A licence.
+
+#define STEPS 3
+/* How far
+ * it goes. */
+float far(vec2 p) {
+    // Not near.
+    return p.x * iTime + float(STEPS); // behind
+}
+
+void mainImage(out vec4 fragColor, in vec2 fragCoord) {
+    fragColor = vec4(far(fragCoord), iMouse.xy, 1.);
+}
+";
+    expect![[r"
+        // A licence.
+
+        struct Inputs {
+            iResolution: vec3f,
+            @size(148) iTime: f32,
+            iMouse: vec4f,
+        }
+
+        @group(0) @binding(0) var<uniform> inputs: Inputs;
+
+        const STEPS: i32 = 3;
+
+        // How far
+        // it goes.
+        fn far(p: vec2f) -> f32 {
+            // Not near.
+            return p.x * inputs.iTime + f32(STEPS); // behind
+        }
+
+        fn mainImage(fragColor: ptr<function, vec4f>, fragCoord: vec2f) {
+            *fragColor = vec4f(far(fragCoord), inputs.iMouse.xy, 1.0);
+        }
+
+        @fragment
+        fn main(@builtin(position) position: vec4f) -> @location(0) vec4f {
+            var color: vec4f;
+            mainImage(&color, position.xy);
+            return vec4f(color.xyz, 1.0);
+        }
+    "]]
+    .assert_eq(&printed(shader, Style::Plain));
+}
+
+#[test]
+fn effects_stand_before_what_they_are_part_of() {
+    function(
+        "float f(vec2 p) { int i = 0; float a; a = (p.yx *= 2.0, p.x) + float(i++); return i > 0 ? a : p.y; }",
+        &expect![[r"
+            fn f(p_in: vec2f) -> f32 {
+                var p = p_in;
+                var i = 0;
+                var a: f32;
+                let yx = p.yx * 2.0;
+                p = vec2f(yx.y, yx.x);
+                a = p.x + f32(i);
+                i++;
+                return select(p.y, a, i > 0);
+            }
+        "]],
+    );
+}
+
+#[test]
+fn loops_are_those_of_the_author_where_wgsl_has_them() {
+    function(
+        "float f(vec2 p) {
+            float s = 0.1 * 0.2;
+            for (int i = 0, j = 9; i < j; i++, j--) s += p.x;
+            while (s < 3.0) s *= 2.0;
+            do { s -= 1.0; } while (s > 1.0);
+            return s;
+        }",
+        &expect![[r"
+            fn f(p: vec2f) -> f32 {
+                var s = 0.1f * 0.2f;
+                {
+                    var i = 0;
+                    var j = 9;
+                    loop {
+                        if i >= j {
+                            break;
+                        }
+                        s += p.x;
+                        continuing {
+                            i++;
+                            j--;
+                        }
+                    }
+                }
+                while s < 3.0 {
+                    s *= 2.0;
+                }
+                loop {
+                    s -= 1.0;
+                    if !(s > 1.0) {
+                        break;
+                    }
+                }
+                return s;
+            }
+        "]],
+    );
+}
+
+#[test]
+fn what_is_never_written_is_not_kept_and_conditions_are_turned_round() {
+    function(
+        "float f(vec2 p) {
+            const int most = max(3, 4), last = most - 1;
+            float b = p.x;
+            for (int i = 0; i++ < last;) b = mix(p.y, b, b++);
+            return b;
+        }",
+        &expect![[r"
+            fn f(p: vec2f) -> f32 {
+                let most = max(3i, 4i);
+                let last = most - 1;
+                var b = p.x;
+                {
+                    var i = 0;
+                    loop {
+                        let old_i = i;
+                        i++;
+                        if old_i >= last {
+                            break;
+                        }
+                        let old_b = b;
+                        let old_b_1 = b;
+                        b += 1.0;
+                        b = mix(p.y, old_b, old_b_1);
+                    }
+                }
+                return b;
+            }
+        "]],
+    );
+}
+
+#[test]
+fn words_of_wgsl_and_overloads_get_other_names() {
+    function(
+        "float loop(float fn) { return fn; }
+        float loop(vec2 fn) { return fn.x; }
+        float f(vec2 p) { float var = loop(p) + loop(p.x); return var; }",
+        &expect![[r"
+            fn f(p: vec2f) -> f32 {
+                let var_1 = loop_2(p) + loop_1(p.x);
+                return var_1;
+            }
+        "]],
+    );
+}
+
+#[test]
+fn what_a_host_does_not_have_is_refused() {
+    let shader = "void mainImage(out vec4 c, in vec2 p) { c = iMouse + dFdx(p.x); }";
+    let refused = "an input that the host does not have";
+    assert_eq!(printed(shader, Style::Bevy), refused);
+    let derives = shader.replace("iMouse", "vec4(0.0)");
+    let refused = "a derivative in a compute shader";
+    assert_eq!(printed(&derives, Style::ComputeToys), refused);
+}
+
+#[test]
+fn y_points_down_where_the_host_has_it_so() {
+    let shader = "void mainImage(out vec4 c, in vec2 p) { c = vec4(dFdy(p.y)); }";
+    assert!(printed(shader, Style::Plain).contains("vec4f(dpdy(p.y))"));
+    for style in [Style::WgpuShadertoy, Style::Bevy] {
+        assert!(printed(shader, style).contains("vec4f(-dpdy(p.y))"));
+    }
+}
+
+#[test]
+fn steps_wait_where_nobody_looks_and_choices_are_ifs_only_where_a_side_acts() {
+    function(
+        "float g(float x) { return x * 2.0; }
+        float pick(vec2 p, int i) { return i > 2 ? g(p.x) : i > 1 ? g(p.y) : p.x; }
+        float f(vec2 p) {
+            float stack[4];
+            int top = 0, i = 1;
+            stack[top++] = pick(p, top);
+            stack[top++] = p.y;
+            float a = i++ > 0 ? g(p.x) : p.y;
+            a += p.x > 0.0 ? g(a) : 1.0;
+            vec2 b = g(a) > 1.0 ? p : p.yx;
+            return stack[--top] + a * b.x;
+        }",
+        &expect![[r"
+            fn f(p: vec2f) -> f32 {
+                var stack: array<f32, 4>;
+                var top = 0;
+                var i = 1;
+                let old_top = top;
+                top++;
+                stack[old_top] = pick(p, top);
+                stack[top] = p.y;
+                top++;
+                var a: f32;
+                if i > 0 {
+                    a = g(p.x);
+                } else {
+                    a = p.y;
+                }
+                i++;
+                if p.x > 0.0 {
+                    a += g(a);
+                } else {
+                    a += 1.0;
+                }
+                let b = select(p.yx, p, g(a) > 1.0);
+                top--;
+                return stack[top] + a * b.x;
+            }
+        "]],
+    );
+}
+
+#[test]
+fn cases_keep_their_names_and_fall_through() {
+    function(
+        "const int NEAR = 0, MIDDLE = 1;
+        const int FAR = 2;
+        float f(vec2 p) {
+            switch (int(p.x)) {
+            case NEAR: p.y *= 0.5;
+            case MIDDLE: return p.y;
+            case FAR:
+            default: break;
+            }
+            return 1.0;
+        }",
+        &expect![[r"
+            fn f(p_in: vec2f) -> f32 {
+                var p = p_in;
+                let selector = i32(p.x);
+                switch selector {
+                    case NEAR, MIDDLE: {
+                        let reached = selector == NEAR;
+                        if reached {
+                            p.y *= 0.5;
+                        }
+                        return p.y;
+                    }
+                    case FAR, default: {}
+                }
+                return 1.0;
+            }
+        "]],
+    );
+}
+
+#[test]
+fn letters_bits_blank_lines_and_comments_are_the_author_s() {
+    function(
+        "float f(vec2 p) {
+            vec4 colour = vec4(p, 0.0, 1.0); // red and green
+
+            // The other way.
+            colour.bg = colour.rb;
+            float distance = length(p), length = 0.1; /* hidden */
+            int bits = 2;
+            bits = 0x0fF & int(p.x) << 3 >> bits;
+            colour.xz *= mod(p.x * 2.0, length) * mod(p, 2.0).x;
+            colour /= distance;
+            return colour.a + float(bits % 3);
+        }",
+        &expect![[r"
+            fn f(p: vec2f) -> f32 {
+                var colour = vec4f(p, 0.0, 1.0); // red and green
+
+                // The other way.
+                let bg = colour.rb;
+                colour = vec4f(colour.r, bg.g, bg.r, colour.a);
+                let distance = length(p); // hidden
+                let length_1 = 0.1;
+                var bits = 2;
+                bits = 0x0fF & ((i32(p.x) << 3u) >> u32(bits));
+                let xz = colour.xz * (modulo(p.x * 2.0, length_1) * modulo_vec2f(p, vec2f(2.0)).x);
+                colour = vec4f(xz.x, colour.y, xz.y, colour.w);
+                colour /= distance;
+                return colour.a + f32(remainder(bits, 3));
+            }
+        "]],
+    );
+}
+
+#[test]
+fn a_call_that_may_change_what_it_is_added_to_comes_first() {
+    function(
+        "float seed;
+        float next() { return seed += 1.0; }
+        float twice(inout float x) { return x *= 2.0; }
+        float f(vec2 p) {
+            float x = p.x;
+            x += next();
+            x += twice(x);
+            seed *= next();
+            return x;
+        }",
+        &expect![[r"
+            fn f(p: vec2f) -> f32 {
+                var x = p.x;
+                x += next();
+                let value = twice(&x);
+                x += value;
+                let value_1 = next();
+                seed *= value_1;
+                return x;
+            }
+        "]],
+    );
+}
