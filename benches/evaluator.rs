@@ -1,5 +1,5 @@
-//! The evaluator beside lavapipe's strict frame, in turns so that both meet the same noise; in processor time of all threads, which other
-//! work on the machine hardly moves. `cargo bench --bench evaluator`
+//! The evaluator beside lavapipe's strict frame, in turns so that both meet the same noise; in processor time
+//! of all threads, which other work on the machine hardly moves. `cargo bench --bench evaluator`
 
 #![expect(
     clippy::print_stdout,
@@ -11,13 +11,13 @@ use std::fs;
 
 use rustix::time::{ClockId, clock_gettime};
 use toyproof::diagnostic::{File, Files};
-use toyproof::eval::{Jittered, Number, Program, Seed, Settings, Variant};
+use toyproof::eval::{Number, Program, RandomRounding, Seed, Settings, UndefinedPolicy};
 use toyproof::glsl::{Checked, Options, check};
-use toyproof::gpu::{On, Painter};
+use toyproof::gpu::{AdapterSelector, Painter};
 use toyproof::image::Frame;
 use toyproof::translate::{FloatMode, lower_strict};
 
-const RUNGS: [&str; 4] = [
+const EXERCISES: [&str; 4] = [
     "02-sphere",
     "04-many-objects",
     "05-complex-scene",
@@ -25,10 +25,10 @@ const RUNGS: [&str; 4] = [
 ];
 const ROUNDS: usize = 15;
 
-fn checked(rung: &str) -> Checked {
+fn checked(exercise: &str) -> Checked {
     let mut files = Files::default();
-    let text = fs::read_to_string(format!("glsl/{rung}.glsl")).expect("the course is here");
-    let file = files.add(File::new(rung, text));
+    let text = fs::read_to_string(format!("glsl/{exercise}.glsl")).expect("the course is here");
+    let file = files.add(File::new(exercise, text));
     check(&files, file, &Options::default()).expect("the course is valid")
 }
 
@@ -50,26 +50,31 @@ fn median(mut times: Vec<f64>) -> f64 {
     times[times.len() / 2]
 }
 
-fn paint<N: Number>(program: &Program, variant: Variant, noise: N::Noise) {
+fn render<N: Number>(program: &Program, undefined: UndefinedPolicy, noise: N::Noise) {
     let settings = Settings::<N> {
-        variant,
+        undefined,
         noise,
         ..Settings::default()
     };
     program
-        .paint(&Frame::default(), &settings)
+        .render(&Frame::default(), &settings)
         .expect("the course paints");
 }
 
 fn main() {
     println!("milliseconds of processor time at 640×360, medians of {ROUNDS} rounds in turns");
     println!(
-        "rung               compile  lavapipe  f32     f32 observing  f64     f64 observing  f64 perturbed"
+        "exercise               compile  lavapipe  f32     f32 observing  f64     f64 observing  f64 perturbed"
     );
-    for rung in RUNGS {
-        let checked = checked(rung);
+    for exercise in EXERCISES {
+        let checked = checked(exercise);
         let lowered = lower_strict(&checked);
-        let mut painter = match Painter::new(&lowered, &Frame::default(), FloatMode::Strict, &On::Lavapipe) {
+        let mut painter = match Painter::new(
+            &lowered,
+            &Frame::default(),
+            FloatMode::Strict,
+            &AdapterSelector::Lavapipe,
+        ) {
             Ok(painter) => Some(painter),
             Err(failure) => {
                 eprintln!("without lavapipe: {failure}");
@@ -82,17 +87,17 @@ fn main() {
             let compile = time(|| drop(Program::new(&checked)));
             let gpu = time(|| {
                 if let Some(painter) = &mut painter {
-                    painter.paint().expect("it painted before");
+                    painter.render().expect("it painted before");
                 }
             });
             let taken = [
                 compile,
                 gpu,
-                time(|| paint::<f32>(&program, Variant::Plain, ())),
-                time(|| paint::<f32>(&program, Variant::Observed, ())),
-                time(|| paint::<f64>(&program, Variant::Plain, ())),
-                time(|| paint::<f64>(&program, Variant::Observed, ())),
-                time(|| paint::<Jittered>(&program, Variant::Plain, Seed(1))),
+                time(|| render::<f32>(&program, UndefinedPolicy::Plain, ())),
+                time(|| render::<f32>(&program, UndefinedPolicy::Observed, ())),
+                time(|| render::<f64>(&program, UndefinedPolicy::Plain, ())),
+                time(|| render::<f64>(&program, UndefinedPolicy::Observed, ())),
+                time(|| render::<RandomRounding>(&program, UndefinedPolicy::Plain, Seed(1))),
             ];
             // The first round warms up.
             if round > 0 {
@@ -111,7 +116,7 @@ fn main() {
             perturbed,
         ] = times.map(median);
         println!(
-            "{rung:18} {compile:<8.2} {gpu:<9.2} {single:<7.2} {single_observing:<14.2} {double:<7.2} \
+            "{exercise:18} {compile:<8.2} {gpu:<9.2} {single:<7.2} {single_observing:<14.2} {double:<7.2} \
              {double_observing:<14.2} {perturbed:.2}"
         );
     }

@@ -10,7 +10,7 @@ use divan::Bencher;
 use toyproof::diagnostic::{File, Files};
 use toyproof::glsl::{Options, check};
 use toyproof::gpu;
-use toyproof::gpu::{On, Worker};
+use toyproof::gpu::{AdapterSelector, Worker};
 use toyproof::image::Frame;
 use toyproof::scene::{self, Scene};
 use toyproof::tracer::{Real, Tracer};
@@ -18,30 +18,30 @@ use toyproof::translate::backend::spirv;
 use toyproof::translate::naga_ir::ValidModule;
 use toyproof::translate::{FloatMode, Lowered, lower};
 
-const RUNGS: [&str; 3] = ["02-sphere", "04-many-objects", "05-complex-scene"];
+const EXERCISES: [&str; 3] = ["02-sphere", "04-many-objects", "05-complex-scene"];
 
 fn main() {
     divan::main();
 }
 
-fn lowered(rung: &str) -> Lowered {
+fn lowered(exercise: &str) -> Lowered {
     let mut files = Files::default();
-    let text = fs::read_to_string(format!("glsl/{rung}.glsl")).expect("the course is here");
-    let file = files.add(File::new(rung, text));
+    let text = fs::read_to_string(format!("glsl/{exercise}.glsl")).expect("the course is here");
+    let file = files.add(File::new(exercise, text));
     lower(&check(&files, file, &Options::default()).expect("the course is valid"))
 }
 
-fn scene(rung: &str) -> Scene {
+fn scene(exercise: &str) -> Scene {
     let mut files = Files::default();
-    let text = fs::read_to_string(format!("glsl/{rung}.toml")).expect("the course is here");
-    let file = files.add(File::new(rung, text));
+    let text = fs::read_to_string(format!("glsl/{exercise}.toml")).expect("the course is here");
+    let file = files.add(File::new(exercise, text));
     scene::parse(&files, file).expect("the course is valid")
 }
 
 /// From the lowered text to the SPIR-V that runs.
-#[divan::bench(args = RUNGS)]
-fn translate(bencher: Bencher, rung: &str) {
-    let lowered = lowered(rung);
+#[divan::bench(args = EXERCISES)]
+fn translate(bencher: Bencher, exercise: &str) {
+    let lowered = lowered(exercise);
     bencher.bench(|| {
         let module = ValidModule::parse(&lowered).expect("the course is valid");
         spirv::strict(&spirv::words(&module).expect("naga writes the course"))
@@ -49,28 +49,34 @@ fn translate(bencher: Bencher, rung: &str) {
 }
 
 /// Paint and read back 640×360, compiled before.
-#[divan::bench(args = RUNGS, sample_count = 20)]
-fn lavapipe(bencher: Bencher, rung: &str) {
-    let lowered = lowered(rung);
-    let mut painter = match gpu::Painter::new(&lowered, &Frame::default(), FloatMode::Strict, &On::Lavapipe) {
+#[divan::bench(args = EXERCISES, sample_count = 20)]
+fn lavapipe(bencher: Bencher, exercise: &str) {
+    let lowered = lowered(exercise);
+    let mut painter = match gpu::Painter::new(
+        &lowered,
+        &Frame::default(),
+        FloatMode::Strict,
+        &AdapterSelector::Lavapipe,
+    ) {
         Ok(painter) => painter,
         Err(failure) => {
             eprintln!("skipped: {failure}");
             return;
         }
     };
-    bencher.bench_local(|| painter.paint().expect("it painted before"));
+    bencher.bench_local(|| painter.render().expect("it painted before"));
 }
 
-/// The whole way through the worker process: translate, compile (from Mesa's cache), paint, watch loops, send back.
-#[divan::bench(args = RUNGS, sample_count = 20)]
-fn through_the_worker(bencher: Bencher, rung: &str) {
-    let lowered = lowered(rung);
+/// The whole way through the worker process: translate, compile (from Mesa's cache), paint, watch loops, send
+/// back.
+#[divan::bench(args = EXERCISES, sample_count = 20)]
+fn through_the_worker(bencher: Bencher, exercise: &str) {
+    let lowered = lowered(exercise);
     let program = PathBuf::from(env!("CARGO_BIN_EXE_toyproof"));
     let mut worker = Worker::new(
         program,
         vec!["worker".to_owned()],
-        On::Lavapipe,
+        AdapterSelector::Lavapipe,
         Duration::from_secs(60),
     );
     if let Err(failure) = worker.draw(lowered.clone(), Frame::default(), FloatMode::Strict) {
@@ -81,8 +87,8 @@ fn through_the_worker(bencher: Bencher, rung: &str) {
 }
 
 /// 640×360 by the reference tracer, on all cores.
-#[divan::bench(args = RUNGS, types = [f32, f64])]
-fn trace<T: Real>(bencher: Bencher, rung: &str) {
-    let tracer = Tracer::<T>::new(&scene(rung));
+#[divan::bench(args = EXERCISES, types = [f32, f64])]
+fn trace<T: Real>(bencher: Bencher, exercise: &str) {
+    let tracer = Tracer::<T>::new(&scene(exercise));
     bencher.bench(|| tracer.picture(|| ()));
 }

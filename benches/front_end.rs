@@ -1,4 +1,5 @@
-//! How long it takes from an author's text to the SPIR-V that runs, beside naga's own share of it. `cargo bench --bench front_end`
+//! How long it takes from an author's text to the SPIR-V that runs, beside naga's own share of it. `cargo
+//! bench --bench front_end`
 
 use std::fmt::Write;
 use std::fs;

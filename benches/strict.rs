@@ -1,5 +1,6 @@
-//! What strictness costs on lavapipe: a shader's frame with everything spelled against the same as the driver likes it, in turn,
-//! and the time to the first frame. `MESA_SHADER_CACHE_DISABLE=true cargo bench --bench strict`
+//! What strictness costs on lavapipe: a shader's frame with everything spelled against the same as the driver
+//! likes it, in turn, and the time to the first frame. `MESA_SHADER_CACHE_DISABLE=true cargo bench --bench
+//! strict`
 
 #![expect(clippy::print_stdout, reason = "a benchmark's own words")]
 
@@ -8,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use toyproof::diagnostic::{File, Files};
 use toyproof::glsl::{Options, check};
-use toyproof::gpu::{On, Painter};
+use toyproof::gpu::{AdapterSelector, Painter};
 use toyproof::image::Frame;
 use toyproof::translate::{FloatMode, Lowered, lower, lower_strict};
 
@@ -25,12 +26,12 @@ const HEAVY: &str = "void mainImage(out vec4 c, in vec2 p) {
 const ROUNDS: usize = 15;
 
 fn main() {
-    let rungs = ["05-complex-scene", "06-reflections"].map(|rung| {
-        let text = fs::read_to_string(format!("glsl/{rung}.glsl")).expect("the course is here");
-        (rung, text)
+    let exercises = ["05-complex-scene", "06-reflections"].map(|exercise| {
+        let text = fs::read_to_string(format!("glsl/{exercise}.glsl")).expect("the course is here");
+        (exercise, text)
     });
     println!("shader | first frame strict, fast (ms) | frame strict, fast (ms) | ratio");
-    for (name, text) in rungs.into_iter().chain([("sin, exp, pow", HEAVY.to_owned())]) {
+    for (name, text) in exercises.into_iter().chain([("sin, exp, pow", HEAVY.to_owned())]) {
         measure(name, &text);
     }
 }
@@ -45,9 +46,9 @@ fn measure(name: &str, text: &str) {
     ];
     let first = |(lowered, mode): &(Lowered, FloatMode)| {
         let start = Instant::now();
-        let mut painter =
-            Painter::new(lowered, &Frame::default(), *mode, &On::Lavapipe).expect("lavapipe is here");
-        painter.paint().expect("it paints");
+        let mut painter = Painter::new(lowered, &Frame::default(), *mode, &AdapterSelector::Lavapipe)
+            .expect("lavapipe is here");
+        painter.render().expect("it paints");
         (painter, start.elapsed())
     };
     // The driver itself is loaded, and warm.
@@ -57,7 +58,7 @@ fn measure(name: &str, text: &str) {
     for _ in 0..ROUNDS {
         for (painter, times) in [(&mut strict, &mut strict_times), (&mut fast, &mut fast_times)] {
             let start = Instant::now();
-            painter.paint().expect("it paints");
+            painter.render().expect("it paints");
             times.push(start.elapsed());
         }
     }

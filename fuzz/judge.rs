@@ -1,4 +1,5 @@
-//! One text through the whole front end, as `toyproof` takes it: preprocess, parse, check, lower, print; then naga's gate.
+//! One text through the whole front end, as `toyproof` takes it: preprocess, parse, check, lower, print; then
+//! naga's gate.
 //!
 //! Shared by the fuzz targets and by the test that reads `regressions`.
 
@@ -31,8 +32,8 @@ const STACK: usize = 2 << 20;
 /// As the worker gives it.
 const NAGA_STACK: usize = 256 << 20;
 
-/// What the front end may take of a processor: a constant and a share of the size. Macros may make up to 2^20 tokens of a
-/// line, so where there are any the constant is larger.
+/// What the front end may take of a processor: a constant and a share of the size. Macros may make up to 2^20
+/// tokens of a line, so where there are any the constant is larger.
 fn allowance(text: &str) -> Duration {
     let constant = if text.contains("define") { 4000 } else { 100 };
     Duration::from_millis(constant) + Duration::from_micros(20) * text.len() as u32

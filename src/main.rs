@@ -7,8 +7,8 @@ use toyproof::cli::{Cli, Exit};
 
 fn main() -> ExitCode {
     match Cli::parse().run() {
-        Exit::Good => ExitCode::SUCCESS,
-        Exit::Bad => ExitCode::from(1),
-        Exit::Trouble => ExitCode::from(2),
+        Exit::Success => ExitCode::SUCCESS,
+        Exit::ShaderFault => ExitCode::from(1),
+        Exit::Error => ExitCode::from(2),
     }
 }

@@ -21,7 +21,7 @@ use std::process::Command;
 use rustix::time::{ClockId, clock_gettime};
 use toyproof::diagnostic::{File, Files};
 use toyproof::glsl::{Options, check};
-use toyproof::gpu::{On, Painter};
+use toyproof::gpu::{AdapterSelector, Painter};
 use toyproof::image::Frame;
 use toyproof::lab::chart::{Point, Scatter};
 use toyproof::scene::{
@@ -77,7 +77,7 @@ fn painter(scene: &Scene) -> Option<Painter> {
         &lower_strict(&checked),
         &Frame::default(),
         FloatMode::Strict,
-        &On::Lavapipe,
+        &AdapterSelector::Lavapipe,
     )
     .ok()
 }
@@ -175,9 +175,9 @@ fn beside_embree_and_lavapipe(program: Option<&Path>, counts: &[usize]) {
                 [primary.one_by_one(), primary.by_eights(), shuffled.one_by_one()]
                     .map(|seconds| 1e3 * seconds)
             });
-            let gpu = painter
-                .as_mut()
-                .map_or(f64::NAN, |painter| time(|| painter.paint().expect("it compiled")));
+            let gpu = painter.as_mut().map_or(f64::NAN, |painter| {
+                time(|| painter.render().expect("it compiled"))
+            });
             [
                 time(|| single.surfaces()),
                 time(|| double.surfaces()),

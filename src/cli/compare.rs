@@ -26,7 +26,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     if let Some(diff) = &args.diff
         && !may_write(diff, &[&*args.a, &*args.b].into_iter().collect(), terminal)
     {
-        return Exit::Trouble;
+        return Exit::Error;
     }
     let (a, b) = match (image::read(&args.a), image::read(&args.b)) {
         (Ok(a), Ok(b)) => (a, b),
@@ -34,7 +34,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             for error in [a.err(), b.err()].into_iter().flatten() {
                 terminal.error(error);
             }
-            return Exit::Trouble;
+            return Exit::Error;
         }
     };
     if a.size() != b.size() {
@@ -44,23 +44,23 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             path_name(&args.a),
             path_name(&args.b)
         ));
-        return Exit::Trouble;
+        return Exit::Error;
     }
-    let (comparison, marks) = compare(&a, &b);
+    let (comparison, levels) = compare(&a, &b);
     if let Some(path) = &args.diff {
-        let picture = toyproof_verify::compare::difference(
+        let difference_image = toyproof_verify::compare::difference(
             a.size(),
-            &marks,
+            &levels,
             Legend {
                 tolerance: TOLERANCE as f32,
             },
         );
-        match image::encode_shown(&picture, path) {
+        match image::encode_shown(&difference_image, path) {
             Ok(bytes) if terminal.write(path, &bytes) => {}
-            Ok(_) => return Exit::Trouble,
+            Ok(_) => return Exit::Error,
             Err(error) => {
                 terminal.error(error);
-                return Exit::Trouble;
+                return Exit::Error;
             }
         }
     }
@@ -83,8 +83,8 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         }
     }
     if comparison.differing == 0 {
-        Exit::Good
+        Exit::Success
     } else {
-        Exit::Bad
+        Exit::ShaderFault
     }
 }

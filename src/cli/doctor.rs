@@ -5,11 +5,12 @@ use std::time::Duration;
 
 use toyproof_diagnostic::path_name;
 use toyproof_gpu::{
-    Driver, Failure, INSTALL_HINT, LoopCap, On, is_pinned_by_user, lavapipe_manifest, manifests, pinned,
+    AdapterSelector, Driver, Failure, INSTALL_HINT, LoopCap, is_pinned_by_user, lavapipe_manifest, manifests,
+    pinned,
 };
 use toyproof_verify::compare::grouped;
 
-use super::inputs::{self, Place};
+use super::inputs::{self, DeviceSelector};
 use super::{Exit, Terminal};
 
 /// Say which Vulkan drivers are installed, which is chosen and why, what is missing and how to get it
@@ -17,20 +18,20 @@ use super::{Exit, Terminal};
 #[command(after_help = "Example:\n  toyproof doctor")]
 pub(super) struct Args {
     /// The adapter that a command would be given; `cpu` for toyproof's own evaluator, which needs none
-    #[arg(long, value_name = "ADAPTER", default_value = "auto", value_parser = inputs::place)]
-    on: Place,
+    #[arg(long, value_name = "ADAPTER", default_value = "auto", value_parser = inputs::parse_device)]
+    on: DeviceSelector,
 }
 
-/// How long all drivers of a machine together may take to load, and then each of them alone.
-const PATIENCE: Duration = Duration::from_secs(20);
+/// The time limit for loading all drivers together, and then for each alone.
+const TIME_LIMIT: Duration = Duration::from_secs(20);
 
-/// What there is without a driver.
-const WITHOUT: &str = "\nChosen: none. `check`, `run` and `explain` work all the same, on the CPU. `check` then tells whether a shader's \
+/// The message on a machine without drivers.
+const NO_DRIVER_MESSAGE: &str = "\nChosen: none. `check`, `run` and `explain` work all the same, on the CPU. `check` then tells whether a shader's \
                        mathematics is the scene's and whether float32 is enough for it; the toolchain question, whether a GPU paints what \
                        the shader says, is not asked.";
 
-/// What `--on cpu` chooses.
-const EVALUATOR: &str = "\nChosen, because --on cpu asks for it: toyproof's own evaluator, which needs no driver. `check` does not ask the \
+/// The message for `--on cpu`.
+const EVALUATOR_MESSAGE: &str = "\nChosen, because --on cpu asks for it: toyproof's own evaluator, which needs no driver. `check` does not ask the \
                          toolchain question with it.";
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
@@ -48,23 +49,23 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         );
     }
     let on = match &args.on {
-        Place::Gpu(on) => on,
-        Place::Cpu => {
-            terminal.result(EVALUATOR);
-            return Exit::Good;
+        DeviceSelector::Gpu(on) => on,
+        DeviceSelector::Cpu => {
+            terminal.result(EVALUATOR_MESSAGE);
+            return Exit::Success;
         }
     };
-    let worker = match inputs::worker(on.clone(), PATIENCE) {
+    let worker = match inputs::worker(on.clone(), TIME_LIMIT) {
         Ok(worker) => worker,
         Err(error) => {
             terminal.error(error);
-            return Exit::Trouble;
+            return Exit::Error;
         }
     };
     match worker.with_all_drivers().probe() {
         Ok(drivers) => {
             if let Some(chosen) = drivers.first() {
-                terminal.result(&format!("\nChosen, {}:", reason(on, chosen)));
+                terminal.result(&format!("\nChosen, {}:", selection_reason(on, chosen)));
             }
             for (index, driver) in drivers.iter().enumerate() {
                 if index == 1 {
@@ -77,22 +78,22 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
                     "\nlavapipe, on which every figure of this tool was measured, is missing; {INSTALL_HINT}"
                 ));
             }
-            Exit::Good
+            Exit::Success
         }
         Err(failure) => {
             if let Failure::NotStarted(_) = failure {
-                name_broken(&candidates(manifests), terminal);
+                report_broken(&candidates(manifests), terminal);
             }
-            if *on == On::Auto {
-                terminal.result(WITHOUT);
+            if *on == AdapterSelector::Auto {
+                terminal.result(NO_DRIVER_MESSAGE);
             }
             terminal.error(failure);
-            Exit::Trouble
+            Exit::Error
         }
     }
 }
 
-/// The manifests of the drivers that the loader would load.
+/// The manifests of the drivers that the Vulkan loader would load.
 fn candidates(installed: Vec<PathBuf>) -> Vec<PathBuf> {
     match pinned() {
         None => installed,
@@ -100,13 +101,13 @@ fn candidates(installed: Vec<PathBuf>) -> Vec<PathBuf> {
     }
 }
 
-/// Starts each driver alone, to say which one does not start.
-fn name_broken(manifests: &[PathBuf], terminal: &Terminal) {
+/// Starts each driver alone, to find those that do not start.
+fn report_broken(manifests: &[PathBuf], terminal: &Terminal) {
     terminal.result("\nEach driver alone:");
     for manifest in manifests {
         let path = path_name(manifest);
-        let alone =
-            inputs::worker(On::Auto, PATIENCE).map(|worker| worker.with_manifest(manifest.clone()).probe());
+        let alone = inputs::worker(AdapterSelector::Auto, TIME_LIMIT)
+            .map(|worker| worker.with_manifest(manifest.clone()).probe());
         match alone {
             Ok(Ok(_)) => terminal.result(&format!("  {path}: starts")),
             Ok(Err(failure)) => terminal.result(&format!("  {path}: {failure}")),
@@ -118,15 +119,15 @@ fn name_broken(manifests: &[PathBuf], terminal: &Terminal) {
     );
 }
 
-fn reason(on: &On, chosen: &Driver) -> String {
+fn selection_reason(on: &AdapterSelector, chosen: &Driver) -> String {
     match on {
-        On::Auto if chosen.is_lavapipe() => {
+        AdapterSelector::Auto if chosen.is_lavapipe() => {
             "because lavapipe gives the same bits on every machine".to_owned()
         }
-        On::Auto if is_pinned_by_user() => "because the environment names it".to_owned(),
-        On::Auto => "because it comes first".to_owned(),
-        On::Lavapipe => "because --on lavapipe asks for it".to_owned(),
-        On::Named(words) => format!("because --on “{words}” asks for it"),
+        AdapterSelector::Auto if is_pinned_by_user() => "because the environment names it".to_owned(),
+        AdapterSelector::Auto => "because it comes first".to_owned(),
+        AdapterSelector::Lavapipe => "because --on lavapipe asks for it".to_owned(),
+        AdapterSelector::Named(name) => format!("because --on “{name}” asks for it"),
     }
 }
 

@@ -8,14 +8,14 @@ use toyproof_eval::{Failure, Program};
 use toyproof_glsl::Checked;
 use toyproof_image::Frame;
 use toyproof_scene::Scene;
-use toyproof_verify::explain::explain;
+use toyproof_verify::debug::explain;
 
 use super::check::References;
-use super::inputs::{Format, FrameArgs, LanguageArgs, deadline};
+use super::inputs::{Format, FrameArgs, LanguageArgs, parse_time_limit};
 use super::run::not_evaluated;
 use super::shader::{Shader, Unusable, find};
 use super::{Exit, Terminal};
-use crate::cli::files::{Found, ReadError};
+use crate::cli::files::{Input, ReadError};
 use crate::report;
 
 /// Tell what one pixel does, line by line, in f32 beside f64, and where the two part
@@ -28,15 +28,16 @@ pub(super) struct Args {
     /// The shader: a file, or - for standard input
     shader: PathBuf,
     /// The pixel, from the left and from the bottom
-    #[arg(long, value_name = "X,Y", value_parser = pixel, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y", value_parser = parse_pixel, allow_hyphen_values = true)]
     pixel: [u32; 2],
-    /// `human` shows what each line stores and decides (`-v`: every step, with the parts of expressions), `json` everything
+    /// `human` shows what each line stores and decides (`-v`: every step, with the parts of expressions),
+    /// `json` everything
     #[arg(long, value_enum, default_value_t = Format::Human)]
     format: Format,
     #[command(flatten)]
     language: LanguageArgs,
     /// Stop after this long (10s, 500ms, 2m)
-    #[arg(long, value_name = "TIME", default_value = "10s", value_parser = deadline)]
+    #[arg(long, value_name = "TIME", default_value = "10s", value_parser = parse_time_limit)]
     timeout: Duration,
     #[command(flatten)]
     frame: FrameArgs,
@@ -49,32 +50,32 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             "{} holds several shaders; explain takes one",
             path_name(&args.shader)
         ));
-        return Exit::Trouble;
+        return Exit::Error;
     };
     let frame = match frame(args, input) {
         Ok(frame) => frame,
         Err(error) => {
             terminal.error(error);
-            return Exit::Trouble;
+            return Exit::Error;
         }
     };
     let shader = Shader::load(input, &args.language, Deadline::after(args.timeout));
     terminal.diagnostics(&shader.lints.warnings, &shader.files);
     match &shader.checked {
-        Ok(checked) => tell(args, &shader, checked, &frame, terminal),
+        Ok(checked) => print_trace(args, &shader, checked, &frame, terminal),
         Err(Unusable::Invalid(diagnostics)) => {
             terminal.diagnostics(diagnostics, &shader.files);
-            Exit::Bad
+            Exit::ShaderFault
         }
-        Err(Unusable::Trouble(error)) => {
+        Err(Unusable::Unreadable(error)) => {
             terminal.error(error);
-            Exit::Trouble
+            Exit::Error
         }
     }
 }
 
-/// The frame, of the size of the scene beside the shader unless the arguments tell another.
-fn frame(args: &Args, input: &Result<Found, ReadError>) -> Result<Frame, String> {
+/// The frame, in the size that the arguments give, else that of the scene beside the shader.
+fn frame(args: &Args, input: &Result<Input, ReadError>) -> Result<Frame, String> {
     let mut frame = args.frame.frame()?;
     let reference = input
         .as_ref()
@@ -95,7 +96,7 @@ fn frame(args: &Args, input: &Result<Found, ReadError>) -> Result<Frame, String>
     Ok(frame)
 }
 
-fn tell(args: &Args, shader: &Shader, checked: &Checked, frame: &Frame, terminal: &Terminal) -> Exit {
+fn print_trace(args: &Args, shader: &Shader, checked: &Checked, frame: &Frame, terminal: &Terminal) -> Exit {
     let spinner = terminal.spinner(&shader.name);
     let deadline = Instant::now() + args.timeout;
     let program = Program::within(checked, args.timeout).map_err(Failure::from);
@@ -115,16 +116,16 @@ fn tell(args: &Args, shader: &Shader, checked: &Checked, frame: &Frame, terminal
         pixel: args.pixel,
         size: frame.size,
     };
-    let story = report::Story::new(&subject, &explanation);
+    let trace = report::PixelTrace::new(&subject, &explanation);
     match args.format {
-        Format::Json if !terminal.bytes(story.json().as_bytes()) => return Exit::Trouble,
+        Format::Json if !terminal.bytes(trace.json().as_bytes()) => return Exit::Error,
         Format::Json => {}
-        Format::Human => terminal.result(&story.human(terminal.is_verbose())),
+        Format::Human => terminal.result(&trace.human(terminal.is_verbose())),
     }
-    Exit::Good
+    Exit::Success
 }
 
-fn pixel(text: &str) -> Result<[u32; 2], String> {
+fn parse_pixel(text: &str) -> Result<[u32; 2], String> {
     let parts = text
         .split_once(',')
         .map(|(x, y)| (x.trim().parse(), y.trim().parse()));

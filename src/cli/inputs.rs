@@ -7,17 +7,17 @@ use std::time::Duration;
 use clap::ValueEnum;
 use toyproof_diagnostic::{Deadline, path_name};
 use toyproof_glsl as glsl;
-use toyproof_gpu::{On, Worker};
+use toyproof_gpu::{AdapterSelector, Worker};
 use toyproof_image::output::Originals;
 use toyproof_image::{self as image, Frame, Image, check_size};
 use toyproof_translate::FloatMode;
 
 use super::Terminal;
 
-/// A longer deadline is none.
-const LONGEST: Duration = Duration::from_secs(24 * 60 * 60);
+/// The longest time limit.
+const MAX_TIME_LIMIT: Duration = Duration::from_secs(24 * 60 * 60);
 
-/// Whether a file of that name may be written without one being lost that it is made of; says so if not.
+/// Returns whether a file may be written without overwriting one of the inputs; prints an error if not.
 pub(super) fn may_write(path: &Path, originals: &Originals, terminal: &Terminal) -> bool {
     let loses = originals.would_lose(path);
     if loses {
@@ -34,19 +34,19 @@ pub(super) fn may_write(path: &Path, originals: &Originals, terminal: &Terminal)
 #[command(next_help_heading = "The frame")]
 pub(super) struct FrameArgs {
     /// Width and height in pixels [default: the scene's, else 640x360]
-    #[arg(long, value_name = "WxH", value_parser = size)]
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub(super) size: Option<[u32; 2]>,
     /// iTime, in seconds
-    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = seconds::<f32>, allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = parse_seconds::<f32>, allow_negative_numbers = true)]
     time: f32,
     /// iFrame
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(i32).range(0..), allow_negative_numbers = true)]
     frame: i32,
     /// iMouse, in pixels
-    #[arg(long, value_name = "X,Y[,Z,W]", value_parser = mouse, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y[,Z,W]", value_parser = parse_mouse, allow_hyphen_values = true)]
     mouse: Option<[f32; 4]>,
     /// iDate: year, month from 0 to 11, day, seconds since midnight
-    #[arg(long, value_name = "Y,M,D,S", value_parser = date, allow_hyphen_values = true)]
+    #[arg(long, value_name = "Y,M,D,S", value_parser = parse_date, allow_hyphen_values = true)]
     date: Option<[f32; 4]>,
     /// A picture (.png, .exr) or `noise` for iChannel0
     #[arg(long, value_name = "FILE|noise")]
@@ -63,14 +63,14 @@ pub(super) struct FrameArgs {
 }
 
 impl FrameArgs {
-    /// The files that channels are read from.
+    /// The image files of the channels.
     pub(super) fn files(&self) -> impl Iterator<Item = &PathBuf> {
         let channels = [&self.channel0, &self.channel1, &self.channel2, &self.channel3];
         let named = channels.into_iter().flatten();
         named.filter(|path| path.as_os_str() != "noise")
     }
 
-    /// The frame, its channels loaded; its size is the flag's or the default.
+    /// The frame with its channels loaded; its size is the flag's or the default.
     pub(super) fn frame(&self) -> Result<Frame, String> {
         let default = Frame::default();
         let channel = |path: &Option<PathBuf>| -> Result<Option<Image>, String> {
@@ -100,11 +100,13 @@ impl FrameArgs {
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "The shader")]
 pub(super) struct LanguageArgs {
-    /// Take what desktop GLSL allows and WebGL2 refuses: globals set from uniforms, integers where floats belong
+    /// Take what desktop GLSL allows and WebGL2 refuses: globals set from uniforms, integers where floats
+    /// belong
     #[arg(long)]
     lenient: bool,
-    /// Take warnings for errors: `warnings` for all, or a code (W0005); `// toyproof: allow(W0005)` in the shader goes before it
-    #[arg(long, value_name = "warnings|CODE", value_parser = deny)]
+    /// Take warnings for errors: `warnings` for all, or a code (W0005); `// toyproof: allow(W0005)` in the
+    /// shader goes before it
+    #[arg(long, value_name = "warnings|CODE", value_parser = parse_deny)]
     deny: Vec<Deny>,
 }
 
@@ -112,27 +114,27 @@ pub(super) struct LanguageArgs {
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "The driver")]
 pub(super) struct DriverArgs {
-    /// `auto` (lavapipe where it is installed, else the first driver, else the CPU), `lavapipe`, `cpu` for toyproof's own
-    /// evaluator, or words of an adapter's name
-    #[arg(long, value_name = "ADAPTER", default_value = "auto", value_parser = place)]
-    on: Place,
-    /// `strict` (unless you say otherwise) holds the driver to the arithmetic as written and spells `sin` and the like in
-    /// operations that have the same bits everywhere; `fast` lets it rearrange, with functions of its own. What `convert`
-    /// writes is spelled only if you ask for `strict`
+    /// `auto` (lavapipe where it is installed, else the first driver, else the CPU), `lavapipe`, `cpu` for
+    /// toyproof's own evaluator, or words of an adapter's name
+    #[arg(long, value_name = "ADAPTER", default_value = "auto", value_parser = parse_device)]
+    on: DeviceSelector,
+    /// `strict` (unless you say otherwise) holds the driver to the arithmetic as written and spells `sin`
+    /// and the like in operations that have the same bits everywhere; `fast` lets it rearrange, with
+    /// functions of its own. What `convert` writes is spelled only if you ask for `strict`
     #[arg(long, value_enum)]
     float: Option<Float>,
     /// Stop a shader after this long (10s, 500ms, 2m)
-    #[arg(long, value_name = "TIME", default_value = "10s", value_parser = deadline)]
+    #[arg(long, value_name = "TIME", default_value = "10s", value_parser = parse_time_limit)]
     timeout: Duration,
 }
 
 /// What runs a shader.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum DeviceSelector {
     /// The evaluator, in this process.
     Cpu,
     /// A Vulkan driver, in a worker.
-    Gpu(On),
+    Gpu(AdapterSelector),
 }
 
 /// Which warnings count as errors.
@@ -140,7 +142,7 @@ pub(super) enum Place {
 pub(super) enum Deny {
     /// All.
     Warnings,
-    /// Those of that code.
+    /// Warnings with this code.
     Code(glsl::Code),
 }
 
@@ -194,8 +196,8 @@ impl DriverArgs {
         self.float.unwrap_or(Float::Strict).into()
     }
 
-    /// What `--float` asks for in so many words.
-    pub(super) fn asked_float(&self) -> Option<FloatMode> {
+    /// The mode that `--float` gives; none without the flag.
+    pub(super) fn explicit_float(&self) -> Option<FloatMode> {
         self.float.map(FloatMode::from)
     }
 
@@ -203,41 +205,41 @@ impl DriverArgs {
         self.timeout
     }
 
-    /// What runs shaders on a GPU; none if the evaluator is asked for.
+    /// Creates the worker that runs shaders on a GPU; none for `--on cpu`.
     pub(super) fn worker(&self) -> Result<Option<Worker>, String> {
         self.worker_for(1)
     }
 
-    /// The same with so many times the patience, for as many pictures at once.
-    pub(super) fn worker_for(&self, pictures: u32) -> Result<Option<Worker>, String> {
+    /// Like [`Self::worker`], with a time limit for several images.
+    pub(super) fn worker_for(&self, images: u32) -> Result<Option<Worker>, String> {
         match &self.on {
-            Place::Cpu => Ok(None),
-            Place::Gpu(on) => worker(on.clone(), self.timeout * pictures).map(Some),
+            DeviceSelector::Cpu => Ok(None),
+            DeviceSelector::Gpu(on) => worker(on.clone(), self.timeout * images).map(Some),
         }
     }
 
-    /// What translates shaders, for which no driver is needed.
+    /// Creates a worker that only translates shaders, without a driver.
     pub(super) fn translator(&self) -> Result<Worker, String> {
-        worker(On::Auto, self.timeout)
+        worker(AdapterSelector::Auto, self.timeout)
     }
 
-    /// Whether the evaluator may take the place of a driver that is not there.
+    /// Returns whether the evaluator may replace a missing driver.
     pub(super) fn may_fall_back(&self) -> bool {
-        self.on == Place::Gpu(On::Auto)
+        self.on == DeviceSelector::Gpu(AdapterSelector::Auto)
     }
 }
 
-/// This program again, as the worker.
-pub(super) fn worker(on: On, timeout: Duration) -> Result<Worker, String> {
+/// Creates a worker that runs this program as `toyproof worker`.
+pub(super) fn worker(on: AdapterSelector, timeout: Duration) -> Result<Worker, String> {
     let program = std::env::current_exe()
         .map_err(|error| format!("cannot find the program itself to run it as a worker: {error}"))?;
     Ok(Worker::new(program, vec!["worker".to_owned()], on, timeout))
 }
 
-/// How long something may take.
-pub(super) fn deadline(text: &str) -> Result<Duration, String> {
+/// Parses a time limit.
+pub(super) fn parse_time_limit(text: &str) -> Result<Duration, String> {
     let time = humantime::parse_duration(text).map_err(|error| error.to_string())?;
-    if time > LONGEST {
+    if time > MAX_TIME_LIMIT {
         return Err("nobody waits longer than a day".to_owned());
     }
     if time.is_zero() {
@@ -246,15 +248,15 @@ pub(super) fn deadline(text: &str) -> Result<Duration, String> {
     Ok(time)
 }
 
-/// A time that a picture shows.
-pub(super) fn seconds<T: FromStr + Into<f64> + Copy>(text: &str) -> Result<T, String> {
+/// Parses the time of a frame, in seconds.
+pub(super) fn parse_seconds<T: FromStr + Into<f64> + Copy>(text: &str) -> Result<T, String> {
     match text.parse::<T>() {
         Ok(time) if time.into().is_finite() => Ok(time),
         _ => Err("expected a finite number of seconds".to_owned()),
     }
 }
 
-pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
+pub(super) fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let (width, height) = text
         .split_once(['x', 'X', '×'])
         .ok_or("a size is written 640x360")?;
@@ -265,23 +267,23 @@ pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
     check_size(side(width)?, side(height)?)
 }
 
-pub(super) fn place(text: &str) -> Result<Place, String> {
+pub(super) fn parse_device(text: &str) -> Result<DeviceSelector, String> {
     match text {
-        "cpu" => Ok(Place::Cpu),
-        text => on(text).map(Place::Gpu),
+        "cpu" => Ok(DeviceSelector::Cpu),
+        text => parse_adapter(text).map(DeviceSelector::Gpu),
     }
 }
 
-pub(super) fn on(text: &str) -> Result<On, String> {
+pub(super) fn parse_adapter(text: &str) -> Result<AdapterSelector, String> {
     Ok(match text {
         "" => return Err("name an adapter, or say auto".to_owned()),
-        "auto" => On::Auto,
-        "lavapipe" => On::Lavapipe,
-        name => On::Named(name.to_owned()),
+        "auto" => AdapterSelector::Auto,
+        "lavapipe" => AdapterSelector::Lavapipe,
+        name => AdapterSelector::Named(name.to_owned()),
     })
 }
 
-fn deny(text: &str) -> Result<Deny, String> {
+fn parse_deny(text: &str) -> Result<Deny, String> {
     if text == "warnings" {
         return Ok(Deny::Warnings);
     }
@@ -292,7 +294,7 @@ fn deny(text: &str) -> Result<Deny, String> {
         .ok_or_else(|| "say `warnings`, or a warning's code such as W0005".to_owned())
 }
 
-fn numbers(text: &str) -> Result<Vec<f32>, String> {
+fn parse_numbers(text: &str) -> Result<Vec<f32>, String> {
     text.split(',')
         .map(|part| match f32::from_str(part.trim()) {
             Ok(number) if number.is_finite() => Ok(number),
@@ -301,17 +303,17 @@ fn numbers(text: &str) -> Result<Vec<f32>, String> {
         .collect()
 }
 
-fn mouse(text: &str) -> Result<[f32; 4], String> {
-    match numbers(text)?[..] {
+fn parse_mouse(text: &str) -> Result<[f32; 4], String> {
+    match parse_numbers(text)?[..] {
         [x, y] => Ok([x, y, 0.0, 0.0]),
         [x, y, z, w] => Ok([x, y, z, w]),
         _ => Err("a mouse is two or four numbers: X,Y or X,Y,Z,W".to_owned()),
     }
 }
 
-fn date(text: &str) -> Result<[f32; 4], String> {
+fn parse_date(text: &str) -> Result<[f32; 4], String> {
     let expected = "a date is four numbers: year, month from 0 (January) to 11, day, seconds";
-    match numbers(text)?[..] {
+    match parse_numbers(text)?[..] {
         [year, month, day, seconds] if (0.0..=11.0).contains(&month) => Ok([year, month, day, seconds]),
         [_, month, ..] if !(0.0..=11.0).contains(&month) => {
             Err(format!("there is no month {month}: {expected}"))
@@ -325,29 +327,37 @@ mod tests {
     use super::*;
 
     #[test]
-    fn values_are_read_as_people_write_them() {
-        assert_eq!(size("640x360"), Ok([640, 360]));
-        assert_eq!(mouse("1,-2.5"), Ok([1.0, -2.5, 0.0, 0.0]));
-        assert_eq!(on("llvm"), Ok(On::Named("llvm".to_owned())));
-        assert_eq!(place("cpu"), Ok(Place::Cpu));
-        assert_eq!(place("auto"), Ok(Place::Gpu(On::Auto)));
-        assert_eq!(deny("warnings"), Ok(Deny::Warnings));
-        assert_eq!(deny("w0005"), Ok(Deny::Code(glsl::Code::SineHash)));
-        assert!(deny("E0001").is_err() && deny("errors").is_err());
+    fn arguments_are_parsed() {
+        assert_eq!(parse_size("640x360"), Ok([640, 360]));
+        assert_eq!(parse_mouse("1,-2.5"), Ok([1.0, -2.5, 0.0, 0.0]));
+        assert_eq!(
+            parse_adapter("llvm"),
+            Ok(AdapterSelector::Named("llvm".to_owned()))
+        );
+        assert_eq!(parse_device("cpu"), Ok(DeviceSelector::Cpu));
+        assert_eq!(
+            parse_device("auto"),
+            Ok(DeviceSelector::Gpu(AdapterSelector::Auto))
+        );
+        assert_eq!(parse_deny("warnings"), Ok(Deny::Warnings));
+        assert_eq!(parse_deny("w0005"), Ok(Deny::Code(glsl::Code::SineHash)));
+        assert!(parse_deny("E0001").is_err() && parse_deny("errors").is_err());
         for bad in ["640", "0x0", "ax3", "100000x100000", "1x-1"] {
-            assert!(size(bad).is_err(), "{bad}");
+            assert!(parse_size(bad).is_err(), "{bad}");
         }
-        assert_eq!(date("2020,11,1,0"), Ok([2020.0, 11.0, 1.0, 0.0]));
+        assert_eq!(parse_date("2020,11,1,0"), Ok([2020.0, 11.0, 1.0, 0.0]));
         for bad in ["2020,12,1,0", "2020,-1,1,0", "nan,0,1,0", "2020,nan,1,0"] {
-            assert!(date(bad).is_err(), "{bad}");
+            assert!(parse_date(bad).is_err(), "{bad}");
         }
-        assert_eq!(seconds("-1.5"), Ok(-1.5_f32));
+        assert_eq!(parse_seconds("-1.5"), Ok(-1.5_f32));
         assert!(
             ["nan", "inf", "-inf", "1e60"]
                 .iter()
-                .all(|bad| seconds::<f32>(bad).is_err())
+                .all(|bad| parse_seconds::<f32>(bad).is_err())
         );
-        assert!(deadline("0s").is_err() && deadline("500ms").is_ok());
-        assert!(mouse("1,2,3").is_err() && date("2026,1").is_err() && numbers("1,b").is_err());
+        assert!(parse_time_limit("0s").is_err() && parse_time_limit("500ms").is_ok());
+        assert!(
+            parse_mouse("1,2,3").is_err() && parse_date("2026,1").is_err() && parse_numbers("1,b").is_err()
+        );
     }
 }

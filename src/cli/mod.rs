@@ -1,17 +1,13 @@
-//! The command line: one file for each command. Each turns its arguments into the stages' own terms,
-//! composes the stages and prints what came out.
+//! The command line: one file per command. Each parses its arguments, calls the other crates and prints the
+//! result.
 
 mod check;
-mod codes;
 mod compare;
 mod convert;
-mod course;
 mod doctor;
 mod explain;
-mod export;
 mod files;
 mod inputs;
-mod interrupt;
 mod names;
 mod pool;
 mod render;
@@ -22,11 +18,13 @@ mod shader;
 mod stress;
 mod terminal;
 mod trade;
-mod worker;
 
+use std::io;
 use std::panic;
+use std::thread::{self, JoinHandle};
 
 use clap::{Parser, Subcommand};
+use toyproof_gpu as gpu;
 use toyproof_verify::contain::{Part, contain};
 
 use self::terminal::Terminal;
@@ -64,7 +62,7 @@ enum Command {
     /// Compare two pictures
     Compare(compare::Args),
     /// Write the shader that paints a scene
-    Export(export::Args),
+    Export(render::ExportArgs),
     /// List the course's scenes and shaders, or write them to a folder
     Scenes(scenes::Args),
     /// Say which Vulkan drivers are installed, what is missing and how to get it
@@ -74,30 +72,30 @@ enum Command {
     Worker,
 }
 
-/// How a command ended, in the manner of grep, diff and cmp.
+/// The exit status of a command; the codes have the meanings that they have in grep, diff and cmp.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Exit {
     /// Exit code 0.
-    Good,
-    /// Exit code 1: a shader is at fault, or pictures differ.
-    Bad,
-    /// Exit code 2: something else is.
-    Trouble,
+    Success,
+    /// Exit code 1: a shader is at fault, or images differ.
+    ShaderFault,
+    /// Exit code 2: any other error.
+    Error,
 }
 
 impl Cli {
-    /// Does what the arguments ask for.
+    /// Runs the command that the arguments name.
     #[must_use]
     pub fn run(self) -> Exit {
         let terminal = Terminal::new(self.quiet, self.verbose);
         if std::env::var_os("RUST_BACKTRACE").is_none() {
-            panic::set_hook(Box::new(Terminal::panicked));
+            panic::set_hook(Box::new(Terminal::print_panic));
         }
         let exit = contain(Part::Command, || self.command.run(&terminal)).unwrap_or_else(|panic| {
             terminal.error(panic);
-            Exit::Trouble
+            Exit::Error
         });
-        if terminal.has_lost() { Exit::Trouble } else { exit }
+        if terminal.has_failed() { Exit::Error } else { exit }
     }
 }
 
@@ -112,10 +110,26 @@ impl Command {
             Self::Stress(args) => stress::run(args, terminal),
             Self::Trade(args) => trade::run(args, terminal),
             Self::Compare(args) => compare::run(args, terminal),
-            Self::Export(args) => export::run(args, terminal),
+            Self::Export(args) => render::export(args, terminal),
             Self::Scenes(args) => scenes::run(args, terminal),
             Self::Doctor(args) => doctor::run(args, terminal),
-            Self::Worker => worker::run(),
+            Self::Worker => serve_worker(),
         }
+    }
+}
+
+/// The size of a worker's stack: the default of a main thread on Linux.
+const STACK_BYTES: usize = 8 << 20;
+
+/// Serves as the worker process that `check`, `run`, `convert` and `doctor` start.
+fn serve_worker() -> Exit {
+    // Drivers compile shaders on this stack, so its size must not depend on the limit that the shell sets.
+    let serving = thread::Builder::new().stack_size(STACK_BYTES).spawn(|| {
+        let (input, output) = (io::stdin().lock(), io::stdout().lock());
+        gpu::serve(input, output)
+    });
+    match serving.map(JoinHandle::join) {
+        Ok(Ok(Ok(()))) => Exit::Success,
+        _ => Exit::Error,
     }
 }

@@ -1,26 +1,26 @@
-//! Names for the outputs of several inputs below one folder.
+//! Output paths for several inputs below one folder.
 
 use std::collections::{HashMap, HashSet};
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
-use crate::cli::files::Found;
+use crate::cli::files::Input;
 
-/// Gives every input a place of its own below an output folder: its own relative path where that is free. No file of one input has the name of
-/// another's, of a folder on the way to another's, or of a report.
+/// Gives each input its own path below an output folder: its own relative path if that is free. No file of an
+/// input collides with a file of another input, with a folder on the path to one, or with a report.
 #[derive(Debug)]
 pub(super) struct Names {
-    /// What is appended to an input's place, for each of its files.
+    /// The suffixes that are appended to an input's path, one for each of its files.
     suffixes: Vec<String>,
-    /// Places that were given out, each with the folder of its input.
+    /// The paths in use, each with the folder of its input.
     taken: HashMap<Key, Option<PathBuf>>,
-    /// All files of them, and those that are not any input's.
+    /// The files of all inputs, and the reserved ones.
     files: HashSet<Key>,
-    /// The folders on the way to them.
+    /// The folders that contain them.
     folders: HashSet<Key>,
 }
 
-/// A relative path, the same for names that differ only in case: some file systems keep one file for them.
+/// A relative path without case: some file systems store names that differ only in case in one file.
 #[derive(Debug, PartialEq, Eq, Hash)]
 struct Key(String);
 
@@ -31,7 +31,8 @@ impl Key {
 }
 
 impl Names {
-    /// Names for inputs each of which gets a file for each suffix, in a folder that also has the `reserved` files.
+    /// Starts without inputs. Each input gets one file per suffix, in a folder that also holds the `reserved`
+    /// files.
     pub(super) fn new(suffixes: &[&str], reserved: &[&str]) -> Self {
         Self {
             suffixes: suffixes.iter().copied().map(str::to_owned).collect(),
@@ -41,41 +42,46 @@ impl Names {
         }
     }
 
-    /// The place of an input's outputs, without a suffix. Of two inputs that would share one, the second has its extension, too, or before
-    /// its name that of its folder, if that is another.
-    pub(super) fn place(&mut self, found: &Found) -> PathBuf {
-        let source = found.path().and_then(Path::parent);
+    /// Chooses the path of an input's outputs, without a suffix. Where two inputs collide, the second is
+    /// named with its folder, if that differs, or else with its extension.
+    pub(super) fn assign(&mut self, found: &Input) -> PathBuf {
+        let input_folder = found.path().and_then(Path::parent);
         let folder = self.folder(found.relative.parent().unwrap_or(Path::new("")));
         let name = found.relative.file_name().unwrap_or_default();
         let stem = found.relative.file_stem().unwrap_or_default();
         let is_beside = self
             .taken
             .get(&Key::of(&folder.join(stem)))
-            .is_none_or(|other| other.as_deref() == source);
-        let with_folder = || source?.file_name().map(|of| joined(&[of, "-".as_ref(), stem]));
+            .is_none_or(|other| other.as_deref() == input_folder);
+        let with_folder = || {
+            input_folder?
+                .file_name()
+                .map(|of| joined(&[of, "-".as_ref(), stem]))
+        };
         let candidates = [
             Some(stem.to_owned()),
             with_folder().filter(|_| !is_beside),
             Some(name.to_owned()),
         ];
-        let place = candidates
+        let path = candidates
             .into_iter()
             .flatten()
             .chain(numbered(stem))
             .map(|name| folder.join(name))
-            .find(|place| self.is_free(place))
+            .find(|path| self.is_free(path))
             .expect("one of endlessly many names is free");
         self.files.extend(
             self.suffixes
                 .iter()
-                .map(|suffix| Key::of(&with_suffix(&place, suffix))),
+                .map(|suffix| Key::of(&with_suffix(&path, suffix))),
         );
-        self.folders.extend(place.ancestors().skip(1).map(Key::of));
-        self.taken.insert(Key::of(&place), source.map(Path::to_owned));
-        place
+        self.folders.extend(path.ancestors().skip(1).map(Key::of));
+        self.taken
+            .insert(Key::of(&path), input_folder.map(Path::to_owned));
+        path
     }
 
-    /// The folder of outputs for a folder of inputs: a part of it that is the name of a file gets a number.
+    /// The output folder for a folder of inputs: a component that collides with a file gets a number.
     fn folder(&self, of_inputs: &Path) -> PathBuf {
         of_inputs.iter().fold(PathBuf::new(), |folder, part| {
             std::iter::once(part.to_owned())
@@ -86,16 +92,16 @@ impl Names {
         })
     }
 
-    fn is_free(&self, place: &Path) -> bool {
+    fn is_free(&self, path: &Path) -> bool {
         let is_free = |suffix: &String| {
-            let key = Key::of(&with_suffix(place, suffix));
+            let key = Key::of(&with_suffix(path, suffix));
             !self.files.contains(&key) && !self.folders.contains(&key)
         };
-        !self.taken.contains_key(&Key::of(place)) && self.suffixes.iter().all(is_free)
+        !self.taken.contains_key(&Key::of(path)) && self.suffixes.iter().all(is_free)
     }
 }
 
-/// `name-2`, `name-3` and so on.
+/// Yields `name-2`, `name-3` and so on.
 fn numbered(name: &OsStr) -> impl Iterator<Item = OsString> + use<'_> {
     (2_u64..).map(move |number| joined(&[name, format!("-{number}").as_ref()]))
 }
@@ -104,9 +110,9 @@ fn joined(parts: &[&OsStr]) -> OsString {
     parts.iter().copied().collect()
 }
 
-/// A place with a suffix behind its last name.
-pub(super) fn with_suffix(place: &Path, suffix: &str) -> PathBuf {
-    joined(&[place.as_os_str(), suffix.as_ref()]).into()
+/// Appends a suffix to the last component of a path.
+pub(super) fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
+    joined(&[path.as_os_str(), suffix.as_ref()]).into()
 }
 
 #[cfg(test)]
@@ -114,31 +120,31 @@ mod tests {
     use toyproof_diagnostic::path_name;
 
     use super::*;
-    use crate::cli::files::FoundIn;
+    use crate::cli::files::InputSource;
 
-    fn place(names: &mut Names, folder: &str, relative: &str) -> String {
-        let place = FoundIn::File(Path::new(folder).join(relative));
-        let found = Found {
-            place,
+    fn output(names: &mut Names, folder: &str, relative: &str) -> String {
+        let source = InputSource::File(Path::new(folder).join(relative));
+        let found = Input {
+            source,
             relative: PathBuf::from(relative),
             folder: None,
         };
-        path_name(&names.place(&found))
+        path_name(&names.assign(&found))
     }
 
     #[test]
     fn no_two_inputs_share_an_output() {
         let mut names = Names::new(&["-actual.png"], &[]);
-        let mut place = |folder, relative| place(&mut names, folder, relative);
-        assert_eq!(place("in", "a/x.glsl"), "a/x");
-        assert_eq!(place("in", "a/x.frag"), "a/x.frag");
-        assert_eq!(place("in", "a/x.glsl"), "a/x.glsl", "named twice");
-        assert_eq!(place("in", "a/x.glsl"), "a/x-2");
-        assert_eq!(place("in/ann", "x.glsl"), "x");
-        assert_eq!(place("in/bob", "x.glsl"), "bob-x");
-        assert_eq!(place("out/bob", "x.glsl"), "x.glsl");
-        assert_eq!(place("out/bob", "y.glsl"), "y");
-        assert_eq!(place("out/bob", "Y.glsl"), "Y.glsl", "one file on some systems");
+        let mut output = |folder, relative| output(&mut names, folder, relative);
+        assert_eq!(output("in", "a/x.glsl"), "a/x");
+        assert_eq!(output("in", "a/x.frag"), "a/x.frag");
+        assert_eq!(output("in", "a/x.glsl"), "a/x.glsl", "named twice");
+        assert_eq!(output("in", "a/x.glsl"), "a/x-2");
+        assert_eq!(output("in/ann", "x.glsl"), "x");
+        assert_eq!(output("in/bob", "x.glsl"), "bob-x");
+        assert_eq!(output("out/bob", "x.glsl"), "x.glsl");
+        assert_eq!(output("out/bob", "y.glsl"), "y");
+        assert_eq!(output("out/bob", "Y.glsl"), "Y.glsl", "one file on some systems");
     }
 
     #[test]
@@ -147,27 +153,27 @@ mod tests {
             &["-actual.png", "-reference.png"],
             &["report.html", "results.jsonl"],
         );
-        let mut place = |relative| place(&mut names, "in", relative);
-        assert_eq!(place("report.html/x.glsl"), "report.html-2/x");
+        let mut output = |relative| output(&mut names, "in", relative);
+        assert_eq!(output("report.html/x.glsl"), "report.html-2/x");
         assert_eq!(
-            place("Report.HTML/y.glsl"),
+            output("Report.HTML/y.glsl"),
             "Report.HTML-2/y",
             "one file on some systems"
         );
         assert_eq!(
-            place("a/report.html/x.glsl"),
+            output("a/report.html/x.glsl"),
             "a/report.html/x",
             "reports are not there"
         );
-        assert_eq!(place("good.glsl"), "good");
-        assert_eq!(place("good-reference.png/x.glsl"), "good-reference.png-2/x");
-        assert_eq!(place("bad-actual.png/x.glsl"), "bad-actual.png/x");
+        assert_eq!(output("good.glsl"), "good");
+        assert_eq!(output("good-reference.png/x.glsl"), "good-reference.png-2/x");
+        assert_eq!(output("bad-actual.png/x.glsl"), "bad-actual.png/x");
         assert_eq!(
-            place("bad.glsl"),
+            output("bad.glsl"),
             "bad.glsl",
             "its image would be where a folder is"
         );
-        assert_eq!(place("x-actual.png.glsl"), "x-actual.png");
-        assert_eq!(place("x.glsl"), "x");
+        assert_eq!(output("x-actual.png.glsl"), "x-actual.png");
+        assert_eq!(output("x.glsl"), "x");
     }
 }

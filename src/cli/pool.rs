@@ -1,4 +1,5 @@
-//! Many shaders at a time: each thread with what it needs for itself, results told in the order of the shaders.
+//! Processes shaders on several threads, each with its own context, and returns results in the order of the
+//! shaders.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -7,30 +8,30 @@ use std::thread;
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-/// Does `work` for each of `todo`, on so many threads. `arrived` is told of each result as it comes. No more work is begun once `stop` is
-/// set; what was begun is finished.
-pub(super) fn each<H, T: Send>(
+/// Calls `work` for each of `todo` on `threads` threads, and `on_result` for each result as it arrives. Once
+/// `stop` is set, no work is started; what was started is finished.
+pub(super) fn for_each<H, T: Send>(
     todo: &[usize],
     threads: usize,
     stop: &AtomicBool,
-    hand: impl Fn() -> H + Sync,
+    context: impl Fn() -> H + Sync,
     work: impl Fn(&mut H, usize) -> T + Sync,
-    mut arrived: impl FnMut(usize, T),
+    mut on_result: impl FnMut(usize, T),
 ) {
     let next = AtomicUsize::new(0);
     let (results, inbox) = mpsc::channel();
     thread::scope(|scope| {
         for _ in 0..threads.clamp(1, todo.len().max(1)) {
             let results = results.clone();
-            let (next, hand, work) = (&next, &hand, &work);
+            let (next, context, work) = (&next, &context, &work);
             scope.spawn(move || {
-                let mut hand = hand();
+                let mut context = context();
                 while !stop.load(Ordering::Relaxed) {
                     let Some(&index) = todo.get(next.fetch_add(1, Ordering::Relaxed)) else {
                         break;
                     };
-                    // Nobody listens any more only if the listener panicked.
-                    if results.send((index, work(&mut hand, index))).is_err() {
+                    // The receiver is gone only if it panicked.
+                    if results.send((index, work(&mut context, index))).is_err() {
                         break;
                     }
                 }
@@ -38,20 +39,21 @@ pub(super) fn each<H, T: Send>(
         }
         drop(results);
         for (index, result) in inbox {
-            arrived(index, result);
+            on_result(index, result);
         }
     });
 }
 
-/// A pool for what one of so many threads computes, so that none waits for another's rows; none for a thread that is alone. Each has twice its
-/// share of the cores: whoever is last has more than its share, and until then the system is fair.
-pub(super) fn own(threads: usize) -> Option<ThreadPool> {
+/// Creates a pool for the computations of one of `threads` threads, so that none waits for rows of another's
+/// shader; none for a single thread. Each pool has twice its share of the cores: the last one running then
+/// has more than its share, and until then the scheduler is fair.
+pub(super) fn thread_pool(threads: usize) -> Option<ThreadPool> {
     let share = (2 * rayon::current_num_threads() / threads.max(1)).max(1);
     let pool = || ThreadPoolBuilder::new().num_threads(share).build().ok();
     (threads > 1).then(pool).flatten()
 }
 
-/// Gives results out in order, each as soon as those before it are there.
+/// Reorders results: returns each as soon as all before it have arrived.
 #[derive(Debug)]
 pub(super) struct InOrder<T> {
     next: usize,
@@ -68,7 +70,7 @@ impl<T> Default for InOrder<T> {
 }
 
 impl<T> InOrder<T> {
-    /// Takes a result; gives those whose turn has come.
+    /// Adds a result; returns those that are next in order.
     pub(super) fn take(&mut self, index: usize, result: T) -> Vec<T> {
         self.early.insert(index, result);
         let mut ready = Vec::new();
@@ -79,7 +81,7 @@ impl<T> InOrder<T> {
         ready
     }
 
-    /// Those that wait for others, which will not come.
+    /// Returns the results that still wait for missing ones, in order.
     pub(super) fn rest(self) -> impl Iterator<Item = T> {
         self.early.into_values()
     }
@@ -90,17 +92,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn all_is_done_once_by_as_many_hands_as_there_are_threads() {
+    fn each_task_runs_once_with_one_context_per_thread() {
         let stop = AtomicBool::new(false);
-        let hands = AtomicUsize::new(0);
+        let contexts = AtomicUsize::new(0);
         let todo: Vec<usize> = (0..100).filter(|index| index % 7 != 0).collect();
         let mut done = Vec::new();
-        let hand = || hands.fetch_add(1, Ordering::Relaxed);
-        each(
+        let context = || contexts.fetch_add(1, Ordering::Relaxed);
+        for_each(
             &todo,
             3,
             &stop,
-            hand,
+            context,
             |_, index| index * 2,
             |index, double| {
                 assert_eq!(double, 2 * index);
@@ -109,11 +111,11 @@ mod tests {
         );
         done.sort_unstable();
         assert_eq!(done, todo);
-        assert_eq!(hands.load(Ordering::Relaxed), 3);
+        assert_eq!(contexts.load(Ordering::Relaxed), 3);
     }
 
     #[test]
-    fn nothing_more_is_begun_after_a_stop() {
+    fn no_task_starts_after_a_stop() {
         let stop = AtomicBool::new(false);
         let todo: Vec<usize> = (0..1000).collect();
         let mut done = 0;
@@ -122,12 +124,12 @@ mod tests {
                 stop.store(true, Ordering::Relaxed);
             }
         };
-        each(&todo, 1, &stop, || (), work, |_, ()| done += 1);
+        for_each(&todo, 1, &stop, || (), work, |_, ()| done += 1);
         assert_eq!(done, 5);
     }
 
     #[test]
-    fn what_comes_early_waits() {
+    fn early_results_wait() {
         let mut order = InOrder::default();
         assert_eq!(order.take(1, 'b'), []);
         assert_eq!(order.take(0, 'a'), ['a', 'b']);

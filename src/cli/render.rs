@@ -1,5 +1,6 @@
-//! `toyproof render`
+//! `toyproof render` and `toyproof export`: a scene as an image, and as a shader.
 
+use std::iter;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -7,10 +8,11 @@ use clap::ValueEnum;
 use indicatif::ProgressBar;
 use toyproof_diagnostic::{Files, path_name};
 use toyproof_image::{self as image, Image};
-use toyproof_scene::{self as scene, Moment, Requirements, Sampler, Scene};
+use toyproof_scene::{self as scene, FrameTime, Requirements, Sampler, Scene};
 use toyproof_tracer::{Real, Tracer};
 use toyproof_verify::compare::{grouped, magnitude};
 
+use super::inputs::may_write;
 use super::sequence::{self, Frames, Sequence};
 use super::{Exit, Terminal, inputs};
 use crate::cli::files;
@@ -38,22 +40,22 @@ pub(super) struct Args {
     /// Where samples lie in a pixel, and what lights and surfaces draw [default: the scene's]
     #[arg(long, value_enum, value_name = "NAME")]
     sampler: Option<SamplerName>,
-    /// Take samples until the estimated error of every tile of 16x16 pixels is below this, in [0, 1], and say how
-    /// many it took; needs a sampler that draws
-    #[arg(long, value_name = "ERROR", value_parser = max_error, conflicts_with = "samples", allow_negative_numbers = true)]
+    /// Take samples until the estimated error of every tile of 16x16 pixels is below this, in [0, 1], and
+    /// say how many it took; needs a sampler that draws
+    #[arg(long, value_name = "ERROR", value_parser = parse_max_error, conflicts_with = "samples", allow_negative_numbers = true)]
     max_error: Option<f64>,
     /// Width and height in pixels [default: the scene's]
-    #[arg(long, value_name = "WxH", value_parser = inputs::size)]
+    #[arg(long, value_name = "WxH", value_parser = inputs::parse_size)]
     size: Option<[u32; 2]>,
     /// The time in seconds, where anything moves by it
-    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = inputs::seconds::<f64>, allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = inputs::parse_seconds::<f64>, allow_negative_numbers = true)]
     time: f64,
     /// The number of the frame, where anything moves by it
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(i32).range(0..), allow_negative_numbers = true)]
     frame: i32,
-    /// All frames from A to B, at 60 a second, each into a file with its number; a sequence that was interrupted goes
-    /// on where it stopped
-    #[arg(long, value_name = "A..B", value_parser = sequence::frames, conflicts_with_all = ["frame", "time"])]
+    /// All frames from A to B, at 60 a second, each into a file with its number; a sequence that was
+    /// interrupted goes on where it stopped
+    #[arg(long, value_name = "A..B", value_parser = sequence::parse_frames, conflicts_with_all = ["frame", "time"])]
     frames: Option<Frames>,
 }
 
@@ -78,7 +80,7 @@ impl From<SamplerName> for Sampler {
     }
 }
 
-fn max_error(text: &str) -> Result<f64, String> {
+fn parse_max_error(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(error) if error > 0.0 && error <= 1.0 => Ok(error),
         _ => Err("expected a number above 0 and at most 1".to_owned()),
@@ -92,8 +94,8 @@ enum Precision {
 }
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
-    let Some(mut scene) = load(&args.scene, terminal) else {
-        return Exit::Trouble;
+    let Some(mut scene) = load_scene(&args.scene, terminal) else {
+        return Exit::Error;
     };
     scene.film.size = args.size.unwrap_or(scene.film.size);
     scene.film.samples = args.samples.unwrap_or(scene.film.samples);
@@ -103,57 +105,57 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         && (requirements.soft_shadows || requirements.path_tracing || args.max_error.is_some())
     {
         terminal.error("this needs a sampler that draws: --sampler independent, stratified or sobol");
-        return Exit::Trouble;
+        return Exit::Error;
     }
     terminal.detail(&format!("the scene requires {requirements}"));
-    let mut before = Before::default();
-    let made = match args.frames {
+    let mut previous = PreviousTracers::default();
+    let succeeded = match args.frames {
         None => {
-            let moment = Moment {
+            let frame_time = FrameTime {
                 frame: args.frame,
                 time: args.time,
             };
-            picture(&scene, moment, &mut before, (args, &args.output), terminal)
+            render_frame(&scene, frame_time, &mut previous, (args, &args.output), terminal)
         }
         Some(_) if args.output == Path::new("-") => {
-            terminal.error(sequence::NO_FILE);
+            terminal.error(sequence::NEEDS_FILE);
             false
         }
         Some(frames) => {
-            // What the frames are of: a record of anything else is not continued.
-            let what = format!("{scene:?} {:?} {:?}", args.precision, args.max_error);
-            let sequence = Sequence::resume(frames, &args.output, &what, terminal);
-            sequence.make(terminal, |one| {
-                let moment = Moment {
+            // Identifies what is rendered: a record of a different scene or settings is ignored.
+            let fingerprint = format!("{scene:?} {:?} {:?}", args.precision, args.max_error);
+            let sequence = Sequence::resume(frames, &args.output, &fingerprint, terminal);
+            sequence.render(terminal, |one| {
+                let frame_time = FrameTime {
                     frame: one.frame,
                     time: one.time,
                 };
-                picture(&scene, moment, &mut before, (args, &one.path), terminal)
+                render_frame(&scene, frame_time, &mut previous, (args, &one.path), terminal)
             })
         }
     };
-    if made { Exit::Good } else { Exit::Trouble }
+    if succeeded { Exit::Success } else { Exit::Error }
 }
 
-/// The tracer of the frame before, in the type that is asked for.
+/// The tracer of the previous frame, in the requested number type.
 #[derive(Default)]
-struct Before {
+struct PreviousTracers {
     single: Option<Tracer<f32>>,
     double: Option<Tracer<f64>>,
 }
 
-/// Traces the scene at a moment and keeps the picture; tells whether it could.
-fn picture(
+/// Traces the scene at a frame time and writes the image; returns whether that succeeded.
+fn render_frame(
     scene: &Scene,
-    moment: Moment,
-    before: &mut Before,
+    frame_time: FrameTime,
+    previous: &mut PreviousTracers,
     (args, path): (&Args, &Path),
     terminal: &Terminal,
 ) -> bool {
     let start = Instant::now();
     let picture = match args.precision {
-        Precision::F32 => trace(scene, moment, &mut before.single, args, terminal),
-        Precision::F64 => trace(scene, moment, &mut before.double, args, terminal),
+        Precision::F32 => trace(scene, frame_time, &mut previous.single, args, terminal),
+        Precision::F64 => trace(scene, frame_time, &mut previous.double, args, terminal),
     };
     terminal.detail(&format!("traced in {:.3} s", start.elapsed().as_secs_f64()));
     match image::encode(&picture, path) {
@@ -165,8 +167,8 @@ fn picture(
     }
 }
 
-/// A scene from its file; says what is wrong with it.
-pub(super) fn load(path: &Path, terminal: &Terminal) -> Option<Scene> {
+/// Reads a scene from its file; prints the errors.
+pub(super) fn load_scene(path: &Path, terminal: &Terminal) -> Option<Scene> {
     if files::is_shader(path) {
         let path = path_name(path);
         terminal.error(format_args!(
@@ -187,23 +189,23 @@ pub(super) fn load(path: &Path, terminal: &Terminal) -> Option<Scene> {
         .ok()
 }
 
-/// The picture, with a bar that shows its rows.
+/// Traces the scene, with a progress bar over its rows.
 fn trace<T: Real>(
     scene: &Scene,
-    moment: Moment,
-    before: &mut Option<Tracer<T>>,
+    frame_time: FrameTime,
+    previous: &mut Option<Tracer<T>>,
     args: &Args,
     terminal: &Terminal,
 ) -> Image {
-    let tracer = match before.take() {
-        Some(before) => before.moved(scene, moment),
-        None => Tracer::at(scene, moment),
+    let tracer = match previous.take() {
+        Some(previous) => previous.moved(scene, frame_time),
+        None => Tracer::at(scene, frame_time),
     };
-    let tracer = &*before.insert(tracer);
+    let tracer = &*previous.insert(tracer);
     let rows = u64::from(scene.film.size[1]);
     let bar = match args.frames {
         None => terminal.bar(rows, "tracing"),
-        // The sequence has a bar of its own.
+        // The sequence has its own progress bar.
         Some(_) => ProgressBar::hidden(),
     };
     let Some(max_error) = args.max_error else {
@@ -214,7 +216,7 @@ fn trace<T: Real>(
     let (picture, spent) = tracer.picture_within(max_error, || bar.inc(1));
     bar.finish_and_clear();
     let [most, fewest] = spent.per_pixel;
-    terminal.say(&format!(
+    terminal.note(&format!(
         "{} samples, {} to {} in a pixel; the largest estimated error of a tile is {}",
         grouped(spent.samples),
         grouped(u64::from(fewest)),
@@ -222,4 +224,39 @@ fn trace<T: Real>(
         magnitude(spent.error)
     ));
     picture
+}
+
+/// Write the shader that paints a scene
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Example:\n  toyproof export glsl/04-many-objects.toml -o mine.glsl\n  \
+                        toyproof check mine.glsl --scene glsl/04-many-objects.toml\n\n\
+                        Exit code: 0, or 2 if the scene uses what cannot be exported yet."
+)]
+pub(super) struct ExportArgs {
+    /// The scene, in TOML
+    scene: PathBuf,
+    /// The shader (.glsl, or - for standard output)
+    #[arg(short, long, value_name = "SHADER")]
+    output: PathBuf,
+}
+
+pub(super) fn export(args: &ExportArgs, terminal: &Terminal) -> Exit {
+    if !may_write(&args.output, &iter::once(&*args.scene).collect(), terminal) {
+        return Exit::Error;
+    }
+    let Some(scene) = load_scene(&args.scene, terminal) else {
+        return Exit::Error;
+    };
+    match scene::export::shader(&scene) {
+        Ok(text) if terminal.write(&args.output, text.as_bytes()) => Exit::Success,
+        Ok(_) => Exit::Error,
+        Err(fingerprint) => {
+            terminal.error(format_args!(
+                "{}: {fingerprint} cannot be exported yet",
+                path_name(&args.scene)
+            ));
+            Exit::Error
+        }
+    }
 }

@@ -6,13 +6,13 @@ use std::time::Instant;
 
 use clap::ValueEnum;
 use toyproof_diagnostic::{Deadline, Files, path_name};
-use toyproof_eval::{self as eval, Number, Program, Settings, Variant};
+use toyproof_eval::{self as eval, Number, Program, Settings, UndefinedPolicy};
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_gpu::{Drawn, Failure, Worker};
 use toyproof_image::{self as image, Frame, Image};
 use toyproof_verify::unbound;
 
-use super::check::cut_short;
+use super::check::loop_truncated;
 use super::inputs::{DriverArgs, FrameArgs, LanguageArgs, may_write};
 use super::names::{Names, with_suffix};
 use super::sequence::{self, Frames, Sequence};
@@ -37,9 +37,9 @@ pub(super) struct Args {
     /// The number type of every float; f64 runs on the CPU: the shader's mathematics without its rounding
     #[arg(long, value_enum, default_value_t = Precision::F32)]
     precision: Precision,
-    /// All frames from A to B, at 60 a second, each into a file with its number; a sequence that was interrupted goes
-    /// on where it stopped
-    #[arg(long, value_name = "A..B", value_parser = sequence::frames, conflicts_with_all = ["frame", "time"])]
+    /// All frames from A to B, at 60 a second, each into a file with its number; a sequence that was
+    /// interrupted goes on where it stopped
+    #[arg(long, value_name = "A..B", value_parser = sequence::parse_frames, conflicts_with_all = ["frame", "time"])]
     frames: Option<Frames>,
     #[command(flatten)]
     frame: FrameArgs,
@@ -60,7 +60,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         (Ok(worker), Ok(frame)) => (worker, frame),
         (Err(error), _) | (_, Err(error)) => {
             terminal.error(error);
-            return Exit::Trouble;
+            return Exit::Error;
         }
     };
     let inputs = find(&args.shaders, terminal);
@@ -71,18 +71,18 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             "several shaders need a folder to go to, not {}",
             path_name(&args.output)
         ));
-        return Exit::Trouble;
+        return Exit::Error;
     }
     if standard && args.frames.is_some() {
-        terminal.error(sequence::NO_FILE);
-        return Exit::Trouble;
+        terminal.error(sequence::NEEDS_FILE);
+        return Exit::Error;
     }
     let one = standard || (!several && !args.output.is_dir());
     let mut names = Names::new(&[".png"], &[]);
-    let mut exit = Exit::Good;
+    let mut exit = Exit::Success;
     let channels = args.frame.files().map(PathBuf::as_path).collect();
     if !may_write(&args.output, &channels, terminal) {
-        return Exit::Trouble;
+        return Exit::Error;
     }
     let mut runner = Runner {
         args,
@@ -94,7 +94,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         let shader = Shader::load(input, &args.language, Deadline::after(args.driver.timeout()));
         let path = match (one, input) {
             (true, _) | (false, Err(_)) => args.output.clone(),
-            (false, Ok(found)) => with_suffix(&args.output.join(names.place(found)), ".png"),
+            (false, Ok(found)) => with_suffix(&args.output.join(names.assign(found)), ".png"),
         };
         terminal.diagnostics(&shader.lints.warnings, &shader.files);
         if let Ok(checked) = &shader.checked {
@@ -103,11 +103,11 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         exit = exit.max(match args.frames {
             None => {
                 let spinner = terminal.spinner(&shader.name);
-                let painted = runner.paint(&shader);
+                let rendered = runner.render(&shader);
                 spinner.finish_and_clear();
-                painted.map_or_else(
+                rendered.map_or_else(
                     |exit| exit,
-                    |picture| keep(&picture, &path, &args.output, terminal),
+                    |rendered| write_image(&rendered, &path, &args.output, terminal),
                 )
             }
             Some(frames) => runner.sequence(&shader, frames, &path),
@@ -119,36 +119,37 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
 struct Runner<'a> {
     args: &'a Args,
     terminal: &'a Terminal,
-    /// None where the evaluator paints.
+    /// None where the evaluator renders.
     worker: Option<Worker>,
     frame: Frame,
 }
 
 impl Runner<'_> {
-    /// The shader's pictures, each into its file; stops at the first that there is none of.
+    /// Renders the frames of a shader, each into its file; stops at the first failure.
     fn sequence(&mut self, shader: &Shader, frames: Frames, output: &Path) -> Exit {
-        let what = self.what(shader);
-        let sequence = Sequence::resume(frames, output, &what, self.terminal);
-        let mut exit = Exit::Good;
-        let whole = sequence.make(self.terminal, |one| {
+        let fingerprint = self.fingerprint(shader);
+        let sequence = Sequence::resume(frames, output, &fingerprint, self.terminal);
+        let mut exit = Exit::Success;
+        let whole = sequence.render(self.terminal, |one| {
             self.frame.frame = one.frame;
             self.frame.time = one.time as f32;
-            exit = match self.paint(shader) {
-                Ok(picture) => keep(&picture, &one.path, &self.args.output, self.terminal),
+            exit = match self.render(shader) {
+                Ok(rendered) => write_image(&rendered, &one.path, &self.args.output, self.terminal),
                 Err(exit) => exit,
             };
-            exit == Exit::Good
+            exit == Exit::Success
         });
-        // Else it was the record that could not be written, which the terminal has been told.
-        if whole || exit != Exit::Good {
+        // Otherwise the record could not be written, which has been reported.
+        if whole || exit != Exit::Success {
             exit
         } else {
-            Exit::Trouble
+            Exit::Error
         }
     }
 
-    /// A digest of what the frames of a sequence are painted of: a record of anything else is not continued.
-    fn what(&self, shader: &Shader) -> String {
+    /// A digest of everything that the frames of a sequence depend on: a record with a different one is
+    /// ignored.
+    fn fingerprint(&self, shader: &Shader) -> String {
         let mut hasher = DefaultHasher::new();
         if let Ok(checked) = &shader.checked {
             self.args.driver.float().lower(checked).text().hash(&mut hasher);
@@ -163,17 +164,17 @@ impl Runner<'_> {
         format!("{:016x}", hasher.finish())
     }
 
-    /// The shader's picture; says why there is none.
-    fn paint(&mut self, shader: &Shader) -> Result<Image, Exit> {
+    /// Renders the shader; prints the error on failure.
+    fn render(&mut self, shader: &Shader) -> Result<Image, Exit> {
         let checked = match &shader.checked {
             Ok(checked) => checked,
             Err(Unusable::Invalid(diagnostics)) => {
                 self.terminal.diagnostics(diagnostics, &shader.files);
-                return Err(Exit::Bad);
+                return Err(Exit::ShaderFault);
             }
-            Err(Unusable::Trouble(error)) => {
+            Err(Unusable::Unreadable(error)) => {
                 self.terminal.error(error);
-                return Err(Exit::Trouble);
+                return Err(Exit::Error);
             }
         };
         if let Some(worker) = &mut self.worker {
@@ -184,7 +185,7 @@ impl Runner<'_> {
                 Err(overdue) => {
                     let overdue = [glsl::overdue(overdue)];
                     self.terminal.diagnostics(&overdue, &shader.files);
-                    return Err(Exit::Bad);
+                    return Err(Exit::ShaderFault);
                 }
             };
             match worker.draw(lowered, self.frame.clone(), float) {
@@ -193,7 +194,7 @@ impl Runner<'_> {
                         .warn(format_args!("{failure}; shaders run on the CPU"));
                     self.worker = None;
                 }
-                drawn => return self.drawn(drawn, shader),
+                result => return self.draw_result(result, shader),
             }
         }
         match self.args.precision {
@@ -202,32 +203,36 @@ impl Runner<'_> {
         }
     }
 
-    fn drawn(&self, drawn: Result<Drawn, Failure>, shader: &Shader) -> Result<Image, Exit> {
+    fn draw_result(&self, drawn: Result<Drawn, Failure>, shader: &Shader) -> Result<Image, Exit> {
         match drawn {
             Ok(Drawn {
-                cut_short: Some(pixels @ 1..),
+                loop_truncated: Some(pixels @ 1..),
                 ..
             }) => {
                 self.terminal
-                    .error(format_args!("{}: {}", shader.name, cut_short(pixels)));
-                Err(Exit::Bad)
+                    .error(format_args!("{}: {}", shader.name, loop_truncated(pixels)));
+                Err(Exit::ShaderFault)
             }
             Ok(drawn) => {
-                self.painted(&shader.name, drawn.draw.as_secs_f64(), &drawn.device);
+                self.report_time(&shader.name, drawn.draw.as_secs_f64(), &drawn.device);
                 Ok(drawn.image())
             }
             Err(Failure::Invalid(diagnostics)) => {
                 self.terminal.diagnostics(&diagnostics, &shader.files);
-                Err(Exit::Bad)
+                Err(Exit::ShaderFault)
             }
             Err(Failure::Refused(diagnostics)) => {
                 self.terminal.diagnostics(&diagnostics, &shader.files);
-                Err(Exit::Trouble)
+                Err(Exit::Error)
             }
             Err(failure) => {
                 self.terminal.error(format_args!("{}: {failure}", shader.name));
                 let shaders_fault = is_invalid(&failure) || matches!(failure, Failure::Timeout { .. });
-                Err(if shaders_fault { Exit::Bad } else { Exit::Trouble })
+                Err(if shaders_fault {
+                    Exit::ShaderFault
+                } else {
+                    Exit::Error
+                })
             }
         }
     }
@@ -235,43 +240,43 @@ impl Runner<'_> {
     fn evaluate<N: Number>(&self, checked: &Checked, shader: &Shader) -> Result<Image, Exit> {
         let start = Instant::now();
         let settings = Settings::<N> {
-            variant: Variant::Plain,
+            undefined: UndefinedPolicy::Plain,
             deadline: Some(start + self.args.driver.timeout()),
             ..Settings::default()
         };
-        let painted = Program::within(checked, self.args.driver.timeout())
+        let rendered = Program::within(checked, self.args.driver.timeout())
             .map_err(eval::Failure::from)
             .and_then(|program| program.picture(&self.frame, self.frame.rows(), &settings));
-        match painted {
-            Ok(painted) => {
+        match rendered {
+            Ok(rendered) => {
                 let device = format!("the CPU, in {}", std::any::type_name::<N>());
-                self.painted(&shader.name, start.elapsed().as_secs_f64(), &device);
-                Ok(painted.image)
+                self.report_time(&shader.name, start.elapsed().as_secs_f64(), &device);
+                Ok(rendered.image)
             }
             Err(failure) => Err(not_evaluated(&failure, shader, self.terminal)),
         }
     }
 
-    fn painted(&self, name: &str, seconds: f64, device: &str) {
+    fn report_time(&self, name: &str, seconds: f64, device: &str) {
         self.terminal
             .detail(&format!("{name}: painted in {seconds:.3} s on {device}"));
     }
 }
 
-/// Says why the evaluator gave nothing.
+/// Prints why the evaluator failed.
 pub(super) fn not_evaluated(failure: &eval::Failure, shader: &Shader, terminal: &Terminal) -> Exit {
     if let eval::Failure::Refused(eval::Refusal::TooSlow(overdue)) = failure {
         terminal.diagnostics(&[glsl::overdue(*overdue)], &shader.files);
-        return Exit::Bad;
+        return Exit::ShaderFault;
     }
-    let place = place(failure, &shader.files);
-    terminal.error(format_args!("{}: {failure}{place}", shader.name));
+    let position = failure_position(failure, &shader.files);
+    terminal.error(format_args!("{}: {failure}{position}", shader.name));
     let ours = matches!(failure, eval::Failure::Refused(_));
-    if ours { Exit::Trouble } else { Exit::Bad }
+    if ours { Exit::Error } else { Exit::ShaderFault }
 }
 
-/// Where the evaluator stopped, to stand behind its message.
-pub(super) fn place(failure: &eval::Failure, files: &Files) -> String {
+/// The position where the evaluator stopped, as a suffix of its message.
+pub(super) fn failure_position(failure: &eval::Failure, files: &Files) -> String {
     match failure {
         eval::Failure::TooOften { at, .. } | eval::Failure::Timeout { at } => {
             let at = files.position(at.span);
@@ -281,18 +286,18 @@ pub(super) fn place(failure: &eval::Failure, files: &Files) -> String {
     }
 }
 
-fn keep(picture: &Image, path: &Path, output: &Path, terminal: &Terminal) -> Exit {
+fn write_image(rendered: &Image, path: &Path, output: &Path, terminal: &Terminal) -> Exit {
     let format = if path == Path::new("-") {
         Path::new("-.png")
     } else {
         path
     };
-    match image::encode(picture, format) {
-        Ok(bytes) if terminal.write_output(output, path, &bytes) => Exit::Good,
-        Ok(_) => Exit::Trouble,
+    match image::encode(rendered, format) {
+        Ok(bytes) if terminal.write_output(output, path, &bytes) => Exit::Success,
+        Ok(_) => Exit::Error,
         Err(error) => {
             terminal.error(error);
-            Exit::Trouble
+            Exit::Error
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Pictures of several frames: their numbers, their files, and which of them are still to be made.
+//! Image sequences: the numbers of their frames, their files, and which are still to be rendered.
 
 use std::path::{Path, PathBuf};
 
@@ -14,11 +14,11 @@ pub(super) struct Frames {
     last: i32,
 }
 
-/// Why standard output takes no sequence.
-pub(super) const NO_FILE: &str = "a sequence needs a file to go to, whose name the numbers are added to";
+/// The error for a sequence that goes to standard output.
+pub(super) const NEEDS_FILE: &str = "a sequence needs a file to go to, whose name the numbers are added to";
 
-/// Reads A..B.
-pub(super) fn frames(text: &str) -> Result<Frames, String> {
+/// Parses A..B.
+pub(super) fn parse_frames(text: &str) -> Result<Frames, String> {
     let expected = "expected the first and the last frame as A..B, with 0 ≤ A ≤ B";
     let (first, last) = text.split_once("..").ok_or(expected)?;
     match (first.parse(), last.parse()) {
@@ -29,7 +29,7 @@ pub(super) fn frames(text: &str) -> Result<Frames, String> {
 
 /// One frame of a sequence.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Numbered {
+pub(super) struct SequenceFrame {
     pub(super) frame: i32,
     /// In seconds, at `ShaderToy`'s 60 frames a second.
     pub(super) time: f64,
@@ -41,13 +41,13 @@ impl Frames {
         u64::from(self.last.abs_diff(self.first)) + 1
     }
 
-    /// All frames, each to go to `output` with its number before the extension.
-    fn numbered(self, output: &Path) -> impl Iterator<Item = Numbered> {
+    /// All frames; the path of each is `output` with the frame's number before the extension.
+    fn numbered(self, output: &Path) -> impl Iterator<Item = SequenceFrame> {
         let digits = self.last.to_string().len().max(4);
         (self.first..=self.last).map(move |frame| {
             let stem = output.file_stem().unwrap_or_default().to_string_lossy();
             let extension = output.extension().unwrap_or_default().to_string_lossy();
-            Numbered {
+            SequenceFrame {
                 frame,
                 time: f64::from(frame) / f64::from(FRAME_RATE),
                 path: output.with_file_name(format!("{stem}-{frame:0digits$}.{extension}")),
@@ -56,62 +56,62 @@ impl Frames {
     }
 }
 
-/// A sequence that is being made. A record beside the pictures tells which come next, as long as some are missing.
+/// A sequence in progress. A record beside the images holds the next frame, as long as frames are missing.
 #[derive(Debug)]
 pub(super) struct Sequence {
     record: PathBuf,
-    /// Scene and settings: a record of others does not count.
-    what: String,
+    /// Identifies the content and the settings: a record with a different fingerprint is ignored.
+    fingerprint: String,
     frames: Frames,
     output: PathBuf,
-    /// Frames from this one on have not been made; those before may have gone since.
+    /// The first frame that has never been rendered; files of earlier ones may have been deleted since.
     next: i64,
-    /// How many are there.
-    kept: u64,
+    /// The number of frames whose files exist.
+    existing: u64,
 }
 
 impl Sequence {
-    /// The frames that are still to be made, in their order.
-    pub(super) fn resume(frames: Frames, output: &Path, what: &str, terminal: &Terminal) -> Self {
+    /// Prepares a sequence, reading the record of an interrupted run.
+    pub(super) fn resume(frames: Frames, output: &Path, fingerprint: &str, terminal: &Terminal) -> Self {
         let record = output.with_extension("sequence");
         let next = std::fs::read_to_string(&record)
             .ok()
-            .and_then(|before| before.strip_prefix(what)?.trim().parse().ok())
+            .and_then(|before| before.strip_prefix(fingerprint)?.trim().parse().ok())
             .unwrap_or(0);
         let made = frames
             .numbered(output)
             .take_while(|one| i64::from(one.frame) < next);
-        let kept = made.filter(|one| one.path.is_file()).count() as u64;
-        if kept > 0 {
-            let (kept, count) = (grouped(kept), grouped(frames.count()));
-            terminal.say(&format!("{kept} of {count} frames are there already"));
+        let existing = made.filter(|one| one.path.is_file()).count() as u64;
+        if existing > 0 {
+            let (existing, count) = (grouped(existing), grouped(frames.count()));
+            terminal.note(&format!("{existing} of {count} frames are there already"));
         }
         Self {
             record,
-            what: what.to_owned(),
+            fingerprint: fingerprint.to_owned(),
             frames,
             output: output.to_owned(),
             next,
-            kept,
+            existing,
         }
     }
 
-    /// Makes one frame after the other, until one fails; tells whether none did.
-    pub(super) fn make(self, terminal: &Terminal, mut frame: impl FnMut(&Numbered) -> bool) -> bool {
-        let bar = terminal.bar(self.frames.count() - self.kept, "frames");
-        let is_missing = |one: &Numbered| i64::from(one.frame) >= self.next || !one.path.is_file();
+    /// Renders the missing frames in order until one fails; returns whether all succeeded.
+    pub(super) fn render(self, terminal: &Terminal, mut frame: impl FnMut(&SequenceFrame) -> bool) -> bool {
+        let bar = terminal.bar(self.frames.count() - self.existing, "frames");
+        let is_missing = |one: &SequenceFrame| i64::from(one.frame) >= self.next || !one.path.is_file();
         for one in self.frames.numbered(&self.output).filter(is_missing) {
             if !frame(&one) {
                 return false;
             }
-            let record = format!("{}\n{}\n", self.what, i64::from(one.frame) + 1);
+            let record = format!("{}\n{}\n", self.fingerprint, i64::from(one.frame) + 1);
             if !terminal.write(&self.record, record.as_bytes()) {
                 return false;
             }
             bar.inc(1);
         }
         bar.finish_and_clear();
-        // All are there: nothing is left to tell.
+        // The sequence is complete, so no record is needed.
         let _ = std::fs::remove_file(&self.record);
         true
     }
@@ -125,7 +125,7 @@ mod tests {
 
     #[test]
     fn a_range_has_both_ends_and_its_files_sort_by_number() {
-        let sequence = frames("8..11").unwrap();
+        let sequence = parse_frames("8..11").unwrap();
         let names: Vec<_> = sequence
             .numbered(Path::new("a/b.png"))
             .map(|one| path_name(&one.path))
@@ -135,44 +135,44 @@ mod tests {
             ["a/b-0008.png", "a/b-0009.png", "a/b-0010.png", "a/b-0011.png"]
         );
         for wrong in ["", "3", "3..", "..3", "4..3", "-1..3", "1..x", "1..2..3"] {
-            assert!(frames(wrong).is_err(), "{wrong}");
+            assert!(parse_frames(wrong).is_err(), "{wrong}");
         }
     }
 
     #[test]
-    fn what_was_stopped_continues_unless_something_else_is_asked_for() {
+    fn interrupted_sequences_resume_unless_settings_change() {
         let folder = tempfile::tempdir().unwrap();
         let output = folder.path().join("x.png");
         let terminal = Terminal::new(true, false);
-        // Far too many to be listed.
-        let far = Sequence::resume(frames("0..2147483647").unwrap(), &output, "far", &terminal);
+        // Too many to be collected in memory.
+        let far = Sequence::resume(parse_frames("0..2147483647").unwrap(), &output, "far", &terminal);
         let mut first = Vec::new();
-        far.make(&terminal, |one| {
+        far.render(&terminal, |one| {
             first.push(one.frame);
             first.len() < 3
         });
         assert_eq!(first, [0, 1, 2]);
-        let make = |what: &str, most: usize| {
+        let render = |fingerprint: &str, most: usize| {
             let mut made = Vec::new();
-            let sequence = Sequence::resume(frames("0..3").unwrap(), &output, what, &terminal);
-            let whole = sequence.make(&terminal, |one| {
+            let sequence = Sequence::resume(parse_frames("0..3").unwrap(), &output, fingerprint, &terminal);
+            let whole = sequence.render(&terminal, |one| {
                 made.push(one.frame);
                 std::fs::write(&one.path, "").unwrap();
                 made.len() <= most
             });
             (made, whole)
         };
-        assert_eq!(make("a", 2), (vec![0, 1, 2], false), "the third fails");
-        assert_eq!(make("a", 0), (vec![2], false), "what was made is kept");
-        assert_eq!(make("b", 1), (vec![0, 1], false), "other settings start over");
-        assert_eq!(make("a", 2), (vec![0, 1, 2], false));
+        assert_eq!(render("a", 2), (vec![0, 1, 2], false), "the third fails");
+        assert_eq!(render("a", 0), (vec![2], false), "what was made is kept");
+        assert_eq!(render("b", 1), (vec![0, 1], false), "other settings start over");
+        assert_eq!(render("a", 2), (vec![0, 1, 2], false));
         std::fs::remove_file(folder.path().join("x-0001.png")).unwrap();
         assert_eq!(
-            make("a", 9),
+            render("a", 9),
             (vec![1, 2, 3], true),
             "what is missing is made again"
         );
         assert!(!folder.path().join("x.sequence").exists());
-        assert_eq!(make("a", 9).0, [0, 1, 2, 3], "what is whole is made anew");
+        assert_eq!(render("a", 9).0, [0, 1, 2, 3], "what is whole is made anew");
     }
 }

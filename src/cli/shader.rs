@@ -1,4 +1,4 @@
-//! What the commands that take shaders share: finding and reading them.
+//! Finds and reads shaders, for all commands that take them.
 
 use std::path::{Path, PathBuf};
 
@@ -10,12 +10,12 @@ use toyproof_lint::{Lints, lint};
 use super::Terminal;
 use super::inputs::{Deny, LanguageArgs};
 use crate::cli::files;
-use crate::cli::files::{Found, ReadError, of_content};
+use crate::cli::files::{Input, ReadError, content_diagnostic};
 
-/// The lints have this part of the time limit of a shader.
-const LINTS: u32 = 4;
+/// The lints may take one part in this many of a shader's time limit.
+const LINT_TIME_SHARE: u32 = 4;
 
-/// A shader's text and its tree, or why there is none.
+/// A shader's text, and its tree or the reason why there is none.
 pub(super) struct Shader {
     pub(super) name: String,
     pub(super) files: Files,
@@ -25,24 +25,24 @@ pub(super) struct Shader {
 
 /// Why a shader cannot be used.
 pub(super) enum Unusable {
-    /// What it holds is at fault.
+    /// Its content is invalid.
     Invalid(Vec<Diagnostic>),
-    /// It cannot be had.
-    Trouble(String),
+    /// It cannot be read.
+    Unreadable(String),
 }
 
 impl Shader {
     pub(super) fn load(
-        found: &Result<Found, ReadError>,
+        found: &Result<Input, ReadError>,
         language: &LanguageArgs,
         deadline: Deadline,
     ) -> Self {
         let mut files = Files::default();
         let mut lints = Lints::default();
         let (name, checked) = match found {
-            Err(error) => (subject(error), Err(Unusable::Trouble(error.to_string()))),
+            Err(error) => (error_name(error), Err(Unusable::Unreadable(error.to_string()))),
             Ok(found) => {
-                let share = deadline.share(LINTS);
+                let share = deadline.share(LINT_TIME_SHARE);
                 let checked = read(found, &mut files, &language.options(deadline));
                 let checked = checked.and_then(|checked| {
                     lints = lint(&files, &checked, &share);
@@ -64,18 +64,18 @@ impl Shader {
         }
     }
 
-    /// The text that a shader was read from.
+    /// The shader's source text.
     pub(super) fn text(&self, checked: &Checked) -> &str {
         let at = checked.tree[checked.main_image].at;
         self.files.get(at.span.file).text()
     }
 }
 
-/// Takes out the warnings that count as errors.
+/// Removes the warnings that count as errors, and returns them as errors.
 pub(super) fn denied(warnings: &mut Vec<Diagnostic>, denied: &[Deny]) -> Vec<Diagnostic> {
-    let (mut errors, rest): (Vec<_>, Vec<_>) = std::mem::take(warnings).into_iter().partition(|told| {
-        let includes = |denied: &Deny| denied.includes(&told.code);
-        told.severity == Severity::Warning && denied.iter().any(includes)
+    let (mut errors, rest): (Vec<_>, Vec<_>) = std::mem::take(warnings).into_iter().partition(|warning| {
+        let includes = |denied: &Deny| denied.includes(&warning.code);
+        warning.severity == Severity::Warning && denied.iter().any(includes)
     });
     *warnings = rest;
     for error in &mut errors {
@@ -84,20 +84,20 @@ pub(super) fn denied(warnings: &mut Vec<Diagnostic>, denied: &[Deny]) -> Vec<Dia
     errors
 }
 
-fn read(found: &Found, files: &mut Files, options: &glsl::Options) -> Result<Checked, Unusable> {
+fn read(found: &Input, files: &mut Files, options: &glsl::Options) -> Result<Checked, Unusable> {
     match files::read(found) {
         Ok(text) => {
             let file = files.add(text);
             glsl::check(files, file, options).map_err(Unusable::Invalid)
         }
-        Err(error) => Err(match of_content(error, files) {
+        Err(error) => Err(match content_diagnostic(error, files) {
             Ok(diagnostic) => Unusable::Invalid(vec![diagnostic]),
-            Err(error) => Unusable::Trouble(error.to_string()),
+            Err(error) => Unusable::Unreadable(error.to_string()),
         }),
     }
 }
 
-fn subject(error: &ReadError) -> String {
+fn error_name(error: &ReadError) -> String {
     match error {
         ReadError::Missing(path) | ReadError::NoShader(path) | ReadError::Scene(path) => path_name(path),
         ReadError::Unreadable { name, .. } | ReadError::TooLarge { name } => name.clone(),
@@ -105,8 +105,9 @@ fn subject(error: &ReadError) -> String {
     }
 }
 
-/// All shaders that the arguments name, in their order; standard input once. Warns of links that are not followed.
-pub(super) fn find(arguments: &[PathBuf], terminal: &Terminal) -> Vec<Result<Found, ReadError>> {
+/// Finds all shaders that the arguments name, in their order; standard input is read once. Warns of links
+/// that are not followed.
+pub(super) fn find(arguments: &[PathBuf], terminal: &Terminal) -> Vec<Result<Input, ReadError>> {
     let first = arguments.iter().position(|argument| argument == Path::new("-"));
     arguments
         .iter()
@@ -122,7 +123,7 @@ pub(super) fn find(arguments: &[PathBuf], terminal: &Terminal) -> Vec<Result<Fou
         .collect()
 }
 
-/// Whether it is the shader that does not compile, rather than the tools around it.
+/// Returns whether the shader does not compile, as opposed to an error of the tools.
 pub(super) fn is_invalid(failure: &Failure) -> bool {
     matches!(
         failure,

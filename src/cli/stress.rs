@@ -10,13 +10,14 @@ use toyproof_lab::stress::{self, Report, Settings, formula};
 
 use super::inputs::{DriverArgs, LanguageArgs};
 use super::shader::{Shader, Unusable, find};
-use super::{Exit, Terminal, interrupt};
+use super::terminal::watch_interrupts;
+use super::{Exit, Terminal};
 
 /// Find out where formulas for rays and surfaces fail: numerical stability at the extremes
 ///
-/// Ways to intersect a ray with a sphere and with a quadric, and to start a ray from a surface, are taken to their limits in f32 and in f64,
-/// and held against exact arithmetic. With a shader, that is done to a function of its own. What is written: stress.csv, stress.json, and
-/// heat maps.
+/// Ways to intersect a ray with a sphere and with a quadric, and to start a ray from a surface, are taken to
+/// their limits in f32 and in f64, and held against exact arithmetic. With a shader, that is done to a
+/// function of its own. What is written: stress.csv, stress.json, and heat maps.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  toyproof stress -o stress\n  \
                         toyproof stress glsl/02-sphere.glsl --function intersectSphere -o mine\n  \
@@ -28,15 +29,16 @@ pub(super) struct Args {
     /// The function: it takes a ray and a sphere, and gives t [default: the one that does]
     #[arg(long, value_name = "NAME", requires = "shader")]
     function: Option<String>,
-    /// What its parameters are, where that is not clear from their names: origin, direction, center, radius, sphere (centre and radius in a
-    /// vec4), tmin, tmax; and of what it gives: t, second, hit. `return` is what it returns
-    #[arg(long, value_name = "PATH=ROLE,…", value_delimiter = ',', value_parser = role, requires = "shader")]
+    /// What its parameters are, where that is not clear from their names: origin, direction, center, radius,
+    /// sphere (center and radius in a vec4), tmin, tmax; and of what it gives: t, second, hit. `return`
+    /// is what it returns
+    #[arg(long, value_name = "PATH=ROLE,…", value_delimiter = ',', value_parser = parse_role, requires = "shader")]
     map: Vec<(String, Role)>,
     /// Where the results go
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
     /// What the cases are drawn from: the same seed draws the same
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = seed, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = parse_seed, allow_negative_numbers = true)]
     seed: u64,
     /// Cases for each step of each axis
     #[arg(long, value_name = "N", default_value_t = 500, value_parser = clap::value_parser!(u32).range(1..=100_000), allow_negative_numbers = true)]
@@ -47,17 +49,17 @@ pub(super) struct Args {
     driver: DriverArgs,
 }
 
-fn seed(text: &str) -> Result<u64, String> {
+fn parse_seed(text: &str) -> Result<u64, String> {
     text.parse()
         .map_err(|_| format!("a seed is a whole number from 0 to {}", u64::MAX))
 }
 
-fn role(text: &str) -> Result<(String, Role), String> {
-    let told = text.split_once('=').and_then(|(path, role)| {
+fn parse_role(text: &str) -> Result<(String, Role), String> {
+    let parsed = text.split_once('=').and_then(|(path, role)| {
         let role = Role::named(role.trim())?;
         Some((path.trim().to_owned(), role))
     });
-    told.ok_or_else(|| {
+    parsed.ok_or_else(|| {
         "say what is what, as in ray.origin=origin; there are origin, direction, center, radius, sphere, tmin, tmax, t, second and hit"
             .to_owned()
     })
@@ -68,7 +70,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         Ok(worker) => worker,
         Err(exit) => return exit,
     };
-    let interrupted = interrupt::watch("stopping; nothing is written");
+    let interrupted = watch_interrupts("stopping; nothing is written");
     match &args.shader {
         Some(shader) => examine(args, shader, worker.as_mut(), &interrupted, terminal),
         None => study(args, worker.as_mut(), &interrupted, terminal),
@@ -92,17 +94,17 @@ fn study(args: &Args, worker: Option<&mut Worker>, interrupted: &AtomicBool, ter
     bar.finish_and_clear();
     match studied {
         Ok(report) => {
-            tell(&report, terminal);
-            keep(&report, report.json(), args, terminal)
+            print_report(&report, terminal);
+            write_results(&report, report.json(), args, terminal)
         }
         Err(failure) => {
             terminal.error(failure);
-            Exit::Trouble
+            Exit::Error
         }
     }
 }
 
-fn tell(report: &Report, terminal: &Terminal) {
+fn print_report(report: &Report, terminal: &Terminal) {
     for line in report.lines() {
         terminal.result(&line);
     }
@@ -121,30 +123,30 @@ fn examine(
             "{} holds several shaders; stress takes one",
             path_name(path)
         ));
-        return Exit::Trouble;
+        return Exit::Error;
     };
     let shader = Shader::load(input, &args.language, Deadline::after(args.driver.timeout()));
     let checked = match &shader.checked {
         Ok(checked) => checked,
         Err(Unusable::Invalid(diagnostics)) => {
             terminal.diagnostics(diagnostics, &shader.files);
-            return Exit::Bad;
+            return Exit::ShaderFault;
         }
-        Err(Unusable::Trouble(error)) => {
+        Err(Unusable::Unreadable(error)) => {
             terminal.error(error);
-            return Exit::Trouble;
+            return Exit::Error;
         }
     };
     let map: Map = args.map.iter().cloned().collect();
     let signature = match &args.function {
-        Some(name) => Signature::recognise(checked, name, &map),
+        Some(name) => Signature::recognize(checked, name, &map),
         None => Signature::only(checked, &map),
     };
     let signature = match signature {
         Ok(signature) => signature,
         Err(why) => {
             terminal.error(format_args!("{}: {why}", shader.name));
-            return Exit::Trouble;
+            return Exit::Error;
         }
     };
     let subject = function::subject(
@@ -159,23 +161,23 @@ fn examine(
     bar.finish_and_clear();
     match examined {
         Ok(findings) => {
-            tell(&findings.report, terminal);
-            explain(&signature, &findings, terminal);
-            let kept = keep(&findings.report, findings.json(), args, terminal);
+            print_report(&findings.report, terminal);
+            print_findings(&signature, &findings, terminal);
+            let kept = write_results(&findings.report, findings.json(), args, terminal);
             kept.max(if findings.mistake.is_some_and(|mistake| !mistake.excusable) {
-                Exit::Bad
+                Exit::ShaderFault
             } else {
-                Exit::Good
+                Exit::Success
             })
         }
         Err(failure) => {
             terminal.error(format_args!("{}: {failure}", shader.name));
-            Exit::Trouble
+            Exit::Error
         }
     }
 }
 
-fn explain(signature: &Signature, findings: &Findings, terminal: &Terminal) {
+fn print_findings(signature: &Signature, findings: &Findings, terminal: &Terminal) {
     let name = &signature.name;
     if let Some(mistake) = &findings.mistake {
         terminal.result(&format!("{name} {} ({})", mistake.says, mistake.name));
@@ -195,11 +197,11 @@ fn explain(signature: &Signature, findings: &Findings, terminal: &Terminal) {
     }
 }
 
-/// A worker that has a driver; none where the evaluator is all there is.
+/// Creates a worker that has a driver; none where only the evaluator is available.
 fn worker(driver: &DriverArgs, terminal: &Terminal) -> Result<Option<Worker>, Exit> {
     let fail = |error: &dyn std::fmt::Display| {
         terminal.error(error);
-        Exit::Trouble
+        Exit::Error
     };
     let Some(mut worker) = driver.worker().map_err(|error| fail(&error))? else {
         return Ok(None);
@@ -214,23 +216,23 @@ fn worker(driver: &DriverArgs, terminal: &Terminal) -> Result<Option<Worker>, Ex
     }
 }
 
-fn keep(report: &Report, json: String, args: &Args, terminal: &Terminal) -> Exit {
+fn write_results(report: &Report, json: String, args: &Args, terminal: &Terminal) -> Exit {
     let mut files = vec![
         ("stress.csv".to_owned(), report.csv().into_bytes()),
         ("stress.json".to_owned(), json.into_bytes()),
     ];
-    for (name, picture) in report.pictures() {
+    for (name, heat_map) in report.pictures() {
         let name = format!("{name}.png");
-        match toyproof_image::encode(&picture, name.as_ref()) {
+        match toyproof_image::encode(&heat_map, name.as_ref()) {
             Ok(bytes) => files.push((name, bytes)),
             Err(error) => {
                 terminal.error(error);
-                return Exit::Trouble;
+                return Exit::Error;
             }
         }
     }
     let kept = files
         .iter()
         .all(|(name, bytes)| terminal.write(&args.output.join(name), bytes));
-    if kept { Exit::Good } else { Exit::Trouble }
+    if kept { Exit::Success } else { Exit::Error }
 }

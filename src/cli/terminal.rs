@@ -1,9 +1,10 @@
-//! The one place that prints.
+//! All output to the terminal.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::panic::PanicHookInfo;
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
@@ -13,18 +14,18 @@ use toyproof_diagnostic::{self as diagnostic, Diagnostic, Files, Severity};
 use toyproof_image::output;
 use toyproof_verify::contain;
 
-/// How many warnings of one code a terminal is shown for one shader.
+/// The number of warnings of one code that are shown for one shader.
 const WARNINGS_SHOWN: usize = 3;
 
-/// What a command says, and to whom. Colours are stripped where they are not wanted: in files, in pipes, and
-/// where `NO_COLOR` is set.
+/// Prints to standard output and standard error. Colors are stripped in files, in pipes, and where `NO_COLOR`
+/// is set.
 #[derive(Debug)]
 pub(super) struct Terminal {
     quiet: bool,
     verbose: bool,
-    /// Whether standard output did not take something.
-    lost: AtomicBool,
-    /// Whether whoever read standard output has closed it.
+    /// Whether writing to standard output failed.
+    write_failed: AtomicBool,
+    /// Whether the reader of standard output has closed it.
     closed: AtomicBool,
 }
 
@@ -37,12 +38,12 @@ impl Terminal {
         Self {
             quiet,
             verbose,
-            lost: AtomicBool::new(false),
+            write_failed: AtomicBool::new(false),
             closed: AtomicBool::new(false),
         }
     }
 
-    /// Whether whoever read standard output has closed it.
+    /// Whether the reader of standard output has closed it.
     pub(super) fn is_closed(&self) -> bool {
         self.closed.load(Ordering::Relaxed)
     }
@@ -51,27 +52,28 @@ impl Terminal {
         self.verbose
     }
 
-    /// Whether standard output did not take something.
-    pub(super) fn has_lost(&self) -> bool {
-        self.lost.load(Ordering::Relaxed)
+    /// Whether writing to standard output failed.
+    pub(super) fn has_failed(&self) -> bool {
+        self.write_failed.load(Ordering::Relaxed)
     }
 
-    /// A result, on standard output.
+    /// Prints a result on standard output.
     pub(super) fn result(&self, text: &str) {
-        self.out(writeln!(anstream::stdout().lock(), "{text}"));
+        self.check_write(writeln!(anstream::stdout().lock(), "{text}"));
     }
 
-    /// Bytes that are the result, on standard output; whether it took them.
+    /// Writes bytes to standard output; returns whether that succeeded.
     pub(super) fn bytes(&self, bytes: &[u8]) -> bool {
         let mut stdout = io::stdout().lock();
-        self.out(stdout.write_all(bytes).and_then(|()| stdout.flush()))
+        self.check_write(stdout.write_all(bytes).and_then(|()| stdout.flush()))
     }
 
-    /// Says once that standard output took something not. A reader that closed its end has all it wants.
-    fn out(&self, written: io::Result<()>) -> bool {
+    /// Reports the first failed write to standard output. A closed pipe is not an error: the reader has all
+    /// it wants.
+    fn check_write(&self, written: io::Result<()>) -> bool {
         match written {
             Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-                if !self.lost.swap(true, Ordering::Relaxed) {
+                if !self.write_failed.swap(true, Ordering::Relaxed) {
                     self.error(format_args!("cannot write to standard output: {error}"));
                 }
                 false
@@ -84,42 +86,42 @@ impl Terminal {
         }
     }
 
-    /// What helps, on standard error; not with `--quiet`.
-    pub(super) fn say(&self, text: &str) {
+    /// Prints a note on standard error, except with `--quiet`.
+    pub(super) fn note(&self, text: &str) {
         if !self.quiet {
             let _ = writeln!(anstream::stderr().lock(), "{text}");
         }
     }
 
-    /// What only `--verbose` wants, on standard error.
+    /// Prints a detail on standard error, only with `--verbose`.
     pub(super) fn detail(&self, text: &str) {
         if self.verbose {
             let _ = writeln!(anstream::stderr().lock(), "{text}");
         }
     }
 
-    /// What may not be what the user meant, on standard error.
+    /// Prints a warning on standard error.
     pub(super) fn warn(&self, text: impl std::fmt::Display) {
         let style = Style::new().fg_color(Some(AnsiColor::Yellow.into())).bold();
         let _ = writeln!(anstream::stderr().lock(), "{style}warning{style:#}: {text}");
     }
 
-    /// What went wrong, on standard error.
+    /// Prints an error on standard error.
     pub(super) fn error(&self, text: impl std::fmt::Display) {
         let style = Style::new().fg_color(Some(AnsiColor::Red.into())).bold();
         let _ = writeln!(anstream::stderr().lock(), "{style}error{style:#}: {text}");
     }
 
-    /// What an interrupt means, said at once.
-    pub(super) fn interrupted(words: &str) {
+    /// Prints how the program reacts to an interrupt.
+    pub(super) fn print_interrupt(message: &str) {
         let _ = writeln!(
             anstream::stderr().lock(),
-            "{words}; interrupt again to stop at once"
+            "{message}; interrupt again to stop at once"
         );
     }
 
-    /// Where a panic happened; what it cost is said by whoever contains it.
-    pub(super) fn panicked(info: &PanicHookInfo) {
+    /// Prints the location of a panic; its consequence is reported where it is caught.
+    pub(super) fn print_panic(info: &PanicHookInfo) {
         let place = info.location().map(|at| format!(" at {at}")).unwrap_or_default();
         let message = contain::message(info.payload());
         let _ = writeln!(
@@ -128,8 +130,9 @@ impl Terminal {
         );
     }
 
-    /// Diagnostics with their source lines, on standard error; with `--quiet` a line each. Of warnings with one code the first few
-    /// are shown and the others counted.
+    /// Prints diagnostics with their source lines on standard error; with `--quiet` one line each. Without
+    /// `--verbose`, only the first [`WARNINGS_SHOWN`] warnings of each code are shown, and the others
+    /// counted.
     pub(super) fn diagnostics(&self, diagnostics: &[Diagnostic], files: &Files) {
         let mut stderr = anstream::stderr().lock();
         let mut warnings: BTreeMap<&str, usize> = BTreeMap::new();
@@ -157,7 +160,8 @@ impl Terminal {
         }
     }
 
-    /// Writes a file whole, or to standard output if it is named `-`; says what went wrong.
+    /// Writes a file atomically, or standard output if the path is `-`; prints the error and returns false on
+    /// failure.
     pub(super) fn write(&self, path: &Path, bytes: &[u8]) -> bool {
         if path == Path::new("-") {
             return self.bytes(bytes);
@@ -169,7 +173,7 @@ impl Terminal {
         written.is_ok()
     }
 
-    /// Writes one of the files that go to the `output` argument: to it, or below it where it is a folder, from which no link leads out.
+    /// Writes `output` itself, or a file below it if it is a folder; no link is followed out of that folder.
     pub(super) fn write_output(&self, output: &Path, path: &Path, bytes: &[u8]) -> bool {
         if path == output || !path.starts_with(output) {
             return self.write(path, bytes);
@@ -181,8 +185,8 @@ impl Terminal {
         written.is_ok()
     }
 
-    /// A bar of so many steps, on a terminal only.
-    pub(super) fn bar(&self, steps: u64, what: &str) -> ProgressBar {
+    /// Shows a progress bar, on a terminal only.
+    pub(super) fn bar(&self, steps: u64, label: &str) -> ProgressBar {
         let bar = self.progress(ProgressBar::with_draw_target(
             Some(steps),
             ProgressDrawTarget::stderr(),
@@ -191,14 +195,14 @@ impl Terminal {
             ProgressStyle::with_template("{msg} {wide_bar} {percent} % {eta}")
                 .unwrap_or_else(|_| ProgressStyle::default_bar()),
         );
-        bar.set_message(what.to_owned());
+        bar.set_message(label.to_owned());
         bar
     }
 
-    /// A sign of life with a few words, on a terminal only.
-    pub(super) fn spinner(&self, what: &str) -> ProgressBar {
+    /// Shows a spinner with a label, on a terminal only.
+    pub(super) fn spinner(&self, label: &str) -> ProgressBar {
         let spinner = self.progress(ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr()));
-        spinner.set_message(what.to_owned());
+        spinner.set_message(label.to_owned());
         spinner.enable_steady_tick(Duration::from_millis(100));
         spinner
     }
@@ -209,4 +213,20 @@ impl Terminal {
         }
         bar
     }
+}
+
+/// Handles interrupts (Ctrl-C): the first prints `message` and sets the returned flag, the second exits at
+/// once.
+pub(super) fn watch_interrupts(message: &'static str) -> Arc<AtomicBool> {
+    let interrupted = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&interrupted);
+    // If no handler can be installed, an interrupt ends the program.
+    let _ = ctrlc::set_handler(move || {
+        Terminal::print_interrupt(message);
+        if flag.swap(true, Ordering::Relaxed) {
+            #[expect(clippy::exit, reason = "the user asked twice")]
+            std::process::exit(130);
+        }
+    });
+    interrupted
 }

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use toyproof_diagnostic::{Deadline, File, Files, path_name};
-use toyproof_gpu::{On, Worker};
+use toyproof_gpu::{AdapterSelector, Worker};
 use toyproof_image as image;
 use toyproof_image::Frame;
 use toyproof_lab::trade::{self, ERRORS, Report, Subject};
@@ -14,17 +14,19 @@ use toyproof_scene::{Scene, export};
 use toyproof_verify::compare::{grouped, plural};
 
 use super::check::References;
-use super::inputs::{FrameArgs, LanguageArgs, deadline, on, worker};
-use super::render::load;
+use super::inputs::{FrameArgs, LanguageArgs, parse_adapter, parse_time_limit, worker};
+use super::render::load_scene;
 use super::shader::{Shader, Unusable, find};
-use super::{Exit, Terminal, interrupt};
+use super::terminal::watch_interrupts;
+use super::{Exit, Terminal};
 use crate::cli::files;
 
-/// Measure what accuracy costs: every way to the picture of a scene, or of a shader, with its time and its error
+/// Measure what accuracy costs: every way to the picture of a scene, or of a shader, with its time and its
+/// error
 ///
-/// The ways are those that the scene asks for: the tracer in f32 and f64, with its samples and depths; and the shader beside the scene, or the
-/// one that `export` writes, on the CPU and on GPUs, with each formula for spheres. What is written: trade.csv, trade.json, trade.svg and
-/// trade.png.
+/// The ways are those that the scene asks for: the tracer in f32 and f64, with its samples and depths; and
+/// the shader beside the scene, or the one that `export` writes, on the CPU and on GPUs, with each formula
+/// for spheres. What is written: trade.csv, trade.json, trade.svg and trade.png.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  toyproof trade glsl/03-shading.toml -o trade\n  \
                         toyproof trade glsl/06-reflections.glsl -o trade --budget 60s\n  \
@@ -36,10 +38,10 @@ pub(super) struct Args {
     #[arg(short, long, value_name = "DIR", required_unless_present = "max_error")]
     output: Option<PathBuf>,
     /// How long everything may take
-    #[arg(long, value_name = "TIME", default_value = "30s", value_parser = deadline)]
+    #[arg(long, value_name = "TIME", default_value = "30s", value_parser = parse_time_limit)]
     budget: Duration,
     /// Say only which way is the cheapest whose error, a root mean square in [0, 1], is at most this
-    #[arg(long, value_name = "ERROR", value_parser = max_error, allow_negative_numbers = true)]
+    #[arg(long, value_name = "ERROR", value_parser = parse_max_error, allow_negative_numbers = true)]
     max_error: Option<f64>,
     /// The GPUs: `all` that there are, `cpu` for none, `lavapipe`, or words of an adapter's name
     #[arg(long, value_name = "ADAPTER", default_value = "all")]
@@ -50,7 +52,7 @@ pub(super) struct Args {
     frame: FrameArgs,
 }
 
-fn max_error(text: &str) -> Result<f64, String> {
+fn parse_max_error(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(error) if (0.0..=1.0).contains(&error) => Ok(error),
         _ => Err("expected a number from 0 to 1".to_owned()),
@@ -58,32 +60,32 @@ fn max_error(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
-    let interrupted = interrupt::watch("stopping; nothing is written");
+    let interrupted = watch_interrupts("stopping; nothing is written");
     match measure(args, &interrupted, terminal) {
-        Ok(report) => tell(&report, args, terminal),
+        Ok(report) => print_report(&report, args, terminal),
         Err(exit) => exit,
     }
 }
 
-/// Measures; says why not.
+/// Measures all methods; prints the error on failure.
 fn measure(args: &Args, interrupted: &AtomicBool, terminal: &Terminal) -> Result<Report, Exit> {
     let start = Instant::now();
     let deadline = Deadline::after(args.budget);
     let fail = |error: String| {
         terminal.error(error);
-        Exit::Trouble
+        Exit::Error
     };
     let frame = args.frame.frame().map_err(fail)?;
     let is_shader = files::is_shader(&args.subject);
-    let scene = (!is_shader).then(|| load(&args.subject, terminal).ok_or(Exit::Trouble));
+    let scene = (!is_shader).then(|| load_scene(&args.subject, terminal).ok_or(Exit::Error));
     let scene = scene.transpose()?;
     let shader = if is_shader {
-        Some(from_file(&args.subject, args, &deadline, terminal)?)
+        Some(load_shader(&args.subject, args, &deadline, terminal)?)
     } else {
-        beside(&args.subject, scene.as_ref(), args, &deadline)
+        shader_for_scene(&args.subject, scene.as_ref(), args, &deadline)
     };
-    let scene = scene.or_else(|| of_shader(&args.subject));
-    let (scene, frame) = fitted(scene, frame, args.frame.size);
+    let scene = scene.or_else(|| scene_for_shader(&args.subject));
+    let (scene, frame) = fit_size(scene, frame, args.frame.size);
     let checked = shader
         .as_ref()
         .and_then(|shader| Some((shader, shader.checked.as_ref().ok()?)));
@@ -105,8 +107,8 @@ fn measure(args: &Args, interrupted: &AtomicBool, terminal: &Terminal) -> Result
     report.map_err(|failure| fail(failure.to_string()))
 }
 
-/// Scene and frame of one size: the flag's, else the scene's, else the default.
-fn fitted(scene: Option<Scene>, mut frame: Frame, size: Option<[u32; 2]>) -> (Option<Scene>, Frame) {
+/// Gives scene and frame one size: the flag's, else the scene's, else the default.
+fn fit_size(scene: Option<Scene>, mut frame: Frame, size: Option<[u32; 2]>) -> (Option<Scene>, Frame) {
     if let (None, Some(scene)) = (size, &scene) {
         frame.size = scene.film.size;
     }
@@ -117,32 +119,32 @@ fn fitted(scene: Option<Scene>, mut frame: Frame, size: Option<[u32; 2]>) -> (Op
     (scene, frame)
 }
 
-/// A shader that must be valid.
-fn from_file(path: &Path, args: &Args, deadline: &Deadline, terminal: &Terminal) -> Result<Shader, Exit> {
+/// Loads a shader that must be valid.
+fn load_shader(path: &Path, args: &Args, deadline: &Deadline, terminal: &Terminal) -> Result<Shader, Exit> {
     let found = find(&[path.to_owned()], terminal);
     let [input] = found.as_slice() else {
         terminal.error(format_args!(
             "{} holds several shaders; trade takes one",
             path_name(path)
         ));
-        return Err(Exit::Trouble);
+        return Err(Exit::Error);
     };
     let shader = Shader::load(input, &args.language, deadline.clone());
     match &shader.checked {
         Ok(_) => Ok(shader),
         Err(Unusable::Invalid(diagnostics)) => {
             terminal.diagnostics(diagnostics, &shader.files);
-            Err(Exit::Bad)
+            Err(Exit::ShaderFault)
         }
-        Err(Unusable::Trouble(error)) => {
+        Err(Unusable::Unreadable(error)) => {
             terminal.error(error);
-            Err(Exit::Trouble)
+            Err(Exit::Error)
         }
     }
 }
 
-/// The shader beside a scene, else the one that is exported for it, if there is one.
-fn beside(path: &Path, scene: Option<&Scene>, args: &Args, deadline: &Deadline) -> Option<Shader> {
+/// Loads the shader beside a scene, else exports the scene, if possible.
+fn shader_for_scene(path: &Path, scene: Option<&Scene>, args: &Args, deadline: &Deadline) -> Option<Shader> {
     let shader = path.with_extension("glsl");
     if shader.is_file() {
         let found = files::find(&shader).inputs;
@@ -160,23 +162,25 @@ fn beside(path: &Path, scene: Option<&Scene>, args: &Args, deadline: &Deadline) 
     })
 }
 
-/// The scene beside a shader.
-fn of_shader(path: &Path) -> Option<Scene> {
+/// Loads the scene beside a shader.
+fn scene_for_shader(path: &Path) -> Option<Scene> {
     let found = files::find(path).inputs;
     let found = found.first()?.as_ref().ok()?;
     References::new(None).find(found)?.scene.ok()
 }
 
-/// A worker for each device that is asked for.
-fn workers(asked: &str, budget: Duration, terminal: &Terminal) -> Result<Vec<(String, Worker)>, Exit> {
+/// Creates a worker for each device that `--on` selects.
+fn workers(selector: &str, budget: Duration, terminal: &Terminal) -> Result<Vec<(String, Worker)>, Exit> {
     let fail = |error: String| {
         terminal.error(error);
-        Exit::Trouble
+        Exit::Error
     };
-    let ons = match asked {
+    let adapters = match selector {
         "cpu" => return Ok(Vec::new()),
         "all" => {
-            let mut probe = worker(On::Auto, budget).map_err(fail)?.with_all_drivers();
+            let mut probe = worker(AdapterSelector::Auto, budget)
+                .map_err(fail)?
+                .with_all_drivers();
             match probe.probe() {
                 Ok(drivers) => drivers.iter().map(|driver| driver.name.clone()).collect(),
                 Err(failure) => {
@@ -187,13 +191,13 @@ fn workers(asked: &str, budget: Duration, terminal: &Terminal) -> Result<Vec<(St
         }
         name => vec![name.to_owned()],
     };
-    let made = ons.into_iter().map(|name: String| {
+    let made = adapters.into_iter().map(|name: String| {
         let on = if name.to_lowercase().contains("llvmpipe") {
-            On::Lavapipe
+            AdapterSelector::Lavapipe
         } else {
-            on(&name)?
+            parse_adapter(&name)?
         };
-        let short = if on == On::Lavapipe {
+        let short = if on == AdapterSelector::Lavapipe {
             "lavapipe".to_owned()
         } else {
             name
@@ -203,19 +207,19 @@ fn workers(asked: &str, budget: Duration, terminal: &Terminal) -> Result<Vec<(St
     made.collect::<Result<_, String>>().map_err(fail)
 }
 
-fn tell(report: &Report, args: &Args, terminal: &Terminal) -> Exit {
+fn print_report(report: &Report, args: &Args, terminal: &Terminal) -> Exit {
     if report.ways.is_empty() {
         terminal.error(format_args!("nothing was measured: {}", report.unmeasured()));
-        return Exit::Trouble;
+        return Exit::Error;
     }
     if let Some(error) = args.max_error {
         terminal.result(&report.line(error, &error.to_string()));
         if report.cheapest(error).is_some() && !report.left_out.is_empty() {
-            terminal.say(&report.unmeasured());
+            terminal.note(&report.unmeasured());
         }
     } else {
         let ways = report.ways.len() as u64;
-        terminal.say(&format!(
+        terminal.note(&format!(
             "{} {}; the truth is {}: {}",
             grouped(ways),
             plural(ways, "way", "ways"),
@@ -227,7 +231,7 @@ fn tell(report: &Report, args: &Args, terminal: &Terminal) -> Exit {
             }
         ));
         if !report.left_out.is_empty() {
-            terminal.say(&format!("no time for {}", report.left_out.join("; ")));
+            terminal.note(&format!("no time for {}", report.left_out.join("; ")));
         }
         for (error, word) in ERRORS {
             terminal.result(&report.line(error, word));
@@ -237,24 +241,24 @@ fn tell(report: &Report, args: &Args, terminal: &Terminal) -> Exit {
         }
     }
     let Some(folder) = &args.output else {
-        return Exit::Good;
+        return Exit::Success;
     };
     let chart = report.chart();
-    let picture = match image::encode(&chart.image(), "trade.png".as_ref()) {
+    let png = match image::encode(&chart.image(), "trade.png".as_ref()) {
         Ok(bytes) => bytes,
         Err(error) => {
             terminal.error(error);
-            return Exit::Trouble;
+            return Exit::Error;
         }
     };
     let files = [
         ("trade.csv", report.csv().into_bytes()),
         ("trade.json", report.json().into_bytes()),
         ("trade.svg", chart.svg().into_bytes()),
-        ("trade.png", picture),
+        ("trade.png", png),
     ];
     let kept = files
         .iter()
         .all(|(name, bytes)| terminal.write(&folder.join(name), bytes));
-    if kept { Exit::Good } else { Exit::Trouble }
+    if kept { Exit::Success } else { Exit::Error }
 }

@@ -1,34 +1,34 @@
-//! When work on a shader must be over.
+//! Deadlines for work on a shader.
 
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
 use thiserror::Error;
 
-/// How often loops may ask before the clock is read again.
-const POLLS: u32 = 256;
+/// The number of calls of `is_over` between reads of the clock.
+const POLLS_PER_CLOCK_READ: u32 = 256;
 
-/// A time that work must not pass. Loops over a shader ask [`Self::is_over`] once for each item; the clock is read once in
-/// 256 times.
+/// A time by which work must end. Loops over a shader call [`Self::is_over`] once for each item; the clock is
+/// read once in 256 calls.
 #[derive(Debug, Default)]
 pub struct Deadline {
-    /// None: never.
+    /// `None` for no deadline.
     end: Option<Instant>,
     limit: Duration,
     polls: AtomicU32,
     is_over: AtomicBool,
 }
 
-/// The time is over.
+/// The deadline has passed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error("this shader takes longer than {} s to compile", limit.as_secs_f64())]
 pub struct Overdue {
-    /// How much time there was.
+    /// The time limit.
     pub limit: Duration,
 }
 
 impl Deadline {
-    /// That long from now.
+    /// The deadline that is `limit` from now.
     #[must_use]
     pub fn after(limit: Duration) -> Self {
         Self {
@@ -38,7 +38,8 @@ impl Deadline {
         }
     }
 
-    /// For a part of the work that others do not depend on: the first of that share of the whole time from now, and the end of it.
+    /// A deadline for an independent part of the work: `1 / parts` of the time limit from now, but no later
+    /// than this deadline.
     #[must_use]
     pub fn share(&self, parts: u32) -> Self {
         let limit = self.limit / parts;
@@ -50,24 +51,24 @@ impl Deadline {
         }
     }
 
-    /// Whether the time is over.
+    /// Whether the deadline has passed.
     pub fn is_over(&self) -> bool {
         let Some(end) = self.end else {
             return false;
         };
-        // Threads that ask at once may lose a count, which does no harm.
+        // Concurrent calls may lose a count, which is harmless.
         let polls = self.polls.load(Ordering::Relaxed);
         self.polls.store(polls.wrapping_add(1), Ordering::Relaxed);
-        if polls.is_multiple_of(POLLS) && Instant::now() >= end {
+        if polls.is_multiple_of(POLLS_PER_CLOCK_READ) && Instant::now() >= end {
             self.is_over.store(true, Ordering::Relaxed);
         }
         self.is_over.load(Ordering::Relaxed)
     }
 
-    /// Fails if the time is over; reads the clock.
+    /// Reads the clock and fails if the deadline has passed.
     ///
     /// # Errors
-    /// If it is.
+    /// [`Overdue`] if the deadline has passed.
     pub fn check(&self) -> Result<(), Overdue> {
         match self.end {
             Some(end) if Instant::now() >= end => Err(Overdue { limit: self.limit }),
@@ -75,13 +76,13 @@ impl Deadline {
         }
     }
 
-    /// How much time is left; none if it never ends.
+    /// The remaining time; none without a deadline.
     #[must_use]
     pub fn left(&self) -> Option<Duration> {
         self.end.map(|end| end.saturating_duration_since(Instant::now()))
     }
 
-    /// How much time there was, all in all.
+    /// The total time limit.
     #[must_use]
     pub fn limit(&self) -> Duration {
         self.limit
@@ -111,7 +112,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn none_is_never_over_and_none_at_all_is_over_at_once() {
+    fn no_deadline_never_ends_and_zero_time_ends_at_once() {
         let never = Deadline::default();
         assert!(!never.is_over() && never.check().is_ok() && never.share(4).check().is_ok());
         assert_eq!(never.left(), None);

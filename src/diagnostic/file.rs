@@ -1,27 +1,26 @@
-//! Named texts and the way from a byte to a line and a column.
+//! Source files, byte spans, and the mapping from bytes to lines and columns.
 
 use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use crate::Span;
-use crate::printable::{masked, printable};
+use crate::text::{mask_controls, printable};
 
-/// Names one file of a [`Files`].
+/// The id of a file in [`Files`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct FileId(u16);
 
-/// A named text with its lines found.
+/// A named text with an index of its lines.
 #[derive(Debug, Clone)]
 pub struct File {
     name: String,
     text: String,
-    /// The text as it is shown to people, where that is another.
-    shown: Option<String>,
+    /// The text with control characters masked, if it contains any.
+    display_text: Option<String>,
     line_starts: Vec<usize>,
 }
 
-/// A place as people count it: lines and columns from 1, columns in characters.
+/// A position: line and column from 1, columns in characters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Position {
     /// Line, from 1.
@@ -31,7 +30,8 @@ pub struct Position {
 }
 
 impl File {
-    /// A text under the name that messages give it (a path as the user typed it, or `<stdin>`), in which control characters are escaped.
+    /// Makes a file. `name` is used in messages (a path as the user typed it, or `<stdin>`); its control
+    /// characters are escaped.
     #[must_use]
     pub fn new(name: impl AsRef<str>, text: impl Into<String>) -> Self {
         let text = text.into();
@@ -47,13 +47,13 @@ impl File {
             .collect();
         Self {
             name: printable(name.as_ref()).into_owned(),
-            shown: masked(&text),
+            display_text: mask_controls(&text),
             text,
             line_starts,
         }
     }
 
-    /// The name that messages use.
+    /// The name shown in messages.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
@@ -80,7 +80,7 @@ impl File {
         }
     }
 
-    /// The length in bytes of the longest line that bytes `start..end` touch.
+    /// The length in bytes of the longest line that overlaps bytes `start..end`.
     #[must_use]
     pub fn longest_line(&self, start: u32, end: u32) -> usize {
         let line = |byte: u32| self.position(byte as usize).line - 1;
@@ -102,30 +102,30 @@ impl File {
     }
 }
 
-/// The texts that one command works on.
+/// The files of one command.
 #[derive(Debug, Clone, Default)]
 pub struct Files {
     files: Vec<File>,
 }
 
 impl Files {
-    /// Adds a text and names it.
+    /// Adds a file and returns its id.
     ///
     /// # Panics
-    /// On the 65,537th file: each shader or scene that is judged has a `Files` of its own.
+    /// On the 65,537th file: each shader or scene has its own `Files`.
     pub fn add(&mut self, file: File) -> FileId {
         let id = u16::try_from(self.files.len()).expect("fewer than 65,537 files in one shader");
         self.files.push(file);
         FileId(id)
     }
 
-    /// The file of that name.
+    /// The file with that id.
     #[must_use]
     pub fn get(&self, id: FileId) -> &File {
         &self.files[usize::from(id.0)]
     }
 
-    /// Where a span begins.
+    /// The position at which a span begins.
     #[must_use]
     pub fn position(&self, span: Span) -> Position {
         self.get(span.file).position(span.start as usize)
@@ -138,7 +138,7 @@ impl Files {
     }
 }
 
-/// What codespan-reporting asks of a set of files.
+/// The file database of codespan-reporting.
 impl<'a> codespan_reporting::files::Files<'a> for Files {
     type FileId = FileId;
     type Name = &'a str;
@@ -150,7 +150,7 @@ impl<'a> codespan_reporting::files::Files<'a> for Files {
 
     fn source(&'a self, id: FileId) -> Result<&'a str, codespan_reporting::files::Error> {
         let file = self.get(id);
-        Ok(file.shown.as_deref().unwrap_or(&file.text))
+        Ok(file.display_text.as_deref().unwrap_or(&file.text))
     }
 
     fn line_index(&'a self, id: FileId, byte: usize) -> Result<usize, codespan_reporting::files::Error> {
@@ -171,6 +171,41 @@ impl<'a> codespan_reporting::files::Files<'a> for Files {
     }
 }
 
+// Spans.
+
+/// Bytes `start..end` of one file; always on character boundaries.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Span {
+    /// The file.
+    pub file: FileId,
+    /// The first byte.
+    pub start: u32,
+    /// One past the last byte; equal to `start` for a point between two characters.
+    pub end: u32,
+}
+
+impl Span {
+    /// Bytes `start..end` of `file`.
+    #[must_use]
+    pub fn new(file: FileId, start: u32, end: u32) -> Self {
+        debug_assert!(start <= end);
+        Self { file, start, end }
+    }
+
+    /// The smallest span that covers both; `other` if they are of different files.
+    #[must_use]
+    pub fn to(self, other: Self) -> Self {
+        if self.file != other.file {
+            return other;
+        }
+        Self {
+            file: self.file,
+            start: self.start.min(other.start),
+            end: self.end.max(other.end),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -187,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_end_as_on_any_system() {
+    fn all_line_endings_are_recognized() {
         let file = File::new("a", "a\r\nb\rc\n\rd");
         let lines: Vec<_> = ["a", "b", "c", "d"]
             .iter()
@@ -198,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn a_byte_inside_a_character_counts_as_that_character() {
+    fn a_byte_inside_a_character_has_its_position() {
         let file = File::new("a", "€");
         assert_eq!(file.position(2), Position { line: 1, column: 1 });
     }

@@ -1,5 +1,5 @@
-//! Texts with spans that lead back to a line and a column, and diagnostics of them: one value, rendered for a terminal,
-//! for an editor and as JSON. What every analysis of a text needs, whatever the language.
+//! Diagnostics about spans of source files: one value, rendered for a terminal, for an editor and as JSON.
+//! Independent of any language.
 //!
 //! ```
 //! use toyproof_diagnostic::{Diagnostic, File, Files, Span, short};
@@ -12,31 +12,28 @@
 
 mod deadline;
 mod file;
-mod printable;
 mod render;
-mod span;
-mod suggest;
+mod text;
 
 use std::borrow::Cow;
 use std::fmt;
 
-pub use deadline::{Deadline, Overdue};
-pub use file::{File, FileId, Files, Position};
-pub use printable::{path_name, printable, printable_lines};
-pub use render::{Json, human, json, short};
 use serde::{Deserialize, Serialize};
-pub use span::Span;
-pub use suggest::nearest;
 
-/// How bad it is.
+pub use self::deadline::{Deadline, Overdue};
+pub use self::file::{File, FileId, Files, Position, Span};
+pub use self::render::{Json, human, json, short};
+pub use self::text::{nearest, path_name, printable, printable_lines};
+
+/// The severity of a diagnostic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
-    /// The work cannot be done.
+    /// The operation failed.
     Error,
-    /// The work is done; the picture may not be what the author meant.
+    /// The operation succeeded, but the image may not be what the author intended.
     Warning,
-    /// Worth knowing.
+    /// Additional information.
     Note,
 }
 
@@ -50,46 +47,48 @@ impl fmt::Display for Severity {
     }
 }
 
-/// The longest text of a message, in bytes: messages quote shaders, one word of which may be as long as a file.
-const LONGEST: usize = 1000;
+/// Maximum length of a message in bytes: messages quote shaders, in which one word may be as long as the
+/// file.
+const MAX_MESSAGE_BYTES: usize = 1000;
 
-/// A text on one line without control characters, or its beginning and its end.
+/// The text on one line, with control characters escaped, truncated in the middle if too long.
 fn one_line(text: impl Into<String>) -> String {
-    shortened(printable(&text.into()).into_owned())
+    truncate_middle(printable(&text.into()).into_owned())
 }
 
-/// A text, or its beginning and its end.
-fn shortened(mut text: String) -> String {
-    if text.len() > LONGEST {
+/// The text, truncated in the middle if too long.
+fn truncate_middle(mut text: String) -> String {
+    if text.len() > MAX_MESSAGE_BYTES {
         let whole = text.len();
         let boundary = |from: usize| (from..whole).find(|&at| text.is_char_boundary(at));
-        let [start, end] = [LONGEST * 3 / 4, whole - LONGEST / 4].map(|from| boundary(from).unwrap_or(whole));
+        let [start, end] = [MAX_MESSAGE_BYTES * 3 / 4, whole - MAX_MESSAGE_BYTES / 4]
+            .map(|from| boundary(from).unwrap_or(whole));
         text.replace_range(start..end, " … ");
     }
     text
 }
 
-/// One message about an author's text.
+/// A diagnostic about a source text.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Diagnostic {
-    /// How bad it is.
+    /// The severity of a diagnostic.
     pub severity: Severity,
     /// A stable code: `E` and four digits for errors, `W` for warnings.
     pub code: Cow<'static, str>,
-    /// One sentence without a full stop, in the vocabulary of the file it speaks of.
+    /// One sentence without a full stop, in the terms of the file's language.
     pub message: String,
-    /// Where; none when it is about the whole file or about no file.
+    /// Its span; none if it concerns the whole file or no file.
     pub span: Option<Span>,
-    /// A few words to stand at the caret.
+    /// A short text at the caret.
     pub label: Option<String>,
-    /// Other places that matter, each with a few words.
+    /// Other relevant spans, each with a short text.
     pub related: Vec<(Span, String)>,
-    /// What to do about it, and what else helps.
+    /// Notes and suggestions.
     pub notes: Vec<String>,
 }
 
 impl Diagnostic {
-    /// A message of that severity.
+    /// Makes a diagnostic of that severity.
     pub fn new(severity: Severity, code: impl Into<Cow<'static, str>>, message: impl Into<String>) -> Self {
         Self {
             severity,
@@ -102,42 +101,42 @@ impl Diagnostic {
         }
     }
 
-    /// An error.
+    /// Makes an error.
     pub fn error(code: impl Into<Cow<'static, str>>, message: impl Into<String>) -> Self {
         Self::new(Severity::Error, code, message)
     }
 
-    /// A warning.
+    /// Makes a warning.
     pub fn warning(code: impl Into<Cow<'static, str>>, message: impl Into<String>) -> Self {
         Self::new(Severity::Warning, code, message)
     }
 
-    /// The same, about that place.
+    /// Sets the span.
     #[must_use]
     pub fn at(mut self, span: Span) -> Self {
         self.span = Some(span);
         self
     }
 
-    /// The same, with a few words at the caret.
+    /// Sets the text at the caret.
     #[must_use]
     pub fn label(mut self, label: impl Into<String>) -> Self {
         self.label = Some(one_line(label));
         self
     }
 
-    /// The same, with another place that matters.
+    /// Adds a related span.
     #[must_use]
     pub fn related(mut self, span: Span, words: impl Into<String>) -> Self {
         self.related.push((span, one_line(words)));
         self
     }
 
-    /// The same, with a note.
+    /// Adds a note.
     #[must_use]
     pub fn note(mut self, note: impl Into<String>) -> Self {
         self.notes
-            .push(shortened(printable_lines(&note.into()).into_owned()));
+            .push(truncate_middle(printable_lines(&note.into()).into_owned()));
         self
     }
 }
@@ -147,16 +146,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_too_long_to_read_is_cut_in_the_middle() {
+    fn long_messages_are_truncated_in_the_middle() {
         let message = |text: &str| Diagnostic::error("E0001", text).message;
-        assert_eq!(message(&"é".repeat(LONGEST / 2)), "é".repeat(LONGEST / 2));
-        let cut = message(&format!("`{}` is too long", "é".repeat(LONGEST)));
+        assert_eq!(
+            message(&"é".repeat(MAX_MESSAGE_BYTES / 2)),
+            "é".repeat(MAX_MESSAGE_BYTES / 2)
+        );
+        let cut = message(&format!("`{}` is too long", "é".repeat(MAX_MESSAGE_BYTES)));
         assert!(
             cut.starts_with("`éé") && cut.ends_with("éé` is too long"),
             "{cut}"
         );
-        assert!(cut.contains(" … ") && cut.len() < LONGEST + 10, "{cut}");
+        assert!(cut.contains(" … ") && cut.len() < MAX_MESSAGE_BYTES + 10, "{cut}");
         let note = Diagnostic::error("E0001", "").note("x".repeat(1 << 20));
-        assert!(note.notes[0].len() < LONGEST + 10);
+        assert!(note.notes[0].len() < MAX_MESSAGE_BYTES + 10);
     }
 }

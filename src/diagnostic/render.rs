@@ -1,4 +1,4 @@
-//! A diagnostic for people, for editors (one line) and for programs (JSON).
+//! Renderers of diagnostics: for people, for editors (one line) and for programs (JSON).
 
 use std::fmt;
 
@@ -10,12 +10,12 @@ use serde::{Deserialize, Serialize};
 use super::{Diagnostic, Severity};
 use crate::Files;
 
-/// The longest source line that is shown, in bytes; a longer one hides what it should show.
-const MAX_LINE: usize = 400;
+/// Maximum length of a displayed source line in bytes; a longer line would bury the message.
+const MAX_SHOWN_LINE_BYTES: usize = 400;
 
-/// The message with the source line, a caret and its notes; with ANSI colours if `colour`.
+/// Renders the message with its source line, a caret and notes; with ANSI colors if `color`.
 #[must_use]
-pub fn human(diagnostic: &Diagnostic, files: &Files, colour: bool) -> String {
+pub fn human(diagnostic: &Diagnostic, files: &Files, color: bool) -> String {
     let level = match diagnostic.severity {
         Severity::Error => Level::Error,
         Severity::Warning => Level::Warning,
@@ -27,7 +27,7 @@ pub fn human(diagnostic: &Diagnostic, files: &Files, colour: bool) -> String {
         .chain(diagnostic.related.iter().map(|(span, _)| *span));
     if spans
         .into_iter()
-        .any(|span| files.get(span.file).longest_line(span.start, span.end) > MAX_LINE)
+        .any(|span| files.get(span.file).longest_line(span.start, span.end) > MAX_SHOWN_LINE_BYTES)
     {
         let notes = diagnostic.notes.iter().map(|note| format!("  = {note}\n"));
         return short(diagnostic, files) + "\n" + &notes.collect::<String>();
@@ -45,44 +45,41 @@ pub fn human(diagnostic: &Diagnostic, files: &Files, colour: bool) -> String {
         .with_message(&diagnostic.message)
         .with_labels(labels)
         .with_notes(diagnostic.notes.clone());
-    let mut buffer = if colour {
-        Buffer::ansi()
-    } else {
-        Buffer::no_color()
-    };
-    // Writing to memory fails for a span outside its file only; the one-line form then still tells.
+    let mut buffer = if color { Buffer::ansi() } else { Buffer::no_color() };
+    // Writing to memory fails only for a span outside its file; the one-line form then still reports the
+    // error.
     if term::emit_to_write_style(&mut buffer, &term::Config::default(), files, &report).is_err() {
         return short(diagnostic, files) + "\n";
     }
     String::from_utf8_lossy(&buffer.into_inner()).into_owned()
 }
 
-/// `file:line:column: error[E0001]: message`, as editors read it.
+/// Formats `file:line:column: error[E0001]: message`, which editors parse.
 #[must_use]
 pub fn short(diagnostic: &Diagnostic, files: &Files) -> String {
     json(diagnostic, files).to_string()
 }
 
-/// A diagnostic as programs read it.
+/// The JSON form of a diagnostic.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Json {
-    /// How bad it is.
+    /// The severity.
     pub severity: Severity,
     /// `E` or `W` and four digits.
     pub code: String,
     /// One sentence without a full stop.
     pub message: String,
-    /// The name of the file it is about, if it is about one.
+    /// The name of the file, if there is one.
     pub file: Option<String>,
-    /// Counted from 1.
+    /// Line, from 1.
     pub line: Option<usize>,
-    /// Counted from 1, in characters.
+    /// Column in characters, from 1.
     pub column: Option<usize>,
-    /// What to do about it, and what else helps.
+    /// Notes and suggestions.
     pub notes: Vec<String>,
 }
 
-/// `file:line:column: error[E0001]: message`, as editors read it.
+/// Formats `file:line:column: error[E0001]: message`, which editors parse.
 impl fmt::Display for Json {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let (Some(file), Some(line), Some(column)) = (&self.file, self.line, self.column) {
@@ -93,14 +90,15 @@ impl fmt::Display for Json {
 }
 
 impl Json {
-    /// The line and column of an error; none of the two for one about no place.
+    /// The line and column of an error (the inner option is none for an error without a span); none for other
+    /// severities.
     #[must_use]
     pub fn error_place(&self) -> Option<Option<(usize, usize)>> {
         (self.severity == Severity::Error).then(|| self.line.zip(self.column))
     }
 }
 
-/// The one JSON form of a diagnostic: place resolved, what is written beside the place put before the notes.
+/// Converts a diagnostic to its JSON form: the span is resolved, and the label becomes the first note.
 #[must_use]
 pub fn json(diagnostic: &Diagnostic, files: &Files) -> Json {
     let place = diagnostic
@@ -159,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn programs_are_told_what_stands_beside_the_line() {
+    fn json_notes_include_the_label() {
         let (diagnostic, files) = example();
         assert_eq!(
             json(&diagnostic, &files).notes,
@@ -168,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_too_long_to_show_is_named_by_its_column() {
+    fn too_long_lines_are_not_shown() {
         let mut files = Files::default();
         let id = files.add(File::new("a.glsl", "x".repeat(20_000)));
         let diagnostic = Diagnostic::error("E0100", "no")

@@ -1,13 +1,13 @@
-//! Evaluates a checked shader on the CPU, without a driver: in float32 with the bits of the strict GPU run, in double
-//! precision, or in double precision with randomly rounded operations.
+//! Evaluates a checked shader on the CPU, without a driver: in float32 with the bits of the strict GPU run,
+//! in double precision, or in double precision with randomly rounded operations.
 //!
 //! ```text
 //! tree ─► build ─► ir ─► opt (gvn, dce, divergence, fuse) ─► lower (linearize, regalloc, isel) ─► ops ─► render
 //! ```
 //!
-//! Each instruction is applied to a batch of pixels, so that decoding it costs little beside its work; values that are
-//! equal in all pixels of a batch are computed once. The tree as the author wrote it is evaluated, not the lowered one
-//! and not naga's module, so that errors of lowering, naga and drivers show as differences.
+//! Each instruction is applied to a batch of pixels, which amortizes the cost of dispatch; values that are
+//! uniform in a batch are computed once. The input is the typed tree of the source, not the lowered one and
+//! not naga's module, so that errors of the lowering, of naga and of drivers appear as differences.
 //!
 //! ```
 //! use toyproof_diagnostic::{File, Files};
@@ -19,20 +19,19 @@
 //! let file = files.add(File::new("gradient.glsl", text));
 //! let checked = toyproof_glsl::check(&files, file, &Default::default()).unwrap();
 //! let frame = Frame { size: [4, 2], ..Frame::default() };
-//! let painted = Program::new(&checked).unwrap().paint(&frame, &Settings::<f64>::default()).unwrap();
-//! assert_eq!(painted.painting.image().get(3, 1), [0.875, 0.75, 0.0, 1.0]);
+//! let rendered = Program::new(&checked).unwrap().render(&frame, &Settings::<f64>::default()).unwrap();
+//! assert_eq!(rendered.framebuffer.image().get(3, 1), [0.875, 0.75, 0.0, 1.0]);
 //! ```
 
 #![expect(
     clippy::inline_always,
     clippy::needless_range_loop,
-    reason = "what runs for each pixel must become one run of vector instructions, over lanes by number"
+    reason = "per-pixel code must be inlined to vectorize, with loops over lane indices"
 )]
 
 mod batch;
 mod build;
-mod framebuffer;
-mod input;
+mod frame;
 mod ir;
 mod lower;
 mod number;
@@ -43,14 +42,16 @@ mod program;
 mod render;
 #[cfg(test)]
 mod tests;
-mod texture;
 mod tile;
 mod trace;
 
 pub use build::Refusal;
-pub use framebuffer::Painting;
-pub use number::{Jittered, Number, Seed};
+pub use frame::Framebuffer;
+pub use number::{Number, RandomRounding, Seed};
 pub use observe::{Fault, MESA_CAP, Observations, Observed, Site};
 pub use program::Program;
-pub use render::{Failure, Other, Painted, Pictured, Places, Settings, Variant};
-pub use trace::{Call, CallId, Event, EventId, Happened, Lead, Plot, Story, Teller, Told, What};
+pub use render::{Failure, Places, Rendered, RenderedF32, Settings, Substitute, UndefinedPolicy};
+pub use trace::{
+    Call, CallId, Event, EventId, ExecutionTrace, ForcedPrefix, PixelDebugger, TraceEvent, TraceSchema,
+    TraceValue, What,
+};

@@ -4,27 +4,26 @@ use std::fmt::Debug;
 
 use toyproof_math::native::{self, flush};
 
-use super::program::Backend;
+use crate::program::Backend;
 
-macro_rules! functions {
+macro_rules! define_number {
     ($($method:ident: $double:path, $single:path;)*) => {
-        /// A number type: f32 with denormals flushed and the spelled functions of [`elementary`](toyproof_math), as strict
-        /// shaders run; f64 with libm's functions; or f64 perturbed. What rounding needs to know beside the operands, `Noise`
-        /// tells.
+        /// A number type: f32 with denormals flushed and the expanded functions of [`toyproof_math`], as in
+        /// strict shaders; f64 with libm's functions; or f64 with random rounding.
         pub trait Number: Backend + Copy + Debug + Default + PartialOrd + Send + Sync + 'static {
-            /// What an operation may need beside its operands.
+            /// An additional operand of each rounded operation: the seed of random rounding, or nothing.
             type Noise: Copy + Debug + Default + Send + Sync;
 
-            /// The nearest number of this type.
+            /// Converts to the nearest number of this type.
             #[must_use]
             fn from_f64(value: f64) -> Self;
-            /// The same number, or the nearest.
+            /// Converts to f64, exactly.
             fn to_f64(self) -> f64;
-            /// The nearest f32.
+            /// Converts to the nearest f32.
             fn to_f32(self) -> f32;
             /// Whether it is NaN.
             fn is_nan(self) -> bool;
-            /// `yes` where all bits of the mask are set, `no` where none is; bit by bit.
+            /// Returns `yes` where the bits of the mask are set, `no` where they are clear, bit by bit.
             #[must_use]
             fn blend(mask: u32, yes: Self, no: Self) -> Self;
 
@@ -43,22 +42,22 @@ macro_rules! functions {
             /// √self
             #[must_use]
             fn sqrt(self, noise: Self::Noise) -> Self;
-            /// `self` without its sign.
+            /// Returns the absolute value.
             #[must_use]
             fn abs(self) -> Self;
             /// `−self`
             #[must_use]
             fn neg(self) -> Self;
-            /// The largest integer that is not larger.
+            /// Rounds down.
             #[must_use]
             fn floor(self) -> Self;
-            /// The smallest integer that is not smaller.
+            /// Rounds up.
             #[must_use]
             fn ceil(self) -> Self;
-            /// The integer before the point.
+            /// Rounds toward zero.
             #[must_use]
             fn trunc(self) -> Self;
-            /// The nearest integer, the even one of two.
+            /// Rounds to the nearest integer, ties to even.
             #[must_use]
             fn round_even(self) -> Self;
             $(
@@ -66,10 +65,10 @@ macro_rules! functions {
                 #[must_use]
                 fn $method(self, noise: Self::Noise) -> Self;
             )*
-            /// The angle of the point (other, self).
+            /// Returns the angle of the point (other, self), in radians.
             #[must_use]
             fn atan2(self, other: Self, noise: Self::Noise) -> Self;
-            /// `self` to the power of `other`; NaN of a negative base.
+            /// Returns `self` to the power of `other`; NaN for a negative base.
             #[must_use]
             fn pow(self, other: Self, noise: Self::Noise) -> Self;
         }
@@ -105,7 +104,7 @@ macro_rules! functions {
             fn div(self, other: Self, (): ()) -> Self {
                 flush(self / other)
             }
-            // What is no denormal has a root that is none.
+            // The root of a normal number is normal: no flush is needed.
             #[inline(always)]
             fn sqrt(self, (): ()) -> Self {
                 f32::sqrt(self)
@@ -179,7 +178,7 @@ macro_rules! functions {
             }
         }
 
-        impl Number for Jittered {
+        impl Number for RandomRounding {
             type Noise = Seed;
 
             #[inline(always)]
@@ -205,10 +204,10 @@ macro_rules! functions {
             #[inline(always)]
             fn add(self, other: Self, seed: Seed) -> Self {
                 let sum = self.0 + other.0;
-                // Knuth's sum with its error.
+                // Knuth's two-sum: the exact error of the sum.
                 let part = sum - self.0;
                 let error = (self.0 - (sum - part)) + (other.0 - part);
-                seed.jitter_unless(sum, error == 0.0)
+                seed.round_randomly_unless(sum, error == 0.0)
             }
             #[inline(always)]
             fn sub(self, other: Self, seed: Seed) -> Self {
@@ -217,17 +216,17 @@ macro_rules! functions {
             #[inline(always)]
             fn mul(self, other: Self, seed: Seed) -> Self {
                 let product = self.0 * other.0;
-                seed.jitter_unless(product, self.0.mul_add(other.0, -product) == 0.0)
+                seed.round_randomly_unless(product, self.0.mul_add(other.0, -product) == 0.0)
             }
             #[inline(always)]
             fn div(self, other: Self, seed: Seed) -> Self {
                 let quotient = self.0 / other.0;
-                seed.jitter_unless(quotient, quotient.mul_add(other.0, -self.0) == 0.0)
+                seed.round_randomly_unless(quotient, quotient.mul_add(other.0, -self.0) == 0.0)
             }
             #[inline(always)]
             fn sqrt(self, seed: Seed) -> Self {
                 let root = self.0.sqrt();
-                seed.jitter_unless(root, root.mul_add(root, -self.0) == 0.0)
+                seed.round_randomly_unless(root, root.mul_add(root, -self.0) == 0.0)
             }
             #[inline(always)]
             fn abs(self) -> Self {
@@ -257,18 +256,18 @@ macro_rules! functions {
                 #[inline(always)]
                 fn $method(self, seed: Seed) -> Self {
                     let value = $double(self.0);
-                    seed.jitter_unless(value, value.fract() == 0.0)
+                    seed.round_randomly_unless(value, value.fract() == 0.0)
                 }
             )*
             #[inline(always)]
             fn atan2(self, other: Self, seed: Seed) -> Self {
                 let value = libm::atan2(self.0, other.0);
-                seed.jitter_unless(value, value == 0.0)
+                seed.round_randomly_unless(value, value == 0.0)
             }
             #[inline(always)]
             fn pow(self, other: Self, seed: Seed) -> Self {
                 let value = Number::pow(self.0, other.0, ());
-                seed.jitter_unless(value, value.fract() == 0.0)
+                seed.round_randomly_unless(value, value.fract() == 0.0)
             }
         }
     };
@@ -312,7 +311,7 @@ macro_rules! exact {
     };
 }
 
-functions! {
+define_number! {
     sin: libm::sin, native::sin;
     cos: libm::cos, native::cos;
     tan: libm::tan, native::tan;
@@ -333,34 +332,34 @@ functions! {
 
 /// An f64 whose every inexact result is moved by −1, 0 or +1 units in the last place.
 ///
-/// That is the random rounding of CADNA (Vignes, “Discrete Stochastic Arithmetic”, Numerical Algorithms 37, 2004) and Verrou. What is
-/// exact stays so, or loops that count in floats would miscount.
+/// This is the random rounding of CADNA (Vignes, “Discrete Stochastic Arithmetic”, Numerical Algorithms 37,
+/// 2004) and Verrou. Exact results stay exact, or float loop counters would miscount.
 #[derive(Debug, Clone, Copy, Default, PartialEq, PartialOrd)]
-pub struct Jittered(pub f64);
+pub struct RandomRounding(pub f64);
 
-/// Which of many perturbations: the same seed gives the same picture.
+/// The seed of a perturbation: the same seed gives the same image.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Seed(pub u64);
 
 impl Seed {
     #[inline(always)]
-    fn jitter_unless(self, value: f64, exact: bool) -> Jittered {
+    fn round_randomly_unless(self, value: f64, exact: bool) -> RandomRounding {
         let bits = value.to_bits();
-        // Two rounds of folding and multiplying 32 bits by 32, which vector instructions do at once.
+        // Two iterations of xor-folding and 32×32-bit multiplication, which vectorize.
         let seed = self.0.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32;
         let mut hash = low(bits ^ bits >> 32 ^ seed) * 0x9e37_79b9;
         hash = low(hash ^ hash >> 32) * 0x85eb_ca6b;
-        // −1, 0 and +1 with the same chance: the third of all words of 32 bits that this one is in. The upper half of a product is no
-        // such word by itself: it is never above the factor.
-        let draw = (low(hash ^ hash >> 32) * 3) >> 32;
-        let moved = f64::from_bits(bits.wrapping_add(draw).wrapping_sub(1));
+        // −1, 0 and +1 with equal probability: the third of the 32-bit range that the hash lies in. The upper
+        // half of a product is not uniform by itself: it never exceeds the factor.
+        let third = (low(hash ^ hash >> 32) * 3) >> 32;
+        let moved = f64::from_bits(bits.wrapping_add(third).wrapping_sub(1));
         let size = value.abs();
-        let kept = exact || !(size > f64::MIN_POSITIVE && size < f64::MAX);
-        Jittered(if kept { value } else { moved })
+        let unchanged = exact || !(size > f64::MIN_POSITIVE && size < f64::MAX);
+        RandomRounding(if unchanged { value } else { moved })
     }
 }
 
-/// The lower 32 bits.
+/// Returns the lower 32 bits.
 #[inline(always)]
 fn low(word: u64) -> u64 {
     word & 0xffff_ffff
@@ -371,7 +370,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn denormals_become_zeros_of_their_sign() {
+    fn denormals_are_flushed_to_signed_zeros() {
         let half = f32::MIN_POSITIVE;
         assert_eq!(Number::mul(half, 0.5, ()).to_bits(), 0);
         assert_eq!(Number::mul(-half, 0.5, ()).to_bits(), 0x8000_0000);
@@ -380,16 +379,16 @@ mod tests {
     }
 
     #[test]
-    fn jitter_moves_what_is_inexact_by_at_most_one_unit_and_nothing_else() {
-        let [third, three] = [1.0 / 3.0, 3.0].map(Jittered);
+    fn random_rounding_moves_only_inexact_results_by_at_most_one_ulp() {
+        let [third, three] = [1.0 / 3.0, 3.0].map(RandomRounding);
         let mut seen = [0; 3];
         for seed in 0..3_000 {
-            let moved = Number::add(third, Jittered(0.7), Seed(seed)).0;
+            let moved = Number::add(third, RandomRounding(0.7), Seed(seed)).0;
             let step = moved.to_bits() as i64 - (1.0f64 / 3.0 + 0.7).to_bits() as i64;
             seen[(step + 1) as usize] += 1;
             assert_eq!(Number::add(three, three, Seed(seed)).0, 6.0);
-            assert_eq!(Number::div(Jittered(6.0), three, Seed(seed)).0, 2.0);
-            assert_eq!(Number::sqrt(Jittered(9.0), Seed(seed)).0, 3.0);
+            assert_eq!(Number::div(RandomRounding(6.0), three, Seed(seed)).0, 2.0);
+            assert_eq!(Number::sqrt(RandomRounding(9.0), Seed(seed)).0, 3.0);
         }
         assert!(seen.iter().all(|&count| count > 800), "{seen:?}");
     }

@@ -1,4 +1,5 @@
-//! What a run notes beside the picture: operations that GLSL leaves undefined, each with its place, its pixels and the first of them.
+//! Observations of a run: undefined operations, each with its source location, its number of pixels, and the
+//! first pixel.
 
 use std::collections::BTreeMap;
 
@@ -6,57 +7,59 @@ use toyproof_glsl::tree::Place;
 
 use crate::batch::{LANES, Lanes};
 
-/// Names a place where something may be noted.
+/// Identifies a site: a fault at a source location.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(crate) struct SiteId(pub(crate) u32);
 
-/// What can be wrong with an operation.
+/// A fault of an operation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Fault {
-    /// An index that names no element; the last one is taken.
+    /// An index out of bounds: the last element is used.
     IndexOutOfBounds,
-    /// An integer divided by zero: the value is the dividend, as naga guards it.
+    /// An integer divided by zero: the result is the dividend, as naga guards it.
     DivisionByZero,
-    /// The remainder by zero: the value is zero.
+    /// The remainder by zero: the result is zero.
     RemainderByZero,
-    /// Zero divided by zero, both of them constants to whoever propagates constants: what drivers fold it to,
-    /// they choose.
+    /// Zero divided by zero where constant propagation sees both: each driver folds it to a value of its
+    /// choice.
     ZeroByZero,
-    /// A shift by 32 or more, or by less than zero: the lowest five bits count.
+    /// A shift by 32 or more, or by a negative count: the lowest five bits of the count are used.
     ShiftTooFar,
-    /// A float that its `int` or `uint` cannot hold: the nearest that it can is taken.
+    /// A float out of range of `int` or `uint`: the nearest representable value is used.
     IntegerOverflow,
     /// `smoothstep` between equal edges.
     EqualEdges,
-    /// `smoothstep` from the higher to the lower edge: everybody computes the formula.
+    /// `smoothstep` with edge0 > edge1: all implementations compute the formula.
     ReversedEdges,
     /// `pow` of a negative base, or of zero to zero or less.
     PowDomain,
     /// `min`, `max` or `clamp` of NaN.
     NotANumber,
-    /// `clamp` with its least above its greatest.
+    /// `clamp` with its minimum above its maximum.
     ReversedClamp,
-    /// `sqrt` of less than zero, `inversesqrt` of zero or less.
+    /// `sqrt` of a negative number, `inversesqrt` of zero or less.
     RootDomain,
     /// `log` or `log2` of zero or less.
     LogDomain,
-    /// `asin` or `acos` beyond ±1, `acosh` below 1, `atanh` from ±1 on.
+    /// `asin` or `acos` outside [−1, 1], `acosh` below 1, `atanh` outside (−1, 1).
     ArcDomain,
     /// `atan(0, 0)`.
     ArcOfNothing,
-    /// The size of a level that a texture does not have.
+    /// The size of a mip level that the texture does not have.
     NoLevel,
-    /// A lookup in a texture at coordinates that are infinite, NaN, or so large that no texel's number can be told of them.
+    /// A texture lookup at coordinates that are infinite, NaN, or too large to identify a texel.
     NoPlace,
-    /// A derivative where a neighbour in the quad does not run the same.
+    /// A derivative in non-uniform control flow: not all pixels of the quad are active.
     LonelyDerivative,
-    /// A variable that nothing was written to: zero, as WebGL has it.
+    /// A read of an uninitialized variable: zero, as in WebGL.
     NeverWritten,
 }
 
 impl Fault {
-    /// Whether implementations differ in what comes of it, so that the pixel is left out of comparisons. Of roots, logarithms and
-    /// arcs beyond their domain NaN comes everywhere, of reversed edges the formula, and what was never written is zero in WebGL.
+    /// Whether implementations differ in the result, so that the pixel is excluded from comparisons.
+    ///
+    /// Roots, logarithms and inverse functions outside of their domain are NaN everywhere, reversed edges
+    /// follow the formula, and uninitialized variables are zero in WebGL.
     #[must_use]
     pub fn is_undefined(self) -> bool {
         !matches!(
@@ -70,7 +73,7 @@ impl Fault {
         )
     }
 
-    /// What it is, for messages: `an index out of bounds`.
+    /// Returns the description for messages, such as `an index out of bounds`.
     #[must_use]
     pub fn words(self) -> &'static str {
         match self {
@@ -97,60 +100,60 @@ impl Fault {
     }
 }
 
-/// A place where something may be wrong.
+/// A fault that may occur at a source location.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Site {
-    /// What.
+    /// The fault.
     pub fault: Fault,
-    /// Where.
+    /// The source location.
     pub at: Place,
 }
 
-/// When it is.
+/// The condition for a fault.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Predicate {
-    /// The index is this or more, or negative.
-    From(u32),
+    /// The word is at least this; negative indices are large words.
+    AtLeast(u32),
     /// The word is zero.
     Zero,
-    /// The float is no `int`.
-    NoInt,
-    /// The float is no `uint`.
-    NoUint,
-    /// One of the two is NaN.
+    /// The float is out of range of `int`.
+    NotInt,
+    /// The float is out of range of `uint`.
+    NotUint,
+    /// At least one of the two is NaN.
     Unordered,
     /// The floats are equal.
     Equal,
-    /// The first is the greater.
+    /// The first is greater than the second.
     Greater,
-    /// Less than zero.
+    /// The float is less than zero.
     Negative,
-    /// Zero or less.
+    /// The float is zero or less.
     NotPositive,
-    /// Beyond ±1.
+    /// The magnitude is greater than 1.
     BeyondOne,
-    /// ±1 or beyond.
-    FromOne,
-    /// Less than one.
+    /// The magnitude is 1 or greater.
+    AtLeastOne,
+    /// The float is less than 1.
     BelowOne,
     /// Both are zero.
     BothZero,
-    /// The same of constants; of other values nobody looks.
+    /// Both are zero; checked only where both operands are frame constants.
     ConstantZeros,
-    /// `pow` has no value.
-    NoPower,
-    /// The pixel runs this and one of its quad does not.
-    Lonely,
+    /// `pow` is undefined.
+    PowUndefined,
+    /// The pixel is active and a pixel of its quad is not.
+    PartialQuad,
 }
 
-/// What a batch noted: of each site, a bit for each pixel.
+/// The faults of a batch: for each site, a bit for each pixel.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Notes {
     pub(crate) sites: BTreeMap<SiteId, Vec<u16>>,
 }
 
 impl Notes {
-    /// Adds the pixels of a chunk whose bits are set.
+    /// Adds the pixels of a chunk whose lanes are not zero.
     #[cold]
     pub(crate) fn add(&mut self, site: SiteId, chunk: usize, hit: &Lanes<u32>) {
         let chunks = self.sites.entry(site).or_default();
@@ -163,33 +166,34 @@ impl Notes {
     }
 }
 
-/// What was wrong at a site.
+/// A fault observed at a site.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Observed {
-    /// What and where in the text.
+    /// The fault and its source location.
     pub site: Site,
-    /// In how many pixels.
+    /// The number of pixels.
     pub pixels: u64,
     /// The first of them, row by row from the bottom.
     pub first: [u32; 2],
 }
 
-/// What a run noted.
+/// The observations of a run.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Observations {
-    /// What was wrong, in the order of its places in the text.
+    /// The observed faults, in source order.
     pub faults: Vec<Observed>,
-    /// The most rounds that a pixel ran in all loops together.
+    /// The largest number of loop iterations of a pixel, all loops together.
     pub most_rounds: u32,
-    /// In how many pixels they were more than the 65,535 after which Mesa before 23 ends all loops of a pixel.
+    /// The number of pixels that exceed the 65,535 iterations after which Mesa before version 23 ends all
+    /// loops of a pixel.
     pub beyond_cap: u64,
 }
 
-/// After so many rounds older versions of Mesa end all loops of a pixel.
+/// The number of iterations after which Mesa before version 23 ends all loops of a pixel.
 pub const MESA_CAP: u32 = 65_535;
 
 impl Observations {
-    /// Adds what another part of the picture noted.
+    /// Adds the observations of a different part of the image.
     pub fn merge(&mut self, other: &Self) {
         self.most_rounds = self.most_rounds.max(other.most_rounds);
         self.beyond_cap += other.beyond_cap;
@@ -202,14 +206,14 @@ impl Observations {
                 }
                 Some(old) => {
                     old.pixels += new.pixels;
-                    old.first = earlier(old.first, new.first);
+                    old.first = first_in_rows(old.first, new.first);
                 }
             }
         }
     }
 }
 
-/// The pixel that comes first, row by row from the bottom.
-pub(crate) fn earlier(a: [u32; 2], b: [u32; 2]) -> [u32; 2] {
+/// Returns the pixel that comes first, row by row from the bottom.
+pub(crate) fn first_in_rows(a: [u32; 2], b: [u32; 2]) -> [u32; 2] {
     if (b[1], b[0]) < (a[1], a[0]) { b } else { a }
 }

@@ -1,4 +1,4 @@
-//! A shader that is ready to be evaluated.
+//! Compiled shaders and their variants.
 
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
@@ -8,34 +8,34 @@ use toyproof_glsl::Checked;
 use toyproof_glsl::tree::Place;
 use toyproof_image::Frame;
 
-use super::number::{Jittered, Number};
-use crate::build::{self, Choice, Extras, Refusal, compile, with_stack};
-use crate::ir::alias::Groups;
-use crate::ir::function::Flow;
+use crate::build::{self, BuildOptions, Refusal, UndefinedMode, compile, with_stack};
+use crate::ir::AliasGroups;
+use crate::ir::Function;
 use crate::lower::isel::Prepared;
-use crate::lower::linearize::{Flat, flatten};
-use crate::lower::regalloc::{Homes, allocate};
+use crate::lower::linearize::{LinearCode, linearize};
+use crate::lower::regalloc::{Allocation, allocate_registers};
+use crate::number::{Number, RandomRounding};
 use crate::observe::Site;
-use crate::opt::dce::prune;
-use crate::opt::divergence::Varying;
+use crate::opt::dce::eliminate_dead_code;
+use crate::opt::divergence::Divergence;
 use crate::opt::fuse::fuse;
-use crate::opt::gvn::forward;
-use crate::render::{Other, Variant};
-use crate::trace::story::Plot;
+use crate::opt::gvn::number_values;
+use crate::render::{Substitute, UndefinedPolicy};
+use crate::trace::TraceSchema;
 
-/// A shader, compiled for the CPU: for any number type, frame and size.
+/// A shader compiled for the CPU, for any number type, frame and size.
 #[derive(Debug)]
 pub struct Program {
     checked: Arc<Checked>,
-    /// With notes of undefined operations.
+    /// The variant that records undefined operations.
     observing: OnceLock<Result<Compiled, Refusal>>,
-    /// With another number where GLSL leaves open what comes, or with NaN; made when it is first asked for.
-    otherwise: [OnceLock<Result<Compiled, Refusal>>; 2],
-    /// Without; made when it is first asked for.
+    /// The variants that substitute a number, or NaN, for undefined results; compiled on first use.
+    substituted: [OnceLock<Result<Compiled, Refusal>>; 2],
+    /// The variant without records; compiled on first use.
     plain: OnceLock<Result<Compiled, Refusal>>,
-    /// With what each pixel does; made when it is first asked for.
-    telling: OnceLock<Result<Compiled, Refusal>>,
-    /// How long each of them may take to make.
+    /// The variant that records traces; compiled on first use.
+    traced: OnceLock<Result<Compiled, Refusal>>,
+    /// The time limit for compiling each variant.
     limit: Option<Duration>,
 }
 
@@ -45,96 +45,97 @@ impl Program {
     /// # Errors
     /// If it is too large once its calls are inlined.
     pub fn new(checked: &Checked) -> Result<Self, Refusal> {
-        Self::prepared(checked, Variant::Observed)
+        Self::prepared(checked, UndefinedPolicy::Observed)
     }
 
-    /// The same; none of a shader's variants may take longer to compile than that.
+    /// Compiles a shader with a time limit for each of its variants.
     ///
     /// # Errors
     /// If it is too large once its calls are inlined, or takes longer.
     pub fn within(checked: &Checked, limit: Duration) -> Result<Self, Refusal> {
-        Self::prepared_within(checked, Variant::Observed, Some(limit))
+        Self::prepared_within(checked, UndefinedPolicy::Observed, Some(limit))
     }
 
-    /// The same of a shader that is to be painted in that variant; others are compiled when they are first asked for.
+    /// Compiles one variant of a shader; the others are compiled on first use.
     ///
     /// # Errors
     /// If it is too large once its calls are inlined.
-    pub fn prepared(checked: &Checked, variant: Variant) -> Result<Self, Refusal> {
+    pub fn prepared(checked: &Checked, variant: UndefinedPolicy) -> Result<Self, Refusal> {
         Self::prepared_within(checked, variant, None)
     }
 
-    /// The same; if there is a limit, none of a shader's variants may take longer to compile.
+    /// Compiles one variant of a shader, with an optional time limit for each variant.
     ///
     /// # Errors
     /// If it is too large once its calls are inlined, or takes longer.
     pub fn prepared_within(
         checked: &Checked,
-        variant: Variant,
+        variant: UndefinedPolicy,
         limit: Option<Duration>,
     ) -> Result<Self, Refusal> {
         let program = Self {
             checked: Arc::new(checked.clone()),
             observing: OnceLock::new(),
-            otherwise: Default::default(),
+            substituted: Default::default(),
             plain: OnceLock::new(),
-            telling: OnceLock::new(),
+            traced: OnceLock::new(),
             limit,
         };
         program.code(variant)?;
         Ok(program)
     }
 
-    /// The code of a variant.
-    pub(crate) fn code(&self, variant: Variant) -> Result<&Compiled, Refusal> {
+    /// Returns the code of a variant.
+    pub(crate) fn code(&self, variant: UndefinedPolicy) -> Result<&Compiled, Refusal> {
         match variant {
-            Variant::Observed => self.made(
+            UndefinedPolicy::Observed => self.compiled(
                 &self.observing,
-                Extras {
-                    choice: Choice::Noted,
-                    ..Extras::default()
+                BuildOptions {
+                    undefined: UndefinedMode::Observed,
+                    ..BuildOptions::default()
                 },
             ),
-            Variant::Plain => self.made(&self.plain, Extras::default()),
-            Variant::Otherwise(other) => self.made(
-                &self.otherwise[usize::from(other == Other::NotANumber)],
-                Extras {
-                    choice: Choice::Other(other),
-                    ..Extras::default()
+            UndefinedPolicy::Plain => self.compiled(&self.plain, BuildOptions::default()),
+            UndefinedPolicy::Substitute(other) => self.compiled(
+                &self.substituted[usize::from(other == Substitute::NotANumber)],
+                BuildOptions {
+                    undefined: UndefinedMode::Substitute(other),
+                    ..BuildOptions::default()
                 },
             ),
         }
     }
 
-    fn made<'a>(
+    fn compiled<'a>(
         &self,
-        kept: &'a OnceLock<Result<Compiled, Refusal>>,
-        extras: Extras,
+        slot: &'a OnceLock<Result<Compiled, Refusal>>,
+        options: BuildOptions,
     ) -> Result<&'a Compiled, Refusal> {
         let deadline = self.limit.map_or_else(Deadline::default, Deadline::after);
-        let made = kept.get_or_init(|| Compiled::new(&self.checked, extras, &deadline));
-        made.as_ref().map_err(|&refusal| refusal)
+        let compiled = slot.get_or_init(|| Compiled::new(&self.checked, options, &deadline));
+        compiled.as_ref().map_err(|&refusal| refusal)
     }
 
-    /// The code that tells what a pixel does.
-    pub(crate) fn telling(&self) -> Result<&Compiled, Refusal> {
-        let extras = Extras {
-            story: true,
-            ..Extras::default()
+    /// Returns the code that records traces.
+    pub(crate) fn traced(&self) -> Result<&Compiled, Refusal> {
+        let options = BuildOptions {
+            trace: true,
+            ..BuildOptions::default()
         };
-        self.made(&self.telling, extras)
+        self.compiled(&self.traced, options)
     }
 
-    /// The shader.
+    /// Returns the checked shader.
     #[must_use]
     pub fn checked(&self) -> &Checked {
         &self.checked
     }
 }
 
-/// The number types that there is code for. It is made here, once, and not in each crate that asks for it.
+/// The number types that code is generated for. The code is instantiated in this crate once, not in each
+/// crate that uses it.
 pub trait Backend: Sized {
-    /// Code for a frame in this number type.
+    /// Generates code for a frame in this number type.
     #[doc(hidden)]
     fn prepare(compiled: &Compiled, frame: &Frame) -> Prepared<Self>
     where
@@ -150,56 +151,56 @@ macro_rules! backends {
         }
     )*};
 }
-backends!(f32, f64, Jittered);
+backends!(f32, f64, RandomRounding);
 
-/// Code for any number type.
+/// Compiled code for any number type.
 #[derive(Debug)]
 pub struct Compiled {
-    pub(crate) flow: Flow,
-    pub(crate) flat: Flat,
-    pub(crate) homes: Homes,
-    /// Whether stores to a cell leave alone the pixels that are elsewhere.
+    pub(crate) function: Function,
+    pub(crate) linear: LinearCode,
+    pub(crate) locations: Allocation,
+    /// Whether stores to a cell must preserve the values of inactive pixels.
     pub(crate) shared: Vec<bool>,
     pub(crate) sites: Vec<Site>,
-    pub(crate) plot: Plot,
+    pub(crate) schema: TraceSchema,
 }
 
 impl Compiled {
-    fn new(checked: &Checked, extras: Extras, deadline: &Deadline) -> Result<Self, Refusal> {
+    fn new(checked: &Checked, options: BuildOptions, deadline: &Deadline) -> Result<Self, Refusal> {
         with_stack(|| {
             let build::Program {
-                mut flow,
+                mut function,
                 sites,
-                plot,
-            } = compile(checked, extras, deadline)?;
+                schema,
+            } = compile(checked, options, deadline)?;
             deadline.check()?;
-            forward(&mut flow, extras.story);
+            number_values(&mut function, options.trace);
             deadline.check()?;
-            prune(&mut flow);
-            let groups = Groups::of(&flow);
+            eliminate_dead_code(&mut function);
+            let groups = AliasGroups::of(&function);
             deadline.check()?;
-            let varying = Varying::of(&flow, &groups);
-            fuse(&mut flow, &varying);
+            let divergence = Divergence::of(&function, &groups);
+            fuse(&mut function, &divergence);
             deadline.check()?;
-            let flat = flatten(&flow, &varying, extras.story);
+            let linear = linearize(&function, &divergence, options.trace);
             deadline.check()?;
-            let homes = allocate(&flow, &flat, &varying, &groups);
-            let cells = (0..flow.cells.len() as u32).map(crate::ir::function::Cell);
-            let shared = cells.map(|cell| varying.is_shared(cell)).collect();
-            flow.body.clear();
+            let locations = allocate_registers(&function, &linear, &divergence, &groups);
+            let cells = (0..function.cells.len() as u32).map(crate::ir::Cell);
+            let shared = cells.map(|cell| divergence.is_shared(cell)).collect();
+            function.body.clear();
             Ok(Self {
-                flow,
-                flat,
-                homes,
+                function,
+                linear,
+                locations,
                 shared,
                 sites,
-                plot,
+                schema,
             })
         })?
     }
 
-    /// Where a loop stands.
+    /// Returns the source location of a loop.
     pub(crate) fn loop_at(&self, id: u32) -> Place {
-        self.flow.loops[id as usize]
+        self.function.loops[id as usize]
     }
 }

@@ -1,4 +1,4 @@
-//! Painting a frame: tiles of pixels on all cores, a batch for each.
+//! Rendering of frames: tiles of pixels on all cores, a batch for each.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -10,58 +10,62 @@ use thiserror::Error;
 use toyproof_glsl::tree::Place;
 use toyproof_image::{Frame, Image};
 
-use crate::batch::Watch;
+use crate::batch::Cancellation;
 use crate::build::Refusal;
-use crate::framebuffer::{Painting, UNDEFINED, shown};
+use crate::frame::Texture;
+use crate::frame::{Framebuffer, UNDEFINED, target_color};
 use crate::number::Number;
 use crate::observe::Observations;
 use crate::program::Program;
-use crate::texture::Texture;
 use crate::tile::Job;
 
-/// What is made of operations that GLSL leaves undefined.
+/// The treatment of operations that GLSL leaves undefined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Variant {
-    /// What strict GPU runs make of them; and they are noted.
+pub enum UndefinedPolicy {
+    /// Compute what strict GPU runs compute, and record each occurrence.
     Observed,
-    /// The same without notes.
+    /// Compute what strict GPU runs compute, without records.
     Plain,
-    /// Something else: a pixel that is painted the same whatever it is does not depend on them.
-    Otherwise(Other),
+    /// Substitute a different result: a pixel that is the same under both substitutes does not depend on
+    /// undefined operations.
+    Substitute(Substitute),
 }
 
-/// What else may come of an operation that GLSL leaves undefined. It takes both to see what depends on it: a number may be hidden by zeros that it
-/// is multiplied with, and NaN by comparisons, which are all false.
+/// The result substituted for an undefined operation.
+///
+/// Both substitutes are needed to find all dependencies: a number may be hidden by a multiplication with
+/// zero, and NaN by comparisons, which are all false.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Other {
+pub enum Substitute {
     /// A number.
     Number,
     /// NaN.
     NotANumber,
 }
 
-/// How a frame is painted.
+/// The settings for rendering a frame.
 #[derive(Debug, Clone, Copy)]
 pub struct Settings<'a, N: Number> {
-    /// What is made of operations that GLSL leaves undefined.
-    pub variant: Variant,
-    /// What perturbs the arithmetic of [`Jittered`](crate::Jittered).
+    /// The treatment of operations that GLSL leaves undefined.
+    pub undefined: UndefinedPolicy,
+    /// The seed of [`RandomRounding`](crate::RandomRounding); nothing for other number types.
     pub noise: N::Noise,
-    /// How many rounds of loops a pixel may run, all loops together.
+    /// The maximum number of loop iterations of a pixel, all loops together.
     pub rounds: u32,
-    /// When to give up.
+    /// The time at which to give up.
     pub deadline: Option<Instant>,
-    /// Set from elsewhere to give up.
+    /// A flag that other threads set to interrupt the run.
     pub interrupt: Option<&'a AtomicBool>,
-    /// Which of the painting's pixels are wanted, bottom row first; others may stay black. All, if none.
+    /// The pixels that are needed, bottom row first; others may stay black. None means all.
     pub wanted: Option<&'a [bool]>,
 }
 
 impl<N: Number> Default for Settings<'_, N> {
-    /// Observes, without limits of time; as many rounds as no sane shader runs.
+    /// Records undefined operations, has no time limit, and allows more iterations than any reasonable shader
+    /// runs.
     fn default() -> Self {
         Self {
-            variant: Variant::Observed,
+            undefined: UndefinedPolicy::Observed,
             noise: N::Noise::default(),
             rounds: 1 << 26,
             deadline: None,
@@ -71,8 +75,8 @@ impl<N: Number> Default for Settings<'_, N> {
     }
 }
 
-/// The places of a frame that are evaluated instead of the middles of all its pixels: all pairs of these coordinates, as `fragCoord` has
-/// them. Neighbors at an even and the next odd number make a quad.
+/// Sample positions that are evaluated instead of the centers of all pixels: all pairs of these coordinates,
+/// as in `fragCoord`. Neighbors at an even and the next odd index form a quad.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Places {
     /// x, from the left.
@@ -82,7 +86,8 @@ pub struct Places {
 }
 
 impl Places {
-    /// The middles of pixels from all over a frame of that size, so many columns and rows of them at most, in whole quads.
+    /// Returns the centers of pixels spread over a frame of this size, at most `most` columns and rows, in
+    /// whole quads.
     #[must_use]
     pub fn spread(size: [u32; 2], most: [u32; 2]) -> Self {
         let along = |axis: usize| {
@@ -105,19 +110,19 @@ impl Places {
         }
     }
 
-    /// The pixels that these places lie in: their columns and rows.
+    /// Returns the columns and rows of the pixels that contain the positions.
     #[must_use]
     pub fn pixels(&self) -> [Vec<u32>; 2] {
         [&self.columns, &self.rows].map(|along| along.iter().map(|&at| at as u32).collect())
     }
 
-    /// Width and height of the picture that has a pixel for each place.
+    /// Returns width and height of the image that has a pixel for each position.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         [&self.columns, &self.rows].map(|along| along.len() as u32)
     }
 
-    /// The same places, moved.
+    /// Returns the positions moved by an offset in pixels.
     #[must_use]
     pub fn shifted(&self, [x, y]: [f64; 2]) -> Self {
         Self {
@@ -127,13 +132,13 @@ impl Places {
     }
 }
 
-/// Why there is no picture.
+/// The reason why rendering failed.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum Failure {
-    /// The shader is too large.
+    /// The shader cannot be compiled.
     #[error(transparent)]
     Refused(#[from] Refusal),
-    /// A pixel ran more rounds of loops than it may.
+    /// A pixel exceeded the limit of loop iterations.
     #[error("a pixel ran more than {rounds} rounds of loops")]
     TooOften {
         /// The limit.
@@ -141,30 +146,30 @@ pub enum Failure {
         /// The loop that ran last.
         at: Place,
     },
-    /// The deadline passed in a loop.
+    /// The deadline passed inside a loop.
     #[error("the time is up, and a loop still runs")]
     Timeout {
         /// The loop.
         at: Place,
     },
-    /// The deadline passed between two parts of the picture.
+    /// The deadline passed between two parts of the image.
     #[error("the time is up")]
     TimeUp,
-    /// Somebody set [`Settings::interrupt`].
+    /// [`Settings::interrupt`] was set.
     #[error("interrupted")]
     Interrupted,
 }
 
-/// A picture and what was noted while it was painted.
+/// An image and the observations made while rendering it.
 #[derive(Debug, Clone)]
-pub struct Painted<N> {
-    /// The picture.
-    pub painting: Painting<N>,
-    /// What was noted.
+pub struct Rendered<N> {
+    /// The image.
+    pub framebuffer: Framebuffer<N>,
+    /// The observations.
     pub observations: Observations,
 }
 
-/// Whether to go on.
+/// The limits of a run.
 pub(crate) struct Limits<'a> {
     deadline: Option<Instant>,
     interrupt: Option<&'a AtomicBool>,
@@ -190,71 +195,82 @@ impl<'a> Limits<'a> {
     }
 }
 
-impl Watch for Limits<'_> {
-    fn is_over(&self) -> bool {
+impl Cancellation for Limits<'_> {
+    fn is_cancelled(&self) -> bool {
         self.failed.load(Ordering::Relaxed) || self.is_interrupted() || self.is_late()
     }
 }
 
-/// The same in f32, where no more is wanted.
+/// A rendered image in f32, and its observations.
 #[derive(Debug, Clone)]
-pub struct Pictured {
-    /// The picture, as the GPU's target holds it.
+pub struct RenderedF32 {
+    /// The image, as the GPU's render target holds it.
     pub image: Image,
-    /// Which pixels met an operation that GLSL leaves undefined, bottom row first.
+    /// Which pixels executed an operation that GLSL leaves undefined, bottom row first.
     pub undefined: Vec<bool>,
-    /// What was noted.
+    /// The observations.
     pub observations: Observations,
 }
 
-/// What of a frame is evaluated.
+/// The part of a frame that is evaluated.
 enum Part<'a> {
     Rows(Range<u32>),
     Places(&'a Places),
 }
 
 impl Program {
-    /// Paints a frame.
+    /// Renders a frame.
     ///
     /// # Errors
-    /// Why there is no picture: limits, or a shader that is too large.
-    pub fn paint<N: Number>(&self, frame: &Frame, settings: &Settings<'_, N>) -> Result<Painted<N>, Failure> {
-        let mut painting = Painting::new(frame.size);
-        let (pixels, marks) = painting.parts_mut();
+    /// If a limit is exceeded, or the shader is too large.
+    pub fn render<N: Number>(
+        &self,
+        frame: &Frame,
+        settings: &Settings<'_, N>,
+    ) -> Result<Rendered<N>, Failure> {
+        let mut framebuffer = Framebuffer::new(frame.size);
+        let (pixels, flags) = framebuffer.parts_mut();
         let part = Part::Rows(frame.rows());
-        let observations = self.fill(frame, part, settings, pixels, marks, |colour, _| colour)?;
-        Ok(Painted {
-            painting,
+        let observations = self.fill(frame, part, settings, pixels, flags, |color, _| color)?;
+        Ok(Rendered {
+            framebuffer,
             observations,
         })
     }
 
-    /// Paints some rows of a frame, as of [`Frame::bands`], rounded to f32. What is noted tells of places in the frame; the picture's
-    /// own are in the band.
+    /// Renders some rows of a frame, as of [`Frame::bands`], rounded to f32. Observations have positions in
+    /// the frame; the image's coordinates are relative to the band.
     ///
     /// # Errors
-    /// As [`Self::paint`].
+    /// As [`Self::render`].
     pub fn picture<N: Number>(
         &self,
         frame: &Frame,
         rows: Range<u32>,
         settings: &Settings<'_, N>,
-    ) -> Result<Pictured, Failure> {
+    ) -> Result<RenderedF32, Failure> {
         let size = [frame.size[0], rows.len() as u32];
         let mut pixels = vec![[0.0; 4]; size[0] as usize * size[1] as usize];
-        let mut marks = vec![0; pixels.len()];
-        let observations = self.fill(frame, Part::Rows(rows), settings, &mut pixels, &mut marks, shown)?;
-        Ok(Pictured {
+        let mut flags = vec![0; pixels.len()];
+        let observations = self.fill(
+            frame,
+            Part::Rows(rows),
+            settings,
+            &mut pixels,
+            &mut flags,
+            target_color,
+        )?;
+        Ok(RenderedF32 {
             image: Image::new(size[0], size[1], pixels),
-            undefined: marks.into_iter().map(|mark| mark & UNDEFINED != 0).collect(),
+            undefined: flags.into_iter().map(|flag| flag & UNDEFINED != 0).collect(),
             observations,
         })
     }
 
-    /// Evaluates a frame at some places only, rounded to f32: a pixel for each.
+    /// Evaluates a frame at some positions only, rounded to f32: a pixel for each.
     ///
     /// # Errors
-    /// As [`Self::paint`].
+    /// As [`Self::render`].
     pub fn at<N: Number>(
         &self,
         frame: &Frame,
@@ -263,31 +279,31 @@ impl Program {
     ) -> Result<Image, Failure> {
         let size = places.size();
         let mut pixels = vec![[0.0; 4]; size[0] as usize * size[1] as usize];
-        let mut marks = vec![0; pixels.len()];
+        let mut flags = vec![0; pixels.len()];
         if !pixels.is_empty() {
             self.fill(
                 frame,
                 Part::Places(places),
                 settings,
                 &mut pixels,
-                &mut marks,
-                shown,
+                &mut flags,
+                target_color,
             )?;
         }
         Ok(Image::new(size[0], size[1], pixels))
     }
 
-    /// Paints a part, of whose pixels what `keep` makes of colours and marks is kept.
+    /// Renders a part; `keep` converts the color and flags of each pixel to its stored value.
     fn fill<N: Number, P: Send>(
         &self,
         frame: &Frame,
         part: Part<'_>,
         settings: &Settings<'_, N>,
         pixels: &mut [P],
-        marks: &mut [u8],
+        flags: &mut [u8],
         keep: impl Fn([N; 3], u8) -> P + Sync,
     ) -> Result<Observations, Failure> {
-        let compiled = self.code(settings.variant)?;
+        let compiled = self.code(settings.undefined)?;
         let prepared = N::prepare(compiled, frame);
         let textures = frame.channels.each_ref().map(|image| image.as_ref().map(Texture));
         let limits = Limits::of(settings);
@@ -298,39 +314,39 @@ impl Program {
         let job = Job::new(compiled, &prepared, &textures, &limits, settings, size).at(places);
         let failure = Mutex::new(None);
         let band = size[0] as usize * job.rows();
-        let bands = pixels.par_chunks_mut(band).zip(marks.par_chunks_mut(band));
-        let noted = bands.enumerate().map_init(
+        let bands = pixels.par_chunks_mut(band).zip(flags.par_chunks_mut(band));
+        let observed = bands.enumerate().map_init(
             || (job.batch(), vec![[N::default(); 3]; band]),
-            |(batch, colours), (tiles, (pixels, marks))| {
+            |(batch, colors), (tiles, (pixels, flags))| {
                 let first = start + (tiles * job.rows()) as u32;
                 let wanted = settings
                     .wanted
                     .map(|wanted| &wanted[tiles * band..][..pixels.len()]);
-                let colours = &mut colours[..pixels.len()];
-                match job.band(batch, first, (colours, marks), wanted) {
+                let colors = &mut colors[..pixels.len()];
+                match job.render_band(batch, first, (colors, flags), wanted) {
                     Ok(observations) => {
-                        for ((pixel, &colour), &mark) in pixels.iter_mut().zip(&*colours).zip(&*marks) {
-                            *pixel = keep(colour, mark);
+                        for ((pixel, &color), &flag) in pixels.iter_mut().zip(&*colors).zip(&*flags) {
+                            *pixel = keep(color, flag);
                         }
                         observations
                     }
-                    Err(why) => {
+                    Err(error) => {
                         limits.failed.store(true, Ordering::Relaxed);
                         failure
                             .lock()
                             .unwrap_or_else(PoisonError::into_inner)
-                            .get_or_insert(why);
+                            .get_or_insert(error);
                         Observations::default()
                     }
                 }
             },
         );
-        let observations = noted.reduce(Observations::default, |mut all, part| {
+        let observations = observed.reduce(Observations::default, |mut all, part| {
             all.merge(&part);
             all
         });
         match failure.into_inner().unwrap_or_else(PoisonError::into_inner) {
-            Some(end) => Err(end.failure(compiled, &limits, settings.rounds)),
+            Some(error) => Err(error.failure(compiled, &limits, settings.rounds)),
             None => Ok(observations),
         }
     }

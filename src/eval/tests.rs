@@ -1,77 +1,81 @@
-//! What a shader that means harm is made into, and that this takes no longer than the shader is long: each program here is so large that
-//! whatever looks at it again for each of its parts would take minutes, or more memory than there is.
+//! Compile times of adversarial shaders are linear in their length: each program here is so large that any
+//! pass with quadratic cost would take minutes, or exhaust the memory.
 
 use toyproof_diagnostic::{File, Files, Span};
 use toyproof_glsl::tree::Place;
 
 use crate::build::with_stack;
-use crate::ir::alias::Groups;
-use crate::ir::function::{Axis, Block, Cell, Flow, LoopId, NONE, Node, Origin, Scope, Value};
-use crate::ir::operation::{Kind, Operation};
-use crate::lower::linearize::{Flat, Step, flatten};
-use crate::opt::dce::prune;
-use crate::opt::divergence::Varying;
-use crate::opt::gvn::forward;
+use crate::ir::AliasGroups;
+use crate::ir::{Axis, Block, Cell, Function, LoopId, NONE, Node, Scope, Value, ValueDef};
+use crate::ir::{Kind, Operation};
+use crate::lower::linearize::{LinearCode, Step, linearize};
+use crate::opt::dce::eliminate_dead_code;
+use crate::opt::divergence::Divergence;
+use crate::opt::gvn::number_values;
 
-/// A program of words that is being written, with a condition that varies.
-struct Draft {
-    flow: Flow,
-    varies: Value,
+/// Builds a function of words, with a divergent condition.
+struct FunctionBuilder {
+    function: Function,
+    varying: Value,
 }
 
-impl Draft {
-    /// A program with so many cells, scopes and loops.
+impl FunctionBuilder {
+    /// Creates a function with these numbers of cells, scopes and loops.
     fn new(cells: usize, scopes: u32, loops: usize) -> Self {
         let file = Files::default().add(File::new("", ""));
-        let nowhere = Place::plain(Span::new(file, 0, 0));
-        let mut draft = Self {
-            flow: Flow {
-                origins: Vec::new(),
+        let place = Place::plain(Span::new(file, 0, 0));
+        let mut builder = Self {
+            function: Function {
+                defs: Vec::new(),
                 cells: vec![Kind::Word; cells],
                 scopes,
-                loops: vec![nowhere; loops],
+                loops: vec![place; loops],
                 body: Block::new(),
                 output: [NONE; 4],
             },
-            varies: NONE,
+            varying: NONE,
         };
-        let x = draft.value(Origin::FragCoord(Axis::X));
-        draft.varies = draft.value(Origin::Operation(Operation::ToBits, [x, NONE, NONE]));
-        draft.flow.body.push(Node::Let(draft.varies));
-        draft
+        let x = builder.value(ValueDef::FragCoord(Axis::X));
+        builder.varying = builder.value(ValueDef::Operation(Operation::ToBits, [x, NONE, NONE]));
+        builder.function.body.push(Node::Let(builder.varying));
+        builder
     }
 
-    fn value(&mut self, origin: Origin) -> Value {
-        self.flow.origins.push(origin);
-        Value(self.flow.origins.len() as u32 - 1)
+    fn value(&mut self, def: ValueDef) -> Value {
+        self.function.defs.push(def);
+        Value(self.function.defs.len() as u32 - 1)
     }
 
     fn word(&mut self, word: u32) -> Value {
-        self.value(Origin::Word(word))
+        self.value(ValueDef::Word(word))
     }
 
     fn load(&mut self, cell: u32, block: &mut Block) -> Value {
-        self.make(Origin::Load(Cell(cell)), block)
+        self.make(ValueDef::Load(Cell(cell)), block)
     }
 
-    fn make(&mut self, origin: Origin, block: &mut Block) -> Value {
-        let value = self.value(origin);
+    fn make(&mut self, def: ValueDef, block: &mut Block) -> Value {
+        let value = self.value(def);
         block.push(Node::Let(value));
         value
     }
 
-    /// With what the picture is made of.
-    fn output(mut self, cells: [u32; 2]) -> Flow {
-        let mut body = std::mem::take(&mut self.flow.body);
+    /// Finishes the function; its output is loaded from two cells.
+    fn output(mut self, cells: [u32; 2]) -> Function {
+        let mut body = std::mem::take(&mut self.function.body);
         let [a, b] = cells.map(|cell| self.load(cell, &mut body));
-        self.flow.body = body;
-        self.flow.output = [a, b, a, b];
-        self.flow
+        self.function.body = body;
+        self.function.output = [a, b, a, b];
+        self.function
     }
 
-    fn flat(self) -> Flat {
-        let flow = self.output([0, 0]);
-        flatten(&flow, &Varying::of(&flow, &Groups::of(&flow)), false)
+    fn linear(self) -> LinearCode {
+        let function = self.output([0, 0]);
+        linearize(
+            &function,
+            &Divergence::of(&function, &AliasGroups::of(&function)),
+            false,
+        )
     }
 }
 
@@ -82,15 +86,15 @@ fn store(cell: u32, value: Value) -> Node {
     }
 }
 
-fn leave_if(scope: u32, condition: Value) -> Node {
-    Node::LeaveIf {
+fn break_if(scope: u32, condition: Value) -> Node {
+    Node::BreakIf {
         scope: Scope(scope),
         condition,
         when: true,
     }
 }
 
-fn choice(condition: Value, yes: Block) -> Node {
+fn if_then(condition: Value, yes: Block) -> Node {
     Node::If {
         condition,
         yes,
@@ -98,217 +102,224 @@ fn choice(condition: Value, yes: Block) -> Node {
     }
 }
 
-/// How many of a program's steps are such.
-fn count(flat: &Flat, is: impl Fn(&Step) -> bool) -> usize {
-    flat.steps.iter().filter(|(step, _)| is(step)).count()
+/// Counts the steps that satisfy a predicate.
+fn count_steps(linear: &LinearCode, is: impl Fn(&Step) -> bool) -> usize {
+    linear.steps.iter().filter(|(step, _)| is(step)).count()
 }
 
-/// A scope that is left that often, each time with one more cell stored. Cell 0 is stored before and not in it, cell 1 in it last.
-fn left_often(times: u32) -> Flow {
-    let mut draft = Draft::new(times as usize + 2, 1, 0);
-    let (before, after) = (draft.word(7), draft.word(9));
+/// Builds a scope with `times` breaks, each followed by a store to a new cell. Cell 0 is stored before the
+/// scope and not in it, cell 1 at its end.
+fn scope_with_breaks(times: u32) -> Function {
+    let mut builder = FunctionBuilder::new(times as usize + 2, 1, 0);
+    let (before, after) = (builder.word(7), builder.word(9));
     let mut body = Block::new();
     for cell in 0..times {
-        body.extend([leave_if(0, draft.varies), store(cell + 2, after)]);
+        body.extend([break_if(0, builder.varying), store(cell + 2, after)]);
     }
     body.push(store(1, after));
-    draft.flow.body.extend([store(0, before), store(1, before)]);
-    draft.flow.body.push(Node::Scope {
+    builder.function.body.extend([store(0, before), store(1, before)]);
+    builder.function.body.push(Node::Scope {
         scope: Scope(0),
         body,
     });
-    draft.output([0, 1])
+    builder.output([0, 1])
 }
 
-/// Ways that keep all that changed on them would be gigabytes here.
+/// Storing all changes of each path would take gigabytes here.
 #[test]
-fn scopes_that_are_left_often_keep_what_there_is_room_for() {
+fn changes_of_many_exit_paths_are_bounded() {
     for times in [1, 60_000] {
-        let mut flow = left_often(times);
-        forward(&mut flow, false);
-        let [kept, stored, ..] = flow.output.map(|value| flow.origin(value));
-        assert_eq!(kept, Origin::Word(7));
-        assert_eq!(stored, Origin::Load(Cell(1)), "it is 7 or 9");
+        let mut function = scope_with_breaks(times);
+        number_values(&mut function, false);
+        let [kept, stored, ..] = function.output.map(|value| function.def(value));
+        assert_eq!(kept, ValueDef::Word(7));
+        assert_eq!(stored, ValueDef::Load(Cell(1)), "it is 7 or 9");
     }
 }
 
-/// Rounds are tried seven thousand times here, and none comes to what is in the choice.
+/// Unrolling tries seven thousand iterations here, and none reaches the content of the `if`.
 #[test]
-fn what_no_round_of_a_loop_comes_to_is_not_copied() {
-    let mut draft = Draft::new(2, 1, 1);
-    let [zero, one, rounds] = [0, 1, 60_000].map(|word| draft.word(word));
-    let mut body = vec![Node::Round(LoopId(0))];
-    let at = draft.load(0, &mut body);
-    let goes_on = draft.make(
-        Origin::Operation(Operation::LessInt, [at, rounds, NONE]),
+fn unreachable_blocks_of_an_unrolled_loop_are_not_cloned() {
+    let mut builder = FunctionBuilder::new(2, 1, 1);
+    let [zero, one, rounds] = [0, 1, 60_000].map(|word| builder.word(word));
+    let mut body = vec![Node::LoopHeader(LoopId(0))];
+    let at = builder.load(0, &mut body);
+    let goes_on = builder.make(
+        ValueDef::Operation(Operation::LessInt, [at, rounds, NONE]),
         &mut body,
     );
-    body.push(Node::LeaveIf {
+    body.push(Node::BreakIf {
         scope: Scope(0),
         condition: goes_on,
         when: false,
     });
-    let never = draft.make(Origin::Operation(Operation::LessInt, [at, zero, NONE]), &mut body);
-    body.push(choice(never, vec![store(1, one); 1 << 20]));
-    let next = draft.make(Origin::Operation(Operation::AddWord, [at, one, NONE]), &mut body);
+    let never = builder.make(
+        ValueDef::Operation(Operation::LessInt, [at, zero, NONE]),
+        &mut body,
+    );
+    body.push(if_then(never, vec![store(1, one); 1 << 20]));
+    let next = builder.make(
+        ValueDef::Operation(Operation::AddWord, [at, one, NONE]),
+        &mut body,
+    );
     body.push(store(0, next));
     let body = vec![Node::Loop { id: LoopId(0), body }];
-    draft.flow.body.extend([store(0, zero), store(1, zero)]);
-    draft.flow.body.push(Node::Scope {
+    builder.function.body.extend([store(0, zero), store(1, zero)]);
+    builder.function.body.push(Node::Scope {
         scope: Scope(0),
         body,
     });
-    let mut flow = draft.output([0, 1]);
-    forward(&mut flow, false);
-    assert!(matches!(flow.origin(flow.output[0]), Origin::Load(_)));
+    let mut function = builder.output([0, 1]);
+    number_values(&mut function, false);
+    assert!(matches!(function.def(function.output[0]), ValueDef::Load(_)));
 }
 
-/// Nobody asks for the last, so that nobody asks for the one before it, and so on.
+/// The last cell is unused, so the one before it is unused, and so on.
 #[test]
-fn choices_with_nothing_in_them_are_taken_out_at_once() {
-    let many = 40_000;
-    let mut draft = Draft::new(many as usize + 2, 0, 0);
-    let yes = draft.word(u32::MAX);
-    let mut body = vec![store(many + 1, yes), store(0, draft.varies)];
-    for cell in 0..many {
-        let condition = draft.load(cell, &mut body);
-        body.push(choice(condition, vec![store(cell + 1, yes)]));
+fn chained_empty_branches_are_removed_in_linear_time() {
+    let cell_count = 40_000;
+    let mut builder = FunctionBuilder::new(cell_count as usize + 2, 0, 0);
+    let yes = builder.word(u32::MAX);
+    let mut body = vec![store(cell_count + 1, yes), store(0, builder.varying)];
+    for cell in 0..cell_count {
+        let condition = builder.load(cell, &mut body);
+        body.push(if_then(condition, vec![store(cell + 1, yes)]));
     }
-    draft.flow.body.append(&mut body);
-    let mut flow = draft.output([many + 1, many + 1]);
-    prune(&mut flow);
+    builder.function.body.append(&mut body);
+    let mut function = builder.output([cell_count + 1, cell_count + 1]);
+    eliminate_dead_code(&mut function);
     assert!(matches!(
-        flow.body[..],
-        [Node::Store { cell, .. }, Node::Let(_), Node::Let(_)] if cell.0 == many + 1
+        function.body[..],
+        [Node::Store { cell, .. }, Node::Let(_), Node::Let(_)] if cell.0 == cell_count + 1
     ));
 }
 
 #[test]
-fn a_choice_that_only_its_own_condition_asks_for_is_taken_out() {
-    let mut draft = Draft::new(2, 0, 1);
-    let yes = draft.word(u32::MAX);
-    let mut body = vec![Node::Round(LoopId(0))];
-    let condition = draft.load(1, &mut body);
-    body.push(choice(condition, vec![store(1, yes)]));
-    draft.flow.body.push(Node::Loop { id: LoopId(0), body });
-    let mut flow = draft.output([0, 0]);
-    prune(&mut flow);
-    let inside = flow.body.iter().find_map(|node| match node {
+fn a_branch_used_only_by_its_own_condition_is_removed() {
+    let mut builder = FunctionBuilder::new(2, 0, 1);
+    let yes = builder.word(u32::MAX);
+    let mut body = vec![Node::LoopHeader(LoopId(0))];
+    let condition = builder.load(1, &mut body);
+    body.push(if_then(condition, vec![store(1, yes)]));
+    builder.function.body.push(Node::Loop { id: LoopId(0), body });
+    let mut function = builder.output([0, 0]);
+    eliminate_dead_code(&mut function);
+    let inside = function.body.iter().find_map(|node| match node {
         Node::Loop { body, .. } => Some(body.len()),
         _ => None,
     });
     assert_eq!(inside, Some(1));
 }
 
-/// A loop in which each cell takes what the next one held.
+/// A loop in which each cell takes the value of the next one.
 #[test]
-fn what_varies_is_followed_from_cell_to_cell() {
-    let many = 200_000;
-    let mut draft = Draft::new(many as usize + 2, 0, 1);
-    let mut body = vec![Node::Round(LoopId(0))];
-    for cell in 0..many {
-        let next = draft.load(cell + 1, &mut body);
+fn divergence_propagates_from_cell_to_cell() {
+    let cell_count = 200_000;
+    let mut builder = FunctionBuilder::new(cell_count as usize + 2, 0, 1);
+    let mut body = vec![Node::LoopHeader(LoopId(0))];
+    for cell in 0..cell_count {
+        let next = builder.load(cell + 1, &mut body);
         body.push(store(cell, next));
     }
-    let same = draft.word(1);
-    let varies = draft.varies;
-    draft
-        .flow
+    let same = builder.word(1);
+    let varying = builder.varying;
+    builder
+        .function
         .body
-        .extend([store(many, varies), store(many + 1, same)]);
-    draft.flow.body.push(Node::Loop { id: LoopId(0), body });
-    let flow = draft.output([0, many + 1]);
-    let varying = Varying::of(&flow, &Groups::of(&flow));
-    assert!((0..=many).all(|cell| varying.cell(Cell(cell))));
-    assert!(!varying.cell(Cell(many + 1)));
+        .extend([store(cell_count, varying), store(cell_count + 1, same)]);
+    builder.function.body.push(Node::Loop { id: LoopId(0), body });
+    let function = builder.output([0, cell_count + 1]);
+    let divergence = Divergence::of(&function, &AliasGroups::of(&function));
+    assert!((0..=cell_count).all(|cell| divergence.cell(Cell(cell))));
+    assert!(!divergence.cell(Cell(cell_count + 1)));
 }
 
-/// What is stored where only some pixels are varies where others read it, too, and not where only they do; cell 4 lives on from one
-/// round to the next, in which they may be others.
+/// A cell that only some pixels store is divergent if others read it, too, and uniform otherwise; cell 4 is
+/// live from one iteration to the next, in which other pixels may be active.
 #[test]
-fn cells_are_shared_where_others_read_them() {
-    let mut draft = Draft::new(5, 1, 1);
-    let (varies, same) = (draft.varies, draft.word(1));
+fn cells_are_shared_if_other_pixels_read_them() {
+    let mut builder = FunctionBuilder::new(5, 1, 1);
+    let (varying, same) = (builder.varying, builder.word(1));
     let mut yes = vec![store(0, same), store(1, same)];
-    let inside = draft.load(1, &mut yes);
+    let inside = builder.load(1, &mut yes);
     yes.push(store(0, inside));
-    let scope = vec![leave_if(0, varies), store(2, same)];
-    let mut round = vec![Node::Round(LoopId(0))];
+    let scope = vec![break_if(0, varying), store(2, same)];
+    let mut header = vec![Node::LoopHeader(LoopId(0))];
     let mut again = Block::new();
-    draft.load(3, &mut again);
-    draft.load(4, &mut again);
+    builder.load(3, &mut again);
+    builder.load(4, &mut again);
     again.extend([store(3, same), store(4, same)]);
-    round.extend([store(3, same), choice(varies, again)]);
-    draft.flow.body.extend([
+    header.extend([store(3, same), if_then(varying, again)]);
+    builder.function.body.extend([
         store(4, same),
-        choice(varies, yes),
+        if_then(varying, yes),
         Node::Scope {
             scope: Scope(0),
             body: scope,
         },
         Node::Loop {
             id: LoopId(0),
-            body: round,
+            body: header,
         },
     ]);
-    let flow = draft.output([0, 2]);
-    let varying = Varying::of(&flow, &Groups::of(&flow));
-    let shared = [0, 1, 2, 3, 4].map(|cell| varying.is_shared(Cell(cell)));
+    let function = builder.output([0, 2]);
+    let divergence = Divergence::of(&function, &AliasGroups::of(&function));
+    let shared = [0, 1, 2, 3, 4].map(|cell| divergence.is_shared(Cell(cell)));
     assert_eq!(shared, [true, false, true, false, true]);
-    assert!(varying.scope(Scope(0)));
+    assert!(divergence.scope(Scope(0)));
 }
 
-/// Whether anybody is left is asked after a scope only where a way led beyond it.
+/// A scope is followed by a check for remaining pixels only if a break in it leaves an outer scope.
 #[test]
-fn only_who_left_further_is_asked_for() {
-    for (left, asked) in [(1, 0), (0, 1)] {
-        let mut draft = Draft::new(1, 2, 0);
+fn only_breaks_of_outer_scopes_need_a_check() {
+    for (left, checks) in [(1, 0), (0, 1)] {
+        let mut builder = FunctionBuilder::new(1, 2, 0);
         let inner = Node::Scope {
             scope: Scope(1),
             body: vec![
-                leave_if(1, draft.varies),
-                choice(draft.varies, vec![leave_if(left, draft.varies)]),
+                break_if(1, builder.varying),
+                if_then(builder.varying, vec![break_if(left, builder.varying)]),
             ],
         };
-        draft.flow.body.push(Node::Scope {
+        builder.function.body.push(Node::Scope {
             scope: Scope(0),
-            body: vec![leave_if(0, draft.varies), inner],
+            body: vec![break_if(0, builder.varying), inner],
         });
-        let flat = draft.flat();
-        // After the choice in any case: it leaves the inner scope at least.
+        let linear = builder.linear();
+        // There is always a check after the `if`, which leaves at least the inner scope.
         assert_eq!(
-            count(&flat, |step| matches!(step, Step::JumpIfEmpty(_))),
-            1 + asked
+            count_steps(&linear, |step| matches!(step, Step::JumpIfEmpty(_))),
+            1 + checks
         );
     }
 }
 
-/// Each arm of an `else if` stands in that before it, and has a scope of its own, which is left.
+/// Each arm of an `else if` is nested in the one before, and contains a scope of its own with a break.
 #[test]
-fn arms_in_arms_are_looked_through_once() {
+fn nested_else_ifs_are_linearized_in_linear_time() {
     let arms = 30_000;
     let steps = with_stack(|| {
-        let mut draft = Draft::new(1, arms, 0);
+        let mut builder = FunctionBuilder::new(1, arms, 0);
         let mut no = Block::new();
         for scope in (0..arms).rev() {
             let yes = vec![Node::Scope {
                 scope: Scope(scope),
-                body: vec![leave_if(scope, draft.varies), store(0, draft.varies)],
+                body: vec![break_if(scope, builder.varying), store(0, builder.varying)],
             }];
             no = vec![Node::If {
-                condition: draft.varies,
+                condition: builder.varying,
                 yes,
                 no,
             }];
         }
-        draft.flow.body.append(&mut no);
-        draft.flat().steps.len()
+        builder.function.body.append(&mut no);
+        builder.linear().steps.len()
     });
     assert!(steps.is_ok_and(|steps| steps > arms as usize));
 }
 
 #[test]
-fn compiling_ends_when_its_time_is_over() {
+fn compilation_respects_its_deadline() {
     use std::time::Duration;
 
     let mut files = Files::default();

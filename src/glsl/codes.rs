@@ -6,14 +6,14 @@ use super::tree::Place;
 
 macro_rules! codes {
     ($($variant:ident $code:literal $doc:literal,)*) => {
-        /// What kind of mistake a diagnostic tells of. The codes are stable: never renumber one.
+        /// The kind of error or warning. The codes are stable: never renumber one.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum Code {
             $(#[doc = concat!($code, ": ", $doc)] $variant,)*
         }
 
         impl Code {
-            /// All of them, in the order of their numbers.
+            /// All codes, in numerical order.
             pub const ALL: &[Self] = &[$(Self::$variant),*];
 
             /// `E` or `W` and four digits.
@@ -24,7 +24,7 @@ macro_rules! codes {
                 }
             }
 
-            /// What it is about, in one line.
+            /// A one-line description.
             #[must_use]
             pub fn about(self) -> &'static str {
                 match self {
@@ -75,7 +75,7 @@ codes! {
     // Rules, §4.3, §5.8 and §6.
     NotWritable "E0400" "An assignment to what cannot be written",
     NotConstant "E0401" "A value that must be a constant expression and is none",
-    Uninitialised "E0402" "A `const` without a value",
+    Uninitialized "E0402" "A `const` without a value",
     BadQualifier "E0403" "A qualifier that is not allowed here",
     Recursion "E0404" "A function that calls itself",
     Undefined "E0405" "A function that is called and never defined",
@@ -88,7 +88,7 @@ codes! {
     // Warnings.
     ReservedName "W0001" "A name that begins with what GLSL keeps for itself",
     UnknownExtension "W0002" "An `#extension` that does not exist",
-    // What `warn` finds in a shader that keeps every rule.
+    // Findings of lints in a shader without errors.
     Unwritten "W0003" "A variable that is read before it is written",
     MaybeUnwritten "W0004" "A variable that is read and on some way there not written",
     SineHash "W0005" "Randomness from `fract(sin(x) * 43758.5453)`, which differs from GPU to GPU",
@@ -98,14 +98,14 @@ codes! {
     EndlessLoop "W0009" "A loop that never ends",
     UnusedResult "W0010" "A value that is computed and dropped",
     FloatEquality "W0011" "`==` or `!=` of floats that were computed",
-    UnnormalisedDirection "W0012" "A ray-sphere formula for unit directions, given one that is never normalised",
-    // Where `warn` finds the formula, and the scene shows the trap.
+    UnnormalizedDirection "W0012" "A ray-sphere formula for unit directions, given one that is never normalised",
+    // A lint that also depends on the scene.
     NearTangent "W0013" "A ray-sphere formula that loses the edge of a sphere of the scene",
     BadAllow "W0014" "An `allow` that is not understood",
     UnusedAllow "W0015" "An `allow` that nothing needs",
     MissingReturn "W0016" "A function that on some way ends without a `return`",
     LintTimeout "W0017" "Lints that take too long",
-    // What is seen while a shader runs.
+    // Findings while a shader runs.
     UndefinedOperation "W0600" "An operation whose value GLSL leaves open",
     LongRun "W0601" "Loops that older drivers cut short",
     LostDigits "W0602" "Digits that float32 loses",
@@ -115,41 +115,44 @@ codes! {
     SlowCompilation "W0606" "A shader that the driver takes too long to compile",
 }
 
-/// What is reported of a shader that takes too long to compile, in whatever stage.
+/// The error about a shader that takes too long to compile, in any stage.
 #[must_use]
 pub fn overdue(overdue: Overdue) -> Diagnostic {
     Diagnostic::error(Code::TooSlow.as_str(), overdue.to_string())
         .note("shorten its longest expressions, lists and functions, or give it more time with `--timeout` (`trade`: `--budget`)")
 }
 
-/// How many errors of one file are told, and how many warnings; more would help nobody.
+/// Maximum number of reported errors of one file, and of warnings.
 pub const MAX_TOLD: usize = 50;
 
-/// Adds a diagnostic unless enough of its severity were told.
-pub(crate) fn tell(told: &mut Vec<Diagnostic>, diagnostic: Diagnostic) {
-    let alike = told.iter().filter(|other| other.severity == diagnostic.severity);
+/// Adds a diagnostic unless the limit for its severity is reached.
+pub(crate) fn push_limited(reported: &mut Vec<Diagnostic>, diagnostic: Diagnostic) {
+    let alike = reported
+        .iter()
+        .filter(|other| other.severity == diagnostic.severity);
     if alike.count() < MAX_TOLD {
-        told.push(diagnostic);
+        reported.push(diagnostic);
     }
 }
 
-/// What is said of the place where the characters stand that come out of a macro.
+/// The text at the spelling location of characters from a macro.
 pub const IN_MACRO: &str = "written in this macro";
 
 impl Code {
-    /// Whether `// toyproof: allow(…)` may silence it.
+    /// Whether `// toyproof: allow(…)` may suppress it.
     #[must_use]
     pub fn can_be_allowed(self) -> bool {
         self.as_str().starts_with('W') && !matches!(self, Self::BadAllow | Self::UnusedAllow)
     }
 
-    /// Whether it is told of what a shader does, rather than of its text.
+    /// Whether it reports the execution of a shader rather than its text.
     #[must_use]
     pub fn is_of_runs(self) -> bool {
         self.as_str().starts_with("W06")
     }
 
-    /// An error of this kind, told of that place: where the author used it, and, for what comes out of a macro, where it is spelled.
+    /// Makes a diagnostic of this kind at the place of use and, for text from a macro, at the spelling
+    /// location.
     pub fn at(self, place: Place, message: impl Into<String>) -> Diagnostic {
         let diagnostic = if self.as_str().starts_with('W') {
             Diagnostic::warning(self.as_str(), message)
@@ -164,7 +167,7 @@ impl Code {
         }
     }
 
-    /// The same as the failure of what was tried.
+    /// Returns such a diagnostic as an `Err`.
     pub(crate) fn refuse<T>(self, place: Place, message: impl Into<String>) -> Result<T, Box<Diagnostic>> {
         Err(Box::new(self.at(place, message)))
     }
@@ -175,7 +178,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn codes_are_in_order_and_never_twice() {
+    fn codes_are_sorted_and_unique() {
         let codes: Vec<_> = Code::ALL.iter().map(|code| code.as_str()).collect();
         assert!(codes.is_sorted_by(|a, b| a < b), "{codes:?}");
     }

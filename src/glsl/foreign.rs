@@ -1,6 +1,6 @@
-//! Names of other languages, and of GLSL's other versions, that people write from memory.
+//! Names from other languages and other GLSL versions that users write by habit.
 
-/// `LANGUAGE: NAME = what to write`, one a line. A plain word after `=` is GLSL's own name.
+/// `LANGUAGE: NAME = replacement`, one per line. A plain word after `=` is a GLSL name.
 const TABLE: &str = "
     HLSL: half = float
     HLSL: half2 = vec2
@@ -125,36 +125,36 @@ const TABLE: &str = "
     other languages: u32 = uint
 ";
 
-/// A name that some other language has.
+/// A name from a different language.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Foreign {
     language: &'static str,
     name: &'static str,
-    /// What to write, with its backquotes, or GLSL's name alone.
-    instead: &'static str,
+    /// The replacement, with backquotes, or a GLSL name alone.
+    replacement: &'static str,
 }
 
 impl Foreign {
-    /// The other language's name, if it is one.
+    /// Looks up a foreign name.
     pub(crate) fn named(name: &str) -> Option<Self> {
         rows().find(|row| row.name == name)
     }
 
-    /// GLSL's name for the same thing, if it has one.
-    pub(crate) fn twin(self) -> Option<&'static str> {
+    /// The equivalent GLSL name, if there is one.
+    pub(crate) fn glsl_equivalent(self) -> Option<&'static str> {
         let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
-        self.instead.chars().all(is_word).then_some(self.instead)
+        self.replacement.chars().all(is_word).then_some(self.replacement)
     }
 
-    /// What to write, quoted.
-    pub(crate) fn instead(self) -> String {
-        match self.twin() {
+    /// The replacement, quoted for a message.
+    pub(crate) fn replacement(self) -> String {
+        match self.glsl_equivalent() {
             Some(name) => format!("`{name}`"),
-            None => self.instead.to_owned(),
+            None => self.replacement.to_owned(),
         }
     }
 
-    /// Where the name comes from.
+    /// A note on the name's origin.
     pub(crate) fn note(self) -> String {
         format!("`{}` belongs to {}", self.name, self.language)
     }
@@ -163,11 +163,11 @@ impl Foreign {
 fn rows() -> impl Iterator<Item = Foreign> {
     TABLE.lines().filter_map(|line| {
         let (language, rest) = line.trim().split_once(": ")?;
-        let (name, instead) = rest.split_once(" = ")?;
+        let (name, replacement) = rest.split_once(" = ")?;
         Some(Foreign {
             language,
             name,
-            instead,
+            replacement,
         })
     })
 }
@@ -175,22 +175,25 @@ fn rows() -> impl Iterator<Item = Foreign> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::keywords::{Interner, Word};
     use crate::tree::BuiltIn;
-    use crate::words::{Word, Words};
 
     #[test]
-    fn every_line_is_read_and_no_name_is_our_own() {
-        let words = Words::default();
+    fn every_row_parses_and_no_name_is_a_glsl_name() {
+        let interner = Interner::default();
         let is_ours = |name: &str| {
-            let word = words.find(name).map(|symbol| words.word(symbol));
+            let word = interner.find(name).map(|symbol| interner.word(symbol));
             matches!(word, Some(Word::Type(_) | Word::Keyword(_))) || BuiltIn::named(name).is_some()
         };
         let lines = TABLE.lines().filter(|line| !line.trim().is_empty());
         assert_eq!(rows().count(), lines.count());
         for row in rows() {
             assert!(!is_ours(row.name), "{}", row.name);
-            if let Some(twin) = row.twin() {
-                assert!(is_ours(twin) || twin.starts_with('i'), "{twin}");
+            if let Some(glsl_equivalent) = row.glsl_equivalent() {
+                assert!(
+                    is_ours(glsl_equivalent) || glsl_equivalent.starts_with('i'),
+                    "{glsl_equivalent}"
+                );
             }
         }
     }

@@ -1,62 +1,77 @@
-//! A front end for GLSL ES 3.00 as ShaderToy runs it: from an author's text to a typed tree, or to diagnostics that a
-//! student can act on. Nothing here knows what becomes of the tree.
+//! A front end for GLSL ES 3.00 as ShaderToy runs it: turns source text into a typed tree, or into
+//! diagnostics that a student can act on. It does not depend on any consumer of the tree.
 //!
 //! ```text
-//! text ─► preprocess ─► tokens ─► parse ─(asks)─► check ─► tree
+//! text ─► preprocess ─► tokens ─► parse ─(calls)─► check ─► tree
 //! ```
 //!
-//! The parser knows the grammar and nothing else; at each construct it asks the checker, which knows scopes, types and rules, for
-//! a typed node. So there is one tree, and no tree of mere syntax. Section numbers (§) are those of the GLSL ES 3.00.6
-//! specification; where WebGL 2 (ANGLE) is stricter, so are we, and the place says so.
+//! The parser knows only the grammar; for each construct it calls the checker, which knows scopes, types and
+//! rules, and gets a typed node. So there is one tree and no separate syntax tree. Section numbers (§) refer
+//! to the GLSL ES 3.00.6 specification; where WebGL 2 (ANGLE) is stricter, so is this front end, and a
+//! comment says so.
 
 mod check;
 mod codes;
 mod constant;
 mod foreign;
-mod options;
+mod keywords;
 mod parse;
 mod preprocess;
 mod token;
 pub mod tree;
-mod words;
 
 pub use codes::{Code, IN_MACRO, MAX_TOLD, overdue};
-pub use options::Options;
 pub use preprocess::Remark;
-use toyproof_diagnostic::{Diagnostic, FileId, Files, Severity};
+use toyproof_diagnostic::{Deadline, Diagnostic, FileId, Files, Severity};
 use tree::{FunctionId, SamplerShape, Tree};
 
 use self::check::{Channels, Checker};
 use self::parse::Parser;
 
-/// How deep statements, parentheses, calls, unary operators and `?:` may nest, all together. More is refused with a diagnostic; this much
-/// fits a stack of 2 MB. Chains of operators, of postfix `.x` and `[i]`, of commas and of `else if` do not count.
+/// Maximum nesting depth of statements, parentheses, calls, unary operators and `?:`, counted together.
+/// Deeper nesting is reported; this depth fits a stack of 2 MB. Chains of operators, of postfix `.x` and
+/// `[i]`, of commas and of `else if` do not count.
 pub const MAX_NESTING: usize = 256;
 
-/// A shader that keeps every rule.
+/// Options of a check.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Options {
+    /// Accepts what desktop GLSL accepts: global initializers that are not constant (they run before
+    /// `mainImage`, in order), implicit conversions from integers to floats, arrays of arrays, `?:` of arrays
+    /// and structures, and user functions named like built-in ones.
+    pub lenient: bool,
+    /// The shapes of the textures bound to `iChannel0` to `iChannel3`. An unknown shape is inferred from use:
+    /// `sampler2D`, or the shape that the first lookup that does not fit a `sampler2D` requires.
+    pub channels: [Option<SamplerShape>; 4],
+    /// When the check must end. Lints get a quarter of the time for themselves; lints that take longer are
+    /// skipped.
+    pub deadline: Deadline,
+}
+
+/// A shader without errors.
 #[derive(Debug, Clone)]
 pub struct Checked {
     /// The shader.
     pub tree: Tree,
     /// `void mainImage(out vec4, in vec2)`.
     pub main_image: FunctionId,
-    /// The shapes of `iChannel0` to `iChannel3`, as asked for or told from use.
+    /// The shapes of `iChannel0` to `iChannel3`, as given in the options or inferred from use.
     pub channels: [SamplerShape; 4],
-    /// Legal things that the front end warns of, in the order of the text. What the author allows is among them: lints know.
+    /// The front end's warnings in source order, including those that the author allows: lints filter them.
     pub warnings: Vec<Diagnostic>,
-    /// The comments that are meant for lints.
+    /// The `// toyproof:` comments, which control lints.
     pub remarks: Vec<Remark>,
 }
 
 impl Checked {
-    /// Whether `dFdx`, `dFdy` or `fwidth` occur in it.
+    /// Whether the shader calls `dFdx`, `dFdy` or `fwidth`.
     #[must_use]
     pub fn takes_derivatives(&self) -> bool {
         let is_derivative = |kind: &tree::ExprKind| matches!(kind, tree::ExprKind::BuiltIn { function, .. } if function.is_derivative());
         self.tree.exprs.iter().any(|(_, expr)| is_derivative(&expr.kind))
     }
 
-    /// Whether it looks anything up in a texture.
+    /// Whether the shader reads a texture.
     #[must_use]
     pub fn reads_textures(&self) -> bool {
         let looks_up = |kind: &tree::ExprKind| matches!(kind, tree::ExprKind::BuiltIn { function, .. } if function.is_texture());
@@ -64,7 +79,7 @@ impl Checked {
     }
 }
 
-/// Checks a shader: its tree, or what is wrong with it, in the order of the text.
+/// Checks a shader. Returns its tree, or its diagnostics in source order.
 ///
 /// ```
 /// use toyproof_glsl::{Options, check};
@@ -78,7 +93,7 @@ impl Checked {
 /// ```
 ///
 /// # Errors
-/// With at least one error if the shader breaks a rule; warnings may stand among them.
+/// If the shader breaks a rule: at least one error, possibly among warnings.
 pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, Vec<Diagnostic>> {
     let deadline = &options.deadline;
     let too_slow = |overdue| vec![codes::overdue(overdue)];
@@ -89,9 +104,10 @@ pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, 
     }
     let source = files.get(file);
     parse::balance(&mut text, source);
-    let told = std::mem::take(&mut text.diagnostics);
+    let reported = std::mem::take(&mut text.diagnostics);
     let mut channels = Channels::new(options);
-    // A use may tell the shape of a channel; the shader is then read anew with it, at most twice for each of the four.
+    // A use may determine the shape of a channel; the shader is then parsed again with it, at most twice for
+    // each of the four channels.
     loop {
         channels.changed = false;
         let mut checker = Parser::new(&text, source, Checker::new(&text, options, channels.clone())).parse();
@@ -101,7 +117,7 @@ pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, 
             continue;
         }
         let main_image = checker.finish();
-        let mut all = told;
+        let mut all = reported;
         all.append(&mut checker.warnings);
         all.append(&mut checker.errors);
         let is_error = |diagnostic: &Diagnostic| diagnostic.severity == Severity::Error;
@@ -118,11 +134,11 @@ pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, 
             }
             _ => {
                 all.sort_by_key(|diagnostic| diagnostic.span.map_or(u32::MAX, |span| span.start));
-                let mut told = Vec::new();
+                let mut reported = Vec::new();
                 for diagnostic in all {
-                    codes::tell(&mut told, diagnostic);
+                    codes::push_limited(&mut reported, diagnostic);
                 }
-                Err(told)
+                Err(reported)
             }
         };
     }

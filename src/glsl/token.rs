@@ -1,30 +1,30 @@
-//! Tokens, and the words that they are made of.
+//! Tokens and punctuators.
 
 use super::tree::{BinaryOp, Place};
 
-/// A piece of the author's text, as the preprocessor hands it to the parser.
+/// A token, as the preprocessor passes it to the parser.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Token {
-    /// What it is.
+    /// Its kind.
     pub(crate) kind: TokenKind,
-    /// Where it stands.
+    /// Its place.
     pub(crate) at: Place,
-    /// Whether it stands for something whose mistake has been told: what is wrong around it may come from that.
-    pub(crate) told: bool,
+    /// Whether an error about it has been reported: errors nearby may follow from that one.
+    pub(crate) reported: bool,
 }
 
-/// What a token is.
+/// The kind of a token.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum TokenKind {
     /// A keyword or name.
     Word(Symbol),
-    /// Something that begins like a number; whether it is one, the parser decides.
+    /// Text that begins like a number; the parser decides whether it is valid.
     Number(Symbol),
     /// An operator or bracket.
     Punctuator(Punctuator),
-    /// A character that GLSL does not know; the parser never sees it.
+    /// A character that is not in GLSL's character set; the parser never sees it.
     Unknown(char),
-    /// What does not belong there and has been told.
+    /// A misplaced token that has been reported.
     Stray,
     /// The end of a line; the parser never sees it.
     Newline,
@@ -32,11 +32,11 @@ pub(crate) enum TokenKind {
     End,
 }
 
-/// Names a text that [`Words`](super::words::Words) holds.
+/// The id of a text in an [`Interner`](crate::keywords::Interner).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct Symbol(pub(super) u32);
 
-/// An enumeration of what has a fixed text.
+/// Defines an enumeration of items with fixed text.
 macro_rules! named {
     ($(#[$doc:meta])* $type:ident { $($variant:ident $text:literal,)* }) => {
         $(#[$doc])*
@@ -46,10 +46,10 @@ macro_rules! named {
         }
 
         impl $type {
-            /// All of them.
+            /// All items.
             pub(crate) const ALL: &[Self] = &[$(Self::$variant),*];
 
-            /// As written.
+            /// Its text.
             #[must_use]
             pub(crate) fn text(self) -> &'static str {
                 match self {
@@ -63,7 +63,7 @@ macro_rules! named {
 pub(super) use named;
 
 named! {
-    /// An operator or bracket. Where one is the beginning of another, the longer stands first.
+    /// An operator or bracket. If one is a prefix of another, the longer one comes first.
     Punctuator {
         ShiftLeftAssign "<<=",
         ShiftRightAssign ">>=",
@@ -116,7 +116,7 @@ named! {
 }
 
 impl Punctuator {
-    /// The binary operator that it is between two operands.
+    /// The binary operator that it denotes between two operands.
     #[must_use]
     pub(crate) fn binary_operator(self) -> Option<BinaryOp> {
         Some(match self {
@@ -143,7 +143,7 @@ impl Punctuator {
         })
     }
 
-    /// The operator of `+=` and the like.
+    /// The operator of a compound assignment such as `+=`.
     #[must_use]
     pub(crate) fn assignment_operator(self) -> Option<BinaryOp> {
         Some(match self {
@@ -167,7 +167,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_longer_punctuator_stands_before_its_beginning() {
+    fn longer_punctuators_precede_their_prefixes() {
         for (at, long) in Punctuator::ALL.iter().enumerate() {
             for short in &Punctuator::ALL[..at] {
                 assert!(!long.text().starts_with(short.text()), "{short:?} hides {long:?}");

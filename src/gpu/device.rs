@@ -1,53 +1,55 @@
-//! Choosing and opening a Vulkan adapter, and what is worth knowing of each.
+//! Vulkan drivers: discovery, selection, and open devices.
 
+use std::env;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
 use serde::{Deserialize, Serialize};
 use wgpu::{Adapter, Backends, DeviceType, Features, Instance, InstanceDescriptor};
 
-use super::{Failure, INSTALL_HINT, On};
+use super::{AdapterSelector, Failure};
 
-/// What is worth knowing of a Vulkan driver.
+/// Properties of a Vulkan driver.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Driver {
     /// The adapter's name.
     pub name: String,
-    /// The driver's name and version, as it says itself.
+    /// The driver's name and version, as it reports them.
     pub version: String,
     /// Whether it runs on the CPU.
     pub software: bool,
     /// Whether float32 textures can be filtered linearly.
     pub float32_filterable: bool,
-    /// Its float controls for 32 bits, in Vulkan's words: `DenormFlushToZero`, `RoundingModeRTE`, …
+    /// Its float controls for 32 bits, by their Vulkan names: `DenormFlushToZero`, `RoundingModeRTE`, …
     pub float_controls: Vec<String>,
-    /// Whether it ends loops by force; none where it could not be measured.
+    /// Whether it terminates long loops; `None` if that could not be measured.
     pub loop_cap: Option<LoopCap>,
 }
 
 impl Driver {
-    /// Whether it is Mesa's software driver.
+    /// Returns whether it is Mesa's software driver.
     #[must_use]
     pub fn is_lavapipe(&self) -> bool {
-        self.name.contains(LAVAPIPE)
+        self.name.contains(LAVAPIPE_ADAPTER_NAME)
     }
 }
 
-/// What lavapipe calls its adapter.
-const LAVAPIPE: &str = "llvmpipe";
+/// The name of lavapipe's adapter.
+const LAVAPIPE_ADAPTER_NAME: &str = "llvmpipe";
 
-/// Whether a driver ends the loops of an invocation by force.
+/// Whether a driver terminates the loops of an invocation after a number of iterations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum LoopCap {
-    /// Not within the iterations that were tried.
+    /// No termination within this number of iterations.
     NoneUpTo(u32),
-    /// After so many iterations.
+    /// Termination after this number of iterations.
     After(u32),
 }
 
-/// How many iterations the cap is looked for in.
+/// Number of iterations within which the loop cap is searched.
 pub(super) const PROBED_ITERATIONS: u32 = 70_000;
 
-/// An open device and what all its pipelines share.
+/// An open device with the state that all its pipelines share.
 #[derive(Debug)]
 pub(super) struct Device {
     pub(super) gpu: wgpu::Device,
@@ -64,29 +66,29 @@ fn adapters() -> Vec<Adapter> {
     pollster::block_on(Instance::new(descriptor).enumerate_adapters(Backends::VULKAN))
 }
 
-/// The adapter that `on` asks for comes first; the others follow in the loader's order.
-fn choose(mut adapters: Vec<Adapter>, on: &On) -> Result<Vec<Adapter>, Failure> {
+/// Moves the selected adapter to the front. The others stay in the loader's order.
+fn choose(mut adapters: Vec<Adapter>, selector: &AdapterSelector) -> Result<Vec<Adapter>, Failure> {
     if adapters.is_empty() {
         return Err(Failure::NoDriver(format!(
             "no Vulkan driver found; {INSTALL_HINT}"
         )));
     }
     let names: Vec<String> = adapters.iter().map(|adapter| adapter.get_info().name).collect();
-    let holds = |words: &str| {
+    let find_by_name = |substring: &str| {
         names
             .iter()
-            .position(|name| name.to_lowercase().contains(&words.to_lowercase()))
+            .position(|name| name.to_lowercase().contains(&substring.to_lowercase()))
     };
-    let chosen = match on {
-        On::Auto => holds(LAVAPIPE).unwrap_or(0),
-        On::Lavapipe => holds(LAVAPIPE).ok_or_else(|| {
+    let chosen = match selector {
+        AdapterSelector::Auto => find_by_name(LAVAPIPE_ADAPTER_NAME).unwrap_or(0),
+        AdapterSelector::Lavapipe => find_by_name(LAVAPIPE_ADAPTER_NAME).ok_or_else(|| {
             Failure::NoDriver(format!(
                 "lavapipe is not among the Vulkan drivers here; {INSTALL_HINT}"
             ))
         })?,
-        On::Named(words) => holds(words).ok_or_else(|| {
+        AdapterSelector::Named(substring) => find_by_name(substring).ok_or_else(|| {
             Failure::NoDriver(format!(
-                "no Vulkan adapter's name holds “{words}”; there are: {}",
+                "no Vulkan adapter's name holds “{substring}”; there are: {}",
                 names.join(", ")
             ))
         })?,
@@ -96,9 +98,9 @@ fn choose(mut adapters: Vec<Adapter>, on: &On) -> Result<Vec<Adapter>, Failure> 
     Ok(adapters)
 }
 
-/// All drivers, the chosen one first.
-pub(super) fn probe(on: &On) -> Result<Vec<Driver>, Failure> {
-    Ok(choose(adapters(), on)?.into_iter().map(describe).collect())
+/// Lists all drivers, the selected one first.
+pub(super) fn probe(selector: &AdapterSelector) -> Result<Vec<Driver>, Failure> {
+    Ok(choose(adapters(), selector)?.into_iter().map(describe).collect())
 }
 
 fn describe(adapter: Adapter) -> Driver {
@@ -109,7 +111,7 @@ fn describe(adapter: Adapter) -> Driver {
         software: info.device_type == DeviceType::Cpu,
         float32_filterable: adapter.features().contains(Features::FLOAT32_FILTERABLE),
         float_controls: float_controls(&adapter),
-        loop_cap: Device::of(adapter)
+        loop_cap: Device::from_adapter(adapter)
             .and_then(|mut device| device.measured_cap())
             .ok(),
     }
@@ -119,22 +121,29 @@ fn version(info: &wgpu::AdapterInfo) -> String {
     format!("{} {}", info.driver, info.driver_info).trim().to_owned()
 }
 
+/// Metal has no such query.
+#[cfg(target_vendor = "apple")]
+fn float_controls(_: &Adapter) -> Vec<String> {
+    Vec::new()
+}
+
+#[cfg(not(target_vendor = "apple"))]
 #[expect(
     unsafe_code,
-    reason = "wgpu does not tell float controls; Vulkan's own query does"
+    reason = "wgpu does not expose float controls; Vulkan's own query does"
 )]
 fn float_controls(adapter: &Adapter) -> Vec<String> {
     use ash::vk;
     let mut float = vk::PhysicalDeviceFloatControlsProperties::default();
     {
         let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut float);
-        // SAFETY: the handles live as long as the guard, and nothing is destroyed through it.
+        // SAFETY: the handles outlive the guard's scope, and nothing is destroyed through it.
         let Some(hal) = (unsafe { adapter.as_hal::<wgpu::hal::api::Vulkan>() }) else {
             return Vec::new();
         };
         let instance = hal.shared_instance().raw_instance();
-        // SAFETY: the physical device is of this instance, and the chain holds one structure that Vulkan 1.2
-        // (and wgpu's own requirements) knows.
+        // SAFETY: the physical device belongs to this instance, and the chain holds one structure of Vulkan
+        // 1.2, which wgpu requires anyway.
         unsafe { instance.get_physical_device_properties2(hal.raw_physical_device(), &mut properties) };
     }
     [
@@ -154,13 +163,13 @@ fn float_controls(adapter: &Adapter) -> Vec<String> {
 }
 
 impl Device {
-    /// Opens the adapter that `on` asks for.
-    pub(super) fn open(on: &On) -> Result<Self, Failure> {
-        let first = choose(adapters(), on)?.into_iter().next();
-        Self::of(first.ok_or_else(|| Failure::NoDriver(INSTALL_HINT.to_owned()))?)
+    /// Opens the selected adapter.
+    pub(super) fn open(selector: &AdapterSelector) -> Result<Self, Failure> {
+        let first = choose(adapters(), selector)?.into_iter().next();
+        Self::from_adapter(first.ok_or_else(|| Failure::NoDriver(INSTALL_HINT.to_owned()))?)
     }
 
-    fn of(adapter: Adapter) -> Result<Self, Failure> {
+    fn from_adapter(adapter: Adapter) -> Result<Self, Failure> {
         let filterable = adapter.features() & Features::FLOAT32_FILTERABLE;
         let descriptor = wgpu::DeviceDescriptor {
             required_features: Features::PASSTHROUGH_SHADERS | filterable,
@@ -170,10 +179,10 @@ impl Device {
         let failed = |error: wgpu::RequestDeviceError| Failure::Device(error.to_string());
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).map_err(failed)?;
         let lost = Arc::new(Mutex::new(None));
-        let told = Arc::clone(&lost);
-        device.set_device_lost_callback(move |reason, words| {
-            if let Ok(mut lost) = told.lock() {
-                *lost = Some(format!("the device was lost: {reason:?} {words}"));
+        let lost_reason = Arc::clone(&lost);
+        device.set_device_lost_callback(move |reason, message| {
+            if let Ok(mut lost) = lost_reason.lock() {
+                *lost = Some(format!("the device was lost: {reason:?} {message}"));
             }
         });
         let filterable = !filterable.is_empty();
@@ -187,24 +196,26 @@ impl Device {
         })
     }
 
-    /// The adapter's name and its driver's, for reports.
+    /// Returns the names of the adapter and its driver, for reports.
     pub(super) fn name(&self) -> String {
         let info = self.adapter.get_info();
         format!("{}, {}", info.name, version(&info))
     }
 
-    /// Whether this driver is of a kind that is known to end loops by force: some versions of Mesa's software rasteriser are.
-    pub(super) fn may_end_loops(&self) -> bool {
+    /// Returns whether this kind of driver is known to terminate long loops: some versions of Mesa's software
+    /// rasterizer do.
+    pub(super) fn may_terminate_loops(&self) -> bool {
         self.is_lavapipe()
     }
 
     pub(super) fn is_lavapipe(&self) -> bool {
-        self.adapter.get_info().name.contains(LAVAPIPE)
+        self.adapter.get_info().name.contains(LAVAPIPE_ADAPTER_NAME)
     }
 
-    /// After how many iterations this driver ends an invocation's loops, if it does.
+    /// Returns the number of iterations after which this driver terminates the loops of an invocation, if it
+    /// does.
     pub(super) fn loop_cap(&mut self) -> Result<Option<u32>, Failure> {
-        if !self.may_end_loops() {
+        if !self.may_terminate_loops() {
             return Ok(None);
         }
         Ok(match self.measured_cap()? {
@@ -220,5 +231,94 @@ impl Device {
         let cap = super::draw::measure_cap(self)?;
         self.cap = Some(cap);
         Ok(cap)
+    }
+}
+
+// Installed drivers, found before any is loaded.
+
+/// Installation instructions for the driver used for all measurements.
+pub const INSTALL_HINT: &str = "install Mesa's lavapipe: apt-get install mesa-vulkan-drivers libvulkan1 \
+                                (Fedora: dnf install mesa-vulkan-drivers vulkan-loader; \
+                                Arch: pacman -S vulkan-swrast vulkan-icd-loader)";
+
+/// Environment variables by which a user pins drivers: the loader's current one and its deprecated one.
+pub(super) const PIN_VARIABLES: [&str; 2] = ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"];
+
+/// Returns whether the user pins drivers by the loader's environment variables, which then take precedence.
+#[must_use]
+pub fn is_pinned_by_user() -> bool {
+    PIN_VARIABLES.iter().any(|name| env::var_os(name).is_some())
+}
+
+/// Returns the manifests that these variables list, or `None` if they are not set.
+#[must_use]
+pub fn pinned() -> Option<Vec<PathBuf>> {
+    let list = PIN_VARIABLES.iter().find_map(env::var_os)?;
+    Some(env::split_paths(&list).collect())
+}
+
+/// Returns the manifests of all installed drivers, in the loader's search order.
+#[must_use]
+pub fn manifests() -> Vec<PathBuf> {
+    let home = env::var_os("HOME").map(PathBuf::from).unwrap_or_default();
+    let list = |name: &str, default: &str| -> Vec<PathBuf> {
+        let value = env::var_os(name).filter(|value| !value.is_empty());
+        env::split_paths(&value.unwrap_or_else(|| default.into())).collect()
+    };
+    let mut roots = vec![home.join(".config")];
+    roots.extend(list("XDG_CONFIG_DIRS", "/etc/xdg"));
+    roots.push("/etc".into());
+    roots.push(home.join(".local/share"));
+    roots.extend(list("XDG_DATA_DIRS", "/usr/local/share:/usr/share"));
+    let mut found: Vec<PathBuf> = Vec::new();
+    for folder in roots.iter().map(|root| root.join("vulkan/icd.d")) {
+        let mut in_folder: Vec<_> = folder
+            .read_dir()
+            .into_iter()
+            .flatten()
+            .filter_map(|entry| Some(entry.ok()?.path()))
+            .filter(|path| path.extension().is_some_and(|extension| extension == "json"))
+            .filter(|path| !found.contains(path))
+            .collect();
+        in_folder.sort();
+        found.extend(in_folder);
+    }
+    found
+}
+
+/// Returns lavapipe's manifest, preferring this machine's architecture.
+#[must_use]
+pub fn lavapipe_manifest() -> Option<PathBuf> {
+    choose_lavapipe(manifests())
+}
+
+fn choose_lavapipe(manifests: Vec<PathBuf>) -> Option<PathBuf> {
+    let name = |path: &Path| {
+        path.file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned()
+    };
+    let mut lavapipe: Vec<_> = manifests
+        .into_iter()
+        .filter(|path| name(path).starts_with("lvp_icd."))
+        .collect();
+    lavapipe.sort_by_key(|path| !name(path).contains(env::consts::ARCH));
+    lavapipe.into_iter().next()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lavapipe_of_this_architecture_is_preferred() {
+        let paths = |names: &[&str]| names.iter().map(PathBuf::from).collect::<Vec<_>>();
+        let lavapipe = format!("/b/lvp_icd.{}.json", env::consts::ARCH);
+        let all = paths(&["/a/radeon_icd.x86_64.json", "/b/lvp_icd.other.json", &lavapipe]);
+        assert_eq!(choose_lavapipe(all), Some(PathBuf::from(lavapipe)));
+        let one = paths(&["/b/lvp_icd.json"]);
+        assert_eq!(choose_lavapipe(one.clone()), Some(one[0].clone()));
+        assert_eq!(choose_lavapipe(paths(&["/a/intel_icd.json"])), None);
     }
 }

@@ -1,4 +1,4 @@
-//! Painting one frame and reading it back.
+//! Rendering one frame and reading it back.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -15,50 +15,50 @@ use wgpu::{BindGroup, Buffer, BufferUsages, PollType, RenderPipeline, Texture, T
 
 use super::device::{Device, LoopCap, PROBED_ITERATIONS};
 use super::pipeline::{FORMAT, Layout};
-use super::{Failure, On};
+use super::{AdapterSelector, Failure};
 
-/// A picture that a shader painted.
+/// A rendered image with its statistics.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Drawn {
-    /// The picture, as the float target holds it, in bands of rows from the bottom up, as of [`Frame::bands`]; none where they
-    /// were handed over before.
+    /// The image in the float target's format, in bands of rows from the bottom up, as given by
+    /// [`Frame::bands`]. Empty if the bands were passed to a callback.
     #[serde(skip)]
     pub bands: Vec<Image>,
     /// Adapter and driver.
     pub device: String,
-    /// Whether the shader has loops, and the driver is of a kind that ends loops by force.
-    pub(super) may_be_cut_short: bool,
-    /// Pixels in which the driver ended a loop by force, whose colours mean nothing; none if that could not be
-    /// found out in time. Zero where nobody looked.
-    pub cut_short: Option<u64>,
-    /// Time for naga to parse, validate and write.
+    /// Whether the shader has loops and the driver is of a kind that terminates long loops.
+    pub(super) may_truncate_loops: bool,
+    /// Number of pixels in which the driver terminated a loop, whose colors are meaningless. `None` if that
+    /// could not be determined in time; 0 if it was not checked.
+    pub loop_truncated: Option<u64>,
+    /// Time for naga to parse, validate and emit.
     pub translate: Duration,
     /// Time for the driver to compile.
     pub compile: Duration,
-    /// Time to paint and read back.
+    /// Time to render and read back.
     pub draw: Duration,
 }
 
 impl Drawn {
-    /// Whether there is something to be watched.
+    /// Returns whether the driver may have terminated a loop, so that a check is needed.
     #[must_use]
-    pub fn may_be_cut_short(&self) -> bool {
-        self.may_be_cut_short
+    pub fn may_truncate_loops(&self) -> bool {
+        self.may_truncate_loops
     }
 
-    /// The whole picture.
+    /// Joins the bands into an image.
     ///
     /// # Panics
-    /// If its bands were taken.
+    /// If the bands were passed to a callback.
     #[must_use]
     pub fn image(self) -> Image {
         Image::of_bands(self.bands)
     }
 }
 
-/// A shader that is compiled and ready to paint.
+/// A compiled shader with the bindings and the target of a frame.
 #[derive(Debug)]
-pub(super) struct Scene {
+pub(super) struct PreparedFrame {
     width: u32,
     bands: Vec<Range<u32>>,
     pipeline: RenderPipeline,
@@ -69,7 +69,7 @@ pub(super) struct Scene {
     bytes_per_row: u32,
 }
 
-/// What runs: words, and the textures that they read.
+/// SPIR-V words of a shader, and the shapes of the textures that they sample.
 #[derive(Debug)]
 pub(super) struct Program {
     words: Vec<u32>,
@@ -78,63 +78,64 @@ pub(super) struct Program {
 }
 
 impl Program {
-    /// naga's words for a module, held to its arithmetic if strict.
+    /// Emits SPIR-V for a module, decorated for strict arithmetic if `float` is strict.
     pub(super) fn new(module: &ValidModule, float: FloatMode) -> Result<Self, Failure> {
         let words = spirv::words(module).map_err(Failure::Naga)?;
         Ok(Self {
-            words: held_to(words, float),
+            words: apply_float_mode(words, float),
             channels: module.channels(),
             float,
         })
     }
 
-    /// Another compiler's words.
-    pub(super) fn foreign(words: Vec<u32>, channels: [Shape; 4], float: FloatMode) -> Self {
+    /// Uses the words of a different compiler.
+    pub(super) fn from_words(words: Vec<u32>, channels: [Shape; 4], float: FloatMode) -> Self {
         Self {
-            words: held_to(words, float),
+            words: apply_float_mode(words, float),
             channels,
             float,
         }
     }
 
-    /// As the bytes of a `.spv` file.
+    /// Returns the bytes of a `.spv` file.
     pub(super) fn bytes(&self) -> Vec<u8> {
         spirv::bytes(&self.words)
     }
 }
 
-fn held_to(words: Vec<u32>, float: FloatMode) -> Vec<u32> {
+fn apply_float_mode(words: Vec<u32>, float: FloatMode) -> Vec<u32> {
     match float {
         FloatMode::Strict => spirv::strict(&words),
         FloatMode::Fast => words,
     }
 }
 
-/// A colour that no shader leaves: the alpha of probes is a whole number, that of shaders 1.
-const UNPAINTED: wgpu::Color = wgpu::Color {
+/// Clear color, which no shader outputs: the alpha of probes is an integer, that of shaders 1.
+const CLEAR_COLOR: wgpu::Color = wgpu::Color {
     r: 0.0,
     g: 0.0,
     b: 0.0,
     a: 0.5,
 };
 
-/// llvmpipe runs this many pixels together, on the widest processors, and counts their iterations as one.
-const LANES: u32 = 16;
+/// Maximum number of pixels that llvmpipe runs together, on the widest processors. It counts their iterations
+/// as one.
+const MAX_LAVAPIPE_LANES: u32 = 16;
 
-/// A pixel that runs no more rounds of loops than this, all loops together, is ended by force on no driver: Mesa before 23 grants 65,535
-/// to all pixels that it runs together.
-pub const SAFE_ROUNDS: u32 = 65_535 / LANES;
+/// Number of iterations, over all loops of a pixel, up to which no driver terminates it: Mesa before 23
+/// allows 65,535 for all pixels that it runs together.
+pub const SAFE_ROUNDS: u32 = 65_535 / MAX_LAVAPIPE_LANES;
 
-/// Whether a driver that stops after `cap` iterations can have stopped any pixel of a picture that tells one more
-/// than the iterations of each; so it can where the picture tells what no count can be.
+/// Returns whether a driver that stops after `cap` iterations may have stopped any pixel of an image whose
+/// alpha is the number of iterations plus 1. An alpha that is not a valid count is suspect too.
 pub(super) fn may_reach(iterations: &Image, cap: u32) -> bool {
-    let counts = 1.0..cap as f32 / LANES as f32;
-    let tells = |alpha: f32| !counts.contains(&alpha) || alpha.fract() != 0.0;
-    iterations.pixels().iter().any(|pixel| tells(pixel[3]))
+    let counts = 1.0..cap as f32 / MAX_LAVAPIPE_LANES as f32;
+    let is_suspect = |alpha: f32| !counts.contains(&alpha) || alpha.fract() != 0.0;
+    iterations.pixels().iter().any(|pixel| is_suspect(pixel[3]))
 }
 
-/// How many pixels of such a picture ran all the iterations that the driver grants.
-pub(super) fn reached(iterations: &Image, cap: u32) -> u64 {
+/// Counts the pixels of such an image that ran all iterations that the driver allows.
+pub(super) fn count_reached(iterations: &Image, cap: u32) -> u64 {
     iterations
         .pixels()
         .iter()
@@ -142,15 +143,19 @@ pub(super) fn reached(iterations: &Image, cap: u32) -> u64 {
         .count() as u64
 }
 
-/// How many pixels of a picture with watched loops tell of one that was ended by force. A pixel that nothing
-/// painted does so too, unless the shader discards: code after an endless loop may never be reached.
-pub(super) fn cut_short(watched: &Image, discards: bool) -> u64 {
-    let unpainted = UNPAINTED.a as f32;
-    let cut = |alpha: f32| alpha < unpainted || (alpha <= unpainted && !discards);
-    watched.pixels().iter().filter(|pixel| cut(pixel[3])).count() as u64
+/// Counts the pixels of an image of the open-loops probe in which a loop was terminated. A pixel that nothing
+/// was written to counts too, unless the shader discards: code after an endless loop may never be reached.
+pub(super) fn count_truncated(watched: &Image, discards: bool) -> u64 {
+    let cleared = CLEAR_COLOR.a as f32;
+    let is_truncated = |alpha: f32| alpha < cleared || (alpha <= cleared && !discards);
+    watched
+        .pixels()
+        .iter()
+        .filter(|pixel| is_truncated(pixel[3]))
+        .count() as u64
 }
 
-/// A program as a pipeline, for frames of any size.
+/// A pipeline for frames of any size.
 #[derive(Debug)]
 pub(super) struct Compiled {
     layout: Layout,
@@ -158,32 +163,34 @@ pub(super) struct Compiled {
 }
 
 impl Device {
-    /// Compiles: a pipeline, and a draw that covers no pixel, since drivers compile when they first draw.
-    pub(super) fn prepare(&self, program: &Program, frame: &Frame) -> Result<Scene, Failure> {
+    /// Compiles a program and prepares a frame. Includes a draw that covers no pixel, since drivers compile
+    /// on first use.
+    pub(super) fn prepare(&self, program: &Program, frame: &Frame) -> Result<PreparedFrame, Failure> {
         self.stage(&self.compile(program)?, frame)
     }
 
-    /// The pipeline; the driver may do its work when it first draws.
+    /// Creates the pipeline; the driver may compile it at the first draw.
     pub(super) fn compile(&self, program: &Program) -> Result<Compiled, Failure> {
-        self.checked(|| {
+        self.with_error_scopes(|| {
             let layout = Layout::new(&self.gpu, self.filterable, program.channels);
-            let pipeline = layout.pipeline(&self.gpu, &self.run_words(program));
+            let pipeline = layout.pipeline(&self.gpu, &self.driver_words(program));
             Ok(Compiled { layout, pipeline })
         })
     }
 
-    /// A program's words as this driver gets them: Mesa's compiler must not take what strict ones spell out for made of uniforms.
-    fn run_words<'a>(&self, program: &'a Program) -> Cow<'a, [u32]> {
+    /// Returns the words for this driver: Mesa's compiler must not recognize that strict, expanded operations
+    /// are computed from uniforms.
+    fn driver_words<'a>(&self, program: &'a Program) -> Cow<'a, [u32]> {
         match program.float {
             FloatMode::Strict if self.is_lavapipe() => spirv::with_opaque_numbers(&program.words).into(),
             _ => (&program.words).into(),
         }
     }
 
-    /// What a frame is painted with and into, and a draw that covers no pixel.
-    pub(super) fn stage(&self, compiled: &Compiled, frame: &Frame) -> Result<Scene, Failure> {
+    /// Prepares the bindings and the target of a frame, with a draw that covers no pixel.
+    pub(super) fn stage(&self, compiled: &Compiled, frame: &Frame) -> Result<PreparedFrame, Failure> {
         let [width, height] = frame.size;
-        self.checked(|| {
+        self.with_error_scopes(|| {
             let target = self.gpu.create_texture(&wgpu::TextureDescriptor {
                 label: None,
                 size: wgpu::Extent3d {
@@ -207,7 +214,7 @@ impl Device {
                 usage: BufferUsages::MAP_READ | BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             });
-            let scene = Scene {
+            let prepared = PreparedFrame {
                 width,
                 bands,
                 pipeline: compiled.pipeline.clone(),
@@ -216,64 +223,65 @@ impl Device {
                 readback,
                 bytes_per_row,
             };
-            self.submit(&scene, 3..6)?;
-            Ok(scene)
+            self.submit(&prepared, 3..6)?;
+            Ok(prepared)
         })
     }
 
-    /// Paints, and hands on one band of rows after the other, from the bottom up.
-    pub(super) fn paint(
+    /// Renders a frame and passes the bands of rows to `on_band`, from the bottom up.
+    pub(super) fn render(
         &self,
-        scene: &Scene,
-        mut each: impl FnMut(Image) -> Result<(), Failure>,
+        prepared: &PreparedFrame,
+        mut on_band: impl FnMut(Image) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
-        self.checked(|| {
-            self.submit(scene, 0..3)?;
-            for (number, rows) in scene.bands.iter().enumerate() {
-                // The first has come with the painting.
+        self.with_error_scopes(|| {
+            self.submit(prepared, 0..3)?;
+            for (number, rows) in prepared.bands.iter().enumerate() {
+                // The first band was copied with the draw.
                 if number > 0 {
                     let mut commands = self.gpu.create_command_encoder(&Default::default());
-                    scene.copy(&mut commands, rows);
+                    prepared.copy(&mut commands, rows);
                     self.queue.submit([commands.finish()]);
                     self.wait()?;
                 }
-                each(self.read(scene, rows)?)?;
+                on_band(self.read(prepared, rows)?)?;
             }
             Ok(())
         })
     }
 
-    /// The whole picture.
-    pub(super) fn picture(&self, scene: &Scene) -> Result<Image, Failure> {
+    /// Renders a frame into one image.
+    pub(super) fn render_image(&self, prepared: &PreparedFrame) -> Result<Image, Failure> {
         let mut bands = Vec::new();
-        self.paint(scene, |band| {
+        self.render(prepared, |band| {
             bands.push(band);
             Ok(())
         })?;
         Ok(Image::of_bands(bands))
     }
 
-    /// What lies in the buffer. The target's first row has the smallest fragment coordinates: it is the bottom.
-    fn read(&self, scene: &Scene, rows: &Range<u32>) -> Result<Image, Failure> {
-        let slice = scene.readback.slice(..);
+    /// Reads the band in the buffer. The first row of the target has the smallest fragment coordinates: it is
+    /// the bottom.
+    fn read(&self, prepared: &PreparedFrame, rows: &Range<u32>) -> Result<Image, Failure> {
+        let slice = prepared.readback.slice(..);
         slice.map_async(wgpu::MapMode::Read, |_| {});
         self.wait()?;
         let view = slice
             .get_mapped_range()
             .map_err(|error| Failure::Device(error.to_string()))?;
         let pixels = view
-            .chunks(scene.bytes_per_row as usize)
+            .chunks(prepared.bytes_per_row as usize)
             .take(rows.len())
-            .flat_map(|row| row[..16 * scene.width as usize].chunks_exact(16))
+            .flat_map(|row| row[..16 * prepared.width as usize].chunks_exact(16))
             .map(bytemuck::pod_read_unaligned)
             .collect();
         drop(view);
-        scene.readback.unmap();
-        Ok(Image::new(scene.width, rows.len() as u32, pixels))
+        prepared.readback.unmap();
+        Ok(Image::new(prepared.width, rows.len() as u32, pixels))
     }
 
-    fn submit(&self, scene: &Scene, vertices: Range<u32>) -> Result<(), Failure> {
-        let view = scene.target.create_view(&Default::default());
+    fn submit(&self, prepared: &PreparedFrame, vertices: Range<u32>) -> Result<(), Failure> {
+        let view = prepared.target.create_view(&Default::default());
         let mut commands = self.gpu.create_command_encoder(&Default::default());
         {
             let mut pass = commands.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -282,18 +290,18 @@ impl Device {
                     depth_slice: None,
                     resolve_target: None,
                     ops: wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(UNPAINTED),
+                        load: wgpu::LoadOp::Clear(CLEAR_COLOR),
                         store: wgpu::StoreOp::Store,
                     },
                 })],
                 ..Default::default()
             });
-            pass.set_pipeline(&scene.pipeline);
-            pass.set_bind_group(0, &scene.bindings, &[]);
+            pass.set_pipeline(&prepared.pipeline);
+            pass.set_bind_group(0, &prepared.bindings, &[]);
             pass.draw(vertices, 0..1);
         }
-        if let Some(rows) = scene.bands.first() {
-            scene.copy(&mut commands, rows);
+        if let Some(rows) = prepared.bands.first() {
+            prepared.copy(&mut commands, rows);
         }
         self.queue.submit([commands.finish()]);
         self.wait()
@@ -306,13 +314,14 @@ impl Device {
             .map_err(|error| Failure::Device(error.to_string()))
     }
 
-    /// Collects what wgpu reports aside: errors of validation and memory, and the loss of the device.
-    fn checked<T>(&self, work: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
+    /// Runs `work` and collects the errors that wgpu reports out of band: validation, memory, and device
+    /// loss.
+    fn with_error_scopes<T>(&self, work: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
         use wgpu::ErrorFilter::{Internal, OutOfMemory, Validation};
         let scopes = [Internal, OutOfMemory, Validation].map(|filter| self.gpu.push_error_scope(filter));
         let result = work();
-        // The scope that was opened last closes first. What is built on a device that is lost, or on what the driver or the memory
-        // failed to give, is invalid too: the cause is told.
+        // The scope opened last closes first. Resources built on a lost device, or on failed allocations, are
+        // invalid too: report the cause.
         let error = scopes
             .into_iter()
             .rev()
@@ -327,7 +336,7 @@ impl Device {
     }
 }
 
-/// wgpu lays its errors out over several lines; a reason is one sentence.
+/// Joins the lines of wgpu's errors into one sentence.
 fn one_line(words: &str) -> String {
     words
         .lines()
@@ -337,8 +346,8 @@ fn one_line(words: &str) -> String {
         .join(": ")
 }
 
-impl Scene {
-    /// Copies rows of the target into the buffer.
+impl PreparedFrame {
+    /// Copies rows of the target to the buffer.
     fn copy(&self, commands: &mut wgpu::CommandEncoder, rows: &Range<u32>) {
         let target = wgpu::TexelCopyTextureInfo {
             origin: wgpu::Origin3d {
@@ -365,45 +374,52 @@ impl Scene {
     }
 }
 
-/// A shader compiled on a device of this process: for measuring, where the worker's protection is not wanted.
+/// A shader compiled on a device of this process: for measurements, where the isolation of a worker is not
+/// needed.
 #[derive(Debug)]
 pub struct Painter {
     device: Device,
-    scene: Scene,
+    prepared: PreparedFrame,
 }
 
 impl Painter {
-    /// Translates and compiles.
+    /// Translates and compiles a shader.
     ///
     /// # Errors
-    /// Why it cannot be run.
-    pub fn new(lowered: &Lowered, frame: &Frame, float: FloatMode, on: &On) -> Result<Self, Failure> {
+    /// The failure, if the shader cannot be run.
+    pub fn new(
+        lowered: &Lowered,
+        frame: &Frame,
+        float: FloatMode,
+        selector: &AdapterSelector,
+    ) -> Result<Self, Failure> {
         let module = ValidModule::parse(lowered).map_err(Failure::Refused)?;
-        let device = Device::open(on)?;
-        let scene = device.prepare(&Program::new(&module, float)?, frame)?;
-        Ok(Self { device, scene })
+        let device = Device::open(selector)?;
+        let prepared = device.prepare(&Program::new(&module, float)?, frame)?;
+        Ok(Self { device, prepared })
     }
 
-    /// Paints and reads back.
+    /// Renders and reads back.
     ///
     /// # Errors
     /// If the device is lost.
-    pub fn paint(&mut self) -> Result<Image, Failure> {
-        self.device.picture(&self.scene)
+    pub fn render(&mut self) -> Result<Image, Failure> {
+        self.device.render_image(&self.prepared)
     }
 }
 
-/// One pixel, and as many iterations as `iFrame` says: the count tells how many the driver granted.
-const COUNT: &str = "void mainImage(out vec4 c, in vec2 p) {
+/// A shader for one pixel with `iFrame` iterations, whose output is the number of iterations that the driver
+/// ran.
+const LOOP_COUNT_SHADER: &str = "void mainImage(out vec4 c, in vec2 p) {
     float count = 0.0;
     for (int i = 0; i < iFrame; i++) count += 1.0;
     c = vec4(count);
 }";
 
-/// Measures whether the driver ends loops by force.
+/// Measures whether the driver terminates long loops.
 pub(super) fn measure_cap(device: &Device) -> Result<LoopCap, Failure> {
     let mut files = Files::default();
-    let file = files.add(File::new("<loop cap>", COUNT));
+    let file = files.add(File::new("<loop cap>", LOOP_COUNT_SHADER));
     let checked = glsl::check(&files, file, &glsl::Options::default()).map_err(Failure::Invalid)?;
     let lowered = toyproof_translate::lower(&checked);
     let module = ValidModule::parse(&lowered).map_err(Failure::Refused)?;
@@ -413,7 +429,7 @@ pub(super) fn measure_cap(device: &Device) -> Result<LoopCap, Failure> {
         frame: PROBED_ITERATIONS as i32,
         ..Frame::default()
     };
-    let count = device.picture(&device.prepare(&program, &frame)?)?.get(0, 0)[0] as u32;
+    let count = device.render_image(&device.prepare(&program, &frame)?)?.get(0, 0)[0] as u32;
     Ok(if count < PROBED_ITERATIONS {
         LoopCap::After(count)
     } else {

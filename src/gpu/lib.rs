@@ -1,28 +1,28 @@
-//! Runs shaders on a Vulkan driver in a worker process, so that a hang, a crash or exhausted memory costs one shader only.
-//! The program that uses this crate starts itself as the worker.
+//! Runs shaders on a Vulkan driver in a worker process, so that a hang, a crash or memory exhaustion affects
+//! one shader only. The program that uses this crate starts itself as the worker.
 //!
 //! ```no_run
 //! use std::time::Duration;
 //!
-//! use toyproof_gpu::{On, Worker, serve};
+//! use toyproof_gpu::{AdapterSelector, Worker, serve};
 //!
 //! let arguments: Vec<String> = std::env::args().skip(1).collect();
 //! if arguments == ["worker"] {
-//!     return serve(std::io::stdin().lock(), std::io::stdout().lock()).unwrap();
+//! return serve(std::io::stdin().lock(), std::io::stdout().lock()).unwrap();
 //! }
 //! let program = std::env::current_exe().unwrap();
-//! let mut worker = Worker::new(program, vec!["worker".into()], On::Auto, Duration::from_secs(10));
+//! let timeout = Duration::from_secs(10);
+//! let mut worker = Worker::new(program, vec!["worker".into()], AdapterSelector::Auto, timeout);
 //! println!("{:?}", worker.probe());
 //! ```
 //!
-//! naga and the driver run in a worker process: [`Worker`] is the parent's side, [`serve`] the child's.
-//! A hang, a crash, a panic, a lost device or exhausted memory costs one shader; the worker is started
-//! anew for the next.
+//! naga and the driver run in the worker process: [`Worker`] is the parent's side, [`serve`] the child's.
+//! After a hang, a crash, a panic, a lost device or memory exhaustion, the worker is restarted for the next
+//! shader.
 
 pub mod browser;
 mod device;
 mod draw;
-mod driver;
 mod pipeline;
 mod protocol;
 mod serve;
@@ -31,39 +31,38 @@ mod worker;
 use std::fmt;
 use std::time::Duration;
 
-pub use device::{Driver, LoopCap};
+pub use device::{Driver, INSTALL_HINT, LoopCap, is_pinned_by_user, lavapipe_manifest, manifests, pinned};
 pub use draw::{Drawn, Painter, SAFE_ROUNDS};
-pub use driver::{INSTALL_HINT, is_pinned_by_user, lavapipe_manifest, manifests, pinned};
-pub use protocol::Written;
+pub use protocol::ShaderArtifact;
 use serde::{Deserialize, Serialize};
-pub use serve::{MEMORY_BYTES, serve};
+pub use serve::{MAX_MEMORY_BYTES, serve};
 use thiserror::Error;
 use toyproof_diagnostic::Diagnostic;
 pub use worker::Worker;
 
-/// Which adapter runs the shader.
+/// The adapter on which shaders run.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub enum On {
-    /// lavapipe where it is installed, else the first adapter.
+pub enum AdapterSelector {
+    /// lavapipe if it is installed, otherwise the first adapter.
     Auto,
-    /// Mesa's lavapipe and nothing else.
+    /// Mesa's lavapipe only.
     Lavapipe,
-    /// The first adapter whose name holds these words, in any case.
+    /// The first adapter whose name contains this substring, ignoring case.
     Named(String),
 }
 
-/// What the worker was doing.
+/// What the worker was doing when a job failed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Phase {
     /// Loading the driver.
     Starting,
-    /// naga parses, validates and writes.
+    /// naga parses, validates and emits the shader.
     Translating,
-    /// The driver compiles.
+    /// The driver compiles the shader.
     Compiling,
-    /// The frame is painted and read back.
+    /// The frame is rendered and read back.
     Drawing,
-    /// The frame is painted again to see whether the driver ended a loop by force.
+    /// The frame is rendered again to check whether the driver terminated a loop.
     WatchingLoops,
 }
 
@@ -79,71 +78,72 @@ impl fmt::Display for Phase {
     }
 }
 
-/// Why there is no picture.
+/// Why a shader could not be rendered.
 #[derive(Debug, Clone, PartialEq, Error, Serialize, Deserialize)]
 pub enum Failure {
     /// The shader does not compile.
     #[error("the shader does not compile")]
     Invalid(Vec<Diagnostic>),
-    /// naga refuses what we made of a valid shader.
+    /// naga rejects our lowering of a valid shader.
     #[error("naga cannot translate this shader")]
     Refused(Vec<Diagnostic>),
-    /// What was written is not read again.
+    /// naga's own front end rejects the output.
     #[error("what was written is refused by naga's own front end: {0}")]
     Reread(String),
-    /// naga gave up on it.
+    /// naga failed internally.
     #[error("naga cannot translate this shader: {0}")]
     Naga(String),
-    /// The deadline passed.
+    /// The deadline expired.
     #[error("stopped after {:.1} s, while {phase}", after.as_secs_f64())]
     Timeout {
-        /// What was going on.
+        /// Phase in which it expired.
         phase: Phase,
         /// The deadline.
         after: Duration,
     },
     /// The memory limit was reached.
-    #[error("out of memory while {phase} (limit {} GiB)", MEMORY_BYTES >> 30)]
+    #[error("out of memory while {phase} (limit {} GiB)", MAX_MEMORY_BYTES >> 30)]
     OutOfMemory {
-        /// What was going on.
+        /// Phase in which it happened.
         phase: Phase,
     },
-    /// The stack overflowed: recursion on something nested very deep.
+    /// The stack overflowed: recursion on deeply nested code.
     #[error("nested too deep: the stack overflowed while {phase}")]
     StackOverflow {
-        /// What was going on.
+        /// Phase in which it happened.
         phase: Phase,
     },
-    /// The worker died.
+    /// The worker process terminated.
     #[error("the worker process {how} while {phase}")]
     Crash {
-        /// What was going on.
+        /// Phase in which it happened.
         phase: Phase,
-        /// Signal or exit code, and the last words.
+        /// Signal or exit code, and the last line of standard error.
         how: String,
     },
-    /// The driver refused or lost the device.
+    /// The driver failed or lost the device.
     #[error("the Vulkan driver failed: {0}")]
     Device(String),
-    /// There is no such driver.
+    /// There is no driver that matches the selector.
     #[error("{0}")]
     NoDriver(String),
-    /// The driver, or the worker process itself, did not start: no shader is to blame.
+    /// The driver or the worker process did not start, independently of any shader.
     #[error("{0}")]
     NotStarted(String),
-    /// The worker process could not be started or spoken to.
+    /// The worker process could not be started, or communication with it failed.
     #[error("cannot run the worker process: {0}")]
     Worker(String),
 }
 
 impl Failure {
-    /// Whether there is no driver to be used, whatever the shader: the evaluator may take its place.
+    /// Returns whether no driver is usable, whatever the shader. The evaluator may take its place.
     #[must_use]
     pub fn is_without_driver(&self) -> bool {
         matches!(self, Self::NoDriver(_) | Self::NotStarted(_))
     }
 
-    /// Whether the time ran out while the driver compiled the shader: that says nothing of how long the shader runs.
+    /// Returns whether the deadline expired while the driver compiled the shader, which does not imply that
+    /// the shader runs long.
     #[must_use]
     pub fn is_slow_compilation(&self) -> bool {
         matches!(

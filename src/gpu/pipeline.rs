@@ -1,4 +1,4 @@
-//! The bindings that every translated shader sees, and the pipeline that runs its words.
+//! The bindings of all translated shaders, and the pipeline that runs their SPIR-V.
 
 use std::num::NonZeroU64;
 
@@ -10,19 +10,19 @@ use wgpu::{
     TextureViewDimension,
 };
 
-/// The format of every target and texture: 32-bit floats, so that nothing is rounded on the way.
+/// Format of all targets and textures: 32-bit floats, so that nothing is rounded.
 pub(super) const FORMAT: TextureFormat = TextureFormat::Rgba32Float;
 
-/// Three vertices that cover the target, and three more outside of it: drawing those compiles everything
-/// and paints nothing.
-const VERTICES: &str = "
+/// Vertex shader with three vertices that cover the target, and three more outside of it: drawing those
+/// compiles the pipeline without covering a pixel.
+const VERTEX_SHADER: &str = "
 @vertex fn main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
     let corner = index % 3u;
     let outside = f32(index / 3u) * 8.0;
     return vec4f(f32(corner & 1u) * 4.0 - 1.0 + outside, f32(corner >> 1u) * 4.0 - 1.0, 0.0, 1.0);
 }";
 
-/// The bindings of a program.
+/// Binding and pipeline layout of a program.
 #[derive(Debug)]
 pub(super) struct Layout {
     filterable: bool,
@@ -33,7 +33,8 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// All nine bindings of the contract; wgpu numbers them anew without gaps, so none may be left out.
+    /// Creates the layout with all nine bindings of the interface. None may be omitted, since wgpu renumbers
+    /// bindings without gaps.
     pub(super) fn new(device: &Device, filterable: bool, channels: [Shape; 4]) -> Self {
         let block = BindingType::Buffer {
             ty: wgpu::BufferBindingType::Uniform,
@@ -72,7 +73,7 @@ impl Layout {
         });
         let vertices = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: None,
-            source: wgpu::ShaderSource::Wgsl(VERTICES.into()),
+            source: wgpu::ShaderSource::Wgsl(VERTEX_SHADER.into()),
         });
         Self {
             filterable,
@@ -83,7 +84,7 @@ impl Layout {
         }
     }
 
-    /// The pipeline that paints with these words, which naga wrote from a module that it validated.
+    /// Creates the pipeline for the SPIR-V words of a fragment shader.
     pub(super) fn pipeline(&self, device: &Device, words: &[u32]) -> RenderPipeline {
         let fragment = module(device, words);
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -109,7 +110,7 @@ impl Layout {
         })
     }
 
-    /// The frame's block and channels, bound.
+    /// Creates the bind group of a frame: its uniform block and channels.
     pub(super) fn bind(&self, device: &Device, queue: &wgpu::Queue, frame: &Frame) -> BindGroup {
         let block = uniform(device, queue, &frame.block());
         let filter = if self.filterable {
@@ -130,7 +131,7 @@ impl Layout {
             .zip(self.channels)
             .map(|(image, shape)| match (image, shape) {
                 (Some(image), Shape::D2) => texture(device, queue, image),
-                // No volumes and cubes can be bound yet: they are black.
+                // Volumes and cubes cannot be bound yet: they are black.
                 _ => black(device, queue, shape),
             })
             .collect();
@@ -166,8 +167,8 @@ fn module(device: &Device, words: &[u32]) -> ShaderModule {
         spirv: Some(words.into()),
         ..Default::default()
     };
-    // SAFETY: the words are naga's for a module that it validated, with indices clamped, or a compiler's that is compared with it;
-    // what a driver makes of them happens in a process of its own.
+    // SAFETY: the words are naga's, for a module that it validated and with indices clamped, or those of a
+    // compiler that is compared with naga; the driver that processes them runs in a separate process.
     unsafe { device.create_shader_module_passthrough(descriptor) }
 }
 
@@ -190,7 +191,7 @@ fn dimension(shape: Shape) -> TextureViewDimension {
     }
 }
 
-/// A channel's texture: row 0 is the bottom, as texture coordinates have it.
+/// Uploads the texture of a channel. Row 0 is the bottom, as in texture coordinates.
 fn texture(device: &Device, queue: &wgpu::Queue, image: &Image) -> TextureView {
     let [width, height] = image.size();
     upload(
@@ -206,7 +207,7 @@ fn texture(device: &Device, queue: &wgpu::Queue, image: &Image) -> TextureView {
     )
 }
 
-/// What an unbound channel reads.
+/// Creates the texture of an unbound channel: opaque black.
 fn black(device: &Device, queue: &wgpu::Queue, shape: Shape) -> TextureView {
     let depth_or_array_layers = if shape == Shape::Cube { 6 } else { 1 };
     let size = Extent3d {

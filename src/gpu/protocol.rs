@@ -1,4 +1,4 @@
-//! What parent and worker say to each other: length-prefixed postcard messages over pipes.
+//! Protocol between parent and worker: length-prefixed postcard messages over pipes.
 
 use std::io::{self, Read, Write};
 
@@ -10,57 +10,60 @@ use toyproof_translate::naga_ir::Shape;
 use toyproof_translate::wgsl::Hosted;
 use toyproof_translate::{FloatMode, Lowered};
 
-use super::{Drawn, Driver, Failure, On, Phase};
+use super::{AdapterSelector, Drawn, Driver, Failure, Phase};
 
-/// What the parent asks for.
+/// A request from the parent.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Job {
-    /// Which Vulkan drivers are there, and which would be chosen.
-    Probe(On),
-    /// Translate and emit; strict decorations on SPIR-V if asked for.
+    /// List the Vulkan drivers, the selected one first.
+    Probe(AdapterSelector),
+    /// Translate and emit. SPIR-V gets strict decorations if the float mode requires them.
     Translate(Lowered, Target, FloatMode),
-    /// Read WGSL.
-    Read(String),
-    /// Translate, compile and paint a frame.
-    Draw(Box<Shot>),
-    /// Compile and paint a frame with another compiler's SPIR-V.
-    Run(Box<Foreign>),
-    /// Read a converted shader again, compile it with what drivers differ in spelled out, and paint frames.
-    Paint(Box<Written>, Vec<Frame>, On),
-    /// Tell in how many pixels of that frame the driver ends a loop by force.
-    WatchLoops(Box<Shot>),
+    /// Parse and validate WGSL.
+    ReadWgsl(String),
+    /// Translate, compile and render a frame.
+    Draw(Box<DrawJob>),
+    /// Compile and render a frame with the SPIR-V of a different compiler.
+    RunSpirv(Box<ForeignSpirv>),
+    /// Parse a converted shader again, compile it with driver-dependent operations expanded, and render
+    /// frames.
+    RenderArtifact(Box<ShaderArtifact>, Vec<Frame>, AdapterSelector),
+    /// Count the pixels of a frame in which the driver terminates a loop.
+    WatchLoops(Box<DrawJob>),
 }
 
-/// A shader and the frame that it paints.
+/// A shader and the frame to render.
 #[derive(Debug, Serialize, Deserialize)]
-pub(super) struct Shot {
+pub(super) struct DrawJob {
     pub(super) lowered: Lowered,
     pub(super) frame: Frame,
     pub(super) float: FloatMode,
-    pub(super) on: On,
+    pub(super) selector: AdapterSelector,
 }
 
-/// SPIR-V from elsewhere and the frame that it paints.
+/// SPIR-V of a different compiler and the frame to render.
 #[derive(Debug, Serialize, Deserialize)]
-pub(super) struct Foreign {
+pub(super) struct ForeignSpirv {
     pub(super) words: Vec<u32>,
     pub(super) frame: Frame,
     pub(super) float: FloatMode,
-    pub(super) on: On,
+    pub(super) selector: AdapterSelector,
 }
 
-/// A shader that was converted, as its file holds it.
+/// A converted shader, as its file holds it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub enum Written {
-    /// A WGSL file, within what stands for its host.
+pub enum ShaderArtifact {
+    /// A WGSL file, with a replacement for its host.
     Wgsl(Hosted),
-    /// GLSL: what naga was fed to write a file, or a file that was read again.
+    /// GLSL: the lowered shader from which naga emitted a file, or a file that was parsed again.
     Lowered(Lowered),
-    /// The words of a SPIR-V file, or what another compiler made of a file, and the shapes of channels 0 to 3.
+    /// The words of a SPIR-V file, or those that a different compiler produced from a file, and the shapes of
+    /// channels 0 to 3.
     Words(Vec<u32>, [Shape; 4]),
 }
 
-/// What the worker says: any number of phases, the bands of a picture from the bottom up, and then the end.
+/// A reply of the worker: any number of phases and bands of the image, from the bottom up, and then the
+/// result.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Reply {
     Phase(Phase),
@@ -68,19 +71,19 @@ pub(super) enum Reply {
     Done(Result<Output, Failure>),
 }
 
-/// What a job gives.
+/// The result of a job.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Output {
     Drivers(Vec<Driver>),
     Translated(Vec<u8>),
     Drawn(Box<Drawn>),
-    Ran,
-    Painted(Vec<Image>, String),
-    CutShort(u64),
+    Completed,
+    Rendered(Vec<Image>, String),
+    LoopTruncated(u64),
 }
 
-/// The longest message: the text of a shader and the pictures that it reads.
-const MAX_MESSAGE: u64 = 1 << 30;
+/// Maximum length of a message in bytes: the text of a shader and the images of its channels.
+const MAX_MESSAGE_BYTES: u64 = 1 << 30;
 
 pub(super) fn send(mut to: impl Write, message: &impl Serialize) -> io::Result<()> {
     let bytes = postcard::to_stdvec(message).map_err(io::Error::other)?;
@@ -93,7 +96,7 @@ pub(super) fn receive<T: DeserializeOwned>(mut from: impl Read) -> io::Result<T>
     let mut length = [0; 8];
     from.read_exact(&mut length)?;
     let length = u64::from_le_bytes(length);
-    if length > MAX_MESSAGE {
+    if length > MAX_MESSAGE_BYTES {
         return Err(io::Error::other("a message longer than any there is"));
     }
     let mut bytes = Vec::new();
@@ -108,7 +111,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pixels_arrive_bit_for_bit() {
+    fn pixels_round_trip_bit_for_bit() {
         let nan = f32::from_bits(0x7fc0_1234);
         let image = Image::new(1, 1, vec![[nan, -0.0, f32::INFINITY, 1e-45]]);
         let mut pipe = Vec::new();
@@ -121,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn garbage_is_an_error_and_not_an_allocation() {
+    fn malformed_messages_are_errors_without_allocation() {
         assert!(receive::<Image>(&[0xff; 64][..]).is_err());
         assert!(receive::<Image>(&b"short"[..]).is_err());
     }

@@ -1,4 +1,4 @@
-//! The worker's side: one job after the other until its input ends.
+//! The worker's side: processes jobs until its input ends.
 
 use std::any::Any;
 use std::io::{self, Read, Write};
@@ -12,36 +12,36 @@ use toyproof_translate::naga_ir::{Probe, Shape, ValidModule};
 use toyproof_translate::{FloatMode, Lowered};
 
 use super::device::{self, Device};
-use super::draw::{Program, Scene};
-use super::protocol::{Foreign, Job, Output, Reply, Shot, Written, receive, send};
-use super::{Failure, On, Phase, draw};
+use super::draw::{PreparedFrame, Program};
+use super::protocol::{DrawJob, ForeignSpirv, Job, Output, Reply, ShaderArtifact, receive, send};
+use super::{AdapterSelector, Failure, Phase, draw};
 
-/// The most memory that a worker may map, in bytes.
-pub const MEMORY_BYTES: u64 = 6 << 30;
-/// naga recurses on what is nested; a thread of its own gives it room.
-const TRANSLATOR_STACK: usize = 256 << 20;
+/// Maximum size of a worker's address space in bytes.
+pub const MAX_MEMORY_BYTES: u64 = 6 << 30;
+/// Stack size for naga, which is recursive, in bytes.
+const TRANSLATOR_STACK_BYTES: usize = 256 << 20;
 
-/// Serves jobs until `input` ends. Call it in a process of its own: it limits the process's memory, ties its
-/// life to the parent's and silences panics.
+/// Serves jobs until `input` ends. Call it in a separate process: it limits the process's memory, ties its
+/// lifetime to the parent's, and silences panics.
 ///
 /// # Errors
-/// If a reply cannot be written: the parent is gone.
+/// If a reply cannot be written, since the parent is gone.
 pub fn serve(input: impl Read, output: impl Write) -> io::Result<()> {
-    confine();
+    restrict_process();
     panic::set_hook(Box::new(|_| {}));
     Server { output, device: None }.serve(input)
 }
 
-/// Dies with its parent, and by its own hand before it takes the machine's memory.
-fn confine() {
+/// Limits the process's memory and lets it die with its parent.
+fn restrict_process() {
     #[cfg(target_os = "linux")]
     {
         use rustix::process::{Resource, Rlimit, Signal, set_parent_process_death_signal, setrlimit};
         let limit = Rlimit {
-            current: Some(MEMORY_BYTES),
-            maximum: Some(MEMORY_BYTES),
+            current: Some(MAX_MEMORY_BYTES),
+            maximum: Some(MAX_MEMORY_BYTES),
         };
-        // Where the system refuses, a hard limit is in force that is stricter still, or there is none to be had.
+        // If the system refuses, a stricter hard limit is in force, or none is available.
         let _ = setrlimit(Resource::As, limit);
         let _ = setrlimit(
             Resource::Core,
@@ -56,25 +56,25 @@ fn confine() {
 
 struct Server<W> {
     output: W,
-    device: Option<(On, Device)>,
+    device: Option<(AdapterSelector, Device)>,
 }
 
 impl<W: Write> Server<W> {
     fn serve(&mut self, mut input: impl Read) -> io::Result<()> {
-        // The input's end is how the parent says good-bye.
+        // The parent closes the input when it is done.
         while let Ok(job) = receive(&mut input) {
             let result = match job {
-                Job::Probe(on) => self.guarded(|server| server.probe(&on)),
+                Job::Probe(selector) => self.catch_panics(|server| server.probe(&selector)),
                 Job::Translate(lowered, target, float) => {
-                    self.guarded(|server| server.translate(lowered, target, float))
+                    self.catch_panics(|server| server.translate(lowered, target, float))
                 }
-                Job::Read(text) => self.guarded(|server| server.read(text)),
-                Job::Draw(shot) => self.guarded(|server| server.draw(*shot)),
-                Job::Run(foreign) => self.guarded(|server| server.run(*foreign)),
-                Job::Paint(written, frames, on) => {
-                    self.guarded(|server| server.paint(*written, &frames, &on))
+                Job::ReadWgsl(text) => self.catch_panics(|server| server.read(text)),
+                Job::Draw(draw_job) => self.catch_panics(|server| server.draw(*draw_job)),
+                Job::RunSpirv(foreign) => self.catch_panics(|server| server.run(*foreign)),
+                Job::RenderArtifact(artifact, frames, selector) => {
+                    self.catch_panics(|server| server.render(*artifact, &frames, &selector))
                 }
-                Job::WatchLoops(shot) => self.guarded(|server| server.watch_loops(*shot)),
+                Job::WatchLoops(draw_job) => self.catch_panics(|server| server.watch_loops(*draw_job)),
             };
             if matches!(result, Err(Failure::Device(_))) {
                 self.device = None;
@@ -84,24 +84,28 @@ impl<W: Write> Server<W> {
         Ok(())
     }
 
-    /// Panics below are wgpu's or ours: they cost the job and the device, not the worker.
-    fn guarded(&mut self, job: impl FnOnce(&mut Self) -> Result<Output, Failure>) -> Result<Output, Failure> {
+    /// Converts panics, of wgpu or our own code, into failures: they affect the job and the device, not the
+    /// worker.
+    fn catch_panics(
+        &mut self,
+        job: impl FnOnce(&mut Self) -> Result<Output, Failure>,
+    ) -> Result<Output, Failure> {
         panic::catch_unwind(AssertUnwindSafe(|| job(self)))
-            .unwrap_or_else(|payload| Err(Failure::Device(words_of(payload.as_ref()))))
+            .unwrap_or_else(|payload| Err(Failure::Device(panic_message(payload.as_ref()))))
     }
 
     fn phase(&mut self, phase: Phase) -> Result<(), Failure> {
-        say(&mut self.output, &Reply::Phase(phase))
+        send_reply(&mut self.output, &Reply::Phase(phase))
     }
 
-    fn probe(&mut self, on: &On) -> Result<Output, Failure> {
+    fn probe(&mut self, selector: &AdapterSelector) -> Result<Output, Failure> {
         self.phase(Phase::Starting)?;
-        device::probe(on).map(Output::Drivers)
+        device::probe(selector).map(Output::Drivers)
     }
 
     fn translate(&mut self, lowered: Lowered, target: Target, float: FloatMode) -> Result<Output, Failure> {
         self.phase(Phase::Translating)?;
-        apart(move || {
+        on_translator_thread(move || {
             let module = ValidModule::parse(&lowered).map_err(Failure::Refused)?;
             match target {
                 Target::Spirv => Ok(Program::new(&module, float)?.bytes()),
@@ -111,154 +115,159 @@ impl<W: Write> Server<W> {
         .map(Output::Translated)
     }
 
-    fn draw(&mut self, shot: Shot) -> Result<Output, Failure> {
+    fn draw(&mut self, draw_job: DrawJob) -> Result<Output, Failure> {
         self.phase(Phase::Translating)?;
         let start = Instant::now();
-        let Shot {
+        let DrawJob {
             lowered,
             frame,
             float,
-            on,
-        } = shot;
-        let (program, loops) = apart(move || {
+            selector,
+        } = draw_job;
+        let (program, loops) = on_translator_thread(move || {
             let module = ValidModule::parse(&lowered).map_err(Failure::Refused)?;
             Ok((Program::new(&module, float)?, module.has_loops()))
         })?;
         let translate = start.elapsed();
-        self.open(&on)?;
+        self.open(&selector)?;
         self.phase(Phase::Compiling)?;
         let start = Instant::now();
-        let scene = self.device()?.prepare(&program, &frame)?;
+        let prepared = self.device()?.prepare(&program, &frame)?;
         let compile = start.elapsed();
         self.phase(Phase::Drawing)?;
         let start = Instant::now();
-        self.send_painted(&scene)?;
+        self.render_and_send(&prepared)?;
         let device = self.device()?;
         Ok(Output::Drawn(Box::new(draw::Drawn {
             bands: Vec::new(),
             device: device.name(),
-            may_be_cut_short: loops && device.may_end_loops(),
-            cut_short: Some(0),
+            may_truncate_loops: loops && device.may_terminate_loops(),
+            loop_truncated: Some(0),
             translate,
             compile,
             draw: start.elapsed(),
         })))
     }
 
-    fn run(&mut self, foreign: Foreign) -> Result<Output, Failure> {
-        let Foreign {
+    fn run(&mut self, foreign: ForeignSpirv) -> Result<Output, Failure> {
+        let ForeignSpirv {
             words,
             frame,
             float,
-            on,
+            selector,
         } = foreign;
-        self.open(&on)?;
+        self.open(&selector)?;
         self.phase(Phase::Compiling)?;
-        let program = Program::foreign(words, [Shape::D2; 4], float);
-        let scene = self.device()?.prepare(&program, &frame)?;
+        let program = Program::from_words(words, [Shape::D2; 4], float);
+        let prepared = self.device()?.prepare(&program, &frame)?;
         self.phase(Phase::Drawing)?;
-        self.send_painted(&scene)?;
-        Ok(Output::Ran)
+        self.render_and_send(&prepared)?;
+        Ok(Output::Completed)
     }
 
-    /// Paints, and sends what comes.
-    fn send_painted(&mut self, scene: &Scene) -> Result<(), Failure> {
+    /// Renders a frame and sends its bands.
+    fn render_and_send(&mut self, prepared: &PreparedFrame) -> Result<(), Failure> {
         let Some((_, device)) = &self.device else {
-            return Err(gone());
+            return Err(device_lost());
         };
         let output = &mut self.output;
-        device.paint(scene, |band| say(&mut *output, &Reply::Band(band)))
+        device.render(prepared, |band| send_reply(&mut *output, &Reply::Band(band)))
     }
 
     fn read(&mut self, text: String) -> Result<Output, Failure> {
         self.phase(Phase::Translating)?;
-        apart(move || ValidModule::of_wgsl(&text).map_err(Failure::Reread))?;
-        Ok(Output::Ran)
+        on_translator_thread(move || ValidModule::of_wgsl(&text).map_err(Failure::Reread))?;
+        Ok(Output::Completed)
     }
 
-    fn paint(&mut self, written: Written, frames: &[Frame], on: &On) -> Result<Output, Failure> {
+    fn render(
+        &mut self,
+        artifact: ShaderArtifact,
+        frames: &[Frame],
+        selector: &AdapterSelector,
+    ) -> Result<Output, Failure> {
         self.phase(Phase::Translating)?;
-        let upside_down = matches!(&written, Written::Wgsl(hosted) if hosted.upside_down);
-        let program = apart(move || {
-            let module = match written {
-                Written::Wgsl(hosted) => {
+        let upside_down = matches!(&artifact, ShaderArtifact::Wgsl(hosted) if hosted.upside_down);
+        let program = on_translator_thread(move || {
+            let module = match artifact {
+                ShaderArtifact::Wgsl(hosted) => {
                     let module = ValidModule::of_wgsl(&hosted.text).map_err(Failure::Reread)?;
                     module.with_steps_last().map_err(Failure::Naga)?
                 }
-                Written::Lowered(lowered) => ValidModule::parse(&lowered).map_err(Failure::Refused)?,
-                Written::Words(words, channels) => {
+                ShaderArtifact::Lowered(lowered) => ValidModule::parse(&lowered).map_err(Failure::Refused)?,
+                ShaderArtifact::Words(words, channels) => {
                     let words = spirv::spelled(&words).map_err(Failure::Naga)?;
-                    return Ok(Program::foreign(words, channels, FloatMode::Strict));
+                    return Ok(Program::from_words(words, channels, FloatMode::Strict));
                 }
             };
             Program::new(&module.spelled().map_err(Failure::Naga)?, FloatMode::Strict)
         })?;
-        self.open(on)?;
-        let mut painted = Vec::new();
+        self.open(selector)?;
+        let mut images = Vec::new();
         self.phase(Phase::Compiling)?;
         let compiled = self.device()?.compile(&program)?;
         for frame in frames {
             self.phase(Phase::Compiling)?;
-            let scene = self.device()?.stage(&compiled, frame)?;
+            let prepared = self.device()?.stage(&compiled, frame)?;
             self.phase(Phase::Drawing)?;
-            let image = self.device()?.picture(&scene)?;
-            painted.push(if upside_down { image.upside_down() } else { image });
+            let image = self.device()?.render_image(&prepared)?;
+            images.push(if upside_down { image.upside_down() } else { image });
         }
         let name = self.device()?.name();
-        Ok(Output::Painted(painted, name))
+        Ok(Output::Rendered(images, name))
     }
 
-    fn watch_loops(&mut self, shot: Shot) -> Result<Output, Failure> {
+    fn watch_loops(&mut self, draw_job: DrawJob) -> Result<Output, Failure> {
         self.phase(Phase::WatchingLoops)?;
-        let Shot {
+        let DrawJob {
             lowered,
             frame,
             float,
-            on,
-        } = shot;
-        let (module, iterations) = apart(move || {
+            selector,
+        } = draw_job;
+        let (module, iterations) = on_translator_thread(move || {
             let module = ValidModule::parse(&lowered).map_err(Failure::Refused)?;
-            let iterations = probed(&module, Probe::Iterations, float)?;
+            let iterations = probe_program(&module, Probe::Iterations, float)?;
             Ok((module, iterations))
         })?;
-        self.open(&on)?;
+        self.open(&selector)?;
         let device = self.device()?;
         let Some(cap) = device.loop_cap()? else {
-            return Ok(Output::CutShort(0));
+            return Ok(Output::LoopTruncated(0));
         };
-        // What follows an endless loop may say anything, also that there were few iterations.
+        // After an endless loop any value is possible, including a small number of iterations.
         if !module.has_endless_loop() {
             let (mut reached, mut may_reach) = (0, false);
-            device.paint(&device.prepare(&iterations, &frame)?, |band| {
-                reached += draw::reached(&band, cap);
+            device.render(&device.prepare(&iterations, &frame)?, |band| {
+                reached += draw::count_reached(&band, cap);
                 may_reach |= draw::may_reach(&band, cap);
                 Ok(())
             })?;
             if reached > 0 || !may_reach {
-                return Ok(Output::CutShort(reached));
+                return Ok(Output::LoopTruncated(reached));
             }
         }
         let discards = module.discards();
-        let open = apart(move || probed(&module, Probe::OpenLoops, float))?;
+        let open = on_translator_thread(move || probe_program(&module, Probe::OpenLoops, float))?;
         let device = self.device()?;
-        let mut cut_short = 0;
-        device.paint(&device.prepare(&open, &frame)?, |band| {
-            cut_short += draw::cut_short(&band, discards);
+        let mut loop_truncated = 0;
+        device.render(&device.prepare(&open, &frame)?, |band| {
+            loop_truncated += draw::count_truncated(&band, discards);
             Ok(())
         })?;
-        Ok(Output::CutShort(cut_short))
+        Ok(Output::LoopTruncated(loop_truncated))
     }
 
-    fn open(&mut self, on: &On) -> Result<(), Failure> {
-        if self.device.as_ref().is_none_or(|(open, _)| open != on) {
+    fn open(&mut self, selector: &AdapterSelector) -> Result<(), Failure> {
+        if self.device.as_ref().is_none_or(|(open, _)| open != selector) {
             self.phase(Phase::Starting)?;
-            let device = Device::open(on).map_err(|failure| match failure {
+            let device = Device::open(selector).map_err(|failure| match failure {
                 Failure::Device(why) => {
                     Failure::NotStarted(format!("the Vulkan driver does not start: {why}"))
                 }
                 failure => failure,
             })?;
-            self.device = Some((on.clone(), device));
+            self.device = Some((selector.clone(), device));
         }
         Ok(())
     }
@@ -266,42 +275,42 @@ impl<W: Write> Server<W> {
     fn device(&mut self) -> Result<&mut Device, Failure> {
         match &mut self.device {
             Some((_, device)) => Ok(device),
-            None => Err(gone()),
+            None => Err(device_lost()),
         }
     }
 }
 
-fn gone() -> Failure {
+fn device_lost() -> Failure {
     Failure::Device("the device is gone".to_owned())
 }
 
-fn say(output: impl Write, reply: &Reply) -> Result<(), Failure> {
+fn send_reply(output: impl Write, reply: &Reply) -> Result<(), Failure> {
     send(output, reply).map_err(|error| Failure::Worker(error.to_string()))
 }
 
-fn probed(module: &ValidModule, probe: Probe, float: FloatMode) -> Result<Program, Failure> {
+fn probe_program(module: &ValidModule, probe: Probe, float: FloatMode) -> Result<Program, Failure> {
     Program::new(&module.probed(probe).map_err(Failure::Naga)?, float)
 }
 
-/// Runs naga on a thread with room for its recursion; its panics become failures.
-fn apart<T: Send + 'static>(
+/// Runs naga on a thread with a large stack. Panics become failures.
+fn on_translator_thread<T: Send + 'static>(
     work: impl FnOnce() -> Result<T, Failure> + Send + 'static,
 ) -> Result<T, Failure> {
     thread::Builder::new()
         .name("naga".to_owned())
-        .stack_size(TRANSLATOR_STACK)
+        .stack_size(TRANSLATOR_STACK_BYTES)
         .spawn(work)
         .map_err(|error| Failure::Worker(error.to_string()))?
         .join()
         .unwrap_or_else(|payload| {
             Err(Failure::Naga(format!(
                 "it panicked: {}",
-                words_of(payload.as_ref())
+                panic_message(payload.as_ref())
             )))
         })
 }
 
-fn words_of(payload: &(dyn Any + Send)) -> String {
+fn panic_message(payload: &(dyn Any + Send)) -> String {
     payload
         .downcast_ref::<String>()
         .cloned()

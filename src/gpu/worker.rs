@@ -1,8 +1,7 @@
-//! The parent's side: start the worker, hold it to its deadline, say what became of it.
+//! The parent's side: starts the worker, enforces deadlines, and classifies failures.
 
 use std::collections::VecDeque;
 use std::io::Read;
-use std::os::unix::process::CommandExt;
 use std::path::PathBuf;
 use std::process::{Child, ChildStderr, ChildStdin, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
@@ -14,101 +13,119 @@ use toyproof_image::{Frame, Image};
 use toyproof_translate::backend::Target;
 use toyproof_translate::{FloatMode, Lowered};
 
-use super::protocol::{Foreign, Job, Output, Reply, Shot, Written, receive, send};
-use super::{Drawn, Driver, Failure, On, Phase, driver};
+use super::protocol::{DrawJob, ForeignSpirv, Job, Output, Reply, ShaderArtifact, receive, send};
+use super::{AdapterSelector, Drawn, Driver, Failure, Phase, device};
 
-/// A worker process that is started when it is first needed, and anew after each that died.
+/// A worker process, started on first use and restarted after each failure.
 #[derive(Debug)]
 pub struct Worker {
     program: PathBuf,
     arguments: Vec<String>,
-    on: On,
+    selector: AdapterSelector,
     timeout: Duration,
     start_timeout: Duration,
     all_drivers: bool,
     manifest: Option<PathBuf>,
-    compiles_plainly: bool,
-    live: Option<Live>,
-    /// Whether a job has been done.
-    has_worked: bool,
-    /// Why the driver did not start, before it ever did: no other job waits for it.
+    is_unoptimized: bool,
+    running: Option<RunningWorker>,
+    /// Whether a job has been completed.
+    has_completed_job: bool,
+    /// Why the driver did not start, if it never has. No further job waits for it.
     not_started: Option<Failure>,
 }
 
-/// How long a driver may take to start, unless a shader may take longer: a busy machine needs a second or two.
+/// Minimum time limit for the start of a driver: a busy machine needs a second or two.
 const START_TIMEOUT: Duration = Duration::from_secs(10);
-/// How long a worker that closed its pipe may take to end.
-const GRACE: Duration = Duration::from_millis(500);
-/// So many replies may wait to be heard: bands are large.
-const WAITING: usize = 1;
-/// What tells Mesa's software driver how its code is to be made.
+/// Time for a worker to exit after it has closed its pipe.
+const EXIT_GRACE_PERIOD: Duration = Duration::from_millis(500);
+/// Maximum number of replies in the queue: bands are large.
+const MAX_QUEUED_REPLIES: usize = 1;
+/// Environment variable that controls the code generation of Mesa's software driver.
 const COMPILER_FLAGS: &str = "GALLIVM_PERF";
-/// How much of a worker's last words is kept, in bytes.
-const LAST_WORDS: usize = 4096;
+/// Maximum length of the kept end of a worker's standard error, in bytes.
+const MAX_STDERR_BYTES: usize = 4096;
+
+/// Puts a process out of reach of the terminal's interrupt, so that the current shader completes.
+fn detach(command: &mut Command) {
+    #[cfg(unix)]
+    std::os::unix::process::CommandExt::process_group(command, 0);
+    #[cfg(windows)]
+    {
+        const CREATE_NEW_PROCESS_GROUP: u32 = 0x200;
+        std::os::windows::process::CommandExt::creation_flags(command, CREATE_NEW_PROCESS_GROUP);
+    }
+}
 
 impl Worker {
-    /// A worker that is `program` with `arguments`, which must call [`super::serve`] on its standard streams.
+    /// Creates a worker that runs `program` with `arguments`, which must call [`super::serve`] on its
+    /// standard streams.
     #[must_use]
-    pub fn new(program: PathBuf, arguments: Vec<String>, on: On, timeout: Duration) -> Self {
+    pub fn new(
+        program: PathBuf,
+        arguments: Vec<String>,
+        selector: AdapterSelector,
+        timeout: Duration,
+    ) -> Self {
         Self {
             program,
             arguments,
-            on,
+            selector,
             timeout,
             start_timeout: timeout.max(START_TIMEOUT),
             all_drivers: false,
             manifest: None,
-            compiles_plainly: false,
-            live: None,
-            has_worked: false,
+            is_unoptimized: false,
+            running: None,
+            has_completed_job: false,
             not_started: None,
         }
     }
 
-    /// The same, giving the process and its driver that long to start. What a job may take does not pass meanwhile.
+    /// Sets the time limit for the start of the process and its driver, which does not count against the time
+    /// limit of a job.
     #[must_use]
     pub fn with_start_timeout(mut self, start_timeout: Duration) -> Self {
         self.start_timeout = start_timeout;
         self
     }
 
-    /// The same, loading every installed driver, also where one is known to be enough.
+    /// Loads all installed drivers, even where one is known to be enough.
     #[must_use]
     pub fn with_all_drivers(mut self) -> Self {
         self.all_drivers = true;
         self
     }
 
-    /// The same, loading the driver of that manifest and no other, wherever it is installed.
+    /// Loads only the driver of this manifest, wherever it is installed.
     #[must_use]
     pub fn with_manifest(mut self, manifest: PathBuf) -> Self {
         self.manifest = Some(manifest);
         self
     }
 
-    /// The same, with code from Mesa's software driver that is made in half the time or less, and runs 1.3 to 2 times as long: LLVM
-    /// does not optimise it, which changes no bits. Good for small pictures.
+    /// Disables LLVM's optimizations in Mesa's software driver: compiling takes half the time or less, and
+    /// shaders run 1.3 to 2 times as long, with the same bits. Useful for small images.
     #[must_use]
     pub fn with_plain_code(mut self) -> Self {
-        self.compiles_plainly = true;
+        self.is_unoptimized = true;
         self
     }
 
-    /// The Vulkan drivers that are there; the chosen one first.
+    /// Lists the Vulkan drivers, the selected one first.
     ///
     /// # Errors
-    /// [`Failure::NoDriver`] if none can be used.
+    /// [`Failure::NoDriver`] if none is usable.
     pub fn probe(&mut self) -> Result<Vec<Driver>, Failure> {
-        match self.run(&Job::Probe(self.on.clone()))? {
+        match self.run(&Job::Probe(self.selector.clone()))? {
             Output::Drivers(drivers) => Ok(drivers),
-            _ => Err(out_of_turn()),
+            _ => Err(unexpected_reply()),
         }
     }
 
-    /// The shader in another language.
+    /// Translates the shader to a different language.
     ///
     /// # Errors
-    /// Why not.
+    /// Why the translation failed.
     pub fn translate(
         &mut self,
         lowered: Lowered,
@@ -117,44 +134,44 @@ impl Worker {
     ) -> Result<Vec<u8>, Failure> {
         match self.run(&Job::Translate(lowered, target, float))? {
             Output::Translated(bytes) => Ok(bytes),
-            _ => Err(out_of_turn()),
+            _ => Err(unexpected_reply()),
         }
     }
 
-    /// Has naga read WGSL.
+    /// Parses and validates WGSL by naga.
     ///
     /// # Errors
-    /// [`Failure::Reread`] if it refuses it; else why it was not read to its end.
+    /// [`Failure::Reread`] if naga rejects it; other failures if it could not be processed.
     pub fn read_wgsl(&mut self, text: &str) -> Result<(), Failure> {
-        match self.run(&Job::Read(text.to_owned()))? {
-            Output::Ran => Ok(()),
-            _ => Err(out_of_turn()),
+        match self.run(&Job::ReadWgsl(text.to_owned()))? {
+            Output::Completed => Ok(()),
+            _ => Err(unexpected_reply()),
         }
     }
 
-    /// The picture that the shader paints. Where the driver may end loops by force, the frame is painted again to
-    /// see whether it did, under a deadline of its own.
+    /// Renders a frame of the shader. If the driver may terminate long loops, the frame is rendered again to
+    /// check whether it did, under a separate deadline.
     ///
     /// # Errors
-    /// Why there is none.
+    /// Why there is no image.
     pub fn draw(&mut self, lowered: Lowered, frame: Frame, float: FloatMode) -> Result<Drawn, Failure> {
-        self.draw_whole(lowered, frame, float, true)
+        self.draw_frame(lowered, frame, float, true)
     }
 
-    /// The same without a look at its loops: somebody else knows that they are short.
+    /// Like [`Self::draw`] without the check of loops, for callers that know that loops are short.
     ///
     /// # Errors
-    /// Why there is none.
+    /// Why there is no image.
     pub fn draw_unwatched(
         &mut self,
         lowered: Lowered,
         frame: Frame,
         float: FloatMode,
     ) -> Result<Drawn, Failure> {
-        self.draw_whole(lowered, frame, float, false)
+        self.draw_frame(lowered, frame, float, false)
     }
 
-    fn draw_whole(
+    fn draw_frame(
         &mut self,
         lowered: Lowered,
         frame: Frame,
@@ -162,102 +179,115 @@ impl Worker {
         watch: bool,
     ) -> Result<Drawn, Failure> {
         let mut bands = Vec::new();
-        let each = |band| bands.push(band);
-        let drawn = self.draw_in_bands(lowered, frame, float, each, |_, _| watch)?;
+        let on_band = |band| bands.push(band);
+        let drawn = self.draw_in_bands(lowered, frame, float, on_band, |_, _| watch)?;
         Ok(Drawn { bands, ..drawn })
     }
 
-    /// The same as [`Self::draw`] without a picture: `each` is given one band of it after the other, as of [`Frame::bands`], and may take its time. And the
-    /// frame is painted again only if `watch` says so, shown what was drawn and told how long that took: somebody else may
-    /// know that no pixel runs more than [`SAFE_ROUNDS`](super::SAFE_ROUNDS).
+    /// Like [`Self::draw`], but passes the bands of [`Frame::bands`] to `on_band`, one after the other. The
+    /// time that it takes does not count. The check of loops runs only if `watch` returns true; it receives
+    /// the result and the time that rendering took. Callers may know that no pixel runs more iterations than
+    /// [`SAFE_ROUNDS`](super::SAFE_ROUNDS).
     ///
     /// # Errors
-    /// Why there is no picture: [`Failure::Invalid`] also of a shader that nests deeper than drivers count.
+    /// Why there is no image: [`Failure::Invalid`] also for a shader that nests deeper than drivers
+    /// support.
     pub fn draw_in_bands(
         &mut self,
         lowered: Lowered,
         frame: Frame,
         float: FloatMode,
-        mut each: impl FnMut(Image),
+        mut on_band: impl FnMut(Image),
         watch: impl FnOnce(&Drawn, Duration) -> bool,
     ) -> Result<Drawn, Failure> {
-        if let Some(told) = lowered.too_deep() {
-            return Err(Failure::Invalid(vec![told.clone()]));
+        if let Some(diagnostic) = lowered.too_deep() {
+            return Err(Failure::Invalid(vec![diagnostic.clone()]));
         }
-        let shot = Box::new(Shot {
+        let draw_job = Box::new(DrawJob {
             lowered,
             frame,
             float,
-            on: self.on.clone(),
+            selector: self.selector.clone(),
         });
-        let job = Job::Draw(shot);
+        let job = Job::Draw(draw_job);
         let start = Instant::now();
-        let mut waited = Duration::ZERO;
+        let mut band_time = Duration::ZERO;
         let output = self.run_in_bands(&job, |band| {
             let start = Instant::now();
-            each(band);
-            waited += start.elapsed();
+            on_band(band);
+            band_time += start.elapsed();
         });
         let mut drawn = match output? {
             Output::Drawn(drawn) => *drawn,
-            _ => return Err(out_of_turn()),
+            _ => return Err(unexpected_reply()),
         };
-        let is_to_be_watched = watch(&drawn, start.elapsed().saturating_sub(waited));
-        if let (true, Job::Draw(shot)) = (drawn.may_be_cut_short && is_to_be_watched, job) {
-            // Whatever stops this, the picture stands.
-            drawn.cut_short = match self.run(&Job::WatchLoops(shot)) {
-                Ok(Output::CutShort(pixels)) => Some(pixels),
+        let watch_loops = watch(&drawn, start.elapsed().saturating_sub(band_time));
+        if let (true, Job::Draw(draw_job)) = (drawn.may_truncate_loops && watch_loops, job) {
+            // If this fails, the image is still valid.
+            drawn.loop_truncated = match self.run(&Job::WatchLoops(draw_job)) {
+                Ok(Output::LoopTruncated(pixels)) => Some(pixels),
                 _ => None,
             };
         }
         Ok(drawn)
     }
 
-    /// The picture that another compiler's SPIR-V paints: one entry point `main`, the frame's block and its two-dimensional channels at
-    /// the bindings that [`toyproof_translate::backend`] tells of. For comparing compilers.
+    /// Renders a frame with the SPIR-V of a different compiler: one entry point `main`, the frame's block and
+    /// its two-dimensional channels at the bindings that [`toyproof_translate::backend`] documents. For
+    /// comparing compilers.
     ///
     /// # Errors
-    /// Why there is none.
+    /// Why there is no image.
     pub fn run_spirv(&mut self, words: Vec<u32>, frame: Frame, float: FloatMode) -> Result<Image, Failure> {
-        let foreign = Foreign {
+        let foreign = ForeignSpirv {
             words,
             frame,
             float,
-            on: self.on.clone(),
+            selector: self.selector.clone(),
         };
         let mut bands = Vec::new();
-        match self.run_in_bands(&Job::Run(Box::new(foreign)), |band| bands.push(band))? {
-            Output::Ran => Ok(Image::of_bands(bands)),
-            _ => Err(out_of_turn()),
+        match self.run_in_bands(&Job::RunSpirv(Box::new(foreign)), |band| bands.push(band))? {
+            Output::Completed => Ok(Image::of_bands(bands)),
+            _ => Err(unexpected_reply()),
         }
     }
 
-    /// The pictures that a converted shader paints, read again from what was written, and who painted them. What drivers differ in is spelled
-    /// in operations that they agree on, and they are held to the arithmetic as written.
+    /// Parses a converted shader again and renders its frames. Returns the images and the name of the device.
+    /// Operations in which drivers differ are expanded to operations on which they agree, with strict
+    /// arithmetic.
     ///
     /// # Errors
-    /// [`Failure::Reread`] if the text is refused; else why there are no pictures.
-    pub fn paint(&mut self, written: Written, frames: Vec<Frame>) -> Result<(Vec<Image>, String), Failure> {
-        match self.run(&Job::Paint(Box::new(written), frames, self.on.clone()))? {
-            Output::Painted(images, device) => Ok((images, device)),
-            _ => Err(out_of_turn()),
+    /// [`Failure::Reread`] if the text is rejected; other failures if there are no images.
+    pub fn render(
+        &mut self,
+        artifact: ShaderArtifact,
+        frames: Vec<Frame>,
+    ) -> Result<(Vec<Image>, String), Failure> {
+        match self.run(&Job::RenderArtifact(
+            Box::new(artifact),
+            frames,
+            self.selector.clone(),
+        ))? {
+            Output::Rendered(images, device) => Ok((images, device)),
+            _ => Err(unexpected_reply()),
         }
     }
 
-    /// Has a job done that gives no picture.
+    /// Runs a job without images.
     fn run(&mut self, job: &Job) -> Result<Output, Failure> {
         self.run_in_bands(job, |_| ())
     }
 
-    /// Has a job done, whose picture `each` is given. A driver that did not start is not started again, unless it had done a job.
-    fn run_in_bands(&mut self, job: &Job, each: impl FnMut(Image)) -> Result<Output, Failure> {
+    /// Runs a job and passes the bands of its image to `on_band`. After a driver has failed to start, it is
+    /// not started again, unless it had completed a job.
+    fn run_in_bands(&mut self, job: &Job, on_band: impl FnMut(Image)) -> Result<Output, Failure> {
         if let Some(failure) = &self.not_started {
             return Err(failure.clone());
         }
-        let output = self.ask(job, each);
+        let output = self.run_job(job, on_band);
         match &output {
-            Ok(_) => self.has_worked = true,
-            Err(failure @ Failure::NotStarted(_)) if !self.has_worked => {
+            Ok(_) => self.has_completed_job = true,
+            Err(failure @ Failure::NotStarted(_)) if !self.has_completed_job => {
                 self.not_started = Some(failure.clone());
             }
             Err(_) => {}
@@ -265,23 +295,23 @@ impl Worker {
         output
     }
 
-    /// Has a job done, under a deadline that does not pass while `each` works or the driver starts.
-    fn ask(&mut self, job: &Job, mut each: impl FnMut(Image)) -> Result<Output, Failure> {
-        let mut live = match self.live.take() {
-            Some(live) => live,
+    /// Runs a job under a deadline. The time that `on_band` or the start of the driver takes does not count.
+    fn run_job(&mut self, job: &Job, mut on_band: impl FnMut(Image)) -> Result<Output, Failure> {
+        let mut running = match self.running.take() {
+            Some(running) => running,
             None => self.start()?,
         };
         let mut deadline = Instant::now() + self.timeout;
-        let mut start = Start::new(self.start_timeout);
+        let mut start = Startup::new(self.start_timeout);
         let mut phase = Phase::Starting;
-        // A worker that died is told by its replies' end; sending is best effort.
-        let sent = send(&mut live.requests, job);
+        // The end of the replies reveals a dead worker; ignore errors of sending.
+        let sent = send(&mut running.requests, job);
         loop {
             let until = match phase {
                 Phase::Starting => start.deadline,
                 _ => deadline,
             };
-            match live
+            match running
                 .replies
                 .recv_timeout(until.saturating_duration_since(Instant::now()))
             {
@@ -290,64 +320,64 @@ impl Worker {
                         deadline += start.began.elapsed();
                     }
                     if now == Phase::Starting {
-                        start = Start::of_driver(self.start_timeout);
+                        start = Startup::of_driver(self.start_timeout);
                     }
                     phase = now;
                 }
                 Ok(Reply::Band(band)) => {
                     let start = Instant::now();
-                    each(band);
+                    on_band(band);
                     deadline += start.elapsed();
                 }
                 Ok(Reply::Done(result)) => {
-                    self.live = Some(live);
-                    return result.map_err(told_of_pins);
+                    self.running = Some(running);
+                    return result.map_err(with_pin_hint);
                 }
                 Err(RecvTimeoutError::Timeout) => {
-                    live.end();
+                    running.end();
                     let after = self.timeout;
                     return Err(match phase {
-                        Phase::Starting => start.timed_out(self.start_timeout),
+                        Phase::Starting => start.timeout_failure(self.start_timeout),
                         _ => Failure::Timeout { phase, after },
                     });
                 }
                 Err(RecvTimeoutError::Disconnected) => {
-                    let (status, words) = live.end();
+                    let (status, stderr) = running.end();
                     return Err(match sent {
                         Err(error) if status.is_none() => Failure::Worker(error.to_string()),
-                        _ if phase == Phase::Starting => start.died(status, &words),
-                        _ => classify(phase, status, &words),
+                        _ if phase == Phase::Starting => start.exit_failure(status, &stderr),
+                        _ => classify(phase, status, &stderr),
                     });
                 }
             }
         }
     }
 
-    /// The one driver that is enough where none is asked for: loading it instead of all takes 20 ms instead of 170.
-    fn usual_manifest(&self) -> Option<PathBuf> {
-        let is_enough = matches!(self.on, On::Auto | On::Lavapipe);
-        (is_enough && !self.all_drivers && !driver::is_pinned_by_user())
-            .then(driver::lavapipe_manifest)
+    /// Returns the manifest of the one driver that suffices if no other is selected: loading it instead of
+    /// all takes 20 ms instead of 170 ms.
+    fn default_manifest(&self) -> Option<PathBuf> {
+        let suffices = matches!(self.selector, AdapterSelector::Auto | AdapterSelector::Lavapipe);
+        (suffices && !self.all_drivers && !device::is_pinned_by_user())
+            .then(device::lavapipe_manifest)
             .flatten()
     }
 
-    fn start(&self) -> Result<Live, Failure> {
+    fn start(&self) -> Result<RunningWorker, Failure> {
         let mut command = Command::new(&self.program);
         command.args(&self.arguments);
-        if let Some(manifest) = self.manifest.clone().or_else(|| self.usual_manifest()) {
-            for name in driver::PINS {
+        if let Some(manifest) = self.manifest.clone().or_else(|| self.default_manifest()) {
+            for name in device::PIN_VARIABLES {
                 command.env(name, &manifest);
             }
         }
-        if self.compiles_plainly && std::env::var_os(COMPILER_FLAGS).is_none() {
+        if self.is_unoptimized && std::env::var_os(COMPILER_FLAGS).is_none() {
             command.env(COMPILER_FLAGS, "nopt");
         }
         if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
             command.env("XDG_RUNTIME_DIR", std::env::temp_dir());
         }
+        detach(&mut command);
         let mut child = command
-            // Out of reach of the terminal's interrupt, so that the shader in hand is finished.
-            .process_group(0)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
@@ -357,7 +387,7 @@ impl Worker {
         let requests = child.stdin.take().ok_or_else(missing)?;
         let mut output = child.stdout.take().ok_or_else(missing)?;
         let errors = child.stderr.take().ok_or_else(missing)?;
-        let (sender, replies) = mpsc::sync_channel(WAITING);
+        let (sender, replies) = mpsc::sync_channel(MAX_QUEUED_REPLIES);
         thread::spawn(move || {
             while let Ok(reply) = receive(&mut output) {
                 if sender.send(reply).is_err() {
@@ -365,37 +395,37 @@ impl Worker {
                 }
             }
         });
-        Ok(Live {
+        Ok(RunningWorker {
             child,
             requests,
             replies,
-            words: thread::spawn(move || last_words(errors)),
+            stderr: thread::spawn(move || stderr_tail(errors)),
         })
     }
 }
 
 impl Drop for Worker {
     fn drop(&mut self) {
-        if let Some(live) = self.live.take() {
-            live.end();
+        if let Some(running) = self.running.take() {
+            running.end();
         }
     }
 }
 
-/// A running worker.
+/// A running worker process.
 #[derive(Debug)]
-struct Live {
+struct RunningWorker {
     child: Child,
     requests: ChildStdin,
     replies: Receiver<Reply>,
-    words: JoinHandle<String>,
+    stderr: JoinHandle<String>,
 }
 
-impl Live {
-    /// Ends the worker; gives how it ended if it did so by itself, and its last words.
+impl RunningWorker {
+    /// Ends the worker. Returns its exit status, if it exited by itself, and the end of its standard error.
     fn end(mut self) -> (Option<ExitStatus>, String) {
         drop(self.requests);
-        let deadline = Instant::now() + GRACE;
+        let deadline = Instant::now() + EXIT_GRACE_PERIOD;
         let closed = matches!(self.replies.try_recv(), Err(mpsc::TryRecvError::Disconnected));
         let mut status = None;
         while closed && status.is_none() && Instant::now() < deadline {
@@ -403,58 +433,58 @@ impl Live {
             thread::sleep(Duration::from_millis(2));
         }
         if status.is_none() {
-            // Killing fails only for a child that has ended.
+            // Killing fails only for a child that has exited.
             let _ = self.child.kill();
             let _ = self.child.wait();
         }
-        (status, self.words.join().unwrap_or_default())
+        (status, self.stderr.join().unwrap_or_default())
     }
 }
 
-fn last_words(mut from: ChildStderr) -> String {
-    let mut kept = VecDeque::new();
+fn stderr_tail(mut from: ChildStderr) -> String {
+    let mut tail = VecDeque::new();
     let mut buffer = [0; 1024];
     while let Ok(count @ 1..) = from.read(&mut buffer) {
-        kept.extend(&buffer[..count]);
-        kept.drain(..kept.len().saturating_sub(LAST_WORDS));
+        tail.extend(&buffer[..count]);
+        tail.drain(..tail.len().saturating_sub(MAX_STDERR_BYTES));
     }
-    String::from_utf8_lossy(kept.make_contiguous()).trim().to_owned()
+    String::from_utf8_lossy(tail.make_contiguous()).trim().to_owned()
 }
 
-/// What a worker died of. Rust's allocator, its stack guard and LLVM say so in known words.
-fn classify(phase: Phase, status: Option<ExitStatus>, words: &str) -> Failure {
-    if words.contains("has overflowed its stack") {
+/// Classifies the end of a worker by the messages of Rust's allocator, its stack guard and LLVM.
+fn classify(phase: Phase, status: Option<ExitStatus>, stderr: &str) -> Failure {
+    if stderr.contains("has overflowed its stack") {
         return Failure::StackOverflow { phase };
     }
-    if words.contains("memory allocation of") || words.contains("out of memory") {
+    if stderr.contains("memory allocation of") || stderr.contains("out of memory") {
         return Failure::OutOfMemory { phase };
     }
     Failure::Crash {
         phase,
-        how: end_of(status, words),
+        how: describe_exit(status, stderr),
     }
 }
 
-/// How a worker ended, as part of a sentence.
-fn end_of(status: Option<ExitStatus>, words: &str) -> String {
+/// Describes how a worker ended, as part of a sentence.
+fn describe_exit(status: Option<ExitStatus>, stderr: &str) -> String {
     let end = status.map_or_else(
         || "stopped answering".to_owned(),
         |status| format!("died ({status})"),
     );
-    match words.lines().last() {
+    match stderr.lines().last() {
         Some(last) => format!("{end}, saying “{last}”,"),
         None => end,
     }
 }
 
-/// A worker process or, once it has answered, its driver on the way up.
-struct Start {
+/// The start of a worker process or, after its first reply, of its driver.
+struct Startup {
     began: Instant,
     deadline: Instant,
     is_driver: bool,
 }
 
-impl Start {
+impl Startup {
     fn new(timeout: Duration) -> Self {
         let began = Instant::now();
         Self {
@@ -471,7 +501,7 @@ impl Start {
         }
     }
 
-    fn timed_out(&self, after: Duration) -> Failure {
+    fn timeout_failure(&self, after: Duration) -> Failure {
         let what = if self.is_driver {
             "the Vulkan driver did not start"
         } else {
@@ -480,27 +510,30 @@ impl Start {
         Failure::NotStarted(format!("{what} within {} s", after.as_secs_f64()))
     }
 
-    fn died(&self, status: Option<ExitStatus>, words: &str) -> Failure {
+    fn exit_failure(&self, status: Option<ExitStatus>, stderr: &str) -> Failure {
         let when = if self.is_driver {
             "while the Vulkan driver was starting"
         } else {
             "before it answered"
         };
-        Failure::NotStarted(format!("the worker process {} {when}", end_of(status, words)))
+        Failure::NotStarted(format!(
+            "the worker process {} {when}",
+            describe_exit(status, stderr)
+        ))
     }
 }
 
-/// A driver that is missing may only be hidden.
-fn told_of_pins(failure: Failure) -> Failure {
+/// Adds a hint to a missing driver that the user's environment may hide.
+fn with_pin_hint(failure: Failure) -> Failure {
     match failure {
-        Failure::NoDriver(why) if driver::is_pinned_by_user() => Failure::NoDriver(format!(
+        Failure::NoDriver(why) if device::is_pinned_by_user() => Failure::NoDriver(format!(
             "{why}; {} is set, and hides all drivers but those that it names",
-            driver::PINS.join(" or ")
+            device::PIN_VARIABLES.join(" or ")
         )),
         failure => failure,
     }
 }
 
-fn out_of_turn() -> Failure {
+fn unexpected_reply() -> Failure {
     Failure::Worker("it answered another question than was asked".to_owned())
 }

@@ -6,20 +6,20 @@ use std::path::{Path, PathBuf};
 use image::{DynamicImage, ExtendedColorType, ImageEncoder, ImageFormat, ImageReader, Limits, Rgba32FImage};
 use thiserror::Error;
 
-use super::{Image, MAX_SIDE, Shown, check_size, quantise};
+use super::{Image, MAX_SIDE, Rgb8Image, check_size, quantize};
 
-/// Why a picture could not be read or written.
+/// An error of reading or writing an image.
 #[derive(Debug, Error)]
 pub enum ImageError {
-    /// Neither `.png` nor `.exr`.
+    /// The extension is neither `.png` nor `.exr`.
     #[error("{0}: a picture is written as .png (8 bits) or .exr (floats)")]
     Extension(PathBuf),
-    /// The file is not a picture, or cannot be read.
+    /// The file is not an image, or cannot be read.
     #[error("{path}: not a picture that can be read: {error}")]
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// The decoder's words.
+        /// The decoder's message.
         error: String,
     },
     /// The encoder failed.
@@ -27,27 +27,27 @@ pub enum ImageError {
     Unwritable {
         /// The file.
         path: PathBuf,
-        /// The encoder's words.
+        /// The encoder's message.
         error: String,
     },
 }
 
-/// The bytes of a picture file in the format that `path` ends in: PNG holds RGB clamped to [0, 1] and
-/// rounded to 8 bits, EXR the RGBA floats as they are. Nothing is written.
+/// Encodes an image in the format of `path`'s extension: PNG holds RGB clamped to [0, 1] and rounded to 8
+/// bits, EXR the unchanged RGBA floats. Does not write a file.
 ///
 /// # Errors
-/// [`ImageError::Extension`] for other endings, [`ImageError::Unwritable`] if the encoder fails.
+/// [`ImageError::Extension`] for other extensions, [`ImageError::Unwritable`] if the encoder fails.
 pub fn encode(image: &Image, path: &Path) -> Result<Vec<u8>, ImageError> {
     let [width, height] = image.size();
     let top_down = image.rows().rev().flatten();
     match Format::of(path)? {
         Format::Png => {
-            let rgb: Vec<_> = top_down.map(|&[r, g, b, _]| [r, g, b].map(quantise)).collect();
+            let rgb: Vec<_> = top_down.map(|&[r, g, b, _]| [r, g, b].map(quantize)).collect();
             png([width, height], &rgb, path)
         }
         Format::Exr => {
             let rgba: Vec<[f32; 4]> = top_down.copied().collect();
-            written(path, |bytes| {
+            encode_with(path, |bytes| {
                 image::codecs::openexr::OpenExrEncoder::new(bytes).write_image(
                     bytemuck::cast_slice(rgba.as_flattened()),
                     width,
@@ -59,17 +59,17 @@ pub fn encode(image: &Image, path: &Path) -> Result<Vec<u8>, ImageError> {
     }
 }
 
-/// The same of a picture of 8 bits.
+/// Encodes an image of 8 bits as [`encode`] does.
 ///
 /// # Errors
 /// As [`encode`].
-pub fn encode_shown(shown: &Shown, path: &Path) -> Result<Vec<u8>, ImageError> {
+pub fn encode_shown(image_rgb8: &Rgb8Image, path: &Path) -> Result<Vec<u8>, ImageError> {
     match Format::of(path)? {
         Format::Png => {
-            let rgb: Vec<_> = shown.rows().rev().flatten().copied().collect();
-            png(shown.size(), &rgb, path)
+            let rgb: Vec<_> = image_rgb8.rows().rev().flatten().copied().collect();
+            png(image_rgb8.size(), &rgb, path)
         }
-        Format::Exr => encode(&Image::from(shown), path),
+        Format::Exr => encode(&Image::from(image_rgb8), path),
     }
 }
 
@@ -89,9 +89,9 @@ impl Format {
     }
 }
 
-/// A PNG of pixels from the top down.
+/// Encodes a PNG from rows in top-down order.
 fn png([width, height]: [u32; 2], rgb: &[[u8; 3]], path: &Path) -> Result<Vec<u8>, ImageError> {
-    written(path, |bytes| {
+    encode_with(path, |bytes| {
         image::codecs::png::PngEncoder::new_with_quality(
             bytes,
             image::codecs::png::CompressionType::Fast,
@@ -101,7 +101,7 @@ fn png([width, height]: [u32; 2], rgb: &[[u8; 3]], path: &Path) -> Result<Vec<u8
     })
 }
 
-fn written(
+fn encode_with(
     path: &Path,
     write: impl FnOnce(&mut Cursor<Vec<u8>>) -> image::ImageResult<()>,
 ) -> Result<Vec<u8>, ImageError> {
@@ -118,9 +118,9 @@ fn written(
 /// Reads a PNG or an EXR; 8- and 16-bit values become `value / max`, without any transfer function.
 ///
 /// # Errors
-/// [`ImageError::Unreadable`], also for pictures over the size limit.
+/// [`ImageError::Unreadable`], also for images over the size limit.
 pub fn read(path: &Path) -> Result<Image, ImageError> {
-    let decoded = decoded(path)?;
+    let decoded = decode(path)?;
     let [width, height] = [decoded.width(), decoded.height()];
     let rgba: Rgba32FImage = match decoded {
         DynamicImage::ImageRgba32F(floats) => floats,
@@ -134,17 +134,17 @@ pub fn read(path: &Path) -> Result<Image, ImageError> {
     Ok(Image::new(width, height, pixels))
 }
 
-/// Reads a picture as it is shown.
+/// Reads a PNG or an EXR as 8-bit RGB.
 ///
 /// # Errors
 /// As [`read`].
-pub fn read_shown(path: &Path) -> Result<Shown, ImageError> {
-    let rgb = decoded(path)?.into_rgb8();
+pub fn read_shown(path: &Path) -> Result<Rgb8Image, ImageError> {
+    let rgb = decode(path)?.into_rgb8();
     let pixels = rgb.rows().rev().flat_map(|row| row.map(|pixel| pixel.0));
-    Ok(Shown::new(rgb.width(), rgb.height(), pixels.collect()))
+    Ok(Rgb8Image::new(rgb.width(), rgb.height(), pixels.collect()))
 }
 
-fn decoded(path: &Path) -> Result<DynamicImage, ImageError> {
+fn decode(path: &Path) -> Result<DynamicImage, ImageError> {
     let unreadable = |error: String| ImageError::Unreadable {
         path: path.to_owned(),
         error,
@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn png_clamps_quantises_and_puts_the_bottom_row_last() {
+    fn png_clamps_quantizes_and_puts_the_bottom_row_last() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
         output::write(&path, &encode(&sample(), &path).unwrap()).unwrap();
@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn other_endings_and_other_files_are_refused_by_name() {
+    fn other_extensions_and_other_files_are_rejected() {
         let error = encode(&sample(), Path::new("a.jpg")).unwrap_err();
         assert!(error.to_string().contains("a.jpg") && error.to_string().contains(".png"));
         let folder = tempfile::tempdir().unwrap();

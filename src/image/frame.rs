@@ -1,4 +1,4 @@
-//! One frame's inputs: what ShaderToy feeds a shader, and the uniform block that carries it.
+//! The inputs of one frame: the values that ShaderToy provides to a shader, and their uniform block.
 
 use std::ops::Range;
 
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Image;
 
-/// Everything that a shader can ask about the frame that it paints.
+/// All inputs of a shader for the frame that it renders.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
     /// `iResolution.xy`, in pixels.
@@ -16,16 +16,16 @@ pub struct Frame {
     pub time: f32,
     /// `iFrame`, from 0.
     pub frame: i32,
-    /// `iMouse`, in pixels, as ShaderToy has it: xy the last drag, zw the click.
+    /// `iMouse`, in pixels, as in ShaderToy: xy is the last drag position, zw the click.
     pub mouse: [f32; 4],
     /// `iDate`: year, month from 0, day, seconds since midnight.
     pub date: [f32; 4],
-    /// What `iChannel0` to `iChannel3` read; an unbound channel is black and its resolution 0.
+    /// The images of `iChannel0` to `iChannel3`; an unbound channel is black and its resolution 0.
     pub channels: [Option<Image>; 4],
 }
 
 impl Default for Frame {
-    /// The first frame at 640×360, everything else zero: the same picture on every day.
+    /// The first frame at 640×360, everything else zero: the same image on every day.
     fn default() -> Self {
         Self {
             size: [640, 360],
@@ -38,18 +38,19 @@ impl Default for Frame {
     }
 }
 
-/// So many pixels of a frame are painted and compared at once: a picture of 640×360 in one go, a larger one in bands of rows,
-/// so that it takes little more memory.
+/// Pixels per band of rows that is rendered and compared at once: an image of 640×360 is one band; a larger
+/// one has several, so that it takes little more memory.
 const BAND_PIXELS: u32 = 1 << 18;
-/// Bands begin at multiples of this: the evaluator's tiles, and the quads of derivatives, do not reach across two.
+/// Bands begin at multiples of this number of rows, so that neither the evaluator's tiles nor the quads of
+/// derivatives cross bands.
 const BAND_ROWS: u32 = 32;
 
-/// `iFrameRate`, in frames a second; `iTimeDelta` is one of them.
+/// `iFrameRate`, in frames per second; `iTimeDelta` is its reciprocal.
 pub const FRAME_RATE: f32 = 60.0;
-/// `iSampleRate`, in samples a second.
+/// `iSampleRate`, in hertz.
 pub const SAMPLE_RATE: f32 = 44_100.0;
 
-/// The std140 block at set 0, binding 0. The offsets are part of the contract with other hosts.
+/// The std140 uniform block at set 0, binding 0. Other hosts rely on its offsets.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct Block {
@@ -70,13 +71,13 @@ struct Block {
 pub const BLOCK_BYTES: usize = size_of::<Block>();
 
 impl Frame {
-    /// All its rows.
+    /// All rows of the frame.
     #[must_use]
     pub fn rows(&self) -> Range<u32> {
         0..self.size[1]
     }
 
-    /// Its rows in bands, from the bottom up.
+    /// The rows of the frame in bands, from the bottom up.
     pub fn bands(&self) -> impl Iterator<Item = Range<u32>> + use<> {
         let [width, height] = self.size;
         let rows = (BAND_PIXELS / width.max(1) / BAND_ROWS * BAND_ROWS).max(BAND_ROWS);
@@ -85,7 +86,7 @@ impl Frame {
             .map(move |first| first..(first + rows).min(height))
     }
 
-    /// The uniform block's bytes, laid out as a translated shader reads them.
+    /// The bytes of the uniform block in the layout that translated shaders expect.
     #[must_use]
     pub fn block(&self) -> [u8; BLOCK_BYTES] {
         let resolution = |channel: &Option<Image>| {
@@ -120,7 +121,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bands_cover_the_picture_and_small_pictures_are_one() {
+    fn bands_cover_the_image_and_small_images_are_one_band() {
         let bands = |width, height| {
             let frame = Frame {
                 size: [width, height],
@@ -137,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn the_block_has_the_offsets_that_other_hosts_rely_on() {
+    fn the_block_has_the_documented_offsets() {
         assert_eq!(offset_of!(Block, resolution), 0);
         assert_eq!(offset_of!(Block, time), 12);
         assert_eq!(offset_of!(Block, time_delta), 16);

@@ -1,8 +1,8 @@
-//! Images of linear floats and of the 8 bits that a display shows, the inputs of one ShaderToy frame, and files that
-//! appear whole or not at all. PNG holds what a display shows; EXR holds the floats.
+//! Images of linear floats and of 8-bit display values, the inputs of one ShaderToy frame, and atomic file
+//! output. PNG holds display values; EXR holds floats.
 //!
-//! Rows run upwards, as fragment coordinates do: row 0 is the bottom. `file` is the one place that flips rows and
-//! quantizes.
+//! Rows run upwards, as fragment coordinates do: row 0 is the bottom. `file` converts to and from the
+//! top-down rows of image files.
 //!
 //! ```
 //! use toyproof_image::{Image, encode};
@@ -14,24 +14,22 @@
 
 mod file;
 mod frame;
-mod noise;
 pub mod output;
-mod shown;
+mod rgb8;
 
 pub use file::{ImageError, encode, encode_shown, read, read_shown};
 pub use frame::{BLOCK_BYTES, FRAME_RATE, Frame, SAMPLE_RATE};
-pub use noise::{noise, pcg};
+pub use rgb8::Rgb8Image;
 use serde::{Deserialize, Serialize};
-pub use shown::Shown;
 
-/// The longest side of a picture, in pixels: what Vulkan drivers commonly take.
+/// Maximum side of an image, in pixels: the common limit of Vulkan drivers.
 pub const MAX_SIDE: u32 = 16_384;
 
-/// The most pixels of a picture: one 8K frame (7680×4320) and a little.
+/// Maximum number of pixels of an image: slightly more than one 8K frame (7680×4320).
 pub const MAX_PIXELS: u64 = 1 << 25;
 
-/// A picture of linear RGBA floats, bottom row first. Colours are nominally in [0, 1] but are kept as they
-/// are, NaN and infinities included.
+/// An image of linear RGBA floats, bottom row first. Colors are nominally in [0, 1] but are stored unchanged,
+/// including NaN and infinities.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Image {
     width: u32,
@@ -40,10 +38,10 @@ pub struct Image {
 }
 
 impl Image {
-    /// A picture from its pixels, bottom row first.
+    /// Makes an image from its pixels, bottom row first.
     ///
     /// # Panics
-    /// If the count of pixels is not `width · height`.
+    /// If the number of pixels is not `width · height`.
     #[must_use]
     pub fn new(width: u32, height: u32, pixels: Vec<[f32; 4]>) -> Self {
         assert_eq!(pixels.len(), width as usize * height as usize);
@@ -54,10 +52,11 @@ impl Image {
         }
     }
 
-    /// A picture of bands of rows of one width, from the bottom up. Each is given up once it is taken over.
+    /// Makes an image from bands of rows of one width, from the bottom up. Each band is freed after it is
+    /// copied.
     ///
     /// # Panics
-    /// If there is none, or the widths differ.
+    /// If there is no band, or the widths differ.
     #[must_use]
     pub fn of_bands(bands: Vec<Self>) -> Self {
         let height: u32 = bands.iter().map(|band| band.height).sum();
@@ -91,7 +90,7 @@ impl Image {
         self.pixels[y as usize * self.width as usize + x as usize]
     }
 
-    /// The same with its first row last.
+    /// The image flipped vertically.
     #[must_use]
     pub fn upside_down(&self) -> Self {
         let [width, height] = self.size();
@@ -105,17 +104,17 @@ impl Image {
     }
 }
 
-/// The 8-bit value of a colour component: `round_ties_even(255 · clamp(c, 0, 1))`; NaN becomes 0.
+/// The 8-bit value of a color component: `round_ties_even(255 · clamp(c, 0, 1))`; NaN becomes 0.
 #[must_use]
 #[inline]
-pub fn quantise(component: f32) -> u8 {
+pub fn quantize(component: f32) -> u8 {
     let clamped = if component > 0.0 { component.min(1.0) } else { 0.0 };
-    // From 2²³ on floats are the whole numbers, so that the sum is rounded to one, whose last bits are the value. Not all processors
-    // have an instruction that rounds, and a call takes ten times as long.
+    // From 2²³ on, floats are the integers, so that the sum is rounded to an integer, whose low byte is the
+    // value. Not all processors have a rounding instruction, and a call takes ten times as long.
     (clamped * 255.0 + 8_388_608.0).to_bits() as u8
 }
 
-/// Whether a picture of that size can be made; says what is wrong otherwise.
+/// Checks that an image can have this size; otherwise describes the problem.
 ///
 /// # Errors
 /// A sentence without a full stop, naming the limit.
@@ -136,21 +135,61 @@ pub fn check_size(width: u64, height: u64) -> Result<[u32; 2], String> {
     Ok([width as u32, height as u32])
 }
 
+/// The side of the noise texture in pixels, as in ShaderToy.
+const NOISE_SIDE: u32 = 256;
+
+/// A noise texture, the same on every machine: 256×256 pixels of independent 8-bit values in all four
+/// components.
+#[must_use]
+pub fn noise() -> Image {
+    let pixels = (0..NOISE_SIDE * NOISE_SIDE)
+        .map(|index| [0, 1, 2, 3].map(|component| f32::from(pcg(4 * index + component) as u8) / 255.0))
+        .collect();
+    Image::new(NOISE_SIDE, NOISE_SIDE, pixels)
+}
+
+/// The PCG hash of Jarzynski and Olano, “Hash Functions for GPU Rendering”, JCGT 9(3), 2020.
+#[inline]
+#[must_use]
+pub fn pcg(input: u32) -> u32 {
+    let state = input.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+    let word = ((state >> ((state >> 28) + 4)) ^ state).wrapping_mul(277_803_737);
+    (word >> 22) ^ word
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn quantises_as_float_targets_are_stored_in_eight_bits() {
-        assert_eq!(quantise(-1.0), 0);
-        assert_eq!(quantise(2.0), 255);
-        assert_eq!(quantise(f32::NAN), 0);
-        assert_eq!(quantise(0.5), 128, "127.5 rounds to even");
-        assert_eq!(quantise(126.5 / 255.0), 126, "126.5 rounds to even");
+    fn noise_is_uniform_and_its_components_are_independent() {
+        let image = noise();
+        let count = image.pixels().len() as f32;
+        for i in 0..4 {
+            let mean = image.pixels().iter().map(|p| p[i]).sum::<f32>() / count;
+            // The mean of 65,536 uniform samples has a standard deviation of 0.0011.
+            assert!((mean - 0.5).abs() < 0.005, "{mean}");
+        }
+        let product = image
+            .pixels()
+            .iter()
+            .map(|p| (p[0] - 0.5) * (p[1] - 0.5))
+            .sum::<f32>()
+            / count;
+        assert!(product.abs() < 0.002, "{product}");
+    }
+
+    #[test]
+    fn quantizes_like_conversion_of_float_targets_to_eight_bits() {
+        assert_eq!(quantize(-1.0), 0);
+        assert_eq!(quantize(2.0), 255);
+        assert_eq!(quantize(f32::NAN), 0);
+        assert_eq!(quantize(0.5), 128, "127.5 rounds to even");
+        assert_eq!(quantize(126.5 / 255.0), 126, "126.5 rounds to even");
         for at in 0..=1 << 16 {
             let component = at as f32 / (1 << 16) as f32;
             let rounded = (component * 255.0).round_ties_even();
-            assert_eq!(f32::from(quantise(component)), rounded, "{component}");
+            assert_eq!(f32::from(quantize(component)), rounded, "{component}");
         }
     }
 

@@ -1,4 +1,5 @@
-//! Files that appear whole or not at all; a device or a pipe is written to, never replaced.
+//! Atomic file output: a file appears completely or not at all; a device or a pipe is written to, never
+//! replaced.
 
 use std::collections::HashSet;
 use std::fs;
@@ -7,14 +8,15 @@ use std::path::{Path, PathBuf};
 
 use toyproof_diagnostic::path_name;
 
-/// Writes a file that the user named under a temporary name beside its place and renames it, so that neither a crash nor a
-/// reader ever sees half of it. Missing folders are made. A link is followed, and what is there but is no file
-/// (`/dev/null`, `/dev/stdout`, a named pipe) is written into: a rename would put a file in its place.
+/// Writes a file that the user named: under a temporary name in the same folder, then renames it, so that
+/// neither a crash nor a reader ever sees a partial file. Missing folders are created. Symbolic links are
+/// followed. A special file (`/dev/null`, `/dev/stdout`, a named pipe) is written to, since a rename would
+/// replace it.
 ///
 /// # Errors
-/// The system's, with the path before it.
+/// The system's error, prefixed with the path.
 pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    // What does not exist yet, or cannot be looked at, is for the steps below to make or to name.
+    // If the path does not exist or cannot be accessed, the steps below create it or report the error.
     let followed = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     let kind = fs::metadata(&followed).map(|found| found.file_type());
     if kind.is_ok_and(|kind| !kind.is_file() && !kind.is_dir()) {
@@ -22,41 +24,46 @@ pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
             .write(true)
             .open(&followed)
             .and_then(|mut stream| stream.write_all(bytes))
-            .map_err(|error| named(path, &error));
+            .map_err(|error| with_path(path, &error));
     }
-    replace(&followed, bytes).map_err(|error| named(path, &error))
+    replace(&followed, bytes).map_err(|error| with_path(path, &error))
 }
 
-/// Writes a file into an output folder, whose content may be a stranger's: a link at the file's place is replaced, not followed, and no link
-/// below the folder leads out of it. `path` begins with `folder`, which may be a link itself.
+/// Writes a file into an output folder with untrusted content: a symbolic link at the file's path is
+/// replaced, not followed, and no link below the folder is followed. `path` begins with `folder`, which may
+/// be a link itself.
 ///
 /// # Errors
-/// The system's, with the path before it, or that a folder on the way is a link.
+/// The system's error, prefixed with the path, or that a folder between `folder` and the file is a symbolic
+/// link.
 pub fn write_inside(folder: &Path, path: &Path, bytes: &[u8]) -> io::Result<()> {
-    no_link_on_the_way(folder, path)
+    check_no_symlink_between(folder, path)
         .and_then(|()| replace(path, bytes))
-        .map_err(|error| named(path, &error))
+        .map_err(|error| with_path(path, &error))
 }
 
-/// Removes a file of an earlier run from an output folder, if it is there.
+/// Removes a file of an earlier run from an output folder, if it exists.
 ///
 /// # Errors
 /// As for [`write_inside`].
 pub fn remove_inside(folder: &Path, path: &Path) -> io::Result<()> {
-    let removed = no_link_on_the_way(folder, path).and_then(|()| fs::remove_file(path));
+    let removed = check_no_symlink_between(folder, path).and_then(|()| fs::remove_file(path));
     match removed {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
-        removed => removed.map_err(|error| named(path, &error)),
+        removed => removed.map_err(|error| with_path(path, &error)),
     }
 }
 
-fn no_link_on_the_way(folder: &Path, path: &Path) -> io::Result<()> {
-    let below = path.ancestors().skip(1).take_while(|way| *way != folder);
-    for way in below {
-        if fs::symlink_metadata(way).is_ok_and(|found| found.is_symlink()) {
+fn check_no_symlink_between(folder: &Path, path: &Path) -> io::Result<()> {
+    let below = path
+        .ancestors()
+        .skip(1)
+        .take_while(|ancestor| *ancestor != folder);
+    for ancestor in below {
+        if fs::symlink_metadata(ancestor).is_ok_and(|found| found.is_symlink()) {
             let reason = format!(
                 "`{}` is a symbolic link, which outputs do not follow",
-                path_name(way)
+                path_name(ancestor)
             );
             return Err(io::Error::other(reason));
         }
@@ -64,11 +71,11 @@ fn no_link_on_the_way(folder: &Path, path: &Path) -> io::Result<()> {
     Ok(())
 }
 
-fn named(path: &Path, error: &io::Error) -> io::Error {
+fn with_path(path: &Path, error: &io::Error) -> io::Error {
     io::Error::new(error.kind(), format!("{}: {error}", path_name(path)))
 }
 
-/// Puts a file at a path, in place of what is there.
+/// Writes a file at a path atomically, replacing an existing one.
 fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let folder = match path.parent() {
         Some(parent) if parent != Path::new("") => parent,
@@ -79,7 +86,7 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     builder.prefix(".toyproof-");
     #[cfg(unix)]
     {
-        // As an ordinary new file: the umask takes what it takes.
+        // The permissions of an ordinary new file, subject to the umask.
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
@@ -89,7 +96,7 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     Ok(())
 }
 
-/// Files that must not be lost, by whatever way one comes to them.
+/// Files that must not be overwritten, identified by their canonical paths.
 #[derive(Debug, Default)]
 pub struct Originals(HashSet<PathBuf>);
 
@@ -101,7 +108,7 @@ impl<'a> FromIterator<&'a Path> for Originals {
 }
 
 impl Originals {
-    /// Whether a file that is written there would replace one of them.
+    /// Whether writing to `path` would replace one of them.
     #[must_use]
     pub fn would_lose(&self, path: &Path) -> bool {
         path.canonicalize()
@@ -114,7 +121,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn replaces_a_file_whole_and_leaves_nothing_beside_it() {
+    fn replaces_a_file_and_leaves_no_temporary_file() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("new/a.txt");
         write(&path, b"one").unwrap();
@@ -125,7 +132,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn a_file_is_the_same_by_whatever_way() {
+    fn a_file_is_recognized_through_links() {
         let folder = tempfile::tempdir().unwrap();
         let [file, link, other] = ["file", "link", "other"].map(|name| folder.path().join(name));
         fs::write(&file, b"").unwrap();
@@ -192,14 +199,14 @@ mod tests {
         remove_inside(&out, &linked).unwrap();
         assert!(victim.exists() && !linked.exists());
 
-        // The folder that the user names may be a link.
+        // The folder named by the user may be a link.
         let link = folder.path().join("link");
         write_inside(&link, &link.join("b.png"), b"x").unwrap();
         assert!(out.join("b.png").exists());
     }
 
     #[test]
-    fn an_error_names_the_path_and_leaves_nothing_behind() {
+    fn errors_name_the_path_and_leave_no_temporary_file() {
         let folder = tempfile::tempdir().unwrap();
         let target = folder.path().join("taken");
         fs::create_dir_all(target.join("child")).unwrap();

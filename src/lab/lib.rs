@@ -1,10 +1,10 @@
-//! Measurements for authors of shaders and of this tool: what accuracy costs in time ([`trade`]), where formulas fail at
-//! the extremes of their arguments ([`stress`]), and the charts of both ([`chart`]).
+//! Measurements for authors of shaders and of this tool: accuracy against time ([`trade`]), failures of
+//! formulas at extreme arguments ([`stress`]), and the charts of both ([`chart`]).
 //!
 //! ```
 //! use toyproof_lab::stress::formula::FORMULAS;
 //!
-//! // The formulas for where a ray meets a sphere whose failures `stress` measures.
+//! // The ray–sphere formulas whose failures `stress` measures.
 //! assert!(FORMULAS.iter().any(|formula| formula.name == "textbook"));
 //! ```
 

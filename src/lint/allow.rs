@@ -1,7 +1,7 @@
-//! `// toyproof: allow(W0005)`: what the author knows, and does not want to be told.
+//! Comments `// toyproof: allow(W0005)`, which suppress warnings that the author accepts.
 //!
-//! At the end of a line it holds for that line, on a line of its own for the next statement, declaration or directive, and before
-//! all else for the whole file. Words behind the `)` are the author's reason.
+//! At the end of a line, an `allow` covers that line; on a line of its own, the next statement, declaration
+//! or directive; before all code, the whole file. Text after the `)` is the author's reason.
 
 use toyproof_diagnostic::{Diagnostic, Files, Span};
 use toyproof_glsl::tree::{Block, Item, Tree, walk};
@@ -10,53 +10,62 @@ use toyproof_glsl::{Code, IN_MACRO, Remark};
 /// The `allow`s of a shader.
 #[derive(Debug, Default)]
 pub(super) struct Allows {
-    /// In the order of where they begin.
+    /// Sorted by the start of their scopes.
     all: Vec<Allow>,
 }
 
-/// One code that is allowed somewhere.
+/// One code that is allowed within one scope.
 #[derive(Debug, Clone, Copy)]
 struct Allow {
     code: Code,
-    /// The code's own characters.
+    /// The span of the code's text.
     name: Span,
-    /// Where it holds.
-    over: Span,
+    /// The range of text that it covers.
+    scope: Span,
 }
 
 impl Allows {
-    /// Reads the remarks of a file; what is wrong with them goes to `told`.
-    pub(super) fn read(files: &Files, remarks: &[Remark], tree: &Tree, told: &mut Vec<Diagnostic>) -> Self {
+    /// Reads the `allow` remarks of a file; appends warnings about malformed ones to `diagnostics`.
+    pub(super) fn read(
+        files: &Files,
+        remarks: &[Remark],
+        tree: &Tree,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) -> Self {
         if remarks.is_empty() {
             return Self::default();
         }
-        let extents = Extents::of(tree);
+        let extents = StatementExtents::of(tree);
         let mut all = Vec::new();
         for remark in remarks {
-            let over = extents.reach(files, *remark);
-            for name in names(files, *remark, told) {
+            let scope = extents.scope_of(files, *remark);
+            for name in code_spans(files, *remark, diagnostics) {
                 match Code::ALL.iter().find(|code| code.as_str() == files.text(name)) {
-                    Some(&code) if code.can_be_allowed() => all.push(Allow { code, name, over }),
-                    Some(_) => told.push(bad(name, "only warnings about the shader can be allowed")),
+                    Some(&code) if code.can_be_allowed() => all.push(Allow { code, name, scope }),
+                    Some(_) => diagnostics.push(invalid_remark(
+                        name,
+                        "only warnings about the shader can be allowed",
+                    )),
                     None => {
                         let message = format!("there is no warning `{}`", files.text(name));
-                        told.push(bad(name, message));
+                        diagnostics.push(invalid_remark(name, message));
                     }
                 }
             }
         }
-        all.sort_by_key(|allow| allow.over.start);
+        all.sort_by_key(|allow| allow.scope.start);
         Self { all }
     }
 
-    /// What they allow of what is seen while the shader runs, and where.
-    pub(super) fn of_runs(&self) -> Vec<(Code, Span)> {
-        let of_runs = self.all.iter().filter(|allow| allow.code.is_of_runs());
-        of_runs.map(|allow| (allow.code, allow.over)).collect()
+    /// The allowed codes of warnings that arise while the shader runs, with their scopes.
+    pub(super) fn runtime_allows(&self) -> Vec<(Code, Span)> {
+        let runtime_allows = self.all.iter().filter(|allow| allow.code.is_of_runs());
+        runtime_allows.map(|allow| (allow.code, allow.scope)).collect()
     }
 
-    /// What is left of these warnings, each `allow` that none of them needed told beside them; whether a run needs one, a run tells.
-    pub(super) fn sift(&self, found: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    /// Removes the allowed warnings from `found`, and appends a warning for each `allow` that removed none.
+    /// Codes of warnings that only arise at run time are exempt: their use is not known here.
+    pub(super) fn filter(&self, found: Vec<Diagnostic>) -> Vec<Diagnostic> {
         let mut used = vec![false; self.all.len()];
         let allowed = self.allowed(&found, &mut used);
         let unused = self.all.iter().zip(&used);
@@ -69,7 +78,7 @@ impl Allows {
         left.map(|(diagnostic, _)| diagnostic).chain(unused).collect()
     }
 
-    /// Which are allowed; marks what allowed them.
+    /// For each diagnostic, whether an `allow` covers it; sets `used` for each `allow` that does.
     fn allowed(&self, found: &[Diagnostic], used: &mut [bool]) -> Vec<bool> {
         let mut allowed = vec![false; found.len()];
         let mut places: Vec<(u32, usize)> = Vec::new();
@@ -80,13 +89,13 @@ impl Allows {
         }
         places.sort_unstable();
         let mut waiting = self.all.iter().enumerate().peekable();
-        // They nest as statements do, so that few are open at once.
+        // Scopes nest as statements do, so few are open at once.
         let mut open: Vec<usize> = Vec::new();
         for (place, index) in places {
-            while let Some((allow, _)) = waiting.next_if(|(_, allow)| allow.over.start <= place) {
+            while let Some((allow, _)) = waiting.next_if(|(_, allow)| allow.scope.start <= place) {
                 open.push(allow);
             }
-            open.retain(|&allow| place < self.all[allow].over.end);
+            open.retain(|&allow| place < self.all[allow].scope.end);
             for &allow in &open {
                 if self.all[allow].code.as_str() == found[index].code {
                     used[allow] = true;
@@ -98,14 +107,14 @@ impl Allows {
     }
 }
 
-fn bad(at: Span, message: impl Into<String>) -> Diagnostic {
+fn invalid_remark(at: Span, message: impl Into<String>) -> Diagnostic {
     Diagnostic::warning(Code::BadAllow.as_str(), message)
         .at(at)
         .note("it is written `// toyproof: allow(W0005)`; several codes are parted by commas")
 }
 
-/// The places of the codes between the parentheses.
-fn names(files: &Files, remark: Remark, told: &mut Vec<Diagnostic>) -> Vec<Span> {
+/// The spans of the codes between the parentheses.
+fn code_spans(files: &Files, remark: Remark, diagnostics: &mut Vec<Diagnostic>) -> Vec<Span> {
     let text = files.text(remark.at);
     let inside = text
         .split_once(':')
@@ -115,10 +124,13 @@ fn names(files: &Files, remark: Remark, told: &mut Vec<Diagnostic>) -> Vec<Span>
         .and_then(|rest| rest.split_once(')'))
         .map(|(inside, _)| inside);
     let Some(inside) = inside else {
-        told.push(bad(remark.at, "this remark to toyproof is not understood"));
+        diagnostics.push(invalid_remark(
+            remark.at,
+            "this remark to toyproof is not understood",
+        ));
         return Vec::new();
     };
-    // Both are slices of one text.
+    // `part` and `inside` are slices of `text`.
     let offset = |part: &str| (part.as_ptr() as usize - text.as_ptr() as usize) as u32 + remark.at.start;
     inside
         .split(',')
@@ -127,10 +139,10 @@ fn names(files: &Files, remark: Remark, told: &mut Vec<Diagnostic>) -> Vec<Span>
         .collect()
 }
 
-/// Where statements and declarations begin and end, in bytes; in order, and of those that begin together the longest first.
-struct Extents(Vec<(u32, u32)>);
+/// The byte ranges of statements and declarations, sorted by start, and the longest first among equal starts.
+struct StatementExtents(Vec<(u32, u32)>);
 
-impl Extents {
+impl StatementExtents {
     fn of(tree: &Tree) -> Self {
         let mut all = Vec::new();
         for item in &tree.items {
@@ -141,7 +153,7 @@ impl Extents {
                 }
                 Item::Variable(id) => {
                     let Some(at) = tree[*id].at else { continue };
-                    let value = tree[*id].initialiser.map_or(at, |value| tree[value].at);
+                    let value = tree[*id].initializer.map_or(at, |value| tree[value].at);
                     (at.span, value.span.end.max(at.span.end))
                 }
                 Item::Prototype(id) => (tree[*id].at.span, tree[*id].at.span.end),
@@ -150,7 +162,7 @@ impl Extents {
                     let body = tree[*id]
                         .body
                         .as_ref()
-                        .map(|body| statements(tree, body, &mut all));
+                        .map(|body| collect_statements(tree, body, &mut all));
                     (at, body.unwrap_or_default().max(at.end))
                 }
             };
@@ -160,8 +172,8 @@ impl Extents {
         Self(all)
     }
 
-    /// Where a remark holds.
-    fn reach(&self, files: &Files, remark: Remark) -> Span {
+    /// The range of text that a remark covers.
+    fn scope_of(&self, files: &Files, remark: Remark) -> Span {
         let text = files.get(remark.at.file).text();
         let line_end = |byte: u32| {
             let rest = &text[byte as usize..];
@@ -184,7 +196,7 @@ impl Extents {
     }
 }
 
-/// The first byte of the directive that the next line with anything on it is, if it is one.
+/// The start of the next directive after `after`, if nothing but line comments and white space precedes it.
 fn directive_after(text: &str, after: u32) -> Option<u32> {
     let mut start = after as usize;
     loop {
@@ -197,15 +209,15 @@ fn directive_after(text: &str, after: u32) -> Option<u32> {
     text[start..].starts_with('#').then_some(start as u32)
 }
 
-/// Notes each statement of a block; gives where the last one ends.
-fn statements(tree: &Tree, block: &Block, all: &mut Vec<(u32, u32)>) -> u32 {
+/// Appends the range of each statement of a block, and returns the end of the last one.
+fn collect_statements(tree: &Tree, block: &Block, all: &mut Vec<(u32, u32)>) -> u32 {
     let mut last = 0;
     for statement in block {
         let own = walk::own_expressions(tree, statement);
         let own = own.into_iter().map(|expr| tree[expr].at.span.end);
         let mut end = own.fold(statement.at.span.end, u32::max);
         for body in walk::inner(statement) {
-            end = end.max(statements(tree, body, all));
+            end = end.max(collect_statements(tree, body, all));
         }
         all.push((statement.at.span.start, end));
         last = last.max(end);

@@ -1,7 +1,8 @@
-//! Ray–sphere formulas that take a = 1, given directions that are never normalised.
+//! Ray–sphere formulas that assume a = 1, applied to directions that are never normalized.
 //!
-//! Only where all that a direction may be is seen, and none of it can have length 1 but by chance: vectors of pixel coordinates and sums of
-//! vectors, without a `normalize`, a division, a sine or a dot product anywhere on the way.
+//! Reports only where all definitions of a direction are known, and none of them can have length 1 except by
+//! chance: vectors of pixel coordinates and sums of vectors, without a `normalize`, division, sine or dot
+//! product in any definition.
 
 use std::collections::{HashMap, HashSet};
 
@@ -10,24 +11,24 @@ use toyproof_glsl::tree::{
     BinaryOp, BuiltIn, Constructor, ExprId, ExprKind, StructId, Type, UnaryOp, Value, VariableId,
 };
 
-use super::Found;
+use super::Findings;
 use super::program::{Definition, Program};
 use super::quadratic::Quadratic;
 
-/// How many expressions are looked at for one formula; of what has more, nothing is told.
-const BUDGET: usize = 1_000;
+/// The maximum number of expressions examined for one formula; nothing is reported beyond it.
+const MAX_EXPRS: usize = 1_000;
 
-pub(super) fn run(program: &Program, quadratics: &[Quadratic], found: &mut Found) {
+pub(super) fn run(program: &Program, quadratics: &[Quadratic], findings: &mut Findings) {
     let tree = program.tree;
-    let mut members = None;
+    let mut member_values = None;
     for quadratic in quadratics.iter().filter(|quadratic| quadratic.for_unit) {
-        let members = members.get_or_insert_with(|| self::members(program));
-        let Some(origin) = never_unit(program, members, quadratic.direction) else {
+        let member_values = member_values.get_or_insert_with(|| self::member_values(program));
+        let Some(origin) = never_unit(program, member_values, quadratic.direction) else {
             continue;
         };
         let message =
             "this discriminant is right for directions of length 1, and the ray's is never normalised";
-        found.tell(Code::UnnormalisedDirection, tree[quadratic.expr].at, message, |diagnostic| {
+        findings.add(Code::UnnormalizedDirection, tree[quadratic.expr].at, message, |diagnostic| {
             diagnostic
                 .related(tree[origin].at.span, "the direction is made here")
                 .note("write `normalize(…)` there, or keep a = dot(d, d): `b*b - a*c`, and divide the roots by a")
@@ -35,12 +36,12 @@ pub(super) fn run(program: &Program, quadratics: &[Quadratic], found: &mut Found
     }
 }
 
-/// All values that a member of a structure is ever given; none where one cannot be told.
+/// All values assigned to each member of a structure; `None` where one is unknown.
 type Members = HashMap<(StructId, usize), Option<Vec<ExprId>>>;
 
-fn members(program: &Program) -> Members {
+fn member_values(program: &Program) -> Members {
     let tree = program.tree;
-    let mut members = Members::new();
+    let mut member_values = Members::new();
     for expr in program.all_exprs() {
         if let ExprKind::Construct {
             constructor: Constructor::Struct,
@@ -49,7 +50,10 @@ fn members(program: &Program) -> Members {
             && let Type::Struct(id) = tree[expr].ty
         {
             for (member, &argument) in arguments.iter().enumerate() {
-                if let Some(values) = members.entry((id, member)).or_insert_with(|| Some(Vec::new())) {
+                if let Some(values) = member_values
+                    .entry((id, member))
+                    .or_insert_with(|| Some(Vec::new()))
+                {
                     values.push(argument);
                 }
             }
@@ -61,24 +65,26 @@ fn members(program: &Program) -> Members {
             let Type::Struct(id) = tree[structure].ty else {
                 return;
             };
-            let values = members.entry((id, member)).or_insert_with(|| Some(Vec::new()));
+            let values = member_values
+                .entry((id, member))
+                .or_insert_with(|| Some(Vec::new()));
             match (value, values.as_mut()) {
                 (Some(value), Some(values)) => values.push(value),
                 _ => *values = None,
             }
         });
     }
-    members
+    member_values
 }
 
-/// Where a direction comes from, if it is never of length 1 but by chance.
-fn never_unit(program: &Program, members: &Members, direction: ExprId) -> Option<ExprId> {
+/// The expression that makes a direction, if its length is 1 only by chance.
+fn never_unit(program: &Program, member_values: &Members, direction: ExprId) -> Option<ExprId> {
     let tree = program.tree;
     let mut origin = None;
     let mut pending = vec![direction];
     let mut seen: HashSet<VariableId> = HashSet::new();
     let mut seen_members = HashSet::new();
-    for _ in 0..BUDGET {
+    for _ in 0..MAX_EXPRS {
         let Some(expr) = pending.pop() else {
             return origin;
         };
@@ -104,7 +110,7 @@ fn never_unit(program: &Program, members: &Members, direction: ExprId) -> Option
                         match definition {
                             Definition::Value(value) => pending.push(*value),
                             Definition::Change(change) if keeps_length(program, *change) => {}
-                            Definition::Change(_) | Definition::Outside => return None,
+                            Definition::Change(_) | Definition::External => return None,
                         }
                     }
                 }
@@ -114,7 +120,7 @@ fn never_unit(program: &Program, members: &Members, direction: ExprId) -> Option
                     return None;
                 };
                 if seen_members.insert((id, *member)) {
-                    pending.extend(members.get(&(id, *member))?.as_ref()?);
+                    pending.extend(member_values.get(&(id, *member))?.as_ref()?);
                 }
             }
             ExprKind::Unary {
@@ -161,7 +167,7 @@ fn never_unit(program: &Program, members: &Members, direction: ExprId) -> Option
     None
 }
 
-/// Whether a change leaves it as unlikely to be of length 1 as it was: a turn, or a component.
+/// Whether a change keeps a vector as unlikely to have length 1: a rotation, or a component assignment.
 fn keeps_length(program: &Program, change: ExprId) -> bool {
     let tree = program.tree;
     match tree[change].kind {
@@ -179,12 +185,12 @@ fn keeps_length(program: &Program, change: ExprId) -> bool {
     }
 }
 
-/// Whether a sum or a vector of components is made of anything that vectors of length 1 are made of.
+/// Whether a sum or vector constructor contains any operation that produces unit vectors.
 fn may_be_unit(program: &Program, expr: ExprId) -> bool {
     let tree = program.tree;
     let mut pending = vec![expr];
     let mut seen: HashSet<VariableId> = HashSet::new();
-    for _ in 0..BUDGET {
+    for _ in 0..MAX_EXPRS {
         let Some(expr) = pending.pop() else {
             return false;
         };
@@ -203,16 +209,16 @@ fn may_be_unit(program: &Program, expr: ExprId) -> bool {
                 | BuiltIn::Normalize => {}
                 _ => return true,
             },
-            // Of vectors only the scalars are followed that stretch them.
+            // Only scalars are followed: they scale the vectors.
             ExprKind::Variable(variable) if tree[expr].ty == Type::FLOAT && seen.insert(*variable) => {
                 for definition in program.definitions(*variable) {
                     match definition {
                         Definition::Value(value) | Definition::Change(value) => pending.push(*value),
-                        Definition::Outside => {}
+                        Definition::External => {}
                     }
                 }
             }
-            // `d.yzx * n.x + d.zxy * n.y + …` may be a turn.
+            // `d.yzx * n.x + d.zxy * n.y + …` may be a rotation.
             ExprKind::Swizzle { components, .. } if components.size() > 2 => return true,
             ExprKind::Swizzle { .. } | ExprKind::Member { .. } | ExprKind::Index { .. } => {}
             _ => tree[expr].kind.for_each_operand(|operand| pending.push(operand)),

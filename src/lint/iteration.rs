@@ -1,61 +1,62 @@
-//! Loops that never end, and loops that may run longer than older drivers let them.
+//! Endless loops, and loops that exceed the iteration limit of older drivers.
 //!
-//! Mesa's lavapipe before version 23 stops all loops of a pixel after 65,535 iterations in total, and says nothing.
-//! Iterations are counted from constant bounds: loops inside of loops, and in what they call.
-
-mod rounds;
+//! Mesa's lavapipe before version 23 silently stops the loops of a pixel after 65,535 iterations in total.
+//! The iterations of nested loops and of called functions are counted from constant bounds.
 
 use std::collections::HashSet;
 
-use rounds::rounds;
 use toyproof_glsl::Code;
 use toyproof_glsl::tree::{
-    Block, Condition, ExprId, ExprKind, Place, Statement, StatementKind, Value, VariableKind, walk,
+    BinaryOp, Block, BuiltIn, Condition, ExprId, ExprKind, Input, Place, Statement, StatementKind, StepOp,
+    Type, Value, VariableId, VariableKind, walk,
 };
 
-use super::program::Program;
-use super::{Found, number};
+use super::program::{Definition, Program, callee};
+use super::{Findings, format_number};
 
-/// What older versions of lavapipe let all loops of a pixel do.
-const CAP: f64 = 65_535.0;
+/// The limit of lavapipe before Mesa 23, in iterations of all loops of a pixel.
+const MAX_PIXEL_ITERATIONS: f64 = 65_535.0;
 
-pub(super) fn run(program: &Program, found: &mut Found) {
+pub(super) fn run(program: &Program, findings: &mut Findings) {
     let tree = program.tree;
     let mut counter = Counter {
         program,
-        found,
-        calls: vec![0.0; tree.functions.len()],
-        told: false,
+        findings,
+        call_iterations: vec![0.0; tree.functions.len()],
+        is_reported: false,
     };
     for &function in &program.functions {
         if let Some(body) = &tree[function].body {
-            counter.calls[function.index()] = counter.block(body);
+            counter.call_iterations[function.index()] = counter.block(body);
         }
     }
-    let total = counter.calls[program.main.index()];
-    if total > CAP && !counter.told {
+    let total = counter.call_iterations[program.main.index()];
+    if total > MAX_PIXEL_ITERATIONS && !counter.is_reported {
         let at = tree[program.main].at;
-        tell(
-            counter.found,
+        report(
+            counter.findings,
             at,
-            format!("the loops of a pixel may run {} iterations in all", number(total)),
+            format!(
+                "the loops of a pixel may run {} iterations in all",
+                format_number(total)
+            ),
         );
     }
 }
 
-fn tell(found: &mut Found, at: Place, message: String) {
-    found.tell(Code::LongLoop, at, message, |diagnostic| {
+fn report(findings: &mut Findings, at: Place, message: String) {
+    findings.add(Code::LongLoop, at, message, |diagnostic| {
         diagnostic.note("lavapipe before Mesa 23 stops the loops of a pixel after 65,535 iterations in total, without a word; newer drivers take long")
     });
 }
 
 struct Counter<'a, 'f> {
     program: &'a Program<'a>,
-    found: &'f mut Found,
-    /// By the index of the function: the most iterations that a call runs, as far as bounds are constant.
-    calls: Vec<f64>,
-    /// Whether a loop was told of: what encloses it runs no shorter.
-    told: bool,
+    findings: &'f mut Findings,
+    /// By function index: the maximum number of iterations in a call, as far as bounds are constant.
+    call_iterations: Vec<f64>,
+    /// Whether a loop has been reported; enclosing code, which runs at least as long, is then not reported.
+    is_reported: bool,
 }
 
 impl Counter<'_, '_> {
@@ -63,7 +64,7 @@ impl Counter<'_, '_> {
         block.iter().map(|statement| self.statement(statement)).sum()
     }
 
-    /// The most iterations that a statement runs.
+    /// The maximum number of iterations that a statement runs.
     fn statement(&mut self, statement: &Statement) -> f64 {
         let tree = self.program.tree;
         let own: f64 = walk::own_expressions(tree, statement)
@@ -90,22 +91,22 @@ impl Counter<'_, '_> {
             } => {
                 let first = self.block(init);
                 let inside = self.block(body);
-                let rounds = match condition {
-                    Some(Condition::Expression(condition)) => rounds(self.program, *condition, *step),
+                let max_iterations = match condition {
+                    Some(Condition::Expression(condition)) => max_iterations(self.program, *condition, *step),
                     _ => None,
                 };
-                self.endless(statement, *condition, *step, body);
-                first + self.repeat(statement.at, rounds, own + inside)
+                self.check_endless(statement, *condition, *step, body);
+                first + self.loop_iterations(statement.at, max_iterations, own + inside)
             }
             StatementKind::While { condition, body } => {
                 let inside = self.block(body);
-                self.endless(statement, Some(*condition), None, body);
-                self.repeat(statement.at, None, own + inside)
+                self.check_endless(statement, Some(*condition), None, body);
+                self.loop_iterations(statement.at, None, own + inside)
             }
             StatementKind::DoWhile { condition, body } => {
                 let inside = self.block(body);
-                self.endless(statement, Some(Condition::Expression(*condition)), None, body);
-                self.repeat(statement.at, None, own + inside)
+                self.check_endless(statement, Some(Condition::Expression(*condition)), None, body);
+                self.loop_iterations(statement.at, None, own + inside)
             }
             _ => own,
         }
@@ -116,27 +117,27 @@ impl Counter<'_, '_> {
         let calls = tree
             .postorder(root)
             .into_iter()
-            .filter_map(|expr| super::program::callee(tree, expr));
-        calls.map(|function| self.calls[function.index()]).sum()
+            .filter_map(|expr| callee(tree, expr));
+        calls.map(|function| self.call_iterations[function.index()]).sum()
     }
 
-    fn repeat(&mut self, at: Place, rounds: Option<f64>, inside: f64) -> f64 {
-        let total = rounds.unwrap_or(1.0) * (1.0 + inside);
-        if total > CAP && inside <= CAP && rounds.is_some() {
-            self.told = true;
+    fn loop_iterations(&mut self, at: Place, max_iterations: Option<f64>, inside: f64) -> f64 {
+        let total = max_iterations.unwrap_or(1.0) * (1.0 + inside);
+        if total > MAX_PIXEL_ITERATIONS && inside <= MAX_PIXEL_ITERATIONS && max_iterations.is_some() {
+            self.is_reported = true;
             let message = match inside {
-                0.0 => format!("this loop may run {} iterations", number(total)),
+                0.0 => format!("this loop may run {} iterations", format_number(total)),
                 _ => format!(
                     "this loop and those inside of it may run {} iterations",
-                    number(total)
+                    format_number(total)
                 ),
             };
-            tell(self.found, at, message);
+            report(self.findings, at, message);
         }
         total
     }
 
-    fn endless(
+    fn check_endless(
         &mut self,
         statement: &Statement,
         condition: Option<Condition>,
@@ -144,7 +145,7 @@ impl Counter<'_, '_> {
         body: &Block,
     ) {
         let tree = self.program.tree;
-        if !self.never_stops(condition, step, body) || is_left(body, true) {
+        if !self.condition_never_changes(condition, step, body) || has_exit(body, true) {
             return;
         }
         let message = match condition {
@@ -153,15 +154,20 @@ impl Counter<'_, '_> {
             }
             _ => "this loop never ends: its condition is always true, and nothing leaves it",
         };
-        self.found
-            .tell(Code::EndlessLoop, statement.at, message, |diagnostic| {
+        self.findings
+            .add(Code::EndlessLoop, statement.at, message, |diagnostic| {
                 diagnostic
                     .note("browsers stop the GPU after some seconds; leave the loop by `break`, or bound it")
             });
     }
 
-    /// Whether a condition, once it holds, holds for ever.
-    fn never_stops(&self, condition: Option<Condition>, step: Option<ExprId>, body: &Block) -> bool {
+    /// Whether a condition that is true once remains true forever.
+    fn condition_never_changes(
+        &self,
+        condition: Option<Condition>,
+        step: Option<ExprId>,
+        body: &Block,
+    ) -> bool {
         let program = self.program;
         let tree = program.tree;
         let condition = match condition {
@@ -172,17 +178,17 @@ impl Counter<'_, '_> {
         if let Some(constant) = tree.value(condition) {
             return constant.components() == [Value::Bool(true)];
         }
-        // Loops inside of loops are looked at once each, not once for each that encloses them.
+        // Only innermost loops are analyzed, so that nested bodies are not visited once per enclosing loop.
         let is_innermost = |statement: &Statement| walk::inner(statement).is_empty() || !is_loop(statement);
         let mut innermost = true;
         walk::each(body, &mut |statement| innermost &= is_innermost(statement));
         if !innermost {
             return false;
         }
-        let mut asked = HashSet::new();
+        let mut tested = HashSet::new();
         let only_locals = !walk::any(tree, condition, |kind| match kind {
             ExprKind::Variable(variable) => {
-                asked.insert(*variable);
+                tested.insert(*variable);
                 matches!(tree[*variable].kind, VariableKind::Global)
             }
             ExprKind::Call { .. } | ExprKind::Assign { .. } | ExprKind::Step { .. } => true,
@@ -194,7 +200,7 @@ impl Counter<'_, '_> {
                 tree.each_write(expr, |target, _| {
                     changed |= tree
                         .root_variable(target)
-                        .is_some_and(|variable| asked.contains(&variable));
+                        .is_some_and(|variable| tested.contains(&variable));
                 });
             }
         }
@@ -209,17 +215,117 @@ fn is_loop(statement: &Statement) -> bool {
     )
 }
 
-/// Whether something in a loop's body leaves it; `breaks` where a `break` would be the loop's own.
-fn is_left(block: &Block, breaks: bool) -> bool {
+/// Whether a statement in a loop's body leaves the loop; `break_exits`: whether a `break` here does.
+fn has_exit(block: &Block, break_exits: bool) -> bool {
     block.iter().any(|statement| match &statement.kind {
-        StatementKind::Break => breaks,
+        StatementKind::Break => break_exits,
         StatementKind::Return(_) | StatementKind::Discard => true,
         StatementKind::Switch { .. } => walk::inner(statement)
             .into_iter()
-            .any(|body| is_left(body, false)),
+            .any(|body| has_exit(body, false)),
         _ => {
-            let own = breaks && !is_loop(statement);
-            walk::inner(statement).into_iter().any(|body| is_left(body, own))
+            let own = break_exits && !is_loop(statement);
+            walk::inner(statement).into_iter().any(|body| has_exit(body, own))
         }
     })
+}
+
+// Iteration counts of counting loops.
+
+/// The maximum number of iterations of a counting loop with constant bounds.
+fn max_iterations(program: &Program, condition: ExprId, step: Option<ExprId>) -> Option<f64> {
+    let tree = program.tree;
+    let &ExprKind::Binary { op, left, right } = &tree[condition].kind else {
+        return None;
+    };
+    let (op, counter, bound) = match (&tree[left].kind, &tree[right].kind) {
+        (ExprKind::Variable(counter), _) if program.constant(left).is_none() => (op, *counter, right),
+        (_, ExprKind::Variable(counter)) => (op.mirrored(), *counter, left),
+        _ => return None,
+    };
+    let by = step_size(program, counter, step?)?;
+    // The counter must have one initial value, and be changed only by the step.
+    let ([Definition::Value(first), Definition::Change(change)]
+    | [Definition::Change(change), Definition::Value(first)]) = *program.definitions(counter)
+    else {
+        return None;
+    };
+    if Some(change) != step {
+        return None;
+    }
+    let (first, bound) = (constant_number(program, first)?, constant_number(program, bound)?);
+    let distance = match op {
+        BinaryOp::Less | BinaryOp::LessEqual if by > 0.0 => bound - first,
+        BinaryOp::Greater | BinaryOp::GreaterEqual if by < 0.0 => first - bound,
+        // The counter moves away from its bound: an `int` wraps around through all its values.
+        BinaryOp::Less | BinaryOp::LessEqual if first < bound && tree[counter].ty == Type::INT => {
+            return Some(4e9 / by.abs());
+        }
+        _ => return None,
+    };
+    let size = by.abs();
+    let max_iterations = match op {
+        BinaryOp::LessEqual | BinaryOp::GreaterEqual => (distance / size).floor() + 1.0,
+        _ => (distance / size).ceil(),
+    };
+    (max_iterations.is_finite()).then_some(max_iterations.max(0.0))
+}
+
+/// The amount that a step adds to the loop's counter.
+fn step_size(program: &Program, counter: VariableId, step: ExprId) -> Option<f64> {
+    let tree = program.tree;
+    let (target, by) = match &tree[step].kind {
+        ExprKind::Step {
+            op: StepOp::Increment,
+            target,
+            ..
+        } => (*target, 1.0),
+        ExprKind::Step {
+            op: StepOp::Decrement,
+            target,
+            ..
+        } => (*target, -1.0),
+        ExprKind::Assign {
+            op: Some(BinaryOp::Add),
+            target,
+            value,
+        } => (*target, constant_number(program, *value)?),
+        ExprKind::Assign {
+            op: Some(BinaryOp::Subtract),
+            target,
+            value,
+        } => (*target, -constant_number(program, *value)?),
+        _ => return None,
+    };
+    let is_counter = matches!(tree[target].kind, ExprKind::Variable(variable) if variable == counter);
+    (is_counter && by != 0.0).then_some(by)
+}
+
+/// The value of a constant number. `min(iFrame, 0)`, an idiom that prevents unrolling, is 0.
+fn constant_number(program: &Program, expr: ExprId) -> Option<f64> {
+    let tree = program.tree;
+    if let Some(constant) = program.constant(expr) {
+        return match *constant.components() {
+            [Value::Int(value)] => Some(f64::from(value)),
+            [Value::Uint(value)] => Some(f64::from(value)),
+            [Value::Float(value)] => Some(value),
+            _ => None,
+        };
+    }
+    match &tree[expr].kind {
+        ExprKind::BuiltIn {
+            function: BuiltIn::Min,
+            arguments,
+        } => {
+            let is_frame = |expr: ExprId| match tree[expr].kind {
+                ExprKind::Variable(variable) => tree[variable].kind == VariableKind::Input(Input::Frame),
+                _ => false,
+            };
+            let zero =
+                |expr: ExprId| program.constant(expr).and_then(|constant| constant.integer()) == Some(0);
+            let (a, b) = (arguments[0], arguments[1]);
+            (is_frame(a) && zero(b) || zero(a) && is_frame(b)).then_some(0.0)
+        }
+        _ => None,
+    }
 }

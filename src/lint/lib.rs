@@ -1,5 +1,5 @@
-//! Warnings about legal GLSL that does not do what its author meant, or not on every machine: one file for each lint.
-//! [`lint`] takes what the front end has checked and knows nothing of what becomes of it.
+//! Warnings about legal GLSL that does not do what its author meant, or differs between machines: one file
+//! per lint. [`lint`] takes the front end's result, and does not depend on later stages.
 //!
 //! ```
 //! use toyproof_diagnostic::{Deadline, File, Files};
@@ -12,9 +12,9 @@
 //! assert_eq!(lints.warnings[0].code, "W0003");
 //! ```
 //!
-//! A warning that is wrong teaches people to read none, so each analysis speaks where it is sure, and is silent where it
-//! is not. Only what `mainImage` reaches is looked at. Time is linear in the size of the shader; blocks are walked by
-//! recursion, as their nesting is bounded, and all else with loops.
+//! False warnings teach users to ignore all warnings, so each analysis reports only what it is sure of. Only
+//! code reachable from `mainImage` is analyzed. Time is linear in the size of the shader; blocks, whose
+//! nesting is bounded, are walked recursively, everything else iteratively.
 
 mod allow;
 mod direction;
@@ -23,90 +23,88 @@ mod iteration;
 mod program;
 mod quadratic;
 mod randomness;
-mod shape;
 mod uniformity;
+mod uninit;
 mod unused;
-mod unwritten;
 
 use std::collections::HashSet;
 
+use allow::Allows;
+use program::Program;
 use toyproof_diagnostic::{Deadline, Diagnostic, Files, Overdue, Severity, Span};
 use toyproof_glsl::tree::Place;
 use toyproof_glsl::{Checked, Code, MAX_TOLD};
 
-use self::allow::Allows;
-use self::program::Program;
-
-/// The lints' findings about a shader that keeps every rule.
+/// The lints' findings about a valid shader.
 #[derive(Debug, Clone, Default)]
 pub struct Lints {
-    /// Warnings of the front end and of the lints that the author does not allow, in the order of the text; or a note
-    /// that the lints were out of time.
+    /// Warnings of the front end and the lints that the author does not allow, sorted by position; or a note
+    /// that the lints exceeded their time limit.
     pub warnings: Vec<Diagnostic>,
-    /// Discriminants of ray-sphere formulas that lose digits, but for those that the author allows. Whether the loss
-    /// is visible depends on the scene.
+    /// Discriminants of ray–sphere formulas that lose digits, except those that the author allows. Whether
+    /// the loss is visible depends on the scene.
     pub discriminants: Vec<Span>,
-    /// Warnings about a run that the author allows, and where.
+    /// Codes of run-time warnings that the author allows, with their scopes.
     pub allowed: Vec<(Code, Span)>,
 }
 
 impl Lints {
-    /// Whether the author allows this finding of a run. A finding without a line is allowed anywhere.
+    /// Whether the author allows this run-time finding. A finding without a position is covered by any scope.
     #[must_use]
     pub fn allows(&self, finding: &Diagnostic) -> bool {
-        let holds = |over: &Span| {
+        let holds = |scope: &Span| {
             finding
                 .span
-                .is_none_or(|at| at.file == over.file && (over.start..over.end).contains(&at.start))
+                .is_none_or(|at| at.file == scope.file && (scope.start..scope.end).contains(&at.start))
         };
         let mut allowed = self.allowed.iter();
-        allowed.any(|(code, over)| code.as_str() == finding.code && holds(over))
+        allowed.any(|(code, scope)| code.as_str() == finding.code && holds(scope))
     }
 }
 
-/// Searches a shader for suspicious code, until the deadline at the latest. The front end's warnings that the author
-/// allows are left out, too.
+/// Searches a shader for suspicious code until the deadline. Also removes front-end warnings that the author
+/// allows.
 #[must_use]
 pub fn lint(files: &Files, checked: &Checked, deadline: &Deadline) -> Lints {
     let tree = &checked.tree;
     let program = Program::new(tree, checked.main_image, deadline);
-    let mut found = Found::default();
+    let mut findings = Findings::default();
     let quadratics = quadratic::quadratics(&program);
-    direction::run(&program, &quadratics, &mut found);
-    equality::run(&program, &mut found);
-    iteration::run(&program, &mut found);
-    randomness::run(&program, &mut found);
-    uniformity::run(&program, &mut found);
-    unused::run(&program, &mut found);
-    unwritten::run(&program, files, &mut found);
+    direction::run(&program, &quadratics, &mut findings);
+    equality::run(&program, &mut findings);
+    iteration::run(&program, &mut findings);
+    randomness::run(&program, &mut findings);
+    uniformity::run(&program, &mut findings);
+    unused::run(&program, &mut findings);
+    uninit::run(&program, files, &mut findings);
     for quadratic in &quadratics {
-        found.tell(Code::NearTangent, tree[quadratic.expr].at, "", |diagnostic| {
+        findings.add(Code::NearTangent, tree[quadratic.expr].at, "", |diagnostic| {
             diagnostic
         });
     }
-    let in_time = deadline.check();
+    let within_deadline = deadline.check();
     let mut all = checked.warnings.clone();
-    if in_time.is_ok() {
-        // Of lints that were out of time, what they found is no more than chance.
-        all.append(&mut found.all);
+    if within_deadline.is_ok() {
+        // The findings of lints that exceeded the time limit are arbitrary, and are dropped.
+        all.append(&mut findings.all);
     }
-    let mut of_remarks = Vec::new();
-    let allows = Allows::read(files, &checked.remarks, tree, &mut of_remarks);
-    let mut left = allows.sift(all);
-    left.append(&mut of_remarks);
-    if let Err(overdue) = in_time {
-        left.retain(|diagnostic| diagnostic.code != Code::UnusedAllow.as_str());
-        left.push(lint_timeout(overdue));
+    let mut allow_warnings = Vec::new();
+    let allows = Allows::read(files, &checked.remarks, tree, &mut allow_warnings);
+    let mut remaining = allows.filter(all);
+    remaining.append(&mut allow_warnings);
+    if let Err(overdue) = within_deadline {
+        remaining.retain(|diagnostic| diagnostic.code != Code::UnusedAllow.as_str());
+        remaining.push(lint_timeout(overdue));
     }
-    left.sort_by_key(|diagnostic| diagnostic.span.map(|span| span.start));
-    let (seeds, mut warnings): (Vec<_>, Vec<_>) = left
+    remaining.sort_by_key(|diagnostic| diagnostic.span.map(|span| span.start));
+    let (seeds, mut warnings): (Vec<_>, Vec<_>) = remaining
         .into_iter()
         .partition(|diagnostic| diagnostic.code == Code::NearTangent.as_str());
     warnings.truncate(MAX_TOLD);
     Lints {
         warnings,
         discriminants: seeds.into_iter().filter_map(|seed| seed.span).collect(),
-        allowed: allows.of_runs(),
+        allowed: allows.runtime_allows(),
     }
 }
 
@@ -119,31 +117,31 @@ fn lint_timeout(overdue: Overdue) -> Diagnostic {
         .note("shorter functions take less time; `--timeout` gives more")
 }
 
-/// What the analyses found so far.
+/// The findings so far.
 #[derive(Default)]
-struct Found {
+struct Findings {
     all: Vec<Diagnostic>,
-    /// A macro used a hundred times is told once.
-    spelled: HashSet<(Code, Place)>,
+    /// Codes and source text already reported: a macro used many times is reported once.
+    reported: HashSet<(Code, Place)>,
 }
 
-impl Found {
-    /// Adds a warning, unless the same characters were warned of before.
-    fn tell(
+impl Findings {
+    /// Adds a warning, unless one with this code was added for the same source text.
+    fn add(
         &mut self,
         code: Code,
         at: Place,
         message: impl Into<String>,
         finish: impl FnOnce(Diagnostic) -> Diagnostic,
     ) {
-        if self.spelled.insert((code, Place::plain(at.spelled))) {
+        if self.reported.insert((code, Place::plain(at.spelled))) {
             self.all.push(finish(code.at(at, message)));
         }
     }
 }
 
-/// A number as people write it, with at most six digits that count.
-fn number(value: f64) -> String {
+/// Formats a number with at most six significant digits.
+fn format_number(value: f64) -> String {
     let size = value.abs();
     if value == 0.0 || (1e-3..1e6).contains(&size) {
         let digits = if value == 0.0 {

@@ -1,4 +1,7 @@
-//! What every analysis asks of a shader: which functions run, in which order they call, and what variables are given.
+//! Facts shared by all analyses of a shader: reachable functions in call order, and the definitions of
+//! variables.
+
+use std::fmt::Write;
 
 use toyproof_diagnostic::Deadline;
 pub(super) use toyproof_glsl::tree::walk::direction;
@@ -6,31 +9,31 @@ use toyproof_glsl::tree::{
     Direction, ExprId, ExprKind, FunctionId, Item, StatementKind, Tree, Type, VariableId, walk,
 };
 
-/// A shader as the analyses see it: only what `mainImage` reaches counts.
+/// The part of a shader reachable from `mainImage`.
 pub(super) struct Program<'a> {
     pub(super) tree: &'a Tree,
-    /// When all analyses must be over.
+    /// The time limit of all analyses.
     pub(super) deadline: &'a Deadline,
     pub(super) main: FunctionId,
-    /// Those that run, callees before callers.
+    /// Reachable functions, callees before callers.
     pub(super) functions: Vec<FunctionId>,
-    /// By the index of the function: all that it evaluates, in the order of the text, operands first.
+    /// By function index: its expressions in textual order, operands first.
     exprs: Vec<Vec<ExprId>>,
-    /// By the index of the variable.
+    /// By variable index.
     definitions: Vec<Vec<Definition>>,
-    /// By the index of the function: what its `return`s give.
+    /// By function index: the operands of its `return` statements.
     returned: Vec<Vec<ExprId>>,
 }
 
-/// One way in which a variable comes by a value.
+/// One definition of a variable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Definition {
-    /// All of it is given this: by its initialiser, by `=`, or as an argument.
+    /// The whole variable is set to this expression: by its initializer, by `=`, or as an argument.
     Value(ExprId),
-    /// It is changed, in whole or in part, by this assignment, step or call.
+    /// This assignment, step or call changes it, in whole or in part.
     Change(ExprId),
-    /// It comes from outside: a parameter of `mainImage`.
-    Outside,
+    /// Its value comes from outside the shader: a parameter of `mainImage`.
+    External,
 }
 
 impl<'a> Program<'a> {
@@ -49,12 +52,12 @@ impl<'a> Program<'a> {
         program
     }
 
-    /// All that a function evaluates, operands before what uses them.
+    /// All expressions of a function, operands before their users.
     pub(super) fn exprs(&self, function: FunctionId) -> &[ExprId] {
         &self.exprs[function.index()]
     }
 
-    /// All that runs, function by function, as long as there is time.
+    /// All reachable expressions, function by function, until the deadline.
     pub(super) fn all_exprs(&self) -> impl Iterator<Item = ExprId> {
         self.functions
             .iter()
@@ -62,31 +65,32 @@ impl<'a> Program<'a> {
             .take_while(|_| !self.deadline.is_over())
     }
 
-    /// All ways in which a variable comes by a value; none for one that keeps its first zero.
+    /// All definitions of a variable; empty for one that keeps its initial zero.
     pub(super) fn definitions(&self, variable: VariableId) -> &[Definition] {
         &self.definitions[variable.index()]
     }
 
-    /// What a function's `return`s give.
+    /// The operands of a function's `return` statements.
     pub(super) fn returned(&self, function: FunctionId) -> &[ExprId] {
         &self.returned[function.index()]
     }
 
-    /// What a variable always holds, where it is given a value once and never changed.
-    pub(super) fn only_value(&self, variable: VariableId) -> Option<ExprId> {
+    /// The only value that a variable ever holds, if it is set once and never changed.
+    pub(super) fn single_value(&self, variable: VariableId) -> Option<ExprId> {
         match self.definitions(variable) {
             [Definition::Value(value)] => Some(*value),
             _ => None,
         }
     }
 
-    /// The expression that an expression is another name of: follows variables that are given a value once. The
-    /// operands of what it gives are from where the variable was given its value.
+    /// Resolves an expression to its definition, through variables that are set once. The operands of the
+    /// result are those at the place of the definition.
     pub(super) fn resolve(&self, mut expr: ExprId) -> ExprId {
-        // Each step goes from a use to an earlier place of the text, or from a callee to a caller; the bound is for lenient globals.
-        for _ in 0..MAX_STEPS {
+        // Each step goes from a use to an earlier place in the text, or from a callee to a caller; the bound
+        // is needed for globals, which may be defined later.
+        for _ in 0..MAX_RESOLVE_STEPS {
             match self.tree[expr].kind {
-                ExprKind::Variable(variable) => match self.only_value(variable) {
+                ExprKind::Variable(variable) => match self.single_value(variable) {
                     Some(value) => expr = value,
                     None => return expr,
                 },
@@ -96,7 +100,7 @@ impl<'a> Program<'a> {
         expr
     }
 
-    /// The value of an expression that is always the same: constants, and variables that are given one constant.
+    /// The value of a constant expression, or of a variable that is set once, to a constant.
     pub(super) fn constant(&self, expr: ExprId) -> Option<toyproof_glsl::tree::Constant> {
         let expr = self.resolve(expr);
         if let ExprKind::Variable(variable) = self.tree[expr].kind {
@@ -110,10 +114,10 @@ impl<'a> Program<'a> {
         let mut roots: Vec<FunctionId> = Vec::new();
         for item in &tree.items {
             if let Item::Variable(variable) = item
-                && let Some(initialiser) = tree[*variable].initialiser
+                && let Some(initializer) = tree[*variable].initializer
             {
                 roots.extend(
-                    tree.postorder(initialiser)
+                    tree.postorder(initializer)
                         .into_iter()
                         .filter_map(|expr| callee(tree, expr)),
                 );
@@ -121,16 +125,16 @@ impl<'a> Program<'a> {
         }
         roots.push(self.main);
         let mut seen = vec![false; tree.functions.len()];
-        // Each entry is a function and how many of its calls have been followed.
+        // Each entry is a function, and its calls that have not been followed.
         let mut open: Vec<(FunctionId, Vec<FunctionId>)> = Vec::new();
         for root in roots {
             if !std::mem::replace(&mut seen[root.index()], true) {
-                open.push((root, self.read(root)));
+                open.push((root, self.collect_exprs(root)));
             }
             while let Some((function, callees)) = open.last_mut() {
                 if let Some(callee) = callees.pop() {
                     if !std::mem::replace(&mut seen[callee.index()], true) {
-                        let callees = self.read(callee);
+                        let callees = self.collect_exprs(callee);
                         open.push((callee, callees));
                     }
                 } else {
@@ -141,8 +145,8 @@ impl<'a> Program<'a> {
         }
     }
 
-    /// Notes what a function evaluates; gives what it calls.
-    fn read(&mut self, function: FunctionId) -> Vec<FunctionId> {
+    /// Stores the expressions of a function, and returns its callees.
+    fn collect_exprs(&mut self, function: FunctionId) -> Vec<FunctionId> {
         let tree = self.tree;
         let Some(body) = &tree[function].body else {
             return Vec::new();
@@ -160,13 +164,13 @@ impl<'a> Program<'a> {
         let tree = self.tree;
         for item in &tree.items {
             if let Item::Variable(variable) = item
-                && let Some(initialiser) = tree[*variable].initialiser
+                && let Some(initializer) = tree[*variable].initializer
             {
-                self.definitions[variable.index()].push(Definition::Value(initialiser));
+                self.definitions[variable.index()].push(Definition::Value(initializer));
             }
         }
         for &parameter in &tree[self.main].parameters {
-            self.definitions[parameter.index()].push(Definition::Outside);
+            self.definitions[parameter.index()].push(Definition::External);
         }
         for function in self.functions.clone() {
             let mut found: Vec<(VariableId, Definition)> = Vec::new();
@@ -192,9 +196,9 @@ impl<'a> Program<'a> {
             if let Some(body) = &tree[function].body {
                 walk::each(body, &mut |statement| {
                     if let Some(variable) = walk::declared(statement)
-                        && let Some(initialiser) = tree[variable].initialiser
+                        && let Some(initializer) = tree[variable].initializer
                     {
-                        found.push((variable, Definition::Value(initialiser)));
+                        found.push((variable, Definition::Value(initializer)));
                     }
                     if let StatementKind::Return(Some(value)) = statement.kind {
                         self.returned[function.index()].push(value);
@@ -208,15 +212,16 @@ impl<'a> Program<'a> {
     }
 }
 
-/// How many names an analysis follows from a use to where its value comes from.
-pub(super) const MAX_STEPS: usize = 64;
+/// The maximum number of names that an analysis follows from a use to its definition.
+pub(super) const MAX_RESOLVE_STEPS: usize = 64;
 
-/// The last of many: all that a search sees of them which takes the newest of what waits, and only so many.
-pub(super) fn last<T>(all: &[T], most: usize) -> &[T] {
+/// The last `most` elements: a search that always takes the newest pending element and stops after `most`
+/// steps visits no others.
+pub(super) fn newest<T>(all: &[T], most: usize) -> &[T] {
     &all[all.len().saturating_sub(most)..]
 }
 
-/// The author's function that an expression calls.
+/// The user-defined function that an expression calls.
 pub(super) fn callee(tree: &Tree, expr: ExprId) -> Option<FunctionId> {
     match tree[expr].kind {
         ExprKind::Call { function, .. } => Some(function),
@@ -224,7 +229,71 @@ pub(super) fn callee(tree: &Tree, expr: ExprId) -> Option<FunctionId> {
     }
 }
 
-/// Whether a type is `float` or made of floats alone, as vectors and matrices are.
+/// Whether a type is `float`, or a vector or matrix of floats.
 pub(super) fn is_float(ty: Type) -> bool {
     ty.scalar() == Some(toyproof_glsl::tree::Scalar::Float)
+}
+
+// Structural equality of expressions: the same operators applied to the same variables.
+
+/// The maximum number of nodes in a shape.
+const MAX_SHAPE_NODES: usize = 100;
+
+/// The structure of an expression; `None` for expressions with side effects or more than [`MAX_SHAPE_NODES`]
+/// nodes.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(super) struct Shape {
+    text: String,
+    /// The variables that its value depends on.
+    pub(super) variables: Vec<VariableId>,
+}
+
+impl Shape {
+    pub(super) fn of_variable(variable: VariableId) -> Self {
+        Self {
+            text: format!("{variable:?};"),
+            variables: vec![variable],
+        }
+    }
+
+    pub(super) fn of(tree: &Tree, root: ExprId) -> Option<Self> {
+        let mut shape = Self {
+            text: String::new(),
+            variables: Vec::new(),
+        };
+        let mut pending = vec![root];
+        for _ in 0..MAX_SHAPE_NODES {
+            let Some(expr) = pending.pop() else {
+                return Some(shape);
+            };
+            // Each operator's name implies its number of operands, so prefix order identifies the tree.
+            let text = &mut shape.text;
+            let written = match &tree[expr].kind {
+                ExprKind::Literal(literal) => write!(text, "{:?};", literal.value),
+                ExprKind::Variable(variable) => {
+                    shape.variables.push(*variable);
+                    write!(text, "{variable:?};")
+                }
+                ExprKind::Unary { op, .. } => write!(text, "{op:?};"),
+                ExprKind::Binary { op, .. } => write!(text, "{op:?};"),
+                ExprKind::Conditional { .. } => write!(text, "?:;"),
+                ExprKind::BuiltIn { function, arguments } if function.out_parameter().is_none() => {
+                    write!(text, "{function:?}{};", arguments.len())
+                }
+                ExprKind::Construct { arguments, .. } => {
+                    write!(text, "{:?}{};", tree[expr].ty, arguments.len())
+                }
+                ExprKind::Swizzle { components, .. } => write!(text, ".{};", components.name()),
+                ExprKind::Member { member, .. } => write!(text, ".{member};"),
+                ExprKind::Index { .. } => write!(text, "[];"),
+                ExprKind::Length { .. } => write!(text, "length;"),
+                _ => return None,
+            };
+            written.ok()?;
+            let first = pending.len();
+            tree[expr].kind.for_each_operand(|operand| pending.push(operand));
+            pending[first..].reverse();
+        }
+        None
+    }
 }

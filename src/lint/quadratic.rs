@@ -1,39 +1,39 @@
-//! The textbook's ray–sphere discriminant: `b*b - c` or `b*b - 4.0*a*c` with `b = dot(f, d)` or twice that, and `c = dot(f, f) - r*r`.
+//! The textbook ray–sphere discriminant: `b*b - c` or `b*b - 4.0*a*c` with `b = dot(f, d)` or twice that, and
+//! `c = dot(f, f) - r*r`.
 
 use std::collections::HashSet;
 
 use toyproof_glsl::tree::{BinaryOp, BuiltIn, ExprId, ExprKind, Type, UnaryOp, Value};
 
-use super::program::Program;
-use super::shape::Shape;
+use super::program::{Program, Shape};
 
-/// How many terms a discriminant may have.
+/// The maximum number of terms in a discriminant.
 const MAX_TERMS: usize = 8;
 
-/// A discriminant that was recognised.
+/// A recognized discriminant.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Quadratic {
-    /// All of it.
+    /// The whole discriminant.
     pub(super) expr: ExprId,
     /// The ray's direction.
     pub(super) direction: ExprId,
-    /// Whether `a` is taken as 1: true of unit directions only.
+    /// Whether the formula assumes a = 1, which is right for unit directions only.
     pub(super) for_unit: bool,
 }
 
-/// A product: a constant, and what it multiplies.
+/// A product of a constant and other factors.
 #[derive(Debug, Clone)]
 struct Term {
     constant: f64,
     factors: Vec<ExprId>,
 }
 
-/// All discriminants that run, each told once, as large as it is.
+/// All reachable discriminants; of nested ones, only the largest.
 pub(super) fn quadratics(program: &Program) -> Vec<Quadratic> {
     let tree = program.tree;
     let mut all: Vec<Quadratic> = Vec::new();
     for &function in &program.functions {
-        // Sums that are a part of a larger sum.
+        // Operands of larger sums.
         let mut parts: HashSet<ExprId> = HashSet::new();
         for &expr in program.exprs(function).iter().rev() {
             if program.deadline.is_over() {
@@ -52,7 +52,7 @@ pub(super) fn quadratics(program: &Program) -> Vec<Quadratic> {
             }
             parts.extend([left, right]);
             if !parts.contains(&expr)
-                && let Some(quadratic) = recognise(program, expr)
+                && let Some(quadratic) = recognize(program, expr)
             {
                 all.push(quadratic);
             }
@@ -61,7 +61,7 @@ pub(super) fn quadratics(program: &Program) -> Vec<Quadratic> {
     all
 }
 
-fn recognise(program: &Program, expr: ExprId) -> Option<Quadratic> {
+fn recognize(program: &Program, expr: ExprId) -> Option<Quadratic> {
     let terms = terms(program, expr)?;
     let dot = |factor: ExprId| match &program.tree[factor].kind {
         ExprKind::BuiltIn {
@@ -74,7 +74,7 @@ fn recognise(program: &Program, expr: ExprId) -> Option<Quadratic> {
         let (a, b) = (Shape::of(program.tree, a), Shape::of(program.tree, b));
         a.is_some() && a == b
     };
-    // (d·f)², its factor positive.
+    // (d·f)² with a positive factor.
     let (square, (u, v)) = terms.iter().find_map(|term| match term.factors[..] {
         [a, b] if term.constant > 0.0 && alike(a, b) => Some((term, dot(a)?)),
         _ => None,
@@ -106,12 +106,12 @@ fn recognise(program: &Program, expr: ExprId) -> Option<Quadratic> {
     })
 }
 
-/// The products that a sum is made of; names that are given a value once are followed.
+/// The terms of a sum; variables that are set once are replaced by their values.
 fn terms(program: &Program, expr: ExprId) -> Option<Vec<Term>> {
     let tree = program.tree;
     let mut terms = Vec::new();
     let mut pending = vec![(expr, 1.0, Vec::new())];
-    // Each step takes a sum, a product or a name apart.
+    // Each step splits a sum or a product, or resolves a name.
     for _ in 0..10 * MAX_TERMS {
         let Some((expr, constant, factors)) = pending.pop() else {
             return Some(terms);
@@ -145,7 +145,7 @@ fn terms(program: &Program, expr: ExprId) -> Option<Vec<Term>> {
                         let (left, right) = (product(program, left)?, product(program, right)?);
                         let constant = constant * left.constant * right.constant;
                         let factors = [factors, left.factors, right.factors].concat();
-                        // `4.0 * c` with `c` a sum was met above; here a sum is a factor that is not taken apart.
+                        // `4.0 * c` with a sum `c` is handled above; here a sum is an opaque factor.
                         terms.push(Term { constant, factors });
                     }
                 }
@@ -162,7 +162,7 @@ fn terms(program: &Program, expr: ExprId) -> Option<Vec<Term>> {
     None
 }
 
-/// A product taken apart; what is none is one factor.
+/// Splits a product into its factors; any other expression is a single factor.
 fn product(program: &Program, expr: ExprId) -> Option<Term> {
     let tree = program.tree;
     let mut term = Term {

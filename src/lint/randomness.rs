@@ -1,24 +1,24 @@
-//! `fract(sin(x) * 43758.5453)`: what is left of a sine after its first digits are cut off is each driver's own.
+//! `fract(sin(x) * 43758.5453)`: the low-order digits of a sine differ between drivers.
 
 use toyproof_glsl::Code;
 use toyproof_glsl::tree::{BinaryOp, BuiltIn, ExprId, ExprKind, UnaryOp, Value};
 
 use super::program::{Definition, Program};
-use super::{Found, number};
+use super::{Findings, format_number};
 
-/// The least factor that makes randomness of a sine: Vulkan lets `sin` be off by 2⁻¹¹, which this makes a
-/// twentieth of the whole range. What is multiplied by less is a pattern.
-const LEAST_FACTOR: f64 = 100.0;
+/// The minimum factor that turns a sine into a hash: it scales the error of 2⁻¹¹ that Vulkan permits for
+/// `sin` to a twentieth of the range of `fract`. Smaller factors make patterns.
+const MIN_HASH_FACTOR: f64 = 100.0;
 
-/// How far Vulkan lets `sin` and `cos` be off, for arguments in [−π, π].
-const SINE_ERROR: f64 = 1.0 / 2048.0;
+/// The absolute error that Vulkan permits for `sin` and `cos`, for arguments in [−π, π].
+const MAX_SINE_ERROR: f64 = 1.0 / 2048.0;
 
-pub(super) fn run(program: &Program, found: &mut Found) {
+pub(super) fn run(program: &Program, findings: &mut Findings) {
     for expr in program.all_exprs() {
-        let Some(inside) = fraction(program, expr) else {
+        let Some(inside) = fract_argument(program, expr) else {
             continue;
         };
-        let Some((sine, factor)) = hash(program, inside) else {
+        let Some((sine, factor)) = find_scaled_sine(program, inside) else {
             continue;
         };
         let tree = program.tree;
@@ -27,13 +27,14 @@ pub(super) fn run(program: &Program, found: &mut Found) {
         } else {
             "sin"
         };
-        let shown = number(factor);
-        let message = format!("randomness from the digits of `{name}(…) * {shown}` differs from GPU to GPU");
-        found.tell(Code::SineHash, tree[expr].at, message, |diagnostic| {
+        let factor_text = format_number(factor);
+        let message =
+            format!("randomness from the digits of `{name}(…) * {factor_text}` differs from GPU to GPU");
+        findings.add(Code::SineHash, tree[expr].at, message, |diagnostic| {
             diagnostic
                 .note(format!(
-                    "each driver computes `{name}` in its own way; Vulkan lets it be off by 2^-11, which times {shown} is {}",
-                    number((factor * SINE_ERROR * 10.0).round() / 10.0)
+                    "each driver computes `{name}` in its own way; Vulkan lets it be off by 2^-11, which times {factor_text} is {}",
+                    format_number((factor * MAX_SINE_ERROR * 10.0).round() / 10.0)
                 ))
                 .note(
                     "an integer hash is the same everywhere: `uint h = floatBitsToUint(x); h = (h ^ (h >> 16)) * 0x7feb352du; \
@@ -43,8 +44,8 @@ pub(super) fn run(program: &Program, found: &mut Found) {
     }
 }
 
-/// What an expression takes the fractional part of: `fract(x)` or `mod(x, 1.0)`.
-fn fraction(program: &Program, expr: ExprId) -> Option<ExprId> {
+/// The argument of `fract(x)` or `mod(x, 1.0)`.
+fn fract_argument(program: &Program, expr: ExprId) -> Option<ExprId> {
     let ExprKind::BuiltIn { function, arguments } = &program.tree[expr].kind else {
         return None;
     };
@@ -62,10 +63,11 @@ fn fraction(program: &Program, expr: ExprId) -> Option<ExprId> {
 }
 
 /// The sine that a large factor multiplies in one of an expression's terms, and the factor.
-fn hash(program: &Program, inside: ExprId) -> Option<(ExprId, f64)> {
+fn find_scaled_sine(program: &Program, inside: ExprId) -> Option<(ExprId, f64)> {
     let tree = program.tree;
     let mut terms = vec![inside];
-    // Names are followed a few times in all: from `fract(h)` to `h = sin(x) * 43758.5453`, and from there to `s = sin(x)`.
+    // At most four names are followed in total: from `fract(h)` to `h = sin(x) * 43758.5453`, and from there
+    // to `s = sin(x)`.
     let mut names = 4;
     while let Some(term) = terms.pop() {
         match &tree[term].kind {
@@ -100,8 +102,8 @@ fn hash(program: &Program, inside: ExprId) -> Option<(ExprId, f64)> {
                 op: BinaryOp::Multiply,
                 ..
             } => {
-                if let Some(hash) = product(program, term) {
-                    return Some(hash);
+                if let Some(found) = scaled_sine(program, term) {
+                    return Some(found);
                 }
             }
             _ => {}
@@ -110,14 +112,14 @@ fn hash(program: &Program, inside: ExprId) -> Option<(ExprId, f64)> {
     None
 }
 
-/// The sine among the factors of a product, if the constants among them make it large enough.
-fn product(program: &Program, product: ExprId) -> Option<(ExprId, f64)> {
+/// The sine among the factors of a product, if its constant factors reach [`MIN_HASH_FACTOR`].
+fn scaled_sine(program: &Program, product: ExprId) -> Option<(ExprId, f64)> {
     let tree = program.tree;
     let mut factors = vec![product];
-    let (mut size, mut sine) = (1.0, None);
+    let (mut scale, mut sine) = (1.0, None);
     while let Some(factor) = factors.pop() {
         if let Some(constant) = program.constant(factor) {
-            size *= constant
+            scale *= constant
                 .components()
                 .iter()
                 .fold(0.0_f64, |most, scalar| match scalar {
@@ -145,13 +147,14 @@ fn product(program: &Program, product: ExprId) -> Option<(ExprId, f64)> {
             // `vec2(sin(x), cos(x)) * 43758.0`
             ExprKind::Construct { arguments, .. } => factors.extend(arguments.iter().rev()),
             ExprKind::Variable(variable) => {
-                let value = program.only_value(*variable);
+                let value = program.single_value(*variable);
                 sine = sine.or(value.filter(|&value| is_sine(program, value)));
             }
             _ => {}
         }
     }
-    sine.filter(|_| size >= LEAST_FACTOR).map(|sine| (sine, size))
+    sine.filter(|_| scale >= MIN_HASH_FACTOR)
+        .map(|sine| (sine, scale))
 }
 
 fn is_sine(program: &Program, expr: ExprId) -> bool {

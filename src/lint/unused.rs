@@ -1,4 +1,4 @@
-//! Statements that compute a value and drop it: `normalize(d);`, `x == 1.0;`.
+//! Statements that compute a value and discard it: `normalize(d);`, `x == 1.0;`.
 
 use std::collections::HashSet;
 
@@ -7,30 +7,32 @@ use toyproof_glsl::tree::{
     BinaryOp, Direction, ExprId, ExprKind, StatementKind, Tree, Type, VariableKind, walk,
 };
 
-use super::Found;
+use super::Findings;
 use super::program::{Program, direction};
 
-pub(super) fn run(program: &Program, found: &mut Found) {
+pub(super) fn run(program: &Program, findings: &mut Findings) {
     let tree = program.tree;
     let pure = pure_functions(program);
     for &function in &program.functions {
         let Some(body) = &tree[function].body else {
             continue;
         };
-        // `for (i; i < 3; i++)` is how some begin with a variable as it is.
-        let mut idle = HashSet::new();
+        // Some authors write `for (i; i < 3; i++)` to keep the variable's value.
+        let mut idle_inits = HashSet::new();
         walk::each(body, &mut |statement| match &statement.kind {
-            StatementKind::Expression(expr) if !idle.contains(expr) => judge(tree, &pure, *expr, found),
+            StatementKind::Expression(expr) if !idle_inits.contains(expr) => {
+                check_expression(tree, &pure, *expr, findings);
+            }
             StatementKind::For { init, step, .. } => {
                 for first in init {
                     if let StatementKind::Expression(expr) = first.kind
                         && matches!(tree[expr].kind, ExprKind::Variable(_))
                     {
-                        idle.insert(expr);
+                        idle_inits.insert(expr);
                     }
                 }
                 if let Some(step) = step {
-                    judge(tree, &pure, *step, found);
+                    check_expression(tree, &pure, *step, findings);
                 }
             }
             _ => {}
@@ -38,49 +40,51 @@ pub(super) fn run(program: &Program, found: &mut Found) {
     }
 }
 
-/// By the index of the function: whether a call does nothing but give its result.
+/// By function index: whether its calls have no effect besides the result.
 fn pure_functions(program: &Program) -> Vec<bool> {
     let tree = program.tree;
     let mut pure = vec![false; tree.functions.len()];
     for &function in &program.functions {
-        let gives = tree[function]
+        let only_inputs = tree[function]
             .parameters
             .iter()
             .all(|&parameter| matches!(direction(tree, parameter), Direction::In | Direction::ConstIn));
-        let mut quiet = true;
+        let mut has_no_effect = true;
         for &expr in program.exprs(function) {
             tree.each_write(expr, |target, _| {
-                quiet &= tree.root_variable(target).is_some_and(|root| {
+                has_no_effect &= tree.root_variable(target).is_some_and(|root| {
                     matches!(tree[root].kind, VariableKind::Local | VariableKind::Parameter(_))
                 });
             });
             if let ExprKind::Call { function, .. } = tree[expr].kind {
-                // A callee that only writes to our own variables is none of our caller's business; but few such are.
-                quiet &= pure[function.index()];
+                // A callee that writes only to the caller's locals has no effect outside it, but is rare
+                // enough to count as impure.
+                has_no_effect &= pure[function.index()];
             }
         }
         if let Some(body) = &tree[function].body {
             walk::each(body, &mut |statement| {
-                quiet &= !matches!(statement.kind, StatementKind::Discard);
+                has_no_effect &= !matches!(statement.kind, StatementKind::Discard);
             });
         }
-        pure[function.index()] = gives && quiet;
+        pure[function.index()] = only_inputs && has_no_effect;
     }
     pure
 }
 
-fn judge(tree: &Tree, pure: &[bool], expr: ExprId, found: &mut Found) {
+fn check_expression(tree: &Tree, pure: &[bool], expr: ExprId, findings: &mut Findings) {
     let at = tree[expr].at;
-    // A macro may well stand for nothing.
-    if at.is_expanded() || tree[expr].ty == Type::Void || walk::any(tree, expr, |kind| acts(kind, pure)) {
+    // A macro may legitimately expand to a statement without effect.
+    if at.is_expanded() || tree[expr].ty == Type::Void || walk::any(tree, expr, |kind| has_effect(kind, pure))
+    {
         return;
     }
     let message = match &tree[expr].kind {
         ExprKind::Binary {
             op: BinaryOp::Equal, ..
         } => "this compares, and drops the answer; one `=` assigns".to_owned(),
-        ExprKind::BuiltIn { function, .. } => dropped(function.name()),
-        ExprKind::Call { function, .. } => dropped(&tree[*function].name),
+        ExprKind::BuiltIn { function, .. } => dropped_message(function.name()),
+        ExprKind::Call { function, .. } => dropped_message(&tree[*function].name),
         _ => "this does nothing: its value is computed and dropped".to_owned(),
     };
     let assigned = match &tree[expr].kind {
@@ -93,7 +97,7 @@ fn judge(tree: &Tree, pure: &[bool], expr: ExprId, found: &mut Found) {
         },
         _ => None,
     };
-    found.tell(Code::UnusedResult, at, message, |diagnostic| match assigned {
+    findings.add(Code::UnusedResult, at, message, |diagnostic| match assigned {
         Some(name) => diagnostic.note(format!(
             "a function leaves its argument as it is; assign what it gives: `{name} = …`"
         )),
@@ -101,11 +105,11 @@ fn judge(tree: &Tree, pure: &[bool], expr: ExprId, found: &mut Found) {
     });
 }
 
-fn dropped(name: &str) -> String {
+fn dropped_message(name: &str) -> String {
     format!("the result of `{name}` is dropped, and it does nothing else")
 }
 
-fn acts(kind: &ExprKind, pure: &[bool]) -> bool {
+fn has_effect(kind: &ExprKind, pure: &[bool]) -> bool {
     match kind {
         ExprKind::Assign { .. } | ExprKind::Step { .. } => true,
         ExprKind::Call { function, .. } => !pure[function.index()],

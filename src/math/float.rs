@@ -1,13 +1,100 @@
-//! 32-bit floats that can be taken apart: what the transcendental functions are written over.
+//! Number types of the generic functions, and bit-level helpers.
 
-use std::ops::{Add, BitAnd, BitOr, Div, Mul, Not, Shl, Shr, Sub};
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Shl, Shr, Sub};
 
-use super::Number;
+/// A number, or a term that represents one in a graph.
+///
+/// All operations are exact or correctly rounded. No context is passed: `literal` makes a constant in the
+/// context of an existing value.
+pub trait Number:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+{
+    /// The result of a comparison.
+    type Truth: Copy + BitAnd<Output = Self::Truth> + BitOr<Output = Self::Truth> + Not<Output = Self::Truth>;
+
+    /// The constant `value`, rounded to this type.
+    #[must_use]
+    fn literal(self, value: f64) -> Self;
+
+    /// The square root, correctly rounded; NaN below zero.
+    #[must_use]
+    fn sqrt(self) -> Self;
+
+    /// The absolute value.
+    #[must_use]
+    fn abs(self) -> Self;
+
+    /// The largest integer not greater than the value.
+    #[must_use]
+    fn floor(self) -> Self;
+
+    /// `self < other`; false if one is NaN.
+    fn less(self, other: Self) -> Self::Truth;
+
+    /// `yes` if `condition` holds, otherwise `no`. Both have been computed.
+    #[must_use]
+    fn select(condition: Self::Truth, yes: Self, no: Self) -> Self;
+
+    /// GLSL's `min`: `other` if it is less.
+    #[must_use]
+    fn min(self, other: Self) -> Self {
+        Self::select(other.less(self), other, self)
+    }
+
+    /// GLSL's `max`: `other` if it is greater.
+    #[must_use]
+    fn max(self, other: Self) -> Self {
+        Self::select(self.less(other), other, self)
+    }
+}
+
+macro_rules! number {
+    ($float:ty) => {
+        impl Number for $float {
+            type Truth = bool;
+
+            #[inline]
+            fn literal(self, value: f64) -> Self {
+                value as Self
+            }
+
+            #[inline]
+            fn sqrt(self) -> Self {
+                <$float>::sqrt(self)
+            }
+
+            #[inline]
+            fn abs(self) -> Self {
+                <$float>::abs(self)
+            }
+
+            #[inline]
+            fn floor(self) -> Self {
+                <$float>::floor(self)
+            }
+
+            #[inline]
+            fn less(self, other: Self) -> bool {
+                self < other
+            }
+
+            #[inline]
+            fn select(condition: bool, yes: Self, no: Self) -> Self {
+                if condition { yes } else { no }
+            }
+        }
+    };
+}
+
+number!(f32);
+number!(f64);
+
+// 32-bit floats with access to their encoding, for the transcendental functions.
 
 /// A 32-bit float.
 ///
-/// Operations on denormal operands or with denormal results are never part of an answer (drivers flush them, and Rust does not):
-/// the functions keep out of their way, and tests hold them to it.
+/// No result depends on operations with denormal operands or results, since drivers flush them and Rust does
+/// not; tests verify that.
 pub trait Float:
     Number<Truth = <Self::Bits as Bits>::Truth>
     + Add<f32, Output = Self>
@@ -15,13 +102,13 @@ pub trait Float:
     + Mul<f32, Output = Self>
     + Div<f32, Output = Self>
 {
-    /// 32-bit integers.
+    /// The type of the encoding.
     type Bits: Bits;
 
     /// The encoding.
     fn to_bits(self) -> Self::Bits;
 
-    /// The float that is so encoded.
+    /// The float with that encoding.
     #[must_use]
     fn from_bits(bits: Self::Bits) -> Self;
 
@@ -30,8 +117,7 @@ pub trait Float:
     fn from_signed(bits: Self::Bits) -> Self;
 }
 
-/// 32-bit integers: arithmetic wraps, comparisons are of unsigned numbers, shifts by less than 32
-/// that bring in zeros.
+/// 32-bit integers: arithmetic wraps, comparisons are unsigned, shifts are logical and by less than 32.
 pub trait Bits:
     Copy
     + Add<Output = Self>
@@ -44,30 +130,30 @@ pub trait Bits:
     + Shl<u32, Output = Self>
     + Shr<u32, Output = Self>
 {
-    /// What a comparison gives.
+    /// The result of a comparison.
     type Truth: Copy + BitAnd<Output = Self::Truth> + BitOr<Output = Self::Truth> + Not<Output = Self::Truth>;
 
-    /// `value`.
+    /// The constant `value`.
     #[must_use]
     fn literal(self, value: u32) -> Self;
 
-    /// Shifted to the left, by less than 32.
+    /// Shifts left, by less than 32.
     #[must_use]
     fn left(self, by: Self) -> Self;
 
-    /// Shifted to the right, by less than 32; zeros come in.
+    /// Shifts right by less than 32, filling with zeros.
     #[must_use]
     fn right(self, by: Self) -> Self;
 
     /// `self < other`
     fn less(self, other: Self) -> Self::Truth;
 
-    /// `yes` where `truth` holds, `no` elsewhere.
+    /// `yes` if `condition` holds, otherwise `no`.
     #[must_use]
-    fn select(truth: Self::Truth, yes: Self, no: Self) -> Self;
+    fn select(condition: Self::Truth, yes: Self, no: Self) -> Self;
 }
 
-/// A 32-bit integer of the machine.
+/// A native 32-bit integer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Word(pub u32);
 
@@ -114,8 +200,8 @@ impl Bits for Word {
     }
 
     #[inline]
-    fn select(truth: bool, yes: Self, no: Self) -> Self {
-        if truth { yes } else { no }
+    fn select(condition: bool, yes: Self, no: Self) -> Self {
+        if condition { yes } else { no }
     }
 }
 
@@ -165,4 +251,77 @@ impl Shr<u32> for Word {
     fn shr(self, by: u32) -> Self {
         Self(self.0.wrapping_shr(by))
     }
+}
+
+// Shared helpers: polynomials, signs, and classification of floats by their bits.
+
+const SIGN_BIT: u32 = 0x8000_0000;
+const INFINITY_BITS: u32 = 0x7F80_0000;
+
+/// `c₀ + x·(c₁ + x·(c₂ + …))`, by Horner's rule.
+#[inline(always)]
+pub(super) fn polynomial<F: Float, const N: usize>(x: F, coefficients: [f32; N]) -> F {
+    let mut sum = x * coefficients[N - 1];
+    for at in (1..N - 1).rev() {
+        sum = (sum + coefficients[at]) * x;
+    }
+    sum + coefficients[0]
+}
+
+/// The encoding without the sign bit.
+#[inline(always)]
+pub(super) fn magnitude<F: Float>(x: F) -> F::Bits {
+    x.to_bits() & !SIGN_BIT
+}
+
+/// `−x` if the highest bit of `bits` is set, otherwise `x`.
+#[inline(always)]
+pub(super) fn negate_if<F: Float>(x: F, bits: F::Bits) -> F {
+    // The carry out of the highest bit is lost, so adding to it flips it.
+    F::from_bits(x.to_bits() + (bits & SIGN_BIT))
+}
+
+/// Whether |x| < `limit`.
+#[inline(always)]
+pub(super) fn is_below<F: Float>(x: F, limit: f32) -> F::Truth {
+    let magnitude = magnitude(x);
+    magnitude.less(magnitude.literal(limit.to_bits()))
+}
+
+/// Whether it is zero or denormal.
+#[inline(always)]
+pub(super) fn is_zero<F: Float>(x: F) -> F::Truth {
+    is_below(x, f32::MIN_POSITIVE)
+}
+
+/// Replaces a denormal by zero; a selection alone does not flush.
+#[inline(always)]
+pub(super) fn flushed<F: Float>(x: F) -> F {
+    let bits = x.to_bits();
+    F::from_bits(F::Bits::select(is_zero(x), bits & SIGN_BIT, bits))
+}
+
+/// Whether it is neither infinite nor NaN.
+#[inline(always)]
+pub(super) fn is_finite<F: Float>(x: F) -> F::Truth {
+    is_below(x, f32::INFINITY)
+}
+
+/// Whether it is NaN.
+#[inline(always)]
+pub(super) fn is_nan<F: Float>(x: F) -> F::Truth {
+    let magnitude = magnitude(x);
+    magnitude.literal(INFINITY_BITS).less(magnitude)
+}
+
+/// NaN.
+#[inline(always)]
+pub(super) fn nan<F: Float>(beside: F) -> F {
+    beside.literal(f64::NAN)
+}
+
+/// +∞.
+#[inline(always)]
+pub(super) fn infinity<F: Float>(beside: F) -> F {
+    beside.literal(f64::INFINITY)
 }

@@ -1,4 +1,4 @@
-//! `report.csv`: a row for each shader, for spreadsheets (RFC 4180).
+//! `report.csv`: a row per shader, for spreadsheets (RFC 4180).
 
 use toyproof_diagnostic::Severity;
 use toyproof_verify::compare::Answer;
@@ -29,17 +29,18 @@ const COLUMNS: [&str; 21] = [
     "seconds",
 ];
 
-/// The table, its first row the names of its columns. What was not asked, and points where there is no rubric, are empty.
+/// Formats the table; its first row names the columns. Checks that did not run are empty, and points without
+/// a rubric.
 #[must_use]
 pub fn csv(records: &[Record], rubric: Option<&Rubric>) -> String {
     let rows = records.iter().map(|record| row(record, rubric));
     let rows = [COLUMNS.map(str::to_owned)].into_iter().chain(rows);
-    rows.map(|row| row.map(|cell| quoted(&cell)).join(",") + "\r\n")
+    rows.map(|row| row.map(|cell| quote(&cell)).join(",") + "\r\n")
         .collect()
 }
 
-/// A cell as it stands between commas.
-fn quoted(cell: &str) -> String {
+/// Quotes a cell if needed.
+fn quote(cell: &str) -> String {
     if cell.contains(['"', ',', '\r', '\n']) {
         format!("\"{}\"", cell.replace('"', "\"\""))
     } else {
@@ -51,47 +52,50 @@ fn row(record: &Record, rubric: Option<&Rubric>) -> [String; COLUMNS.len()] {
     let marks = rubric.map(|rubric| rubric.marks(record));
     let sum = |of: fn(&Mark) -> f64| {
         let points = marks.as_ref().map(|marks| marks.iter().map(of).sum::<f64>());
-        told(points.map(|points| (100.0 * points).round() / 100.0))
+        cell(points.map(|points| (100.0 * points).round() / 100.0))
     };
     let count = |severity| {
-        let told = record.diagnostics.iter();
-        told.filter(|told| told.severity == severity).count().to_string()
+        let diagnostics = record.diagnostics.iter();
+        diagnostics
+            .filter(|diagnostic| diagnostic.severity == severity)
+            .count()
+            .to_string()
     };
-    let number = |question: &Option<Answer>, of: fn(&Answer) -> u64| told(question.as_ref().map(of));
-    let max_abs = |question: &Option<Answer>| told(question.as_ref().map(|answer| answer.max_abs));
-    let picture = record.picture.as_ref();
-    let answers = [&record.maths, &record.rounding];
+    let number = |check: &Option<Answer>, of: fn(&Answer) -> u64| cell(check.as_ref().map(of));
+    let max_abs = |check: &Option<Answer>| cell(check.as_ref().map(|answer| answer.max_abs));
+    let image = record.picture.as_ref();
+    let answers = [&record.algorithm, &record.precision];
     [
-        text(&record.shader),
-        text(record.scene.as_deref().unwrap_or_default()),
+        escape_formula(&record.shader),
+        escape_formula(record.scene.as_deref().unwrap_or_default()),
         record.verdict.to_string(),
-        text(&record.reason),
-        told(record.mistake.as_ref().map(|mistake| &mistake.id)),
+        escape_formula(&record.reason),
+        cell(record.mistake.as_ref().map(|mistake| &mistake.id)),
         sum(|mark| mark.points),
         sum(|mark| mark.of),
-        told(answers.into_iter().flatten().map(|answer| answer.pixels).next()),
-        number(&record.maths, |answer| answer.differing),
-        number(&record.maths, |answer| answer.undecided),
-        number(&record.maths, |answer| answer.undefined),
-        max_abs(&record.maths),
-        number(&record.rounding, |answer| answer.differing),
-        max_abs(&record.rounding),
+        cell(answers.into_iter().flatten().map(|answer| answer.pixels).next()),
+        number(&record.algorithm, |answer| answer.differing),
+        number(&record.algorithm, |answer| answer.undecided),
+        number(&record.algorithm, |answer| answer.undefined),
+        max_abs(&record.algorithm),
+        number(&record.precision, |answer| answer.differing),
+        max_abs(&record.precision),
         number(&record.toolchain, |answer| answer.differing),
         max_abs(&record.toolchain),
-        told(picture.map(|picture| picture.differing_8bit)),
-        told(picture.map(|picture| picture.max_8bit)),
+        cell(image.map(|image| image.differing_8bit)),
+        cell(image.map(|image| image.max_8bit)),
         count(Severity::Error),
         count(Severity::Warning),
         format!("{:.3}", record.seconds.total()),
     ]
 }
 
-fn told<T: ToString>(value: Option<T>) -> String {
+fn cell<T: ToString>(value: Option<T>) -> String {
     value.map_or_else(String::new, |value| value.to_string())
 }
 
-/// A text that no spreadsheet takes for a formula: one that begins like one gets an apostrophe before it.
-fn text(text: &str) -> String {
+/// Prevents a spreadsheet from reading a text as a formula, by prefixing an apostrophe.
+fn escape_formula(text: &str) -> String {
     if text.starts_with(['=', '+', '-', '@', '\t', '\r']) {
         format!("'{text}")
     } else {
@@ -102,10 +106,10 @@ fn text(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::tests::{correct, invalid};
+    use crate::report::record::samples::{correct, invalid};
 
     #[test]
-    fn texts_are_quoted_and_formulas_are_texts() {
+    fn texts_are_quoted_and_formulas_are_escaped() {
         let mut hostile = invalid();
         hostile.shader = "=cmd|'/c calc'!A1,\"x\"\n.glsl".to_owned();
         let table = csv(&[correct(), hostile], None);
@@ -123,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn with_a_rubric_there_are_points() {
+    fn a_rubric_adds_points() {
         let text = csv(&[correct()], Some(&Rubric::of(1.0, 8.0, 1.0)));
         assert!(text.contains(",10,10,1000,"), "{text}");
     }

@@ -1,13 +1,14 @@
-//! `results.json`: marks as Gradescope's autograder takes them.
+//! `results.json`: marks in the format of Gradescope's autograder.
 //!
-//! Students see the `output`s; names are the rubric's own words. All texts are sent as text, so that nothing in a shader is taken for HTML.
+//! Students see the `output`s; names are the rubric's own keys. All texts are sent as plain text, so that
+//! nothing in a shader is read as HTML.
 
 use serde::Serialize;
 
 use super::{Record, Rubric, plain, summary};
 use crate::report::rubric::Visibility;
 
-/// <https://gradescope-autograders.readthedocs.io/en/latest/specs/#output-format>
+/// The output format: <https://gradescope-autograders.readthedocs.io/en/latest/specs/#output-format>
 #[derive(Serialize)]
 struct Results {
     output: String,
@@ -43,7 +44,7 @@ enum Status {
     Failed,
 }
 
-/// The file: a test for each thing that the rubric gives points for; of several shaders, their names come first.
+/// Formats the file: a test per mark of the rubric; for several shaders, each name starts with the shader's.
 #[must_use]
 pub fn gradescope(records: &[Record], rubric: &Rubric) -> String {
     let tests = records.iter().flat_map(|record| {
@@ -80,7 +81,7 @@ pub fn gradescope(records: &[Record], rubric: &Rubric) -> String {
             .ceil() as u64,
         tests: tests.collect(),
     };
-    // Strings and finite numbers always serialise.
+    // Strings and finite numbers always serialize.
     serde_json::to_string_pretty(&results).unwrap_or_default() + "\n"
 }
 
@@ -89,9 +90,9 @@ mod tests {
     use serde_json::{Value, json};
 
     use super::*;
-    use crate::report::tests::{correct, every_verdict, invalid};
+    use crate::report::record::samples::{correct, every_verdict, invalid};
 
-    /// What Gradescope documents, and no more.
+    /// The documented schema, without additional properties.
     fn schema() -> Value {
         let visibility = json!({ "enum": ["hidden", "after_due_date", "after_published", "visible"] });
         let format = json!({ "enum": ["text", "html", "simple_format", "md", "ansi"] });
@@ -136,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn the_file_holds_what_gradescope_takes() {
+    fn the_file_follows_the_documented_schema() {
         let validator = jsonschema::validator_for(&schema()).unwrap();
         let mut json = read(&every_verdict());
         let errors: Vec<_> = validator
@@ -150,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn one_submission_is_told_what_it_earned_and_why() {
+    fn a_submission_gets_its_points_and_reasons() {
         let json = read(&[correct()]);
         let test = &json["tests"][1];
         assert_eq!(

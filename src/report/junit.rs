@@ -1,4 +1,4 @@
-//! `junit.xml`: a test case for each shader, for what watches builds.
+//! `junit.xml`: a test case per shader, for continuous integration.
 
 use std::io;
 
@@ -8,7 +8,8 @@ use toyproof_verify::compare::Verdict;
 
 use super::{Record, details};
 
-/// The file. What is wrong with a shader is a failure; what kept it from being judged an error; what cannot be told is skipped.
+/// Formats the file. A fault of the shader is a failure; what prevented its verdict is an error; an
+/// inconclusive verdict is skipped.
 #[must_use]
 pub fn junit(records: &[Record]) -> String {
     let mut writer = Writer::new_with_indent(Vec::new(), b' ', 1);
@@ -18,7 +19,7 @@ pub fn junit(records: &[Record]) -> String {
     format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{xml}\n")
 }
 
-/// The element that a verdict stands for; none for a good one.
+/// The element of a verdict; none for a good one.
 fn kind(verdict: Verdict) -> Option<&'static str> {
     match verdict {
         Verdict::Correct | Verdict::Ok => None,
@@ -61,19 +62,19 @@ fn suites(writer: &mut Writer<Vec<u8>>, records: &[Record]) -> io::Result<()> {
 }
 
 fn case(writer: &mut Writer<Vec<u8>>, record: &Record) -> io::Result<()> {
-    let name = fit(&record.shader);
-    let scene = fit(record.scene.as_deref().unwrap_or("no scene"));
+    let name = xml_text(&record.shader);
+    let scene = xml_text(record.scene.as_deref().unwrap_or("no scene"));
     let time = time([record].into_iter());
     let case = writer.create_element("testcase").with_attributes([
         ("name", name.as_str()),
         ("classname", scene.as_str()),
         ("time", time.as_str()),
     ]);
-    let details = fit(&details(record));
+    let details = xml_text(&details(record));
     case.write_inner_content(|writer| {
         let text = BytesText::new(&details);
         if let Some(kind) = kind(record.verdict) {
-            let (message, verdict) = (fit(&record.reason), record.verdict.to_string());
+            let (message, verdict) = (xml_text(&record.reason), record.verdict.to_string());
             let about = [("message", message.as_str()), ("type", verdict.as_str())];
             writer
                 .create_element(kind)
@@ -87,13 +88,13 @@ fn case(writer: &mut Writer<Vec<u8>>, record: &Record) -> io::Result<()> {
     Ok(())
 }
 
-/// In seconds.
+/// The total time in seconds.
 fn time<'a>(records: impl Iterator<Item = &'a Record>) -> String {
     format!("{:.3}", records.map(|record| record.seconds.total()).sum::<f64>())
 }
 
-/// A text without the characters that XML 1.0 has no place for.
-fn fit(text: &str) -> String {
+/// Removes the characters that XML 1.0 does not allow.
+fn xml_text(text: &str) -> String {
     let has_place = |c: &char| matches!(c, '\t' | '\n' | '\r' | ' '..='\u{fffd}' | '\u{10000}'..);
     text.chars().filter(has_place).collect()
 }
@@ -105,10 +106,10 @@ mod tests {
     use roxmltree::{Document, Node};
 
     use super::*;
-    use crate::report::tests::{correct, every_verdict, invalid};
+    use crate::report::record::samples::{correct, every_verdict, invalid};
 
-    /// What the schema that Jenkins publishes (`junit-10.xsd`) lets an element have: its attributes, then its children. An attribute
-    /// with `!` must be there.
+    /// The attributes and the children that each element may have in the schema that Jenkins publishes
+    /// (`junit-10.xsd`). Attributes with `!` are required.
     const GRAMMAR: [(&str, &[&str], &[&str]); 7] = [
         (
             "testsuites",
@@ -160,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn each_verdict_is_what_builds_call_it() {
+    fn verdicts_map_to_junit_elements() {
         let text = junit(&every_verdict());
         let document = Document::parse(&text).unwrap();
         follows(document.root_element());

@@ -1,4 +1,4 @@
-//! The report as programs read it: `verdict.json`, and `--format json` on standard output.
+//! The report for programs: `verdict.json`, and `--format json` on standard output.
 
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic as diagnostic;
@@ -13,13 +13,13 @@ pub const SCHEMA: &str = include_str!("verdict.schema.json");
 pub struct Report {
     version: u32,
     tool: String,
-    /// Adapter and driver; null if nothing ran.
+    /// The adapter and its driver; null if nothing ran on any.
     device: Option<String>,
     shaders: Vec<Record>,
 }
 
 impl Report {
-    /// A report of these shaders, in their order.
+    /// Creates a report of these shaders, in this order.
     #[must_use]
     pub fn new(device: Option<String>, shaders: Vec<Record>) -> Self {
         Self {
@@ -30,7 +30,7 @@ impl Report {
         }
     }
 
-    /// Adapter and driver; none if nothing ran on any.
+    /// The adapter and its driver; none if nothing ran on any.
     pub(super) fn device(&self) -> Option<&str> {
         self.device.as_deref()
     }
@@ -44,40 +44,43 @@ impl Report {
     /// The report as the text of `verdict.json`.
     #[must_use]
     pub fn json(&self) -> String {
-        // Strings, numbers and options always serialise; serde_json writes infinite floats as null.
+        // Strings, numbers and options always serialize; serde_json writes infinite floats as null.
         serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
     }
 }
 
-/// What was found of one shader. Questions that were not asked are null.
+/// The findings on one shader. Checks that did not run are null.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Record {
     /// Its name, as the user gave it.
     pub shader: String,
-    /// The scene's, if there is one.
+    /// The scene's name, if there is one.
     pub scene: Option<String>,
     /// The verdict.
     pub verdict: Verdict,
     /// Why, in one sentence.
     pub reason: String,
     /// The shader in f64 against the scene; null without a scene.
-    pub maths: Option<Answer>,
-    /// The picture in f32 against the shader in f64.
-    pub rounding: Option<Answer>,
-    /// The GPU's picture against the CPU's, in bits; null where no GPU painted, or it was free to do algebra.
+    #[serde(rename = "maths")]
+    pub algorithm: Option<Answer>,
+    /// The shader in f32 against the shader in f64.
+    #[serde(rename = "rounding")]
+    pub precision: Option<Answer>,
+    /// The GPU's image against the CPU's, bit by bit; null where no GPU rendered, or where it was free to
+    /// rearrange arithmetic.
     pub toolchain: Option<Answer>,
-    /// The picture beside the reference's; null without a scene or a picture.
+    /// The image against the reference; null if either is missing.
     pub picture: Option<Comparison>,
-    /// The classic mistake, or the two, that explain a wrong picture; null if none does.
+    /// The known mistake, or the two, that explain a wrong image; null if none does.
     pub mistake: Option<Mistake>,
-    /// What was said of the shader and its scene.
+    /// The diagnostics on the shader and its scene.
     pub diagnostics: Vec<diagnostic::Json>,
-    /// How long it took.
+    /// The time of each stage.
     pub seconds: Seconds,
 }
 
 impl Record {
-    /// Of a shader of which nothing but the verdict is known.
+    /// Creates a record that holds only a verdict.
     #[must_use]
     pub fn new(shader: String, verdict: Verdict) -> Self {
         Self {
@@ -85,8 +88,8 @@ impl Record {
             scene: None,
             verdict,
             reason: String::new(),
-            maths: None,
-            rounding: None,
+            algorithm: None,
+            precision: None,
             toolchain: None,
             picture: None,
             mistake: None,
@@ -95,9 +98,9 @@ impl Record {
         }
     }
 
-    /// Why the toolchain question was not asked where others were.
-    pub(super) fn toolchain_unasked(&self) -> Option<&'static str> {
-        let others = self.maths.is_some() || self.rounding.is_some();
+    /// The reason why the toolchain check did not run although other checks did.
+    pub(super) fn skipped_toolchain_reason(&self) -> Option<&'static str> {
+        let others = self.algorithm.is_some() || self.precision.is_some();
         (others && self.toolchain.is_none()).then_some(if self.seconds.gpu.is_some() {
             "since the driver was free to rearrange arithmetic"
         } else {
@@ -106,17 +109,17 @@ impl Record {
     }
 }
 
-/// What explains a wrong picture.
+/// A mistake that explains a wrong image.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Mistake {
-    /// Its name, as `far-root`; of two that were made at once, both: `no-aspect+gamma`.
+    /// Its name, such as `far-root`; for two combined mistakes both names: `no-aspect+gamma`.
     pub id: String,
-    /// What it means, in a sentence.
+    /// Its meaning, in one sentence.
     pub says: String,
 }
 
 impl Mistake {
-    /// Of the mistakes that were recognised.
+    /// Combines the recognized mistakes.
     #[must_use]
     pub fn new(named: &[Named]) -> Self {
         let (ids, says): (Vec<_>, Vec<_>) = named
@@ -133,51 +136,149 @@ impl Mistake {
     }
 }
 
-/// Times in seconds; null for what was not done.
+/// Times in seconds; null for stages that did not run.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub struct Seconds {
     /// naga: parse, validate, write.
     pub translate: Option<f64>,
-    /// The driver: compile, paint, read back.
+    /// The driver: compile, render, read back.
     pub gpu: Option<f64>,
-    /// The evaluator: preparing, and every picture in f32 and f64.
+    /// The evaluator: compile, and render every image in f32 and f64.
     pub eval: Option<f64>,
     /// The reference tracer.
     pub trace: Option<f64>,
 }
 
 impl Seconds {
-    /// All of it. Some of it was at once.
+    /// The sum of all stages, some of which ran in parallel.
     #[must_use]
     pub fn total(&self) -> f64 {
         let parts = [self.translate, self.gpu, self.eval, self.trace];
-        // A sum of nothing is −0.
+        // The sum of an empty iterator is −0.
         parts.into_iter().flatten().fold(0.0, |sum, part| sum + part)
+    }
+}
+
+/// Sample records for the tests of the formats.
+#[cfg(test)]
+pub(super) mod samples {
+    use toyproof_diagnostic::{self as diagnostic, File, Files, Severity};
+    use toyproof_verify::compare::{Answer, Verdict};
+
+    use crate::report::{Record, Rubric, Seconds};
+
+    /// A record with this verdict, which is also its name, without checks.
+    pub(in crate::report) fn record(verdict: Verdict) -> Record {
+        Record {
+            shader: verdict.to_string(),
+            scene: Some("scene.toml".to_owned()),
+            verdict,
+            reason: format!("it is {verdict}"),
+            algorithm: None,
+            precision: None,
+            toolchain: None,
+            picture: None,
+            mistake: None,
+            diagnostics: Vec::new(),
+            seconds: Seconds {
+                gpu: Some(1.0),
+                eval: Some(0.5),
+                ..Seconds::default()
+            },
+        }
+    }
+
+    /// An answer over 1,000 pixels, of which the given numbers differ, are undecided and are undefined.
+    pub(in crate::report) fn question([differing, undecided, undefined]: [u64; 3]) -> Answer {
+        Answer {
+            pixels: 1000,
+            differing,
+            undecided,
+            undefined,
+            tied: 0,
+            max_abs: 0.25,
+            first: None,
+            worst: None,
+        }
+    }
+
+    pub(in crate::report) fn correct() -> Record {
+        Record {
+            algorithm: Some(question([0; 3])),
+            precision: Some(question([0; 3])),
+            toolchain: Some(question([0; 3])),
+            ..record(Verdict::Correct)
+        }
+    }
+
+    pub(in crate::report) fn invalid() -> Record {
+        let mut record = record(Verdict::Invalid);
+        record.diagnostics.push(diagnostic::Json {
+            severity: Severity::Error,
+            code: "E0301".to_owned(),
+            message: "unknown name".to_owned(),
+            file: Some("a.glsl".to_owned()),
+            line: Some(2),
+            column: Some(3),
+            notes: vec!["declare it".to_owned()],
+        });
+        record
+    }
+
+    /// One record of each verdict.
+    pub(in crate::report) fn every_verdict() -> Vec<Record> {
+        let mut wrong = record(Verdict::Wrong);
+        wrong.algorithm = Some(question([500, 0, 0]));
+        let mut unstable = correct();
+        (unstable.shader, unstable.verdict) = ("unstable".to_owned(), Verdict::Unstable);
+        unstable.precision = Some(question([500, 0, 0]));
+        vec![
+            invalid(),
+            record(Verdict::Timeout),
+            record(Verdict::Error),
+            wrong,
+            unstable,
+            record(Verdict::Inconclusive),
+            correct(),
+            record(Verdict::Ok),
+        ]
+    }
+
+    impl Rubric {
+        /// A rubric without partial points for `compiles`, `maths` and `rounding`.
+        pub(in crate::report) fn of(compiles: f64, maths: f64, rounding: f64) -> Self {
+            let text = format!(
+                "compiles.points = {compiles:?}\nmaths.points = {maths:?}\nrounding.points = {rounding:?}"
+            );
+            let mut files = Files::default();
+            let file = files.add(File::new("r.toml", text));
+            Self::parse(&files, file).unwrap()
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::tests::{every_verdict, record};
+    use crate::report::record::samples::{every_verdict, record};
 
     #[test]
-    fn reports_follow_the_schema_and_other_things_do_not() {
+    fn reports_follow_the_schema_and_broken_ones_do_not() {
         let schema = serde_json::from_str(SCHEMA).unwrap();
         let validator = jsonschema::validator_for(&schema).unwrap();
         let black = toyproof_image::Image::new(1, 1, vec![[0.0; 4]]);
         let white = toyproof_image::Image::new(1, 1, vec![[1.0; 4]]);
         let (comparison, _) = toyproof_verify::compare::compare(&black, &white);
-        let answer = Answer::new(&black, &white, &[toyproof_verify::compare::Standing::Differs]);
-        let asked = Record {
-            maths: Some(answer.clone()),
-            rounding: Some(answer.clone()),
+        let answer = Answer::new(&black, &white, &[toyproof_verify::compare::PixelStatus::Differs]);
+        let with_checks = Record {
+            algorithm: Some(answer.clone()),
+            precision: Some(answer.clone()),
             toolchain: Some(answer),
             picture: Some(comparison),
             ..record(Verdict::Ok)
         };
         let mut records = every_verdict();
-        records.push(asked);
+        records.push(with_checks);
         let report = Report::new(Some("x".to_owned()), records);
         let mut json: serde_json::Value = serde_json::from_str(&report.json()).unwrap();
         assert!(

@@ -1,4 +1,4 @@
-//! What a shader earns: points for each question, from a short TOML file.
+//! The points that a shader earns for each check, defined by a short TOML file.
 
 use std::ops::Range;
 
@@ -10,28 +10,29 @@ use toyproof_verify::compare::{Answer, MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABL
 
 use super::{Record, details, terminal};
 
-/// The most points of a question.
+/// The maximum points of a check.
 const MAX_POINTS: f64 = 1e6;
 
-/// Points for what a shader gets right.
+/// The points of each check.
 #[derive(Debug, Clone)]
 pub struct Rubric {
     compiles: f64,
-    maths: Question,
-    rounding: Question,
+    maths: CheckPoints,
+    rounding: CheckPoints,
     /// Who sees the marks, and when.
     pub visibility: Visibility,
 }
 
-/// What a question earns.
+/// The points of one check.
 #[derive(Debug, Clone, Copy)]
-struct Question {
+struct CheckPoints {
     points: f64,
-    /// The share of agreeing pixels that earns nothing, in [0, 1); from there points grow evenly. None: all or nothing.
+    /// The share of agreeing pixels up to which nothing is earned, in [0, 1); from there points grow
+    /// linearly. None: no partial points.
     partial_from: Option<f64>,
 }
 
-/// Who sees the marks, and when, in Gradescope's words.
+/// Who sees the marks, and when; the names are Gradescope's.
 #[derive(Debug, Clone, Copy, Default, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Visibility {
@@ -46,16 +47,16 @@ pub enum Visibility {
     AfterPublished,
 }
 
-/// What a shader earned for one thing.
+/// The points that a shader earned for one check.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mark {
     /// `compiles`, `maths` or `rounding`.
     pub name: &'static str,
-    /// What was earned, in [0, `of`], in hundredths.
+    /// The points earned, in [0, `of`], rounded to hundredths.
     pub points: f64,
-    /// What could be.
+    /// The maximum points.
     pub of: f64,
-    /// Why, in words for the author of the shader.
+    /// The reason, for the author of the shader.
     pub why: String,
 }
 
@@ -83,31 +84,30 @@ struct QuestionTable {
 }
 
 impl Rubric {
-    /// Reads a rubric.
+    /// Parses a rubric.
     ///
     /// # Errors
-    /// What the file should have said, for the first thing that TOML or its schema refuses, or for every value
-    /// that is out of range.
+    /// The first syntax or schema error of the TOML, or all values that are out of range.
     pub fn parse(files: &Files, file: FileId) -> Result<Self, Vec<Diagnostic>> {
         let document: Document = toml::from_str(files.get(file).text())
             .map_err(|error| vec![of_toml("E0503", &error, files, file)])?;
-        let mut refused = Vec::new();
-        let mut checks = Checks {
+        let mut errors = Vec::new();
+        let mut parser = Parser {
             file,
-            refused: &mut refused,
+            errors: &mut errors,
         };
         let compiles = document
             .compiles
-            .map_or(0.0, |table| checks.points(&table.points));
-        let maths = checks.question(document.maths);
-        let rounding = checks.question(document.rounding);
-        if checks.refused.is_empty() && compiles + maths.points + rounding.points == 0.0 {
-            checks.refuse(
+            .map_or(0.0, |table| parser.points(&table.points));
+        let maths = parser.check(document.maths);
+        let rounding = parser.check(document.rounding);
+        if parser.errors.is_empty() && compiles + maths.points + rounding.points == 0.0 {
+            parser.reject(
                 0..0,
                 "a rubric needs points for compiles, maths or rounding".to_owned(),
             );
         }
-        if refused.is_empty() {
+        if errors.is_empty() {
             Ok(Self {
                 compiles,
                 maths,
@@ -115,16 +115,16 @@ impl Rubric {
                 visibility: document.visibility,
             })
         } else {
-            Err(refused)
+            Err(errors)
         }
     }
 
-    /// What a shader earned, for each thing that there are points for.
+    /// Computes the marks of a shader, one for each check that has points.
     #[must_use]
     pub fn marks(&self, record: &Record) -> Vec<Mark> {
         let maths = maths(self.maths, record);
         let mut rounding = rounding(self.rounding, record);
-        // A black picture loses no digits.
+        // A black image has no rounding errors.
         if maths.points == 0.0 && maths.of > 0.0 {
             rounding.points = 0.0;
             "counts once maths does".clone_into(&mut rounding.why);
@@ -134,29 +134,29 @@ impl Rubric {
     }
 }
 
-struct Checks<'a> {
+struct Parser<'a> {
     file: FileId,
-    refused: &'a mut Vec<Diagnostic>,
+    errors: &'a mut Vec<Diagnostic>,
 }
 
-impl Checks<'_> {
-    fn refuse(&mut self, bytes: Range<usize>, message: String) {
+impl Parser<'_> {
+    fn reject(&mut self, bytes: Range<usize>, message: String) {
         let span = Span::new(self.file, bytes.start as u32, bytes.end as u32);
-        self.refused.push(Diagnostic::error("E0504", message).at(span));
+        self.errors.push(Diagnostic::error("E0504", message).at(span));
     }
 
     fn points(&mut self, value: &Spanned<f64>) -> f64 {
         let points = *value.get_ref();
         if !(0.0..=MAX_POINTS).contains(&points) {
-            let words = format!("points must be a number from 0 to {MAX_POINTS}, not {points}");
-            self.refuse(value.span(), words);
+            let message = format!("points must be a number from 0 to {MAX_POINTS}, not {points}");
+            self.reject(value.span(), message);
         }
         points
     }
 
-    fn question(&mut self, table: Option<QuestionTable>) -> Question {
+    fn check(&mut self, table: Option<QuestionTable>) -> CheckPoints {
         let Some(QuestionTable { points, partial_from }) = table else {
-            return Question {
+            return CheckPoints {
                 points: 0.0,
                 partial_from: None,
             };
@@ -164,21 +164,22 @@ impl Checks<'_> {
         if let Some(from) = &partial_from
             && !(0.0..1.0).contains(from.get_ref())
         {
-            let words = format!(
+            let message = format!(
                 "partial_from must be a share of the pixels, at least 0 and below 1, not {}",
                 from.get_ref()
             );
-            self.refuse(from.span(), words);
+            self.reject(from.span(), message);
         }
-        Question {
+        CheckPoints {
             points: self.points(&points),
             partial_from: partial_from.map(Spanned::into_inner),
         }
     }
 }
 
-impl Question {
-    /// The points for that share of agreeing pixels, in hundredths, rounded down so that nothing but all is all.
+impl CheckPoints {
+    /// The points for a share of agreeing pixels, in hundredths, rounded down so that only full agreement
+    /// earns all.
     fn partial(self, agreeing: f64) -> f64 {
         let from = match self.partial_from {
             Some(from) if agreeing > from => from,
@@ -187,9 +188,9 @@ impl Question {
         (100.0 * self.points * (agreeing - from) / (1.0 - from)).floor() / 100.0
     }
 
-    /// What an answer earns; `lost` is the share of the pixels that do not agree.
-    fn mark(self, name: &'static str, right: bool, lost: f64, why: String) -> Mark {
-        let points = if right {
+    /// The mark of an answer; `lost` is the share of the pixels that do not agree.
+    fn mark(self, name: &'static str, passed: bool, lost: f64, why: String) -> Mark {
+        let points = if passed {
             self.points
         } else {
             self.partial(1.0 - lost)
@@ -202,7 +203,7 @@ impl Question {
         }
     }
 
-    /// What a question earns that has no answer.
+    /// The mark of a check without an answer.
     fn unanswered(self, name: &'static str, record: &Record) -> Mark {
         let why = match record.verdict {
             Verdict::Invalid => "the shader does not compile".to_owned(),
@@ -216,57 +217,62 @@ impl Question {
     }
 }
 
-/// What is said of an answer; of one that has nothing to tell, that.
-fn said(words: String) -> String {
-    if words.is_empty() {
+/// Replaces the empty description of an answer without differences.
+fn or_no_difference(message: String) -> String {
+    if message.is_empty() {
         "no pixel differs".to_owned()
     } else {
-        words
+        message
     }
 }
 
 fn compiles(points: f64, record: &Record) -> Mark {
-    let question = Question {
+    let check = CheckPoints {
         points,
         partial_from: None,
     };
-    let right = record.verdict != Verdict::Invalid;
-    let why = if right {
+    let passed = record.verdict != Verdict::Invalid;
+    let why = if passed {
         "the shader compiles".to_owned()
     } else {
         details(record)
     };
-    question.mark("compiles", right, 1.0, why)
+    check.mark("compiles", passed, 1.0, why)
 }
 
-fn maths(question: Question, record: &Record) -> Mark {
+fn maths(check: CheckPoints, record: &Record) -> Mark {
     let name = "maths";
-    let Some(answer) = &record.maths else {
-        return question.unanswered(name, record);
+    let Some(answer) = &record.algorithm else {
+        return check.unanswered(name, record);
     };
-    let right =
+    let passed =
         answer.share(answer.differing) <= MAX_DIFFERING && answer.share(answer.undefined) <= MAX_UNDEFINED;
     let lost = answer.share(answer.differing + answer.undefined);
     let mistake = record.mistake.iter().map(|mistake| mistake.says.clone());
-    let why: Vec<_> = [said(terminal::maths(answer))]
+    let why: Vec<_> = [or_no_difference(terminal::algorithm(answer))]
         .into_iter()
         .chain(mistake)
         .collect();
-    question.mark(name, right, lost, why.join("; "))
+    check.mark(name, passed, lost, why.join("; "))
 }
 
-/// A pixel that hangs by a hair is lost to rounding, too.
-fn rounding(question: Question, record: &Record) -> Mark {
+/// Ill-conditioned pixels count as lost to rounding, too.
+fn rounding(check: CheckPoints, record: &Record) -> Mark {
     let name = "rounding";
-    let Some(answer) = &record.rounding else {
-        return question.unanswered(name, record);
+    let Some(answer) = &record.precision else {
+        return check.unanswered(name, record);
     };
-    let hanging = record
-        .maths
+    let ill_conditioned = record
+        .algorithm
         .as_ref()
         .map_or(0.0, |answer: &Answer| answer.share(answer.undecided));
-    let lost = answer.share(answer.differing).max(hanging);
-    question.mark(name, lost <= MAX_UNSTABLE, lost, said(terminal::rounding(answer)))
+    let lost = answer.share(answer.differing).max(ill_conditioned);
+    check.mark(
+        name,
+        lost <= MAX_UNSTABLE,
+        lost,
+        or_no_difference(terminal::precision(answer)),
+    )
 }
 
 #[cfg(test)]
@@ -274,12 +280,13 @@ mod tests {
     use toyproof_diagnostic::{File, short};
 
     use super::*;
-    use crate::report::tests::{correct, invalid, question, record};
+    use crate::report::record::samples::{correct, invalid, question, record};
 
     fn read(text: &str) -> Result<Rubric, Vec<String>> {
         let mut files = Files::default();
         let file = files.add(File::new("r.toml", text));
-        Rubric::parse(&files, file).map_err(|told| told.iter().map(|told| short(told, &files)).collect())
+        Rubric::parse(&files, file)
+            .map_err(|errors| errors.iter().map(|error| short(error, &files)).collect())
     }
 
     fn points(rubric: &str, record: &Record) -> Vec<(&'static str, f64, f64)> {
@@ -294,8 +301,8 @@ mod tests {
         "[compiles]\npoints = 2\n[maths]\npoints = 6\npartial_from = 0.5\n[rounding]\npoints = 2";
 
     #[test]
-    fn each_mistake_is_told_by_line_column_and_what_was_expected() {
-        for (text, place, words) in [
+    fn errors_have_a_position_and_the_expected_value() {
+        for (text, place, message) in [
             (
                 "[maths]\npoint = 1",
                 "r.toml:2:1: error[E0503]",
@@ -337,7 +344,7 @@ mod tests {
         ] {
             let errors = read(text).unwrap_err();
             assert!(
-                errors[0].starts_with(place) && errors[0].contains(words),
+                errors[0].starts_with(place) && errors[0].contains(message),
                 "{text}: {errors:?}"
             );
         }
@@ -349,7 +356,7 @@ mod tests {
     }
 
     #[test]
-    fn all_that_is_right_earns_all_and_nothing_that_does_not_compile() {
+    fn correct_shaders_earn_all_points_and_invalid_ones_none() {
         let all = [
             ("compiles", 2.0, 2.0),
             ("maths", 6.0, 6.0),
@@ -364,11 +371,11 @@ mod tests {
     }
 
     #[test]
-    fn partial_points_grow_evenly_and_never_reach_all() {
+    fn partial_points_grow_linearly_and_never_reach_all() {
         let wrong = |differing| {
             let mut record = record(Verdict::Wrong);
-            record.maths = Some(question([differing, 0, 0]));
-            record.rounding = Some(question([0; 3]));
+            record.algorithm = Some(question([differing, 0, 0]));
+            record.precision = Some(question([0; 3]));
             record
         };
         let maths = |rubric, differing| points(rubric, &wrong(differing))[1];
@@ -388,11 +395,11 @@ mod tests {
     }
 
     #[test]
-    fn what_hangs_by_a_hair_is_rounding_and_what_is_undefined_is_maths() {
+    fn ill_conditioned_pixels_are_rounding_and_undefined_ones_maths() {
         let of = |maths, rounding| {
             let mut record = record(Verdict::Unstable);
-            record.maths = Some(question(maths));
-            record.rounding = Some(question(rounding));
+            record.algorithm = Some(question(maths));
+            record.precision = Some(question(rounding));
             let earned = points(RUBRIC, &record);
             (earned[1].1, earned[2].1)
         };

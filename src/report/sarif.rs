@@ -1,4 +1,4 @@
-//! `report.sarif`: what was said of the shaders, as editors and code hosts read it (SARIF 2.1.0).
+//! `report.sarif`: the diagnostics, for editors and code hosts (SARIF 2.1.0).
 
 use std::collections::BTreeMap;
 
@@ -9,15 +9,16 @@ use toyproof_verify::compare::Verdict;
 
 use super::{Record, terminal};
 
-/// What stands for itself in a path: letters, digits, and what RFC 3986 reserves for nothing.
-const PATH: &AsciiSet = &NON_ALPHANUMERIC
+/// The characters that are not percent-encoded in a path: letters, digits, the other unreserved characters of
+/// RFC 3986, and `/`.
+const ENCODE_IN_PATH: &AsciiSet = &NON_ALPHANUMERIC
     .remove(b'-')
     .remove(b'.')
     .remove(b'_')
     .remove(b'~')
     .remove(b'/');
 
-/// The verdicts that are results themselves: each with what it is about, and what to do.
+/// The verdicts that become results: each with its title and its help text.
 const VERDICTS: [(Verdict, &str, &str); 3] = [
     (
         Verdict::Wrong,
@@ -38,19 +39,19 @@ const VERDICTS: [(Verdict, &str, &str); 3] = [
     ),
 ];
 
-/// The file: a result for each diagnostic, and one for each verdict that is a result itself. What kept a shader from being judged
-/// is a notification.
+/// Formats the file: a result per diagnostic, and one per verdict of `VERDICTS`. What prevented a verdict is
+/// a notification.
 #[must_use]
 pub fn sarif(records: &[Record]) -> String {
     let mut rules = Rules::default();
     let mut results = Vec::new();
     let mut notifications = Vec::new();
     for record in records {
-        for told in &record.diagnostics {
-            results.push(of_diagnostic(record, told, &mut rules));
+        for message in &record.diagnostics {
+            results.push(diagnostic_result(record, message, &mut rules));
         }
         if VERDICTS.iter().any(|(verdict, ..)| *verdict == record.verdict) {
-            results.push(of_verdict(record, &mut rules));
+            results.push(verdict_result(record, &mut rules));
         }
         if record.verdict == Verdict::Error {
             notifications.push(json!({
@@ -67,7 +68,7 @@ pub fn sarif(records: &[Record]) -> String {
             "tool": { "driver": {
                 "name": "toyproof",
                 "version": env!("CARGO_PKG_VERSION"),
-                "rules": rules.told,
+                "rules": rules.rules,
             } },
             "invocations": [{
                 "executionSuccessful": notifications.is_empty(),
@@ -80,22 +81,22 @@ pub fn sarif(records: &[Record]) -> String {
     format!("{sarif:#}\n")
 }
 
-/// The rules that results refer to, each once.
+/// The rules that results refer to, without duplicates.
 #[derive(Default)]
 struct Rules {
-    places: BTreeMap<String, usize>,
-    told: Vec<Value>,
+    indices: BTreeMap<String, usize>,
+    rules: Vec<Value>,
 }
 
 impl Rules {
-    /// The place of a rule among all.
-    fn place(&mut self, id: &str, rule: impl FnOnce() -> Value) -> usize {
-        if let Some(place) = self.places.get(id) {
-            return *place;
+    /// Returns the index of a rule, adding it if it is new.
+    fn index_of(&mut self, id: &str, rule: impl FnOnce() -> Value) -> usize {
+        if let Some(index) = self.indices.get(id) {
+            return *index;
         }
-        self.places.insert(id.to_owned(), self.told.len());
-        self.told.push(rule());
-        self.told.len() - 1
+        self.indices.insert(id.to_owned(), self.rules.len());
+        self.rules.push(rule());
+        self.rules.len() - 1
     }
 }
 
@@ -107,31 +108,31 @@ fn rule(id: &str, title: &str, help: &str) -> Value {
     })
 }
 
-fn of_diagnostic(record: &Record, told: &diagnostic::Json, rules: &mut Rules) -> Value {
-    let index = rules.place(&told.code, || match super::explain(&told.code) {
-        Some(explanation) => rule(&told.code, explanation.title, explanation.text),
-        None => json!({ "id": told.code }),
+fn diagnostic_result(record: &Record, message: &diagnostic::Json, rules: &mut Rules) -> Value {
+    let index = rules.index_of(&message.code, || match super::explain(&message.code) {
+        Some(explanation) => rule(&message.code, explanation.title, explanation.text),
+        None => json!({ "id": message.code }),
     });
-    let mut words = vec![told.message.as_str()];
-    words.extend(told.notes.iter().map(String::as_str));
+    let mut lines = vec![message.message.as_str()];
+    lines.extend(message.notes.iter().map(String::as_str));
     json!({
-        "ruleId": told.code,
+        "ruleId": message.code,
         "ruleIndex": index,
-        "level": told.severity,
-        "message": { "text": words.join("\n") },
-        "locations": [location(told.file.as_ref().unwrap_or(&record.shader), told.line.zip(told.column))],
+        "level": message.severity,
+        "message": { "text": lines.join("\n") },
+        "locations": [location(message.file.as_ref().unwrap_or(&record.shader), message.line.zip(message.column))],
     })
 }
 
-fn of_verdict(record: &Record, rules: &mut Rules) -> Value {
+fn verdict_result(record: &Record, rules: &mut Rules) -> Value {
     let id = record.verdict.to_string();
     let about = VERDICTS.iter().find(|(verdict, ..)| *verdict == record.verdict);
-    let index = rules.place(&id, || {
+    let index = rules.index_of(&id, || {
         about.map_or(Value::Null, |(_, title, help)| rule(&id, title, help))
     });
-    let mut words = vec![record.reason.clone()];
-    let answers = [&record.maths, &record.rounding].into_iter().flatten();
-    words.extend(
+    let mut lines = vec![record.reason.clone()];
+    let answers = [&record.algorithm, &record.precision].into_iter().flatten();
+    lines.extend(
         answers
             .filter_map(|answer| answer.first.as_ref())
             .map(terminal::place)
@@ -141,32 +142,32 @@ fn of_verdict(record: &Record, rules: &mut Rules) -> Value {
         "ruleId": id,
         "ruleIndex": index,
         "level": "error",
-        "message": { "text": words.join("\n") },
+        "message": { "text": lines.join("\n") },
         "locations": [location(&record.shader, None)],
     })
 }
 
-/// A file, and the line and column in it.
+/// A location: a file, and optionally a line and a column.
 fn location(file: &str, at: Option<(usize, usize)>) -> Value {
-    let path = utf8_percent_encode(file, PATH);
+    let path = utf8_percent_encode(file, ENCODE_IN_PATH);
     let uri = if file.starts_with('/') {
         format!("file://{path}")
     } else {
         path.to_string()
     };
-    let mut place = json!({ "artifactLocation": { "uri": uri } });
+    let mut location = json!({ "artifactLocation": { "uri": uri } });
     if let Some((line, column)) = at {
-        place["region"] = json!({ "startLine": line, "startColumn": column });
+        location["region"] = json!({ "startLine": line, "startColumn": column });
     }
-    json!({ "physicalLocation": place })
+    json!({ "physicalLocation": location })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::tests::{every_verdict, invalid};
+    use crate::report::record::samples::{every_verdict, invalid};
 
-    /// What SARIF 2.1.0 says of the parts that are used here, and no more.
+    /// The part of the SARIF 2.1.0 schema that is used here, without additional properties.
     fn schema() -> Value {
         let message = json!({
             "type": "object", "additionalProperties": false, "required": ["text"],
@@ -247,13 +248,13 @@ mod tests {
         })
     }
 
-    /// `TOYPROOF_SARIF_SCHEMA` names the whole schema, as OASIS publishes it.
+    /// Validates against the complete schema that OASIS publishes, if `TOYPROOF_SARIF_SCHEMA` names its file.
     #[test]
     fn the_file_follows_the_published_schema() {
         let Some(path) = std::env::var_os("TOYPROOF_SARIF_SCHEMA") else {
             return;
         };
-        // One of its patterns has a bracket too many, which not every reader of patterns takes.
+        // One of its patterns has an extra bracket, which not every regex engine accepts.
         let text = std::fs::read_to_string(path).unwrap().replace("{2}]?$", "{2}$");
         let schema = serde_json::from_str(&text).unwrap();
         let json = serde_json::from_str(&sarif(&every_verdict())).unwrap();
@@ -267,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn the_file_follows_the_schema_and_rules_are_where_results_say() {
+    fn the_file_follows_the_schema_and_rule_indices_are_right() {
         let mut hostile = invalid();
         hostile.shader = "a b:<script>\u{e9}%.glsl".to_owned();
         hostile.diagnostics[0].file = Some("/hw/a b.glsl".to_owned());

@@ -1,4 +1,4 @@
-//! The report as people read it on a terminal, with ANSI colours that the printer may strip.
+//! The report for people, on a terminal, with ANSI colors that the printer may strip.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -10,7 +10,7 @@ use toyproof_verify::compare::{Answer, Comparison, Pixel, Verdict, grouped, magn
 
 use super::Record;
 
-/// One shader: verdict, name, reason, and a line for each question whose answer is worth reading.
+/// Formats one shader: verdict, name, reason, and a line for each check that found a difference.
 #[must_use]
 pub fn line(record: &Record) -> String {
     let style = style(record.verdict);
@@ -21,34 +21,35 @@ pub fn line(record: &Record) -> String {
         errors(record).unwrap_or_else(|| record.reason.clone())
     )];
     let questions = [
-        ("maths", &record.maths, maths as fn(&Answer) -> String),
-        ("rounding", &record.rounding, rounding),
+        ("maths", &record.algorithm, algorithm as fn(&Answer) -> String),
+        ("rounding", &record.precision, precision),
         ("toolchain", &record.toolchain, toolchain),
     ];
-    let asked = questions
+    let answered = questions
         .iter()
-        .filter_map(|(name, answer, says)| Some((*name, answer.as_ref()?, says)));
+        .filter_map(|(name, answer, describe)| Some((*name, answer.as_ref()?, describe)));
     let mut same = Vec::new();
-    for (name, answer, says) in asked {
+    for (name, answer, describe) in answered {
         if answer.is_same() && answer.undefined == 0 {
             same.push(name);
         } else {
-            lines.push(format!("{name}: {}", says(answer)));
+            lines.push(format!("{name}: {}", describe(answer)));
         }
     }
     if !same.is_empty() {
         lines.push(format!("{}: no difference", list(&same)));
     }
-    if let Some(why) = record.toolchain_unasked() {
+    if let Some(why) = record.skipped_toolchain_reason() {
         lines.push(format!("toolchain: not asked, {why}"));
     }
-    if let Some(picture) = &record.picture {
-        lines.push(format!("picture: {}", numbers(picture)));
+    if let Some(image) = &record.picture {
+        lines.push(format!("picture: {}", numbers(image)));
     }
     lines.join(&format!("\n{:13}", ""))
 }
 
-/// How many errors there are and where, instead of the first: they are all told in full beside this line.
+/// The number of errors and the first position, instead of the first message: all are printed in full beside
+/// this line.
 fn errors(record: &Record) -> Option<String> {
     let places: Vec<_> = record.diagnostics.iter().filter_map(Json::error_place).collect();
     let first = places.iter().flatten().next();
@@ -63,27 +64,28 @@ fn errors(record: &Record) -> Option<String> {
     })
 }
 
-/// All that a person is told of a shader, without colours: what [`line`] says, and each message with its notes.
+/// Formats everything that is reported on a shader, without colors: [`line`], and each diagnostic with its
+/// notes.
 pub(super) fn details(record: &Record) -> String {
     let mut lines = vec![plain(&line(record))];
-    for told in &record.diagnostics {
-        lines.push(told.to_string());
-        lines.extend(told.notes.iter().map(|note| format!("  = {note}")));
+    for diagnostic in &record.diagnostics {
+        lines.push(diagnostic.to_string());
+        lines.extend(diagnostic.notes.iter().map(|note| format!("  = {note}")));
     }
     lines.join("\n")
 }
 
-/// A text without its colours.
+/// Strips ANSI colors.
 pub(super) fn plain(text: &str) -> String {
     anstream::adapter::strip_str(text).to_string()
 }
 
-/// How many shaders have each verdict; as words, best first.
+/// The number of shaders per verdict; displayed best first.
 #[derive(Debug, Clone, Default)]
 pub struct Tally(BTreeMap<Reverse<Verdict>, u64>);
 
 impl Tally {
-    /// One more.
+    /// Counts one more shader.
     pub fn add(&mut self, verdict: Verdict) {
         *self.0.entry(Reverse(verdict)).or_default() += 1;
     }
@@ -99,7 +101,7 @@ impl fmt::Display for Tally {
     }
 }
 
-/// How many shaders there are, and their tally.
+/// Formats the number of shaders and their tally.
 #[must_use]
 pub fn summary(records: &[Record]) -> String {
     let mut tally = Tally::default();
@@ -111,15 +113,15 @@ pub fn summary(records: &[Record]) -> String {
 }
 
 fn style(verdict: Verdict) -> Style {
-    let colour = match verdict {
+    let color = match verdict {
         Verdict::Correct | Verdict::Ok => AnsiColor::Green,
         Verdict::Unstable | Verdict::Inconclusive => AnsiColor::Yellow,
         _ => AnsiColor::Red,
     };
-    Style::new().fg_color(Some(colour.into())).bold()
+    Style::new().fg_color(Some(color.into())).bold()
 }
 
-pub(super) fn maths(answer: &Answer) -> String {
+pub(super) fn algorithm(answer: &Answer) -> String {
     question(
         answer,
         ["differs", "differ"],
@@ -131,7 +133,7 @@ pub(super) fn maths(answer: &Answer) -> String {
     )
 }
 
-pub(super) fn rounding(answer: &Answer) -> String {
+pub(super) fn precision(answer: &Answer) -> String {
     question(
         answer,
         ["is", "are"],
@@ -141,15 +143,16 @@ pub(super) fn rounding(answer: &Answer) -> String {
 }
 
 fn toolchain(answer: &Answer) -> String {
-    let says = format!(
+    let difference = format!(
         "not to the bit what the shader says (by at most {})",
         magnitude(answer.max_abs)
     );
-    question(answer, ["is", "are"], &says, ["cannot be told"; 2])
+    question(answer, ["is", "are"], &difference, ["cannot be told"; 2])
 }
 
-/// How many pixels differ or hang by a hair, with the first of them, and how many were left out. Of two forms, one is for one pixel.
-fn question(answer: &Answer, verb: [&str; 2], differ: &str, hang: [&str; 2]) -> String {
+/// Describes how many pixels differ or are ill-conditioned, with the first of them, and how many were left
+/// out. Of two verb forms, the first is singular.
+fn question(answer: &Answer, verb: [&str; 2], differ: &str, add_image: [&str; 2]) -> String {
     let mut parts = Vec::new();
     let of = |count: u64, [one, many]: [&str; 2]| {
         let (of, total) = (grouped(count), grouped(answer.pixels));
@@ -159,16 +162,16 @@ fn question(answer: &Answer, verb: [&str; 2], differ: &str, hang: [&str; 2]) -> 
         parts.push(format!("{} {differ}", of(answer.differing, verb)));
     }
     if answer.undecided > 0 {
-        parts.push(of(answer.undecided, hang));
+        parts.push(of(answer.undecided, add_image));
     }
-    if let (Some(told), Some(pixel)) = (parts.first_mut(), &answer.first) {
-        told.push_str(", first ");
-        told.push_str(&place(pixel));
+    if let (Some(part), Some(pixel)) = (parts.first_mut(), &answer.first) {
+        part.push_str(", first ");
+        part.push_str(&place(pixel));
         if let Some(worst) = &answer.worst
             && worst.difference() > 10.0 * pixel.difference()
         {
-            told.push_str(", most ");
-            told.push_str(&place(worst));
+            part.push_str(", most ");
+            part.push_str(&place(worst));
         }
     }
     if answer.undefined > 0 {
@@ -188,33 +191,33 @@ fn list(names: &[&str]) -> String {
     }
 }
 
-fn numbers(picture: &Comparison) -> String {
-    let levels = match picture.differing_8bit {
+fn numbers(image: &Comparison) -> String {
+    let levels = match image.differing_8bit {
         0 => "equal to the reference in 8 bits".to_owned(),
         count => format!(
             "{} {} from the reference in 8 bits, by at most {} {}",
             grouped(count),
             plural(count, "pixel differs", "pixels differ"),
-            picture.max_8bit,
-            plural(u64::from(picture.max_8bit), "level", "levels"),
+            image.max_8bit,
+            plural(u64::from(image.max_8bit), "level", "levels"),
         ),
     };
     format!(
         "{levels}; as floats by at most {}, {} on average",
-        magnitude(picture.max_abs),
-        magnitude(picture.mean_abs)
+        magnitude(image.max_abs),
+        magnitude(image.mean_abs)
     )
 }
 
-/// A pixel in words: where it is, what was expected and what was found.
+/// Describes a pixel: its position, the expected and the actual color.
 #[must_use]
 pub fn place(pixel: &Pixel) -> String {
-    let colour = |[r, g, b]: [f32; 3]| format!("({r:.4}, {g:.4}, {b:.4})");
+    let color = |[r, g, b]: [f32; 3]| format!("({r:.4}, {g:.4}, {b:.4})");
     format!(
         "at ({}, {}): expected {}, got {}",
         pixel.x,
         pixel.y,
-        colour(pixel.expected),
-        colour(pixel.actual)
+        color(pixel.expected),
+        color(pixel.actual)
     )
 }

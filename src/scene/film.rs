@@ -1,62 +1,130 @@
-//! How a picture is sampled and developed.
+//! How a scene is viewed and rendered: film, camera, and figures on the screen.
 
-/// How the picture is sampled and developed.
+use super::{Color, Point};
+
+/// How the image is sampled and tone-mapped.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Film {
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Samples in each pixel, averaged; ≥ 1.
+    /// Samples per pixel, averaged; ≥ 1.
     pub samples: u32,
-    /// Where they lie, and what else is drawn for them.
+    /// The source of sample positions and random numbers.
     pub sampler: Sampler,
-    /// Path segments: 1 is camera rays only.
+    /// The maximum number of path segments; 1 is camera rays only.
     pub max_depth: u32,
-    /// How light finds its way.
+    /// The light transport algorithm.
     pub integrator: Integrator,
-    /// What the mean of a pixel's samples goes through first.
+    /// The tone map, applied to the mean of a pixel's samples.
     pub tone_map: ToneMap,
-    /// And then, c^(1/gamma); > 0.
+    /// The exponent of the transfer curve c^(1/gamma), applied after the tone map; > 0.
     pub gamma: f64,
 }
 
-/// Where a pixel's samples lie, and the numbers in [0, 1) that lights and surfaces draw.
+/// The source of sample positions in a pixel, and of the random numbers in [0, 1) for lights and surfaces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sampler {
-    /// All at its centre; nothing can be drawn.
+    /// All samples at the pixel center; no random numbers.
     Center,
-    /// Where the course's `fract(sin(seed++) * 43758.5453123)` puts them, the seed 0 at each pixel; nothing else
-    /// can be drawn.
+    /// Positions from the course's `fract(sin(seed++) * 43758.5453123)`, with seed 0 at each pixel; no
+    /// further random numbers.
     SineHash,
-    /// Numbers from an integer hash, which a shader can draw too.
+    /// Independent numbers from an integer hash that a shader can also compute.
     Independent,
-    /// One in each cell of a grid, drawn by hashing.
+    /// One jittered sample in each cell of a grid, by hashing.
     Stratified,
     /// Sobol's sequence with Owen's scrambling.
     Sobol,
 }
 
 impl Sampler {
-    /// Whether lights and surfaces can draw from it.
+    /// Whether it provides random numbers for lights and surfaces.
     #[must_use]
     pub fn draws(self) -> bool {
         !matches!(self, Self::Center | Self::SineHash)
     }
 }
 
-/// How light finds its way to the eye.
+/// The light transport algorithm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Integrator {
-    /// Surfaces are lit by the lights; mirrors and glass send the ray on (Whitted 1980).
+    /// Direct light from point and sphere lights; mirrors and glass continue the ray (Whitted 1980).
     Whitted,
-    /// Every surface sends the ray on, in a direction that is drawn, and emitters are the lights (Kajiya 1986).
+    /// Path tracing: every surface continues the ray in a sampled direction, and emitters are the lights
+    /// (Kajiya 1986).
     Path,
 }
 
-/// A tone map, for each component.
+/// A tone map, applied to each component.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ToneMap {
     /// c
     None,
     /// c / (c + 1), Reinhard's
     Reinhard,
+}
+
+// The camera.
+
+/// An eye and the screen in front of it: x ∈ [−1, 1], y ∈ [−1, 1] / aspect.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Camera {
+    /// The pinhole, or the center of the plane in which parallel rays start.
+    pub eye: Point,
+    /// The projection.
+    pub projection: Projection,
+}
+
+/// A projection of rays through the screen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Projection {
+    /// Rays start at the eye.
+    Pinhole {
+        /// The distance of the screen plane at z = eye.z − `screen_distance`; > 0.
+        screen_distance: f64,
+    },
+    /// Rays start in the plane z = eye.z and go along −z.
+    Parallel {
+        /// The width of the image in scene units; > 0.
+        width: f64,
+    },
+}
+
+// Figures on the screen, given by implicit functions f of the screen coordinates; the inside is f < 0.
+
+/// A figure, in screen coordinates: x ∈ [−1, 1], y ∈ [−1, 1] / aspect.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Figure {
+    /// Its outline.
+    pub outline: Outline,
+    /// The fill color.
+    pub color: Color,
+}
+
+/// The outline of a figure, with f of a point (x, y).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Outline {
+    /// `(x − cx)² + (y − cy)² − radius²`
+    Disk {
+        /// (cx, cy)
+        center: [f64; 2],
+        /// > 0
+        radius: f64,
+    },
+    /// `y − height − amplitude · sin(frequency · x)`: the region below a sine wave.
+    Wave {
+        /// The mean height.
+        height: f64,
+        /// The amplitude.
+        amplitude: f64,
+        /// In radians per unit of x.
+        frequency: f64,
+    },
+    /// `(u² + v² − 1)³ − u² v³` with `(u, v) = ((x, y) − center) / size`
+    Heart {
+        /// The center.
+        center: [f64; 2],
+        /// About half its height; > 0.
+        size: f64,
+    },
 }

@@ -1,5 +1,5 @@
-//! Scenes that the reference tracer renders, read from TOML and kept in f64 as written, and the ShaderToy shader that
-//! renders the same ([`export`]).
+//! Scenes that the reference tracer renders, read from TOML and kept in f64 as written, and the ShaderToy
+//! shader that renders the same ([`export`]).
 //!
 //! ```
 //! use toyproof_diagnostic::{File, Files};
@@ -13,96 +13,87 @@
 //! assert!(shader.contains("void mainImage"));
 //! ```
 //!
-//! Lengths are in scene units, colours linear RGB. The camera looks along −z, y is up.
+//! Lengths are in scene units, colors linear RGB. The camera looks along −z, y is up.
 
-mod camera;
 pub mod export;
-mod figure;
 mod file;
 mod film;
-mod light;
 mod material;
 mod motion;
 mod perturb;
 mod requirements;
-mod scatter;
 mod shape;
-mod toml;
 
 use std::ops::Range;
 
-pub use camera::{Camera, Projection};
-pub use figure::{Figure, Outline};
-pub use file::parse;
-pub use film::{Film, Integrator, Sampler, ToneMap};
-pub use light::{Background, Light};
-pub use material::{Checker, Disney, Fresnel, Material, Model};
-pub use motion::{Moment, Motion, Period};
+pub use file::{of_toml, parse};
+pub use film::{Camera, Figure, Film, Integrator, Outline, Projection, Sampler, ToneMap};
+pub use material::{Background, Checker, Disney, Fresnel, Light, Material, Model};
+pub use motion::{FrameTime, Motion, Period};
 pub use requirements::Requirements;
-pub use scatter::{Scatter, Scattered, unit};
-pub use shape::{Equation, Quadric, QuadricKind, Shape};
-pub use toml::of_toml;
+pub use shape::{Equation, Quadric, QuadricKind, Scatter, Scattered, Shape, unit};
 
-/// A colour, linear RGB; each component ≥ 0, nominally in [0, 1].
+/// A color, linear RGB; each component ≥ 0, nominally in [0, 1].
 pub type Color = [f64; 3];
 /// A point, in scene units.
 pub type Point = [f64; 3];
 
-/// Everything that the tracer needs.
+/// A scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
-    /// What people call it; may be empty.
+    /// The title; may be empty.
     pub title: String,
-    /// Light from everywhere, added to that of the lights on every surface that has a BRDF.
+    /// Ambient light, added to the direct light on every surface that has a BRDF.
     pub ambient: Color,
-    /// How far off its surface, in scene units, a shader of the scene may start a secondary ray, and how near a hit it may
-    /// leave out; > 0. The tracer itself starts on the surface.
+    /// The largest offset from its surface, in scene units, at which a shader of the scene may start a
+    /// secondary ray, and the largest distance of hits that it may ignore; > 0. The tracer itself starts on
+    /// the surface.
     pub max_offset: f64,
-    /// How it is sampled and developed.
+    /// How the image is sampled and tone-mapped.
     pub film: Film,
-    /// Where it is seen from.
+    /// The camera.
     pub camera: Camera,
-    /// What a ray sees that meets nothing.
+    /// The radiance of rays that hit nothing.
     pub background: Background,
-    /// What is painted on the screen itself, the last on top.
+    /// Figures drawn on the screen itself, the last on top.
     pub figures: Vec<Figure>,
     /// The lights.
     pub lights: Vec<Light>,
     /// The surfaces.
     pub objects: Vec<Object>,
-    /// Which of them come of a scatter.
+    /// The scatters, and which of the objects are theirs.
     pub scatters: Vec<Scattered>,
-    /// How lights and surfaces move, each within an earlier one or none.
+    /// The motions of lights and surfaces, each within an earlier one or none.
     pub motions: Vec<Motion>,
 }
 
 /// A surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Object {
-    /// Its shape, where it is when nothing has moved.
+    /// Its shape, before any motion.
     pub shape: Shape,
-    /// What it is made of.
+    /// Its material.
     pub material: Material,
-    /// Which of the scene's motions moves it.
+    /// The index of the motion that moves it.
     pub motion: Option<usize>,
 }
 
 impl Scene {
-    /// Removes the surfaces for whose place `stays` is false. A scatter that loses a sphere is a grid no longer: those that it has
-    /// left are surfaces like any other.
-    pub fn retain_objects(&mut self, mut stays: impl FnMut(usize) -> bool) {
-        let stays: Vec<bool> = (0..self.objects.len()).map(&mut stays).collect();
-        let before = |end: usize| stays[..end].iter().filter(|&&stays| stays).count();
+    /// Removes the surfaces for whose index `keep` is false. A scatter that loses a sphere is no longer a
+    /// grid: its other spheres become ordinary surfaces.
+    pub fn retain_objects(&mut self, mut keep: impl FnMut(usize) -> bool) {
+        let keep: Vec<bool> = (0..self.objects.len()).map(&mut keep).collect();
+        let before = |end: usize| keep[..end].iter().filter(|&&keep| keep).count();
         self.scatters.retain_mut(|scattered| {
             let Range { start, end } = scattered.objects;
             scattered.objects = before(start)..before(end);
             scattered.objects.len() == end - start
         });
-        let mut stays = stays.into_iter();
-        self.objects.retain(|_| stays.next().unwrap_or(true));
+        let mut keep = keep.into_iter();
+        self.objects.retain(|_| keep.next().unwrap_or(true));
     }
 
-    /// Makes surfaces like any other of the spheres of scatters that are no longer what the scatter says: somebody has changed them.
+    /// Turns the spheres of scatters that were modified into ordinary surfaces.
     pub fn release_changed_scatters(&mut self) {
         let objects = &self.objects;
         self.scatters.retain(
@@ -117,19 +108,20 @@ impl Scene {
         );
     }
 
-    /// The scene at that moment: all that moves is where it is then, and nothing moves any more.
+    /// Returns the scene at a time: everything is where its motion has brought it, and nothing moves any
+    /// more.
     #[must_use]
-    pub fn at(&self, moment: Moment) -> Self {
+    pub fn at(&self, frame_time: FrameTime) -> Self {
         let mut scene = self.clone();
-        let places = motion::places(&self.motions, moment);
+        let transforms = motion::transforms(&self.motions, frame_time);
         for light in &mut scene.lights {
             if let Some(motion) = light.motion.take() {
-                light.position = places[motion].point(light.position);
+                light.position = transforms[motion].point(light.position);
             }
         }
         for object in &mut scene.objects {
             if let Some(motion) = object.motion.take() {
-                object.shape = object.shape.moved(&places[motion]);
+                object.shape = object.shape.transformed(&transforms[motion]);
             }
         }
         scene.motions.clear();
@@ -144,7 +136,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn scatters_keep_their_spheres_or_are_none_any_more() {
+    fn scatters_that_lose_or_change_spheres_are_released() {
         let text = "[[sphere]]\ncenter = [0, 0, -9]\nradius = 1\nmaterial = { model = \"mirror\", color = [1, 1, 1] }\n\
                     [[scatter]]\ncorner = [0, 0, -9]\ncells = [1, 1, 2]\nspacing = 1\nradius = [0.1, 0.4]\nseed = 1\n\
                     material = { model = \"mirror\", color = [1, 1, 1] }\n\

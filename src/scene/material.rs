@@ -1,67 +1,67 @@
-//! What surfaces do with light.
+//! Materials, lights and the background.
 
-use super::Color;
+use super::{Color, Point};
 
-/// What a surface does with light.
+/// The material of a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Material {
-    /// How it answers.
+    /// The reflection model.
     pub model: Model,
-    /// Its colour.
+    /// Its color.
     pub color: Color,
-    /// A second colour in every other square.
+    /// A checker pattern with a second color.
     pub checker: Option<Checker>,
 }
 
-/// Squares seen from above: where `floor(x / size) + floor(z / size)` is odd, the colour is another.
+/// A checker pattern: the second color is used where `floor(x / size) + floor(z / size)` is odd.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Checker {
-    /// The other colour.
+    /// The second color.
     pub color: Color,
     /// The side of a square in scene units; > 0.
     pub size: f64,
 }
 
-/// How a surface answers light. D is the ray's direction, N the outward normal, L the direction to a light, V = −D.
+/// A reflection model. D is the ray's direction, N the outward normal, L the direction to a light, V = −D.
 ///
 /// Surfaces with a BRDF f show `color · ambient + Σ light · f(L, V) · max(N·L, 0) · visibility`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Model {
     /// `color · |D·N|`
     Facing,
-    /// The course's first BRDF, `f = color`: it gives more light than it gets, by π.
+    /// The course's first BRDF, `f = color`: it reflects π times the incident light.
     Lambert,
     /// `f = color / π`
     Diffuse,
-    /// Burley's.
+    /// Burley's BRDF.
     Disney(Disney),
-    /// A lobe around the direction R of reflection: `f = color · (exponent + 2) / 2π · max(R·L, 0)^exponent`, the
-    /// modified Phong BRDF of Lafortune and Willems (1994).
+    /// A lobe around the direction R of reflection: `f = color · (exponent + 2) / 2π · max(R·L, 0)^exponent`,
+    /// the modified Phong BRDF of Lafortune and Willems (1994).
     Glossy {
-        /// ≥ 0; the larger the narrower the lobe.
+        /// ≥ 0; larger values give narrower lobes.
         exponent: f64,
     },
     /// `color ·` the radiance along the reflected ray; black beyond the last path segment.
     Mirror,
-    /// `color · (F · reflected + (1 − F) · refracted)`, the refracted ray by Snell's law; where it is reflected
-    /// totally, F = 1.
+    /// `color · (F · reflected + (1 − F) · refracted)`, with the refracted ray by Snell's law; F = 1 at total
+    /// internal reflection.
     Glass {
         /// Index of refraction inside over outside; > 0.
         ior: f64,
-        /// How F comes about.
+        /// The formula for F.
         fresnel: Fresnel,
     },
-    /// It shows its colour, and under [`super::Integrator::Path`] lights the others.
+    /// Shows its color, and is a light source for [`super::Integrator::Path`].
     Emitter,
 }
 
-/// The share F of light that glass reflects.
+/// The formula for the reflectance F of glass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fresnel {
-    /// Fresnel's equations for unpolarised light.
+    /// Fresnel's equations for unpolarized light.
     Exact,
-    /// `F₀ + (1 − F₀)(1 − cos)⁵` with `F₀ = ((1 − ior) / (1 + ior))²` and the cosine on the thinner side (Schlick
-    /// 1994).
+    /// `F₀ + (1 − F₀)(1 − cos)⁵` with `F₀ = ((1 − ior) / (1 + ior))²` and the cosine on the thinner side
+    /// (Schlick 1994).
     Schlick,
 }
 
@@ -96,4 +96,36 @@ impl Default for Disney {
             clearcoat_gloss: 1.0,
         }
     }
+}
+
+// Light sources.
+
+/// The radiance of rays that hit nothing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Background {
+    /// A single color.
+    Uniform(Color),
+    /// `mix(bottom, top, 0.5 · (1 + d.y))`, d the ray's unit direction.
+    Gradient {
+        /// The color straight down.
+        bottom: Color,
+        /// The color straight up.
+        top: Color,
+    },
+}
+
+/// A light without falloff, invisible to rays.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Light {
+    /// The position of its center.
+    pub position: Point,
+    /// Its color.
+    pub color: Color,
+    /// Whether objects strictly between it and a surface cast shadows.
+    pub shadow: bool,
+    /// The radius; 0 for a point light. A sphere light is sampled by a direction in the cone that it
+    /// subtends, uniformly over the solid angle, each time that it lights a surface.
+    pub radius: f64,
+    /// The index of the motion that moves it.
+    pub motion: Option<usize>,
 }

@@ -1,4 +1,4 @@
-//! How things move: rotations about axes, one within another.
+//! Motions: rotations about axes, which may be nested.
 
 use std::f64::consts::TAU;
 
@@ -6,29 +6,29 @@ use glam::{DQuat, DVec3};
 
 use super::Point;
 
-/// A moment of a sequence.
+/// A time in an animation.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Moment {
+pub struct FrameTime {
     /// `iFrame`, from 0.
     pub frame: i32,
     /// `iTime`, in seconds.
     pub time: f64,
 }
 
-/// A rotation about an axis through a point. Counter-clockwise for who looks against the axis.
+/// A rotation about an axis through a point, counter-clockwise as seen against the axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Motion {
     /// A point on the axis.
     pub pivot: Point,
-    /// The axis's direction, of length 1.
+    /// The direction of the axis, of length 1.
     pub axis: Point,
-    /// How long one turn takes.
+    /// The duration of one turn.
     pub period: Period,
-    /// Which earlier motion carries this one along: its turn comes after this one's.
+    /// The index of the earlier motion that carries this one; it is applied after this one.
     pub within: Option<usize>,
 }
 
-/// How long one turn takes; > 0, or < 0 for one clockwise.
+/// The duration of one turn: > 0, or < 0 for clockwise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Period {
     /// In frames.
@@ -37,68 +37,68 @@ pub enum Period {
     Seconds(f64),
 }
 
-/// Where a motion has brought things: p → `turn · p + shift`.
+/// The transform of a motion at a time: p → `rotation · p + translation`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Place {
-    turn: DQuat,
-    shift: DVec3,
+pub(super) struct Transform {
+    rotation: DQuat,
+    translation: DVec3,
 }
 
-impl Place {
-    fn new(motion: &Motion, moment: Moment) -> Self {
+impl Transform {
+    fn new(motion: &Motion, frame_time: FrameTime) -> Self {
         let turns = match motion.period {
-            Period::Frames(frames) => f64::from(moment.frame) / frames,
-            Period::Seconds(seconds) => moment.time / seconds,
+            Period::Frames(frames) => f64::from(frame_time.frame) / frames,
+            Period::Seconds(seconds) => frame_time.time / seconds,
         };
         // libm's sine and cosine: the same bits on every platform.
         let (sine, cosine) = libm::sincos(0.5 * TAU * turns.fract());
         let axis = DVec3::from_array(motion.axis) * sine;
-        let turn = DQuat::from_xyzw(axis.x, axis.y, axis.z, cosine);
+        let rotation = DQuat::from_xyzw(axis.x, axis.y, axis.z, cosine);
         let pivot = DVec3::from_array(motion.pivot);
         Self {
-            turn,
-            shift: pivot - turn * pivot,
+            rotation,
+            translation: pivot - rotation * pivot,
         }
     }
 
-    /// First this, then `next`.
+    /// Returns the transform that applies `self`, then `next`.
     fn then(self, next: Self) -> Self {
         Self {
-            turn: next.turn * self.turn,
-            shift: next.turn * self.shift + next.shift,
+            rotation: next.rotation * self.rotation,
+            translation: next.rotation * self.translation + next.translation,
         }
     }
 
     pub(super) fn point(&self, point: Point) -> Point {
-        (self.turn * DVec3::from_array(point) + self.shift).to_array()
+        (self.rotation * DVec3::from_array(point) + self.translation).to_array()
     }
 
     pub(super) fn direction(&self, direction: Point) -> Point {
-        (self.turn * DVec3::from_array(direction)).to_array()
+        (self.rotation * DVec3::from_array(direction)).to_array()
     }
 }
 
-/// Where each motion has brought its things, those that carry it included.
-pub(super) fn places(motions: &[Motion], moment: Moment) -> Vec<Place> {
-    let mut places: Vec<Place> = Vec::with_capacity(motions.len());
+/// Returns the transform of each motion, including those that carry it.
+pub(super) fn transforms(motions: &[Motion], frame_time: FrameTime) -> Vec<Transform> {
+    let mut transforms: Vec<Transform> = Vec::with_capacity(motions.len());
     for motion in motions {
-        let own = Place::new(motion, moment);
-        places.push(motion.within.map_or(own, |outer| own.then(places[outer])));
+        let own = Transform::new(motion, frame_time);
+        transforms.push(motion.within.map_or(own, |outer| own.then(transforms[outer])));
     }
-    places
+    transforms
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn near(actual: Point, expected: Point) {
+    fn assert_near(actual: Point, expected: Point) {
         for (a, e) in actual.iter().zip(expected) {
             assert!((a - e).abs() < 1e-14, "{actual:?} is not {expected:?}");
         }
     }
 
-    fn turn(pivot: Point, frames: f64, within: Option<usize>) -> Motion {
+    fn rotating(pivot: Point, frames: f64, within: Option<usize>) -> Motion {
         Motion {
             pivot,
             axis: [0.0, 1.0, 0.0],
@@ -109,31 +109,34 @@ mod tests {
 
     #[test]
     fn a_quarter_turn_about_y_brings_x_to_minus_z() {
-        let moment = Moment { frame: 60, time: 0.0 };
-        let place = places(&[turn([1.0, 5.0, 0.0], 240.0, None)], moment)[0];
-        near(place.point([2.0, 1.0, 0.0]), [1.0, 1.0, -1.0]);
-        near(place.direction([0.0, 0.0, 1.0]), [1.0, 0.0, 0.0]);
+        let frame_time = FrameTime { frame: 60, time: 0.0 };
+        let transform = transforms(&[rotating([1.0, 5.0, 0.0], 240.0, None)], frame_time)[0];
+        assert_near(transform.point([2.0, 1.0, 0.0]), [1.0, 1.0, -1.0]);
+        assert_near(transform.direction([0.0, 0.0, 1.0]), [1.0, 0.0, 0.0]);
     }
 
     #[test]
-    fn what_is_within_turns_first_and_is_carried_along() {
-        let moment = Moment { frame: 1, time: 0.0 };
-        let motions = [turn([0.0; 3], 4.0, None), turn([1.0, 0.0, 0.0], 4.0, Some(0))];
+    fn nested_motions_are_applied_inner_first() {
+        let frame_time = FrameTime { frame: 1, time: 0.0 };
+        let motions = [
+            rotating([0.0; 3], 4.0, None),
+            rotating([1.0, 0.0, 0.0], 4.0, Some(0)),
+        ];
         // About (1, 0, 0): to (1, 0, −1); then about the origin: to (−1, 0, −1).
-        near(
-            places(&motions, moment)[1].point([2.0, 0.0, 0.0]),
+        assert_near(
+            transforms(&motions, frame_time)[1].point([2.0, 0.0, 0.0]),
             [-1.0, 0.0, -1.0],
         );
     }
 
     #[test]
-    fn whole_turns_and_seconds_count() {
+    fn periods_in_seconds_and_whole_turns() {
         let motion = Motion {
             period: Period::Seconds(-2.0),
-            ..turn([0.0; 3], 1.0, None)
+            ..rotating([0.0; 3], 1.0, None)
         };
-        let at = |time: f64| places(&[motion], Moment { frame: 7, time })[0].point([1.0, 0.0, 0.0]);
-        near(at(2_000_000.0), [1.0, 0.0, 0.0]);
-        near(at(0.5), [0.0, 0.0, 1.0]);
+        let at = |time: f64| transforms(&[motion], FrameTime { frame: 7, time })[0].point([1.0, 0.0, 0.0]);
+        assert_near(at(2_000_000.0), [1.0, 0.0, 0.0]);
+        assert_near(at(0.5), [0.0, 0.0, 1.0]);
     }
 }

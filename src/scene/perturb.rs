@@ -1,29 +1,30 @@
-//! The same scene with its numbers moved a little: what changes then, no shader can be held to.
+//! Perturbed scenes: differences that tiny changes of a scene's numbers cause are not errors of a shader.
 
 use toyproof_image::pcg;
 
 use super::{Camera, Checker, Light, Model, Object, Outline, Point, Projection, QuadricKind, Scene, Shape};
 
-/// Lengths of a scene are moved by a share of themselves, or of this if that is larger, or of the scene's size if that is smaller
-/// than this: what is 0 as written is a computed number in a shader.
-const UNIT: f64 = 1.0;
+/// The lower bound, in scene units, of the scale of coordinate perturbations, unless the scene is smaller.
+/// Coordinates are perturbed relative to their size or this scale, whichever is larger: a coordinate that is
+/// 0 in the file is a computed number in a shader.
+const MIN_LENGTH_SCALE: f64 = 1.0;
 
-/// Numbers in [−1, 1], as many as are asked for.
+/// A generator of random numbers in [−1, 1].
 struct Random {
     state: u32,
-    /// By how much a number is moved, relative to its size or the unit.
-    share: f64,
+    /// The relative size of perturbations.
+    magnitude: f64,
     unit: f64,
 }
 
 impl Random {
-    fn moved(&mut self, value: f64) -> f64 {
-        value + self.number() * self.share * value.abs().max(self.unit)
+    fn perturb(&mut self, value: f64) -> f64 {
+        value + self.number() * self.magnitude * value.abs().max(self.unit)
     }
 
-    /// A length above 0.
+    /// Perturbs a positive length.
     fn length(&mut self, value: f64) -> f64 {
-        value * (1.0 + self.number() * self.share)
+        value * (1.0 + self.number() * self.magnitude)
     }
 
     fn number(&mut self) -> f64 {
@@ -32,20 +33,21 @@ impl Random {
     }
 
     fn point(&mut self, point: Point) -> Point {
-        point.map(|along| self.moved(along))
+        point.map(|along| self.perturb(along))
     }
 }
 
 impl Scene {
-    /// This scene, in which nothing moves, with all places and lengths moved by up to `share` of their size, each by its own random
-    /// number. `-share` with the same seed moves each the other way.
+    /// Returns this scene, which must have no motions, with all positions and lengths perturbed by up to
+    /// `magnitude` of their size, each by its own random number. `-magnitude` with the same seed moves each
+    /// in the opposite direction.
     #[must_use]
-    pub fn perturbed(&self, seed: u32, share: f64) -> Self {
+    pub fn perturbed(&self, seed: u32, magnitude: f64) -> Self {
         let mut scene = self.clone();
         let mut random = Random {
             state: pcg(seed),
-            share,
-            unit: self.size().min(UNIT),
+            magnitude,
+            unit: self.size().min(MIN_LENGTH_SCALE),
         };
         scene.camera = Camera {
             eye: random.point(self.camera.eye),
@@ -72,7 +74,7 @@ impl Scene {
             }
         }
         scene.scatters.clear();
-        // What shines where a light is stays there.
+        // Emitters that coincide with a light stay there.
         for (before, after) in self.lights.iter().zip(&scene.lights) {
             let surface = |light: &Light| Shape::Sphere {
                 center: light.position,
@@ -87,7 +89,7 @@ impl Scene {
         scene
     }
 
-    /// The largest distance of a surface from the eye along an axis.
+    /// Returns the largest distance of a surface from the eye along a coordinate axis.
     fn size(&self) -> f64 {
         let eye = self.camera.eye;
         let places = self.objects.iter().map(|object| match object.shape {
@@ -122,7 +124,7 @@ impl Random {
     fn outline(&mut self, outline: Outline) -> Outline {
         match outline {
             Outline::Disk { center, radius } => Outline::Disk {
-                center: center.map(|along| self.moved(along)),
+                center: center.map(|along| self.perturb(along)),
                 radius: self.length(radius),
             },
             Outline::Wave {
@@ -130,12 +132,12 @@ impl Random {
                 amplitude,
                 frequency,
             } => Outline::Wave {
-                height: self.moved(height),
+                height: self.perturb(height),
                 amplitude: self.length(amplitude),
                 frequency: self.length(frequency),
             },
             Outline::Heart { center, size } => Outline::Heart {
-                center: center.map(|along| self.moved(along)),
+                center: center.map(|along| self.perturb(along)),
                 size: self.length(size),
             },
         }
@@ -178,14 +180,14 @@ mod tests {
     use super::super::parse;
 
     #[test]
-    fn all_lengths_move_by_their_share_and_what_shines_stays_with_its_light() {
+    fn lengths_move_by_their_magnitude_and_emitters_stay_with_their_lights() {
         let mut files = Files::default();
         let text = "[film]\nsampler = \"independent\"\n[[light]]\nposition = [1.0, 2.0, -3.0]\nradius = 0.5\ncolor = [1, 1, 1]\n\
                     [[plane]]\npoint = [0.0, -1.0, 0.0]\nmaterial = { model = \"lambert\", color = [1, 1, 1], checker = { color = [0, 0, 0], size = 1.0 } }\n\
                     [[sphere]]\ncenter = [1.0, 2.0, -3.0]\nradius = 0.5\nmaterial = { model = \"emitter\", color = [1, 1, 1] }\n";
         let file = files.add(File::new("s", text));
         let scene = parse(&files, file).unwrap();
-        let [there, back] = [1e-9, -1e-9].map(|share| scene.perturbed(7, share));
+        let [there, back] = [1e-9, -1e-9].map(|magnitude| scene.perturbed(7, magnitude));
         assert_ne!(there, scene);
         for axis in 0..3 {
             let moved = [&there, &back].map(|other| other.camera.eye[axis] - scene.camera.eye[axis]);

@@ -1,13 +1,13 @@
-//! What a scene uses, and so what its kernel must know.
+//! The features that a scene uses, which select its rendering kernel.
 
 use std::fmt;
 
 use super::{Integrator, Model, Sampler, Scene, Shape, ToneMap};
 
-/// The most spheres that are looked at one after the other.
-const FEW_SPHERES: usize = 128;
+/// The maximum number of spheres that are intersected one by one.
+const MAX_UNSORTED_SPHERES: usize = 128;
 
-/// What a scene uses.
+/// The features that a scene uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "a scene uses a thing or does not")]
 pub struct Requirements {
@@ -15,21 +15,21 @@ pub struct Requirements {
     pub figures: bool,
     /// Surfaces of any kind.
     pub surfaces: bool,
-    /// Surfaces that are no spheres.
+    /// Surfaces other than spheres.
     pub shapes: bool,
-    /// So many spheres that it pays to sort them in space before they are looked at.
+    /// So many spheres that an acceleration structure pays.
     pub many_spheres: bool,
-    /// Rays that go on from a surface: mirrors, glass, drawn directions.
+    /// Secondary rays: mirrors, glass, sampled directions.
     pub secondary_rays: bool,
-    /// Rays that part in two: glass.
+    /// Rays that split in two: glass.
     pub branches: bool,
-    /// Lights that can be hidden.
+    /// Lights that cast shadows.
     pub shadows: bool,
     /// Lights with a radius.
     pub soft_shadows: bool,
-    /// Directions are drawn from surfaces: [`Integrator::Path`].
+    /// Directions are sampled at surfaces: [`Integrator::Path`].
     pub path_tracing: bool,
-    /// More than the pixel's centre is looked at.
+    /// More samples than the pixel center.
     pub samples: bool,
     /// A tone map or a gamma.
     pub transfer: bool,
@@ -38,7 +38,7 @@ pub struct Requirements {
 }
 
 impl Requirements {
-    /// What that scene uses.
+    /// Determines the features that a scene uses.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let surface =
@@ -55,7 +55,7 @@ impl Requirements {
             figures: !scene.figures.is_empty(),
             surfaces: !scene.objects.is_empty(),
             shapes: spheres < scene.objects.len(),
-            many_spheres: spheres > FEW_SPHERES,
+            many_spheres: spheres > MAX_UNSORTED_SPHERES,
             secondary_rays: scene.film.max_depth > 1
                 && (path_tracing || branches || surface(|model| *model == Model::Mirror)),
             branches,
@@ -72,7 +72,7 @@ impl Requirements {
 
 impl fmt::Display for Requirements {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let words = [
+        let labels = [
             (self.figures, "figures"),
             (self.surfaces && !self.shapes, "spheres alone"),
             (self.shapes, "shapes of several kinds"),
@@ -86,10 +86,10 @@ impl fmt::Display for Requirements {
             (self.transfer, "a transfer curve"),
             (self.motion, "motion"),
         ];
-        let used: Vec<_> = words
+        let used: Vec<_> = labels
             .iter()
             .filter(|(uses, _)| *uses)
-            .map(|(_, word)| *word)
+            .map(|(_, label)| *label)
             .collect();
         if used.is_empty() {
             f.write_str("a background alone")

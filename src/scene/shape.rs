@@ -1,46 +1,49 @@
-//! The shapes of surfaces.
+//! The shapes of surfaces, and grids of random spheres.
+
+use std::ops::Range;
 
 use glam::DVec3;
+use toyproof_image::pcg;
 
-use super::Point;
-use super::motion::Place;
+use super::motion::Transform;
+use super::{Material, Object, Point};
 
 /// A shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Shape {
-    /// All points at a distance from one.
+    /// A sphere.
     Sphere {
-        /// That one.
+        /// The center.
         center: Point,
-        /// That distance; > 0.
+        /// The radius; > 0.
         radius: f64,
     },
     /// A piece of a surface of second degree.
     Quadric(Quadric),
-    /// An endless plane.
+    /// An infinite plane.
     Plane {
         /// A point on it.
         point: Point,
-        /// Of length 1; to the side that it is seen from, or away from it.
+        /// The normal, of length 1, to either side.
         normal: Point,
     },
 }
 
-/// A quadric in a frame of its own.
+/// A quadric in a local frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quadric {
-    /// Which one, in its own coordinates.
+    /// Its kind, in local coordinates.
     pub kind: QuadricKind,
-    /// Where its own origin lies.
+    /// The origin of the local frame.
     pub origin: Point,
-    /// The directions of its own x, y and z: of length 1, at right angles, right-handed.
+    /// The axes of the local frame: a right-handed orthonormal basis.
     pub axes: [Point; 3],
 }
 
-/// Quadrics in coordinates of their own, the axis along z. All lengths are > 0.
+/// Quadrics in local coordinates, with the axis along z. All lengths are > 0.
 ///
-/// Ellipsoids are closed and their normal is outward. The others are open at their ends, and their normal is turned
-/// to the ray that meets them, as is a plane's.
+/// Ellipsoids are closed and have outward normals. The others are open at their ends, and their normals face
+/// the ray, as do those of planes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum QuadricKind {
     /// `(x/rx)² + (y/ry)² + (z/rz)² = 1`
@@ -62,19 +65,19 @@ pub enum QuadricKind {
     Hyperboloid { waist: f64, radius: f64, height: f64 },
 }
 
-/// The equation of a quadric, in units of its own: q·p² + 2 g z + k = 0, the square taken component by component.
+/// The equation of a quadric, in local units: q·p² + 2 g z + k = 0, where p² is component-wise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(missing_docs, reason = "the equation says it")]
 pub struct Equation {
     pub q: [f64; 3],
     pub g: f64,
     pub k: f64,
-    /// What z lies between; a closed surface has no ends.
+    /// The range of z; none for closed surfaces.
     pub ends: Option<[f64; 2]>,
 }
 
 impl QuadricKind {
-    /// Its largest radius.
+    /// Returns the largest radius.
     #[must_use]
     pub fn size(&self) -> f64 {
         match *self {
@@ -86,7 +89,7 @@ impl QuadricKind {
         }
     }
 
-    /// Its equation where lengths are counted in `unit`, which is given in scene units.
+    /// Returns the equation with lengths measured in `unit`, which is given in scene units.
     #[must_use]
     pub fn equation(&self, unit: f64) -> Equation {
         let round = |z2: f64, g: f64, k: f64, ends: [f64; 2]| Equation {
@@ -130,7 +133,7 @@ impl QuadricKind {
 }
 
 impl Quadric {
-    /// A quadric around an axis of length 1.
+    /// Returns a quadric around an axis of length 1.
     #[must_use]
     pub fn around(axis: Point, origin: Point, kind: QuadricKind) -> Self {
         let z = DVec3::from_array(axis);
@@ -144,7 +147,7 @@ impl Quadric {
 }
 
 impl Shape {
-    /// Whether it has an inside.
+    /// Whether it encloses a volume.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         match self {
@@ -154,22 +157,97 @@ impl Shape {
         }
     }
 
-    /// The shape after a motion.
-    pub(super) fn moved(&self, place: &Place) -> Self {
+    /// Returns the transformed shape.
+    pub(super) fn transformed(&self, transform: &Transform) -> Self {
         match *self {
             Self::Sphere { center, radius } => Self::Sphere {
-                center: place.point(center),
+                center: transform.point(center),
                 radius,
             },
             Self::Quadric(Quadric { kind, origin, axes }) => Self::Quadric(Quadric {
                 kind,
-                origin: place.point(origin),
-                axes: axes.map(|axis| place.direction(axis)),
+                origin: transform.point(origin),
+                axes: axes.map(|axis| transform.direction(axis)),
             }),
             Self::Plane { point, normal } => Self::Plane {
-                point: place.point(point),
-                normal: place.direction(normal),
+                point: transform.point(point),
+                normal: transform.direction(normal),
             },
         }
     }
+}
+
+// Scatters: a sphere in each cell of a grid, with random position, size and color from a hash.
+
+/// A grid of cubic cells with one sphere inside each.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scatter {
+    /// The corner of the grid with the smallest coordinates.
+    pub corner: Point,
+    /// The number of cells along x, y and z.
+    pub cells: [u32; 3],
+    /// The side of a cell; > 0.
+    pub spacing: f64,
+    /// The smallest and the largest radius; at most half a cell.
+    pub radius: [f64; 2],
+    /// The seed of the hash.
+    pub seed: u32,
+    /// The material of the spheres. Each component of the color is scaled by a random factor from 0.2 to 1.
+    pub material: Material,
+    /// The index of the motion that moves them.
+    pub motion: Option<usize>,
+}
+
+/// A scatter, and which of the scene's objects are its spheres.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scattered {
+    /// The scatter.
+    pub scatter: Scatter,
+    /// The indices of its spheres in [`super::Scene::objects`].
+    pub objects: Range<usize>,
+}
+
+impl Scatter {
+    /// Returns the spheres, cell by cell, x fastest.
+    ///
+    /// The cell (x, y, z) of n starts a sequence of PCG hashes: the first is that of `seed + x + n.x · (y +
+    /// n.y · z)`, and each further one that of the one before. Converted to numbers in [0, 1), the first
+    /// gives the radius, the next three the position in x, y and z, and the last three the color.
+    pub fn spheres(&self) -> impl Iterator<Item = Object> {
+        let [nx, ny, nz] = self.cells;
+        let index = move |x, y, z| x + nx * (y + ny * z);
+        (0..nz)
+            .flat_map(move |z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])))
+            .map(move |cell| self.sphere(cell, index(cell[0], cell[1], cell[2])))
+    }
+
+    fn sphere(&self, cell: [u32; 3], index: u32) -> Object {
+        let mut state = self.seed.wrapping_add(index);
+        let mut random = || {
+            state = pcg(state);
+            unit(state)
+        };
+        let [small, large] = self.radius;
+        let radius = small + (large - small) * random();
+        let center = [0, 1, 2].map(|axis| {
+            let room = self.spacing - 2.0 * radius;
+            self.corner[axis] + f64::from(cell[axis]) * self.spacing + radius + room * random()
+        });
+        let color = self.material.color.map(|c| c * (0.2 + 0.8 * random()));
+        Object {
+            shape: Shape::Sphere { center, radius },
+            material: Material {
+                color,
+                ..self.material
+            },
+            motion: self.motion,
+        }
+    }
+}
+
+/// Converts the upper 24 bits of a hash to a number in [0, 1), which float32 represents exactly.
+#[must_use]
+#[inline]
+pub fn unit(hash: u32) -> f64 {
+    f64::from(hash >> 8) / f64::from(1 << 24)
 }

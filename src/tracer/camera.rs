@@ -1,16 +1,16 @@
-//! The course's cameras.
+//! The course's cameras, and screen-space figures, which cover the scene.
 
 #![expect(
     clippy::inline_always,
     reason = "only what is inlined into a kernel is compiled for its instruction set"
 )]
 
-use toyproof_scene::{Projection, Scene};
+use toyproof_scene::{self as scene, Outline, Projection, Scene};
 
-use super::lanes::{Kernel, Lanes, Level, Wide, Wide3};
-use super::ray::Ray;
-use super::real::{Real, Vector};
-use super::spheres::{Origins, PACKET, Packet};
+use crate::lanes::{Kernel, Lanes, Level, Wide, Wide3};
+use crate::ray::Ray;
+use crate::real::{Real, Vector};
+use crate::spheres::{Origins, PACKET_RAYS, Packet};
 
 #[derive(Debug)]
 pub(super) struct Camera<T: Real> {
@@ -44,8 +44,8 @@ impl<T: Real> Camera<T> {
         }
     }
 
-    /// The place on the screen of the fragment coordinates (fx, fy), in pixels from the bottom left:
-    /// `x = 2 fx / width − 1`, `y = (2 fy / height − 1) / aspect`.
+    /// Maps the fragment coordinates (fx, fy), in pixels from the bottom left, to the screen: `x = 2 fx /
+    /// width − 1`, `y = (2 fy / height − 1) / aspect`.
     pub(super) fn screen(&self, [fx, fy]: [T; 2]) -> [T; 2] {
         [self.screen_x(fx), self.screen_y(fy)]
     }
@@ -60,22 +60,25 @@ impl<T: Real> Camera<T> {
         (fy / self.height * T::from_f64(2.0) - T::one()) / (self.width / self.height)
     }
 
-    /// The ray through a place on the screen.
+    /// Creates the ray through a point of the screen.
     pub(super) fn ray(&self, [x, y]: [T; 2]) -> Ray<T> {
         let (origin, direction) = match self.projection {
             View::Pinhole { screen_distance } => {
                 let mut direction = [[T::zero()]; 3];
-                let towards = Towards {
+                let kernel = PinholeDirections {
                     x: &[x],
                     y: &[y],
                     screen_distance,
                     directions: direction.each_mut().map(|component| &mut component[..]),
                 };
-                T::run(Level::Base, towards);
+                T::run(Level::Base, kernel);
                 let [[x], [y], [z]] = direction;
                 (self.eye, T::Vec3::new(x, y, z))
             }
-            View::Parallel { .. } => (self.start([x, y]), T::Vec3::from_f64(AHEAD)),
+            View::Parallel { .. } => (
+                self.parallel_origin([x, y]),
+                T::Vec3::from_f64(PARALLEL_DIRECTION),
+            ),
         };
         Ray {
             origin,
@@ -84,30 +87,30 @@ impl<T: Real> Camera<T> {
         }
     }
 
-    /// The same rays, together.
-    pub(super) fn packet(&self, [x, y]: &[[T; PACKET]; 2], level: Level) -> Packet<T> {
-        let mut directions = AHEAD.map(|component| [T::from_f64(component); PACKET]);
+    /// Creates a packet of such rays.
+    pub(super) fn packet(&self, [x, y]: &[[T; PACKET_RAYS]; 2], level: Level) -> Packet<T> {
+        let mut directions = PARALLEL_DIRECTION.map(|component| [T::from_f64(component); PACKET_RAYS]);
         let origins = match self.projection {
             View::Pinhole { screen_distance } => {
-                let towards = Towards {
+                let kernel = PinholeDirections {
                     x,
                     y,
                     screen_distance,
                     directions: directions.each_mut().map(|component| &mut component[..]),
                 };
-                T::run(level, towards);
-                Origins::One(self.eye.to_array())
+                T::run(level, kernel);
+                Origins::Shared(self.eye.to_array())
             }
             View::Parallel { .. } => {
-                let start = |at: usize, axis: usize| self.start([x[at], y[at]]).to_array()[axis];
+                let start = |at: usize, axis: usize| self.parallel_origin([x[at], y[at]]).to_array()[axis];
                 Origins::Each([0, 1, 2].map(|axis| std::array::from_fn(|at| start(at, axis))))
             }
         };
         Packet::full(origins, directions)
     }
 
-    /// Where a parallel ray starts.
-    fn start(&self, [x, y]: [T; 2]) -> T::Vec3 {
+    /// Returns the origin of a parallel ray.
+    fn parallel_origin(&self, [x, y]: [T; 2]) -> T::Vec3 {
         let half_width = match self.projection {
             View::Parallel { half_width } => half_width,
             View::Pinhole { .. } => T::zero(),
@@ -116,18 +119,18 @@ impl<T: Real> Camera<T> {
     }
 }
 
-/// Where parallel rays go.
-const AHEAD: [f64; 3] = [0.0, 0.0, -1.0];
+/// The direction of all rays of the parallel projection.
+const PARALLEL_DIRECTION: [f64; 3] = [0.0, 0.0, -1.0];
 
-/// Directions from a pinhole to places on the screen, (x, y, −`screen_distance`), of length 1.
-struct Towards<'a, T> {
+/// Computes the unit directions from a pinhole to points (x, y, −`screen_distance`) on the screen.
+struct PinholeDirections<'a, T> {
     x: &'a [T],
     y: &'a [T],
     screen_distance: T,
     directions: [&'a mut [T]; 3],
 }
 
-impl<T: Real> Kernel<T> for Towards<'_, T> {
+impl<T: Real> Kernel<T> for PinholeDirections<'_, T> {
     type Output = ();
 
     #[inline(always)]
@@ -143,4 +146,49 @@ impl<T: Real> Kernel<T> for Towards<'_, T> {
             at += S::COUNT;
         }
     }
+}
+
+#[derive(Debug)]
+pub(super) struct Figure<T: Real> {
+    outline: Outline,
+    pub(super) color: T::Vec3,
+}
+
+impl<T: Real> Figure<T> {
+    pub(super) fn new(figure: &scene::Figure) -> Self {
+        Self {
+            outline: figure.outline,
+            color: T::Vec3::from_f64(figure.color),
+        }
+    }
+
+    /// Evaluates the implicit function at a point of the screen: it is negative inside.
+    fn value(&self, x: T, y: T) -> T {
+        match self.outline {
+            Outline::Disk { center, radius } => {
+                let [cx, cy, radius] = [center[0], center[1], radius].map(T::from_f64);
+                (x - cx) * (x - cx) + (y - cy) * (y - cy) - radius * radius
+            }
+            Outline::Wave {
+                height,
+                amplitude,
+                frequency,
+            } => {
+                let [height, amplitude, frequency] = [height, amplitude, frequency].map(T::from_f64);
+                let (sine, _) = (frequency * x).sine_and_cosine();
+                y - height - amplitude * sine
+            }
+            Outline::Heart { center, size } => {
+                let [cx, cy, size] = [center[0], center[1], size].map(T::from_f64);
+                let (u, v) = ((x - cx) / size, (y - cy) / size);
+                let ring = u * u + v * v - T::one();
+                ring * ring * ring - u * u * (v * v * v)
+            }
+        }
+    }
+}
+
+/// Returns the index of the topmost figure at a point of the screen.
+pub(super) fn topmost_figure<T: Real>(figures: &[Figure<T>], [x, y]: [T; 2]) -> Option<usize> {
+    figures.iter().rposition(|figure| figure.value(x, y) < T::zero())
 }

@@ -1,5 +1,5 @@
-//! The reference tracer: renders a scene in f32 or f64, and knows for each pixel the range of colors that correct shaders
-//! may give it.
+//! Reference ray tracer: renders a scene in f32 or f64 and computes, for each pixel, the range of colors that
+//! correct shaders may produce.
 //!
 //! ```
 //! use toyproof_diagnostic::{File, Files};
@@ -12,28 +12,25 @@
 //! assert_eq!(Tracer::<f64>::new(&scene).pixel(3, 4), [0.0, 0.5, 1.0]);
 //! ```
 //!
-//! Recentred discriminants with stable roots, no epsilons, secondary rays do not meet the point that they start from. Camera
-//! rays go in packets and others meet eight spheres at once, by the one formula of `spheres`, whose bits are the same in
-//! any instruction set. [`Tracer::hull`] tells which colours a pixel has in
-//! the styles that shaders may start secondary rays in, [`Tracer::is_quad_mixed`] where its quad
-//! sees different things.
+//! Spheres are intersected by the recentered discriminant with stable roots. There are no epsilons: a
+//! secondary ray does not intersect its own surface at the point where it starts. Camera rays are traced in
+//! packets, and single rays are tested against eight spheres at a time; both use the same formula (module
+//! `spheres`), whose results are bit-identical in every instruction set. [`Tracer::color_range`] gives the
+//! colors of a pixel under all legal epsilons of secondary rays. [`Tracer::is_quad_mixed`] reports pixel
+//! quads whose samples see different surfaces.
 
-mod adaptive;
 mod camera;
-mod figure;
 mod film;
+mod glass;
 mod lanes;
 mod light;
 mod material;
 mod ray;
+mod ray_epsilon;
 mod real;
-mod redraw;
 mod sampler;
-mod seen;
 mod shape;
 mod spheres;
-mod style;
-mod styled;
 #[cfg(test)]
 mod tests;
 mod tile;
@@ -41,39 +38,36 @@ mod world;
 
 use std::ops::Range;
 
-pub use adaptive::Spent;
+pub use film::{RESAMPLED_ROWS, SamplingCost};
+pub use ray_epsilon::{Acne, ColorRange, EpsilonFamily, EpsilonSet, LightPolicy, RayEpsilon, RayEpsilons};
 use rayon::prelude::*;
 pub use real::{Real, Vector};
-pub use redraw::REDRAWN_ROWS;
-pub use style::{Acne, Hull, Lamp, RayStyle, RayStyles, Styles};
-pub use styled::StyleFamily;
 use toyproof_image::Image;
-use toyproof_scene::{self as scene, Film, Moment, Requirements, Scene};
+use toyproof_scene::{self as scene, Film, FrameTime, Requirements, Scene};
 
-use self::camera::Camera;
-use self::figure::Figure;
+use self::camera::{Camera, Figure};
 use self::lanes::Level;
-use self::sampler::{Draws, Sample};
-use self::seen::Seen;
+use self::sampler::{Sample, SampleStream};
 use self::shape::{Shape, Sphere};
 use self::spheres::Spheres;
-use self::style::{Exact, Style};
 use self::world::World;
+use crate::ray::PrimaryHit;
+use crate::ray_epsilon::{Exact, RayEpsilonPolicy};
 
-/// A scene in the number type that it is traced in.
+/// A scene converted to the number type in which it is traced.
 #[derive(Debug)]
 pub struct Tracer<T: Real> {
     film: Film,
-    /// [`Scene::max_offset`]
+    /// See [`Scene::max_offset`].
     max_offset: f64,
     camera: Camera<T>,
     figures: Vec<Figure<T>>,
     kernel: Kernel<T>,
-    /// Of the instruction set that it is traced with; all give the same bits.
+    /// The instruction set that is used; results are the same bits in all of them.
     level: Level,
 }
 
-/// What a scene requires of the loops over its surfaces.
+/// The world, specialized for scenes that consist of spheres only.
 #[derive(Debug)]
 enum Kernel<T: Real> {
     Spheres(World<T, Sphere<T>>),
@@ -81,42 +75,42 @@ enum Kernel<T: Real> {
 }
 
 impl<T: Real> Tracer<T> {
-    /// A tracer of `scene` before anything has moved; its numbers are rounded to `T` once, here.
+    /// Creates a tracer for the first moment of `scene`. All numbers are rounded to `T` once, here.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
-        Self::at(scene, Moment::default())
+        Self::at(scene, FrameTime::default())
     }
 
-    /// A tracer of `scene` at that moment.
+    /// Creates a tracer for the given moment of `scene`.
     #[must_use]
-    pub fn at(scene: &Scene, moment: Moment) -> Self {
-        Self::with_level(scene, moment, Level::best(), None)
+    pub fn at(scene: &Scene, frame_time: FrameTime) -> Self {
+        Self::with_level(scene, frame_time, Level::best(), None)
     }
 
-    /// A tracer of the same scene at another moment. It takes over what does not change: the shape of the tree.
+    /// Creates a tracer for a different moment of the same scene and reuses the topology of the sphere tree.
     #[must_use]
-    pub fn moved(self, scene: &Scene, moment: Moment) -> Self {
+    pub fn moved(self, scene: &Scene, frame_time: FrameTime) -> Self {
         let spheres = match self.kernel {
             Kernel::Spheres(world) => world.spheres,
             Kernel::Shapes(world) => world.spheres,
         };
-        Self::with_level(scene, moment, self.level, Some(spheres))
+        Self::with_level(scene, frame_time, self.level, Some(spheres))
     }
 
-    fn with_level(scene: &Scene, moment: Moment, level: Level, before: Option<Spheres<T>>) -> Self {
+    fn with_level(scene: &Scene, frame_time: FrameTime, level: Level, previous: Option<Spheres<T>>) -> Self {
         let requirements = Requirements::of(scene);
-        let scene = &scene.at(moment);
+        let scene = &scene.at(frame_time);
         Self {
             film: scene.film,
             max_offset: scene.max_offset,
             camera: Camera::new(scene),
             figures: scene.figures.iter().map(Figure::new).collect(),
             kernel: if requirements.shapes {
-                Kernel::Shapes(World::new(scene, level, before, |object| {
+                Kernel::Shapes(World::new(scene, level, previous, |object| {
                     Shape::new(&object.shape)
                 }))
             } else {
-                Kernel::Spheres(World::new(scene, level, before, |object| match object.shape {
+                Kernel::Spheres(World::new(scene, level, previous, |object| match object.shape {
                     scene::Shape::Sphere { center, radius } => Sphere::new(center, radius),
                     _ => unreachable!("a scene that requires other shapes has the other kernel"),
                 }))
@@ -125,26 +119,26 @@ impl<T: Real> Tracer<T> {
         }
     }
 
-    /// The whole picture, unclamped; `row_done` is called once for each row, from any thread.
+    /// Renders the whole image, unclamped. `row_done` is called once per row, from any thread.
     pub fn picture(&self, row_done: impl Fn() + Sync) -> Image {
         self.rows(0..self.film.size[1], row_done)
     }
 
-    /// These rows of it; `row_done` as for all.
+    /// Renders the given rows, with `row_done` as in [`Tracer::picture`].
     pub fn rows(&self, rows: Range<u32>, row_done: impl Fn() + Sync) -> Image {
         let (width, height) = (self.film.size[0], rows.len() as u32);
         let mut pixels = vec![[0.0, 0.0, 0.0, 1.0]; width as usize * height as usize];
         let bands = pixels
-            .par_chunks_mut(width as usize * tile::SIDE as usize)
+            .par_chunks_mut(width as usize * tile::TILE_SIDE as usize)
             .with_max_len(1);
         bands.enumerate().for_each(|(band, pixels)| {
-            self.band(rows.start + band as u32 * tile::SIDE, pixels);
+            self.band(rows.start + band as u32 * tile::TILE_SIDE, pixels);
             (0..pixels.len() / width as usize).for_each(|_| row_done());
         });
         Image::new(width, height, pixels)
     }
 
-    /// The colour of the pixel at (x, y), y upwards: the mean of its samples, developed.
+    /// Renders the pixel at (x, y), where y points up: the tone-mapped mean of its samples.
     #[must_use]
     pub fn pixel(&self, x: u32, y: u32) -> [T; 3] {
         let mut sum = T::Vec3::ZERO;
@@ -159,28 +153,38 @@ impl<T: Real> Tracer<T> {
             sum = sum + self.sample(sample, &Exact);
         }
         let mean = sum / T::from_f64(f64::from(count));
-        mean.to_array().map(|c| film::develop(&self.film, c))
+        mean.to_array().map(|c| film::tone_map(&self.film, c))
     }
 
-    fn sample(&self, sample: Sample, style: &impl Style<T>) -> T::Vec3 {
-        let mut draws = Draws::new(self.film.sampler, sample);
-        let place = Self::place(sample.pixel, draws.jitter());
-        let seen = self.look(self.camera.screen(place));
-        self.radiance(seen, draws, style)
+    fn sample(&self, sample: Sample, policy: &impl RayEpsilonPolicy<T>) -> T::Vec3 {
+        let mut stream = SampleStream::new(self.film.sampler, sample);
+        let position = Self::sample_position(sample.pixel, stream.jitter());
+        let primary = self.primary_hit(self.camera.screen(position));
+        self.radiance(primary, stream, policy)
     }
 
-    /// Where a sample lies in the picture, in pixels from the bottom left: its jitter is the first that is drawn for it.
-    fn place(pixel: [u32; 2], jitter: [T; 2]) -> [T; 2] {
+    /// Returns the position of a sample in pixels from the bottom left. Its jitter is the first pair of
+    /// random numbers that the sample consumes.
+    fn sample_position(pixel: [u32; 2], jitter: [T; 2]) -> [T; 2] {
         let half = T::from_f64(0.5);
         [0, 1].map(|axis| T::from_f64(f64::from(pixel[axis])) + half + jitter[axis])
     }
 
-    /// What comes from a place on the screen.
-    fn radiance(&self, seen: Seen<T>, draws: Draws, style: &impl Style<T>) -> T::Vec3 {
-        match (seen, &self.kernel) {
-            (Seen::Figure(figure), _) => self.figures[figure].color,
-            (Seen::Scene(ray, first), Kernel::Spheres(world)) => world.radiance(ray, first, draws, style),
-            (Seen::Scene(ray, first), Kernel::Shapes(world)) => world.radiance(ray, first, draws, style),
+    /// Computes the radiance that arrives from a primary hit.
+    fn radiance(
+        &self,
+        primary: PrimaryHit<T>,
+        stream: SampleStream,
+        policy: &impl RayEpsilonPolicy<T>,
+    ) -> T::Vec3 {
+        match (primary, &self.kernel) {
+            (PrimaryHit::Figure(figure), _) => self.figures[figure].color,
+            (PrimaryHit::Scene(ray, first), Kernel::Spheres(world)) => {
+                world.radiance(ray, first, stream, policy)
+            }
+            (PrimaryHit::Scene(ray, first), Kernel::Shapes(world)) => {
+                world.radiance(ray, first, stream, policy)
+            }
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Where light comes from.
+//! Light sources: point and sphere lights, and the background.
 
 #![expect(
     clippy::inline_always,
@@ -7,24 +7,24 @@
 
 use toyproof_scene as scene;
 
-use super::lanes::{Columns, Kernel, Lanes, MOST_LANES, Wide, Wide3};
-use super::ray::around;
-use super::real::{Real, Vector};
+use crate::lanes::{Columns, Kernel, Lanes, MAX_LANES, Wide, Wide3};
+use crate::ray::spherical_direction;
+use crate::real::{Real, Vector};
 
 #[derive(Debug)]
 pub(super) struct Light<T: Real> {
     pub(super) position: T::Vec3,
     pub(super) color: T::Vec3,
     pub(super) shadow: bool,
-    /// 0 for a point.
+    /// 0 for a point light.
     pub(super) radius: T,
-    /// The emitter that is where the light is, and does not hide it.
+    /// The emitter that coincides with the light and therefore does not occlude it.
     pub(super) surface: Option<usize>,
 }
 
 impl<T: Real> Light<T> {
     pub(super) fn new(light: &scene::Light, objects: &[scene::Object]) -> Self {
-        let is_its_own = |object: &scene::Object| {
+        let coincides = |object: &scene::Object| {
             let shape = scene::Shape::Sphere {
                 center: light.position,
                 radius: light.radius,
@@ -32,7 +32,7 @@ impl<T: Real> Light<T> {
             object.shape == shape && object.material.model == scene::Model::Emitter
         };
         Self {
-            surface: objects.iter().position(is_its_own),
+            surface: objects.iter().position(coincides),
             position: T::Vec3::from_f64(light.position),
             color: T::Vec3::from_f64(light.color),
             shadow: light.shadow,
@@ -41,50 +41,50 @@ impl<T: Real> Light<T> {
     }
 }
 
-/// The ways from the first `count` of some points, where the normals are these, to a light that is a point.
+/// Kernel that computes the directions and shadow rays from the first `count` points to a point light.
 #[derive(Debug)]
-pub(super) struct Toward<'a, T> {
+pub(super) struct ToPointLight<'a, T> {
     pub(super) count: usize,
     pub(super) points: &'a Columns<T>,
     pub(super) normals: &'a Columns<T>,
     pub(super) light: [T; 3],
-    /// How far off the surface rays start.
+    /// The offset of shadow rays from the surface.
     pub(super) offset: T,
-    /// They are put here.
-    pub(super) ways: &'a mut Ways<T>,
+    /// Receives the results.
+    pub(super) output: &'a mut LightDirections<T>,
 }
 
-/// Ways to a light.
+/// Directions to a point light, and shadow rays.
 #[derive(Debug)]
-pub(super) struct Ways<T> {
-    /// From the points, of length 1.
+pub(super) struct LightDirections<T> {
+    /// Unit directions from the points.
     pub(super) directions: Columns<T>,
-    /// Where shadow rays start, and where they go.
-    pub(super) rays: [Columns<T>; 2],
-    /// From there.
-    pub(super) distances: [T; MOST_LANES],
-    /// Between normal and direction.
-    pub(super) cosines: [T; MOST_LANES],
+    /// Origins and directions of the shadow rays.
+    pub(super) shadow_rays: [Columns<T>; 2],
+    /// Distances from the origins of the shadow rays to the light.
+    pub(super) distances: [T; MAX_LANES],
+    /// Cosines between normals and directions.
+    pub(super) cosines: [T; MAX_LANES],
 }
 
-impl<T: Real> Ways<T> {
-    pub(super) fn nowhere() -> Self {
+impl<T: Real> LightDirections<T> {
+    pub(super) fn zero() -> Self {
         let zeros = || Columns::splat([T::zero(); 3]);
         Self {
             directions: zeros(),
-            rays: [zeros(), zeros()],
-            distances: [T::zero(); MOST_LANES],
-            cosines: [T::zero(); MOST_LANES],
+            shadow_rays: [zeros(), zeros()],
+            distances: [T::zero(); MAX_LANES],
+            cosines: [T::zero(); MAX_LANES],
         }
     }
 }
 
-impl<T: Real> Kernel<T> for Toward<'_, T> {
+impl<T: Real> Kernel<T> for ToPointLight<'_, T> {
     type Output = ();
 
     #[inline(always)]
     fn run<S: Lanes<T>>(self, simd: S) {
-        let ways = self.ways;
+        let output = self.output;
         let light = Wide3::splat(simd, self.light);
         let [zero, offset] = [T::zero(), self.offset].map(|number| Wide::splat(simd, number));
         let mut at = 0;
@@ -96,11 +96,11 @@ impl<T: Real> Kernel<T> for Toward<'_, T> {
             let origin = point + normal * offset;
             let to_light = light - origin;
             let distance = to_light.length(simd);
-            ways.directions.store(direction, at);
-            ways.rays[0].store(origin, at);
-            ways.rays[1].store(to_light / distance, at);
-            distance.store(&mut ways.distances[at..]);
-            cosine.store(&mut ways.cosines[at..]);
+            output.directions.store(direction, at);
+            output.shadow_rays[0].store(origin, at);
+            output.shadow_rays[1].store(to_light / distance, at);
+            distance.store(&mut output.distances[at..]);
+            cosine.store(&mut output.cosines[at..]);
             at += S::COUNT;
         }
     }
@@ -131,16 +131,17 @@ impl<T: Real> Background<T> {
     }
 }
 
-/// The cone of directions in which a sphere is seen from a point.
+/// The cone of directions that a sphere subtends at a point.
 #[derive(Debug)]
 pub(super) struct Cone<T: Real> {
     axis: T::Vec3,
-    /// To the sphere's centre.
+    /// Distance to the center of the sphere.
     distance: T,
-    /// (radius/distance)², the sine of the half angle squared; ≥ 1 from within, where the cone is all directions.
+    /// (radius/distance)², the squared sine of the half angle. It is ≥ 1 inside the sphere, where the cone is
+    /// the full sphere of directions.
     sine2: T,
     /// 1 − cos of the half angle.
-    depth: T,
+    max_one_minus_cosine: T,
 }
 
 impl<T: Real> Cone<T> {
@@ -149,8 +150,8 @@ impl<T: Real> Cone<T> {
         let distance = to_center.length();
         let ratio = radius / distance;
         let sine2 = ratio * ratio;
-        let depth = if sine2 < T::one() {
-            // 1 − √(1 − s²) without its cancellation.
+        let max_one_minus_cosine = if sine2 < T::one() {
+            // 1 − √(1 − s²) without cancellation.
             sine2 / (T::one() + (T::one() - sine2).sqrt())
         } else {
             T::from_f64(2.0)
@@ -159,17 +160,17 @@ impl<T: Real> Cone<T> {
             axis: to_center / distance,
             distance,
             sine2,
-            depth,
+            max_one_minus_cosine,
         }
     }
 
-    /// A direction drawn uniformly over the solid angle, and how far the sphere is along it: the cosine to the axis is
-    /// 1 − u·depth, and v turns it.
-    pub(super) fn draw(&self, [u, v]: [T; 2]) -> (T::Vec3, T) {
-        let short = u * self.depth;
-        let cosine = T::one() - short;
-        let sine2 = short * (T::one() + cosine);
-        let direction = around::<T>(self.axis, cosine, sine2.max(T::zero()).sqrt(), v);
+    /// Samples a direction uniformly in solid angle, and returns it with the distance to the sphere along it.
+    /// The cosine to the axis is 1 − u·`max_one_minus_cosine`; v is the turn about the axis.
+    pub(super) fn sample(&self, [u, v]: [T; 2]) -> (T::Vec3, T) {
+        let one_minus_cosine = u * self.max_one_minus_cosine;
+        let cosine = T::one() - one_minus_cosine;
+        let sine2 = one_minus_cosine * (T::one() + cosine);
+        let direction = spherical_direction::<T>(self.axis, cosine, sine2.max(T::zero()).sqrt(), v);
         let half_chord = (self.sine2 - sine2).max(T::zero()).sqrt();
         let near = if self.sine2 < T::one() {
             cosine - half_chord
@@ -179,8 +180,8 @@ impl<T: Real> Cone<T> {
         (direction, self.distance * near)
     }
 
-    /// The density of [`Cone::draw`] over the solid angle.
+    /// Returns the probability density of [`Cone::sample`] in solid angle.
     pub(super) fn density(&self) -> T {
-        (T::from_f64(std::f64::consts::TAU) * self.depth).recip()
+        (T::from_f64(std::f64::consts::TAU) * self.max_one_minus_cosine).recip()
     }
 }

@@ -1,47 +1,50 @@
-//! Rays and the points where they meet surfaces.
+//! Rays, their intersections with surfaces, and the first hits of camera rays.
 
-use super::real::{Real, Vector};
-use super::spheres::NONE;
-use super::style::Style;
+use crate::camera::topmost_figure;
+use crate::ray_epsilon::{Exact, RayEpsilonPolicy};
+use crate::real::{Real, Vector};
+use crate::sampler::{Sample, SampleStream};
+use crate::spheres::NO_SURFACE;
+use crate::{Kernel, Tracer};
 
-/// A ray o + t·d, t > 0.
+/// A ray o + t·d with t > 0.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ray<T: Real> {
     pub(super) origin: T::Vec3,
-    /// Of length 1, up to rounding.
+    /// Of unit length, up to rounding.
     pub(super) direction: T::Vec3,
-    /// The surface that the origin lies on.
+    /// The surface on which the origin lies.
     pub(super) from: Option<usize>,
 }
 
-/// What a ray meets first.
+/// The first surface along a ray, if any.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct First<T> {
-    /// Infinite where nothing is met.
+pub(super) struct FirstHit<T> {
+    /// Infinite if there is no hit.
     t: T,
-    /// The number of the surface.
+    /// The index of the surface.
     surface: u32,
 }
 
-impl<T: Real> First<T> {
-    /// That surface at t; nothing where t is infinite.
+impl<T: Real> FirstHit<T> {
+    /// Creates a hit of `surface` at t; an infinite t is a miss.
     #[inline]
     pub(super) fn new(t: T, surface: u32) -> Self {
         Self { t, surface }
     }
 
-    pub(super) fn nothing() -> Self {
-        Self::new(T::infinity(), NONE)
+    pub(super) fn none() -> Self {
+        Self::new(T::infinity(), NO_SURFACE)
     }
 
-    /// At which t, and which surface.
+    /// Returns t and the index of the surface.
     #[inline]
     pub(super) fn get(self) -> Option<(T, usize)> {
         (self.t < T::infinity()).then_some((self.t, self.surface as usize))
     }
 
-    /// Takes a surface that is met at t where it comes before; of equal t's the smaller number wins.
-    pub(super) fn take(&mut self, t: Option<T>, surface: usize) {
+    /// Replaces the hit if the given one is nearer. At equal t, the smaller surface index wins.
+    pub(super) fn update(&mut self, t: Option<T>, surface: usize) {
         if let Some(t) = t
             && (t < self.t || (t == self.t && t < T::infinity() && surface < self.surface as usize))
         {
@@ -54,40 +57,41 @@ impl<T: Real> First<T> {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Hit<T: Real> {
     pub(super) point: T::Vec3,
-    /// Of length 1: outward, or on an open surface to the side that the ray came from.
+    /// Of unit length. It points outward, or on an open surface towards the side of the incoming ray.
     pub(super) normal: T::Vec3,
     pub(super) surface: usize,
 }
 
 impl<T: Real> Hit<T> {
-    /// The point from which lights are looked at, above the surface.
-    pub(super) fn lit_from(&self, style: &impl Style<T>) -> T::Vec3 {
-        if style.lamp().from_start {
-            self.point + self.normal * style.offset()
+    /// Returns the point, above the surface, from which the direction to a light is computed.
+    pub(super) fn light_ray_origin(&self, policy: &impl RayEpsilonPolicy<T>) -> T::Vec3 {
+        if policy.light_policy().from_ray_origin {
+            self.point + self.normal * policy.offset()
         } else {
             self.point
         }
     }
 
-    /// A secondary ray, to either side of the surface.
-    pub(super) fn leave(&self, direction: T::Vec3, style: &impl Style<T>) -> Ray<T> {
-        let offset = style.offset();
+    /// Creates a secondary ray to either side of the surface.
+    pub(super) fn spawn_ray(&self, direction: T::Vec3, policy: &impl RayEpsilonPolicy<T>) -> Ray<T> {
+        let offset = policy.offset();
         let offset = if direction.dot(self.normal) < T::zero() {
             -offset
         } else {
             offset
         };
         Ray {
-            origin: self.point + self.normal * offset + direction * style.along(),
+            origin: self.point + self.normal * offset + direction * policy.along(),
             direction,
             from: Some(self.surface),
         }
     }
 }
 
-/// Two directions at right angles to a unit vector w and to each other: a = normalize(up × w), b = w × a, where up
-/// is y, or x where |w.y| > 0.9.
-pub(super) fn basis<T: Real>(w: T::Vec3) -> [T::Vec3; 2] {
+/// Completes the unit vector w to an orthonormal basis: a = normalize(up × w), b = w × a, where up is y, or x
+/// if
+/// w.y| > 0.9.
+pub(super) fn tangent_basis<T: Real>(w: T::Vec3) -> [T::Vec3; 2] {
     let [_, y, _] = w.to_array();
     let up = if y.abs() > T::from_f64(0.9) {
         [1.0, 0.0, 0.0]
@@ -98,9 +102,97 @@ pub(super) fn basis<T: Real>(w: T::Vec3) -> [T::Vec3; 2] {
     [a, w.cross(a)]
 }
 
-/// The direction at an angle to w, given by its cosine and sine, turned about w by `turn` of a full turn.
-pub(super) fn around<T: Real>(w: T::Vec3, cosine: T, sine: T, turn: T) -> T::Vec3 {
-    let [a, b] = basis::<T>(w);
+/// Returns the direction at an angle to w, given by its cosine and sine, rotated about w by `turn` full
+/// turns.
+pub(super) fn spherical_direction<T: Real>(w: T::Vec3, cosine: T, sine: T, turn: T) -> T::Vec3 {
+    let [a, b] = tangent_basis::<T>(w);
     let (s, c) = (T::from_f64(std::f64::consts::TAU) * turn).sine_and_cosine();
     a * (sine * c) + b * (sine * s) + w * cosine
+}
+
+/// What the camera sees at one point of the screen.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum PrimaryHit<T: Real> {
+    /// A screen-space figure, by its index in the scene.
+    Figure(usize),
+    /// The camera ray and its first hit.
+    Scene(Ray<T>, FirstHit<T>),
+}
+
+impl<T: Real> PrimaryHit<T> {
+    /// Returns the index of the figure and of the surface; both are `None` for the background.
+    fn id(&self) -> [Option<usize>; 2] {
+        match self {
+            Self::Figure(figure) => [Some(*figure), None],
+            Self::Scene(_, first) => [None, first.get().map(|(_, surface)| surface)],
+        }
+    }
+}
+
+impl<T: Real> Tracer<T> {
+    /// Returns whether the samples of the pixel's quad see different surfaces or figures. The quad is the
+    /// block of 2×2 pixels within which GPUs compute derivatives; at the edge of the image it may extend
+    /// beyond it.
+    #[must_use]
+    pub fn is_quad_mixed(&self, x: u32, y: u32) -> bool {
+        let quad = [x & !1, y & !1];
+        let lanes = [[0, 0], [1, 0], [0, 1], [1, 1]];
+        let pixels = lanes.map(|lane| [quad[0] + lane[0], quad[1] + lane[1]]);
+        let count = self.film.samples;
+        let samples = (0..count).flat_map(|index| {
+            pixels.map(|pixel| Sample {
+                pixel,
+                index,
+                count,
+                set: 0,
+            })
+        });
+        let mut hits = samples.map(|sample| {
+            let position = Self::sample_position(
+                sample.pixel,
+                SampleStream::new(self.film.sampler, sample).jitter(),
+            );
+            self.primary_hit(self.camera.screen(position)).id()
+        });
+        let first = hits.next();
+        hits.any(|other| Some(other) != first)
+    }
+
+    /// Returns the origin and the direction of the camera ray through the center of a pixel.
+    #[must_use]
+    pub fn camera_ray(&self, x: u32, y: u32) -> [[T; 3]; 2] {
+        let half = T::from_f64(0.5);
+        let middle = [x, y].map(|along| T::from_f64(f64::from(along)) + half);
+        let ray = self.camera.ray(self.camera.screen(middle));
+        [ray.origin.to_array(), ray.direction.to_array()]
+    }
+
+    /// Finds the first hit of an arbitrary ray: the distance in units of the length of `direction`, and the
+    /// index of the surface in the scene. `from` is the surface on which the ray starts, if any; its start is
+    /// not a hit.
+    #[must_use]
+    pub fn meet(&self, origin: [T; 3], direction: [T; 3], from: Option<usize>) -> Option<(T, usize)> {
+        let ray = Ray {
+            origin: T::Vec3::from_array(origin),
+            direction: T::Vec3::from_array(direction),
+            from,
+        };
+        self.nearest(&ray).get()
+    }
+
+    /// Finds what is visible at a point of the screen.
+    pub(super) fn primary_hit(&self, screen: [T; 2]) -> PrimaryHit<T> {
+        if let Some(figure) = topmost_figure(&self.figures, screen) {
+            return PrimaryHit::Figure(figure);
+        }
+        let ray = self.camera.ray(screen);
+        PrimaryHit::Scene(ray, self.nearest(&ray))
+    }
+
+    fn nearest(&self, ray: &Ray<T>) -> FirstHit<T> {
+        match &self.kernel {
+            Kernel::Spheres(world) => world.nearest(ray, &Exact),
+            Kernel::Shapes(world) => world.nearest(ray, &Exact),
+        }
+    }
 }

@@ -1,4 +1,4 @@
-//! The number types that a scene is traced in.
+//! Number types for tracing.
 
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -6,45 +6,45 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use glam::{DVec3, Vec3};
 use num_traits::Float;
 
-use super::lanes::Vectorised;
+use crate::lanes::Vectorized;
 
-/// f32 or f64, with the vector of glam's that carries it.
-pub trait Real: Float + Vectorised + Debug + Send + Sync + 'static {
-    /// Three components of this type.
+/// A floating-point type, f32 or f64, with its glam vector.
+pub trait Real: Float + Vectorized + Debug + Send + Sync + 'static {
+    /// The three-component vector of this type.
     type Vec3: Vector<Self>;
 
-    /// The nearest value of this type.
+    /// Rounds to the nearest value of this type.
     fn from_f64(value: f64) -> Self;
 
-    /// The same value; exact.
+    /// Converts to f64 exactly.
     fn to_f64(self) -> f64;
 
-    /// sin and cos by libm: the same bits on every platform, unlike the system's.
+    /// Computes sin and cos by libm, whose bits are the same on every platform, unlike the system library's.
     #[must_use]
     fn sine_and_cosine(self) -> (Self, Self);
 
-    /// pow by libm.
+    /// Computes pow by libm.
     #[must_use]
     fn power(self, exponent: Self) -> Self;
 
-    /// ln by libm.
+    /// Computes the natural logarithm by libm.
     #[must_use]
     fn logarithm(self) -> Self;
 
-    /// The largest power of two that is not above this, which is positive, normal and finite.
+    /// Returns the largest power of two not above `self`, which must be positive, normal and finite.
     #[must_use]
     fn power_of_two(self) -> Self;
 
-    /// Bits that stand for a number of something. They are not to be reckoned with.
+    /// Encodes an integer in the bits of a float, which is not valid for arithmetic.
     #[must_use]
     fn tag(number: u32) -> Self;
 
-    /// What [`Real::tag`] was given.
+    /// Decodes the integer of [`Real::tag`].
     #[must_use]
     fn untag(self) -> u32;
 }
 
-/// Three components.
+/// A three-component vector.
 pub trait Vector<T>:
     Copy
     + Debug
@@ -57,41 +57,42 @@ pub trait Vector<T>:
     + Div<T, Output = Self>
     + Neg<Output = Self>
 {
-    /// All components 0.
+    /// The zero vector.
     const ZERO: Self;
 
-    /// Each component rounded to the nearest value.
+    /// Rounds each component to the nearest value.
     fn from_f64(components: [f64; 3]) -> Self;
 
-    /// From components.
+    /// Creates a vector from its components.
     fn new(x: T, y: T, z: T) -> Self;
 
-    /// From components.
+    /// Creates a vector from an array.
     fn from_array(components: [T; 3]) -> Self;
 
-    /// The components.
+    /// Returns the components.
     fn to_array(self) -> [T; 3];
 
-    /// The scalar product.
+    /// Computes the dot product.
     fn dot(self, other: Self) -> T;
 
-    /// The vector product.
+    /// Computes the cross product.
     #[must_use]
     fn cross(self, other: Self) -> Self;
 
-    /// The largest absolute value of a component.
+    /// Returns the largest absolute value of a component.
     fn size(self) -> T;
 
-    /// Of length 1, in the same direction, for any length that is not 0: it is scaled by a power of two first,
-    /// so that no square overflows.
+    /// Normalizes a vector of any nonzero length. It is first scaled by a power of two, so that no square
+    /// overflows.
     #[must_use]
     fn normalize(self) -> Self;
 
-    /// The length, likewise.
+    /// Computes the length, with the same scaling.
     fn length(self) -> T;
 }
 
-/// The power of two that brings a vector of that size near 1; 1 for what has no size. Its reciprocal is exact.
+/// Returns the power of two that scales a vector of this size near 1, or 1 if `size` is not a normal number.
+/// Its reciprocal is exact.
 #[inline]
 fn scale<T: Real>(size: T) -> T {
     if size.is_normal() {

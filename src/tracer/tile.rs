@@ -1,21 +1,22 @@
-//! Eight by eight pixels at a time, whose camera rays are traced together.
+//! Rendering in tiles of 8×8 pixels, whose camera rays form one packet.
 
 use rayon::prelude::*;
 use smallvec::SmallVec;
 use toyproof_scene::Sampler;
 
-use super::ray::First;
-use super::real::{Real, Vector};
-use super::sampler::{Draws, Sample, Strata, offset};
-use super::spheres::{Found, NONE, PACKET, Packet};
-use super::style::Exact;
-use super::world::Walk;
-use super::{Kernel, Tracer, figure, film};
+use crate::camera::topmost_figure;
+use crate::ray::FirstHit;
+use crate::ray_epsilon::Exact;
+use crate::real::{Real, Vector};
+use crate::sampler::{Sample, SampleStream, Strata, centered};
+use crate::spheres::{NO_SURFACE, PACKET_RAYS, Packet, PacketHits};
+use crate::world::PathState;
+use crate::{Kernel, Tracer, film};
 
-/// The side of a tile in pixels.
-pub(super) const SIDE: u32 = 8;
+/// Side of a tile in pixels.
+pub(super) const TILE_SIDE: u32 = 8;
 
-/// Pixels of the picture, up to eight each way.
+/// A tile of up to 8×8 pixels of the image.
 #[derive(Debug, Clone, Copy)]
 struct Tile {
     corner: [u32; 2],
@@ -23,118 +24,123 @@ struct Tile {
 }
 
 impl Tile {
-    /// Goes through those of its pixels that are in the picture: their places in a packet, and in the band, whose rows
-    /// have that many pixels.
+    /// Calls `with` for each pixel of the tile inside the image, with its index in the packet and its index
+    /// in a band that is `width` pixels wide.
     #[inline]
-    fn each(&self, width: u32, mut with: impl FnMut(usize, usize)) {
+    fn for_each_pixel(&self, width: u32, mut with: impl FnMut(usize, usize)) {
         for row in 0..self.size[1] {
             for column in 0..self.size[0] {
                 let in_band = row * width + self.corner[0] + column;
-                with((row * SIDE + column) as usize, in_band as usize);
+                with((row * TILE_SIDE + column) as usize, in_band as usize);
             }
         }
     }
 
-    /// Row by row; beyond the picture's edge those at the edge again, so that every ray of a packet is some pixel's.
+    /// Returns the pixel at an index in row order. Indices beyond the edge of the image repeat the pixels at
+    /// the edge, so that every ray of a packet belongs to a pixel.
     #[inline]
     fn pixel(&self, at: usize) -> [u32; 2] {
-        let within = [at as u32 % SIDE, at as u32 / SIDE];
+        let within = [at as u32 % TILE_SIDE, at as u32 / TILE_SIDE];
         [0, 1].map(|axis| self.corner[axis] + within[axis].min(self.size[axis] - 1))
     }
 }
 
 impl<T: Real> Tracer<T> {
-    /// The tiles of a band: of as many rows as a tile has, or what is left of them.
+    /// Iterates over the tiles of a band, which has as many rows as a tile or as remain in the image.
     fn tiles(&self, bottom: u32) -> impl Iterator<Item = Tile> {
         let [width, height] = self.film.size;
-        (0..width).step_by(SIDE as usize).map(move |left| Tile {
+        (0..width).step_by(TILE_SIDE as usize).map(move |left| Tile {
             corner: [left, bottom],
-            size: [SIDE.min(width - left), SIDE.min(height - bottom)],
+            size: [TILE_SIDE.min(width - left), TILE_SIDE.min(height - bottom)],
         })
     }
 
-    /// Paints a band.
+    /// Renders a band.
     pub(super) fn band(&self, bottom: u32, pixels: &mut [[f32; 4]]) {
         let count = T::from_f64(f64::from(self.film.samples));
         for tile in self.tiles(bottom) {
             let sums = self.sums(tile, self.film.sampler, 0);
-            tile.each(self.film.size[0], |at, in_band| {
+            tile.for_each_pixel(self.film.size[0], |at, in_band| {
                 let mean = (sums[at] / count).to_array();
-                let [r, g, b] = mean.map(|c| film::develop(&self.film, c).to_f64() as f32);
+                let [r, g, b] = mean.map(|c| film::tone_map(&self.film, c).to_f64() as f32);
                 pixels[in_band] = [r, g, b, 1.0];
             });
         }
     }
 
-    /// The means of a band's pixels over one set of samples that another sampler draws, row by row: yet to be developed.
+    /// Computes, in row order, the mean of each pixel of a band over one set of samples of the given sampler.
+    /// The means are not tone-mapped.
     pub(super) fn means(&self, bottom: u32, sampler: Sampler, set: u32) -> Vec<T::Vec3> {
         let [width, height] = self.film.size;
         let count = T::from_f64(f64::from(self.film.samples));
-        let mut means = vec![T::Vec3::ZERO; (SIDE.min(height - bottom) * width) as usize];
+        let mut means = vec![T::Vec3::ZERO; (TILE_SIDE.min(height - bottom) * width) as usize];
         for tile in self.tiles(bottom) {
             let sums = self.sums(tile, sampler, set);
-            tile.each(width, |at, in_band| means[in_band] = sums[at] / count);
+            tile.for_each_pixel(width, |at, in_band| means[in_band] = sums[at] / count);
         }
         means
     }
 
-    /// The sums of one set of samples of a tile's pixels.
-    fn sums(&self, tile: Tile, sampler: Sampler, set: u32) -> [T::Vec3; PACKET] {
-        let mut sums = [T::Vec3::ZERO; PACKET];
+    /// Sums the radiance of one set of samples for each pixel of a tile.
+    fn sums(&self, tile: Tile, sampler: Sampler, set: u32) -> [T::Vec3; PACKET_RAYS] {
+        let mut sums = [T::Vec3::ZERO; PACKET_RAYS];
         let count = self.film.samples;
         for index in 0..count {
-            let mut draws = [const { Draws::Center }; PACKET];
+            let mut stream = [const { SampleStream::Center }; PACKET_RAYS];
             let screen = match sampler {
-                Sampler::Center => self.middles(tile),
+                Sampler::Center => self.pixel_centers(tile),
                 Sampler::Stratified => {
                     let pixels = [0, 1].map(|axis| std::array::from_fn(|at| tile.pixel(at)[axis]));
                     let (strata, pairs) = Strata::first_pairs(self.level, [index, count, set], &pixels);
-                    draws = strata.map(Draws::Stratified);
-                    self.places(|at| Self::place(tile.pixel(at), offset([pairs[0][at], pairs[1][at]])))
+                    stream = strata.map(SampleStream::Stratified);
+                    self.screen_positions(|at| {
+                        Self::sample_position(tile.pixel(at), centered([pairs[0][at], pairs[1][at]]))
+                    })
                 }
-                _ => self.places(|at| {
+                _ => self.screen_positions(|at| {
                     let sample = Sample {
                         pixel: tile.pixel(at),
                         index,
                         count,
                         set,
                     };
-                    draws[at] = Draws::new(sampler, sample);
-                    Self::place(sample.pixel, draws[at].jitter())
+                    stream[at] = SampleStream::new(sampler, sample);
+                    Self::sample_position(sample.pixel, stream[at].jitter())
                 }),
             };
             let packet = self.camera.packet(&screen, self.level);
-            let found = self.find(&packet);
-            let mut walks: SmallVec<[Walk<T>; PACKET]> = SmallVec::new();
-            let mut places: SmallVec<[usize; PACKET]> = SmallVec::new();
-            tile.each(self.film.size[0], |at, _| {
-                let figure = figure::topmost(&self.figures, [screen[0][at], screen[1][at]]);
-                let first = self.first(&packet, &found, at);
+            let found = self.nearest_spheres(&packet);
+            let mut paths: SmallVec<[PathState<T>; PACKET_RAYS]> = SmallVec::new();
+            let mut slots: SmallVec<[usize; PACKET_RAYS]> = SmallVec::new();
+            tile.for_each_pixel(self.film.size[0], |at, _| {
+                let figure = topmost_figure(&self.figures, [screen[0][at], screen[1][at]]);
+                let first = self.first_hit(&packet, &found, at);
                 match (figure, first.get()) {
                     (Some(figure), _) => sums[at] = sums[at] + self.figures[figure].color,
-                    // Much of many pictures, and quickly told.
+                    // The background fills much of many images and is cheap to evaluate.
                     (None, None) => sums[at] = sums[at] + self.background(packet.ray(at).direction),
                     (None, Some(_)) => {
-                        let draws = std::mem::replace(&mut draws[at], Draws::Center);
-                        walks.push(Walk::new(packet.ray(at), first, draws));
-                        places.push(at);
+                        let stream = std::mem::replace(&mut stream[at], SampleStream::Center);
+                        paths.push(PathState::new(packet.ray(at), first, stream));
+                        slots.push(at);
                     }
                 }
             });
             match &self.kernel {
-                Kernel::Spheres(world) => world.walk(&mut walks, &Exact),
-                Kernel::Shapes(world) => world.walk(&mut walks, &Exact),
+                Kernel::Spheres(world) => world.trace(&mut paths, &Exact),
+                Kernel::Shapes(world) => world.trace(&mut paths, &Exact),
             }
-            for (walk, at) in walks.iter().zip(places) {
-                sums[at] = sums[at] + walk.sum;
+            for (path, at) in paths.iter().zip(slots) {
+                sums[at] = sums[at] + path.sum;
             }
         }
         sums
     }
 
-    /// The middles of a tile's pixels on the screen. Those of a column have one x, those of a row one y.
-    fn middles(&self, tile: Tile) -> [[T; PACKET]; 2] {
-        const SIDES: usize = SIDE as usize;
+    /// Maps the pixel centers of a tile to the screen. The pixels of a column share x, those of a row share
+    /// y.
+    fn pixel_centers(&self, tile: Tile) -> [[T; PACKET_RAYS]; 2] {
+        const SIDES: usize = TILE_SIDE as usize;
         let half = T::from_f64(0.5);
         let [x, y]: [[T; SIDES]; 2] = [0, 1].map(|axis| {
             std::array::from_fn(|at| {
@@ -152,15 +158,15 @@ impl<T: Real> Tracer<T> {
         ]
     }
 
-    /// Where on the screen these places of the picture are.
-    fn places(&self, mut place: impl FnMut(usize) -> [T; 2]) -> [[T; PACKET]; 2] {
-        let places: [[T; 2]; PACKET] = std::array::from_fn(|at| self.camera.screen(place(at)));
-        [0, 1].map(|axis| places.map(|place| place[axis]))
+    /// Maps positions in the image to the screen.
+    fn screen_positions(&self, mut position: impl FnMut(usize) -> [T; 2]) -> [[T; PACKET_RAYS]; 2] {
+        let positions: [[T; 2]; PACKET_RAYS] = std::array::from_fn(|at| self.camera.screen(position(at)));
+        [0, 1].map(|axis| positions.map(|position| position[axis]))
     }
 
-    /// The spheres that the rays of a packet meet first.
-    fn find(&self, packet: &Packet<T>) -> Found<T> {
-        let mut found = Found::nothing();
+    /// Finds the nearest sphere for each ray of a packet.
+    fn nearest_spheres(&self, packet: &Packet<T>) -> PacketHits<T> {
+        let mut found = PacketHits::none();
         match &self.kernel {
             Kernel::Spheres(world) => world.spheres.nearest_of_packet(packet, &mut found),
             Kernel::Shapes(world) => world.spheres.nearest_of_packet(packet, &mut found),
@@ -168,7 +174,7 @@ impl<T: Real> Tracer<T> {
         found
     }
 
-    /// What comes along a ray that meets nothing.
+    /// Returns the radiance of a ray that misses everything.
     #[inline]
     fn background(&self, direction: T::Vec3) -> T::Vec3 {
         match &self.kernel {
@@ -177,30 +183,30 @@ impl<T: Real> Tracer<T> {
         }
     }
 
-    /// What one of the rays of a packet meets first, with the other shapes.
+    /// Finds the first hit of one ray of a packet, over spheres and all other shapes.
     #[inline]
-    fn first(&self, packet: &Packet<T>, found: &Found<T>, at: usize) -> First<T> {
+    fn first_hit(&self, packet: &Packet<T>, found: &PacketHits<T>, at: usize) -> FirstHit<T> {
         match &self.kernel {
-            Kernel::Spheres(world) => world.first(packet, found, at),
-            Kernel::Shapes(world) => world.first(packet, found, at),
+            Kernel::Spheres(world) => world.first_hit(packet, found, at),
+            Kernel::Shapes(world) => world.first_hit(packet, found, at),
         }
     }
 
-    /// The surfaces behind the middles of the pixels, by their numbers in the scene, bottom row first; [`u32::MAX`] where there is
-    /// none.
+    /// Returns the index of the surface behind the center of each pixel, bottom row first, or [`u32::MAX`]
+    /// for the background.
     #[must_use]
     pub fn surfaces(&self) -> Vec<u32> {
         let [width, height] = self.film.size;
-        let mut surfaces = vec![NONE; width as usize * height as usize];
+        let mut surfaces = vec![NO_SURFACE; width as usize * height as usize];
         let bands = surfaces
-            .par_chunks_mut(width as usize * SIDE as usize)
+            .par_chunks_mut(width as usize * TILE_SIDE as usize)
             .with_max_len(1);
         bands.enumerate().for_each(|(band, surfaces)| {
-            for tile in self.tiles(band as u32 * SIDE) {
-                let packet = self.camera.packet(&self.middles(tile), self.level);
-                let found = self.find(&packet);
-                tile.each(width, |at, in_band| {
-                    if let Some((_, surface)) = self.first(&packet, &found, at).get() {
+            for tile in self.tiles(band as u32 * TILE_SIDE) {
+                let packet = self.camera.packet(&self.pixel_centers(tile), self.level);
+                let found = self.nearest_spheres(&packet);
+                tile.for_each_pixel(width, |at, in_band| {
+                    if let Some((_, surface)) = self.first_hit(&packet, &found, at).get() {
                         surfaces[in_band] = surface as u32;
                     }
                 });

@@ -1,5 +1,7 @@
-//! From a checked shader to the languages that GPUs take: by way of GLSL 450 that naga reads rightly, to SPIR-V, WGSL,
-//! MSL, HLSL and GLSL; or straight from the tree to WGSL that the author would recognize.
+//! Translates checked shaders to GPU languages.
+//!
+//! There are two paths: GLSL 450, in the subset that naga parses correctly, which naga writes as SPIR-V,
+//! WGSL, MSL, HLSL or GLSL; and WGSL printed straight from the syntax tree, which the author would recognize.
 //!
 //! ```
 //! use toyproof_diagnostic::{File, Files};
@@ -29,19 +31,19 @@ use toyproof_glsl::Checked;
 
 use crate::lower::Passes;
 
-/// How far the driver may rearrange arithmetic.
+/// The freedom that a driver has to rearrange arithmetic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum FloatMode {
-    /// As written: operations carry `NoContraction`, derivatives are those of a pixel's own row and column, and `sin` and the like are
-    /// spelled out.
+    /// Evaluates arithmetic as written: operations carry `NoContraction`, derivatives use a pixel's own row
+    /// and column, and functions such as `sin` are expanded.
     #[default]
     Strict,
-    /// As the driver likes.
+    /// Leaves arithmetic to the driver.
     Fast,
 }
 
 impl FloatMode {
-    /// What naga is fed of a shader: in strict mode with all spelled out that drivers differ in.
+    /// Lowers a shader for naga; strict mode also expands every operation whose result depends on the driver.
     #[must_use]
     pub fn lower(self, checked: &Checked) -> Lowered {
         match self {
@@ -50,10 +52,10 @@ impl FloatMode {
         }
     }
 
-    /// The same within a deadline.
+    /// Lowers a shader like [`Self::lower`], within a deadline.
     ///
     /// # Errors
-    /// If it passes.
+    /// If the deadline passes.
     pub fn lower_within(self, checked: &Checked, deadline: &Deadline) -> Result<Lowered, Overdue> {
         let passes = match self {
             Self::Strict => Passes::strict(),

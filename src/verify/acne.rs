@@ -1,89 +1,95 @@
-//! Rays that meet the surface that they start from: “acne”. Rounding decides in each pixel whether they do, so that it looks like a lack
-//! of digits; but no number of digits helps, and it is a mistake.
+//! Detects rays that hit the surface they start from (“acne”). Rounding decides it in each pixel, so that it
+//! resembles a lack of precision; but more precision does not help, and it is a mistake.
 
 use rayon::prelude::*;
 use toyproof_scene::Sampler;
-use toyproof_tracer::{RayStyles, Tracer};
+use toyproof_tracer::{RayEpsilons, Tracer};
 
-use super::Asked;
-use crate::compare::{Answer, MAX_UNSTABLE, Standing, grouped};
+use super::CheckResult;
+use crate::compare::{Answer, MAX_UNSTABLE, PixelStatus, grouped};
 use crate::mistake::Named;
 
-/// So many pixels are looked at.
-const ASKED: usize = 64;
+/// The largest number of pixels that are examined.
+const MAX_PIXELS: usize = 64;
 
-/// So large a share of them must be what the tracer makes of rays that meet their own surface: where mirrors see each other, a ray may do so
-/// more often than is looked at. In double precision nothing else that rounding decides is seen in so many pixels.
-const MOST: f64 = 0.4;
-const MOST_IN_DOUBLE: f64 = 0.3;
+/// The share of them that must be what the tracer renders with rays that hit their own surface. It is below 1
+/// because a ray between mirrors may do so more often than is traced. In double precision, rounding decides
+/// nothing else in so many pixels.
+const MIN_EXPLAINED_SHARE: f64 = 0.4;
+const MIN_EXPLAINED_SHARE_IN_DOUBLE: f64 = 0.3;
 
-/// In float32 alone, fewer pixels than this may be a lack of digits at edges and at the rim of glass.
-const LEAST_IN_SINGLE: f64 = 0.01;
+/// The smallest share of pixels that differ in float32 alone; fewer may be a lack of precision at silhouettes
+/// and at the rim of glass.
+const MIN_SHARE_IN_SINGLE: f64 = 0.01;
 
-/// Colors that are no farther apart are the same: of float32, too.
-const SAME: f64 = 4.0 / 255.0;
+/// The tolerance of colors, in float32 too.
+const COLOR_TOLERANCE: f64 = 4.0 / 255.0;
 
-/// The check in which pixels differ since rays meet the surfaces that they start from, if most that differ do so for this reason.
-pub(super) fn is_seen<'a>(
+/// Returns the check in which most differing pixels differ because rays hit the surfaces they start from, if
+/// there is one.
+pub(super) fn detect<'a>(
     tracer: &Tracer<f64>,
     size: [u32; 2],
-    maths: Option<&'a Asked>,
-    rounding: Option<&'a Asked>,
-) -> Option<&'a Asked> {
-    let styles = tracer.acne();
-    if styles.is_empty() {
+    algorithm: Option<&'a CheckResult>,
+    precision: Option<&'a CheckResult>,
+) -> Option<&'a CheckResult> {
+    let epsilons = tracer.acne();
+    if epsilons.is_empty() {
         return None;
     }
-    // In f64, rounding decides where it is acne, and not where it is another mistake.
+    // In f64, rounding decides the color where there is acne, and not where there is another mistake.
     let decided_by_rounding =
-        |asked: &&Asked| asked.answer.undecided - asked.answer.tied > asked.answer.differing;
-    let maths = maths.into_iter().filter(decided_by_rounding);
-    let maths = maths.map(|asked| (asked, MAX_UNSTABLE, MOST_IN_DOUBLE));
-    let rounding = rounding.into_iter().map(|asked| (asked, LEAST_IN_SINGLE, MOST));
-    let seen = maths.chain(rounding).find(|&(asked, least, most)| {
-        let answer = &asked.answer;
+        |check: &&CheckResult| check.answer.undecided - check.answer.tied > check.answer.differing;
+    let algorithm = algorithm.into_iter().filter(decided_by_rounding);
+    let algorithm = algorithm.map(|check| (check, MAX_UNSTABLE, MIN_EXPLAINED_SHARE_IN_DOUBLE));
+    let precision = precision
+        .into_iter()
+        .map(|check| (check, MIN_SHARE_IN_SINGLE, MIN_EXPLAINED_SHARE));
+    let check_with_acne = algorithm.chain(precision).find(|&(check, least, most)| {
+        let answer = &check.answer;
         let count = answer.differing + answer.undecided - answer.tied;
         if answer.share(count) <= least {
             return false;
         }
-        let pixels: Vec<Visible> = all(asked, size)
+        let pixels: Vec<DifferingPixel> = pixels_to_examine(check, size)
             .into_par_iter()
-            .filter_map(|pixel| Visible::at(tracer, asked, size, pixel))
+            .filter_map(|pixel| DifferingPixel::at(tracer, check, size, pixel))
             .collect();
-        let explained = pixels.par_iter().filter(|pixel| pixel.is_acne(tracer, &styles));
+        let explained = pixels.par_iter().filter(|pixel| pixel.is_acne(tracer, &epsilons));
         explained.count() as f64 >= most * pixels.len() as f64 && !pixels.is_empty()
     });
-    seen.map(|(asked, ..)| asked)
+    check_with_acne.map(|(check, ..)| check)
 }
 
-/// Pixels from all over the picture that rounding decides, or that differ if there are none, of those whose colors are kept.
-fn all(asked: &Asked, size: [u32; 2]) -> Vec<[u32; 2]> {
-    let is_undecided = asked.standings.contains(&Standing::Undecided);
-    let told = if is_undecided {
-        Standing::Undecided
+/// Returns ill-conditioned pixels spread over the image, or differing ones if there are none, among those
+/// whose colors are kept.
+fn pixels_to_examine(check: &CheckResult, size: [u32; 2]) -> Vec<[u32; 2]> {
+    let is_undecided = check.statuses.contains(&PixelStatus::Undecided);
+    let status = if is_undecided {
+        PixelStatus::Undecided
     } else {
-        Standing::Differs
+        PixelStatus::Differs
     };
-    let mut kept: Vec<usize> = asked.actual.keys().copied().collect();
-    kept.retain(|&at| asked.standings[at] == told);
+    let mut kept: Vec<usize> = check.actual.keys().copied().collect();
+    kept.retain(|&at| check.statuses[at] == status);
     kept.sort_unstable();
-    let step = kept.len().div_ceil(ASKED).max(1);
+    let step = kept.len().div_ceil(MAX_PIXELS).max(1);
     let place = |&at: &usize| [at as u32 % size[0], at as u32 / size[0]];
     kept.iter().step_by(step).map(place).collect()
 }
 
-/// A pixel that visibly differs from the scene's. Colors are clamped to [0, 1].
-struct Visible {
+/// A pixel that differs visibly from the scene's. Colors are clamped to [0, 1].
+struct DifferingPixel {
     pixel: [u32; 2],
     own: [f64; 3],
     exact: [f64; 3],
 }
 
-impl Visible {
+impl DifferingPixel {
     /// None if the pixel has the scene's color, or its own is not kept.
-    fn at(tracer: &Tracer<f64>, asked: &Asked, size: [u32; 2], pixel: [u32; 2]) -> Option<Self> {
+    fn at(tracer: &Tracer<f64>, check: &CheckResult, size: [u32; 2], pixel: [u32; 2]) -> Option<Self> {
         let [x, y] = pixel;
-        let own = asked.actual.get(&(y as usize * size[0] as usize + x as usize))?;
+        let own = check.actual.get(&(y as usize * size[0] as usize + x as usize))?;
         let own = own.map(|part| f64::from(part).clamp(0.0, 1.0));
         let exact = tracer.pixel(x, y).map(|part| part.clamp(0.0, 1.0));
         (0..3)
@@ -91,16 +97,18 @@ impl Visible {
             .then_some(Self { pixel, own, exact })
     }
 
-    /// Whether its color comes of rays that meet their own surface: in all of its samples, or in some of them.
-    fn is_acne(&self, tracer: &Tracer<f64>, styles: &[RayStyles]) -> bool {
+    /// Whether its color comes from rays that hit their own surface, in all of its samples or in some.
+    fn is_acne(&self, tracer: &Tracer<f64>, epsilons: &[RayEpsilons]) -> bool {
         let Self { own, exact, .. } = self;
-        // Where lights and BRDFs are sampled, too, a color between the two says nothing.
+        // Where lights and BRDFs are sampled too, an intermediate color proves nothing.
         let is_jittered = tracer.sampler() == Some(Sampler::SineHash);
-        styles.iter().any(|styles| {
-            let other = tracer.styled(self.pixel, styles).map(|part| part.clamp(0.0, 1.0));
+        epsilons.iter().any(|epsilons| {
+            let other = tracer
+                .styled(self.pixel, epsilons)
+                .map(|part| part.clamp(0.0, 1.0));
             let is_mixed = |i: usize| {
                 let (least, most) = (other[i].min(exact[i]), other[i].max(exact[i]));
-                is_jittered && (least - SAME..=most + SAME).contains(&own[i])
+                is_jittered && (least - COLOR_TOLERANCE..=most + COLOR_TOLERANCE).contains(&own[i])
             };
             (0..3).all(|i| is_near(own[i], other[i]) || is_mixed(i))
         })
@@ -108,10 +116,10 @@ impl Visible {
 }
 
 fn is_near(a: f64, b: f64) -> bool {
-    (a - b).abs() <= SAME
+    (a - b).abs() <= COLOR_TOLERANCE
 }
 
-/// Why the shader is wrong.
+/// Returns why the shader is wrong.
 pub(super) fn reason(answer: &Answer) -> String {
     let count = answer.differing + answer.undecided - answer.tied;
     format!(

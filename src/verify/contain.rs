@@ -1,4 +1,5 @@
-//! Panics kept where they happen: a fault in one part of the work costs that part, not the results that are already there.
+//! Panics kept where they happen: a fault in one part of the work costs that part, not the results that are
+//! already there.
 
 use std::any::Any;
 use std::fmt;
@@ -66,7 +67,8 @@ pub struct Panic {
     pub message: String,
 }
 
-/// Runs a part of the work. What it has changed when it panics must not be used any more, unless its invariants hold after each step.
+/// Runs a part of the work. What it has changed when it panics must not be used any more, unless its
+/// invariants hold after each step.
 ///
 /// # Errors
 /// The panic, if there was one; its location has gone to the panic hook.
@@ -89,13 +91,14 @@ pub fn message(payload: &dyn Any) -> &str {
         .unwrap_or("panic without a message")
 }
 
-/// The environment variable by which tests make a [`Part`] panic, named as in the source. Builds with optimization do not read it.
+/// The environment variable by which tests make a [`Part`] panic, named as in the source. Builds with
+/// optimization do not read it.
 pub const INJECTION: &str = "TOYPROOF_PANIC_IN";
 
 fn inject(part: Part) {
-    let is_asked_for = || std::env::var_os(INJECTION).is_some_and(|name| *name == *format!("{part:?}"));
+    let is_injected = || std::env::var_os(INJECTION).is_some_and(|name| *name == *format!("{part:?}"));
     assert!(
-        !(cfg!(debug_assertions) && is_asked_for()),
+        !(cfg!(debug_assertions) && is_injected()),
         "injected by {INJECTION}"
     );
 }

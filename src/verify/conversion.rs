@@ -1,8 +1,9 @@
-//! Is a converted shader what its author wrote? What was written is read again, run, and compared with the shader itself.
+//! Verifies that a converted shader is equivalent to the original: the written file is parsed again, run, and
+//! compared with the shader.
 //!
-//! The file keeps `sin` and the like, whose last bits WGSL and its relatives leave to whoever runs them. So the proof puts
-//! definitions of our own in their place, the evaluator's, into what naga read; everything else is the file's. No tolerance is then needed:
-//! a conversion is proved if every pixel has the evaluator's bits.
+//! The file calls `sin` and the like, whose last bits WGSL and its relatives leave to the implementation. For
+//! the proof, the evaluator's definitions replace them in what naga parsed; everything else is the file's. So
+//! no tolerance is needed: a conversion is proved if every pixel has the evaluator's bits.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
@@ -12,59 +13,60 @@ use rayon::ThreadPool;
 use toyproof_eval::{self as eval, Observed, Program};
 use toyproof_glsl::Checked;
 use toyproof_glsl::tree::SamplerShape;
-use toyproof_gpu::{self as gpu, Worker, Written};
+use toyproof_gpu::{self as gpu, ShaderArtifact, Worker};
 use toyproof_image::{self as image, Frame, Image};
 use toyproof_lint::Lints;
 use toyproof_translate::FloatMode;
 
 use super::cpu::{Evaluator, Single};
-use super::{ALL, Case, Failure, PATIENCE, join, within};
+use super::{Case, EVALUATOR_TIME_FACTOR, Failure, TOTAL_TIME_FACTOR, join, within};
 use crate::compare::{self, Answer};
 
-/// What came of running a converted shader.
+/// The result of running a converted shader.
 #[derive(Debug, Clone)]
 pub struct Proof {
     /// One comparison for each frame.
     pub answers: Vec<Answer>,
-    /// Who painted.
+    /// The device that rendered it.
     pub device: String,
-    /// What it was compared with.
+    /// The reference.
     pub against: Against,
-    /// For each frame, which pixels hang on what GLSL leaves undefined.
+    /// The pixels of each frame that depend on undefined behavior.
     pub undefined_at: Vec<Vec<bool>>,
-    /// Of the operations that GLSL leaves undefined, the one that most pixels of a frame met.
+    /// The undefined operation that occurs in most pixels of a frame.
     pub undefined_by: Option<Observed>,
 }
 
-/// What a conversion is compared with.
+/// The reference of a conversion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Against {
-    /// The evaluator's picture in f32.
+    /// The evaluator's image in f32.
     Evaluator,
-    /// What the same driver paints of the shader itself, strictly: filters of textures differ from the evaluator's by 2e−7.
+    /// The image of the original shader by the same driver, strictly: texture filters differ from the
+    /// evaluator's by 2e−7.
     StrictRun,
 }
 
 impl Proof {
-    /// Whether every pixel has the same bits, and some are not left out.
+    /// Whether every pixel has the same bits, and some pixel is compared.
     #[must_use]
     pub fn holds(&self) -> bool {
         self.undefined() < self.pixels() && self.differing() == 0
     }
 
-    /// Pixels of all frames.
+    /// The number of pixels of all frames.
     #[must_use]
     pub fn pixels(&self) -> u64 {
         self.answers.iter().map(|answer| answer.pixels).sum()
     }
 
-    /// Pixels that are not the same.
+    /// The number of pixels that differ.
     #[must_use]
     pub fn differing(&self) -> u64 {
         self.answers.iter().map(|answer| answer.differing).sum()
     }
 
-    /// Pixels that hang on what GLSL leaves undefined.
+    /// The number of pixels that depend on undefined behavior.
     #[must_use]
     pub fn undefined(&self) -> u64 {
         self.answers.iter().map(|answer| answer.undefined).sum()
@@ -73,7 +75,7 @@ impl Proof {
 
 /// A frame that conversions are compared in.
 #[derive(Debug, Clone, Copy)]
-pub struct Moment {
+pub struct TestFrame {
     /// Width and height in pixels.
     pub size: [u32; 2],
     /// `iTime`, in seconds.
@@ -84,22 +86,22 @@ pub struct Moment {
 }
 
 /// The frames that conversions are compared in: several times, sizes, mice and dates.
-pub const FRAMES: [Moment; 3] = [
-    Moment {
+pub const FRAMES: [TestFrame; 3] = [
+    TestFrame {
         size: [160, 90],
         time: 0.0,
         frame: 0,
         mouse: [0.0; 4],
         date: [0.0; 4],
     },
-    Moment {
+    TestFrame {
         size: [128, 128],
         time: 1.3,
         frame: 78,
         mouse: [37.0, 81.0, 37.0, 81.0],
         date: [2026.0, 4.0, 17.0, 43_200.0],
     },
-    Moment {
+    TestFrame {
         size: [90, 160],
         time: 10.7,
         frame: 642,
@@ -108,7 +110,7 @@ pub const FRAMES: [Moment; 3] = [
     },
 ];
 
-/// The frames for a shader, with noise in each of its channels that is flat.
+/// Returns the frames for a shader, with noise in each of its 2D channels.
 #[must_use]
 pub fn frames(checked: &Checked) -> Vec<Frame> {
     let channels = if checked.reads_textures() {
@@ -118,43 +120,48 @@ pub fn frames(checked: &Checked) -> Vec<Frame> {
     } else {
         [const { None }; 4]
     };
-    let of = |moment: Moment| Frame {
-        size: moment.size,
-        time: moment.time,
-        frame: moment.frame,
-        mouse: moment.mouse,
-        date: moment.date,
+    let of = |test_frame: TestFrame| Frame {
+        size: test_frame.size,
+        time: test_frame.time,
+        frame: test_frame.frame,
+        mouse: test_frame.mouse,
+        date: test_frame.date,
         channels: channels.clone(),
     };
     FRAMES.map(of).to_vec()
 }
 
-/// Runs each reading of what was written in each of the frames and compares it with the shader: a proof for each. The evaluator runs in
-/// `pool`, if there is one: in the pool that all share, a slow shader's evaluator would have all of its rows painted before another's.
+/// Renders each parsed file in each of the frames and compares it with the shader: a proof for each. The
+/// evaluator runs in `pool`, if there is one: in rayon's global pool, all rows of a slow shader could run
+/// before another shader's.
 ///
 /// # Errors
-/// Why one of them, or the shader itself, has no pictures.
+/// Returns why one of them, or the shader itself, has no images.
 pub fn prove(
     worker: &mut Worker,
     checked: &Checked,
-    readings: Vec<Written>,
+    artifacts: Vec<ShaderArtifact>,
     frames: &[Frame],
     timeout: Duration,
     pool: Option<&ThreadPool>,
 ) -> Result<Vec<Proof>, Failure> {
     let stop = AtomicBool::new(false);
     let singles = || evaluate(checked, frames, timeout, &stop);
-    let (painted, singles) = thread::scope(|scope| {
+    let (rendered, singles) = thread::scope(|scope| {
         let cpu = scope.spawn(|| within(pool, singles));
-        let paint = |written| worker.paint(written, frames.to_vec());
-        let painted: Result<Vec<_>, _> = readings.into_iter().map(paint).collect();
-        stop.store(painted.is_err(), Ordering::Relaxed);
-        (painted, join(cpu))
+        let render = |artifact| worker.render(artifact, frames.to_vec());
+        let rendered: Result<Vec<_>, _> = artifacts.into_iter().map(render).collect();
+        stop.store(rendered.is_err(), Ordering::Relaxed);
+        (rendered, join(cpu))
     });
-    let painted = painted?;
+    let rendered = rendered?;
     let singles = singles?;
-    if let pixels @ 1.. = singles.iter().map(|single| single.noted.beyond_cap).sum::<u64>() {
-        return Err(Failure::CutShort(pixels));
+    if let pixels @ 1.. = singles
+        .iter()
+        .map(|single| single.observed.beyond_cap)
+        .sum::<u64>()
+    {
+        return Err(Failure::LoopTruncated(pixels));
     }
     let (against, expected) = if checked.reads_textures() {
         let mut run = |frame: &Frame| {
@@ -168,14 +175,14 @@ pub fn prove(
         let images = singles.iter().map(|single| single.image.clone());
         (Against::Evaluator, images.collect())
     };
-    let faults = singles.iter().flat_map(|single| &single.noted.faults);
+    let faults = singles.iter().flat_map(|single| &single.observed.faults);
     let undefined = faults.filter(|observed| observed.site.fault.is_undefined());
     let undefined_by = undefined.max_by_key(|observed| observed.pixels).copied();
     let proof = |(images, device): (Vec<Image>, String)| {
         let pictures = expected.iter().zip(&images).zip(&singles);
-        let answers = pictures.map(|((expected, painted), single)| {
-            let standings = compare::toolchain(expected, painted, &single.undefined);
-            Answer::new(expected, painted, &standings)
+        let answers = pictures.map(|((expected, rendered), single)| {
+            let statuses = compare::toolchain(expected, rendered, &single.undefined);
+            Answer::new(expected, rendered, &statuses)
         });
         Proof {
             answers: answers.collect(),
@@ -185,47 +192,49 @@ pub fn prove(
             undefined_by,
         }
     };
-    Ok(painted.into_iter().map(proof).collect())
+    Ok(rendered.into_iter().map(proof).collect())
 }
 
-/// What came of painting a conversion and its original by the same means, whose functions have last bits of their own.
+/// The visible differences between a conversion and its original on the same device, whose functions have
+/// their own last bits.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Shown {
-    /// Pixels that were compared.
+pub struct Rgb8Image {
+    /// The number of pixels that were compared.
     pub pixels: u64,
-    /// Pixels in which a colour, as shown, differs by more than 1/255.
+    /// The number of pixels in which a color, as shown, differs by more than 1/255.
     pub differing: u64,
-    /// The largest difference of a colour as shown, between 0 and 1.
+    /// The largest difference of a color as shown, between 0 and 1.
     pub max: f32,
 }
 
-impl Shown {
-    /// Compares pictures of the same frames, but for the pixels that are left out.
+impl Rgb8Image {
+    /// Compares images of the same frames, except the excluded pixels.
     #[must_use]
-    pub fn of(original: &[Image], converted: &[Image], left_out: &[Vec<bool>]) -> Self {
+    pub fn of(original: &[Image], converted: &[Image], excluded: &[Vec<bool>]) -> Self {
         let mut shown = Self {
             pixels: 0,
             differing: 0,
             max: 0.0,
         };
-        for ((original, converted), left_out) in original.iter().zip(converted).zip(left_out) {
-            let pixels = original.pixels().iter().zip(converted.pixels()).zip(left_out);
-            for ((a, b), _) in pixels.filter(|(_, left_out)| !**left_out) {
-                let apart = (0..3).map(|i| apart(a[i], b[i])).fold(0.0, f32::max);
+        for ((original, converted), excluded) in original.iter().zip(converted).zip(excluded) {
+            let pixels = original.pixels().iter().zip(converted.pixels()).zip(excluded);
+            for ((a, b), _) in pixels.filter(|(_, excluded)| !**excluded) {
+                let difference = (0..3).map(|i| difference(a[i], b[i])).fold(0.0, f32::max);
                 shown.pixels += 1;
-                shown.differing += u64::from(apart > STEP);
-                shown.max = shown.max.max(apart);
+                shown.differing += u64::from(difference > LEVEL);
+                shown.max = shown.max.max(difference);
             }
         }
         shown
     }
 }
 
-/// The smallest difference that a screen shows, and as far as the last bits of two right programs may take a colour.
-const STEP: f32 = 1.0 / 255.0;
+/// The smallest difference that a screen shows; the last bits of two correct programs may change a color by
+/// as much.
+const LEVEL: f32 = 1.0 / 255.0;
 
-/// How far two components are apart on a screen. One that is no number is like another, and as far from all others as can be.
-fn apart(a: f32, b: f32) -> f32 {
+/// The difference of two components on a screen. NaN equals NaN, and differs from all numbers by 1.
+fn difference(a: f32, b: f32) -> f32 {
     match (a.is_nan(), b.is_nan()) {
         (true, true) => 0.0,
         (false, false) => (a.clamp(0.0, 1.0) - b.clamp(0.0, 1.0)).abs(),
@@ -251,8 +260,8 @@ fn evaluate(
             timeout,
             pool: None,
         };
-        let until = Instant::now() + timeout * ALL;
-        Evaluator::new(&program, &case, timeout * PATIENCE, until, stop).single(&frame.rows())
+        let deadline = Instant::now() + timeout * TOTAL_TIME_FACTOR;
+        Evaluator::new(&program, &case, timeout * EVALUATOR_TIME_FACTOR, deadline, stop).single(&frame.rows())
     };
     frames.iter().map(single).collect()
 }

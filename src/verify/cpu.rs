@@ -1,4 +1,4 @@
-//! What the evaluator says of a shader: its picture in f32 and in f64, and which pixels do what GLSL leaves undefined.
+//! Evaluates a shader in f32 and in f64, and finds the pixels that depend on undefined behavior.
 
 use std::cell::Cell;
 use std::ops::Range;
@@ -6,70 +6,71 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use toyproof_eval::{
-    Failure, Fault, Jittered, Number, Observations, Observed, Other, Pictured, Program, Seed, Settings,
-    Variant,
+    Failure, Fault, Number, Observations, Observed, Program, RandomRounding, RenderedF32, Seed, Settings,
+    Substitute, UndefinedPolicy,
 };
 use toyproof_image::Image;
 
-use super::{Case, PATIENCE};
+use super::{Case, EVALUATOR_TIME_FACTOR};
 
-/// Paints a shader, one band of rows after the other.
+/// Renders a shader band by band.
 pub(super) struct Evaluator<'a> {
     program: &'a Program,
     case: &'a Case<'a>,
-    /// Set when nobody wants the pictures any more.
+    /// Set when the images are no longer needed.
     stop: &'a AtomicBool,
-    /// When all of them must be there.
-    until: Instant,
-    /// For the pictures in f32 and in f64, each with the usual choices and others.
-    single: [Allowance; 2],
-    double: [Allowance; 2],
-    /// For all that are shaken.
-    shaken: Allowance,
+    /// The deadline of all images.
+    deadline: Instant,
+    /// The time left for the images in f32 and in f64, each with the default policy for undefined behavior
+    /// and with substitutes.
+    single: [TimeBudget; 2],
+    double: [TimeBudget; 2],
+    /// The time left for all perturbed images.
+    perturbed: TimeBudget,
 }
 
-/// How long a picture may still take, all bands together.
-struct Allowance(Cell<Duration>);
+/// The time left for an image, all bands together.
+struct TimeBudget(Cell<Duration>);
 
-/// What the evaluator painted of a band.
+/// A band, as the evaluator renders it.
 pub(super) struct Band {
     /// In f32, with the bits of a strict GPU run.
     pub(super) single: Image,
     /// In f64, rounded once at the end.
     pub(super) double: Image,
-    /// Pixels whose colour hangs on what GLSL leaves undefined, in either.
+    /// Pixels whose color depends on undefined behavior, in f32 or in f64.
     pub(super) undefined: Vec<bool>,
-    /// What was noted in f32.
-    pub(super) noted: Observations,
+    /// Observations in f32.
+    pub(super) observed: Observations,
 }
 
-/// A picture in f32, and what is known of it.
+/// An image in f32, with its undefined pixels and observations.
 pub(super) struct Single {
     pub(super) image: Image,
-    /// Pixels whose colour hangs on what GLSL leaves undefined.
+    /// Pixels whose color depends on undefined behavior.
     pub(super) undefined: Vec<bool>,
-    /// What was noted.
-    pub(super) noted: Observations,
+    /// Observations in f32.
+    pub(super) observed: Observations,
 }
 
 impl<'a> Evaluator<'a> {
-    /// Each picture may take that long, but all must be there by `until`.
+    /// Creates an evaluator with the time limit `each` for an image and a deadline for all.
     pub(super) fn new(
         program: &'a Program,
         case: &'a Case<'a>,
         each: Duration,
-        until: Instant,
+        deadline: Instant,
         stop: &'a AtomicBool,
     ) -> Self {
-        let pair = || [Allowance::new(each), Allowance::new(each)];
+        let pair = || [TimeBudget::new(each), TimeBudget::new(each)];
         Self {
             program,
             case,
             stop,
-            until,
+            deadline,
             single: pair(),
             double: pair(),
-            shaken: Allowance::new(case.timeout * PATIENCE),
+            perturbed: TimeBudget::new(case.timeout * EVALUATOR_TIME_FACTOR),
         }
     }
 
@@ -77,85 +78,102 @@ impl<'a> Evaluator<'a> {
         self.program
     }
 
-    /// Paints some rows in f32 alone.
+    /// Renders some rows in f32 alone.
     pub(super) fn single(&self, rows: &Range<u32>) -> Result<Single, Failure> {
-        let painted = self.picture::<f32>(rows, Variant::Observed, &self.single[0])?;
-        let undefined = self.dependent::<f32>(rows, &painted, &self.single[1]);
+        let rendered = self.render_as::<f32>(rows, UndefinedPolicy::Observed, &self.single[0])?;
+        let undefined = self.undefined_pixels::<f32>(rows, &rendered, &self.single[1]);
         Ok(Single {
-            image: painted.image,
+            image: rendered.image,
             undefined,
-            noted: painted.observations,
+            observed: rendered.observations,
         })
     }
 
-    /// Paints some rows; `counted` is told the most rounds of loops that a pixel ran in f32, as soon as they are known.
-    pub(super) fn paint(&self, rows: &Range<u32>, counted: impl FnOnce(u32)) -> Result<Band, Failure> {
-        let single = self.picture::<f32>(rows, Variant::Observed, &self.single[0])?;
-        counted(single.observations.most_rounds);
-        let mut undefined = self.dependent::<f32>(rows, &single, &self.single[1]);
-        let double = self.picture::<f64>(rows, Variant::Observed, &self.double[0])?;
-        let also = self.dependent::<f64>(rows, &double, &self.double[1]);
-        for (undefined, also) in undefined.iter_mut().zip(also) {
-            *undefined |= also;
+    /// Renders some rows. Calls `report_iterations` with the largest number of loop iterations of a pixel in f32 as
+    /// soon as it is known.
+    pub(super) fn render(
+        &self,
+        rows: &Range<u32>,
+        report_iterations: impl FnOnce(u32),
+    ) -> Result<Band, Failure> {
+        let single = self.render_as::<f32>(rows, UndefinedPolicy::Observed, &self.single[0])?;
+        report_iterations(single.observations.most_rounds);
+        let mut undefined = self.undefined_pixels::<f32>(rows, &single, &self.single[1]);
+        let double = self.render_as::<f64>(rows, UndefinedPolicy::Observed, &self.double[0])?;
+        let undefined_in_double = self.undefined_pixels::<f64>(rows, &double, &self.double[1]);
+        for (undefined, undefined_in_double) in undefined.iter_mut().zip(undefined_in_double) {
+            *undefined |= undefined_in_double;
         }
         Ok(Band {
             single: single.image,
             double: double.image,
             undefined,
-            noted: single.observations,
+            observed: single.observations,
         })
     }
 
-    /// The picture in f64 with every operation moved by a unit in the last place or none, at least where it is wanted; none if there is no
-    /// time.
-    pub(super) fn shaken(&self, rows: &Range<u32>, seed: u64, wanted: &[bool]) -> Option<Image> {
-        self.shaken.spend(self.until, |deadline| {
-            let settings = Settings::<Jittered> {
-                variant: Variant::Plain,
+    /// Renders some rows in f64 with every operation perturbed by a unit in the last place or not at all, at
+    /// least in the `wanted` pixels; none if the time limit is exceeded.
+    pub(super) fn perturbed(&self, rows: &Range<u32>, seed: u64, wanted: &[bool]) -> Option<Image> {
+        self.perturbed.spend(self.deadline, |deadline| {
+            let settings = Settings::<RandomRounding> {
+                undefined: UndefinedPolicy::Plain,
                 noise: Seed(seed),
                 deadline: Some(deadline),
                 wanted: Some(wanted),
                 ..Settings::default()
             };
-            let painted = self.program.picture(self.case.frame, rows.clone(), &settings);
-            painted.ok().map(|painted| painted.image)
+            let rendered = self.program.picture(self.case.frame, rows.clone(), &settings);
+            rendered.ok().map(|rendered| rendered.image)
         })
     }
 
-    /// Of the pixels that met what GLSL leaves undefined, those that are painted otherwise where another choice is taken. Where there is no
-    /// time to find out, they all may.
-    fn dependent<N: Number>(&self, rows: &Range<u32>, usual: &Pictured, allowance: &Allowance) -> Vec<bool> {
-        let met = usual.undefined.clone();
-        let is_lonely = |observed: &Observed| observed.site.fault == Fault::LonelyDerivative;
-        // No choice stands for what a derivative might be.
-        if !met.contains(&true) || usual.observations.faults.iter().any(is_lonely) {
-            return met;
+    /// Finds the pixels with undefined operations whose color changes with the result of these. If the time
+    /// limit is exceeded, all of them count.
+    fn undefined_pixels<N: Number>(
+        &self,
+        rows: &Range<u32>,
+        default_image: &RenderedF32,
+        budget: &TimeBudget,
+    ) -> Vec<bool> {
+        let candidates = default_image.undefined.clone();
+        let is_derivative = |observed: &Observed| observed.site.fault == Fault::LonelyDerivative;
+        // No substitute stands for the value of a derivative.
+        if !candidates.contains(&true) || default_image.observations.faults.iter().any(is_derivative) {
+            return candidates;
         }
-        let mut undefined = vec![false; met.len()];
-        for other in [Other::Number, Other::NotANumber] {
-            if undefined == met {
+        let mut undefined = vec![false; candidates.len()];
+        for substituted in [Substitute::Number, Substitute::NotANumber] {
+            if undefined == candidates {
                 break;
             }
-            let Ok(other) = self.picture::<N>(rows, Variant::Otherwise(other), allowance) else {
-                return met;
+            let Ok(substituted) = self.render_as::<N>(rows, UndefinedPolicy::Substitute(substituted), budget)
+            else {
+                return candidates;
             };
-            let pairs = usual.image.pixels().iter().zip(other.image.pixels());
-            for ((undefined, met), (usual, other)) in undefined.iter_mut().zip(&met).zip(pairs) {
-                *undefined |= *met && usual.map(f32::to_bits) != other.map(f32::to_bits);
+            let pairs = default_image
+                .image
+                .pixels()
+                .iter()
+                .zip(substituted.image.pixels());
+            for ((undefined, candidate), (usual, substituted)) in
+                undefined.iter_mut().zip(&candidates).zip(pairs)
+            {
+                *undefined |= *candidate && usual.map(f32::to_bits) != substituted.map(f32::to_bits);
             }
         }
         undefined
     }
 
-    fn picture<N: Number>(
+    fn render_as<N: Number>(
         &self,
         rows: &Range<u32>,
-        variant: Variant,
-        allowance: &Allowance,
-    ) -> Result<Pictured, Failure> {
-        allowance.spend(self.until, |deadline| {
+        undefined: UndefinedPolicy,
+        budget: &TimeBudget,
+    ) -> Result<RenderedF32, Failure> {
+        budget.spend(self.deadline, |deadline| {
             let settings = Settings::<N> {
-                variant,
+                undefined,
                 deadline: Some(deadline),
                 interrupt: Some(self.stop),
                 ..Settings::default()
@@ -165,15 +183,15 @@ impl<'a> Evaluator<'a> {
     }
 }
 
-impl Allowance {
+impl TimeBudget {
     fn new(time: Duration) -> Self {
         Self(Cell::new(time))
     }
 
-    /// Does something that ends at a deadline, which is `until` at the latest; what it took is gone.
-    fn spend<T>(&self, until: Instant, work: impl FnOnce(Instant) -> T) -> T {
+    /// Runs `work` with the time left, but at most until `deadline`, and subtracts the time it took.
+    fn spend<T>(&self, deadline: Instant, work: impl FnOnce(Instant) -> T) -> T {
         let start = Instant::now();
-        let done = work(until.min(start + self.0.get()));
+        let done = work(deadline.min(start + self.0.get()));
         self.0.set(self.0.get().saturating_sub(start.elapsed()));
         done
     }

@@ -1,4 +1,4 @@
-//! What shaders of one scene should paint, remembered from one shader to the next.
+//! The reference of a scene in one frame, cached from one shader to the next.
 
 use std::collections::HashMap;
 use std::mem::size_of;
@@ -7,38 +7,40 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use toyproof_image::{Frame, Image};
-use toyproof_scene::{Moment, Scene};
-use toyproof_tracer::{Hull, RayStyles, StyleFamily, Styles, Tracer};
+use toyproof_scene::{FrameTime, Scene};
+use toyproof_tracer::{ColorRange, EpsilonFamily, EpsilonSet, RayEpsilons, Tracer};
 
 use crate::compare::{EXACT_TOLERANCE, SEEN};
 
-/// Of pictures of more pixels nothing is kept, for they are many times this: one of 1920×1080 takes 32 MB.
-const MOST_PIXELS: u32 = 1 << 21;
+/// The largest number of pixels of an image that is cached; one of 1920×1080 takes 32 MB.
+const MAX_CACHED_PIXELS: u32 = 1 << 21;
 
-/// So many hulls of a scene are kept: one for each pixel of a picture of 640×360 in either style, and room to spare.
-const MOST_HULLS: usize = 1 << 19;
+/// The largest number of color ranges of a scene that are cached: more than one for each pixel of an image of
+/// 640×360 in either epsilon set.
+const MAX_CACHED_RANGES: usize = 1 << 19;
 
-/// In so many scenes whose numbers are moved a little, and in as many where they are moved the other way, a pixel is looked at.
+/// The number of perturbations of a scene with which a pixel is traced; each is applied with both signs.
 const PERTURBATIONS: u32 = 4;
 
-/// By how much of their size numbers are moved: a few units in the last place of what shaders compute with.
+/// The number type whose rounding is simulated; numbers are perturbed by a few of its units in the last
+/// place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Digits {
+pub(super) enum NumberType {
     /// In f64.
     Double,
     /// In f32.
     Single,
 }
 
-impl Digits {
-    fn share(self) -> f64 {
+impl NumberType {
+    fn perturbation(self) -> f64 {
         match self {
             Self::Double => 4.0 * f64::EPSILON,
             Self::Single => 2.0 * f64::from(f32::EPSILON),
         }
     }
 
-    /// A pixel that moves by more has another color.
+    /// The tolerance above which a pixel has changed.
     fn tolerance(self) -> f64 {
         match self {
             Self::Double => EXACT_TOLERANCE,
@@ -47,54 +49,54 @@ impl Digits {
     }
 }
 
-/// What a pixel is asked for, and the answer.
-type Row = HashMap<(u32, Styles), Hull>;
+/// The cached color ranges of a row, by column and epsilon set.
+type Row = HashMap<(u32, EpsilonSet), ColorRange>;
 
-/// The answers of the tracer to a scene in one frame. They are worked out when they are first asked for, and any thread may ask: what many
-/// shaders are compared with is traced once, unless it is too large to be kept.
+/// The tracer's results for a scene in one frame. They are computed on first use, from any thread: the
+/// reference of many shaders is traced once, unless it is too large for the cache.
 #[derive(Debug)]
 pub struct Expected {
     scene: Scene,
-    moment: Moment,
+    time: FrameTime,
     tracer: Tracer<f64>,
-    /// Bands of the picture, by their first rows; none if it is too large.
+    /// Bands of the image by their first rows; empty if it is too large.
     bands: HashMap<u32, OnceLock<Arc<Image>>>,
-    /// How many hulls may be kept.
-    room: usize,
-    /// By rows from the bottom, so that threads seldom wait for each other.
-    hulls: Box<[Mutex<Row>]>,
-    kept: AtomicUsize,
-    families: OnceLock<Vec<StyleFamily>>,
-    /// Of the scene with its numbers moved, for either digits.
+    /// The largest number of color ranges in the cache.
+    capacity: usize,
+    /// By rows from the bottom, so that threads seldom contend for a lock.
+    color_ranges: Box<[Mutex<Row>]>,
+    cached: AtomicUsize,
+    families: OnceLock<Vec<EpsilonFamily>>,
+    /// Tracers of the perturbed scenes, for either number type.
     perturbed: [OnceLock<Vec<Tracer<f64>>>; 2],
 }
 
 impl Expected {
-    /// Of a scene at the moment and in the size of that frame.
+    /// Creates the reference of a scene at the time and in the size of the frame.
     #[must_use]
     pub fn new(mut scene: Scene, frame: &Frame) -> Self {
         scene.film.size = frame.size;
-        let moment = Moment {
+        let time = FrameTime {
             frame: frame.frame,
             time: f64::from(frame.time),
         };
         let [width, height] = frame.size;
-        let is_kept = width.saturating_mul(height) <= MOST_PIXELS;
+        let is_cached = width.saturating_mul(height) <= MAX_CACHED_PIXELS;
         let bands = frame
             .bands()
-            .filter(|_| is_kept)
+            .filter(|_| is_cached)
             .map(|rows| (rows.start, OnceLock::new()))
             .collect();
         Self {
-            tracer: Tracer::at(&scene, moment),
+            tracer: Tracer::at(&scene, time),
             bands,
-            room: if is_kept { MOST_HULLS } else { 0 },
-            hulls: (0..height).map(|_| Mutex::default()).collect(),
-            kept: AtomicUsize::new(0),
+            capacity: if is_cached { MAX_CACHED_RANGES } else { 0 },
+            color_ranges: (0..height).map(|_| Mutex::default()).collect(),
+            cached: AtomicUsize::new(0),
             families: OnceLock::new(),
             perturbed: Default::default(),
             scene,
-            moment,
+            time,
         }
     }
 
@@ -104,26 +106,27 @@ impl Expected {
         &self.scene
     }
 
-    /// How much memory its answers take so far, in bytes, roughly.
+    /// The approximate memory of the cached results, in bytes.
     #[must_use]
     pub fn bytes(&self) -> usize {
         let bands = self.bands.values().filter_map(OnceLock::get);
         let pixels: usize = bands.map(|band| band.pixels().len()).sum();
         // A table is between half and seven eighths full.
-        let hulls = 2 * self.kept.load(Ordering::Relaxed);
-        pixels * size_of::<[f32; 4]>() + hulls * size_of::<((u32, Styles), Hull)>()
+        let color_ranges = 2 * self.cached.load(Ordering::Relaxed);
+        pixels * size_of::<[f32; 4]>() + color_ranges * size_of::<((u32, EpsilonSet), ColorRange)>()
     }
 
-    /// The scene with everything where it is at the moment.
-    pub(super) fn stilled(&self) -> Scene {
-        self.scene.at(self.moment)
+    /// The scene at the frame's time, without motion.
+    pub(super) fn at_moment(&self) -> Scene {
+        self.scene.at(self.time)
     }
 
     pub(super) fn tracer(&self) -> &Tracer<f64> {
         &self.tracer
     }
 
-    /// A band of the reference picture. Who comes while it is traced waits for it, which no thread of rayon's may do.
+    /// Returns a band of the reference. Callers block while another thread traces it, so no rayon thread may
+    /// call this.
     pub(super) fn rows(&self, rows: &Range<u32>) -> Arc<Image> {
         let trace = || Arc::new(self.tracer.rows(rows.clone(), || ()));
         match self.bands.get(&rows.start) {
@@ -133,48 +136,50 @@ impl Expected {
     }
 
     /// [`Tracer::style_families`]
-    pub(super) fn families(&self) -> &[StyleFamily] {
+    pub(super) fn families(&self) -> &[EpsilonFamily] {
         self.families.get_or_init(|| self.tracer.style_families())
     }
 
     /// [`Tracer::styled`]
-    pub(super) fn styled(&self, x: u32, y: u32, styles: &RayStyles) -> [f64; 3] {
-        self.tracer.styled([x, y], styles)
+    pub(super) fn styled(&self, x: u32, y: u32, epsilons: &RayEpsilons) -> [f64; 3] {
+        self.tracer.styled([x, y], epsilons)
     }
 
-    /// Whether the reference itself is another color in a pixel when the scene's numbers are moved by a few units in the last place: what
-    /// a shader paints there, rounding decides, whatever its formulas.
-    pub(super) fn is_tied(&self, x: u32, y: u32, digits: Digits) -> bool {
-        let perturbed = self.perturbed[digits as usize].get_or_init(|| {
-            let stilled = self.stilled();
-            let moved = (0..PERTURBATIONS).flat_map(|seed| {
-                let share = digits.share();
-                [share, -share].map(|share| Tracer::new(&stilled.perturbed(seed, share)))
+    /// Whether the reference itself changes color in a pixel when the scene's numbers are perturbed by a few
+    /// units in the last place: rounding decides the color there, whatever the shader's formulas.
+    pub(super) fn is_tied(&self, x: u32, y: u32, number_type: NumberType) -> bool {
+        let perturbed = self.perturbed[number_type as usize].get_or_init(|| {
+            let at_moment = self.at_moment();
+            let tracers = (0..PERTURBATIONS).flat_map(|seed| {
+                let perturbation = number_type.perturbation();
+                [perturbation, -perturbation]
+                    .map(|perturbation| Tracer::new(&at_moment.perturbed(seed, perturbation)))
             });
-            moved.collect()
+            tracers.collect()
         });
         let clamped = |tracer: &Tracer<f64>| tracer.pixel(x, y).map(|part| part.clamp(0.0, 1.0));
         let own = clamped(&self.tracer);
         perturbed.iter().any(|tracer| {
             let other = clamped(tracer);
-            (0..3).any(|i| (own[i] - other[i]).abs() > digits.tolerance())
+            (0..3).any(|i| (own[i] - other[i]).abs() > number_type.tolerance())
         })
     }
 
-    /// [`Tracer::hull`]
-    pub(super) fn hull(&self, x: u32, y: u32, styles: Styles) -> Hull {
+    /// [`Tracer::color_range`]
+    pub(super) fn color_range(&self, x: u32, y: u32, epsilons: EpsilonSet) -> ColorRange {
         let row = || {
-            let row = &self.hulls[y as usize];
+            let row = &self.color_ranges[y as usize];
             row.lock().unwrap_or_else(PoisonError::into_inner)
         };
-        if let Some(&hull) = row().get(&(x, styles)) {
-            return hull;
+        if let Some(&range) = row().get(&(x, epsilons)) {
+            return range;
         }
-        let hull = self.tracer.hull(x, y, styles);
-        if self.kept.load(Ordering::Relaxed) < self.room && row().insert((x, styles), hull).is_none() {
-            self.kept.fetch_add(1, Ordering::Relaxed);
+        let range = self.tracer.color_range(x, y, epsilons);
+        if self.cached.load(Ordering::Relaxed) < self.capacity && row().insert((x, epsilons), range).is_none()
+        {
+            self.cached.fetch_add(1, Ordering::Relaxed);
         }
-        hull
+        range
     }
 }
 
@@ -199,13 +204,13 @@ mod tests {
     }
 
     #[test]
-    fn a_band_is_traced_once_for_all_who_ask() {
+    fn a_band_is_traced_once_for_all_callers() {
         let expected = expected([64, 36]);
         assert_eq!(expected.bytes(), 0);
         let rows = 0..36;
         let bands: Vec<_> = std::thread::scope(|scope| {
-            let asking: Vec<_> = (0..4).map(|_| scope.spawn(|| expected.rows(&rows))).collect();
-            asking.into_iter().map(|asked| asked.join().unwrap()).collect()
+            let threads: Vec<_> = (0..4).map(|_| scope.spawn(|| expected.rows(&rows))).collect();
+            threads.into_iter().map(|thread| thread.join().unwrap()).collect()
         });
         let band = expected.rows(&rows);
         assert!(bands.iter().all(|other| Arc::ptr_eq(other, &band)));
@@ -214,41 +219,44 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_kept_of_a_large_picture() {
+    fn a_large_image_is_not_cached() {
         let expected = expected([1 << 15, 65]);
         let rows = 64..65;
         assert_eq!(expected.rows(&rows), expected.rows(&rows));
         assert_eq!(
-            expected.hull(0, 64, Styles::Alike),
-            expected.tracer.hull(0, 64, Styles::Alike)
+            expected.color_range(0, 64, EpsilonSet::Alike),
+            expected.tracer.color_range(0, 64, EpsilonSet::Alike)
         );
         assert_eq!(expected.bytes(), 0);
     }
 
     #[test]
-    fn a_hull_is_the_tracers_own_also_when_it_is_remembered() {
+    fn a_cached_color_range_equals_the_tracers() {
         let expected = expected([64, 36]);
         for _ in 0..2 {
             for (x, y) in [(32, 18), (25, 18), (0, 35)] {
-                for styles in [Styles::Alike, Styles::Mixed] {
-                    assert_eq!(expected.hull(x, y, styles), expected.tracer.hull(x, y, styles));
+                for epsilons in [EpsilonSet::Alike, EpsilonSet::Mixed] {
+                    assert_eq!(
+                        expected.color_range(x, y, epsilons),
+                        expected.tracer.color_range(x, y, epsilons)
+                    );
                 }
             }
-            assert_eq!(expected.kept.load(Ordering::Relaxed), 6);
+            assert_eq!(expected.cached.load(Ordering::Relaxed), 6);
         }
     }
 
     #[test]
-    fn no_more_hulls_are_kept_than_there_is_room_for() {
+    fn the_cache_of_color_ranges_is_bounded() {
         let expected = expected([64, 36]);
-        expected.kept.store(MOST_HULLS - 1, Ordering::Relaxed);
+        expected.cached.store(MAX_CACHED_RANGES - 1, Ordering::Relaxed);
         for x in 0..4 {
             assert_eq!(
-                expected.hull(x, 0, Styles::Alike),
-                expected.tracer.hull(x, 0, Styles::Alike)
+                expected.color_range(x, 0, EpsilonSet::Alike),
+                expected.tracer.color_range(x, 0, EpsilonSet::Alike)
             );
         }
-        assert_eq!(expected.kept.load(Ordering::Relaxed), MOST_HULLS);
-        assert_eq!(expected.hulls[0].lock().unwrap().len(), 1);
+        assert_eq!(expected.cached.load(Ordering::Relaxed), MAX_CACHED_RANGES);
+        assert_eq!(expected.color_ranges[0].lock().unwrap().len(), 1);
     }
 }

@@ -1,5 +1,6 @@
-//! Compares a shader with what it should render, in three checks: is the algorithm right, is float32 precise enough, and
-//! does the toolchain keep every bit. GPU, evaluator and tracer run at once; [`verify`] gives the verdict and what explains it.
+//! Verifies a shader in three checks: whether its algorithm is right, whether float32 is precise enough, and
+//! whether the toolchain preserves every bit. GPU, evaluator and tracer run in parallel; [`verify`] returns
+//! the verdict and what explains it.
 //!
 //! ```
 //! use std::time::Duration;
@@ -34,21 +35,20 @@
 //! ```
 
 mod acne;
-mod cause;
 pub mod compare;
 pub mod contain;
 pub mod conversion;
 mod cpu;
-mod drawn;
+pub mod debug;
 mod expected;
-pub mod explain;
-mod inquiry;
 pub mod mistake;
 mod notes;
 mod replicates;
 mod reseed;
 mod sample_loops;
-mod tangent;
+mod session;
+mod silhouette_precision;
+mod stochastic;
 
 use std::collections::HashMap;
 use std::iter;
@@ -63,76 +63,77 @@ use toyproof_diagnostic::{Deadline, Diagnostic, Overdue, Span};
 use toyproof_eval::{self as eval, Program};
 use toyproof_glsl::Checked;
 use toyproof_gpu::{self as gpu, Drawn, SAFE_ROUNDS, Worker};
-use toyproof_image::{Frame, Image, Shown};
+use toyproof_image::{Frame, Image, Rgb8Image};
 use toyproof_lint::Lints;
 use toyproof_translate::FloatMode;
 
 use self::cpu::Evaluator;
 pub use self::expected::Expected;
-use self::inquiry::{Counted, Inquiry};
 pub use self::notes::unbound;
-use crate::compare::{Answer, Comparison, Mark, Standing, Verdict};
+use crate::compare::{Answer, Comparison, DiffLevel, PixelStatus, Verdict};
 use crate::contain::Panic;
-use crate::mistake::{Named, Suspects};
+use crate::mistake::{Hypotheses, Named};
+use crate::session::{IterationCount, VerifySession};
 
-/// What is to be verified.
+/// A shader to verify, and how.
 #[derive(Debug, Clone, Copy)]
 pub struct Case<'a> {
     /// The shader.
     pub checked: &'a Checked,
-    /// What the lints found in it.
+    /// The lints' results for it.
     pub lints: &'a Lints,
-    /// What it should paint, if that is known: of that frame, and the film's size is the frame's.
+    /// The reference, if there is a scene; its frame and its film's size must be those of `frame`.
     pub expected: Option<&'a Expected>,
-    /// What a wrong picture is compared with, to tell what went wrong: of that scene and frame.
-    pub suspects: Option<&'a Suspects>,
+    /// The mistakes that are searched for in a wrong image, for that scene and frame.
+    pub suspects: Option<&'a Hypotheses>,
     /// The frame.
     pub frame: &'a Frame,
-    /// How far the driver may rearrange arithmetic. If it may, the toolchain question is not asked.
+    /// How far the driver may rearrange arithmetic. If it may, there is no toolchain check.
     pub float: FloatMode,
-    /// How long a picture may take.
+    /// The time limit of an image.
     pub timeout: Duration,
-    /// Where the evaluator and the tracer run; in the pool that all share, if none is given. There a slow shader's rows would be painted
-    /// before another's, whose time runs meanwhile.
+    /// The thread pool of the evaluator and the tracer; rayon's global pool if none. There, a slow shader's
+    /// rows could run before another shader's, whose time limit elapses meanwhile.
     pub pool: Option<&'a ThreadPool>,
 }
 
-/// What was found.
+/// The results of [`verify`].
 #[derive(Debug)]
 pub struct Findings {
     /// The verdict.
     pub verdict: Verdict,
     /// Why, in one sentence.
     pub reason: String,
-    /// Is the algorithm right? Asked where there is a scene.
-    pub maths: Option<Asked>,
-    /// Is float32 enough?
-    pub rounding: Option<Asked>,
-    /// Was the shader run as it stands? Asked where a GPU painted strictly.
-    pub toolchain: Option<Asked>,
-    /// The shader's picture beside the reference's.
-    pub picture: Option<(Comparison, Vec<Mark>)>,
-    /// What the tracer painted.
-    pub reference: Option<Shown>,
-    /// What the GPU painted, or the evaluator in f32 where there is none.
-    pub actual: Shown,
-    /// How the GPU painted; none if the evaluator did.
+    /// The algorithm check; none without a scene.
+    pub algorithm: Option<CheckResult>,
+    /// The precision check.
+    pub precision: Option<CheckResult>,
+    /// The toolchain check; only for strict runs on a GPU.
+    pub toolchain: Option<CheckResult>,
+    /// The comparison of the shader's image with the reference.
+    pub picture: Option<(Comparison, Vec<DiffLevel>)>,
+    /// The tracer's image.
+    pub reference: Option<Rgb8Image>,
+    /// The GPU's image, or the evaluator's in f32 without a GPU.
+    pub actual: Rgb8Image,
+    /// The GPU and its times; none if the evaluator rendered the image.
     pub painter: Option<Painter>,
-    /// What was seen on the way, with its line.
+    /// Observations of the run, with their lines.
     pub notes: Vec<Diagnostic>,
-    /// Where a shader loses its digits, if float32 is not enough for it and that could be found; a warning or a note says how.
+    /// Where the shader loses precision, if float32 is not enough and the place could be found; a note or a
+    /// warning describes it.
     pub cause: Option<Span>,
-    /// What explains a wrong picture, if that is a classic mistake, or two.
+    /// The classic mistake, or the two, that explain a wrong image.
     pub mistake: Option<Vec<Named>>,
-    /// What failed internally beside the verdict: the parts that are missing here.
+    /// Internal errors; the parts in which they occurred are missing here.
     pub panics: Vec<Panic>,
-    /// How long the evaluator took, for all its pictures.
+    /// The evaluator's time for all its images.
     pub eval: Duration,
-    /// How long the tracer took; next to nothing where the picture was known.
+    /// The tracer's time; nearly 0 where the reference was cached.
     pub trace: Option<Duration>,
 }
 
-/// A GPU at work: [`Drawn`] without its picture.
+/// The GPU that rendered an image, and its times: [`Drawn`] without the image.
 #[derive(Debug, Clone)]
 pub struct Painter {
     /// Adapter and driver.
@@ -141,7 +142,7 @@ pub struct Painter {
     pub translate: Duration,
     /// Time for the driver to compile.
     pub compile: Duration,
-    /// Time to paint and read back.
+    /// Time to render and read back.
     pub draw: Duration,
 }
 
@@ -156,154 +157,168 @@ impl Painter {
     }
 }
 
-/// The answer to a question, and what its picture shows.
+/// The result of a check, and its difference image.
 #[derive(Debug, Default)]
-pub struct Asked {
-    /// The answer.
+pub struct CheckResult {
+    /// The counts.
     pub answer: Answer,
-    /// A mark for each pixel, bottom row first.
-    pub marks: Vec<Mark>,
-    /// How each pixel stands.
-    standings: Vec<Standing>,
-    /// The colors that are compared, of pixels that do not agree: by their place in the picture.
+    /// The difference level of each pixel, bottom row first.
+    pub marks: Vec<DiffLevel>,
+    /// The status of each pixel.
+    statuses: Vec<PixelStatus>,
+    /// The shader's colors in pixels that do not agree, by pixel index.
     actual: HashMap<usize, [f32; 3]>,
 }
 
-impl Asked {
+impl CheckResult {
     /// Adds the band above the first `height` rows.
-    fn extend(&mut self, expected: &Image, actual: &Image, standings: &[Standing], height: u32) {
+    fn extend(&mut self, expected: &Image, actual: &Image, statuses: &[PixelStatus], height: u32) {
         self.answer
-            .extend(&Answer::new(expected, actual, standings), height);
-        self.marks.extend(compare::marks(expected, actual, standings));
-        let below = self.standings.len();
-        let own = standings.iter().enumerate();
-        let own = own.filter(|&(_, &standing)| matches!(standing, Standing::Differs | Standing::Undecided));
-        let room = MOST_KEPT.saturating_sub(self.actual.len());
-        self.actual.extend(own.take(room).map(|(at, _)| {
+            .extend(&Answer::new(expected, actual, statuses), height);
+        self.marks.extend(compare::marks(expected, actual, statuses));
+        let offset = self.statuses.len();
+        let differing = statuses.iter().enumerate();
+        let differing =
+            differing.filter(|&(_, &status)| matches!(status, PixelStatus::Differs | PixelStatus::Undecided));
+        let capacity = MAX_KEPT_COLORS.saturating_sub(self.actual.len());
+        self.actual.extend(differing.take(capacity).map(|(at, _)| {
             let [r, g, b, _] = actual.pixels()[at];
-            (below + at, [r, g, b])
+            (offset + at, [r, g, b])
         }));
-        self.standings.extend(standings);
+        self.statuses.extend(statuses);
     }
 }
 
-/// Why there are no findings.
+/// Why a shader could not be verified.
 #[derive(Debug, Error)]
 pub enum Failure {
-    /// The GPU's side failed.
+    /// The GPU failed.
     #[error(transparent)]
     Gpu(#[from] gpu::Failure),
     /// There is no GPU, and the evaluator failed.
     #[error(transparent)]
     Cpu(#[from] eval::Failure),
-    /// It takes too long to make the shader ready to run.
+    /// The shader takes too long to compile.
     #[error(transparent)]
     Overdue(#[from] Overdue),
-    /// The driver ended loops by force in that many pixels.
+    /// The driver truncated loops in that many pixels.
     #[error("a loop was ended by force in {} {}", compare::grouped(*.0), compare::plural(*.0, "pixel", "pixels"))]
-    CutShort(u64),
+    LoopTruncated(u64),
 }
 
-/// So many pairs of mistakes are looked for in a wrong picture: a few seconds' work.
-const PAIRS: usize = 512;
+/// The largest number of pairs of mistakes that are searched for in a wrong image: a few seconds' work.
+const MAX_PAIRS: usize = 512;
 
-/// The colors of so many pixels that do not agree are kept.
-const MOST_KEPT: usize = 1 << 16;
+/// The largest number of pixels that do not agree whose colors are kept.
+const MAX_KEPT_COLORS: usize = 1 << 16;
 
-/// So many bands of a GPU's picture wait to be compared: a picture of 1920×1080. If a larger one must wait, so must the watching of its
-/// loops.
-const WAITING: usize = 9;
+/// The capacity of the queue of GPU bands that wait to be compared: an image of 1920×1080. If a larger image
+/// has to wait, so does watching its loops.
+const MAX_QUEUED_BANDS: usize = 9;
 
-/// The evaluator may take so many times as long as the GPU: that it is slow is not the shader's fault.
-const PATIENCE: u32 = 4;
-/// All that is asked of a shader may take so many times as long.
-const ALL: u32 = 8;
+/// The evaluator's time limit as a multiple of the GPU's: a slow evaluator is not the shader's fault.
+const EVALUATOR_TIME_FACTOR: u32 = 4;
+/// The time limit of all checks of a shader as a multiple of one image's.
+const TOTAL_TIME_FACTOR: u32 = 8;
 
-/// Asks the three questions. Without a `worker` the evaluator paints in its stead, and the toolchain question is not asked. All together takes
-/// no longer than eight times what a picture may take, beside what there is to do once for each scene.
+/// Runs the three checks. Without a `worker`, the evaluator renders the image, and there is no toolchain
+/// check. Everything together takes at most eight times the time limit of an image, besides what is computed
+/// once per scene.
 ///
 /// # Errors
-/// Why there is no picture of the shader.
+/// Returns why there is no image of the shader.
 pub fn verify(worker: Option<&mut Worker>, case: &Case) -> Result<Findings, Failure> {
-    let until = Instant::now() + case.timeout * ALL;
-    let program = Program::within(case.checked, case.timeout * PATIENCE);
+    let deadline = Instant::now() + case.timeout * TOTAL_TIME_FACTOR;
+    let program = Program::within(case.checked, case.timeout * EVALUATOR_TIME_FACTOR);
     if let Err(eval::Refusal::TooSlow(overdue)) = program {
         return Err(overdue.into());
     }
     let stop = AtomicBool::new(false);
-    // Where a GPU paints too, it is the one that must not take long.
-    let each = case.timeout * if worker.is_some() { PATIENCE } else { 1 };
-    let (counted, rounds) = mpsc::channel();
+    // With a GPU, the time limit applies to the GPU.
+    let limit = case.timeout
+        * if worker.is_some() {
+            EVALUATOR_TIME_FACTOR
+        } else {
+            1
+        };
+    let (counts, iteration_counts) = mpsc::channel();
     let evaluator = match &program {
-        Ok(program) => Ok(Evaluator::new(program, case, each, until, &stop)),
+        Ok(program) => Ok(Evaluator::new(program, case, limit, deadline, &stop)),
         Err(refusal) => Err((*refusal).into()),
     };
-    let inquiry = Inquiry::new(case, evaluator, until, counted);
+    let session = VerifySession::new(case, evaluator, deadline, counts);
     let Some(worker) = worker else {
-        return on_cpu(case, inquiry);
+        return on_cpu(case, session);
     };
-    let mut inquiry = inquiry;
-    // They share the cores, but none waits for the others' latencies. The worker is asked from this thread: it dies with the one that
-    // started it.
-    let asked = &mut inquiry;
+    let mut session = session;
+    // They share the cores, but none waits for another's latency. The worker runs on this thread: its process
+    // ends with the thread that started it.
+    let comparing_session = &mut session;
     let (drawn, compared) = thread::scope(|scope| {
-        let (sender, bands) = mpsc::sync_channel(WAITING);
-        let comparing = scope.spawn(move || within(case.pool, move || asked.bands(Some(&bands))));
-        let drawn = draw(worker, case, &rounds, &sender);
-        let is_usable = |drawn: &Drawn| drawn.cut_short.is_none_or(|pixels| pixels == 0);
+        let (sender, bands) = mpsc::sync_channel(MAX_QUEUED_BANDS);
+        let comparing = scope.spawn(move || within(case.pool, move || comparing_session.bands(Some(&bands))));
+        let drawn = draw(worker, case, &iteration_counts, &sender);
+        let is_usable = |drawn: &Drawn| drawn.loop_truncated.is_none_or(|pixels| pixels == 0);
         stop.store(!drawn.as_ref().is_ok_and(is_usable), Ordering::Relaxed);
         drop(sender);
         (drawn, join(comparing))
     });
     let drawn = match drawn {
         Err(Failure::Gpu(failure)) if failure.is_slow_compilation() => {
-            return without_compiler(failure, case, program.as_ref(), until);
+            return without_compiler(failure, case, program.as_ref(), deadline);
         }
         drawn => drawn?,
     };
     compared?;
-    // A loop that the evaluator saw no end of, on a driver that may have ended it by force and could not be watched.
+    // The evaluator found a loop that does not end, on a driver that may have truncated it and could not be
+    // watched.
     if let (None, Err(failure @ (eval::Failure::Timeout { .. } | eval::Failure::TooOften { .. }))) =
-        (drawn.cut_short, &inquiry.evaluator)
+        (drawn.loop_truncated, &session.evaluator)
     {
         return Err(failure.clone().into());
     }
-    // Where the driver could not be watched in time, the evaluator has counted the rounds.
-    let painter = match drawn.cut_short.unwrap_or(inquiry.noted.beyond_cap) {
+    // Where the driver could not be watched in time, the evaluator has counted the iterations.
+    let painter = match drawn.loop_truncated.unwrap_or(session.observed.beyond_cap) {
         0 => Painter::of(drawn),
-        pixels => return Err(Failure::CutShort(pixels)),
+        pixels => return Err(Failure::LoopTruncated(pixels)),
     };
-    Ok(within(case.pool, || inquiry.findings(Some(painter))))
+    Ok(within(case.pool, || session.findings(Some(painter))))
 }
 
-/// What the evaluator finds alone.
-fn on_cpu(case: &Case, mut inquiry: Inquiry) -> Result<Findings, Failure> {
+/// Verifies with the evaluator alone.
+fn on_cpu(case: &Case, mut session: VerifySession) -> Result<Findings, Failure> {
     within(case.pool, || {
-        inquiry.bands(None)?;
-        Ok(inquiry.findings(None))
+        session.bands(None)?;
+        Ok(session.findings(None))
     })
 }
 
-/// What the evaluator finds alone where the driver's compiler did not come to an end: how long that takes says nothing of how
-/// long the shader runs. If the evaluator cannot compile it either, neither can be waited for.
+/// Verifies with the evaluator alone because the driver's compiler exceeded the time limit: how long it takes
+/// does not show how long the shader runs. Fails if the evaluator cannot compile the shader either.
 fn without_compiler(
     failure: gpu::Failure,
     case: &Case,
     program: Result<&Program, &eval::Refusal>,
-    until: Instant,
+    deadline: Instant,
 ) -> Result<Findings, Failure> {
     let Ok(program) = program else {
         return Err(failure.into());
     };
     let stop = AtomicBool::new(false);
-    let (counted, _) = mpsc::channel();
-    let evaluator = Evaluator::new(program, case, case.timeout * PATIENCE, until, &stop);
-    let mut findings = on_cpu(case, Inquiry::new(case, Ok(evaluator), until, counted))?;
+    let (counts, _) = mpsc::channel();
+    let evaluator = Evaluator::new(
+        program,
+        case,
+        case.timeout * EVALUATOR_TIME_FACTOR,
+        deadline,
+        &stop,
+    );
+    let mut findings = on_cpu(case, VerifySession::new(case, Ok(evaluator), deadline, counts))?;
     findings.notes.push(notes::slow_compilation(case.timeout));
     Ok(findings)
 }
 
-/// Does work in a pool, if there is one.
+/// Runs `work` in the pool, if there is one.
 fn within<T: Send>(pool: Option<&ThreadPool>, work: impl FnOnce() -> T + Send) -> T {
     match pool {
         Some(pool) => pool.install(work),
@@ -311,31 +326,32 @@ fn within<T: Send>(pool: Option<&ThreadPool>, work: impl FnOnce() -> T + Send) -
     }
 }
 
-/// Has the worker paint, sends on what it painted, and has it watch the loops unless the evaluator tells that they are short.
+/// Renders on the GPU, sends the bands on, and watches the loops unless the evaluator shows that they are
+/// short.
 fn draw(
     worker: &mut Worker,
     case: &Case,
-    rounds: &Receiver<Counted>,
+    iteration_counts: &Receiver<IterationCount>,
     bands: &SyncSender<Image>,
 ) -> Result<Drawn, Failure> {
-    // A strict run goes round as often as the evaluator does, who has often counted by now. Otherwise, no band is waited for longer
-    // than it would take the driver to paint all again.
-    let are_short = |painting| {
-        let mut counted = iter::from_fn(|| rounds.recv_timeout(painting).ok());
-        let last = counted.find(|counted| counted.most > SAFE_ROUNDS || counted.is_last);
-        last.is_some_and(|counted| counted.most <= SAFE_ROUNDS)
+    // A strict run has the evaluator's iteration counts, which are often known by now. Otherwise, no band is
+    // waited for longer than the driver would need to render the image again.
+    let are_short = |render_time| {
+        let mut counts = iter::from_fn(|| iteration_counts.recv_timeout(render_time).ok());
+        let last = counts.find(|counts| counts.most > SAFE_ROUNDS || counts.is_last);
+        last.is_some_and(|counts| counts.most <= SAFE_ROUNDS)
     };
-    let each = |band| {
-        // If nobody takes it, the comparing has failed, and tells of it.
+    let send_band = |band| {
+        // If the receiver is gone, the comparison has failed and reports it.
         let _ = bands.send(band);
     };
-    let watch = |drawn: &Drawn, painting| {
-        drawn.may_be_cut_short() && (case.float == FloatMode::Fast || !are_short(painting))
+    let watch = |drawn: &Drawn, render_time| {
+        drawn.may_truncate_loops() && (case.float == FloatMode::Fast || !are_short(render_time))
     };
     let lowered = case
         .float
         .lower_within(case.checked, &Deadline::after(case.timeout))?;
-    let drawn = worker.draw_in_bands(lowered, case.frame.clone(), case.float, each, watch)?;
+    let drawn = worker.draw_in_bands(lowered, case.frame.clone(), case.float, send_band, watch)?;
     Ok(drawn)
 }
 

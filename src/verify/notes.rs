@@ -1,51 +1,60 @@
-//! What was seen while a shader ran, as diagnostics with their lines.
+//! Diagnostics about a run: what the evaluator observed, colors that are not finite, and the line in which a
+//! shader loses precision.
 
-use std::time::Duration;
+use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
 
-use toyproof_diagnostic::{Diagnostic, Severity};
-use toyproof_eval::{Fault, MESA_CAP, Observations, Observed};
+use toyproof_diagnostic::{Diagnostic, Severity, Span};
+use toyproof_eval::{Fault, MESA_CAP, Observations, Observed, Program, TraceValue, What};
 use toyproof_glsl::tree::{ExprKind, Input, SamplerShape, VariableKind};
 use toyproof_glsl::{Checked, Code};
-use toyproof_image::Frame;
+use toyproof_image::{Frame, Image};
 use toyproof_lint::Lints;
 
-use crate::compare::{grouped, plural};
+use super::{Case, CheckResult};
+use crate::compare::{PixelStatus, grouped, plural};
+use crate::debug::{Explanation, digits, explain};
 
-/// What was seen, but for what was foreseen: `warned` before the run. Pixels may be left out because of it.
-pub(super) fn notes(noted: &Observations, leaves_out: bool, warned: &[Diagnostic]) -> Vec<Diagnostic> {
-    let is_foreseen = |observed: &Observed| {
+/// Reports what was observed, except what `warnings` of the lints report already. `excludes_pixels` says that
+/// pixels with undefined behavior are excluded.
+pub(super) fn notes(
+    observed: &Observations,
+    excludes_pixels: bool,
+    warnings: &[Diagnostic],
+) -> Vec<Diagnostic> {
+    let is_warned = |observed: &Observed| {
         let codes = [Code::Unwritten, Code::MaybeUnwritten].map(Code::as_str);
         let at = observed.site.at.span;
         let is_same = |warning: &Diagnostic| {
             let declared = warning.related.iter().any(|(span, _)| *span == at);
             declared && codes.contains(&&*warning.code)
         };
-        warned.iter().any(is_same)
+        warnings.iter().any(is_same)
     };
     let mut notes = Vec::new();
-    for observed in &noted.faults {
-        if observed.site.fault == Fault::NeverWritten && !is_foreseen(observed) {
+    for observed in &observed.faults {
+        if observed.site.fault == Fault::NeverWritten && !is_warned(observed) {
             notes.push(never_written(observed));
         } else if observed.site.fault.is_undefined() {
-            notes.push(undefined(observed, leaves_out));
+            notes.push(undefined(observed, excludes_pixels));
         }
     }
-    let foreseen = warned
+    let is_warned = warnings
         .iter()
         .any(|warning| warning.code == Code::LongLoop.as_str());
-    if noted.beyond_cap > 0 && !foreseen {
+    if observed.beyond_cap > 0 && !is_warned {
         let message = format!(
             "loops run more than {} rounds in {} {}, after which Mesa before 23 ends them by force",
             grouped(u64::from(MESA_CAP)),
-            grouped(noted.beyond_cap),
-            plural(noted.beyond_cap, "pixel", "pixels")
+            grouped(observed.beyond_cap),
+            plural(observed.beyond_cap, "pixel", "pixels")
         );
         notes.push(Diagnostic::warning(Code::LongRun.as_str(), message));
     }
     notes
 }
 
-/// The channels that a shader names and a frame has no picture for, each where it is named first.
+/// Reports the channels that a shader reads but the frame has no image for, each at its first use.
 #[must_use]
 pub fn unbound(checked: &Checked, lints: &Lints, frame: &Frame) -> Vec<Diagnostic> {
     let mut named = [None; 4];
@@ -59,7 +68,7 @@ pub fn unbound(checked: &Checked, lints: &Lints, frame: &Frame) -> Vec<Diagnosti
     let named = (0..)
         .zip(named)
         .filter_map(|(channel, span)| Some((channel, span?)));
-    let told = named.filter_map(|(channel, span): (usize, _)| {
+    let unbound = named.filter_map(|(channel, span): (usize, _)| {
         let note = match checked.channels[channel] {
             SamplerShape::D2 if frame.channels[channel].is_some() => return None,
             SamplerShape::D2 => {
@@ -71,10 +80,10 @@ pub fn unbound(checked: &Checked, lints: &Lints, frame: &Frame) -> Vec<Diagnosti
         let diagnostic = Diagnostic::warning(Code::UnboundChannel.as_str(), message);
         Some(diagnostic.at(span).note(note))
     });
-    told.filter(|note| !lints.allows(note)).collect()
+    unbound.filter(|note| !lints.allows(note)).collect()
 }
 
-/// Why no GPU ran the shader.
+/// Reports that the driver did not compile the shader in time.
 pub(super) fn slow_compilation(after: Duration) -> Diagnostic {
     let message = format!(
         "the Vulkan driver takes longer than {} s to compile this shader: it was evaluated on the CPU, without the \
@@ -86,7 +95,7 @@ pub(super) fn slow_compilation(after: Duration) -> Diagnostic {
     )
 }
 
-fn undefined(observed: &Observed, leaves_out: bool) -> Diagnostic {
+fn undefined(observed: &Observed, excludes_pixels: bool) -> Diagnostic {
     let message = format!(
         "{} in {}: GLSL leaves open what comes of it",
         observed.site.fault.words(),
@@ -94,7 +103,7 @@ fn undefined(observed: &Observed, leaves_out: bool) -> Diagnostic {
     );
     let diagnostic =
         Diagnostic::warning(Code::UndefinedOperation.as_str(), message).at(observed.site.at.span);
-    if leaves_out {
+    if excludes_pixels {
         diagnostic
     } else {
         diagnostic.note("no pixel's colour depends on it, so that none is left out of the comparison")
@@ -111,7 +120,7 @@ fn never_written(observed: &Observed) -> Diagnostic {
         .note("give it a value where it is declared")
 }
 
-/// In how many pixels, and the first of them.
+/// Formats the number of pixels and the first of them.
 fn pixels(observed: &Observed) -> String {
     let [x, y] = observed.first;
     let count = observed.pixels;
@@ -120,4 +129,141 @@ fn pixels(observed: &Observed) -> String {
         grouped(count),
         plural(count, "pixel", "pixels")
     )
+}
+
+/// The largest number of differing pixels that are explained to find the cause.
+const MAX_EXPLAINED_PIXELS: usize = 5;
+
+/// Returns the place at which most of the explained pixels diverge between f32 and f64; none if the time
+/// limit is exceeded.
+pub(super) fn cause(
+    program: &Program,
+    case: &Case,
+    deadline: Instant,
+    check: &CheckResult,
+) -> Option<Diagnostic> {
+    let deadline = deadline.min(Instant::now() + case.timeout);
+    let mut named = BTreeMap::<u32, (u64, Diagnostic)>::new();
+    for pixel in sample_pixels(check, case.frame.size, MAX_EXPLAINED_PIXELS) {
+        let explained = explain(program, case.frame, pixel, Some(deadline));
+        let diagnostic = explained
+            .ok()
+            .and_then(|explanation| diagnostic(&explanation, pixel));
+        if let Some((span, diagnostic)) = diagnostic {
+            named.entry(span.start).or_insert((0, diagnostic)).0 += 1;
+        }
+    }
+    let most = named.into_values().max_by_key(|&(votes, _)| votes);
+    most.map(|(_, diagnostic)| diagnostic)
+}
+
+/// Pixels with NaN or infinite colors.
+#[derive(Debug, Default)]
+pub(super) struct NotFinite {
+    /// The number of pixels.
+    count: u64,
+    /// The first of these pixels.
+    first: Option<[u32; 2]>,
+}
+
+impl NotFinite {
+    /// Counts the pixels of a band that begins at `row`.
+    pub(super) fn record(&mut self, band: &Image, row: u32) {
+        let is_bad = |pixel: &[f32; 4]| pixel[..3].iter().any(|part| !part.is_finite());
+        let bad = band.pixels().iter().enumerate();
+        let mut bad = bad.filter(|(_, pixel)| is_bad(pixel)).map(|(at, _)| at as u32);
+        if let Some(at) = bad.next() {
+            let width = band.size()[0];
+            self.first.get_or_insert([at % width, row + at / width]);
+            self.count += 1 + bad.count() as u64;
+        }
+    }
+
+    /// Reports the origin of the first such color; none if all are finite, or if it was not found.
+    pub(super) fn diagnostic(&self, program: &Program, case: &Case, deadline: Instant) -> Option<Diagnostic> {
+        let [x, y] = self.first?;
+        let count = self.count;
+        let deadline = deadline.min(Instant::now() + case.timeout);
+        let explained = explain(program, case.frame, [x, y], Some(deadline)).ok()?;
+        let step = explained.not_finite.map(|at| &explained.steps[at])?;
+        let value = step.single.iter().flatten().find_map(|value| match value {
+            TraceValue::Float(value) if !value.is_finite() => Some(digits(*value, true)),
+            _ => None,
+        });
+        let message = format!(
+            "{} in {} {}, first at ({x}, {y}), where {} comes of this",
+            if count == 1 {
+                "a colour that is not finite"
+            } else {
+                "colours that are not finite"
+            },
+            grouped(count),
+            if count == 1 { "pixel" } else { "pixels" },
+            value.unwrap_or_default(),
+        );
+        let span = explained.plot.event(step.event).at.span;
+        Some(
+            Diagnostic::warning(Code::NotFinite.as_str(), message)
+                .at(span)
+                .note(hint([x, y])),
+        )
+    }
+}
+
+/// Returns at most `max_count` of the differing pixels, spread over the image; of the ill-conditioned ones if
+/// none differs.
+pub(super) fn sample_pixels(check: &CheckResult, size: [u32; 2], max_count: usize) -> Vec<[u32; 2]> {
+    let width = size[0] as usize;
+    let of = |status| {
+        let statuses = check.statuses.iter().enumerate();
+        statuses.filter(move |&(_, &own)| own == status).map(|(at, _)| at)
+    };
+    let statuses = [PixelStatus::Differs, PixelStatus::Undecided];
+    let status = statuses.into_iter().find(|&status| of(status).next().is_some());
+    let Some(status) = status else {
+        return Vec::new();
+    };
+    let all = of(status).count();
+    let count = all.min(max_count);
+    let mut left = of(status).enumerate();
+    let chosen = (0..count).filter_map(|at| {
+        let chosen = (2 * at + 1) * all / (2 * count);
+        left.find(|&(number, _)| number == chosen)
+    });
+    chosen
+        .map(|(_, at)| [(at % width) as u32, (at / width) as u32])
+        .collect()
+}
+
+fn diagnostic(explanation: &Explanation<'_>, [x, y]: [u32; 2]) -> Option<(Span, Diagnostic)> {
+    let step = &explanation.steps[explanation.cause?];
+    let event = explanation.plot.event(step.event);
+    let at = format!("at ({x}, {y})");
+    let message = match step.worst() {
+        Some((_, single, double)) if event.what == What::Branch => {
+            let branch = |value| matches!(value, TraceValue::Word(word) if word != 0);
+            format!(
+                "float32 decides otherwise here: {at} this is {}, and {} in double precision",
+                branch(single),
+                branch(double)
+            )
+        }
+        Some((_, TraceValue::Float(single), TraceValue::Float(double))) => format!(
+            "float32 loses its digits here: {at} this is {}, and {} in double precision",
+            digits(single, true),
+            digits(double, false)
+        ),
+        _ => format!("float32 and double precision part here, {at}"),
+    };
+    let span = event.at.span;
+    Some((
+        span,
+        Diagnostic::warning(Code::LostDigits.as_str(), message)
+            .at(span)
+            .note(hint([x, y])),
+    ))
+}
+
+fn hint([x, y]: [u32; 2]) -> String {
+    format!("`toyproof explain` with `--pixel {x},{y}` tells how it comes to this")
 }

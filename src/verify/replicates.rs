@@ -1,77 +1,82 @@
-//! Several pictures of a shader, each with other random numbers, at places from all over a frame.
+//! Replicates of a shader: several evaluations with other random numbers, at pixels spread over a frame.
 
 use std::time::Instant;
 
 use rayon::prelude::*;
-use toyproof_eval::{Places, Program, Settings, Variant};
+use toyproof_eval::{Places, Program, Settings, UndefinedPolicy};
 use toyproof_image::Image;
 use toyproof_tracer::Tracer;
 
-use super::reseed::{Reseeding, is_without_chance};
-use super::{Asked, Case};
+use super::reseed::{Reseeding, is_deterministic};
+use super::{Case, CheckResult};
 use crate::compare::{
-    EXACT_TOLERANCE, MAX_DIFFERING, REPLICATES, Replicated, ReplicatedPixel, Standing, replicated,
+    EXACT_TOLERANCE, MAX_DIFFERING, PixelStatus, REPLICATES, ReplicateTest, ReplicatedPixel,
+    compare_replicates,
 };
 use crate::mistake::NoisyPixel;
 
-/// So many further pictures say what each pixel counts, so that what is compared has no part in it.
-const WEIGHING: usize = 4;
+/// The number of further replicates that estimate the weights of pixels, so that weights are independent of
+/// the values that are compared.
+const WEIGHT_REPLICATES: usize = 4;
 
-/// The tracer's sets of samples: by these pixels are chosen and weighed, and these two halves make the means.
-const CHOOSING: std::ops::Range<u32> = 1..9;
-const HALVES: [std::ops::Range<u32>; 2] = [9..13, 13..17];
+/// The tracer's sets of random numbers: the first select pixels and estimate their weights, the two halves
+/// estimate the means.
+const SELECTION_SETS: std::ops::Range<u32> = 1..9;
+const ESTIMATE_HALVES: [std::ops::Range<u32>; 2] = [9..13, 13..17];
 
-/// A picture takes so many samples or paths at most, and has so many pixels.
-const SAMPLES: u32 = 1 << 18;
-const PATHS: u32 = 1 << 17;
-const PIXELS: u32 = 1 << 15;
+/// The largest numbers of samples, of paths and of pixels of a replicate.
+const MAX_SAMPLES: u32 = 1 << 18;
+const MAX_PATHS: u32 = 1 << 17;
+const MAX_PIXELS: u32 = 1 << 15;
 
-/// Pixels count as if their noise were at least this: what eight sets of samples happen not to see is not seen by others either.
-const LEAST_NOISE: f64 = 0.01;
+/// The lower bound of a pixel's standard deviation in weights: what eight sets of samples happen to miss,
+/// others miss too.
+const MIN_STANDARD_DEVIATION: f64 = 0.01;
 
-/// A sample brings no more than this; beyond lies what a tone curve has lost the digits of.
-const MOST: f64 = 1e4;
+/// The largest mean of samples: above it, the inverse of a tone map has no precision left.
+const MAX_SAMPLE_MEAN: f64 = 1e4;
 
-/// If fewer of the pixels that are random in the scene change, a shader was not given other random numbers. Where a rare event decides, as that a
-/// direction meets a lamp, most of them do not.
-const LEAST_CHANGED: f64 = 0.1;
+/// The share of the scene's random pixels that must change, or the reseeding had no effect. Where a rare
+/// event decides, such as a direction that hits a lamp, most of them do not.
+const MIN_CHANGED_SHARE: f64 = 0.1;
 
-/// With other random numbers, a shader is about as far from the reference as with its own: its squares are within this factor.
-const SAME_DISTANCE: f64 = 2.0;
+/// The largest ratio of the squared distances from the reference of a shader with other random numbers and
+/// with its own.
+const MAX_DISTANCE_RATIO: f64 = 2.0;
 
-/// A pixel that is the same with all of a shader's random numbers may still be so by chance if it is within so many standard deviations of
-/// those around it.
-const RARE: f64 = 3.0;
+/// A pixel that is the same in all replicates may still be random if it is within this many standard
+/// deviations of its neighbors.
+const MAX_RARE_DEVIATION: f64 = 3.0;
 
-/// Why there is nothing to compare by chance.
+/// Why a shader cannot be compared by its replicates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Unfit {
+pub(super) enum Incomparable {
     /// The shader differs in pixels that are random neither in the scene nor in the shader.
-    Fixed,
-    /// The shader draws the scene's own numbers: its noise is the reference's, and its pixels are to be those of the scene.
-    Follows,
-    /// No way was found to give the shader other random numbers, or there was no time.
-    Unsalted,
+    NotRandom,
+    /// The shader uses the scene's own random numbers, so that its pixels must be the reference's.
+    SceneNumbers,
+    /// No reseeding works for the shader, or the time limit is exceeded.
+    NotReseeded,
 }
 
-/// What the pixels of some places are for the tracer.
-struct Drawn {
-    /// Means of samples, for each set of [`CHOOSING`].
-    choosing: Vec<[f64; 3]>,
+/// The tracer's estimates for a pixel.
+struct TracedPixel {
+    /// The means of samples of each set in [`SELECTION_SETS`].
+    selection: Vec<[f64; 3]>,
     halves: [[f64; 3]; 2],
-    /// Of one set of samples, by those of the halves.
+    /// The variance of one set of samples, estimated from the sets of the halves.
     variance: [f64; 3],
 }
 
-impl Drawn {
+impl TracedPixel {
     fn at(tracer: &Tracer<f64>, pixel: [u32; 2]) -> Self {
         let sets = |sets: std::ops::Range<u32>| -> Vec<[f64; 3]> {
-            sets.map(|set| tracer.redrawn_mean(pixel, set)).collect()
+            sets.map(|set| tracer.resampled_mean(pixel, set)).collect()
         };
-        let halves = HALVES.map(sets);
+        let halves = ESTIMATE_HALVES.map(sets);
         let all = halves.concat();
         Self {
-            choosing: sets(CHOOSING),
+            selection: sets(SELECTION_SETS),
             variance: variance(&all),
             halves: halves.map(|half| mean(&half)),
         }
@@ -81,11 +86,11 @@ impl Drawn {
         mean(&self.halves)
     }
 
-    /// Whether chance decides about its color.
-    fn moves(&self, tracer: &Tracer<f64>) -> bool {
-        let first = tracer.developed(self.choosing[0]);
-        let mut others = self.choosing.iter().chain(&self.halves);
-        others.any(|&other| differ(first, tracer.developed(other)))
+    /// Whether the pixel's color depends on random numbers.
+    fn differs(&self, tracer: &Tracer<f64>) -> bool {
+        let first = tracer.developed(self.selection[0]);
+        let mut others = self.selection.iter().chain(&self.halves);
+        others.any(|&other| differs(first, tracer.developed(other)))
     }
 }
 
@@ -101,138 +106,148 @@ fn variance(all: &[[f64; 3]]) -> [f64; 3] {
     })
 }
 
-fn differ(a: [f64; 3], b: [f64; 3]) -> bool {
+fn differs(a: [f64; 3], b: [f64; 3]) -> bool {
     (0..3).any(|i| (a[i] - b[i]).abs() > EXACT_TOLERANCE)
 }
 
-/// Compares a shader that differs from its scene with it, where chance decides.
+/// Compares the replicates of a shader that differs from its scene with the tracer.
 ///
 /// # Errors
-/// Why that cannot be done.
-pub(super) fn compared(
+/// Returns why the shader cannot be compared this way.
+pub(super) fn compare_with_scene(
     program: &Program,
     case: &Case,
     tracer: &Tracer<f64>,
-    maths: &Asked,
-    until: Instant,
-) -> Result<Compared, Unfit> {
-    let shader = Shader {
+    algorithm: &CheckResult,
+    deadline: Instant,
+) -> Result<SceneComparison, Incomparable> {
+    let shader = ReplicatedShader {
         program,
         case,
         tracer,
         places: places(case.frame.size, tracer),
-        until,
+        deadline,
     };
-    let usual = shader.usual().ok_or(Unfit::Unsalted)?;
+    let unsalted = shader.unsalted().ok_or(Incomparable::NotReseeded)?;
     let [columns, rows] = shader.places.pixels();
     let pixels = rows.iter().flat_map(|&y| columns.iter().map(move |&x| [x, y]));
     let pixels: Vec<[u32; 2]> = pixels.collect();
-    let drawn: Vec<Drawn> = pixels.par_iter().map(|&pixel| Drawn::at(tracer, pixel)).collect();
-    let moves: Vec<bool> = drawn.par_iter().map(|drawn| drawn.moves(tracer)).collect();
-    if follows(tracer, &pixels, &usual, &drawn) {
-        return Err(Unfit::Follows);
+    let traced: Vec<TracedPixel> = pixels
+        .par_iter()
+        .map(|&pixel| TracedPixel::at(tracer, pixel))
+        .collect();
+    let is_random_in_scene: Vec<bool> = traced.par_iter().map(|traced| traced.differs(tracer)).collect();
+    if uses_scene_numbers(tracer, &pixels, &unsalted, &traced) {
+        return Err(Incomparable::SceneNumbers);
     }
-    let compare = |(reseeding, sets)| shader.compare(reseeding, sets, &pixels, &drawn, &moves, maths);
+    let compare =
+        |(reseeding, sets)| shader.compare(reseeding, sets, &pixels, &traced, &is_random_in_scene, algorithm);
     let mut first = None;
-    // A salt may take from a hash what tells neighbors apart, where another does not.
+    // A salt may make a hash equal in neighboring pixels, where another reseeding does not.
     for reseeding in Reseeding::all() {
-        let Some(sets) = shader.replicates(reseeding, &usual, &drawn, &moves) else {
+        let Some(sets) = shader.replicates(reseeding, &unsalted, &traced, &is_random_in_scene) else {
             continue;
         };
-        let compared = compare((reseeding, sets));
-        if compared
+        let comparison = compare((reseeding, sets));
+        if comparison
             .as_ref()
-            .is_ok_and(|compared| !compared.replicated.is_repeated)
+            .is_ok_and(|comparison| !comparison.test.is_correlated)
         {
-            return compared;
+            return comparison;
         }
-        first.get_or_insert(compared);
+        first.get_or_insert(comparison);
     }
-    if first.is_none() && is_without_chance(case.checked) {
-        // Nothing is random in it: it is the same with any numbers.
+    if first.is_none() && is_deterministic(case.checked) {
+        // The shader has no randomness: all replicates are the same.
         let [.., untouched] = Reseeding::all();
-        first = Some(compare((untouched, vec![usual; REPLICATES + WEIGHING])));
+        first = Some(compare((
+            untouched,
+            vec![unsalted; REPLICATES + WEIGHT_REPLICATES],
+        )));
     }
-    first.unwrap_or(Err(Unfit::Unsalted))
+    first.unwrap_or(Err(Incomparable::NotReseeded))
 }
 
-/// So many places a side are looked at to see whether a shader is random at all.
-const GLANCE: u32 = 32;
+/// The number of columns and of rows of pixels that are sampled to detect whether a shader is random.
+const RANDOMNESS_GRID: u32 = 32;
 
-/// With other random numbers, a random pixel moves by more than this: more than it does where its place moves by a thousandth of a pixel.
-const MOVES: f64 = 20.0 * EXACT_TOLERANCE;
+/// The smallest change of a random pixel with other random numbers; moving the pixel by a thousandth of its
+/// size changes it less.
+const MIN_RANDOM_CHANGE: f64 = 20.0 * EXACT_TOLERANCE;
 
-/// Whether enough of the pixels that differ are random in the shader.
+/// Whether enough of the differing pixels are random in the shader.
 pub(super) fn is_random(
     program: &Program,
     case: &Case,
     tracer: &Tracer<f64>,
-    maths: &Asked,
-    until: Instant,
+    algorithm: &CheckResult,
+    deadline: Instant,
 ) -> bool {
     let size = case.frame.size;
-    let shader = Shader {
+    let shader = ReplicatedShader {
         program,
         case,
         tracer,
-        places: Places::spread(size, [GLANCE; 2]),
-        until,
+        places: Places::spread(size, [RANDOMNESS_GRID; 2]),
+        deadline,
     };
-    let Some(usual) = shader.usual() else {
+    let Some(unsalted) = shader.unsalted() else {
         return false;
     };
     let [columns, rows] = shader.places.pixels();
     let differs = |at: usize| {
         let [x, y] = [columns[at % columns.len()], rows[at / columns.len()]];
-        let standing = maths.standings[y as usize * size[0] as usize + x as usize];
-        matches!(standing, Standing::Differs | Standing::Undecided)
+        let status = algorithm.statuses[y as usize * size[0] as usize + x as usize];
+        matches!(status, PixelStatus::Differs | PixelStatus::Undecided)
     };
-    let differing: Vec<usize> = (0..usual.len()).filter(|&at| differs(at)).collect();
+    let differing: Vec<usize> = (0..unsalted.len()).filter(|&at| differs(at)).collect();
     Reseeding::all().into_iter().any(|reseeding| {
         shader.salted(reseeding, 1).is_some_and(|other| {
-            let moves = |&&at: &&usize| {
-                let [a, b] = [&usual, &other].map(|own| own[at].developed);
-                (0..3).any(|i| (a[i] - b[i]).abs() > MOVES)
+            let changes = |&&at: &&usize| {
+                let [a, b] = [&unsalted, &other].map(|own| own[at].developed);
+                (0..3).any(|i| (a[i] - b[i]).abs() > MIN_RANDOM_CHANGE)
             };
-            let moved = differing.iter().filter(moves).count();
-            moved > 0 && moved as f64 >= LEAST_CHANGED * differing.len() as f64
+            let changed = differing.iter().filter(changes).count();
+            changed > 0 && changed as f64 >= MIN_CHANGED_SHARE * differing.len() as f64
         })
     })
 }
 
-/// What a comparison found.
-pub(super) struct Compared {
-    pub(super) replicated: Replicated,
-    /// How many pixels were compared.
+/// The result of a comparison.
+pub(super) struct SceneComparison {
+    pub(super) test: ReplicateTest,
+    /// The number of pixels that were compared.
     pub(super) pixels: usize,
-    /// How the shader was given other random numbers.
+    /// The reseeding of the shader.
     pub(super) reseeding: Reseeding,
 }
 
-/// The means of a shader and of the tracer at other places, over so many sets of random numbers each.
-pub(super) fn noisy(
+/// The means of a shader and of the tracer at other places, each over 2 × [`REPLICATES`] sets of random
+/// numbers.
+pub(super) fn noisy_pixels(
     program: &Program,
     case: &Case,
     tracer: &Tracer<f64>,
     reseeding: Reseeding,
     places: &Places,
-    until: Instant,
+    deadline: Instant,
 ) -> Option<Vec<NoisyPixel>> {
-    let shader = Shader {
+    let shader = ReplicatedShader {
         program,
         case,
         tracer,
         places: places.clone(),
-        until,
+        deadline,
     };
     let count = 2 * REPLICATES as u32;
-    let salted: Option<Vec<Vec<OwnPixel>>> = (1..=count).map(|salt| shader.salted(reseeding, salt)).collect();
+    let salted: Option<Vec<Vec<ShaderPixel>>> =
+        (1..=count).map(|salt| shader.salted(reseeding, salt)).collect();
     let salted = salted?;
     let [columns, rows] = places.pixels();
-    let noisy = (0..columns.len() * rows.len()).into_par_iter().map(|at| {
+    let pixels = (0..columns.len() * rows.len()).into_par_iter().map(|at| {
         let pixel = [columns[at % columns.len()], rows[at / columns.len()]];
         let own: Vec<_> = salted.iter().map(|set| set[at].developed).collect();
-        let reference: Vec<_> = (1..=count).map(|set| tracer.redrawn(pixel, set)).collect();
+        let reference: Vec<_> = (1..=count).map(|set| tracer.resampled(pixel, set)).collect();
         let variances = [&own, &reference].map(|all| variance(all));
         NoisyPixel {
             own: mean(&own),
@@ -240,220 +255,246 @@ pub(super) fn noisy(
             variance: [0, 1, 2].map(|i| (variances[0][i] + variances[1][i]) / f64::from(count)),
         }
     });
-    Some(noisy.collect())
+    Some(pixels.collect())
 }
 
-/// A shader draws the scene's numbers if its noise and the reference's are correlated more than this. It is 0.1 if they have only the mean in
-/// common which both are told from.
-const THE_SCENES: f64 = 0.5;
+/// A shader uses the scene's random numbers if the correlation of its noise with the reference's exceeds
+/// this. Independent noise has a correlation of 0.1, because the same mean is subtracted from both.
+const MIN_SHARED_CORRELATION: f64 = 0.5;
 
-/// Whether a shader draws the scene's numbers.
-fn follows(tracer: &Tracer<f64>, pixels: &[[u32; 2]], own: &[OwnPixel], drawn: &[Drawn]) -> bool {
+/// Whether a shader uses the scene's random numbers.
+fn uses_scene_numbers(
+    tracer: &Tracer<f64>,
+    pixels: &[[u32; 2]],
+    own: &[ShaderPixel],
+    traced: &[TracedPixel],
+) -> bool {
     let of_each = (0..pixels.len()).into_par_iter().map(|at| {
         let [x, y] = pixels[at];
         let reference = tracer.undeveloped(tracer.pixel(x, y));
-        let (mean, chosen) = (drawn[at].mean(), variance(&drawn[at].choosing));
+        let (mean, selected) = (traced[at].mean(), variance(&traced[at].selection));
         let mut sums = [0.0; 3];
         for i in 0..3 {
             let [a, b] = [own[at].mean[i] - mean[i], reference[i] - mean[i]];
-            let weight = 1.0 / (chosen[i] + LEAST_NOISE * LEAST_NOISE);
+            let weight = 1.0 / (selected[i] + MIN_STANDARD_DEVIATION * MIN_STANDARD_DEVIATION);
             let terms = [a * a, a * b, b * b].map(|term| if term.is_finite() { weight * term } else { 0.0 });
             (0..3).for_each(|at| sums[at] += terms[at]);
         }
         sums
     });
     let of_each: Vec<[f64; 3]> = of_each.collect();
-    let [own, both, reference] = of_each
+    let [own, covariance, reference] = of_each
         .iter()
         .fold([0.0; 3], |sum, each| [0, 1, 2].map(|at| sum[at] + each[at]));
-    both > THE_SCENES * (own * reference).sqrt()
+    covariance > MIN_SHARED_CORRELATION * (own * reference).sqrt()
 }
 
-/// Places from all over a picture.
+/// Pixels spread over an image.
 fn places(size: [u32; 2], tracer: &Tracer<f64>) -> Places {
-    let samples = if tracer.traces_paths() { PATHS } else { SAMPLES };
-    let most = f64::from((samples / tracer.samples()).clamp(1, PIXELS));
+    let samples = if tracer.traces_paths() {
+        MAX_PATHS
+    } else {
+        MAX_SAMPLES
+    };
+    let max_pixels = f64::from((samples / tracer.samples()).clamp(1, MAX_PIXELS));
     let all = f64::from(size[0]) * f64::from(size[1]);
-    let share = (most / all).sqrt().min(1.0);
+    let share = (max_pixels / all).sqrt().min(1.0);
     Places::spread(size, size.map(|side| (f64::from(side) * share) as u32))
 }
 
-/// A pixel of a shader's.
+/// A pixel of the shader.
 #[derive(Clone, Copy)]
-struct OwnPixel {
-    /// As it is shown.
+struct ShaderPixel {
+    /// The color as it is shown.
     developed: [f64; 3],
-    /// What the mean of its samples must have been.
+    /// The mean of its samples, by the inverse of the tone map.
     mean: [f64; 3],
 }
 
-/// A shader at some places.
-struct Shader<'a> {
+/// A shader and the pixels at which it is evaluated.
+struct ReplicatedShader<'a> {
     program: &'a Program,
     case: &'a Case<'a>,
     tracer: &'a Tracer<f64>,
     places: Places,
-    until: Instant,
+    deadline: Instant,
 }
 
-impl Shader<'_> {
-    fn usual(&self) -> Option<Vec<OwnPixel>> {
-        self.picture(self.program, &self.places)
+impl ReplicatedShader<'_> {
+    fn unsalted(&self) -> Option<Vec<ShaderPixel>> {
+        self.render(self.program, &self.places)
     }
 
-    fn picture(&self, program: &Program, places: &Places) -> Option<Vec<OwnPixel>> {
+    fn render(&self, program: &Program, places: &Places) -> Option<Vec<ShaderPixel>> {
         let settings = Settings::<f64> {
-            variant: Variant::Plain,
-            deadline: Some(self.until),
+            undefined: UndefinedPolicy::Plain,
+            deadline: Some(self.deadline),
             ..Settings::default()
         };
         let image = program.at(self.case.frame, places, &settings).ok()?;
-        Some(self.own_pixels(&image))
+        Some(self.shader_pixels(&image))
     }
 
-    fn own_pixels(&self, image: &Image) -> Vec<OwnPixel> {
+    fn shader_pixels(&self, image: &Image) -> Vec<ShaderPixel> {
         let own = |&[r, g, b, _]: &[f32; 4]| {
             let color = [r, g, b].map(f64::from);
             let mean = self.tracer.undeveloped(color);
-            OwnPixel {
+            ShaderPixel {
                 developed: color.map(|part| part.clamp(0.0, 1.0)),
-                // NaN becomes the largest number, which nothing agrees with.
-                mean: mean.map(|part| if part.abs() < MOST { part } else { MOST }),
+                // NaN becomes the largest mean, which agrees with nothing.
+                mean: mean.map(|part| {
+                    if part.abs() < MAX_SAMPLE_MEAN {
+                        part
+                    } else {
+                        MAX_SAMPLE_MEAN
+                    }
+                }),
             }
         };
         image.pixels().iter().map(own).collect()
     }
 
-    fn salted(&self, reseeding: Reseeding, salt: u32) -> Option<Vec<OwnPixel>> {
+    fn salted(&self, reseeding: Reseeding, salt: u32) -> Option<Vec<ShaderPixel>> {
         let checked = reseeding.of(self.case.checked, salt);
-        let program = Program::prepared(&checked, Variant::Plain).ok()?;
-        self.picture(&program, &self.places.shifted(Reseeding::shift(salt)))
+        let program = Program::prepared(&checked, UndefinedPolicy::Plain).ok()?;
+        self.render(&program, &self.places.shifted(Reseeding::shift(salt)))
     }
 
-    /// Compares the pictures of a reseeding with the tracer's.
+    /// Compares the replicates of one reseeding with the tracer.
     fn compare(
         &self,
         reseeding: Reseeding,
-        mut sets: Vec<Vec<OwnPixel>>,
+        mut sets: Vec<Vec<ShaderPixel>>,
         pixels: &[[u32; 2]],
-        drawn: &[Drawn],
-        moves: &[bool],
-        maths: &Asked,
-    ) -> Result<Compared, Unfit> {
-        let weighing = sets.split_off(REPLICATES);
+        traced: &[TracedPixel],
+        is_random_in_scene: &[bool],
+        algorithm: &CheckResult,
+    ) -> Result<SceneComparison, Incomparable> {
+        let weight_sets = sets.split_off(REPLICATES);
         let width = self.case.frame.size[0] as usize;
-        let standing = |[x, y]: [u32; 2]| maths.standings[y as usize * width + x as usize];
+        let status = |[x, y]: [u32; 2]| algorithm.statuses[y as usize * width + x as usize];
         let is_random = |at: usize| {
-            moves[at]
+            is_random_in_scene[at]
                 || sets
                     .iter()
-                    .any(|set| differ(set[at].developed, sets[0][at].developed))
+                    .any(|set| differs(set[at].developed, sets[0][at].developed))
         };
-        let spread = smooth(&weighing, self.places.pixels()[0].len());
-        // A rare event: the scene's own samples met it and no others did, or the shader's neighbors do now and then.
+        let smoothed = smoothed_variance(&weight_sets, self.places.pixels()[0].len());
+        // A rare event: it occurs in the scene's own samples and in no other set, or sometimes in the
+        // shader's neighboring pixels.
         let is_rare = |at: usize| {
-            let ([x, y], own, drawn) = (pixels[at], &sets[0][at], &drawn[at]);
+            let ([x, y], own, traced) = (pixels[at], &sets[0][at], &traced[at]);
             let is_noise = |i: usize| {
-                (own.mean[i] - drawn.mean()[i]).abs() <= RARE * spread[at][i].sqrt() + EXACT_TOLERANCE
+                (own.mean[i] - traced.mean()[i]).abs()
+                    <= MAX_RARE_DEVIATION * smoothed[at][i].sqrt() + EXACT_TOLERANCE
             };
-            differ(self.tracer.pixel(x, y), self.tracer.developed(drawn.mean())) || (0..3).all(is_noise)
+            differs(self.tracer.pixel(x, y), self.tracer.developed(traced.mean())) || (0..3).all(is_noise)
         };
         let fixed = (0..pixels.len())
-            .filter(|&at| standing(pixels[at]) == Standing::Differs && !is_random(at) && !is_rare(at))
+            .filter(|&at| status(pixels[at]) == PixelStatus::Differs && !is_random(at) && !is_rare(at))
             .count();
         if fixed as f64 > (MAX_DIFFERING * pixels.len() as f64).max(1.0) {
-            return Err(Unfit::Fixed);
+            return Err(Incomparable::NotRandom);
         }
-        let clamps = clamps(self.tracer, &sets, drawn);
-        let chosen =
-            (0..pixels.len()).filter(|&at| is_random(at) && standing(pixels[at]) != Standing::Undefined);
-        let replicated_pixels: Vec<ReplicatedPixel> = chosen
+        let clamps_samples = clamps_samples(self.tracer, &sets, traced);
+        let selected =
+            (0..pixels.len()).filter(|&at| is_random(at) && status(pixels[at]) != PixelStatus::Undefined);
+        let replicated_pixels: Vec<ReplicatedPixel> = selected
             .filter_map(|at| {
-                let drawn = &drawn[at];
-                let mean = drawn.mean();
+                let traced = &traced[at];
+                let mean = traced.mean();
                 let own: [[f64; 3]; REPLICATES] = std::array::from_fn(|set| sets[set][at].mean);
-                if is_white(self.tracer, mean, &own, drawn, clamps) {
+                if is_white(self.tracer, mean, &own, traced, clamps_samples) {
                     return None;
                 }
                 let slope = self.tracer.slope(mean);
                 let scaled = |color: [f64; 3]| [0, 1, 2].map(|i| slope[i] * color[i]);
                 let squared = |color: [f64; 3]| scaled(scaled(color));
-                let chosen = squared(variance(&drawn.choosing));
-                let shaders = squared(spread[at]);
+                let selected = squared(variance(&traced.selection));
+                let shader_variance = squared(smoothed[at]);
                 let sets = REPLICATES as f64;
-                let single_variance = squared(drawn.variance);
+                let single_variance = squared(traced.variance);
                 Some(ReplicatedPixel {
                     at: pixels[at],
-                    weight: [0, 1, 2].map(|i| sets / (chosen[i] + shaders[i] + LEAST_NOISE * LEAST_NOISE)),
-                    reference: drawn.halves.map(scaled),
+                    weight: [0, 1, 2].map(|i| {
+                        sets / (selected[i]
+                            + shader_variance[i]
+                            + MIN_STANDARD_DEVIATION * MIN_STANDARD_DEVIATION)
+                    }),
+                    reference: traced.halves.map(scaled),
                     reference_variance: single_variance.map(|one| one / sets),
                     single_variance,
                     own: own.map(scaled),
                 })
             })
             .collect();
-        Ok(Compared {
-            replicated: replicated(&replicated_pixels, self.case.frame.size),
+        Ok(SceneComparison {
+            test: compare_replicates(&replicated_pixels, self.case.frame.size),
             pixels: replicated_pixels.len(),
             reseeding,
         })
     }
 
-    /// The usual pixels, and those with other random numbers; none if the reseeding does not give it such.
+    /// The shader's own pixels and its replicates; none if the reseeding does not change the random numbers
+    /// alone.
     fn replicates(
         &self,
         reseeding: Reseeding,
-        usual: &[OwnPixel],
-        drawn: &[Drawn],
-        moves: &[bool],
-    ) -> Option<Vec<Vec<OwnPixel>>> {
-        let distance = |own: &[OwnPixel]| {
-            let pixels = own.iter().zip(drawn).map(|(own, drawn)| {
-                let reference = self.tracer.developed(drawn.mean());
+        unsalted: &[ShaderPixel],
+        traced: &[TracedPixel],
+        is_random_in_scene: &[bool],
+    ) -> Option<Vec<Vec<ShaderPixel>>> {
+        let distance = |own: &[ShaderPixel]| {
+            let pixels = own.iter().zip(traced).map(|(own, traced)| {
+                let reference = self.tracer.developed(traced.mean());
                 (0..3)
                     .map(|i| (own.developed[i] - reference[i]).powi(2))
                     .sum::<f64>()
             });
             pixels.sum::<f64>()
         };
-        let is_changed = |other: &[OwnPixel]| {
-            let random = (0..usual.len()).filter(|&at| moves[at]);
+        let is_changed = |other: &[ShaderPixel]| {
+            let random = (0..unsalted.len()).filter(|&at| is_random_in_scene[at]);
             let (mut all, mut changed) = (0, 0);
             for at in random {
                 all += 1;
-                changed += usize::from(differ(usual[at].developed, other[at].developed));
+                changed += usize::from(differs(unsalted[at].developed, other[at].developed));
             }
-            changed as f64 >= LEAST_CHANGED * f64::from(all) && all > 0
+            changed as f64 >= MIN_CHANGED_SHARE * f64::from(all) && all > 0
         };
-        let own = distance(usual);
-        let is_as_far = |other: &[OwnPixel]| {
+        let own = distance(unsalted);
+        let is_as_far = |other: &[ShaderPixel]| {
             let other = distance(other);
-            other <= SAME_DISTANCE * own && own <= SAME_DISTANCE * other
+            other <= MAX_DISTANCE_RATIO * own && own <= MAX_DISTANCE_RATIO * other
         };
         let first = self.salted(reseeding, 1)?;
         if !is_changed(&first) || !is_as_far(&first) {
             return None;
         }
-        let mut all = vec![usual.to_vec(), first];
-        for salt in 2..(REPLICATES + WEIGHING) as u32 {
+        let mut all = vec![unsalted.to_vec(), first];
+        for salt in 2..(REPLICATES + WEIGHT_REPLICATES) as u32 {
             all.push(self.salted(reseeding, salt).filter(|other| is_as_far(other))?);
         }
         Some(all)
     }
 }
 
-/// Variances are told from so many columns and rows of places together.
-const SIDE: usize = 4;
+/// The number of columns and of rows of pixels over which variances are averaged.
+const SMOOTHING_BLOCK: usize = 4;
 
-/// The variance of a shader's pixels, each with those around it, since few pictures tell little of one.
-fn smooth(sets: &[Vec<OwnPixel>], width: usize) -> Vec<[f64; 3]> {
+/// The variance of the shader's pixels, averaged over blocks, since a few replicates estimate the variance of
+/// a single pixel poorly.
+fn smoothed_variance(sets: &[Vec<ShaderPixel>], width: usize) -> Vec<[f64; 3]> {
     let count = sets.first().map_or(0, Vec::len);
     let each: Vec<[f64; 3]> = (0..count)
         .map(|at| variance(&sets.iter().map(|set| set[at].mean).collect::<Vec<_>>()))
         .collect();
-    let (columns, rows) = (width.div_ceil(SIDE), (count / width.max(1)).div_ceil(SIDE));
+    let (columns, rows) = (
+        width.div_ceil(SMOOTHING_BLOCK),
+        (count / width.max(1)).div_ceil(SMOOTHING_BLOCK),
+    );
     let mut sums = vec![([0.0; 3], 0.0); columns * rows];
-    let part = |at: usize| at / width / SIDE * columns + at % width / SIDE;
+    let part = |at: usize| at / width / SMOOTHING_BLOCK * columns + at % width / SMOOTHING_BLOCK;
     for (at, each) in each.iter().enumerate() {
         let (sum, count) = &mut sums[part(at)];
         *count += 1.0;
@@ -469,24 +510,32 @@ fn smooth(sets: &[Vec<OwnPixel>], width: usize) -> Vec<[f64; 3]> {
         .collect()
 }
 
-/// Whether the shader clamps its colors to white, which makes other means of them.
-fn clamps(tracer: &Tracer<f64>, sets: &[Vec<OwnPixel>], drawn: &[Drawn]) -> bool {
+/// Whether the shader clamps its samples to white, which changes their mean.
+fn clamps_samples(tracer: &Tracer<f64>, sets: &[Vec<ShaderPixel>], traced: &[TracedPixel]) -> bool {
     let is_above = |color: &[f64; 3]| {
         let developed = tracer.developed(*color);
         (0..3).any(|i| color[i] > 1.0 && developed[i] >= 1.0)
     };
-    let shaders = sets.iter().flatten().any(|own| is_above(&own.mean));
-    !shaders && drawn.iter().any(|drawn| drawn.choosing.iter().any(is_above))
+    let shader_is_above = sets.iter().flatten().any(|own| is_above(&own.mean));
+    !shader_is_above && traced.iter().any(|traced| traced.selection.iter().any(is_above))
 }
 
-/// Whether a pixel is white on both sides, so that nothing is seen of what differs, or may be for a shader that clamps.
-fn is_white(tracer: &Tracer<f64>, mean: [f64; 3], own: &[[f64; 3]], drawn: &Drawn, clamps: bool) -> bool {
-    let owns = self::mean(own);
-    let [shown, own_shown] = [mean, owns].map(|mean| tracer.developed(mean));
+/// Whether a pixel is white on both sides, so that no difference is visible, or may be for a shader that
+/// clamps.
+fn is_white(
+    tracer: &Tracer<f64>,
+    mean: [f64; 3],
+    own: &[[f64; 3]],
+    traced: &TracedPixel,
+    clamps_samples: bool,
+) -> bool {
+    let own_mean = self::mean(own);
+    let [shown, own_shown] = [mean, own_mean].map(|mean| tracer.developed(mean));
     let is_beyond = |mean: f64, variance: f64| mean + 3.0 * variance.sqrt() > 1.0;
-    let variances = [drawn.variance, variance(own)];
+    let variances = [traced.variance, variance(own)];
     (0..3).any(|i| {
         (shown[i] >= 1.0 && own_shown[i] >= 1.0)
-            || (clamps && (is_beyond(mean[i], variances[0][i]) || is_beyond(owns[i], variances[1][i])))
+            || (clamps_samples
+                && (is_beyond(mean[i], variances[0][i]) || is_beyond(own_mean[i], variances[1][i])))
     })
 }

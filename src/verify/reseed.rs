@@ -1,10 +1,11 @@
-//! The same shader with other random numbers.
+//! Rewrites a shader so that it uses other random numbers.
 //!
-//! GLSL has no random numbers: shaders hash the pixel's place, the time or a counter. What hashes do is known by their operations: products
-//! with large integers, sums and exclusive ors with them; sines multiplied by large factors; numbers converted to bits. An integer
-//! that is added there gives other numbers with the same distribution, and so does a place that is moved by a thousandth of a pixel, to a hash
-//! of floats. Integers that make something else, such as a scene, may be changed by it as well: whoever compares must see that nothing but the
-//! noise is another ([`Reseeding::all`] gives several ways to try).
+//! GLSL has no random numbers: shaders hash the pixel's coordinates, the time or a counter. Hashes are
+//! recognized by their operations: products with large integers, sums and exclusive ors with them; sines
+//! multiplied by large factors; floats converted to bits. Adding an integer there yields other numbers with
+//! the same distribution, and so does, for a hash of floats, moving the pixel by a thousandth of its size.
+//! Integers that determine something else, such as a scene, may be changed as well: the caller must check
+//! that only the noise changes ([`Reseeding::all`] returns several alternatives).
 
 use std::collections::HashSet;
 
@@ -14,13 +15,13 @@ use toyproof_glsl::tree::{
     walk,
 };
 
-/// Integers from this on are constants of hashes.
-const LEAST_INTEGER: u32 = 1 << 16;
+/// The smallest absolute value of an integer that is a constant of a hash.
+const MIN_HASH_INTEGER: u32 = 1 << 16;
 
-/// Factors of sines and fractions from this on make noise of them.
-const LEAST_FACTOR: f64 = 20.0;
+/// The smallest absolute value of a factor that turns a sine or a fraction into noise.
+const MIN_NOISE_FACTOR: f64 = 20.0;
 
-/// Which operations are given another number.
+/// The operations that are changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Reseeding {
     /// Operations with large integers.
@@ -32,7 +33,7 @@ pub(super) struct Reseeding {
 }
 
 impl Reseeding {
-    /// What is tried, one after the other.
+    /// The alternatives, in the order in which they are tried.
     pub(super) fn all() -> [Self; 5] {
         let [integers, conversions, fractions] = [true; 3];
         let none = Self {
@@ -53,7 +54,7 @@ impl Reseeding {
         ]
     }
 
-    /// The shader with other random numbers for each salt that is not 0.
+    /// Returns the shader with other random numbers for each salt other than 0.
     pub(super) fn of(self, checked: &Checked, salt: u32) -> Checked {
         let mut checked = checked.clone();
         let tree = &mut checked.tree;
@@ -65,9 +66,9 @@ impl Reseeding {
         checked
     }
 
-    /// How far the places of pixels are moved, in pixels: far enough for any hash of them, and for nothing else.
+    /// The offset of pixels, in pixels: enough to change any hash of their coordinates, and nothing else.
     pub(super) fn shift(salt: u32) -> [f64; 2] {
-        // Both ways, so that what it does to edges is nothing on the average.
+        // In both directions, so that its effect on edges averages out.
         let sign = if salt.is_multiple_of(2) { 1.0 } else { -1.0 };
         let step = f64::from(salt.div_ceil(2));
         [0.001_37 * sign * step, -0.000_91 * sign * step]
@@ -77,7 +78,7 @@ impl Reseeding {
         match tree[id].kind.clone() {
             ExprKind::Binary { op, left, right } => match op {
                 BinaryOp::Multiply if self.integers && is_integer(tree, id) => {
-                    // Never the constant: not every factor is as good.
+                    // The constant is kept, since not every factor makes a good hash.
                     if is_large(tree, right) {
                         add(tree, left, salt);
                     } else if is_large(tree, left) {
@@ -147,10 +148,10 @@ impl Reseeding {
     }
 }
 
-/// Puts a sum with a number of the salt's in the place of an expression.
+/// Replaces an expression by its sum with a number that depends on the salt.
 fn add(tree: &mut Tree, id: ExprId, salt: u32) {
     let Expr { ty, at, .. } = tree[id].clone();
-    // Even, so that what is odd stays so.
+    // Even, so that odd constants stay odd.
     let hash = salt.wrapping_mul(0x9E37_79B9) & !1;
     let value = match ty.scalar() {
         Some(Scalar::Uint) => Value::Uint(hash),
@@ -186,34 +187,36 @@ fn add(tree: &mut Tree, id: ExprId, salt: u32) {
     };
 }
 
-/// Whether nothing that runs could make a random number: no hash, and no texture.
-pub(super) fn is_without_chance(checked: &Checked) -> bool {
+/// Whether no expression that runs can produce a random number: there is no hash and no texture.
+pub(super) fn is_deterministic(checked: &Checked) -> bool {
     let tree = &checked.tree;
-    reached(tree, checked.main_image).into_iter().all(|id| {
-        let expr = &tree[id];
-        let bits = match &expr.kind {
-            ExprKind::Binary { op, .. } | ExprKind::Assign { op: Some(op), .. } => matches!(
-                op,
-                BinaryOp::BitXor
-                    | BinaryOp::BitAnd
-                    | BinaryOp::BitOr
-                    | BinaryOp::ShiftLeft
-                    | BinaryOp::ShiftRight
-            ),
-            ExprKind::BuiltIn { function, .. } => {
-                matches!(
-                    function,
-                    BuiltIn::Fract | BuiltIn::FloatBitsToInt | BuiltIn::FloatBitsToUint
-                ) || function.name().starts_with("tex")
-            }
-            _ => false,
-        };
-        !bits && expr.ty.scalar() != Some(Scalar::Uint)
-    })
+    reachable_expressions(tree, checked.main_image)
+        .into_iter()
+        .all(|id| {
+            let expr = &tree[id];
+            let is_random = match &expr.kind {
+                ExprKind::Binary { op, .. } | ExprKind::Assign { op: Some(op), .. } => matches!(
+                    op,
+                    BinaryOp::BitXor
+                        | BinaryOp::BitAnd
+                        | BinaryOp::BitOr
+                        | BinaryOp::ShiftLeft
+                        | BinaryOp::ShiftRight
+                ),
+                ExprKind::BuiltIn { function, .. } => {
+                    matches!(
+                        function,
+                        BuiltIn::Fract | BuiltIn::FloatBitsToInt | BuiltIn::FloatBitsToUint
+                    ) || function.name().starts_with("tex")
+                }
+                _ => false,
+            };
+            !is_random && expr.ty.scalar() != Some(Scalar::Uint)
+        })
 }
 
-/// All expressions that `main` evaluates, and what the variables that they name begin with.
-fn reached(tree: &Tree, main: FunctionId) -> Vec<ExprId> {
+/// All expressions that `main` evaluates, and the initializers of the variables that they name.
+fn reachable_expressions(tree: &Tree, main: FunctionId) -> Vec<ExprId> {
     let (mut functions, mut variables) = (HashSet::new(), HashSet::new());
     let roots_of = |function: FunctionId| {
         let body = tree[function].body.as_ref();
@@ -228,7 +231,7 @@ fn reached(tree: &Tree, main: FunctionId) -> Vec<ExprId> {
                     roots.extend(roots_of(function));
                 }
                 ExprKind::Variable(variable) if variables.insert(variable) => {
-                    roots.extend(tree[variable].initialiser);
+                    roots.extend(tree[variable].initializer);
                 }
                 _ => {}
             }
@@ -246,14 +249,14 @@ fn is_integer(tree: &Tree, id: ExprId) -> bool {
 /// Whether an expression is a constant of a hash.
 fn is_large(tree: &Tree, id: ExprId) -> bool {
     let is_large = |&component: &Value| match component {
-        Value::Int(value) => value.unsigned_abs() >= LEAST_INTEGER,
-        Value::Uint(value) => value >= LEAST_INTEGER,
+        Value::Int(value) => value.unsigned_abs() >= MIN_HASH_INTEGER,
+        Value::Uint(value) => value >= MIN_HASH_INTEGER,
         _ => false,
     };
     has_components(tree, id, is_large)
 }
 
-/// Whether an expression is a sine or a fraction, which a large factor makes noise of.
+/// Whether an expression is a sine or a fraction, which a large factor turns into noise.
 fn is_noise(tree: &Tree, id: ExprId) -> bool {
     matches!(
         tree[id].kind,
@@ -268,11 +271,11 @@ fn is_factor(tree: &Tree, id: ExprId) -> bool {
     has_components(
         tree,
         id,
-        |&component| matches!(component, Value::Float(value) if value.abs() >= LEAST_FACTOR),
+        |&component| matches!(component, Value::Float(value) if value.abs() >= MIN_NOISE_FACTOR),
     )
 }
 
-/// Whether an expression is a constant scalar, vector or matrix with nothing but such components.
+/// Whether an expression is a constant scalar, vector or matrix all of whose components satisfy `is_such`.
 fn has_components(tree: &Tree, id: ExprId, is_such: impl Fn(&Value) -> bool) -> bool {
     tree.value(id).is_some_and(|constant| {
         let components = constant.components();
@@ -289,15 +292,15 @@ mod tests {
 
     use super::*;
 
-    fn picture(checked: &Checked) -> Vec<f64> {
+    fn render(checked: &Checked) -> Vec<f64> {
         let frame = Frame {
             size: [32, 32],
             ..Frame::default()
         };
         let program = Program::new(checked).unwrap();
-        let painted = program.paint(&frame, &Settings::<f64>::default()).unwrap();
+        let rendered = program.render(&frame, &Settings::<f64>::default()).unwrap();
         (0..1024)
-            .map(|at| painted.painting.get(at % 32, at / 32)[0])
+            .map(|at| rendered.framebuffer.get(at % 32, at / 32)[0])
             .collect()
     }
 
@@ -310,7 +313,7 @@ mod tests {
         glsl::check(&files, file, &glsl::Options::default()).unwrap()
     }
 
-    /// Common hashes, each of the pixel's place.
+    /// Common hashes of the pixel's coordinates.
     const HASHES: [&str; 6] = [
         "uint pcg(uint v) { uint s = v * 747796405u + 2891336453u; uint w = ((s >> ((s >> 28u) + 4u)) ^ s) * 277803737u; return (w >> 22u) ^ w; }
          float random(vec2 p) { return float(pcg(uint(p.x) + pcg(uint(p.y))) >> 8) / 16777216.0; }",
@@ -325,10 +328,10 @@ mod tests {
     ];
 
     #[test]
-    fn another_salt_gives_other_numbers_of_the_same_distribution() {
+    fn another_salt_yields_other_numbers_of_the_same_distribution() {
         for hash in HASHES {
             let checked = checked(hash);
-            let usual = picture(&checked);
+            let unsalted = render(&checked);
             for salt in 1..5 {
                 let salted = Reseeding::all()[0].of(&checked, salt);
                 let program = Program::new(&salted).unwrap();
@@ -344,37 +347,37 @@ mod tests {
                 let other = program.at(&frame, &places, &Settings::<f64>::default()).unwrap();
                 let other: Vec<f64> = other.pixels().iter().map(|pixel| f64::from(pixel[0])).collect();
                 let mean = other.iter().sum::<f64>() / 1024.0;
-                // The standard deviation is 1/√12 over 32; a weak hash is worse than that.
+                // The standard deviation of the mean is 1/√12 over 32; a weak hash has a larger one.
                 assert!((mean - 0.5).abs() < 0.06, "{mean} {hash}");
                 let product = |a: &[f64], b: &[f64]| {
                     a.iter().zip(b).map(|(a, b)| (a - 0.5) * (b - 0.5)).sum::<f64>() / 1024.0 * 12.0
                 };
-                let common = product(&usual, &other);
-                assert!(common.abs() < 0.5, "{common} salt {salt} {hash}");
+                let covariance = product(&unsalted, &other);
+                assert!(covariance.abs() < 0.5, "{covariance} salt {salt} {hash}");
             }
         }
     }
 
     #[test]
-    fn chance_in_a_function_that_nothing_calls_is_none() {
+    fn random_numbers_in_uncalled_functions_are_ignored() {
         let unused = format!("{}\n", HASHES[0].replace("random", "unused"));
         for (random, is_without) in [
             ("float random(vec2 p) { return p.x * 0.01; }", true),
             ("float random(vec2 p) { return float(pcg(7u)); }", false),
         ] {
             let checked = checked(&format!("{unused}{random}"));
-            assert_eq!(is_without_chance(&checked), is_without, "{random}");
+            assert_eq!(is_deterministic(&checked), is_without, "{random}");
         }
         let global = checked("const int BITS = 6 ^ 3;\nfloat random(vec2 p) { return p.x * float(BITS); }");
-        assert!(!is_without_chance(&global));
+        assert!(!is_deterministic(&global));
     }
 
     #[test]
-    fn what_is_no_hash_stays_as_it_is() {
+    fn expressions_that_are_not_hashes_are_unchanged() {
         let checked = checked(
             "float random(vec2 p) { int i = int(p.x) * 3 + 7; return fract(p.x * 0.5) + float(i) * 0.001 + 100.0 * p.y; }",
         );
         let salted = Reseeding::all()[0].of(&checked, 3);
-        assert_eq!(picture(&checked), picture(&salted));
+        assert_eq!(render(&checked), render(&salted));
     }
 }

@@ -1,10 +1,11 @@
-//! The workspace as ARCHITECTURE.md describes it. Cargo refuses import cycles; these tests hold the table of allowed imports.
+//! Checks the workspace against ARCHITECTURE.md. Cargo refuses import cycles; these tests check the table of
+//! allowed imports.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What writes to the terminal or ends the program.
+/// Code that writes to the terminal or ends the program.
 const TERMINAL: [&str; 8] = [
     "println!",
     "print!(",
@@ -16,7 +17,7 @@ const TERMINAL: [&str; 8] = [
     "process::abort",
 ];
 
-/// The `.rs` files below a folder.
+/// Lists the `.rs` files below a folder.
 pub(crate) fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).unwrap() {
@@ -30,7 +31,7 @@ pub(crate) fn sources(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// The crates of ARCHITECTURE.md's table: each with those that it may import.
+/// The crates of ARCHITECTURE.md's table, each with its allowed imports.
 fn documented() -> BTreeMap<String, Vec<String>> {
     let page = fs::read_to_string("ARCHITECTURE.md").unwrap();
     let names = |cell: &str| {
@@ -52,7 +53,7 @@ fn documented() -> BTreeMap<String, Vec<String>> {
     .collect()
 }
 
-/// The crates of the workspace that a manifest's `[dependencies]` name.
+/// The workspace crates in a manifest's `[dependencies]`.
 fn imports(manifest: &Path) -> Vec<String> {
     let manifest: toml::Table = fs::read_to_string(manifest).unwrap().parse().unwrap();
     let dependencies = manifest["dependencies"].as_table().unwrap().keys();
@@ -62,7 +63,7 @@ fn imports(manifest: &Path) -> Vec<String> {
 }
 
 #[test]
-fn crates_import_what_the_architecture_page_says() {
+fn crates_import_only_documented_crates() {
     let documented = documented();
     let mut folders = Vec::new();
     for entry in fs::read_dir("src").unwrap() {
@@ -88,7 +89,7 @@ fn only_the_command_line_prints_or_exits() {
         if path.starts_with("src/cli") || path == Path::new("src/main.rs") {
             continue;
         }
-        // Tests print for those who run them.
+        // Tests may print.
         let is_test = path.iter().any(|part| part == "tests" || part == "tests.rs");
         if is_test {
             continue;

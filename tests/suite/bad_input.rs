@@ -1,4 +1,4 @@
-//! Bad input gets a clear message and the right exit code; it never hangs, and leaves nothing half-written.
+//! Bad input yields a clear message and the right exit code; it never hangs, and leaves no partial output.
 
 use std::fmt::Write;
 use std::fs;
@@ -10,7 +10,7 @@ use tempfile::TempDir;
 use crate::program::{Run, command, has_driver, run, toyproof};
 
 const MAIN: &str = "void mainImage(out vec4 c, in vec2 p)";
-/// On lavapipe; a large array in registers.
+/// Compiles slowly on lavapipe: a large array in registers.
 const SLOW_TO_COMPILE: &str =
     "float a[4096]; for (int i = 0; i < 4096; i++) a[i] = p.x; c = vec4(a[int(p.x)]);";
 const SPHERE: &str = "[[sphere]]\ncenter = [0.0, 0.0, -6.0]\nradius = 1.5\nmaterial = { model = \"facing\", color = [1.0, 1.0, 0.0] }\n";
@@ -38,14 +38,18 @@ fn expect(run: &Run, code: i32, words: &[&str]) {
 }
 
 #[test]
-fn a_shader_that_drivers_lose_count_in() {
+fn shaders_that_overflow_driver_counters() {
     let loops = (0..90).map(|d| format!("for (int i{d} = 0; i{d} < 1; i{d}++) "));
     let text = format!(
         "void mainImage(out vec4 c, in vec2 p) {{ {} c += p.xyxy; }}",
         loops.collect::<String>()
     );
-    let said = ["invalid", "E0411", "nested too deeply", "in line 1, column"];
-    expect(&check(&text, &["--on", "lavapipe", "--size", "16x9"]), 1, &said);
+    let messages = ["invalid", "E0411", "nested too deeply", "in line 1, column"];
+    expect(
+        &check(&text, &["--on", "lavapipe", "--size", "16x9"]),
+        1,
+        &messages,
+    );
     expect(&check(&text, &["--on", "cpu", "--size", "16x9"]), 0, &["ok"]);
 }
 
@@ -56,7 +60,7 @@ fn a_missing_file() {
 }
 
 #[test]
-fn a_scene_where_a_shader_is_needed_and_the_other_way_round() {
+fn scenes_and_shaders_are_not_confused() {
     let folder = folder(&[("s.glsl", ""), ("s.toml", SPHERE)]);
     for arguments in [
         &["check", "s.toml"][..],
@@ -78,7 +82,7 @@ fn a_scene_where_a_shader_is_needed_and_the_other_way_round() {
 }
 
 #[test]
-fn a_mistake_is_told_once() {
+fn each_mistake_is_reported_once() {
     let run = check(
         &format!("{MAIN} {{ c = vec4(1.0) }}\nfloat f() {{ return x; }}"),
         &[],
@@ -105,7 +109,7 @@ fn a_folder_without_shaders() {
 #[test]
 #[cfg(unix)]
 fn a_file_that_cannot_be_read() {
-    // A socket can be opened by nobody, root included.
+    // Nobody can open a socket as a file, not even root.
     let folder = folder(&[]);
     let _socket = std::os::unix::net::UnixListener::bind(folder.path().join("s.glsl")).unwrap();
     expect(
@@ -116,7 +120,7 @@ fn a_file_that_cannot_be_read() {
 }
 
 #[test]
-fn a_missing_file_costs_only_itself() {
+fn a_missing_file_does_not_affect_others() {
     let folder = folder(&[("empty.glsl", "")]);
     let run = toyproof(folder.path(), &["check", "nowhere.glsl", "empty.glsl"]);
     expect(&run, 2, &["error        nowhere.glsl", "invalid      empty.glsl"]);
@@ -173,7 +177,7 @@ fn bytes_that_are_not_text() {
 }
 
 #[test]
-fn scenes_that_say_what_they_must_not() {
+fn invalid_scenes() {
     let whole = format!("{MAIN} {{ c = vec4(0.0); }}");
     for (scene, words) in [
         (
@@ -213,7 +217,7 @@ fn scenes_that_say_what_they_must_not() {
 }
 
 #[test]
-fn sizes_that_cannot_be() {
+fn invalid_sizes() {
     for (size, words) in [
         ("0x0", "nothing to show"),
         ("100000x100000", "too large"),
@@ -224,7 +228,7 @@ fn sizes_that_cannot_be() {
 }
 
 #[test]
-fn deadlines_that_cannot_be() {
+fn invalid_time_limits() {
     for (deadline, words) in [
         ("500000000000years", "longer than a day"),
         ("25h", "longer than a day"),
@@ -235,7 +239,7 @@ fn deadlines_that_cannot_be() {
 }
 
 #[test]
-fn numbers_that_are_out_of_range_are_told_by_our_own_words() {
+fn out_of_range_numbers_have_our_own_messages() {
     let folder = folder(&[
         ("s.glsl", &format!("{MAIN} {{ c = vec4(0.5); }}")),
         ("s.toml", SPHERE),
@@ -264,7 +268,7 @@ fn numbers_that_are_out_of_range_are_told_by_our_own_words() {
 }
 
 #[test]
-fn an_ending_that_is_another_languages() {
+fn a_mismatched_file_extension() {
     let folder = folder(&[("s.glsl", &format!("{MAIN} {{ c = vec4(0.5); }}"))]);
     let convert = |arguments: &[&str]| toyproof(folder.path(), &[&["convert", "s.glsl"], arguments].concat());
     expect(
@@ -278,7 +282,7 @@ fn an_ending_that_is_another_languages() {
 }
 
 #[test]
-fn an_output_folder_that_cannot_be_written() {
+fn an_unwritable_output_folder() {
     if !has_driver() {
         return;
     }
@@ -293,7 +297,7 @@ fn an_output_folder_that_cannot_be_written() {
 }
 
 #[test]
-fn an_output_that_is_no_picture() {
+fn an_output_that_is_not_an_image() {
     if !has_driver() {
         return;
     }
@@ -326,11 +330,11 @@ fn no_vulkan_driver() {
     let hint = [
         "no Vulkan driver found",
         "apt-get install mesa-vulkan-drivers libvulkan1",
-        // It is no use to install what stays hidden.
+        // Installing a hidden driver would not help.
         "VK_DRIVER_FILES or VK_ICD_FILENAMES is set",
     ];
     for (arguments, code) in [
-        // The evaluator takes its place, unless a driver is asked for.
+        // The evaluator replaces it, unless a driver is requested.
         (&["check", "s.glsl"][..], 0),
         (&["run", "s.glsl", "-o", "s.png"], 0),
         (&["check", "s.glsl", "--on", "lavapipe"], 2),
@@ -345,14 +349,14 @@ fn no_vulkan_driver() {
         let run = run(&mut command);
         expect(&run, code, &hint);
         if let ["check", _] | ["doctor"] = arguments {
-            let told = run.stdout.contains("toolchain") && run.stdout.contains("not asked");
-            assert!(told, "{arguments:?}: {}", run.stdout);
+            let reported = run.stdout.contains("toolchain") && run.stdout.contains("not asked");
+            assert!(reported, "{arguments:?}: {}", run.stdout);
         }
     }
 }
 
 #[test]
-fn an_adapter_that_is_not_there() {
+fn an_unknown_adapter() {
     if !has_driver() {
         return;
     }
@@ -375,7 +379,7 @@ fn endless_and_overlong_loops() {
         "float x = 0.0; for (int i = 0; i < 10;) { x += 0.1; } c = vec4(x);",
         "int i = 0; float x = 0.0; while (i < 10) { x += 0.1; if (p.x < 0.0) i++; } c = vec4(x);",
         "float x = 0.0; while (x < 1.0) { x *= 0.5; } c = vec4(x);",
-        // So long that a driver without a cap takes longer than the deadline.
+        // Long enough that a driver without a loop cap exceeds the deadline.
         "float x = p.x; for (int i = 0; i < 2000000000; i++) { x = sin(x) + 0.1; } c = vec4(x);",
     ] {
         let run = check(
@@ -387,7 +391,7 @@ fn endless_and_overlong_loops() {
 }
 
 #[test]
-fn a_long_loop_that_ends_is_no_timeout() {
+fn a_long_finite_loop_is_not_a_timeout() {
     if !has_driver() {
         return;
     }
@@ -410,7 +414,7 @@ fn twenty_thousand_parentheses() {
 }
 
 #[test]
-fn nesting_without_brackets_ends_in_a_verdict() {
+fn nesting_without_brackets_yields_a_verdict() {
     if !has_driver() {
         return;
     }
@@ -434,14 +438,14 @@ fn a_shader_that_compiles_for_a_minute() {
     }
     let start = Instant::now();
     let run = check(&format!("{MAIN} {{ {SLOW_TO_COMPILE} }}"), &["--timeout", "2s"]);
-    // That is the driver's fault: the evaluator judges the shader.
+    // That is the driver's fault, so the evaluator checks the shader.
     let words = ["ok           s.glsl", "W0606", "takes longer than 2 s to compile"];
     expect(&run, 0, &words);
     assert!(start.elapsed().as_secs() < 30);
 }
 
 #[test]
-fn macros_that_grow_without_end() {
+fn macros_that_grow_without_bound() {
     let mut bomb = "#define A0 1.0 + 1.0\n".to_owned();
     for i in 0..40 {
         writeln!(bomb, "#define A{} A{i} + A{i}", i + 1).unwrap();
@@ -458,7 +462,7 @@ fn macros_that_grow_without_end() {
 }
 
 #[test]
-fn after_a_worker_died_the_next_shader_is_checked() {
+fn the_next_shader_is_checked_after_a_worker_dies() {
     if !has_driver() {
         return;
     }
@@ -478,7 +482,7 @@ fn after_a_worker_died_the_next_shader_is_checked() {
 }
 
 #[test]
-fn no_output_takes_the_place_of_an_input() {
+fn no_output_overwrites_an_input() {
     let folder = tempfile::tempdir().unwrap();
     let text = "void mainImage(out vec4 c, in vec2 p) { c = vec4(p, 0, 1); }";
     fs::write(folder.path().join("a.frag"), text).unwrap();
@@ -487,7 +491,7 @@ fn no_output_takes_the_place_of_an_input() {
         toyproof(folder.path(), &["run", "a.frag", "-o", "a.png", "--size", "8x8"]).code,
         0
     );
-    let picture = fs::read(folder.path().join("a.png")).unwrap();
+    let image = fs::read(folder.path().join("a.png")).unwrap();
     for arguments in [
         &["convert", "a.frag", "-o", "./a.frag"][..],
         &["convert", ".", "-o", ".", "--to", "glsl"],
@@ -503,12 +507,12 @@ fn no_output_takes_the_place_of_an_input() {
     }
     assert_eq!(fs::read_to_string(folder.path().join("a.frag")).unwrap(), text);
     assert_eq!(fs::read_to_string(folder.path().join("s.toml")).unwrap(), SPHERE);
-    assert_eq!(fs::read(folder.path().join("a.png")).unwrap(), picture);
+    assert_eq!(fs::read(folder.path().join("a.png")).unwrap(), image);
 }
 
 #[cfg(target_os = "linux")]
 #[test]
-fn what_standard_output_does_not_take_is_an_error_unless_nobody_reads_on() {
+fn write_errors_are_reported_unless_the_pipe_is_closed() {
     let folder = tempfile::tempdir().unwrap();
     let program = env!("CARGO_BIN_EXE_toyproof");
     let run = |end: &str| {
@@ -530,7 +534,7 @@ fn what_standard_output_does_not_take_is_an_error_unless_nobody_reads_on() {
 
 #[cfg(unix)]
 #[test]
-fn what_can_be_read_once_is_read_once() {
+fn pipes_are_read_once() {
     let root = env!("CARGO_MANIFEST_DIR");
     let folder = tempfile::tempdir().unwrap();
     let program = env!("CARGO_BIN_EXE_toyproof");
@@ -551,10 +555,10 @@ fn what_can_be_read_once_is_read_once() {
             .current_dir(root)
             .output()
             .unwrap();
-        let told = String::from_utf8_lossy(&run.stdout);
+        let reported = String::from_utf8_lossy(&run.stdout);
         assert!(
-            run.status.success() && told.starts_with("correct "),
-            "{line}: {told}"
+            run.status.success() && reported.starts_with("correct "),
+            "{line}: {reported}"
         );
     }
 }

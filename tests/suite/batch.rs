@@ -1,4 +1,4 @@
-//! Many shaders in one command: in order, each once, also when the command is killed and goes on.
+//! Many shaders in one command: reported in order, each once, even if the command is killed and resumed.
 
 use std::fs;
 use std::path::Path;
@@ -10,7 +10,7 @@ use serde_json::Value;
 use crate::program::{Run, check_homework, command, run, toyproof};
 use crate::support::{MANY_OBJECTS, SPHERE};
 
-/// A folder of submissions: every third is wrong, every seventh does not compile.
+/// Creates a folder of submissions: every third is wrong, every seventh does not compile.
 fn homework(count: usize) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let hw = folder.path().join("hw");
@@ -41,7 +41,7 @@ fn check(folder: &Path, rest: &[&str]) -> Run {
     run(check_homework(folder).args(["--out", "out"]).args(rest))
 }
 
-/// The records without their times.
+/// The records without their timings.
 fn records(folder: &Path) -> Vec<Value> {
     let text = fs::read_to_string(folder.join("out/verdict.json")).unwrap();
     let mut report: Value = serde_json::from_str(&text).unwrap();
@@ -60,7 +60,7 @@ fn results(folder: &Path) -> Vec<Value> {
 }
 
 #[test]
-fn shaders_are_told_in_their_order_however_many_are_checked_at_a_time() {
+fn shaders_are_reported_in_order_for_any_number_of_jobs() {
     let folder = homework(20);
     let one = check(folder.path(), &["--jobs", "1"]);
     let alone = records(folder.path());
@@ -90,20 +90,20 @@ fn shaders_are_told_in_their_order_however_many_are_checked_at_a_time() {
     assert_eq!(named, all);
 }
 
-/// What is known of a scene from one shader to the next changes nothing: shaders of two scenes in turns, and each for itself.
+/// Caching scenes between shaders changes no result: shaders of two alternating scenes, and each alone.
 #[test]
-fn a_shader_is_judged_in_a_batch_as_it_is_alone() {
+fn a_shader_has_the_same_verdict_alone_and_in_a_batch() {
     let folder = tempfile::tempdir().unwrap();
     let hw = folder.path().join("hw");
     fs::create_dir(&hw).unwrap();
     let faulty = |shader: &str| shader.replace("aspect;", "1.0;");
     let mut shaders = Vec::new();
-    for (rung, name) in [(&SPHERE, "2"), (&MANY_OBJECTS, "4")] {
-        for (style, text) in [("a", rung.shader.to_owned()), ("b", faulty(rung.shader))] {
+    for (exercise, name) in [(&SPHERE, "2"), (&MANY_OBJECTS, "4")] {
+        for (style, text) in [("a", exercise.shader.to_owned()), ("b", faulty(exercise.shader))] {
             for time in [1, 2] {
                 let stem = format!("{time}{style}{name}");
                 fs::write(hw.join(format!("{stem}.glsl")), format!("// {stem}\n{text}")).unwrap();
-                fs::write(hw.join(format!("{stem}.toml")), rung.scene).unwrap();
+                fs::write(hw.join(format!("{stem}.toml")), exercise.scene).unwrap();
                 shaders.push(stem);
             }
         }
@@ -124,7 +124,7 @@ fn a_shader_is_judged_in_a_batch_as_it_is_alone() {
 }
 
 #[test]
-fn what_was_killed_goes_on_and_nothing_is_lost_or_done_twice() {
+fn killed_runs_resume_without_losing_or_repeating_work() {
     const COUNT: usize = 30;
     let folder = homework(COUNT);
     check(folder.path(), &[]);
@@ -148,7 +148,7 @@ fn what_was_killed_goes_on_and_nothing_is_lost_or_done_twice() {
         running.kill().unwrap();
         running.wait().unwrap();
     }
-    // As if the last line had been cut.
+    // Simulates a truncated last line.
     let path = folder.path().join("out/results.jsonl");
     let mut text = fs::read_to_string(&path).unwrap();
     text.push_str("{\"key\":\"abc\",\"rec");
@@ -171,16 +171,18 @@ fn what_was_killed_goes_on_and_nothing_is_lost_or_done_twice() {
 }
 
 #[test]
-fn plain_pictures_and_counts_of_samples_are_called_what_they_are() {
+fn plain_images_and_sample_counts_are_named() {
     let folder = tempfile::tempdir().unwrap();
-    let rung = &MANY_OBJECTS;
-    fs::write(folder.path().join("scene.toml"), rung.scene).unwrap();
+    let exercise = &MANY_OBJECTS;
+    fs::write(folder.path().join("scene.toml"), exercise.scene).unwrap();
     let last = "fragColor = vec4(color / float(SAMPLES), 1.0);";
     let count = "i < SAMPLES;";
-    assert!(rung.shader.contains(last) && rung.shader.contains(count));
-    let black = rung.shader.replace(last, "fragColor = vec4(0.0, 0.0, 0.0, 1.0);");
-    let more = rung.shader.replace(count, "i <= SAMPLES;");
-    let less = rung.shader.replace("SAMPLES = 4", "SAMPLES = 3");
+    assert!(exercise.shader.contains(last) && exercise.shader.contains(count));
+    let black = exercise
+        .shader
+        .replace(last, "fragColor = vec4(0.0, 0.0, 0.0, 1.0);");
+    let more = exercise.shader.replace(count, "i <= SAMPLES;");
+    let less = exercise.shader.replace("SAMPLES = 4", "SAMPLES = 3");
     for (text, words) in [
         (black, "; every pixel is black"),
         (more, "takes one sample more than it divides by"),
@@ -203,7 +205,7 @@ fn plain_pictures_and_counts_of_samples_are_called_what_they_are() {
 }
 
 #[test]
-fn a_shader_is_not_late_because_its_neighbours_never_end() {
+fn endless_neighbors_do_not_cause_a_timeout() {
     let folder = tempfile::tempdir().unwrap();
     let endless =
         "void mainImage(out vec4 c, in vec2 p) { for (float s = p.x; s > -1.0; s += 0.0) c.x += s; }";
@@ -247,10 +249,10 @@ fn a_shader_is_not_late_because_its_neighbours_never_end() {
     );
 }
 
-/// A folder of any shaders, which `TOYPROOF_CORPUS` names, killed ten times at moments that nobody chose.
+/// Checks the folder of shaders that `TOYPROOF_CORPUS` names, killed ten times at random moments.
 #[test]
 #[ignore = "takes minutes, and a folder of shaders that TOYPROOF_CORPUS names"]
-fn a_corpus_that_is_killed_ten_times_comes_out_whole() {
+fn a_corpus_that_is_killed_ten_times_is_complete() {
     let corpus = std::env::var_os("TOYPROOF_CORPUS").expect("TOYPROOF_CORPUS names a folder of shaders");
     let folder = tempfile::tempdir().unwrap();
     let check = || {
@@ -280,7 +282,7 @@ fn a_corpus_that_is_killed_ten_times_comes_out_whole() {
         eprintln!("kill {kill} after {moment:?}: {whole} of {count} are known");
     }
     let last = run(&mut check());
-    let told = records(folder.path());
+    let reported = records(folder.path());
     let lines = results(folder.path());
     eprintln!("{}", last.stderr.lines().next().unwrap_or_default());
     let named = |records: &mut dyn Iterator<Item = &Value>| {
@@ -288,22 +290,22 @@ fn a_corpus_that_is_killed_ten_times_comes_out_whole() {
         names.sort();
         names
     };
-    let (told, kept) = (
-        named(&mut told.iter()),
+    let (reported, kept) = (
+        named(&mut reported.iter()),
         named(&mut lines.iter().map(|line| &line["record"])),
     );
-    assert_eq!(told, kept, "what is told is what is kept, each once");
-    let mut once = told.clone();
+    assert_eq!(reported, kept, "what is told is what is kept, each once");
+    let mut once = reported.clone();
     once.dedup();
     assert_eq!(
-        (once.len(), told.len()),
+        (once.len(), reported.len()),
         (count, count),
         "nothing lost, nothing twice"
     );
 }
 
 #[test]
-fn what_has_changed_is_checked_again() {
+fn changed_shaders_are_checked_again() {
     let folder = homework(4);
     check(folder.path(), &[]);
     let again = check(folder.path(), &["--resume"]);
@@ -331,7 +333,7 @@ fn what_has_changed_is_checked_again() {
 }
 
 #[test]
-fn pictures_that_are_no_longer_true_do_not_stay() {
+fn stale_images_are_removed() {
     let folder = homework(3);
     check(folder.path(), &[]);
     let exists = |name: &str| folder.path().join("out").join(name).is_file();
@@ -342,4 +344,20 @@ fn pictures_that_are_no_longer_true_do_not_stay() {
     fs::write(folder.path().join("hw/002.glsl"), "void main").unwrap();
     check(folder.path(), &[]);
     assert!(!exists("002-actual.png"));
+}
+
+#[test]
+fn another_build_reuses_nothing() {
+    let folder = homework(2);
+    check(folder.path(), &[]);
+    let other = folder.path().join("toyproof");
+    fs::copy(env!("CARGO_BIN_EXE_toyproof"), &other).unwrap();
+    let run = std::process::Command::new(other)
+        .args(check_homework(folder.path()).get_args())
+        .args(["--out", "out", "--resume"])
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    let stderr = String::from_utf8(run.stderr).unwrap();
+    assert!(run.status.success() && !stderr.contains("taken over"), "{stderr}");
 }

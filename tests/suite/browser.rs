@@ -1,8 +1,10 @@
-//! Chromium's WebGL 2 paints what we paint: the author's text through ANGLE and ours through naga, both on `SwiftShader`, the
-//! software driver that Chromium brings, with its own transcendental functions and without `NoContraction`.
+//! Chromium's WebGL 2 renders the same images as we do: the author's text through ANGLE and ours through
+//! naga, both on `SwiftShader`, the software driver that Chromium ships, with its own transcendental
+//! functions and without `NoContraction`.
 //!
-//! By itself the course is compared. `TOYPROOF_SHADERS` names a folder of other shaders, of which `TOYPROOF_COUNT` (500) are drawn by
-//! `TOYPROOF_SEED` (0) among those that read no channel; a line for each goes to standard error.
+//! By default the course is compared. `TOYPROOF_SHADERS` names a folder of other shaders, of which
+//! `TOYPROOF_COUNT` (500) are chosen with `TOYPROOF_SEED` (0) among those that read no channel; a line for
+//! each goes to standard error.
 
 use std::ffi::OsStr;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -21,17 +23,17 @@ use toyproof::translate::wgsl::{Style, wgsl};
 use toyproof::translate::{FloatMode, lower};
 
 use crate::page::devtools::Page;
-use crate::support::{RUNGS, setting, swiftshader};
+use crate::support::{EXERCISES, setting, swiftshader};
 
 const SIZE: [u32; 2] = [64, 36];
 /// `iTime` and `iFrame`.
 const SHOTS: [(f32, i32); 2] = [(1.0, 60), (7.3, 438)];
 
-/// A shader's pixels in all frames, one after the other, bottom rows first.
+/// A shader's pixels in all frames, concatenated, bottom rows first.
 type Pixels = Vec<[f32; 4]>;
 
-/// How long a browser may take for one shader.
-const PATIENCE: Duration = Duration::from_secs(90);
+/// The time limit of a browser for one shader.
+const TIME_LIMIT: Duration = Duration::from_secs(90);
 
 fn frames() -> Vec<Frame> {
     let frame = |(time, number)| Frame {
@@ -44,11 +46,11 @@ fn frames() -> Vec<Frame> {
 }
 
 fn in_browser(browser: &mut Chromium, text: Text) -> Result<Pixels, Failure> {
-    let images = browser.paint(text, &frames())?;
+    let images = browser.render(text, &frames())?;
     Ok(images.iter().flat_map(|image| image.pixels().to_vec()).collect())
 }
 
-/// A shader's WGSL, in our own words.
+/// A shader's WGSL from our own writer.
 fn converted(shader: &str) -> Result<String, String> {
     let mut files = Files::default();
     let file = files.add(File::new("shader", shader));
@@ -57,8 +59,8 @@ fn converted(shader: &str) -> Result<String, String> {
     wgsl(&checked, &files, Style::Plain, &Deadline::default()).map_err(|why| why.to_string())
 }
 
-/// The author's shader with WebGL 2 beside its conversion with WebGPU.
-fn judge_conversion(browser: &mut Chromium, shader: &str) -> (Outcome, String) {
+/// Compares the author's shader in WebGL 2 with its conversion in WebGPU.
+fn compare_conversion(browser: &mut Chromium, shader: &str) -> (Outcome, String) {
     let text = match converted(shader) {
         Ok(text) => text,
         Err(why) => return (Outcome::Unpainted, format!("not converted: {why}")),
@@ -72,16 +74,16 @@ fn judge_conversion(browser: &mut Chromium, shader: &str) -> (Outcome, String) {
     }
 }
 
-/// What came of one shader.
+/// The result of one comparison.
 #[derive(Debug, PartialEq, Eq)]
 enum Outcome {
-    /// Every float has the same bits.
+    /// Every float is equal to the bit.
     Equal,
-    /// As shown, no colour differs by more than 1/255.
+    /// No 8-bit color differs by more than 1/255.
     Close,
-    /// Some colours differ by more.
+    /// Some colors differ by more.
     Differ,
-    /// One of both did not paint.
+    /// One of the two did not render.
     Unpainted,
 }
 
@@ -93,10 +95,10 @@ fn ours(worker: &mut Worker, shader: &str) -> Result<Pixels, String> {
     let lowered = lower(&checked);
     let mut pixels = Vec::new();
     for frame in frames() {
-        let drawn = worker
+        let choose_shaders = worker
             .draw(lowered.clone(), frame, FloatMode::Fast)
             .map_err(|failure| failure.to_string())?;
-        pixels.extend_from_slice(drawn.image().pixels());
+        pixels.extend_from_slice(choose_shaders.image().pixels());
     }
     Ok(pixels)
 }
@@ -129,7 +131,7 @@ fn compare(ours: &Pixels, theirs: &Pixels) -> (Outcome, String) {
     }
 }
 
-fn judge(browser: &mut Chromium, worker: &mut Worker, shader: &str) -> (Outcome, String) {
+fn compare_shader(browser: &mut Chromium, worker: &mut Worker, shader: &str) -> (Outcome, String) {
     let ours = match ours(worker, shader) {
         Ok(pixels) => pixels,
         Err(why) => return (Outcome::Unpainted, format!("ours: {why}")),
@@ -140,42 +142,42 @@ fn judge(browser: &mut Chromium, worker: &mut Worker, shader: &str) -> (Outcome,
     }
 }
 
-/// A browser and a worker on the driver that it brings; none where there is no Chromium.
-fn both() -> Option<(Chromium, Worker)> {
+/// A browser and a worker on its software driver; none without Chromium.
+fn browser_and_worker() -> Option<(Chromium, Worker)> {
     let worker = swiftshader()?;
     let Some(program) = find() else {
         eprintln!("skipped: no Chromium here");
         return None;
     };
-    Some((Chromium::new(program, PATIENCE), worker))
+    Some((Chromium::new(program, TIME_LIMIT), worker))
 }
 
 #[test]
 fn the_course_is_the_same_in_a_browser() {
-    let Some((mut browser, mut worker)) = both() else {
+    let Some((mut browser, mut worker)) = browser_and_worker() else {
         return;
     };
-    for rung in RUNGS {
-        let (outcome, words) = judge(&mut browser, &mut worker, rung.shader);
+    for exercise in EXERCISES {
+        let (outcome, words) = compare_shader(&mut browser, &mut worker, exercise.shader);
         let agrees = matches!(outcome, Outcome::Equal | Outcome::Close);
-        assert!(agrees, "{}: {outcome:?} {words}", rung.name);
+        assert!(agrees, "{}: {outcome:?} {words}", exercise.name);
     }
 }
 
 #[test]
 fn conversions_of_the_course_are_the_same_in_a_browser() {
-    let Some((mut browser, _)) = both() else {
+    let Some((mut browser, _)) = browser_and_worker() else {
         return;
     };
-    for rung in RUNGS {
-        let (outcome, words) = judge_conversion(&mut browser, rung.shader);
+    for exercise in EXERCISES {
+        let (outcome, words) = compare_conversion(&mut browser, exercise.shader);
         let agrees = matches!(outcome, Outcome::Equal | Outcome::Close);
-        assert!(agrees, "{}: {outcome:?} {words}", rung.name);
+        assert!(agrees, "{}: {outcome:?} {words}", exercise.name);
     }
 }
 
-/// Shaders of that folder that read no channel, drawn by the seed.
-fn drawn(folder: &Path) -> Vec<(PathBuf, String)> {
+/// Chooses shaders of a folder that read no channel, at random from the seed.
+fn choose_shaders(folder: &Path) -> Vec<(PathBuf, String)> {
     let (count, seed): (usize, u64) = (setting("TOYPROOF_COUNT", 500), setting("TOYPROOF_SEED", 0));
     let mut shaders: Vec<_> = fs::read_dir(folder)
         .unwrap()
@@ -198,10 +200,10 @@ fn other_shaders_are_the_same_in_a_browser() {
         eprintln!("skipped: TOYPROOF_SHADERS names no folder of shaders");
         return;
     };
-    let Some((mut browser, mut worker)) = both() else {
+    let Some((mut browser, mut worker)) = browser_and_worker() else {
         return;
     };
-    tally(&folder, |text| judge(&mut browser, &mut worker, text));
+    tally(&folder, |text| compare_shader(&mut browser, &mut worker, text));
 }
 
 #[test]
@@ -210,17 +212,17 @@ fn conversions_of_other_shaders_are_the_same_in_a_browser() {
         eprintln!("skipped: TOYPROOF_SHADERS names no folder of shaders");
         return;
     };
-    let Some((mut browser, _)) = both() else {
+    let Some((mut browser, _)) = browser_and_worker() else {
         return;
     };
-    tally(&folder, |text| judge_conversion(&mut browser, text));
+    tally(&folder, |text| compare_conversion(&mut browser, text));
 }
 
-/// Judges shaders of a folder; few may differ.
-fn tally(folder: &OsStr, mut judge: impl FnMut(&str) -> (Outcome, String)) {
+/// Compares shaders of a folder; few may differ.
+fn tally(folder: &OsStr, mut compare_shader: impl FnMut(&str) -> (Outcome, String)) {
     let (mut equal, mut close, mut differ, mut others) = (0, 0, 0, 0);
-    for (path, text) in drawn(Path::new(folder)) {
-        let (outcome, words) = judge(&text);
+    for (path, text) in choose_shaders(Path::new(folder)) {
+        let (outcome, words) = compare_shader(&text);
         eprintln!("{} {outcome:?} {words}", path.display());
         *match outcome {
             Outcome::Equal => &mut equal,
@@ -229,14 +231,20 @@ fn tally(folder: &OsStr, mut judge: impl FnMut(&str) -> (Outcome, String)) {
             Outcome::Unpainted => &mut others,
         } += 1;
     }
-    let told = format!("{equal} equal, {close} within 1/255, {differ} differ, {others} not painted by both");
-    eprintln!("{told}");
-    assert!(equal + close > 0 && 49 * differ <= equal + close, "{told}");
+    let reported =
+        format!("{equal} equal, {close} within 1/255, {differ} differ, {others} not painted by both");
+    eprintln!("{reported}");
+    assert!(equal + close > 0 && 49 * differ <= equal + close, "{reported}");
 }
 
-/// A page of `examples` with the text that it is a host for in the place of its own.
-fn hosting(page: &str, text: &str) -> String {
-    let page = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples").join(page)).unwrap();
+/// Replaces the shader in a page of `examples/hosts`.
+fn with_shader(page: &str, text: &str) -> String {
+    let page = fs::read_to_string(
+        Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("examples/hosts")
+            .join(page),
+    )
+    .unwrap();
     let (head, rest) = page.split_once("<script type=\"x-shader/").unwrap();
     let (language, rest) = rest.split_once("\">").unwrap();
     let (_, rest) = rest.split_once("</script>").unwrap();
@@ -244,7 +252,7 @@ fn hosting(page: &str, text: &str) -> String {
 }
 
 #[test]
-fn the_hosts_that_are_shown_paint_what_was_converted() {
+fn example_hosts_render_conversions() {
     const SHADER: &str = "void mainImage(out vec4 c, in vec2 p) {
         c = vec4(p / iResolution.xy, 0.25 + 0.0 * sin(iTime) + 0.5 * float(iFrame < 0), 1.0);
     }";
@@ -264,7 +272,7 @@ fn the_hosts_that_are_shown_paint_what_was_converted() {
             "--use-gl=angle",
             "--use-angle=swiftshader",
             "--enable-unsafe-swiftshader",
-            // Without the last two, the canvas of a page with WebGPU stays empty on a machine without a GPU.
+            // Without the last two, the canvas of a WebGPU page stays empty on a machine without a GPU.
             "--enable-unsafe-webgpu",
             "--use-webgpu-adapter=swiftshader",
             "--use-vulkan=swiftshader",
@@ -277,17 +285,19 @@ fn the_hosts_that_are_shown_paint_what_was_converted() {
         ("host-webgl2.html", String::from_utf8(glsl).unwrap()),
     ] {
         let file = folder.path().join(page);
-        fs::write(&file, hosting(page, &text)).unwrap();
+        fs::write(&file, with_shader(page, &text)).unwrap();
         window.open(&file);
-        // A page has loaded before its canvas is painted, and nothing tells when that has reached the window.
+        // The page loads before its canvas is rendered, and no event reports when the canvas reaches the
+        // window.
         let start = Instant::now();
         while let Err(unlike) = shows_the_ramps(&window.screenshot()) {
-            assert!(start.elapsed() < PATIENCE, "{page} {unlike}");
+            assert!(start.elapsed() < TIME_LIMIT, "{page} {unlike}");
         }
     }
 }
 
-/// Whether a window shows red that grows to the right and green that grows upwards, on a canvas of 640 by 360 that stands 8 pixels from its top left.
+/// Checks that a window shows red increasing to the right and green increasing upward, on a canvas of 640 by
+/// 360 pixels that starts 8 pixels from its top left.
 fn shows_the_ramps(shot: &[u8]) -> Result<(), String> {
     let shown = image::load_from_memory(shot).unwrap().into_rgb8();
     for [x, y] in [[0, 0], [639, 0], [0, 359], [400, 100]] {

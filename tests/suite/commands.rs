@@ -1,4 +1,4 @@
-//! Each command does what its help says, and every command of the README works as it stands there.
+//! Each command does what its help describes, and every command of the README works as written.
 
 use std::fs;
 use std::path::Path;
@@ -26,7 +26,7 @@ fn the_help_of_each_command_shows_an_example() {
 }
 
 #[test]
-fn what_an_example_of_help_reads_exists() {
+fn files_in_help_examples_exist() {
     let mut seen = 0;
     for name in [
         "check", "render", "run", "convert", "explain", "stress", "trade", "compare", "export", "scenes",
@@ -42,13 +42,13 @@ fn what_an_example_of_help_reads_exists() {
 }
 
 #[test]
-fn the_evaluator_is_chosen_where_it_is_asked_for() {
+fn the_evaluator_is_chosen_on_request() {
     let run = toyproof(root(), &["doctor", "--on", "cpu"]);
     assert_eq!(run.code, 0, "{}", run.stderr);
     assert!(run.stdout.contains("evaluator"), "{}", run.stdout);
 }
 
-/// In the middle of an odd size stands a ray along each axis of the screen.
+/// With odd sizes, the central pixel's ray is parallel to an axis of the screen.
 #[test]
 fn the_course_is_correct_at_odd_sizes() {
     let run = toyproof(root(), &["check", "glsl", "--size", "97x55", "--on", "cpu"]);
@@ -85,14 +85,14 @@ fn the_course_is_correct_and_its_json_follows_the_schema() {
             .unwrap()
             .to_str()
             .unwrap();
-        for picture in ["reference", "actual", "difference"] {
-            assert!(folder.path().join(format!("{stem}-{picture}.png")).is_file());
+        for kind in ["reference", "actual", "difference"] {
+            assert!(folder.path().join(format!("{stem}-{kind}.png")).is_file());
         }
     }
 }
 
 #[test]
-fn what_is_seen_while_a_shader_runs_can_be_allowed_and_denied() {
+fn runtime_warnings_can_be_allowed_and_denied() {
     let folder = tempfile::tempdir().unwrap();
     // Each pixel divides an integer by zero, and is NaN.
     let odd = |divides: &str, is_nan: &str| {
@@ -123,17 +123,17 @@ fn what_is_seen_while_a_shader_runs_can_be_allowed_and_denied() {
         ("elsewhere.glsl", true),
         ("whole.glsl", false),
     ] {
-        let told = check(&[name]);
-        assert_eq!(told.code, 0, "{name}: {}", told.stderr);
+        let reported = check(&[name]);
+        assert_eq!(reported.code, 0, "{name}: {}", reported.stderr);
         for code in ["W0600", "W0603"] {
             assert_eq!(
-                told.stderr.contains(&format!("warning[{code}]")),
+                reported.stderr.contains(&format!("warning[{code}]")),
                 is_told,
                 "{name}: {}",
-                told.stderr
+                reported.stderr
             );
         }
-        assert!(!told.stderr.contains("W0015"), "{name}: {}", told.stderr);
+        assert!(!reported.stderr.contains("W0015"), "{name}: {}", reported.stderr);
         let denied = check(&[name, "--deny", "warnings"]);
         assert_eq!(denied.code, i32::from(is_told), "{name}: {}", denied.stderr);
         assert_eq!(denied.stdout.contains("invalid"), is_told, "{}", denied.stdout);
@@ -161,9 +161,9 @@ fn denied_warnings_are_errors() {
         let all = [&["convert", "--to", "lowered", "-o", "-"], arguments].concat();
         toyproof(folder.path(), &all)
     };
-    let told = convert(&["noise.glsl"]);
-    assert_eq!(told.code, 0);
-    assert!(told.stderr.contains("warning[W0005]"), "{}", told.stderr);
+    let reported = convert(&["noise.glsl"]);
+    assert_eq!(reported.code, 0);
+    assert!(reported.stderr.contains("warning[W0005]"), "{}", reported.stderr);
     for deny in ["warnings", "W0005"] {
         let denied = convert(&["noise.glsl", "--deny", deny]);
         assert_eq!((denied.code, &*denied.stdout), (1, ""));
@@ -192,7 +192,7 @@ fn denied_warnings_are_errors() {
 }
 
 #[test]
-fn a_terminal_is_shown_a_few_warnings_of_one_kind() {
+fn repeated_warnings_are_summarized() {
     let folder = tempfile::tempdir().unwrap();
     let lines = "  c += fract(sin(f.x) * 43758.5453);\n".repeat(9);
     let text = format!("void mainImage(out vec4 c, in vec2 f) {{\n  c = vec4(0);\n{lines}}}\n");
@@ -201,9 +201,9 @@ fn a_terminal_is_shown_a_few_warnings_of_one_kind() {
         let all = [&["convert", "noise.glsl", "--to", "lowered", "-o", "-"], more].concat();
         toyproof(folder.path(), &all).stderr
     };
-    let told = convert(&[]);
-    assert_eq!(told.matches("warning[W0005]").count(), 3, "{told}");
-    assert!(told.contains("6 more of W0005"), "{told}");
+    let reported = convert(&[]);
+    assert_eq!(reported.matches("warning[W0005]").count(), 3, "{reported}");
+    assert!(reported.contains("6 more of W0005"), "{reported}");
     assert_eq!(convert(&["--verbose"]).matches("warning[W0005]").count(), 9);
 }
 
@@ -268,37 +268,37 @@ fn the_frame_flags_reach_the_shader() {
     let arguments = "run s.glsl -o s.exr --size 8x4 --time 1.5 --frame 7 --mouse 1,2,3,-4 --date 2026,0,2,3 --channel1 noise";
     let run = toyproof(folder.path(), &arguments.split(' ').collect::<Vec<_>>());
     assert_eq!(run.code, 0, "{}", run.stderr);
-    let picture = toyproof::image::read(&folder.path().join("s.exr")).unwrap();
+    let image = toyproof::image::read(&folder.path().join("s.exr")).unwrap();
     assert_eq!(
-        picture.get(0, 0),
+        image.get(0, 0),
         [0.0, 1.0, 0.0, 1.0],
         "alpha is 1 whatever the shader says"
     );
-    assert_eq!(picture.get(7, 3), [1.0; 4]);
+    assert_eq!(image.get(7, 3), [1.0; 4]);
 }
 
 #[test]
-fn a_sequence_is_painted_by_number_and_goes_on_where_it_stopped() {
+fn sequences_are_numbered_and_resume() {
     let folder = tempfile::tempdir().unwrap();
     let shader = "void mainImage(out vec4 c, in vec2 p) {
         c = vec4(float(iFrame) / 4.0, iTime * 15.0, iMouse.x, 1.0);
     }";
     fs::write(folder.path().join("s.glsl"), shader).unwrap();
-    let paint = |more: &str| {
+    let render = |more: &str| {
         let arguments = format!("run s.glsl -o s.exr --size 2x2 --on cpu --frames 0..3{more}");
         toyproof(folder.path(), &arguments.split(' ').collect::<Vec<_>>())
     };
     let file = |name: &str| folder.path().join(name);
     let color = |name: &str| toyproof::image::read(&file(name)).unwrap().get(0, 0);
 
-    // The third frame has nowhere to go.
+    // The third frame cannot be written.
     fs::create_dir(file("s-0002.exr")).unwrap();
-    let stopped = paint("");
+    let stopped = render("");
     assert_eq!(stopped.code, 2, "{}", stopped.stderr);
     assert!(!file("s-0003.exr").exists() && file("s.sequence").is_file());
     fs::remove_dir(file("s-0002.exr")).unwrap();
     fs::write(file("s-0000.exr"), "kept").unwrap();
-    let resumed = paint("");
+    let resumed = render("");
     assert_eq!(resumed.code, 0, "{}", resumed.stderr);
     let words = "2 of 4 frames are there already";
     assert!(resumed.stderr.contains(words), "{}", resumed.stderr);
@@ -310,12 +310,12 @@ fn a_sequence_is_painted_by_number_and_goes_on_where_it_stopped() {
         assert!((g - share).abs() < 1e-6, "{name}: {g}");
     }
 
-    // Another mouse is another sequence.
+    // A different mouse position is a different sequence.
     fs::remove_file(file("s-0003.exr")).unwrap();
     fs::create_dir(file("s-0003.exr")).unwrap();
-    assert_eq!(paint("").code, 2);
+    assert_eq!(render("").code, 2);
     fs::remove_dir(file("s-0003.exr")).unwrap();
-    let other = paint(" --mouse 1,0");
+    let other = render(" --mouse 1,0");
     assert_eq!(other.code, 0, "{}", other.stderr);
     assert!(!other.stderr.contains("already"), "{}", other.stderr);
     assert_eq!(color("s-0000.exr"), [0.0, 0.0, 1.0, 1.0]);
@@ -330,7 +330,7 @@ fn a_sequence_is_painted_by_number_and_goes_on_where_it_stopped() {
 }
 
 #[test]
-fn derivatives_grow_upwards() {
+fn derivatives_point_upward() {
     if !has_driver() {
         return;
     }
@@ -341,17 +341,12 @@ fn derivatives_grow_upwards() {
         toyproof(folder.path(), &["run", "s.glsl", "-o", "s.exr", "--size", "4x4"]).code,
         0
     );
-    let picture = toyproof::image::read(&folder.path().join("s.exr")).unwrap();
-    assert!(
-        picture
-            .pixels()
-            .iter()
-            .all(|pixel| *pixel == [1.0, 1.0, 0.0, 1.0])
-    );
+    let image = toyproof::image::read(&folder.path().join("s.exr")).unwrap();
+    assert!(image.pixels().iter().all(|pixel| *pixel == [1.0, 1.0, 0.0, 1.0]));
 }
 
 #[test]
-fn rendering_and_comparing_pictures() {
+fn rendering_and_comparing_images() {
     let folder = tempfile::tempdir().unwrap();
     let scene = root().join("glsl/02-sphere.toml");
     let scene = scene.to_str().unwrap();
@@ -401,7 +396,7 @@ fn rendering_and_comparing_pictures() {
     assert!(sizes.stderr.contains("64×36"), "{}", sizes.stderr);
 }
 
-/// Runs a judge of a converted file, where it is installed.
+/// Runs a validator on a converted file, if it is installed.
 fn judge(program: &str, arguments: &[&str]) {
     match Command::new(program).args(arguments).output() {
         Err(_) => eprintln!("skipped: {program} is not installed here"),
@@ -416,10 +411,10 @@ fn judge(program: &str, arguments: &[&str]) {
 }
 
 #[test]
-fn conversions_are_accepted_by_those_who_take_them() {
+fn validators_accept_conversions() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
-    // What the rungs do not use: textures, derivatives, every input.
+    // Features that the exercises do not use: textures, derivatives, every input.
     let shader = "void mainImage(out vec4 c, in vec2 p) {
         if (p.x > 9.0) c = texture(iChannel0, p / iResolution.xy) + dFdx(p.xyxy);
         c += textureLod(iChannel3, p, 0.0) + vec4(iChannelTime[1]) + vec4(iChannelResolution[2], iSampleRate);
@@ -487,7 +482,7 @@ fn several_shaders_need_a_folder() {
 }
 
 #[test]
-fn pictures_of_several_shaders_need_a_folder() {
+fn images_of_several_shaders_need_a_folder() {
     let folder = tempfile::tempdir().unwrap();
     let glsl = root().join("glsl");
     for output in ["-", "all.png"] {
@@ -503,7 +498,7 @@ fn pictures_of_several_shaders_need_a_folder() {
 }
 
 #[test]
-fn the_scenes_are_written_and_check_as_they_are() {
+fn written_scenes_pass_the_check() {
     let folder = tempfile::tempdir().unwrap();
     assert!(toyproof(root(), &["scenes"]).stdout.contains("05-complex-scene"));
     let run = toyproof(folder.path(), &["scenes", "--write", "course"]);
@@ -512,7 +507,7 @@ fn the_scenes_are_written_and_check_as_they_are() {
         let written = fs::read(folder.path().join("course").join(name)).unwrap();
         assert_eq!(written, fs::read(root().join("glsl").join(name)).unwrap());
     }
-    // What somebody changed since is not lost.
+    // Files changed since are not overwritten.
     let changed = folder.path().join("course/02-sphere.glsl");
     fs::write(&changed, "mine").unwrap();
     let run = toyproof(folder.path(), &["scenes", "--write", "course"]);
@@ -522,7 +517,7 @@ fn the_scenes_are_written_and_check_as_they_are() {
 }
 
 #[test]
-fn colours_are_for_terminals_and_can_be_forced_or_refused() {
+fn colors_are_for_terminals_and_can_be_forced_or_disabled() {
     let folder = tempfile::tempdir().unwrap();
     let plain = toyproof(folder.path(), &["check", "nowhere.glsl"]);
     assert!(!plain.stdout.contains('\u{1b}'));
@@ -536,7 +531,8 @@ fn colours_are_for_terminals_and_can_be_forced_or_refused() {
     assert!(!refused.stdout.contains('\u{1b}'));
 }
 
-/// The README's `$ …` lines, in a folder that holds `glsl/`; those of `make` are only looked up.
+/// Runs the README's `$ …` lines in a folder that holds `glsl/`; for lines with `make`, only the target is
+/// looked up.
 #[test]
 fn every_command_of_the_readme_works() {
     let driver = has_driver();

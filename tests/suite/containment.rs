@@ -1,4 +1,4 @@
-//! A panic in one part of the work costs that part only: verdicts, other shaders and other reports stay.
+//! A panic in one part of the work loses only that part: verdicts, other shaders and other reports remain.
 
 use std::fs;
 use std::path::Path;
@@ -9,7 +9,7 @@ use toyproof::verify::contain::{INJECTION, Part};
 use crate::program::{Run, command, output};
 use crate::support::SPHERE;
 
-/// A correct shader, two wrong ones, and one that float32 is not enough for: together they reach every part.
+/// A correct shader, two wrong ones, and one for which float32 is not enough: together they reach every part.
 fn homework() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
@@ -58,7 +58,7 @@ const REPORTS: [&str; 5] = [
 ];
 
 #[test]
-fn a_panic_costs_only_the_part_in_which_it_happens() {
+fn a_panic_affects_only_its_part() {
     let folder = homework();
     let sound = check(folder.path(), None);
     assert_eq!(sound.code, 1, "{}", sound.stderr);

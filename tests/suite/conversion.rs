@@ -1,4 +1,4 @@
-//! Conversions and their proofs: what is right is proved, in every style, and what is wrong is not.
+//! Conversions and their proofs: correct ones are proved, in every style, and wrong ones are not.
 
 use std::path::Path;
 use std::process::Command;
@@ -8,8 +8,8 @@ use std::{env, fs};
 use ::spirv::Op;
 use toyproof::diagnostic::{Deadline, File, Files};
 use toyproof::glsl::{Checked, Options, check};
-use toyproof::gpu::{Worker, Written};
-use toyproof::translate::backend::{Target, emit, reread, spirv};
+use toyproof::gpu::{ShaderArtifact, Worker};
+use toyproof::translate::backend::{Target, emit, roundtrip, spirv};
 use toyproof::translate::lower;
 use toyproof::translate::naga_ir::{Shape, ValidModule};
 use toyproof::translate::wgsl::{Style, wgsl};
@@ -17,11 +17,11 @@ use toyproof::verify::Failure;
 use toyproof::verify::conversion::{Proof, frames, prove};
 
 use crate::program::{command, run, toyproof};
-use crate::support::{ANIMATION, EVERY_RUNG, REFLECTIONS, Rung, worker};
+use crate::support::{ANIMATION, EVERY_EXERCISE, Exercise, REFLECTIONS, worker};
 
 const TIMEOUT: Duration = Duration::from_secs(60);
 
-/// A shader's WGSL as `edit` leaves it, compared with the shader.
+/// Compares a shader's WGSL, edited by `edit`, with the shader.
 fn proof(worker: &mut Worker, shader: &str, style: Style, edit: impl Fn(String) -> String) -> Proof {
     let mut files = Files::default();
     let file = files.add(File::new("shader", shader));
@@ -30,11 +30,12 @@ fn proof(worker: &mut Worker, shader: &str, style: Style, edit: impl Fn(String) 
         wgsl(&checked, &files, style, &Deadline::default()).unwrap_or_else(|why| panic!("{why}\n{shader}"));
     let hosted = style.hosted(&edit(text));
     let whole = hosted.text.clone();
-    proof_of(worker, &checked, Written::Wgsl(hosted)).unwrap_or_else(|failure| panic!("{failure}\n{whole}"))
+    proof_of(worker, &checked, ShaderArtifact::Wgsl(hosted))
+        .unwrap_or_else(|failure| panic!("{failure}\n{whole}"))
 }
 
-/// What was written, compared with the shader.
-fn proof_of(worker: &mut Worker, checked: &Checked, written: Written) -> Result<Proof, Failure> {
+/// Compares a conversion with the shader.
+fn proof_of(worker: &mut Worker, checked: &Checked, written: ShaderArtifact) -> Result<Proof, Failure> {
     let proofs = prove(worker, checked, vec![written], &frames(checked), TIMEOUT, None)?;
     Ok(proofs.into_iter().next().expect("a proof for each reading"))
 }
@@ -45,17 +46,17 @@ fn checked(shader: &str) -> Checked {
     check(&files, file, &Options::default()).expect("it is valid")
 }
 
-/// That conversion holds.
-fn holds(worker: &mut Worker, rung: &Rung, style: Style) {
-    let proof = proof(worker, rung.shader, style, |text| text);
-    assert!(proof.holds(), "{} as {}: {proof:?}", rung.name, style.name());
+/// Asserts that the conversion is proved.
+fn holds(worker: &mut Worker, exercise: &Exercise, style: Style) {
+    let proof = proof(worker, exercise.shader, style, |text| text);
+    assert!(proof.holds(), "{} as {}: {proof:?}", exercise.name, style.name());
 }
 
 #[test]
-fn every_rung_is_proved() {
+fn every_exercise_is_proved() {
     let Some(mut worker) = worker() else { return };
-    for rung in EVERY_RUNG {
-        holds(&mut worker, rung, Style::Plain);
+    for exercise in EVERY_EXERCISE {
+        holds(&mut worker, exercise, Style::Plain);
     }
 }
 
@@ -63,13 +64,13 @@ fn every_rung_is_proved() {
 fn every_style_is_proved() {
     let Some(mut worker) = worker() else { return };
     for style in Style::ALL {
-        for rung in [&REFLECTIONS, &ANIMATION] {
-            holds(&mut worker, rung, style);
+        for exercise in [&REFLECTIONS, &ANIMATION] {
+            holds(&mut worker, exercise, style);
         }
     }
 }
 
-/// What compute.toys puts before a shader, as far as one can read it: its names and types, from the bind.rs of its renderer.
+/// The prelude of compute.toys, reconstructed: names and types from the bind.rs of its renderer.
 const COMPUTE_TOYS: &str = "
     alias int = i32; alias uint = u32; alias float = f32;
     alias float2 = vec2<f32>; alias float3 = vec3<f32>; alias float4 = vec4<f32>;
@@ -96,7 +97,7 @@ const COMPUTE_TOYS: &str = "
     @group(0) @binding(19) var trilinear_repeat: sampler;
     ";
 
-/// What the modules hold that a shader for Bevy imports, as far as one can read it, in the place of each import.
+/// The Bevy modules that a shader imports, reconstructed, each substituted for its import.
 const BEVY: [(&str, &str); 3] = [
     (
         "#import bevy_sprite::mesh2d_vertex_output::VertexOutput",
@@ -118,7 +119,7 @@ const BEVY: [(&str, &str); 3] = [
 ];
 
 #[test]
-fn texts_are_valid_as_they_stand_in_the_modules_that_their_hosts_make() {
+fn conversions_are_valid_in_their_hosts_modules() {
     let with_channels = "const float data = 2.0;
         void mainImage(out vec4 c, in vec2 p) {
             c = texture(iChannel0, p / iResolution.xy) * data + texture(iChannel1, p / iResolution.xy) * fract(iTime);
@@ -140,7 +141,7 @@ fn texts_are_valid_as_they_stand_in_the_modules_that_their_hosts_make() {
 }
 
 #[test]
-fn what_is_not_the_shader_is_not_proved() {
+fn wrong_conversions_are_not_proved() {
     let Some(mut worker) = worker() else { return };
     let edits = [
         ("-b - root", "-b + root"),
@@ -164,14 +165,14 @@ fn what_is_not_the_shader_is_not_proved() {
     }
 }
 
-/// A shader in that language, as its file holds it.
+/// A shader's file in that language.
 fn emitted(checked: &Checked, target: Target) -> Vec<u8> {
     let module = ValidModule::parse(&lower(checked)).expect("naga takes it");
     emit(&module, target).expect("naga writes it")
 }
 
-/// The words as a driver gets them, each `from` an operation that becomes `to`; there is one at least.
-fn words(checked: &Checked, from: Op, to: Op) -> Written {
+/// The SPIR-V that a driver gets, with every operation `from` replaced by `to`; there is at least one.
+fn words(checked: &Checked, from: Op, to: Op) -> ShaderArtifact {
     let mut words = spirv::of_bytes(&emitted(checked, Target::Spirv)).expect("whole words");
     let mut at = 5;
     let mut changed = 0;
@@ -183,11 +184,11 @@ fn words(checked: &Checked, from: Op, to: Op) -> Written {
         at += (words[at] >> 16) as usize;
     }
     assert!(changed > 0, "{from:?}");
-    Written::Words(words, [Shape::D2; 4])
+    ShaderArtifact::Words(words, [Shape::D2; 4])
 }
 
 #[test]
-fn the_very_words_of_spirv_are_proved_and_others_are_not() {
+fn exact_spirv_is_proved_and_modified_is_not() {
     let Some(mut worker) = worker() else { return };
     for shader in [REFLECTIONS.shader, CONSTRUCTS] {
         let checked = checked(shader);
@@ -201,20 +202,20 @@ fn the_very_words_of_spirv_are_proved_and_others_are_not() {
 }
 
 #[test]
-fn glsl_that_is_read_again_is_proved_and_other_is_not() {
+fn reread_glsl_is_proved_and_modified_is_not() {
     let Some(mut worker) = worker() else { return };
     let checked_shader = checked(REFLECTIONS.shader);
     let text = String::from_utf8(emitted(&checked_shader, Target::Glsl)).unwrap();
     for (from, to, holds) in [("", "", true), ("reflect(", "-reflect(", false)] {
         assert!(text.contains(from));
-        let again = checked(&reread::as_shadertoy(&text.replacen(from, to, 1)));
-        let written = Written::Lowered(lower(&again));
+        let again = checked(&roundtrip::as_shadertoy(&text.replacen(from, to, 1)));
+        let written = ShaderArtifact::Lowered(lower(&again));
         let proof = proof_of(&mut worker, &checked_shader, written).unwrap();
         assert_eq!(proof.holds(), holds, "{from}: {proof:?}");
     }
 }
 
-/// What naga and GLSL see differently, and what has no words in WGSL.
+/// Constructs that naga and GLSL interpret differently, and constructs that WGSL lacks.
 const CONSTRUCTS: &str = "
 #define STEPS 4
 #define PI 3.14159265
@@ -256,7 +257,7 @@ void mainImage(out vec4 c, in vec2 p) {
 }";
 
 #[test]
-fn constructs_that_wgsl_lacks_are_said_otherwise_and_proved() {
+fn constructs_that_wgsl_lacks_are_replaced_and_proved() {
     let Some(mut worker) = worker() else { return };
     for style in Style::ALL {
         let proof = proof(&mut worker, CONSTRUCTS, style, |text| text);
@@ -265,7 +266,7 @@ fn constructs_that_wgsl_lacks_are_said_otherwise_and_proved() {
 }
 
 #[test]
-fn a_file_is_written_if_it_is_proved_and_says_so() {
+fn proved_files_are_written_with_a_header() {
     if worker().is_none() {
         return;
     }
@@ -310,7 +311,7 @@ fn a_file_is_written_if_it_is_proved_and_says_so() {
 }
 
 #[test]
-fn what_nobody_can_prove_is_told_with_its_operation_and_place() {
+fn unprovable_shaders_name_the_operation_and_position() {
     if worker().is_none() {
         return;
     }
@@ -324,7 +325,7 @@ fn what_nobody_can_prove_is_told_with_its_operation_and_place() {
 }
 
 #[test]
-fn a_folder_has_a_table_of_what_was_proved() {
+fn folders_have_a_proof_table() {
     if worker().is_none() {
         return;
     }
@@ -372,9 +373,9 @@ fn a_folder_has_a_table_of_what_was_proved() {
     }
 }
 
-/// What each language's file says of its proof.
+/// The header of each language's file states its proof.
 #[test]
-fn files_in_every_language_say_what_was_proved() {
+fn files_in_every_language_state_their_proof() {
     if worker().is_none() {
         return;
     }
@@ -422,24 +423,25 @@ fn files_in_every_language_say_what_was_proved() {
         let text = String::from_utf8_lossy(&bytes);
         assert!(text.contains(words), "{ending}: {}", &text[..text.len().min(900)]);
         if ending == "spv"
-            && let Ok(judged) = Command::new("spirv-val").arg(&out).output()
+            && let Ok(check_exercise) = Command::new("spirv-val").arg(&out).output()
         {
-            assert!(judged.status.success(), "{judged:?}");
+            assert!(check_exercise.status.success(), "{check_exercise:?}");
         }
     }
 }
 
-/// Words that stand around a shader in some language: ours, naga's, those of hosts and of the frames that stand for them.
-const SURROUNDINGS: &str = "toyproof_colour toyproof_result toyproof_painted toyproof_frame ToyproofFrame toyproof_color toyproof_size \
+/// Names that surround a shader in some language: ours, naga's, those of hosts and of the preludes that
+/// replace them.
+const SURROUNDING_NAMES: &str = "toyproof_colour toyproof_result toyproof_painted toyproof_frame ToyproofFrame toyproof_color toyproof_size \
     toyproof_need_0 toyproof_sin toyproof_start toyproof_remainder toyproof_t1 toyproof_s1 main_1 global inputs Inputs \
     position color saturate screen time view View globals Globals fragment VertexOutput kept written_main written_color \
     writtenn_at written_image FragmentInput_main FragmentOutput ConstructRay constructRay naga_mod naga_div i_time \
     frag_coord shader_main main_image f32 vec3f lerp frac mul tex2D Texture2D SamplerState float4 main_ kernel size id \
     pixel iChannel0_sampler sampler0 channel0 Varyings";
 
-/// A shader in which all of them are names of its author's.
+/// A shader whose author uses all of these names.
 fn named(declared: impl Fn(&str) -> String, used: impl Fn(&str) -> String) -> String {
-    let names = SURROUNDINGS.split_whitespace();
+    let names = SURROUNDING_NAMES.split_whitespace();
     let declarations: String = names.clone().map(declared).collect();
     let uses: String = names.map(used).collect();
     format!(
@@ -454,7 +456,7 @@ fn named(declared: impl Fn(&str) -> String, used: impl Fn(&str) -> String) -> St
 }
 
 #[test]
-fn names_of_an_author_may_be_those_of_what_stands_around_his_text() {
+fn authors_may_use_names_of_the_surrounding_code() {
     if worker().is_none() {
         return;
     }
@@ -513,7 +515,7 @@ fn names_of_an_author_may_be_those_of_what_stands_around_his_text() {
 }
 
 #[test]
-fn hlsl_is_read_as_it_is_written() {
+fn hlsl_is_read_without_optimization() {
     if worker().is_none()
         || Command::new("glslangValidator")
             .arg("--version")
@@ -522,7 +524,7 @@ fn hlsl_is_read_as_it_is_written() {
     {
         return;
     }
-    // An optimiser makes one product of these two, and `fma` of what is added.
+    // An optimizer would fold these two products into one, and the sum into `fma`.
     let folder = tempfile::tempdir().unwrap();
     let text = "void mainImage(out vec4 c, in vec2 p) {
         float angle = 6.28318530718 * p.x / 240.0;
@@ -535,11 +537,11 @@ fn hlsl_is_read_as_it_is_written() {
 }
 
 #[test]
-fn a_file_is_written_while_others_are_still_at_work() {
+fn files_are_written_while_others_are_in_progress() {
     let folder = tempfile::tempdir().unwrap();
     let from = folder.path().join("in");
     fs::create_dir(&from).unwrap();
-    // It comes first, and takes long to be read.
+    // It is first, and slow to read.
     let long = format!(
         "void mainImage(out vec4 c, in vec2 p) {{ c = vec4(0);\n{}}}",
         "c += 0.001;\n".repeat(10_000)
@@ -561,7 +563,7 @@ fn a_file_is_written_while_others_are_still_at_work() {
 }
 
 #[test]
-fn a_browser_is_asked_where_it_is_wanted_and_leaves_nothing_behind() {
+fn the_browser_runs_on_request_and_leaves_nothing_behind() {
     if worker().is_none() || toyproof::gpu::browser::find().is_none() {
         return;
     }
@@ -596,10 +598,11 @@ fn a_browser_is_asked_where_it_is_wanted_and_leaves_nothing_behind() {
     assert_eq!(refused.code, 2, "browsers run no SPIR-V: {}", refused.stderr);
 }
 
-/// Somebody else's conversions: `TOYPROOF_CONVERTED` is a folder of WGSL with our bindings, `TOYPROOF_SHADERS` one of the shaders that
-/// they were made of, with the same names. A line for each goes to standard error; nothing is demanded of them.
+/// Third-party conversions: `TOYPROOF_CONVERTED` is a folder of WGSL with our bindings, `TOYPROOF_SHADERS`
+/// one of their source shaders, with the same names. A line for each goes to standard error; nothing is
+/// asserted of them.
 #[test]
-fn conversions_by_others_are_judged() {
+fn third_party_conversions_are_checked() {
     let folders = ["TOYPROOF_SHADERS", "TOYPROOF_CONVERTED"].map(env::var_os);
     let [Some(shaders), Some(others)] = folders else {
         eprintln!("skipped: TOYPROOF_SHADERS and TOYPROOF_CONVERTED name no folders");
@@ -617,7 +620,11 @@ fn conversions_by_others_are_judged() {
             continue;
         };
         let original = checked(&fs::read_to_string(&path).unwrap());
-        match proof_of(&mut worker, &original, Written::Wgsl(Style::Plain.hosted(&text))) {
+        match proof_of(
+            &mut worker,
+            &original,
+            ShaderArtifact::Wgsl(Style::Plain.hosted(&text)),
+        ) {
             Ok(proof) if proof.holds() => eprintln!("{name}: proved"),
             Ok(proof) => eprintln!("{name}: {} of {} differ", proof.differing(), proof.pixels()),
             Err(failure) => eprintln!("{name}: {failure}"),

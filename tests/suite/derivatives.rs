@@ -1,8 +1,8 @@
-//! Normals by derivatives are exact on planes, and anything where a quad sees two things.
+//! Normals by derivatives are exact on planes, and arbitrary where a quad sees two surfaces.
 
 use toyproof::verify::compare::Verdict;
 
-use crate::support::{Edit, Rung, STILL, edit, judged, maths, numbers, worker};
+use crate::support::{Edit, Exercise, STILL, algorithm, check_exercise, edit, numbers, worker};
 
 const SCENE: &str = r#"
 ambient = [0.1, 0.1, 0.1]
@@ -51,7 +51,7 @@ void mainImage(out vec4 fragColor, in vec2 fragCoord) {
     fragColor = vec4(color * (0.1 + 0.8 * max(dot(normal, toLight), 0.0)), 1.0);
 }";
 
-/// What is wrong beside the derivatives.
+/// Faults beside the derivatives.
 static FAULTS: &[(&str, &[Edit])] = &[
     (
         "the normal inward",
@@ -73,19 +73,19 @@ static FAULTS: &[(&str, &[Edit])] = &[
 ];
 
 #[test]
-fn a_quad_that_sees_two_things_has_any_derivative() {
+fn quads_across_edges_have_arbitrary_derivatives() {
     let Some(mut worker) = worker() else {
         return;
     };
-    let rung = Rung {
+    let exercise = Exercise {
         name: "flat normals",
         shader: SHADER,
         scene: SCENE,
         ..STILL
     };
-    let findings = judged(&mut worker, SHADER, &rung);
+    let findings = check_exercise(&mut worker, SHADER, &exercise);
     assert_eq!(findings.verdict, Verdict::Correct, "{}", numbers(&findings));
-    let left_out = maths(&findings).share(maths(&findings).undefined);
+    let left_out = algorithm(&findings).share(algorithm(&findings).undefined);
     eprintln!("{:.2} % left out", 100.0 * left_out);
     assert!(
         left_out > 0.001,
@@ -93,7 +93,7 @@ fn a_quad_that_sees_two_things_has_any_derivative() {
         numbers(&findings)
     );
     for (name, edits) in FAULTS {
-        let findings = judged(&mut worker, &edit(SHADER, edits, name), &rung);
+        let findings = check_exercise(&mut worker, &edit(SHADER, edits, name), &exercise);
         eprintln!("{name}: {}", numbers(&findings));
         assert_eq!(findings.verdict, Verdict::Wrong, "{name}: {}", numbers(&findings));
     }

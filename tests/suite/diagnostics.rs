@@ -1,4 +1,4 @@
-//! `docs/diagnostics.md` tells of every code, and its examples give what it says they give.
+//! `docs/diagnostics.md` explains every code, and its examples yield the stated diagnostics.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -17,10 +17,11 @@ use toyproof::verify::{Case, Expected, verify};
 use crate::architecture::sources;
 use crate::program::toyproof;
 
-/// Codes that no text of an example can give: what hangs on time, bytes that are no text, and what toyproof itself gets wrong.
-const WITHOUT_EXAMPLE: [&str; 7] = ["E0410", "E0411", "E0500", "E0900", "E0901", "W0017", "W0606"];
+/// Codes that no example can produce: those that depend on time, on invalid UTF-8, and internal errors of
+/// toyproof.
+const CODES_WITHOUT_EXAMPLE: [&str; 7] = ["E0410", "E0411", "E0500", "E0900", "E0901", "W0017", "W0606"];
 
-/// What is left out of examples where it does not matter.
+/// The `mainImage` that examples omit.
 const MAIN_IMAGE: &str =
     "\nvoid mainImage(out vec4 c, in vec2 p) { c = vec4(p / iResolution.xy, 0.0, 1.0); }\n";
 
@@ -47,7 +48,7 @@ fn examples(explanation: &Explanation) -> Vec<Example> {
     examples
 }
 
-/// The scene that the examples of a code paint: what is indented.
+/// The scene that the examples of a code render: the indented text.
 fn scene(explanation: &Explanation) -> Option<Scene> {
     let outside_fences = explanation.text.split("```").step_by(2);
     let text: String = outside_fences
@@ -61,7 +62,7 @@ fn scene(explanation: &Explanation) -> Option<Scene> {
     is_scene.then(|| scene::parse(&files, file).unwrap())
 }
 
-/// Everything that is said of an example.
+/// All diagnostics of an example.
 fn told(example: &Example, scene: Option<&Scene>) -> (Vec<Diagnostic>, Files) {
     let mut files = Files::default();
     match example.language {
@@ -74,7 +75,7 @@ fn told(example: &Example, scene: Option<&Scene>) -> (Vec<Diagnostic>, Files) {
             let file = files.add(File::new("example.glsl", format!("{}{rest}", example.text)));
             let checked = glsl::check(&files, file, &glsl::Options::default());
             (
-                checked.map_or_else(|told| told, |checked| seen(&files, &checked, scene)),
+                checked.map_or_else(|reported| reported, |checked| seen(&files, &checked, scene)),
                 files,
             )
         }
@@ -90,11 +91,11 @@ fn told(example: &Example, scene: Option<&Scene>) -> (Vec<Diagnostic>, Files) {
     }
 }
 
-/// The warnings about a shader, and those about its run.
+/// The warnings on a shader, and those on its run.
 fn seen(files: &Files, checked: &Checked, scene: Option<&Scene>) -> Vec<Diagnostic> {
     let frame = Frame {
         size: scene.map_or([16, 9], |scene| scene.film.size),
-        // The fourth channel stays without a picture.
+        // The fourth channel has no image.
         channels: [true, true, true, false].map(|bound| bound.then(noise)),
         ..Frame::default()
     };
@@ -111,7 +112,7 @@ fn seen(files: &Files, checked: &Checked, scene: Option<&Scene>) -> Vec<Diagnost
         pool: None,
     };
     let mut all = lints.warnings.clone();
-    // Of one that never ends there is no run to tell of.
+    // A shader that never ends has no run to report on.
     all.extend(
         verify(None, &case)
             .map(|findings| findings.notes)
@@ -122,7 +123,7 @@ fn seen(files: &Files, checked: &Checked, scene: Option<&Scene>) -> Vec<Diagnost
 
 #[test]
 fn every_code_has_its_section_and_every_section_its_code() {
-    // Codes are spelled out wherever a diagnostic is made.
+    // Codes are written literally wherever a diagnostic is created.
     let mut spelled = BTreeSet::new();
     for path in sources(Path::new("src")) {
         let text = fs::read_to_string(&path).unwrap();
@@ -147,7 +148,7 @@ fn every_code_has_its_section_and_every_section_its_code() {
 }
 
 #[test]
-fn wrong_examples_give_their_code_alone_and_right_ones_nothing() {
+fn wrong_examples_give_only_their_code_and_right_ones_none() {
     let mut mistakes = Vec::new();
     for explanation in explanations() {
         let examples = examples(&explanation);
@@ -161,21 +162,24 @@ fn wrong_examples_give_their_code_alone_and_right_ones_nothing() {
         let has = |wrong| examples.iter().any(|example| example.wrong == wrong);
         assert_eq!(
             has(true) && has(false),
-            !WITHOUT_EXAMPLE.contains(&explanation.code),
+            !CODES_WITHOUT_EXAMPLE.contains(&explanation.code),
             "{}",
             explanation.code
         );
         let scene = scene(&explanation);
         for example in &examples {
-            let (told, files) = told(example, scene.as_ref());
-            let codes: Vec<_> = told.iter().map(|diagnostic| &*diagnostic.code).collect();
+            let (reported, files) = told(example, scene.as_ref());
+            let codes: Vec<_> = reported.iter().map(|diagnostic| &*diagnostic.code).collect();
             let wanted = if example.wrong {
                 vec![explanation.code]
             } else {
                 Vec::new()
             };
             if codes != wanted {
-                let lines: Vec<_> = told.iter().map(|told| human(told, &files, false)).collect();
+                let lines: Vec<_> = reported
+                    .iter()
+                    .map(|reported| human(reported, &files, false))
+                    .collect();
                 mistakes.push(format!(
                     "{} {}\n{}",
                     explanation.code,

@@ -8,7 +8,7 @@ use std::{fs, thread};
 use serde_json::Value;
 use toyproof::eval;
 use toyproof::glsl::Checked;
-use toyproof::gpu::{Failure, On, Phase, Worker};
+use toyproof::gpu::{AdapterSelector, Failure, Phase, Worker};
 use toyproof::image::Frame;
 use toyproof::lint::Lints;
 use toyproof::translate::backend::Target;
@@ -19,8 +19,8 @@ use toyproof::verify::{self, Case, Findings, verify};
 use crate::program::{Run, command, has_driver, run};
 use crate::support::{SPHERE, checked};
 
-/// A worker that is a script. It says in which phase it is by printing a message of the protocol: its length, that it is a
-/// phase, and which. TRANSLATED is the answer to a job of translating: no bytes.
+/// A worker that is a script. It reports its phase by printing a message of the protocol: the length, the tag
+/// of a phase message, and the phase. TRANSLATED is the reply to a translation job: no bytes.
 fn worker(script: &str) -> Worker {
     let script = script.replace(
         "TRANSLATED",
@@ -32,8 +32,13 @@ fn worker(script: &str) -> Worker {
         script.replace(name, &says)
     });
     let arguments = vec!["-c".to_owned(), script];
-    Worker::new("/bin/sh".into(), arguments, On::Auto, Duration::from_millis(300))
-        .with_start_timeout(Duration::from_millis(300))
+    Worker::new(
+        "/bin/sh".into(),
+        arguments,
+        AdapterSelector::Auto,
+        Duration::from_millis(300),
+    )
+    .with_start_timeout(Duration::from_millis(300))
 }
 
 fn draw(script: &str) -> Failure {
@@ -43,7 +48,7 @@ fn draw(script: &str) -> Failure {
 }
 
 #[test]
-fn a_driver_that_does_not_start_is_told_from_a_shader_that_takes_too_long() {
+fn driver_start_failures_are_distinct_from_slow_shaders() {
     let overflow = "echo \"thread 'main' has overflowed its stack\" >&2; kill -ABRT $$";
     for (script, wanted) in [
         ("exec sleep 60", "the worker process did not answer within 0.3 s"),
@@ -87,7 +92,7 @@ fn a_driver_that_does_not_start_is_told_from_a_shader_that_takes_too_long() {
 }
 
 #[test]
-fn a_driver_that_has_never_started_is_not_started_again() {
+fn a_driver_that_never_started_is_not_retried() {
     let folder = tempfile::tempdir().unwrap();
     let shader = lower(&checked(SPHERE.shader));
     let script = |name: &str, first: &str| {
@@ -111,8 +116,8 @@ fn a_driver_that_has_never_started_is_not_started_again() {
 }
 
 #[test]
-fn the_time_that_a_driver_takes_to_start_is_not_the_shaders() {
-    // Together longer than the shader may take, but not the driver alone.
+fn driver_start_time_does_not_count_for_the_shader() {
+    // Together they exceed the shader's time limit, but the driver alone does not.
     let script = "STARTING; sleep 0.4; COMPILING; exec sleep 60";
     let shader = checked(SPHERE.shader);
     let mut worker = worker(script).with_start_timeout(Duration::from_secs(60));
@@ -140,18 +145,18 @@ fn judge(script: &str, checked: &Checked, timeout: Duration) -> Result<Findings,
 }
 
 #[test]
-fn a_shader_that_the_driver_does_not_finish_compiling_is_judged_by_the_evaluator() {
+fn the_evaluator_checks_shaders_that_the_driver_cannot_compile_in_time() {
     let minute = Duration::from_secs(60);
     let findings = judge("COMPILING; exec sleep 60", &checked(SPHERE.shader), minute).unwrap();
     assert_eq!(findings.verdict, Verdict::Ok);
-    assert!(findings.toolchain.is_none() && findings.rounding.is_some() && findings.painter.is_none());
+    assert!(findings.toolchain.is_none() && findings.precision.is_some() && findings.painter.is_none());
     let note = findings.notes.iter().find(|note| note.code == "W0606").unwrap();
     assert!(
         note.message.contains("takes longer than 60 s to compile"),
         "{note:?}"
     );
 
-    // One that does not end is still told so.
+    // A shader that does not end is still reported.
     let endless =
         "void mainImage(out vec4 c, in vec2 p) { for (float s = p.x; s > -1.0; s += 0.0) c.x += s; }";
     let failure = judge(
@@ -166,7 +171,7 @@ fn a_shader_that_the_driver_does_not_finish_compiling_is_judged_by_the_evaluator
     );
     assert!(is_endless, "{failure:?}");
 
-    // Nor does a picture that takes too long fall back.
+    // An image that takes too long does not fall back either.
     let failure = judge("DRAWING; exec sleep 60", &checked(SPHERE.shader), minute).unwrap_err();
     assert!(
         matches!(failure, verify::Failure::Gpu(Failure::Timeout { .. })),
@@ -174,7 +179,7 @@ fn a_shader_that_the_driver_does_not_finish_compiling_is_judged_by_the_evaluator
     );
 }
 
-/// A Vulkan driver whose entry points do that; none where there is no C compiler.
+/// Compiles a Vulkan driver whose entry points execute `does`; none without a C compiler.
 fn fake_driver(folder: &Path, does: &str) -> Option<PathBuf> {
     let source = format!(
         "#include <stdio.h>\n#include <stdlib.h>\n#include <unistd.h>\n\
@@ -201,7 +206,7 @@ fn fake_driver(folder: &Path, does: &str) -> Option<PathBuf> {
     Some(manifest)
 }
 
-/// `toyproof` where there is that driver only, in a folder with three right shaders.
+/// Runs `toyproof` with only that driver, in a folder with three correct shaders.
 fn with_driver(does: &str, arguments: &[&str]) -> Option<Run> {
     let folder = tempfile::tempdir().unwrap();
     let manifest = fake_driver(folder.path(), does)?;
@@ -217,7 +222,7 @@ fn with_driver(does: &str, arguments: &[&str]) -> Option<Run> {
     Some(run(command.args(arguments)))
 }
 
-/// What the driver does, and what is said of it.
+/// The driver's behavior, and the expected message.
 const FAULTS: [(&str, &str); 3] = [
     ("_exit(3);", "while the Vulkan driver was starting"),
     ("abort();", "while the Vulkan driver was starting"),
@@ -225,7 +230,7 @@ const FAULTS: [(&str, &str); 3] = [
 ];
 
 #[test]
-fn a_batch_goes_on_without_a_driver_that_does_not_start() {
+fn a_batch_continues_without_a_failed_driver() {
     if !has_driver() {
         return;
     }
@@ -263,7 +268,7 @@ fn a_batch_goes_on_without_a_driver_that_does_not_start() {
 }
 
 #[test]
-fn a_driver_that_is_asked_for_and_does_not_start_is_an_error_of_the_machine() {
+fn a_requested_driver_that_does_not_start_is_an_error() {
     if !has_driver() {
         return;
     }

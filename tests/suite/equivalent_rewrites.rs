@@ -1,26 +1,26 @@
-//! A checker is itself checked: a shader that says the same in other words must stay correct.
-//! `planted_faults` is the other half.
+//! Tests the checker itself: equivalent rewrites of a shader must stay correct. `planted_faults` is the other
+//! half.
 
 use std::fmt;
 use std::sync::LazyLock;
 
 use toyproof::eval::{Program, Settings};
-use toyproof::tracer::{Hull, Styles};
+use toyproof::tracer::{ColorRange, EpsilonSet};
 use toyproof::verify::Findings;
 use toyproof::verify::compare::{EXACT_TOLERANCE, Verdict};
 
-use crate::rungs::{EDITED, Edited};
+use crate::exercises::{EDITED, Edited};
 use crate::support::{
-    COMPLEX_SCENE, DISNEY, Edit, MANY_OBJECTS, REFLECTIONS, RUNGS, Rung, SHADING, SPHERE, checked, edited,
-    frame, judged, maths, numbers, tracer,
+    COMPLEX_SCENE, DISNEY, EXERCISES, Edit, Exercise, MANY_OBJECTS, REFLECTIONS, SHADING, SPHERE, algorithm,
+    check_exercise, checked, edited, frame, numbers, tracer,
 };
 
-/// What is said otherwise, the rungs that say it, and how.
-type Rewrite = (&'static str, &'static [&'static Rung], &'static [Edit]);
+/// The name of the rewrite, the exercises that it applies to, and the edits.
+type Rewrite = (&'static str, &'static [&'static Exercise], &'static [Edit]);
 
-const ALL: &[&Rung] = &RUNGS;
-/// The rungs without secondary rays.
-const CAMERA_ONLY: &[&Rung] = &[&SPHERE, &SHADING, &COMPLEX_SCENE];
+const ALL: &[&Exercise] = &EXERCISES;
+/// The exercises without secondary rays.
+const CAMERA_ONLY: &[&Exercise] = &[&SPHERE, &SHADING, &COMPLEX_SCENE];
 
 const B: &str = "float b = dot(f, ray.direction);";
 const C: &str = "float c = dot(f, f) - sphere.radius * sphere.radius;";
@@ -28,13 +28,13 @@ const DISC: &str = "float disc = b * b - c;";
 const NEAR: &str = "float t = -b - root;";
 const FAR: &str = "t = -b + root;";
 
-// The same for directions of any length.
+// For directions of any length.
 const B_ANY: &str = "float a = dot(ray.direction, ray.direction);\n    float b = dot(f, ray.direction);";
 const DISC_ANY: &str = "float disc = b * b - a * c;";
 const NEAR_ANY: &str = "float t = (-b - root) / a;";
 const FAR_ANY: &str = "t = (-b + root) / a;";
 
-// Where the two roots are tested.
+// The tests of the two roots.
 const NEAR_TEST: &str = "- root;\n        if (t > 0.00001)";
 const FAR_TEST: &str = "+ root;\n        if (t > 0.00001)";
 
@@ -43,7 +43,7 @@ const UNIT: &str = "normalize(vec3(x, y, SCREEN_DEPTH))";
 const NOT_UNIT: &str = "vec3(x, y, SCREEN_DEPTH)";
 
 static REWRITES: &[Rewrite] = &[
-    // Every rung.
+    // Every exercise.
     ("as it stands", ALL, &[]),
     (
         "the full quadratic",
@@ -155,7 +155,7 @@ static REWRITES: &[Rewrite] = &[
             ("const float NO_HIT = 1.0e6;", "#define NO_HIT 1e6"),
         ],
     ),
-    // What only rungs without secondary rays may do.
+    // Only for exercises without secondary rays.
     (
         "no far root for an eye outside",
         CAMERA_ONLY,
@@ -726,37 +726,37 @@ static REWRITES: &[Rewrite] = &[
     ),
 ];
 
-/// What is said otherwise, the rung, and how: those above and those of the later rungs.
-pub(crate) fn rewrites() -> impl Iterator<Item = (&'static str, &'static Rung, &'static [Edit])> {
+/// All rewrites, each with its name, exercise and edits: those above and those of the later exercises.
+pub(crate) fn rewrites() -> impl Iterator<Item = (&'static str, &'static Exercise, &'static [Edit])> {
     let early = REWRITES
         .iter()
-        .flat_map(|&(name, rungs, edits)| rungs.iter().map(move |&rung| (name, rung, edits)));
+        .flat_map(|&(name, exercises, edits)| exercises.iter().map(move |&exercise| (name, exercise, edits)));
     let later = EDITED.iter().flat_map(|edited| {
-        let of_rung = |&(name, edits)| (name, edited.rung, edits);
-        edited.rewrites.iter().copied().flatten().map(of_rung)
+        let of_exercise = |&(name, edits)| (name, edited.exercise, edits);
+        edited.rewrites.iter().copied().flatten().map(of_exercise)
     });
     early.chain(later)
 }
 
-/// A rewrite and what came of it.
+/// A rewrite and its findings.
 struct Outcome {
     name: &'static str,
-    rung: &'static Rung,
+    exercise: &'static Exercise,
     shader: String,
     findings: Findings,
 }
 
-/// All rewrites, judged once for all tests here; none where there is no Vulkan driver.
+/// All rewrites, checked once for all tests here; none without a Vulkan driver.
 static OUTCOMES: LazyLock<Option<Vec<Outcome>>> = LazyLock::new(|| {
     let mut worker = crate::support::worker()?;
     let mut outcomes = Vec::new();
-    for (name, rung, edits) in rewrites() {
-        let shader = edited(rung, edits);
-        let findings = judged(&mut worker, &shader, rung);
-        eprintln!("{}: {name}: {}", rung.name, numbers(&findings));
+    for (name, exercise, edits) in rewrites() {
+        let shader = edited(exercise, edits);
+        let findings = check_exercise(&mut worker, &shader, exercise);
+        eprintln!("{}: {name}: {}", exercise.name, numbers(&findings));
         outcomes.push(Outcome {
             name,
-            rung,
+            exercise,
             shader,
             findings,
         });
@@ -769,14 +769,14 @@ fn every_rewrite_stays_correct() {
     let Some(outcomes) = &*OUTCOMES else {
         return;
     };
-    let undecided = |outcome: &&Outcome| maths(&outcome.findings).undecided;
+    let undecided = |outcome: &&Outcome| algorithm(&outcome.findings).undecided;
     if let Some(most) = outcomes.iter().max_by_key(undecided) {
         eprintln!(
             "{} rewrites; “{}” of {} leaves most undecided: {:.2} % of the pixels",
             outcomes.len(),
             most.name,
-            most.rung.name,
-            100.0 * maths(&most.findings).share(undecided(&most)),
+            most.exercise.name,
+            100.0 * algorithm(&most.findings).share(undecided(&most)),
         );
     }
     let failed: Vec<_> = outcomes
@@ -785,7 +785,7 @@ fn every_rewrite_stays_correct() {
         .map(|outcome| {
             format!(
                 "{}: {}: {}",
-                outcome.rung.name,
+                outcome.exercise.name,
                 outcome.name,
                 numbers(&outcome.findings)
             )
@@ -794,85 +794,94 @@ fn every_rewrite_stays_correct() {
     assert!(failed.is_empty(), "not correct:\n{}", failed.join("\n"));
 }
 
-/// The sixth class starts its shadow rays a hundredth off the surface.
+/// The sixth class starts its shadow rays 0.01 off the surface.
 #[test]
-fn a_scene_says_how_far_off_the_surface_rays_may_start() {
+fn scenes_set_the_offset_of_ray_origins() {
     let Some(mut worker) = crate::support::worker() else {
         return;
     };
     let shader = edited(&DISNEY, &[("0.001 * normal", "0.01 * normal")]);
     let scene: &'static str = Box::leak(format!("max_offset = 0.01\n{}", DISNEY.scene).into_boxed_str());
-    let allowed = judged(&mut worker, &shader, &Rung { scene, ..DISNEY });
+    let allowed = check_exercise(&mut worker, &shader, &Exercise { scene, ..DISNEY });
     assert_eq!(allowed.verdict, Verdict::Correct, "{}", numbers(&allowed));
-    let unsaid = judged(&mut worker, &shader, &DISNEY);
-    assert!(maths(&unsaid).differing > 0, "{}", numbers(&unsaid));
+    let unsaid = check_exercise(&mut worker, &shader, &DISNEY);
+    assert!(algorithm(&unsaid).differing > 0, "{}", numbers(&unsaid));
 }
 
 #[test]
-fn every_rung_has_its_rewrites() {
-    for rung in RUNGS {
+fn every_exercise_has_rewrites() {
+    for exercise in EXERCISES {
         let count = REWRITES
             .iter()
-            .filter(|(_, rungs, edits)| !edits.is_empty() && rungs.iter().any(|&one| std::ptr::eq(one, rung)))
+            .filter(|(_, exercises, edits)| {
+                !edits.is_empty() && exercises.iter().any(|&one| std::ptr::eq(one, exercise))
+            })
             .count();
-        assert!(count >= 16, "{}: {count}", rung.name);
+        assert!(count >= 16, "{}: {count}", exercise.name);
     }
-    for Edited { rung, rewrites, .. } in EDITED {
+    for Edited {
+        exercise, rewrites, ..
+    } in EDITED
+    {
         let named = rewrites.iter().copied().flatten();
         let count = named.filter(|(_, edits)| !edits.is_empty()).count();
-        assert!(count >= 5, "{}: {count}", rung.name);
+        assert!(count >= 5, "{}: {count}", exercise.name);
     }
 }
 
-/// The tolerance may be this many times what it is needed for, since another driver rounds otherwise.
-const ROOM: f64 = 10.0;
+/// The tolerance may exceed the measured need by this factor, since other drivers round differently.
+const TOLERANCE_MARGIN: f64 = 10.0;
 
-/// What correct shaders need the tolerance for is what lies outside of the hull of legal styles, in f64. No tolerance is
-/// meant for what stands out from it, so shaders of which a pixel differs or hangs by a hair are left out.
+/// Correct shaders need the tolerance for colors outside of the accepted range in f64. Differences beyond it
+/// are outliers, so shaders with differing or ill-conditioned pixels are left out.
 #[test]
 fn the_tolerance_is_no_larger_than_needed() {
     let Some(outcomes) = &*OUTCOMES else {
         return;
     };
     let mut needed = Largest::default();
-    for rung in RUNGS {
-        let hulls = hulls(rung);
-        for outcome in outcomes.iter().filter(|outcome| std::ptr::eq(outcome.rung, rung)) {
+    for exercise in EXERCISES {
+        let hulls = hulls(exercise);
+        for outcome in outcomes
+            .iter()
+            .filter(|outcome| std::ptr::eq(outcome.exercise, exercise))
+        {
             let (program, frame) = (
                 Program::new(&checked(&outcome.shader)).unwrap(),
-                frame(rung, rung.size),
+                frame(exercise, exercise.size),
             );
-            let exact = program.paint::<f64>(&frame, &Settings::default()).unwrap();
-            let outside =
-                |(hull, [r, g, b, _]): (&Hull, &[f32; 4])| hull.distance([r, g, b].map(|&c| f64::from(c)));
+            let exact = program.render::<f64>(&frame, &Settings::default()).unwrap();
+            let outside = |(hull, [r, g, b, _]): (&ColorRange, &[f32; 4])| {
+                hull.distance([r, g, b].map(|&c| f64::from(c)))
+            };
             let excess = hulls
                 .iter()
-                .zip(exact.painting.image().pixels())
+                .zip(exact.framebuffer.image().pixels())
                 .map(outside)
                 .fold(0.0, f64::max);
-            if maths(&outcome.findings).is_same() {
+            if algorithm(&outcome.findings).is_same() {
                 needed.see(excess, outcome);
             }
         }
     }
     eprintln!("the largest excess over the hull is {needed}");
     assert!(
-        EXACT_TOLERANCE < ROOM * needed.value,
+        EXACT_TOLERANCE < TOLERANCE_MARGIN * needed.value,
         "the tolerance {EXACT_TOLERANCE:.1e} has become too large: the largest excess is {needed}"
     );
 }
 
-/// The hull of each pixel, bottom row first.
-fn hulls(rung: &Rung) -> Vec<Hull> {
-    let tracer = tracer(rung);
-    let [width, height] = rung.size;
+/// The accepted color range of each pixel, bottom row first.
+fn hulls(exercise: &Exercise) -> Vec<ColorRange> {
+    let tracer = tracer(exercise);
+    let [width, height] = exercise.size;
     (0..height)
         .flat_map(|y| (0..width).map(move |x| (x, y)))
-        .map(|(x, y)| tracer.hull(x, y, Styles::Alike))
+        .map(|(x, y)| tracer.color_range(x, y, EpsilonSet::Alike))
         .collect()
 }
 
-/// The largest of some numbers and where it came from.
+/// The largest of several numbers and its origin.
 #[derive(Default)]
 struct Largest {
     value: f64,
@@ -880,10 +889,10 @@ struct Largest {
 }
 
 impl Largest {
-    fn see(&mut self, value: f64, Outcome { name, rung, .. }: &Outcome) {
+    fn see(&mut self, value: f64, Outcome { name, exercise, .. }: &Outcome) {
         if value > self.value {
             self.value = value;
-            self.from = format!("“{name}” of {}", rung.name);
+            self.from = format!("“{name}” of {}", exercise.name);
         }
     }
 }

@@ -1,5 +1,5 @@
-//! Soft shadows and paths beside estimates of the same integrals that are made in another way: lights are sampled over
-//! their surface, not over the cone that they fill; nothing is weighted; diffuse directions come from a disk.
+//! Compares soft shadows and paths with independent estimates of the same integrals: lights are sampled over
+//! their surface, not over the subtended cone; there is no weighting; diffuse directions come from a disk.
 
 use std::f64::consts::{PI, TAU};
 
@@ -10,11 +10,11 @@ use toyproof::scene::{Background, Integrator, Model, Projection, Sampler, Scene,
 use toyproof::tracer::Tracer;
 
 const SIZE: [u32; 2] = [16, 9];
-/// Of ours in each pixel.
+/// Samples of our estimate per pixel.
 const ESTIMATES: u32 = 32_000;
 
-/// A generator of its own: xorshift64* (S. Vigna, “An experimental exploration of Marsaglia's xorshift generators,
-/// scrambled”, 2016).
+/// An independent generator: xorshift64* (S. Vigna, “An experimental exploration of Marsaglia's xorshift
+/// generators, scrambled”, 2016).
 struct Random(u64);
 
 impl Random {
@@ -33,12 +33,13 @@ impl Random {
         DVec3::new(across * cosine, across * sine, z)
     }
 
-    /// By the cosine around a normal: a point of the unit sphere around its tip.
+    /// Cosine-weighted around a normal: a point of the unit sphere around its tip.
     fn by_cosine(&mut self, normal: DVec3) -> DVec3 {
         (normal + self.on_sphere()).normalize()
     }
 
-    /// By a power of the cosine around an axis: the part across it is that of a direction of the whole sphere.
+    /// Weighted by a power of the cosine around an axis: the perpendicular component is that of a uniform
+    /// direction on the sphere.
     fn around(&mut self, axis: DVec3, exponent: f64) -> DVec3 {
         let cosine = (1.0 - self.number()).powf(1.0 / (exponent + 1.0));
         let across = self.on_sphere().cross(axis).normalize();
@@ -46,8 +47,8 @@ impl Random {
     }
 }
 
-/// Where a ray meets a surface.
-struct Met {
+/// The intersection of a ray with a surface.
+struct Hit {
     point: DVec3,
     normal: DVec3,
     surface: usize,
@@ -77,7 +78,7 @@ impl World<'_> {
         ahead.fold(f64::INFINITY, f64::min)
     }
 
-    fn meet(&self, origin: DVec3, direction: DVec3) -> Option<Met> {
+    fn intersect(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
         let distances = (0..self.scene.objects.len()).map(|i| (self.distance(i, origin, direction), i));
         let (t, surface) = distances.min_by(|a, b| a.0.total_cmp(&b.0))?;
         if t.is_infinite() {
@@ -89,31 +90,31 @@ impl World<'_> {
             Shape::Plane { normal, .. } => DVec3::from_array(normal),
             Shape::Quadric(_) => unreachable!("not in these scenes"),
         };
-        Some(Met {
+        Some(Hit {
             point,
             normal,
             surface,
         })
     }
 
-    /// A point on a sphere that shines, seen from `met`: its direction, and cosine · cosine / distance² · area, which is
-    /// 0 where anything but `itself` lies between.
+    /// Samples a point on an emissive sphere, seen from `hit`: returns the direction, and cosine · cosine /
+    /// distance² · area, which is 0 if anything but `itself` lies between.
     fn to_light(
         &self,
-        met: &Met,
+        hit: &Hit,
         (center, radius, itself): (DVec3, f64, Option<usize>),
         random: &mut Random,
     ) -> (DVec3, f64) {
         let outward = random.on_sphere();
-        let to = center + radius * outward - met.point;
+        let to = center + radius * outward - hit.point;
         let distance = to.length();
         let direction = to / distance;
-        let (here, there) = (direction.dot(met.normal), -direction.dot(outward));
+        let (here, there) = (direction.dot(hit.normal), -direction.dot(outward));
         if here <= 0.0 || there <= 0.0 {
             return (direction, 0.0);
         }
         let hidden = (0..self.scene.objects.len())
-            .any(|i| Some(i) != itself && self.distance(i, met.point, direction) < distance * (1.0 - 1e-9));
+            .any(|i| Some(i) != itself && self.distance(i, hit.point, direction) < distance * (1.0 - 1e-9));
         let area = 4.0 * PI * radius * radius;
         let share = if hidden {
             0.0
@@ -130,34 +131,35 @@ impl World<'_> {
         }
     }
 
-    /// One estimate of the light along a camera ray, where lights light matte surfaces.
+    /// One estimate of the radiance along a camera ray, in scenes whose lights illuminate matte surfaces.
     fn lit(&self, direction: DVec3, random: &mut Random) -> DVec3 {
-        let Some(met) = self.meet(DVec3::ZERO, direction) else {
+        let Some(hit) = self.intersect(DVec3::ZERO, direction) else {
             return self.background();
         };
-        let material = &self.scene.objects[met.surface].material;
+        let material = &self.scene.objects[hit.surface].material;
         assert!(material.model == Model::Lambert);
         let mut sum = DVec3::from_array(self.scene.ambient);
         for light in &self.scene.lights {
             let center = DVec3::from_array(light.position);
-            let (_, share) = self.to_light(&met, (center, light.radius, None), random);
-            let sine = light.radius / center.distance(met.point);
+            let (_, share) = self.to_light(&hit, (center, light.radius, None), random);
+            let sine = light.radius / center.distance(hit.point);
             let solid_angle = TAU * (1.0 - (1.0 - sine * sine).sqrt());
             sum += DVec3::from_array(light.color) * share / solid_angle;
         }
         DVec3::from_array(material.color) * sum
     }
 
-    /// One estimate of the light that comes along a ray by at most that many segments. The light of emitters is counted
-    /// where the path looks for them, and where the eye sees them, but not where the path finds them.
+    /// One estimate of the radiance along a ray over paths of at most `segments` segments. Emitters are
+    /// counted where the path samples them, and where the camera sees them directly, but not where the path
+    /// hits them.
     fn path(&self, origin: DVec3, direction: DVec3, segments: u32, random: &mut Random) -> DVec3 {
         let (mut origin, mut direction) = (origin, direction);
         let (mut sum, mut throughput) = (DVec3::ZERO, DVec3::ONE);
         for segment in 1..=segments {
-            let Some(met) = self.meet(origin, direction) else {
+            let Some(hit) = self.intersect(origin, direction) else {
                 return sum + throughput * self.background();
             };
-            let material = &self.scene.objects[met.surface].material;
+            let material = &self.scene.objects[hit.surface].material;
             let color = DVec3::from_array(material.color);
             if material.model == Model::Emitter {
                 return if segment == 1 { color } else { sum };
@@ -165,7 +167,7 @@ impl World<'_> {
             if segment == segments {
                 return sum;
             }
-            let mirrored = direction - 2.0 * direction.dot(met.normal) * met.normal;
+            let mirrored = direction - 2.0 * direction.dot(hit.normal) * hit.normal;
             let brdf = |to: DVec3| match material.model {
                 Model::Diffuse => 1.0 / PI,
                 Model::Glossy { exponent } => {
@@ -180,18 +182,18 @@ impl World<'_> {
                     continue;
                 };
                 let place = (DVec3::from_array(center), radius, Some(i));
-                let (to, share) = self.to_light(&met, place, random);
+                let (to, share) = self.to_light(&hit, place, random);
                 sum += throughput * color * DVec3::from_array(emitter.material.color) * brdf(to) * share;
             }
             let next = if let Model::Glossy { exponent } = material.model {
                 let next = random.around(mirrored, exponent);
-                throughput *= color * (exponent + 2.0) / (exponent + 1.0) * next.dot(met.normal).max(0.0);
+                throughput *= color * (exponent + 2.0) / (exponent + 1.0) * next.dot(hit.normal).max(0.0);
                 next
             } else {
                 throughput *= color;
-                random.by_cosine(met.normal)
+                random.by_cosine(hit.normal)
             };
-            (origin, direction) = (met.point, next);
+            (origin, direction) = (hit.point, next);
         }
         sum
     }
@@ -209,9 +211,9 @@ fn course(text: &str) -> Scene {
     scene
 }
 
-/// How the tracer's picture stands to the mean of the estimates in each pixel: the root mean square of differences
-/// in standard errors, and the largest.
-fn standing(picture: &Image, scene: &Scene) -> [f64; 2] {
+/// Compares the tracer's image with the mean of the estimates in each pixel: returns the root mean square of
+/// the differences in standard errors, and the largest.
+fn deviation(actual_image: &Image, scene: &Scene) -> [f64; 2] {
     let world = World { scene };
     let mut random = Random(0x9E37_79B9_7F4A_7C15);
     let [width, height] = scene.film.size.map(f64::from);
@@ -237,9 +239,9 @@ fn standing(picture: &Image, scene: &Scene) -> [f64; 2] {
             }
             let mean = sum / f64::from(ESTIMATES);
             let variance = (sum2 / f64::from(ESTIMATES) - mean * mean).max(0.0);
-            // The last is about what the tracer's own picture is off by.
+            // The last term is about the error of the tracer's own image.
             let error = (variance / f64::from(ESTIMATES)).sqrt() + 3e-4 * mean;
-            let [r, g, b, _] = picture.get(x, y).map(f64::from);
+            let [r, g, b, _] = actual_image.get(x, y).map(f64::from);
             let z = (r + g + b - mean) / error;
             squares += z * z;
             largest = largest.max(z.abs());
@@ -249,16 +251,16 @@ fn standing(picture: &Image, scene: &Scene) -> [f64; 2] {
     [(squares / number).sqrt(), largest]
 }
 
-/// The tracer's picture of `scene` beside estimates of `other`.
-fn compared(scene: &Scene, other: &Scene) -> [f64; 2] {
-    let picture = Tracer::<f64>::new(scene).picture(|| ());
-    standing(&picture, other)
+/// Compares the tracer's image of `scene` with estimates of `other`.
+fn compare(scene: &Scene, other: &Scene) -> [f64; 2] {
+    let actual_image = Tracer::<f64>::new(scene).picture(|| ());
+    deviation(&actual_image, other)
 }
 
 const SOFT_SHADOWS: &str = include_str!("../../glsl/09-soft-shadows.toml");
 const IMPORTANCE_SAMPLING: &str = include_str!("../../glsl/13-importance-sampling.toml");
 
-/// A light whose penumbras are wide.
+/// A scene with a large light, whose penumbras are wide.
 fn large_light() -> Scene {
     let mut scene = course(SOFT_SHADOWS);
     scene.lights[0].radius = 2.0;
@@ -268,25 +270,25 @@ fn large_light() -> Scene {
 #[test]
 fn estimates_over_the_lights_surface_agree() {
     for scene in [large_light(), course(SOFT_SHADOWS), course(IMPORTANCE_SAMPLING)] {
-        let [rms, largest] = compared(&scene, &scene);
+        let [rms, largest] = compare(&scene, &scene);
         eprintln!("{}: {rms:.2} standard errors, at most {largest:.1}", scene.title);
         assert!(rms < 1.2 && largest < 6.0, "{}: {rms} {largest}", scene.title);
     }
 }
 
 #[test]
-fn another_light_and_another_depth_are_told_apart() {
+fn different_lights_and_depths_are_distinguished() {
     let scene = large_light();
     let mut other = scene.clone();
     other.lights[0].radius *= 1.25;
-    let [rms, largest] = compared(&scene, &other);
+    let [rms, largest] = compare(&scene, &other);
     eprintln!("a light larger by a quarter: {rms:.2}, at most {largest:.1}");
     assert!(rms > 1.5, "{rms}");
 
     let scene = course(IMPORTANCE_SAMPLING);
     let mut other = scene.clone();
     other.film.max_depth -= 1;
-    let [rms, _] = compared(&scene, &other);
+    let [rms, _] = compare(&scene, &other);
     eprintln!("a segment less: {rms:.2}");
     assert!(rms > 3.0, "{rms}");
 }

@@ -1,13 +1,16 @@
-//! Small programs with what they must paint: what GLSL says, told of the evaluator in f32 and f64, and of the GPU.
+//! Small programs with their expected result according to GLSL, run by the evaluator in f32 and f64, and by
+//! the GPU.
 
 use toyproof::diagnostic::{File, Files};
-use toyproof::eval::{Failure, Fault, Jittered, Number, Other, Program, Settings, Variant};
+use toyproof::eval::{
+    Failure, Fault, Number, Program, RandomRounding, Settings, Substitute, UndefinedPolicy,
+};
 use toyproof::glsl::{Checked, Options, check};
 use toyproof::image::{Frame, Image};
 use toyproof::translate::{FloatMode, lower_strict};
 
-/// What stands before `mainImage`, what stands in it, and what `o.x` is then. `p` is (0.5, 0.5); `iTime` is 2; texel (1, 2) of
-/// `iChannel0` is 0.75, the others are 0.
+/// The text before `mainImage`, its body, and the resulting `o.x`. `p` is (0.5, 0.5); `iTime` is 2; texel (1,
+/// 2) of `iChannel0` is 0.75, the others are 0.
 static PROGRAMS: &[(&str, &str, f64)] = &[
     // Control.
     (
@@ -60,7 +63,7 @@ static PROGRAMS: &[(&str, &str, f64)] = &[
         "int a = 0; float s = 0.0; for (int k = 0; k < 3; k++, a += 2) { int a = 7; s += float(a); } o.x = float(a) + s;",
         27.0,
     ),
-    // Evaluation: once, from left to right, and only what is needed.
+    // Evaluation: once, from left to right, and only as needed.
     (
         "",
         "int q[2]; q[0] = int(p.x) + 1; q[1] = 0; q[q[0] & 1] += q[0]++; o.x = float(q[0] + 10 * q[1]);",
@@ -271,7 +274,7 @@ static PROGRAMS: &[(&str, &str, f64)] = &[
         "mat3 m = outerProduct(vec3(1, 2, 3), vec3(4, 5, 6)); o.x = m[1][2] + matrixCompMult(m, m)[0][0];",
         31.0,
     ),
-    // Loops that can be written out, or not: rounds that depend on each other, ways out of several, too many of them.
+    // Loops that can be unrolled, or not: dependent iterations, exits from nested loops, too many iterations.
     (
         "float f(int n) { for (int i = 0; i < 9; i++) { for (int j = 0; j < 3; j++) if (i * j == n) return float(10 * i + j); } return -1.0; }",
         "o.x = f(4) + 100.0 * f(9) + f(int(p.x) + 7);",
@@ -324,7 +327,7 @@ static PROGRAMS: &[(&str, &str, f64)] = &[
         "o.x = f(iChannel0, vec2(1.5, 2.5) / 4.0).x + f(iChannel2, p).w + float(textureSize(iChannel0, 0).x);",
         5.75,
     ),
-    // What GLSL leaves undefined, as the GPU path has it.
+    // Undefined behavior, as the GPU path defines it.
     (
         "",
         "float a[3]; a[2] = 5.0; int i = int(p.x) + 7; o.x = a[i] + 10.0 * a[-i];",
@@ -362,28 +365,28 @@ fn frame() -> Frame {
 
 fn evaluated<N: Number>(checked: &Checked) -> f64 {
     let program = Program::new(checked).unwrap();
-    let painted = [Variant::Observed, Variant::Plain].map(|variant| {
+    let rendered = [UndefinedPolicy::Observed, UndefinedPolicy::Plain].map(|variant| {
         let settings = Settings::<N> {
-            variant,
+            undefined: variant,
             ..Settings::default()
         };
-        program.paint(&frame(), &settings).unwrap().painting.get(0, 0)[0].to_f64()
+        program.render(&frame(), &settings).unwrap().framebuffer.get(0, 0)[0].to_f64()
     });
     assert_eq!(
-        painted[0].to_bits(),
-        painted[1].to_bits(),
+        rendered[0].to_bits(),
+        rendered[1].to_bits(),
         "to observe changes nothing"
     );
-    painted[0]
+    rendered[0]
 }
 
 #[test]
-fn small_programs_paint_what_they_say() {
+fn small_programs_evaluate_to_their_result() {
     let mut wrong = Vec::new();
     for &(before, body, expected) in PROGRAMS {
         let checked = checked(before, body).unwrap_or_else(|| panic!("{before} {body}"));
         let (single, double) = (evaluated::<f32>(&checked), evaluated::<f64>(&checked));
-        let jittered = evaluated::<Jittered>(&checked);
+        let jittered = evaluated::<RandomRounding>(&checked);
         if single != expected || double != expected || (jittered - expected).abs() > 1e-6 {
             wrong.push(format!(
                 "{before} {body}: {expected}: {single} {double} {jittered}"
@@ -394,7 +397,7 @@ fn small_programs_paint_what_they_say() {
 }
 
 #[test]
-fn small_programs_paint_the_same_on_the_gpu() {
+fn small_programs_render_the_same_on_the_gpu() {
     let Some(mut worker) = crate::support::worker() else {
         return;
     };
@@ -404,7 +407,7 @@ fn small_programs_paint_the_same_on_the_gpu() {
         match worker.draw(lower_strict(&checked), frame(), FloatMode::Strict) {
             Ok(drawn) => match f64::from(drawn.image().get(0, 0)[0]) {
                 right if right == expected => {}
-                painted => wrong.push(format!("{before} {body}: {expected}: {painted}")),
+                rendered => wrong.push(format!("{before} {body}: {expected}: {rendered}")),
             },
             Err(failure) => wrong.push(format!("{before} {body}: {failure}")),
         }
@@ -412,7 +415,7 @@ fn small_programs_paint_the_same_on_the_gpu() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// What stands in `mainImage`, and the faults that its pixels meet.
+/// The body of `mainImage`, and the faults that its pixels encounter.
 static FAULTS: &[(&str, &[Fault])] = &[
     (
         "float a[3]; o.x = a[int(p.x) + 7];",
@@ -453,7 +456,7 @@ static FAULTS: &[(&str, &[Fault])] = &[
     ),
     ("o.x = float(7 / int(p.x));", &[Fault::DivisionByZero]),
     ("o.x = float(7u % uint(p.x));", &[Fault::RemainderByZero]),
-    // A quotient of zeros is NaN, but of two that the driver knows whatever it folds them to.
+    // 0/0 is NaN, but for constants the driver may fold it to anything.
     (
         "uint k = 0u; if (p.x > 0.0) o.x = 0.0 / float(k);",
         &[Fault::ZeroByZero],
@@ -488,14 +491,14 @@ static FAULTS: &[(&str, &[Fault])] = &[
     ("if (p.x > 1.0) o.x = 1.0; o.x = dFdx(p.x);", &[]),
 ];
 
-/// Functions that write what they are handed, or may not.
+/// Functions that write their `out` parameters always, or only sometimes.
 const HANDED: &str = "void f(out float x) { x = 2.0; }
     void none(out float x) {}
     void through(inout float x) { none(x); }
     void lose(out vec4 v) {}
     bool hit(float p, out float t) { if (p < 20.0) return false; t = p; return true; }";
 
-/// What stands in `mainImage`, its red, and whether it is made of what was never written.
+/// The body of `mainImage`, its red, and whether that depends on a value that was never written.
 static HANDED_OUT: &[(&str, f64, bool)] = &[
     ("float a = 1.0; f(a); o.x = a;", 2.0, false),
     ("float a = 1.0; none(a); o.x = a;", 0.0, true),
@@ -535,7 +538,7 @@ static HANDED_OUT: &[(&str, f64, bool)] = &[
 ];
 
 #[test]
-fn what_a_function_was_handed_and_did_not_write_is_noted() {
+fn unwritten_out_parameters_are_observed() {
     let frame = Frame {
         size: [1, 1],
         ..Frame::default()
@@ -543,21 +546,21 @@ fn what_a_function_was_handed_and_did_not_write_is_noted() {
     let mut wrong = Vec::new();
     for &(body, red, never_written) in HANDED_OUT {
         let program = Program::new(&checked(HANDED, body).unwrap()).unwrap();
-        let painted = program.paint::<f64>(&frame, &Settings::default()).unwrap();
-        let faults = painted.observations.faults.iter();
+        let rendered = program.render::<f64>(&frame, &Settings::default()).unwrap();
+        let faults = rendered.observations.faults.iter();
         let noted = faults
             .filter(|noted| noted.site.fault == Fault::NeverWritten)
             .count();
-        let [painted, ..] = painted.painting.get(0, 0);
-        if (painted, noted > 0) != (red, never_written) {
-            wrong.push(format!("{body}: {painted}, noted {noted} times"));
+        let [rendered, ..] = rendered.framebuffer.get(0, 0);
+        if (rendered, noted > 0) != (red, never_written) {
+            wrong.push(format!("{body}: {rendered}, noted {noted} times"));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 #[test]
-fn undefined_operations_are_noted_where_they_happen_and_only_there() {
+fn undefined_operations_are_observed_exactly_where_they_occur() {
     let mut wrong = Vec::new();
     for (body, faults) in FAULTS {
         let program = Program::new(&checked("", body).unwrap()).unwrap();
@@ -565,8 +568,8 @@ fn undefined_operations_are_noted_where_they_happen_and_only_there() {
             size: [1, 1],
             ..Frame::default()
         };
-        let painted = program.paint::<f32>(&frame, &Settings::default()).unwrap();
-        let mut noted: Vec<Fault> = painted
+        let rendered = program.render::<f32>(&frame, &Settings::default()).unwrap();
+        let mut noted: Vec<Fault> = rendered
             .observations
             .faults
             .iter()
@@ -576,16 +579,16 @@ fn undefined_operations_are_noted_where_they_happen_and_only_there() {
         let mut expected = faults.to_vec();
         expected.sort();
         let undefined = faults.iter().any(|fault| fault.is_undefined());
-        if noted != expected || painted.painting.is_undefined(0, 0) != undefined {
+        if noted != expected || rendered.framebuffer.is_undefined(0, 0) != undefined {
             wrong.push(format!("{body}: {noted:?}"));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Pixels of one quad that run different things: loops of different lengths, returns and discards.
+/// Pixels of one quad that diverge: loops of different lengths, returns and discards.
 #[test]
-fn divergent_pixels_paint_the_same_bits_as_on_the_gpu() {
+fn divergent_pixels_have_the_same_bits_as_on_the_gpu() {
     let Some(mut worker) = crate::support::worker() else {
         return;
     };
@@ -639,15 +642,15 @@ fn divergent_pixels_paint_the_same_bits_as_on_the_gpu() {
     let mut wrong = Vec::new();
     for (before, body) in bodies {
         let checked = checked(before, body).unwrap_or_else(|| panic!("{body}"));
-        let painted = Program::new(&checked)
+        let rendered = Program::new(&checked)
             .unwrap()
-            .paint::<f32>(&frame, &Settings::default())
+            .render::<f32>(&frame, &Settings::default())
             .unwrap();
         let drawn = worker
             .draw(lower_strict(&checked), frame.clone(), FloatMode::Strict)
             .unwrap()
             .image();
-        let image = painted.painting.image();
+        let image = rendered.framebuffer.image();
         let places = (0..11).flat_map(|y| (0..37).map(move |x| (x, y)));
         let bits = |image: &Image, (x, y)| image.get(x, y).map(f32::to_bits);
         if let Some((x, y)) = places
@@ -662,7 +665,7 @@ fn divergent_pixels_paint_the_same_bits_as_on_the_gpu() {
 }
 
 #[test]
-fn what_never_ends_is_stopped() {
+fn endless_loops_are_stopped() {
     let settings = Settings::<f32> {
         rounds: 1 << 16,
         ..Settings::default()
@@ -673,13 +676,13 @@ fn what_never_ends_is_stopped() {
         "for (int i = 0; i < 3; i++) for (int j = 0; j < 3; j *= 2) o.x += p.x;",
     ] {
         let program = Program::new(&checked("", body).unwrap()).unwrap();
-        let failure = program.paint(&frame(), &settings).unwrap_err();
+        let failure = program.render(&frame(), &settings).unwrap_err();
         assert!(matches!(failure, Failure::TooOften { .. }), "{body}: {failure}");
     }
 }
 
 #[test]
-fn rounds_are_counted_of_loops_that_are_written_out_and_of_others() {
+fn iterations_of_unrolled_and_other_loops_are_counted() {
     let bodies = [
         (
             "for (int i = 0; i < 5; i++) for (int j = 0; j < 7; j++) o.x += p.x;",
@@ -708,12 +711,12 @@ fn rounds_are_counted_of_loops_that_are_written_out_and_of_others() {
     };
     for (body, rounds) in bodies {
         let program = Program::new(&checked("", body).unwrap()).unwrap();
-        let painted = program.paint::<f32>(&frame, &Settings::default()).unwrap();
-        assert_eq!(painted.observations.most_rounds, rounds, "{body}");
+        let rendered = program.render::<f32>(&frame, &Settings::default()).unwrap();
+        assert_eq!(rendered.observations.most_rounds, rounds, "{body}");
     }
 }
 
-/// What stands in `mainImage`, and whether its colour hangs on what GLSL leaves open.
+/// The body of `mainImage`, and whether its color depends on undefined behavior.
 static OPEN: &[(&str, bool)] = &[
     (
         "float a[3] = float[](1.0, 2.0, 3.0); o.x = a[int(p.x) + 7];",
@@ -747,7 +750,7 @@ static OPEN: &[(&str, bool)] = &[
 ];
 
 #[test]
-fn another_choice_shows_which_pixels_hang_on_what_is_undefined() {
+fn a_different_policy_shows_pixels_that_depend_on_undefined_behavior() {
     let mut wrong = Vec::new();
     for &(body, hangs) in OPEN {
         let program = Program::new(&checked("", body).unwrap()).unwrap();
@@ -755,18 +758,18 @@ fn another_choice_shows_which_pixels_hang_on_what_is_undefined() {
             size: [1, 1],
             ..Frame::default()
         };
-        let paint = |variant| {
+        let render = |variant| {
             let settings = Settings::<f32> {
-                variant,
+                undefined: variant,
                 ..Settings::default()
             };
-            program.paint(&frame, &settings).unwrap().painting
+            program.render(&frame, &settings).unwrap().framebuffer
         };
-        let usual = paint(Variant::Observed);
+        let usual = render(UndefinedPolicy::Observed);
         assert!(usual.is_undefined(0, 0), "{body}");
         let usual = usual.get(0, 0)[0];
-        let others =
-            [Other::Number, Other::NotANumber].map(|other| paint(Variant::Otherwise(other)).get(0, 0)[0]);
+        let others = [Substitute::Number, Substitute::NotANumber]
+            .map(|other| render(UndefinedPolicy::Substitute(other)).get(0, 0)[0]);
         if others.iter().any(|other| usual.to_bits() != other.to_bits()) != hangs {
             wrong.push(format!("{body}: {usual} {others:?}"));
         }

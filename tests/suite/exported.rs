@@ -1,4 +1,4 @@
-//! Random scenes, each painted by the shader that is exported for it: the tracer, the front end and the evaluator must
+//! Random scenes, each rendered by its exported shader: the tracer, the front end and the evaluator must
 //! agree on all of them.
 
 use toyproof::diagnostic::{File, Files};
@@ -6,12 +6,12 @@ use toyproof::scene;
 use toyproof::scene::export;
 use toyproof::verify::compare::Verdict;
 
-use crate::support::{Rung, judged_by, numbers};
+use crate::support::{Exercise, check_exercise_with, numbers};
 
-/// How many, unless `EXPORTED_SCENES` says otherwise.
+/// The number of scenes, unless `EXPORTED_SCENES` gives it.
 const SCENES: u32 = 100;
 
-/// Numbers drawn from a seed by a multiplicative congruence (Knuth's MMIX).
+/// Random numbers by a linear congruential generator (Knuth's MMIX).
 struct Random(u64);
 
 impl Random {
@@ -41,7 +41,7 @@ impl Random {
         of[(self.number() * of.len() as f64) as usize]
     }
 
-    /// One of the models, checkered or not.
+    /// A material with one of the models, checkered or not.
     fn material(&mut self, models: &[&str]) -> String {
         let (model, color) = (self.one(models), self.color());
         let own = match model {
@@ -78,7 +78,7 @@ impl Random {
         format!("material = {{ model = \"{model}\", color = {color}{own}{checker} }}\n")
     }
 
-    /// Moved by one of the motions, or at rest.
+    /// One of the motions, or none.
     fn motion(&mut self, motions: u32) -> String {
         if motions == 0 || self.chance(0.4) {
             return String::new();
@@ -217,7 +217,7 @@ fn random_surfaces(random: &mut Random, motions: u32, traces_paths: bool) -> Vec
     } else {
         &all[..[1, 3, 4, 6, 7, 8][(random.number() * 6.0) as usize]]
     };
-    // What glass can be made of has an inside, and what shines in a path-traced scene is a sphere.
+    // Glass needs a closed shape, and emitters of path-traced scenes are spheres.
     let closed = |random: &mut Random| {
         if traces_paths && random.chance(0.3) {
             let color = random.triple([1.0; 3], [9.0; 3]);
@@ -266,7 +266,7 @@ fn random_scenes_and_their_shaders_agree() {
     for seed in 0..count {
         let scene: &'static str = Box::leak(random_scene(seed).into_boxed_str());
         let shader: &'static str = Box::leak(exported(scene).unwrap().into_boxed_str());
-        let rung = Rung {
+        let exercise = Exercise {
             name: "exported",
             shader,
             scene,
@@ -274,8 +274,9 @@ fn random_scenes_and_their_shaders_agree() {
             time: 1.3,
             size: [96, 54],
         };
-        // By the evaluator alone: there are scenes, the fourth is one, whose shader Mesa 22.3 compiles for minutes.
-        let findings = judged_by(None, shader, &rung);
+        // By the evaluator alone: Mesa 22.3 compiles the shaders of some scenes, such as the fourth, for
+        // minutes.
+        let findings = check_exercise_with(None, shader, &exercise);
         if findings.verdict != Verdict::Correct {
             failed.push(format!("{seed}: {}\n{scene}\n{shader}", numbers(&findings)));
         }
@@ -289,7 +290,7 @@ fn random_scenes_and_their_shaders_agree() {
 }
 
 #[test]
-fn a_shader_holds_only_what_its_scene_requires() {
+fn exported_shaders_hold_only_what_their_scene_requires() {
     let bare = exported("[background]\n").unwrap();
     for word in [
         "Sphere",

@@ -1,32 +1,33 @@
-//! Right shaders in styles unlike the exercises', all of which must be `correct`, and stochastic ones with a bias, which must not be.
+//! Correct shaders in styles unlike the exercises', all of which must be `correct`, and biased stochastic
+//! ones, which must not be.
 //!
-//! The evaluator alone judges them: what a driver makes of a shader is asked elsewhere.
+//! The evaluator alone checks them; drivers are tested elsewhere.
 
 use toyproof::verify::compare::Verdict;
 
 use crate::support::{
-    Edit, IMPORTANCE_SAMPLING, MANY_OBJECTS, REFLECTIONS, Rung, SOFT_SHADOWS, STILL, WHITTED, edited,
-    judged_by, numbers, scene,
+    Edit, Exercise, IMPORTANCE_SAMPLING, MANY_OBJECTS, REFLECTIONS, SOFT_SHADOWS, STILL, WHITTED,
+    check_exercise_with, edited, numbers, scene,
 };
 
-/// Judges an edited exercise in a size.
-fn verdict(rung: &Rung, size: [u32; 2], edits: &[Edit]) -> (Verdict, String) {
-    let rung = Rung { size, ..*rung };
-    let findings = judged_by(None, &edited(&rung, edits), &rung);
+/// Checks an edited exercise in a size.
+fn verdict(exercise: &Exercise, size: [u32; 2], edits: &[Edit]) -> (Verdict, String) {
+    let exercise = Exercise { size, ..*exercise };
+    let findings = check_exercise_with(None, &edited(&exercise, edits), &exercise);
     let mistake = findings.mistake.iter().flatten().map(|named| named.name);
     let mistake: Vec<_> = mistake.collect();
-    let told = format!("{} {mistake:?}: {}", numbers(&findings), findings.reason);
-    (findings.verdict, told)
+    let assert_verdicts = format!("{} {mistake:?}: {}", numbers(&findings), findings.reason);
+    (findings.verdict, assert_verdicts)
 }
 
-/// Where secondary rays of the glass exercise start.
-pub(crate) fn glass(way: &str, offset: f64) -> Vec<Edit> {
+/// Edits that move the origins of secondary rays in the glass exercise.
+pub(crate) fn glass(offset_direction: &str, offset: f64) -> Vec<Edit> {
     let mirrored = "Ray mirrored = Ray(hit.point, reflect(ray.direction, hit.normal));";
     let refracted = "Branch(Ray(hit.point, refracted)";
     let epsilon = "const float EPSILON = 0.001;";
     let least = "const float EPSILON = 0.00001;".to_owned();
     let own = |from: &'static str, to: String| -> Edit { (from, to.leak()) };
-    match way {
+    match offset_direction {
         "least t" => vec![own(epsilon, format!("const float EPSILON = {offset:?};"))],
         "along the normal" => vec![
             own(epsilon, least),
@@ -64,16 +65,16 @@ pub(crate) fn glass(way: &str, offset: f64) -> Vec<Edit> {
     }
 }
 
-const WAYS: [&str; 3] = ["least t", "along the normal", "along the ray"];
+const OFFSET_DIRECTIONS: [&str; 3] = ["least t", "along the normal", "along the ray"];
 
 fn glass_is_correct(size: [u32; 2], offsets: &[f64]) {
     let mut wrong = Vec::new();
-    for way in WAYS {
+    for offset_direction in OFFSET_DIRECTIONS {
         for &offset in offsets {
-            let (verdict, told) = verdict(&WHITTED, size, &glass(way, offset));
-            eprintln!("{way} {offset}: {told}");
+            let (verdict, assert_verdicts) = verdict(&WHITTED, size, &glass(offset_direction, offset));
+            eprintln!("{offset_direction} {offset}: {assert_verdicts}");
             if verdict != Verdict::Correct {
-                wrong.push(format!("{way} {offset}: {told}"));
+                wrong.push(format!("{offset_direction} {offset}: {assert_verdicts}"));
             }
         }
     }
@@ -89,7 +90,7 @@ fn glass_is_correct_wherever_its_rays_start() {
 #[test]
 #[ignore = "takes minutes"]
 fn glass_is_correct_in_a_sweep_of_offsets() {
-    // Nearer to their surface, float32 has too few digits for b² − c.
+    // Closer to the surface, float32 has too few digits for b² − c.
     let offsets = [
         1e-4, 2e-4, 3e-4, 3.5e-4, 4e-4, 5e-4, 6e-4, 7e-4, 7.7e-4, 8e-4, 9e-4, 1e-3,
     ];
@@ -98,19 +99,20 @@ fn glass_is_correct_in_a_sweep_of_offsets() {
 }
 
 #[test]
-fn a_light_may_be_looked_at_from_where_the_shadow_ray_starts() {
+fn light_vectors_may_start_at_the_shadow_rays_origin() {
     let edit = (
         "normalize(light.position - hit.point)",
         "normalize(light.position - (hit.point + 0.001 * hit.normal))",
     );
-    let (verdict, told) = verdict(&MANY_OBJECTS, [160, 90], &[edit]);
-    assert_eq!(verdict, Verdict::Correct, "{told}");
+    let (verdict, assert_verdicts) = verdict(&MANY_OBJECTS, [160, 90], &[edit]);
+    assert_eq!(verdict, Verdict::Correct, "{assert_verdicts}");
 }
 
 const NEAR_TEST: &str = "t > 0.00001) {\n            return t;\n        }\n        t =";
 const FAR_TEST: &str = "+ root;\n        if (t > 0.00001)";
 
-/// Rays that meet the surface that they start from, by how far they start off it: in double precision, too, or in float32 alone.
+/// Rays that intersect the surface that they start from, by their offset from it: in double precision, too,
+/// or only in float32.
 static ACNE: &[Case] = &[
     (
         "shadow rays from the surface itself",
@@ -149,55 +151,58 @@ static ACNE: &[Case] = &[
 ];
 
 #[test]
-fn rays_that_meet_their_own_surface_are_a_mistake_with_a_name() {
-    for (name, rung, edits) in ACNE {
-        let (verdict, told) = verdict(rung, [160, 90], edits);
-        eprintln!("{name}: {told}");
-        assert_eq!(verdict, Verdict::Wrong, "{name}: {told}");
-        assert!(told.contains("self-intersection"), "{name}: {told}");
+fn self_intersecting_rays_are_a_named_mistake() {
+    for (name, exercise, edits) in ACNE {
+        let (verdict, assert_verdicts) = verdict(exercise, [160, 90], edits);
+        eprintln!("{name}: {assert_verdicts}");
+        assert_eq!(verdict, Verdict::Wrong, "{name}: {assert_verdicts}");
+        assert!(
+            assert_verdicts.contains("self-intersection"),
+            "{name}: {assert_verdicts}"
+        );
     }
 }
 
-/// Another hash than the scene's.
-const OWN: Edit = ("pcg(uint(i))", "pcg(uint(i) + 1000u)");
+/// A hash that differs from the scene's.
+const OTHER_HASH: Edit = ("pcg(uint(i))", "pcg(uint(i) + 1000u)");
 
-const COUNTED_IF_MET: Edit = (
+const COUNT_LIGHT_HITS: Edit = (
     "if (inShadow(Ray(hit.point + EPSILON * hit.normal, direction), emitter)) {",
     "if (nearestHit(Ray(hit.point + EPSILON * hit.normal, direction)).sphere != emitter) {",
 );
 const WEIGHT: &str = "* weight(density, other) / density;";
 const SHARE: &str = "share = weight(density, lightDensity(ray.origin, spheres[hit.sphere]));";
 const LIGHT: &str = "color += throughput * sampleLight(hit, reflected);";
-const GO_ON: &str = "ray = Ray(hit.point + EPSILON * hit.normal, direction);";
+const CONTINUE_PATH: &str = "ray = Ray(hit.point + EPSILON * hit.normal, direction);";
 
-/// What is done, where, and how.
-type Case = (&'static str, &'static Rung, &'static [Edit]);
+/// The name of the change, its exercise, and the edits.
+type Case = (&'static str, &'static Exercise, &'static [Edit]);
 
 static CORRECT: &[Case] = &[
     (
         "a lamp counts if it is met",
         &IMPORTANCE_SAMPLING,
-        &[COUNTED_IF_MET],
+        &[COUNT_LIGHT_HITS],
     ),
     (
         "a lamp counts if it is met, and is looked at from where the ray starts",
         &IMPORTANCE_SAMPLING,
         &[
-            COUNTED_IF_MET,
+            COUNT_LIGHT_HITS,
             (
                 "float cosine = 1.0 - u * coneDepth(hit.point, spheres[emitter]);\n    vec3 direction = around(normalize(spheres[emitter].center - hit.point), cosine, v);",
                 "vec3 start = hit.point + EPSILON * hit.normal;\n    float cosine = 1.0 - u * coneDepth(start, spheres[emitter]);\n    vec3 direction = around(normalize(spheres[emitter].center - start), cosine, v);",
             ),
         ],
     ),
-    ("another hash", &IMPORTANCE_SAMPLING, &[OWN]),
+    ("another hash", &IMPORTANCE_SAMPLING, &[OTHER_HASH]),
     (
         "Russian roulette, compensated",
         &IMPORTANCE_SAMPLING,
         &[
-            OWN,
+            OTHER_HASH,
             (
-                GO_ON,
+                CONTINUE_PATH,
                 "if (random() > 0.8) {\n            return color;\n        }\n        throughput /= 0.8;\n        ray = Ray(hit.point + EPSILON * hit.normal, direction);",
             ),
         ],
@@ -205,13 +210,13 @@ static CORRECT: &[Case] = &[
     (
         "lights sampled alone",
         &IMPORTANCE_SAMPLING,
-        &[OWN, (WEIGHT, "/ density;"), (SHARE, "share = 0.0;")],
+        &[OTHER_HASH, (WEIGHT, "/ density;"), (SHARE, "share = 0.0;")],
     ),
     (
         "the balance heuristic",
         &IMPORTANCE_SAMPLING,
         &[
-            OWN,
+            OTHER_HASH,
             (
                 "return 1.0 / (1.0 + ratio * ratio);",
                 "return 1.0 / (1.0 + ratio);",
@@ -222,7 +227,7 @@ static CORRECT: &[Case] = &[
         "a grid of samples in each pixel",
         &SOFT_SHADOWS,
         &[
-            OWN,
+            OTHER_HASH,
             (
                 "fragCoord.x + random() - 0.5",
                 "fragCoord.x + (float(i % 4) + random()) / 4.0 - 0.5",
@@ -251,7 +256,7 @@ static CORRECT: &[Case] = &[
     (
         "twice the samples",
         &SOFT_SHADOWS,
-        &[OWN, ("SAMPLES = 16", "SAMPLES = 32")],
+        &[OTHER_HASH, ("SAMPLES = 16", "SAMPLES = 32")],
     ),
 ];
 
@@ -260,9 +265,9 @@ static BIASED: &[Case] = &[
         "Russian roulette, not compensated",
         &IMPORTANCE_SAMPLING,
         &[
-            OWN,
+            OTHER_HASH,
             (
-                GO_ON,
+                CONTINUE_PATH,
                 "if (random() > 0.9) {\n            return color;\n        }\n        ray = Ray(hit.point + EPSILON * hit.normal, direction);",
             ),
         ],
@@ -270,23 +275,23 @@ static BIASED: &[Case] = &[
     (
         "both ways to sample counted in full",
         &IMPORTANCE_SAMPLING,
-        &[OWN, (WEIGHT, "/ density;"), (SHARE, "share = 1.0;")],
+        &[OTHER_HASH, (WEIGHT, "/ density;"), (SHARE, "share = 1.0;")],
     ),
     (
         "the number of lamps forgotten",
         &IMPORTANCE_SAMPLING,
-        &[OWN, (" * float(EMITTERS));", ");")],
+        &[OTHER_HASH, (" * float(EMITTERS));", ");")],
     ),
     (
         "a segment less",
         &IMPORTANCE_SAMPLING,
-        &[OWN, ("MAX_DEPTH = 4", "MAX_DEPTH = 3")],
+        &[OTHER_HASH, ("MAX_DEPTH = 4", "MAX_DEPTH = 3")],
     ),
     (
         "the cosine to the lamp forgotten",
         &IMPORTANCE_SAMPLING,
         &[
-            OWN,
+            OTHER_HASH,
             (
                 "brdf(hit.material, reflected, direction) * facing\n",
                 "brdf(hit.material, reflected, direction)\n",
@@ -297,7 +302,7 @@ static BIASED: &[Case] = &[
         "the light's angle drawn evenly",
         &SOFT_SHADOWS,
         &[
-            OWN,
+            OTHER_HASH,
             (
                 "float cosine = 1.0 - u * depth;",
                 "float cosine = cos(u * asin(sqrt(sine2)));",
@@ -308,7 +313,7 @@ static BIASED: &[Case] = &[
         "the light's middle drawn too often",
         &SOFT_SHADOWS,
         &[
-            OWN,
+            OTHER_HASH,
             (
                 "float cosine = 1.0 - u * depth;",
                 "float cosine = 1.0 - u * u * depth;",
@@ -319,7 +324,7 @@ static BIASED: &[Case] = &[
         "the light's edge drawn too often",
         &SOFT_SHADOWS,
         &[
-            OWN,
+            OTHER_HASH,
             (
                 "float cosine = 1.0 - u * depth;",
                 "float cosine = 1.0 - sqrt(u) * depth;",
@@ -329,22 +334,28 @@ static BIASED: &[Case] = &[
     (
         "half of the light",
         &SOFT_SHADOWS,
-        &[OWN, ("6.28318530718 * turn", "3.14159265359 * turn")],
+        &[OTHER_HASH, ("6.28318530718 * turn", "3.14159265359 * turn")],
     ),
     (
         "a larger light",
         &SOFT_SHADOWS,
-        &[OWN, ("vec3(3.0, 5.0, -5.0), 0.6", "vec3(3.0, 5.0, -5.0), 0.75")],
+        &[
+            OTHER_HASH,
+            ("vec3(3.0, 5.0, -5.0), 0.6", "vec3(3.0, 5.0, -5.0), 0.75"),
+        ],
     ),
     (
         "half of the samples",
         &SOFT_SHADOWS,
-        &[OWN, ("SAMPLES = 16", "SAMPLES = 8")],
+        &[OTHER_HASH, ("SAMPLES = 16", "SAMPLES = 8")],
     ),
     (
         "samples beside their pixel",
         &SOFT_SHADOWS,
-        &[OWN, ("fragCoord.x + random() - 0.5", "fragCoord.x + random()")],
+        &[
+            OTHER_HASH,
+            ("fragCoord.x + random() - 0.5", "fragCoord.x + random()"),
+        ],
     ),
     (
         "the same numbers along diagonals",
@@ -356,47 +367,49 @@ static BIASED: &[Case] = &[
     ),
 ];
 
-fn told(cases: &[Case], size: [u32; 2], is_right: impl Fn(Verdict) -> bool) {
+fn assert_verdicts(cases: &[Case], size: [u32; 2], is_right: impl Fn(Verdict) -> bool) {
     let only = std::env::var("TOYPROOF_ONLY").unwrap_or_default();
     let mut wrong = Vec::new();
-    for (name, rung, edits) in cases.iter().filter(|(name, ..)| name.contains(&only)) {
+    for (name, exercise, edits) in cases.iter().filter(|(name, ..)| name.contains(&only)) {
         let start = std::time::Instant::now();
-        let (verdict, told) = verdict(rung, size, edits);
-        eprintln!("{name}: {told} ({:.1?})", start.elapsed());
+        let (verdict, assert_verdicts) = verdict(exercise, size, edits);
+        eprintln!("{name}: {assert_verdicts} ({:.1?})", start.elapsed());
         if !is_right(verdict) {
-            wrong.push(format!("{name}: {told}"));
+            wrong.push(format!("{name}: {assert_verdicts}"));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Right, and not accepted: few directions meet the lamp, so that eight sets of random numbers do not tell the mean.
+/// Correct, but not accepted: few directions hit the lamp, so that eight sets of random numbers do not
+/// determine the mean.
 static RARE: &[Case] = &[(
     "the BRDF sampled alone",
     &IMPORTANCE_SAMPLING,
-    &[OWN, (LIGHT, ""), (SHARE, "share = 1.0;")],
+    &[OTHER_HASH, (LIGHT, ""), (SHARE, "share = 1.0;")],
 )];
 
 #[test]
 fn estimators_with_rare_events_are_not_wrong() {
-    told(RARE, [160, 90], |verdict| {
+    assert_verdicts(RARE, [160, 90], |verdict| {
         matches!(verdict, Verdict::Correct | Verdict::Inconclusive)
     });
 }
 
 #[test]
 fn unbiased_estimators_are_correct() {
-    told(CORRECT, [160, 90], |verdict| verdict == Verdict::Correct);
+    assert_verdicts(CORRECT, [160, 90], |verdict| verdict == Verdict::Correct);
 }
 
 #[test]
-fn biased_estimators_are_found() {
-    told(BIASED, [160, 90], |verdict| {
+fn biased_estimators_are_rejected() {
+    assert_verdicts(BIASED, [160, 90], |verdict| {
         matches!(verdict, Verdict::Wrong | Verdict::Inconclusive)
     });
 }
 
-/// A checkered floor. In pictures of 160×90, the middles of a row of pixels see z = −8 there, where squares meet.
+/// A checkered floor. In images of 160×90, the centers of a row of pixels see z = −8 there, which is an edge
+/// between squares.
 const TIED: &str = "ambient = [0.2, 0.2, 0.2]
 [[light]]
 position = [3.0, 5.0, 2.0]
@@ -412,21 +425,24 @@ material = { model = \"lambert\", color = [0.9, 0.3, 0.2] }
 ";
 
 #[test]
-fn an_edge_of_the_scene_in_a_row_of_pixels_is_not_the_shaders_fault() {
-    let rung = Rung {
+fn edges_through_pixel_centers_are_not_the_shaders_fault() {
+    let exercise = Exercise {
         name: "tied",
         scene: TIED,
         size: [160, 90],
         ..STILL
     };
-    let shader = toyproof::scene::export::shader(&scene(&rung)).unwrap();
-    let findings = judged_by(None, &shader, &rung);
-    let told = format!("{}: {}", numbers(&findings), findings.reason);
-    eprintln!("{told}");
-    assert_eq!(findings.verdict, Verdict::Correct, "{told}");
-    assert!(findings.reason.contains("an edge of the scene itself"), "{told}");
+    let shader = toyproof::scene::export::shader(&scene(&exercise)).unwrap();
+    let findings = check_exercise_with(None, &shader, &exercise);
+    let assert_verdicts = format!("{}: {}", numbers(&findings), findings.reason);
+    eprintln!("{assert_verdicts}");
+    assert_eq!(findings.verdict, Verdict::Correct, "{assert_verdicts}");
+    assert!(
+        findings.reason.contains("an edge of the scene itself"),
+        "{assert_verdicts}"
+    );
     // A mistake in such a scene is still found.
     let shader = shader.replace("vec3(0.9, 0.3, 0.2)", "vec3(0.9, 0.31, 0.2)");
-    let findings = judged_by(None, &shader, &rung);
+    let findings = check_exercise_with(None, &shader, &exercise);
     assert_eq!(findings.verdict, Verdict::Wrong, "{}", findings.reason);
 }

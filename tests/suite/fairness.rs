@@ -1,7 +1,9 @@
-//! Right and biased shaders of an author who had not seen the code: glass, lamps and stochastic estimators in styles unlike the exercises'.
+//! Correct and biased shaders by an author who had not seen the code: glass, lamps and stochastic estimators
+//! in styles unlike the exercises'.
 //!
-//! The right ones were held against the tracer by other means: double precision pixel by pixel, or the mean of 128 runs on a GPU. Each biased
-//! one says in its first line what is wrong and how far its converged image is off.
+//! The correct ones were compared with the tracer by other means: double precision pixel by pixel, or the
+//! mean of 128 runs on a GPU. Each biased one states in its first line its fault and the error of its
+//! converged image.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -10,7 +12,7 @@ use serde_json::Value;
 
 use crate::program::{command, has_driver, run};
 
-/// How many shaders of a folder of `tests/fairness` have each verdict, at 160×90.
+/// Counts the shaders of a folder of `tests/fairness` by verdict, at 160×90.
 fn verdicts(kind: &str) -> BTreeMap<String, usize> {
     let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
     let folder = Path::new("tests/fairness").join(kind);

@@ -1,4 +1,4 @@
-//! What the fuzzer began with and what it found, judged as it judges; `fuzz/` holds both.
+//! The fuzzer's seeds and findings in `fuzz/`, checked by the fuzz targets' own code.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -24,7 +24,7 @@ fn texts(folder: &str) -> Vec<(PathBuf, String)> {
 }
 
 #[test]
-fn seeds_reach_what_they_are_for() {
+fn seeds_reach_their_targets() {
     let mut valid = 0;
     for (path, text) in texts("seeds") {
         match judge(&text) {
@@ -37,7 +37,7 @@ fn seeds_reach_what_they_are_for() {
 }
 
 #[test]
-fn what_was_found_is_mended() {
+fn findings_are_fixed() {
     for (path, text) in texts("regressions") {
         if let Outcome::Naga(words) = judge(&text) {
             panic!("{}: naga {words}", path.display());

@@ -1,10 +1,10 @@
 //! Generated programs: our SPIR-V on lavapipe must render what the evaluator computes, to the bit, and so
 //! must glslang's.
 //!
-//! `TOYPROOF_PROGRAMS` says how many (24), `TOYPROOF_SEED` which (0), `TOYPROOF_FIRST` with which number to
-//! begin (0), `TOYPROOF_EFFECTS` where operands may have effects (`ordered` or `anywhere`; else every other
-//! program is of the one kind). A program that the driver crashes on, as it does on some, is reported and
-//! counted; it is compared with those that render it.
+//! `TOYPROOF_PROGRAMS` sets their number (24), `TOYPROOF_SEED` the seed (0), `TOYPROOF_FIRST` the first
+//! program (0), `TOYPROOF_EFFECTS` where operands may have side effects (`ordered` or `anywhere`; by default
+//! programs alternate). A program that crashes the driver, as some do, is reported and counted; it is
+//! compared among the renderers that succeed.
 
 use std::cell::RefCell;
 use std::fmt::Write;
@@ -25,7 +25,7 @@ use crate::generate::Effects;
 use crate::support::setting;
 use crate::{generate, glslang};
 
-/// Programs that are as long as the decisions that they are made of, of which there are at most `longest`.
+/// Generates programs from at most `longest` decisions.
 fn programs(effects: Effects, longest: usize) -> impl Strategy<Value = String> {
     (8..longest)
         .prop_flat_map(|length| vec(any::<u8>(), length / 2..=length))
@@ -41,24 +41,24 @@ fn frame() -> Frame {
     }
 }
 
-/// What is wrong with a program, or with those that paint it.
+/// A failure of a program or of a renderer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Wrong {
-    /// What stays the same while the program is made smaller.
+    /// The kind of the failure, which shrinking must preserve.
     kind: &'static str,
-    words: String,
+    message: String,
 }
 
 fn wrong(kind: &'static str) -> impl Fn(String) -> Wrong {
-    move |words| Wrong { kind, words }
+    move |message| Wrong { kind, message }
 }
 
-/// Those that are compared.
+/// The renderers that are compared.
 struct Renderers<'a> {
     worker: Worker,
-    /// Where glslang works, if it is one of them.
+    /// The working folder of glslang, if it takes part.
     glslang: Option<&'a Path>,
-    /// Whether ours is what strict runs are.
+    /// Whether ours runs in strict mode.
     strict: bool,
 }
 
@@ -95,12 +95,12 @@ impl Renderers<'_> {
             }
         }
         match difference(&images) {
-            Some(words) => Err(wrong("pixels differ")(words)),
+            Some(message) => Err(wrong("pixels differ")(message)),
             None => Ok((!crashes.is_empty()).then_some(crashes)),
         }
     }
 
-    /// What a worker renders. If the driver fails, once more in a new process, where nothing came before.
+    /// Renders with a worker. If the driver fails, tries again in a new process without history.
     fn again_after_a_crash(
         &mut self,
         mut render: impl FnMut(&mut Worker) -> Result<Image, Failure>,
@@ -130,40 +130,42 @@ fn checked(program: &str) -> Result<Checked, String> {
     })
 }
 
-/// What the evaluator paints, which finds nothing undefined.
+/// The evaluator's image; fails if it finds undefined behavior.
 fn evaluated(checked: &Checked) -> Result<Image, String> {
     let program = Program::new(checked).map_err(|refusal| refusal.to_string())?;
-    let painted = program
-        .paint::<f32>(&frame(), &Settings::default())
+    let rendered = program
+        .render::<f32>(&frame(), &Settings::default())
         .map_err(|failure| failure.to_string())?;
-    match painted.painting.undefined() {
-        0 => Ok(painted.painting.image()),
+    match rendered.framebuffer.undefined() {
+        0 => Ok(rendered.framebuffer.image()),
         count => Err(format!(
             "{count} pixels are undefined: {:?}",
-            painted.observations
+            rendered.observations
         )),
     }
 }
 
-/// Where pictures differ first, and how many pixels do.
+/// The first difference between images, and the number of differing pixels.
 fn difference(pictures: &[(&str, Image)]) -> Option<String> {
     let differs = |&index: &usize| {
-        let mut colours = pictures.iter().map(|(_, picture)| picture.pixels()[index]);
-        let first = colours.next();
-        colours.any(|colour| Some(colour) != first)
+        let mut colors = pictures
+            .iter()
+            .map(|(_, rendered_image)| rendered_image.pixels()[index]);
+        let first = colors.next();
+        colors.any(|color| Some(color) != first)
     };
     let differing: Vec<usize> = (0..64).filter(differs).collect();
     let &first = differing.first()?;
-    let mut words = format!(
+    let mut message = format!(
         "{} of 64, the first at ({}, {}):",
         differing.len(),
         first % 8,
         first / 8
     );
-    for (whose, picture) in pictures {
-        let _ = write!(words, " {whose} {:?}", picture.pixels()[first]);
+    for (whose, rendered_image) in pictures {
+        let _ = write!(message, " {whose} {:?}", rendered_image.pixels()[first]);
     }
-    Some(words)
+    Some(message)
 }
 
 #[test]
@@ -180,7 +182,7 @@ fn the_evaluator_agrees_with_ours() {
     compare_all(None, 900);
 }
 
-/// Where the operands of that program may have effects.
+/// Where operands of that program may have side effects.
 fn effects(number: u32) -> Effects {
     match std::env::var("TOYPROOF_EFFECTS").as_deref() {
         Ok("ordered") => Effects::Ordered,
@@ -190,7 +192,7 @@ fn effects(number: u32) -> Effects {
     }
 }
 
-/// Compares as many programs as are asked for, of at most `longest` decisions.
+/// Compares the requested number of programs, of at most `longest` decisions.
 fn compare_all(glslang: Option<&Path>, longest: usize) {
     let Some(worker) = crate::support::worker() else {
         return;
@@ -220,28 +222,28 @@ fn compare_all(glslang: Option<&Path>, longest: usize) {
         if number < first {
             continue;
         }
-        // glslang's products of matrices are the driver's, whose sums are exact here.
+        // glslang leaves matrix products to the driver, whose sums are exact here.
         renderers.borrow_mut().strict = number % 4 >= 2;
         let (found, crashed) = (RefCell::new(None), RefCell::new(None));
         let result = runner.run_one(tree, |program| {
             let wrong = match renderers.borrow_mut().compare(&program) {
-                Ok(words) => {
-                    crashed.replace(words.map(|words| format!("{words}\n{program}")));
+                Ok(message) => {
+                    crashed.replace(message.map(|message| format!("{message}\n{program}")));
                     return Ok(());
                 }
                 Err(wrong) => wrong,
             };
-            // What is made smaller must not turn into another finding.
+            // Shrinking must not change the kind of the failure.
             if *found.borrow_mut().get_or_insert(wrong.kind) != wrong.kind {
                 return Ok(());
             }
-            Err(TestCaseError::fail(format!("{}: {}", wrong.kind, wrong.words)))
+            Err(TestCaseError::fail(format!("{}: {}", wrong.kind, wrong.message)))
         });
         if let Err(TestError::Fail(why, program)) = result {
             eprintln!("program {number} of seed {seed} ({effects:?}): {why}\n{program}");
             failures.push(format!("program {number}: {why}"));
-        } else if let Some(words) = crashed.take() {
-            eprintln!("program {number} of seed {seed}: the driver crashed on {words}");
+        } else if let Some(message) = crashed.take() {
+            eprintln!("program {number} of seed {seed}: the driver crashed on {message}");
             crashes += 1;
         }
     }
@@ -255,10 +257,10 @@ fn compare_all(glslang: Option<&Path>, longest: usize) {
     assert!(50 * crashes <= count, "{summary}");
 }
 
-/// Programs whose pixels tell in which order their operands are evaluated, where the specification leaves it
-/// open or may be read in several ways.
+/// Programs whose pixels show the order in which operands are evaluated, where the specification leaves it
+/// open or is ambiguous.
 const ORDERS: &[&str] = &[
-    // The indices of a target, its value, and what is added to it.
+    // The indices of a target, its value, and the added value.
     "int q[2]; q[0] = at.x; q[1] = at.y; q[q[0] & 1] += q[0]++; r = ivec2(q[0], q[1]);",
     "int q[2]; q[0] = 5; q[1] = 7; int i = at.x & 1; q[i] -= (i = at.y & 1) + 4; r = ivec2(q[0], q[1]);",
     "int q[2]; q[0] = 5; q[1] = 7; g = at.x & 1; q[next() & 1] *= next() + (q[1]++); r = ivec2(q[0], q[1]) + g;",
@@ -268,7 +270,7 @@ const ORDERS: &[&str] = &[
     "S s; s.a[0] = 1; s.a[1] = 2; int i = at.x & 1; s.a[i] <<= (i = 1 - i) + s.a[0]; r = ivec2(s.a[0], s.a[1]);",
     "T t[2]; int i = at.x & 1; t[i].m = mat2(float((i = 1 - i) + 2)); t[i].m *= float(i = at.y & 1) + 3.0; \
      r = ivec2(t[0].m * vec2(1) + t[1].m * vec2(10));",
-    // Arguments that are copied in and out, beside others that change them.
+    // Arguments that are copied in and out, next to others that modify them.
     "ivec2 v = at; bump(v[0], (v[0] = 3)); r = v;",
     "ivec2 v = at; int i = at.x & 1; bump(v[i], (v = v + 4, i = 1 - i, 2)); r = v;",
     "int x = at.x; bump(x, (x = 3)); r = ivec2(x, 0);",
@@ -281,11 +283,11 @@ const ORDERS: &[&str] = &[
     "int i = at.x; r = ivec2(add(i, i++), add(i++, i)); r += ivec2(addc(i, i++), add((i), (i = 7, 2)));",
     "ivec2 v = at; int q[2]; q[0] = 3; q[1] = 5; int i = 0; r = ivec2(add(q[i++], q[i] += 2), add(q[i & 1], i = 0));",
     "g = at.x; ivec2 v = at; r = ivec2(add(g, next()), add(v[g & 1], next() + v.x++)); r.x += add(3, v.x) % (v.x = 7);",
-    // What is indexed, and the index.
+    // The indexed value, and the index.
     "ivec2 v = at; r = ivec2(v[(v = v + 3, at.x & 1)], (v.yx)[v.x++ & 1]);",
     "int i = at.x & 1; r = ivec2(int[2](i, 7)[i = 1 - i], (at.y > 2 ? at : at.yx)[i = 1 - i] + i);",
     "ivec2 v[2]; v[0] = at; v[1] = at + 4; int i = 0; r = v[i++].yx + v[i] * 16; r.x += v[i = 1][i = 0];",
-    // Operators, constructors, choices.
+    // Operators, constructors, conditionals.
     "int i = at.x; r = ivec2(i++ * 2 + i, (i = 3) + i); r += ivec2(i, i++);",
     "int i = at.x; bool b = i++ > 2 && i++ > 4 || i++ > 3; r = ivec2(i, int(b)); r += b ? i++ : --i;",
     "g = at.x; r = ivec2(next(), next() - 2 * next()); r.x += g > 4 ? next() : -next();",
@@ -327,7 +329,7 @@ fn operands_are_evaluated_in_the_order_of_glslang() {
                 let _ = writeln!(failures, "{crash}\n{body}");
             }
             Err(wrong) => {
-                let _ = writeln!(failures, "{}: {}\n{body}", wrong.kind, wrong.words);
+                let _ = writeln!(failures, "{}: {}\n{body}", wrong.kind, wrong.message);
             }
         }
     }

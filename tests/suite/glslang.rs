@@ -1,10 +1,10 @@
-//! glslang as a second opinion: the same shader through `glslangValidator`, for the bindings that ours has.
+//! glslang as an independent compiler: the same shader through `glslangValidator`, with our bindings.
 
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// What stands before a shader, so that its SPIR-V runs where ours does. No channels.
+/// The prelude that makes a shader's SPIR-V compatible with our bindings. No channels.
 const PRELUDE: &str = "#version 310 es
 precision highp float;
 precision highp int;
@@ -31,7 +31,7 @@ void main() {
 }
 ";
 
-/// Whether it is installed.
+/// Returns whether glslang is installed.
 pub(crate) fn is_here() -> bool {
     let found = Command::new("glslangValidator")
         .arg("--version")
@@ -44,7 +44,7 @@ pub(crate) fn is_here() -> bool {
     found
 }
 
-/// A shader's words by glslang, or its complaints.
+/// Compiles a shader with glslang: its SPIR-V words, or the error messages.
 pub(crate) fn words(shader: &str, folder: &Path) -> Result<Vec<u32>, String> {
     let (source, compiled) = (folder.join("s.frag"), folder.join("s.spv"));
     fs::write(&source, format!("{PRELUDE}{shader}{EPILOGUE}")).unwrap();
@@ -59,7 +59,7 @@ pub(crate) fn words(shader: &str, folder: &Path) -> Result<Vec<u32>, String> {
     Ok(words_of(&fs::read(&compiled).unwrap()))
 }
 
-/// The words of a `.spv` file.
+/// The SPIR-V words of a `.spv` file.
 pub(crate) fn words_of(bytes: &[u8]) -> Vec<u32> {
     bytes
         .chunks_exact(4)

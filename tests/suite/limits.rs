@@ -1,4 +1,4 @@
-//! What a command line may be asked to do and must not do for ever: slow texts, links, files that vanish, readers that go.
+//! Inputs that must not block a command: slow texts, links, vanishing files, closed pipes.
 
 use std::fs;
 use std::io::{BufRead, BufReader};
@@ -11,7 +11,7 @@ use serde_json::Value;
 use crate::program::{command, run, toyproof};
 use crate::support::SPHERE;
 
-/// A folder `hw` with so many right shaders.
+/// Creates a folder `hw` with `count` correct shaders.
 fn homework(count: usize) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("hw")).unwrap();
@@ -73,7 +73,7 @@ fn a_shader_that_takes_too_long_to_compile_is_a_timeout_with_a_code() {
 }
 
 #[test]
-fn a_conversion_that_naga_reads_for_minutes_is_ended() {
+fn slow_readings_by_naga_are_stopped() {
     let folder = tempfile::tempdir().unwrap();
     let text = format!(
         "void mainImage(out vec4 c, in vec2 p) {{ bool b = {} true; c = vec4(b); }}",
@@ -126,7 +126,7 @@ fn links_out_of_the_submissions_are_not_followed() {
         let text = fs::read(entry.unwrap().path()).unwrap();
         assert!(!String::from_utf8_lossy(&text).contains("secret = 42"));
     }
-    // A file that is named is read, wherever it leads.
+    // A file that is named explicitly is read, wherever its link leads.
     let named = toyproof(folder.path(), &["check", "hw/leak.glsl", "--on", "cpu"]);
     assert!(named.stderr.contains("film"), "{named:?}");
 }
@@ -153,7 +153,7 @@ fn broken_lines_of_an_earlier_run_are_skipped_and_counted() {
 }
 
 #[test]
-fn a_folder_that_is_removed_during_the_run_is_an_error() {
+fn removing_the_folder_during_the_run_is_an_error() {
     let folder = homework(40);
     let running = check(folder.path(), &["--out", "out", "--jobs", "1"])
         .stdout(Stdio::null())
@@ -176,7 +176,7 @@ fn a_folder_that_is_removed_during_the_run_is_an_error() {
 }
 
 #[test]
-fn a_batch_ends_when_nobody_reads_what_it_prints() {
+fn a_batch_ends_when_its_output_is_closed() {
     const COUNT: usize = 60;
     let folder = homework(COUNT);
     let mut running = check(folder.path(), &["--out", "out", "--jobs", "1"])

@@ -7,9 +7,9 @@ use std::time::{Duration, Instant};
 use serde_json::Value;
 
 use crate::program::{command, run};
-use crate::support::{EVERY_RUNG, setting};
+use crate::support::{EVERY_EXERCISE, setting};
 
-/// The numbers in a text that stand outside of comments and names, as ranges of bytes.
+/// The byte ranges of the numbers in a text, outside of comments and names.
 fn literals(text: &str) -> Vec<Range<usize>> {
     let bytes = text.as_bytes();
     let mut found = Vec::new();
@@ -38,7 +38,7 @@ fn literals(text: &str) -> Vec<Range<usize>> {
     found
 }
 
-/// A number that is a tenth larger, or one larger if it is a small integer.
+/// The number increased by a tenth, or by one if it is a small integer.
 fn changed(literal: &str) -> Option<String> {
     let digits = literal.trim_end_matches(['u', 'U']);
     let suffix = &literal[digits.len()..];
@@ -58,36 +58,36 @@ fn numbers_are_found_and_changed() {
     assert_eq!(changes, expected.map(|change| change.map(str::to_owned)));
 }
 
-/// One exercise after the other, each with its own numbers: `TOYPROOF_LITERALS` skips all but every nth.
-fn sweep(every: usize) {
+/// Checks all exercises, each with its numbers changed: `TOYPROOF_LITERALS` skips all but every nth.
+fn sweep(step: usize) {
     let (mut variants, mut slowest) = (0, (Duration::ZERO, String::new()));
     let mut tally = std::collections::BTreeMap::<String, usize>::new();
-    for rung in EVERY_RUNG {
+    for exercise in EVERY_EXERCISE {
         let folder = tempfile::tempdir().unwrap();
-        fs::write(folder.path().join("scene.toml"), rung.scene).unwrap();
-        for at in literals(rung.shader) {
-            let Some(number) = changed(&rung.shader[at.clone()]) else {
+        fs::write(folder.path().join("scene.toml"), exercise.scene).unwrap();
+        for at in literals(exercise.shader) {
+            let Some(number) = changed(&exercise.shader[at.clone()]) else {
                 continue;
             };
             variants += 1;
-            if variants % every != 0 {
+            if variants % step != 0 {
                 continue;
             }
-            let mut shader = rung.shader.to_owned();
+            let mut shader = exercise.shader.to_owned();
             shader.replace_range(at.clone(), &number);
             fs::write(folder.path().join("a.glsl"), shader).unwrap();
             let start = Instant::now();
             let (size, frame, time) = (
-                format!("{}x{}", rung.size[0], rung.size[1]),
-                rung.frame.to_string(),
-                rung.time.to_string(),
+                format!("{}x{}", exercise.size[0], exercise.size[1]),
+                exercise.frame.to_string(),
+                exercise.time.to_string(),
             );
             let run = run(command(folder.path())
                 .args(["check", "a.glsl", "--scene", "scene.toml"])
                 .args([
                     "--size", &size, "--frame", &frame, "--time", &time, "--format", "json",
                 ]));
-            let case = format!("{}: byte {}, {number}", rung.name, at.start);
+            let case = format!("{}: byte {}, {number}", exercise.name, at.start);
             let report: Value =
                 serde_json::from_str(&run.stdout).unwrap_or_else(|error| panic!("{case}: {error}"));
             let verdict = report["shaders"][0]["verdict"].as_str().unwrap().to_owned();
@@ -111,7 +111,7 @@ fn some_changed_numbers_get_verdicts() {
     }
 }
 
-/// Over 700 checks, some of which search for a name for seconds.
+/// Over 700 checks, some of which search for a mistake's name for seconds.
 #[test]
 #[ignore = "takes an hour; run it in release"]
 fn all_changed_numbers_get_verdicts() {

@@ -1,4 +1,4 @@
-//! The tests that need the whole program, in one binary: it links once.
+//! The tests that need the whole program, in one binary, so that it links only once.
 
 #![expect(clippy::print_stderr, reason = "a test's own words")]
 #![expect(
@@ -14,6 +14,7 @@ mod commands;
 #[cfg(debug_assertions)]
 mod containment;
 mod conversion;
+mod debug;
 mod derivatives;
 mod diagnostics;
 #[cfg(unix)]
@@ -22,10 +23,12 @@ mod equivalent_rewrites;
 mod estimators;
 mod evaluator;
 mod evaluator_programs;
+mod exercises;
 mod exported;
 #[cfg(unix)]
 mod fair_verdicts;
 mod fairness;
+mod fault_names;
 mod fuzzed;
 mod generate;
 mod generated;
@@ -36,8 +39,6 @@ mod limits;
 mod literals;
 mod math;
 mod miscompiles;
-mod mistaken;
-mod mistakes;
 mod nesting;
 mod page;
 mod planted_faults;
@@ -46,12 +47,12 @@ mod program;
 mod random_draws;
 mod reports;
 mod rules;
-mod rungs;
 mod sensitivity;
-mod stories;
+mod snapshots;
 mod stress;
 mod strict;
 mod submissions;
 mod support;
 mod trade;
+mod ui;
 mod unstable;

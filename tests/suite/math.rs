@@ -1,4 +1,4 @@
-//! What is spelled for strict shaders has the same bits on the driver and here.
+//! The functions that strict shaders expand have the same bits on the driver and on the CPU.
 
 use std::fmt::Write as _;
 
@@ -9,10 +9,10 @@ use toyproof::image::Frame;
 use toyproof::math::{self as e, Matrix, native};
 use toyproof::translate::{FloatMode, lower_strict};
 
-/// Width and height of a picture of arguments.
+/// Width and height of an image of arguments, in pixels.
 const SIZE: u32 = 256;
 
-/// A function of GLSL of one or two arguments, and ours.
+/// A GLSL function of one or two arguments, and our implementation.
 struct Case {
     call: &'static str,
     ours: fn(f32, f32) -> f32,
@@ -47,7 +47,7 @@ fn cases() -> [Case; 18] {
     }
 }
 
-/// Two arguments for each pixel: any bits, and floats that shaders meet, up to some thousands.
+/// Two arguments per pixel: random bits, and typical floats of shaders, up to some thousands.
 const ARGUMENTS: &str = "uint hash(uint n) {
     n ^= n >> 16u; n *= 0x7FEB352Du; n ^= n >> 15u; n *= 0x846CA68Bu; return n ^ n >> 16u;
 }
@@ -104,10 +104,10 @@ fn draw(worker: &mut Worker, text: &str, size: u32) -> Drawn {
         .unwrap()
 }
 
-/// Paints `call` for pixels that begin at argument `first`, two for each.
+/// Renders `call` for pixels that start at argument `first`, two per pixel.
 ///
 /// # Panics
-/// If a result is another than ours.
+/// If a result differs from ours.
 fn compare(worker: &mut Worker, call: &str, ours: impl Fn(u32) -> f32, first: u32) {
     let drawn = draw(worker, &shader(call, first), SIZE);
     let device = drawn.device.clone();
@@ -124,21 +124,21 @@ fn compare(worker: &mut Worker, call: &str, ours: impl Fn(u32) -> f32, first: u3
 }
 
 #[test]
-fn the_driver_and_we_compute_the_same_bits() {
+fn the_driver_and_the_cpu_compute_the_same_bits() {
     let Some(mut worker) = crate::support::worker() else {
         return;
     };
-    // TOYPROOF_PICTURES=64 takes 4 million arguments for each function.
-    let pictures = std::env::var("TOYPROOF_PICTURES").map_or(1, |count| count.parse().unwrap());
+    // TOYPROOF_PICTURES=64 tests 4 million arguments for each function.
+    let images = std::env::var("TOYPROOF_PICTURES").map_or(1, |count| count.parse().unwrap());
     for case in &cases() {
-        for picture in 0..pictures {
+        for index in 0..images {
             let ours = |n| (case.ours)(argument(n), argument(n + 1));
-            compare(&mut worker, case.call, ours, picture * SIZE * SIZE * 2);
+            compare(&mut worker, case.call, ours, index * SIZE * SIZE * 2);
         }
     }
 }
 
-/// Three components each of two vectors, and ours of them.
+/// A GLSL expression of two 3-vectors, and our implementation.
 type OfVectors = (&'static str, fn([f32; 3], [f32; 3]) -> f32);
 
 fn rotated([x, y, z]: [f32; 3]) -> [f32; 3] {
@@ -204,7 +204,7 @@ const OF_VECTORS: [OfVectors; 26] = [
 ];
 
 #[test]
-fn so_they_do_of_vectors_and_matrices() {
+fn vectors_and_matrices_have_the_same_bits() {
     let Some(mut worker) = crate::support::worker() else {
         return;
     };
@@ -223,7 +223,7 @@ fn constants_have_the_same_bits() {
         return;
     };
     for case in &cases() {
-        // Those above 1 are outside of some domains.
+        // Arguments above 1 are outside of some domains.
         for (x, y) in [(0.7, 1.3), (2.5, -0.6)] {
             let ours = (case.ours)(x, y);
             if ours.is_nan() {

@@ -1,4 +1,5 @@
-//! What naga or lavapipe takes and gets wrong: on the GPU the picture is wrong without the pass that mends it, and right with it.
+//! Miscompilations of naga or lavapipe: on the GPU the image is wrong without the pass that works around it,
+//! and right with it.
 
 use toyproof::diagnostic::{File, Files};
 use toyproof::glsl::{Options, check};
@@ -7,7 +8,7 @@ use toyproof::image::{Frame, Image};
 use toyproof::translate::FloatMode;
 use toyproof::translate::lower::{Pass, Passes, lower_with};
 
-/// A miscompilation: the pass that mends it, what stands before `mainImage` and in it, and what `o.x` must be.
+/// A miscompilation: the pass that fixes it, the text before `mainImage`, its body, and the expected `o.x`.
 type Case = (Pass, &'static str, &'static str, f32);
 
 /// `p` is (0.5, 0.5); `iTime` is 2; texel (1, 2) of `iChannel0` is 0.75, the others are 0.
@@ -68,13 +69,13 @@ static CASES: &[Case] = &[
     ),
     (Pass::Globals, "float twice = iTime * 2.0;", "o.x = twice;", 4.0),
     (
-        Pass::Uninitialised,
+        Pass::Uninitialized,
         "",
         "for (int i = 0; i < 3; i++) { float a; a += 1.0; o.x += a; }",
         3.0,
     ),
     (
-        Pass::Uninitialised,
+        Pass::Uninitialized,
         "void f(out float x) { if (iTime > 5.0) x = 2.0; }",
         "float x = 1.0; f(x); o.x = x;",
         0.0,
@@ -91,14 +92,14 @@ static CASES: &[Case] = &[
         "int i = 0; do { i++; if (i < 9) continue; } while (i < 3); o.x = float(i);",
         3.0,
     ),
-    // What Mesa 22.3 folds, also where the constant comes by way of a variable.
+    // Constants that Mesa 22.3 folds, also if they are stored in a variable first.
     (
         Pass::Elementary,
         "",
         "uint u = 0xC000BC00u; o.x = unpackHalf2x16(u).y;",
         -2.0,
     ),
-    // Two rounds, and not three steps.
+    // Two iterations, not three.
     (
         Pass::Steps,
         "",
@@ -107,13 +108,13 @@ static CASES: &[Case] = &[
     ),
 ];
 
-/// Those that naga needs, or all where it is about one of strict shaders.
+/// The passes that naga needs, or all if the case is about a strict one.
 fn passes(pass: Pass) -> Passes {
     let all = Passes::all();
     if all.contains(pass) { all } else { Passes::strict() }
 }
 
-fn paint(worker: &mut Worker, (pass, before, body, _): &Case, passes: Passes) -> f32 {
+fn render(worker: &mut Worker, (pass, before, body, _): &Case, passes: Passes) -> f32 {
     let mut files = Files::default();
     let text = format!("{before}\nvoid mainImage(out vec4 o, in vec2 p) {{ o = vec4(0.0); {body} }}");
     let file = files.add(File::new("s", text));
@@ -142,15 +143,15 @@ fn paint(worker: &mut Worker, (pass, before, body, _): &Case, passes: Passes) ->
 }
 
 #[test]
-fn each_is_wrong_without_its_pass_and_right_with_it() {
+fn each_pass_fixes_its_miscompilation() {
     let Some(mut worker) = crate::support::worker() else {
         return;
     };
     for case in CASES {
         let (pass, _, body, expected) = case;
-        let with = paint(&mut worker, case, passes(*pass));
+        let with = render(&mut worker, case, passes(*pass));
         assert_eq!(with, *expected, "{pass:?}: {body}");
-        let without = paint(&mut worker, case, passes(*pass).without(*pass));
+        let without = render(&mut worker, case, passes(*pass).without(*pass));
         assert_ne!(
             without, *expected,
             "naga or the driver is mended, {pass:?} can go: {body}"
@@ -167,5 +168,5 @@ fn arrays_of_arrays_keep_their_dimensions() {
     let body = "float a[2][3]; for (int i = 0; i < 2; i++) for (int j = 0; j < 3; j++) a[i][j] = float(10 * i + j); \
                 o.x = a[int(p.x) + 1][2] + 100.0 * float(a.length()) + 1000.0 * float(a[0].length());";
     let case = (Pass::DeadCode, "", body, 3212.0);
-    assert_eq!(paint(&mut worker, &case, Passes::all()), 3212.0);
+    assert_eq!(render(&mut worker, &case, Passes::all()), 3212.0);
 }

@@ -1,35 +1,35 @@
-//! Statements, choices, jumps and calls nested deeper than lavapipe's stack of 80 conditions: the GPU must
-//! render what the evaluator computes, and does not without the pass that lays them side by side.
+//! Statements, conditionals, jumps and calls nested deeper than lavapipe's condition stack of 80: the GPU
+//! must render what the evaluator computes, and fails without the pass that flattens them.
 
 use std::time::Duration;
 
 use toyproof::eval::{Program, Settings};
 use toyproof::glsl::Checked;
-use toyproof::gpu::{Failure, On, Worker};
+use toyproof::gpu::{AdapterSelector, Failure, Worker};
 use toyproof::image::{Frame, Image};
 use toyproof::translate::FloatMode;
 use toyproof::translate::lower::{Pass, Passes, lower_with};
 
 use crate::support;
 
-/// Pixels in a row: as many different depths as are reached.
+/// The number of pixels in a row, each of which reaches a different depth.
 const WIDTH: u32 = 128;
-/// More than the driver counts.
+/// More levels than the driver's stack has.
 const DEPTH: usize = 100;
 
-/// Wraps `DEPTH` levels around the innermost statement; what a level is, `level` says of the inside and its
+/// Wraps `DEPTH` levels around the innermost statement; `level` gives a level's text for its content and its
 /// number, 0 for the outermost.
 fn nest(level: impl Fn(String, usize) -> String) -> String {
     (0..DEPTH).rev().fold("g(x, 1.0);".to_owned(), level)
 }
 
-/// One after the other.
+/// Concatenates `DEPTH` texts.
 fn row(one: impl Fn(usize) -> String) -> String {
     (0..DEPTH).map(one).collect()
 }
 
-/// A name, what stands before `mainImage`, and what in it makes `x` of `p`; level `d` is entered by pixels
-/// whose `p.x` is greater.
+/// A name, the text before `mainImage`, and the body that computes `x` from `p`; pixels enter level `d` if
+/// their `p.x` is greater.
 type Nested = (&'static str, String, String);
 
 fn plain(name: &'static str, body: String) -> Nested {
@@ -55,7 +55,7 @@ fn function_of_levels(at: usize) -> String {
     format!("float k{at}(vec2 p, float x) {{ {levels} return x; }}\n")
 }
 
-/// Levels in each other.
+/// Cases of nested levels.
 fn nested() -> Vec<Nested> {
     vec![
         plain(
@@ -97,7 +97,7 @@ fn nested() -> Vec<Nested> {
     ]
 }
 
-/// What the driver, or a grammar, nests.
+/// Cases that are flat in the source, but that the driver or the grammar nests.
 fn in_a_row() -> Vec<Nested> {
     vec![
         plain(
@@ -161,19 +161,19 @@ fn frame() -> Frame {
     }
 }
 
-fn drawn(worker: &mut Worker, checked: &Checked, passes: Passes) -> Image {
-    let drawn = worker.draw_unwatched(lower_with(checked, passes), frame(), FloatMode::Strict);
-    drawn.unwrap_or_else(|failure| panic!("{failure}")).image()
+fn rendered(worker: &mut Worker, checked: &Checked, passes: Passes) -> Image {
+    let rendered = worker.draw_unwatched(lower_with(checked, passes), frame(), FloatMode::Strict);
+    rendered.unwrap_or_else(|failure| panic!("{failure}")).image()
 }
 
 fn evaluated(checked: &Checked) -> Image {
     let program = Program::new(checked).unwrap();
-    let painted = program.paint::<f32>(&frame(), &Settings::default());
-    painted.unwrap().painting.image()
+    let rendered_image = program.render::<f32>(&frame(), &Settings::default());
+    rendered_image.unwrap().framebuffer.image()
 }
 
 #[test]
-fn what_is_nested_deep_renders_as_it_evaluates() {
+fn deep_nesting_renders_as_it_evaluates() {
     let Some(worker) = support::worker() else {
         return;
     };
@@ -187,16 +187,16 @@ fn what_is_nested_deep_renders_as_it_evaluates() {
         );
         let checked = support::checked(&text);
         let evaluated = evaluated(&checked);
-        if drawn(&mut worker, &checked, Passes::strict()).pixels() != evaluated.pixels() {
+        if rendered(&mut worker, &checked, Passes::strict()).pixels() != evaluated.pixels() {
             wrong.push(name);
         }
         let without = Passes::strict().without(Pass::Nesting);
-        if drawn(&mut worker, &checked, without).pixels() == evaluated.pixels() {
+        if rendered(&mut worker, &checked, without).pixels() == evaluated.pixels() {
             needless.push(name);
         }
     }
     assert!(wrong.is_empty(), "rendered wrong: {wrong:?}");
-    // The driver folds what these nest, or its stack of loops holds them.
+    // The driver folds these, or its loop stack holds them.
     let harmless = ["choices", "and"];
     needless.retain(|name| !harmless.contains(name));
     assert!(
@@ -240,19 +240,27 @@ fn calls(count: usize) -> Checked {
 }
 
 #[test]
-fn what_stays_nested_too_deep_is_not_run_on_a_driver() {
+fn too_deep_nesting_is_not_run_on_a_driver() {
     let lowered = |checked: &Checked| lower_with(checked, Passes::strict());
     for (name, deep, shallow) in [("loops", loops(73), loops(72)), ("calls", calls(73), calls(72))] {
         assert_eq!(lowered(&shallow).too_deep(), None, "{name}");
         let lowered = lowered(&deep);
-        let told = lowered.too_deep().expect(name);
-        assert!(told.code == "E0411" && told.span.is_some(), "{told:?}");
+        let reported = lowered.too_deep().expect(name);
+        assert!(
+            reported.code == "E0411" && reported.span.is_some(),
+            "{reported:?}"
+        );
         // No process is started for it.
-        let mut worker = Worker::new("/nothing".into(), Vec::new(), On::Auto, Duration::from_secs(1));
+        let mut worker = Worker::new(
+            "/nothing".into(),
+            Vec::new(),
+            AdapterSelector::Auto,
+            Duration::from_secs(1),
+        );
         let failure = worker
             .draw(lowered.clone(), frame(), FloatMode::Strict)
             .unwrap_err();
-        assert_eq!(failure, Failure::Invalid(vec![told.clone()]));
+        assert_eq!(failure, Failure::Invalid(vec![reported.clone()]));
     }
     let Some(worker) = support::worker() else {
         return;
@@ -260,7 +268,7 @@ fn what_stays_nested_too_deep_is_not_run_on_a_driver() {
     let mut worker = worker.with_plain_code();
     for deepest in [loops(72), calls(72)] {
         let evaluated = evaluated(&deepest);
-        let drawn = drawn(&mut worker, &deepest, Passes::strict());
-        assert_eq!(drawn.pixels(), evaluated.pixels());
+        let rendered = rendered(&mut worker, &deepest, Passes::strict());
+        assert_eq!(rendered.pixels(), evaluated.pixels());
     }
 }

@@ -1,23 +1,24 @@
-//! A checker is itself checked: mistakes that students make in the course's shaders must all be found.
+//! Tests the checker itself: mistakes that students make in the course's shaders must all be found.
 //! `equivalent_rewrites` is the other half.
 
 use toyproof::verify::compare::Verdict;
 
-use crate::rungs::EDITED;
+use crate::exercises::EDITED;
 use crate::support::{
-    COMPLEX_SCENE, Edit, MANY_OBJECTS, REFLECTIONS, RUNGS, Rung, SHADING, SIZE, SPHERE, edited, judged,
-    judged_and_named, maths, numbers,
+    COMPLEX_SCENE, EXERCISES, Edit, Exercise, MANY_OBJECTS, REFLECTIONS, SHADING, SIZE, SPHERE, algorithm,
+    check_and_name, check_exercise, edited, numbers,
 };
 
-/// What the mistake is, the rung that it is made in, and how.
-pub(crate) type Fault = (&'static str, &'static Rung, &'static [Edit]);
+/// The name of the mistake, its exercise, and the edits.
+pub(crate) type Fault = (&'static str, &'static Exercise, &'static [Edit]);
 
 const B: &str = "float b = dot(f, ray.direction);";
 const TWO_B: &str = "float b = 2.0 * dot(f, ray.direction);";
 const NEAR: &str = "float t = -b - root;";
 
 /// Some mistakes cannot be seen, and so are not here:
-/// - in `02-sphere` the far root (both ends of a chord meet the sphere at one angle) and a flipped y (symmetry);
+/// - in `02-sphere` the far root (both ends of a chord meet the sphere at one angle) and a flipped y
+///   (symmetry);
 /// - in `05-complex-scene` all that hides behind it;
 /// - in `08-disney` a missing sheen (the light comes from where the eye is);
 /// - in `12-whitted` total reflection (a ray that entered a ball always finds its way out);
@@ -568,11 +569,11 @@ static FAULTS: &[Fault] = &[
     ),
 ];
 
-/// Those above and those of the later rungs.
+/// All faults: those above and those of the later exercises.
 pub(crate) fn faults() -> impl Iterator<Item = Fault> {
     let later = EDITED.iter().flat_map(|edited| {
-        let of_rung = |&(name, edits)| (name, edited.rung, edits);
-        edited.faults.iter().map(of_rung)
+        let of_exercise = |&(name, edits)| (name, edited.exercise, edits);
+        edited.faults.iter().map(of_exercise)
     });
     FAULTS.iter().copied().chain(later)
 }
@@ -584,25 +585,28 @@ fn every_planted_fault_is_found() {
     };
     let mut missed = Vec::new();
     let mut smallest = (f64::INFINITY, "");
-    for (name, rung, edits) in faults() {
-        let shader = edited(rung, edits);
-        let mut findings = judged(&mut worker, &shader, rung);
+    for (name, exercise, edits) in faults() {
+        let shader = edited(exercise, edits);
+        let mut findings = check_exercise(&mut worker, &shader, exercise);
         if findings.verdict != Verdict::Wrong {
-            // What differs only where chance decides is compared by its mean, unless a mistake explains it.
-            findings = judged_and_named(&mut worker, &shader, rung);
+            // Differences of stochastic pixels are compared by their mean, unless a mistake explains them.
+            findings = check_and_name(&mut worker, &shader, exercise);
         }
         if findings.verdict == Verdict::Inconclusive {
             // Too few pixels to compare means.
-            let larger = Rung { size: SIZE, ..*rung };
-            findings = judged_and_named(&mut worker, &shader, &larger);
+            let larger = Exercise {
+                size: SIZE,
+                ..*exercise
+            };
+            findings = check_and_name(&mut worker, &shader, &larger);
         }
-        let share = maths(&findings).share(maths(&findings).differing);
-        eprintln!("{}: {name}: {}", rung.name, numbers(&findings));
+        let share = algorithm(&findings).share(algorithm(&findings).differing);
+        eprintln!("{}: {name}: {}", exercise.name, numbers(&findings));
         if share < smallest.0 {
             smallest = (share, name);
         }
         if findings.verdict != Verdict::Wrong {
-            missed.push(format!("{}: {name}: {}", rung.name, numbers(&findings)));
+            missed.push(format!("{}: {name}: {}", exercise.name, numbers(&findings)));
         }
     }
     eprintln!(
@@ -615,9 +619,9 @@ fn every_planted_fault_is_found() {
 }
 
 #[test]
-fn every_rung_has_its_faults() {
-    for rung in RUNGS.into_iter().chain(EDITED.map(|edited| edited.rung)) {
-        let count = faults().filter(|fault| std::ptr::eq(fault.1, rung)).count();
-        assert!(count >= 10, "{}: {count}", rung.name);
+fn every_exercise_has_faults() {
+    for exercise in EXERCISES.into_iter().chain(EDITED.map(|edited| edited.exercise)) {
+        let count = faults().filter(|fault| std::ptr::eq(fault.1, exercise)).count();
+        assert!(count >= 10, "{}: {count}", exercise.name);
     }
 }

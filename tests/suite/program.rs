@@ -1,9 +1,9 @@
-//! Running the program as a user does.
+//! Runs the program as a user does.
 
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// What the program did.
+/// The result of a run.
 #[derive(Debug)]
 pub(crate) struct Run {
     pub(crate) code: i32,
@@ -16,7 +16,7 @@ pub(crate) fn toyproof(folder: &Path, arguments: &[&str]) -> Run {
     run(command(folder).args(arguments))
 }
 
-/// The program, in a folder, its environment without what would change its words.
+/// The program in a folder, without environment variables that would change its output.
 pub(crate) fn command(folder: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_toyproof"));
     command
@@ -27,7 +27,7 @@ pub(crate) fn command(folder: &Path) -> Command {
     command
 }
 
-/// `check` of the folder `hw`, small and without a GPU, by `scene.toml`.
+/// Checks the folder `hw` against `scene.toml`, in a small size and without a GPU.
 pub(crate) fn check_homework(folder: &Path) -> Command {
     let mut check = command(folder);
     check.args([
@@ -43,7 +43,7 @@ pub(crate) fn check_homework(folder: &Path) -> Command {
     check
 }
 
-/// Runs a command in which nothing may fail internally.
+/// Runs a command and asserts that no internal error occurs.
 pub(crate) fn run(command: &mut Command) -> Run {
     let run = output(command);
     let all = [&run.stdout, &run.stderr];
@@ -71,7 +71,7 @@ pub(crate) fn output(command: &mut Command) -> Run {
     }
 }
 
-/// Whether shaders can run here. On CI they must.
+/// Returns whether a Vulkan driver is available, as it must be on CI.
 pub(crate) fn has_driver() -> bool {
     let found = toyproof(Path::new("."), &["doctor"]).code == 0;
     assert!(

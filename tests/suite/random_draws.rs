@@ -1,8 +1,8 @@
-//! Shaders that draw other numbers than their scene are judged by their mean.
+//! Shaders whose random numbers differ from their scene's are compared by their mean.
 
 use toyproof::verify::compare::Verdict;
 
-use crate::support::{Edit, MANY_OBJECTS, Rung, SIZE, SOFT_SHADOWS, edited, judged};
+use crate::support::{Edit, Exercise, MANY_OBJECTS, SIZE, SOFT_SHADOWS, check_exercise, edited};
 
 const HASH: &str = "uint state;
 
@@ -22,7 +22,7 @@ void startSample(vec2 fragCoord, int i) {
 }
 ";
 
-/// An integer hash instead of the sine.
+/// An integer hash instead of the sine hash.
 const OTHER_HASH: &[Edit] = &[
     ("float seed;\n\nfloat random() {…}\n", HASH),
     ("    seed = 0.0;\n", ""),
@@ -34,10 +34,10 @@ const OTHER_HASH: &[Edit] = &[
 
 const OTHER_SEED: Edit = ("pcg(uint(i))", "pcg(uint(i) + 1000u)");
 
-/// In each pixel the same.
+/// The same random numbers in each pixel.
 const SAME_EVERYWHERE: Edit = ("startSample(fragCoord, i)", "startSample(vec2(0.0), i)");
 
-/// One sample in each square of a grid.
+/// One sample per cell of a grid.
 const STRATIFIED: &[Edit] = &[
     (
         "fragCoord.x + random() - 0.5",
@@ -49,9 +49,9 @@ const STRATIFIED: &[Edit] = &[
     ),
 ];
 
-/// What is drawn, what else is edited, and what is to be said of it.
+/// The edits of the sampling, the other edits, and the expected verdict.
 type Case = (
-    &'static Rung,
+    &'static Exercise,
     &'static [Edit],
     &'static [Edit],
     Verdict,
@@ -87,7 +87,8 @@ static CASES: &[Case] = &[
         Verdict::Inconclusive,
         "in neighbouring pixels has much in common",
     ),
-    // What only the mean tells: in each of these pixels other draws paint other colours.
+    // Faults that only the mean shows: in each of these pixels, different random numbers give different
+    // colors.
     (
         &SOFT_SHADOWS,
         &[OTHER_SEED],
@@ -109,7 +110,7 @@ static CASES: &[Case] = &[
         Verdict::Wrong,
         "it takes fewer samples",
     ),
-    // Who draws the scene's own numbers is held to its pixels.
+    // Shaders with the scene's own random numbers are compared pixel by pixel.
     (
         &SOFT_SHADOWS,
         &[],
@@ -117,7 +118,7 @@ static CASES: &[Case] = &[
         Verdict::Wrong,
         "it is the mathematics",
     ),
-    // What is wrong in pixels that no draw changes is no matter of chance.
+    // Errors in pixels that no random number affects are not stochastic.
     (
         &MANY_OBJECTS,
         OTHER_HASH,
@@ -128,14 +129,17 @@ static CASES: &[Case] = &[
 ];
 
 #[test]
-fn who_draws_other_numbers_is_judged_by_the_mean() {
+fn different_random_numbers_are_compared_by_the_mean() {
     let Some(mut worker) = crate::support::worker() else {
         return;
     };
-    for &(rung, draws, edits, verdict, reason) in CASES {
-        let rung = &Rung { size: SIZE, ..*rung };
-        let findings = judged(&mut worker, &edited(rung, &[draws, edits].concat()), rung);
-        let case = format!("{} {edits:?}: {}", rung.name, findings.reason);
+    for &(exercise, draws, edits, verdict, reason) in CASES {
+        let exercise = &Exercise {
+            size: SIZE,
+            ..*exercise
+        };
+        let findings = check_exercise(&mut worker, &edited(exercise, &[draws, edits].concat()), exercise);
+        let case = format!("{} {edits:?}: {}", exercise.name, findings.reason);
         assert_eq!(findings.verdict, verdict, "{case}");
         assert!(findings.reason.contains(reason), "{case}");
     }

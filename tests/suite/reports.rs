@@ -1,4 +1,4 @@
-//! The files that `check --out` writes for other programs, from the command line.
+//! The files that `check --out` writes for other programs, tested through the command line.
 
 use std::fs;
 use std::path::Path;
@@ -11,7 +11,7 @@ use crate::support::SPHERE;
 const RUBRIC: &str =
     "[compiles]\npoints = 2\n[maths]\npoints = 6\npartial_from = 0.0\n[rounding]\npoints = 2\n";
 
-/// Three submissions: right, wrong, and one that does not compile.
+/// Creates three submissions: correct, wrong, and one that does not compile.
 fn homework() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("hw")).unwrap();
@@ -41,7 +41,7 @@ fn read(folder: &Path, name: &str) -> String {
 }
 
 #[test]
-fn every_report_tells_of_every_shader() {
+fn every_report_lists_every_shader() {
     let folder = homework();
     let run = check(folder.path(), &["--out", "out", "--rubric", "rubric.toml"]);
     assert_eq!(run.code, 1, "{}", run.stderr);
@@ -67,15 +67,15 @@ fn every_report_tells_of_every_shader() {
         result.unwrap_or_else(|| panic!("{id}: {results:?}"))["locations"][0]["physicalLocation"].clone()
     };
     assert_eq!(place("wrong")["artifactLocation"]["uri"], "hw/bob.glsl");
-    let told = &verdicts
+    let reported = &verdicts
         .iter()
         .find(|record| record["verdict"] == "invalid")
         .unwrap()["diagnostics"][0];
-    let place = place(told["code"].as_str().unwrap());
+    let place = place(reported["code"].as_str().unwrap());
     assert_eq!(place["artifactLocation"]["uri"], "hw/%3Cb%3Ecyd%20%26%20co.glsl");
     assert_eq!(
         (&place["region"]["startLine"], &place["region"]["startColumn"]),
-        (&told["line"], &told["column"])
+        (&reported["line"], &reported["column"])
     );
     let marks: Value = serde_json::from_str(&read(folder.path(), "results.json")).unwrap();
     let scores: Vec<_> = marks["tests"]
@@ -99,7 +99,7 @@ fn every_report_tells_of_every_shader() {
 }
 
 #[test]
-fn marks_are_for_a_rubric_and_one_submission_needs_no_name() {
+fn marks_need_a_rubric_and_one_submission_needs_no_name() {
     let folder = homework();
     let alone = toyproof(
         folder.path(),
@@ -123,7 +123,7 @@ fn marks_are_for_a_rubric_and_one_submission_needs_no_name() {
 }
 
 #[test]
-fn a_bad_rubric_is_told_by_its_place_before_anything_is_done() {
+fn invalid_rubrics_are_reported_before_any_work() {
     let folder = homework();
     fs::write(folder.path().join("rubric.toml"), "[maths]\npoints = -3\n").unwrap();
     let run = check(folder.path(), &["--out", "out", "--rubric", "rubric.toml"]);

@@ -1,21 +1,24 @@
-//! How small an error may be and is still found: a rung's shader stays as it is, and its scene is falsified.
+//! Measures the smallest error that is found: an exercise's shader stays as it is, and its scene is
+//! perturbed.
 
-use toyproof::eval::{Jittered, Number, Program, Seed, Settings};
+use toyproof::eval::{Number, Program, RandomRounding, Seed, Settings};
 use toyproof::image::{Frame, Image};
-use toyproof::scene::{Moment, Point, Projection, Scene, Shape};
-use toyproof::tracer::{Hull, RayStyles, StyleFamily, Styles, Tracer};
-use toyproof::verify::compare::{Answer, Answers, Mixed, Reference, SHAKES, Verdict, judge, maths};
+use toyproof::scene::{FrameTime, Point, Projection, Scene, Shape};
+use toyproof::tracer::{ColorRange, EpsilonFamily, EpsilonSet, RayEpsilons, Tracer};
+use toyproof::verify::compare::{
+    Answer, Answers, Mixed, PERTURBATIONS, Reference, Verdict, algorithm, decide,
+};
 
-use crate::support::{RUNGS, Rung, checked, frame, scene};
+use crate::support::{EXERCISES, Exercise, checked, frame, scene};
 
-/// The size that the course is seen in.
+/// The size of the course's images.
 const SIZE: [u32; 2] = [640, 360];
 
-/// Something that a student may get wrong by a little. `sphere` is the object that it is about.
+/// A quantity that a student may get slightly wrong. `sphere` is the object that it belongs to.
 struct Quantity {
     name: &'static str,
-    /// Multiplies it by 1 + `error`; lengths that move something, by a share of its distance from the eye. None where the scene has no
-    /// such thing.
+    /// Multiplies it by 1 + `error`; displacements change by a share of the distance from the eye. None if
+    /// the scene has no such quantity.
     falsify: fn(scene: &mut Scene, sphere: usize, error: f64) -> Option<()>,
 }
 
@@ -94,16 +97,16 @@ fn ball(scene: &mut Scene, sphere: usize) -> Option<(&mut Point, &mut f64)> {
     }
 }
 
-/// The eye is where the course's coordinates begin.
+/// The eye is the origin of the course's coordinates.
 fn length(v: Point) -> f64 {
     v.iter().map(|c| c * c).sum::<f64>().sqrt()
 }
 
-fn painted<N: Number>(program: &Program, frame: &Frame, settings: Settings<N>) -> Image {
+fn rendered<N: Number>(program: &Program, frame: &Frame, settings: Settings<N>) -> Image {
     program.picture(frame, frame.rows(), &settings).unwrap().image
 }
 
-/// The spheres, the one that looks largest first.
+/// The spheres, sorted by apparent size, the largest first.
 fn by_size(scene: &mut Scene) -> Vec<usize> {
     let mut order: Vec<(usize, f64)> = (0..scene.objects.len())
         .filter_map(|index| {
@@ -115,51 +118,51 @@ fn by_size(scene: &mut Scene) -> Vec<usize> {
     order.into_iter().map(|(index, _)| index).collect()
 }
 
-/// A shader in f64, whose picture is the same for all scenes that it is compared with.
 /// A tracer of a scene.
 struct Traced {
     tracer: Tracer<f64>,
-    families: Vec<StyleFamily>,
+    families: Vec<EpsilonFamily>,
 }
 
 impl Reference for Traced {
-    fn hull(&self, x: u32, y: u32, styles: Styles) -> Hull {
-        self.tracer.hull(x, y, styles)
+    fn color_range(&self, x: u32, y: u32, styles: EpsilonSet) -> ColorRange {
+        self.tracer.color_range(x, y, styles)
     }
-    fn families(&self) -> &[StyleFamily] {
+    fn families(&self) -> &[EpsilonFamily] {
         &self.families
     }
-    fn styled(&self, x: u32, y: u32, styles: &RayStyles) -> [f64; 3] {
+    fn styled(&self, x: u32, y: u32, styles: &RayEpsilons) -> [f64; 3] {
         self.tracer.styled([x, y], styles)
     }
     fn samples(&self) -> u32 {
         self.tracer.samples()
     }
-    /// The rungs take no derivatives.
+    /// The exercises take no derivatives.
     fn is_across_edge(&self, _: u32, _: u32) -> bool {
         false
     }
-    /// No edge of a rung passes through the middle of a pixel.
+    /// No edge of an exercise passes through the center of a pixel.
     fn is_tied(&self, _: u32, _: u32) -> bool {
         false
     }
 }
 
+/// A shader in f64, whose image is the same for all scenes that it is compared with.
 struct Subject {
     scene: Scene,
-    moment: Moment,
+    frame_time: FrameTime,
     exact: Image,
-    shaken: Vec<Image>,
+    perturbed: Vec<Image>,
 }
 
 impl Subject {
-    fn new(rung: &Rung) -> Self {
-        let program = Program::new(&checked(rung.shader)).unwrap();
-        let frame = frame(rung, SIZE);
-        let mut scene = scene(rung);
+    fn new(exercise: &Exercise) -> Self {
+        let program = Program::new(&checked(exercise.shader)).unwrap();
+        let frame = frame(exercise, SIZE);
+        let mut scene = scene(exercise);
         scene.film.size = SIZE;
-        let shaken = (0..SHAKES).map(|seed| {
-            painted::<Jittered>(
+        let perturbed = (0..PERTURBATIONS).map(|seed| {
+            rendered::<RandomRounding>(
                 &program,
                 &frame,
                 Settings {
@@ -170,20 +173,20 @@ impl Subject {
         });
         Self {
             scene,
-            moment: Moment {
-                frame: rung.frame,
-                time: f64::from(rung.time),
+            frame_time: FrameTime {
+                frame: exercise.frame,
+                time: f64::from(exercise.time),
             },
-            exact: painted::<f64>(&program, &frame, Settings::default()),
-            shaken: shaken.collect(),
+            exact: rendered::<f64>(&program, &frame, Settings::default()),
+            perturbed: perturbed.collect(),
         }
     }
 
-    /// Whether the shader would be judged `wrong` if this were its scene.
+    /// Returns whether the shader would be `wrong` if this were its scene.
     fn is_wrong(&self, scene: &Scene) -> bool {
-        let tracer = Tracer::<f64>::at(scene, self.moment);
+        let tracer = Tracer::<f64>::at(scene, self.frame_time);
         let expected = tracer.picture(|| ());
-        let standings = maths(
+        let standings = algorithm(
             &expected,
             &self.exact,
             &vec![false; self.exact.pixels().len()],
@@ -192,19 +195,19 @@ impl Subject {
                 tracer,
             },
             &mut Mixed::of(self.exact.pixels().len() as u64),
-            |seed, _| self.shaken.get(seed as usize).cloned(),
+            |seed, _| self.perturbed.get(seed as usize).cloned(),
         );
         let answer = Answer::new(&expected, &self.exact, &standings);
-        let (verdict, _) = judge(Answers {
-            maths: Some(&answer),
-            rounding: None,
+        let (verdict, _) = decide(Answers {
+            algorithm: Some(&answer),
+            precision: None,
             toolchain: None,
         });
         verdict == Verdict::Wrong
     }
 
-    /// The smallest relative error that is found, by bisection, to a tenth of it; infinity if not even 100 % is. None where the scene has
-    /// no such thing.
+    /// The smallest relative error that is found, by bisection, to a tenth of it; infinity if not even 100 %
+    /// is found. None if the scene has no such quantity.
     fn smallest(&self, quantity: &Quantity, sphere: usize) -> Option<f64> {
         let found = |error: f64| {
             let mut scene = self.scene.clone();
@@ -227,16 +230,17 @@ impl Subject {
     }
 }
 
-/// `cargo test --release --test suite -- --ignored smallest --nocapture` prints the table of `docs/accuracy.md`.
+/// `cargo test --release --test suite -- --ignored smallest --nocapture` prints the table of
+/// `docs/accuracy.md`.
 #[test]
 #[ignore = "takes minutes"]
 fn the_smallest_error_that_is_found() {
     let names: Vec<_> = QUANTITIES.iter().map(|quantity| quantity.name).collect();
     eprintln!("| | {} |", names.join(" | "));
     eprintln!("|---{}|", "|---".repeat(names.len()));
-    for rung in RUNGS {
-        let mut subject = Subject::new(rung);
-        assert!(!subject.is_wrong(&subject.scene), "{}", rung.name);
+    for exercise in EXERCISES {
+        let mut subject = Subject::new(exercise);
+        assert!(!subject.is_wrong(&subject.scene), "{}", exercise.name);
         let order = by_size(&mut subject.scene);
         let mut which = vec![("largest", order[0])];
         if order.len() > 1 {
@@ -251,7 +255,7 @@ fn the_smallest_error_that_is_found() {
                     Some(error) => format!("{:.3} %", 100.0 * error),
                 })
                 .collect();
-            eprintln!("| {}, {word} sphere | {} |", rung.name, cells.join(" | "));
+            eprintln!("| {}, {word} sphere | {} |", exercise.name, cells.join(" | "));
         }
     }
 }

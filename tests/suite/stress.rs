@@ -1,4 +1,5 @@
-//! Functions of authors at the extremes: planted mistakes are named, right ones are not blamed, and the GPU says what the CPU says.
+//! Authors' functions at extreme inputs: planted mistakes are named, correct functions are not blamed, and
+//! the GPU agrees with the CPU.
 
 use std::fs;
 use std::path::Path;
@@ -11,28 +12,29 @@ use toyproof::lab::stress::{self, Settings, formula};
 use toyproof::translate::FloatMode;
 
 use crate::program::{command, has_driver, toyproof};
-use crate::support::{EVERY_RUNG, Edit, QUADRICS, SPHERE, checked, edited, worker};
+use crate::support::{EVERY_EXERCISE, Edit, QUADRICS, SPHERE, checked, edited, worker};
 
-const FEW: Settings = Settings {
+const FEW_CASES: Settings = Settings {
     seed: 1,
     cases: 60,
     float: FloatMode::Strict,
 };
 
-fn examined(text: &str, name: &str, map: &Map) -> Findings {
-    let signature = Signature::recognise(&checked(text), name, map).unwrap_or_else(|why| panic!("{why}"));
+fn examine(text: &str, name: &str, map: &Map) -> Findings {
+    let signature = Signature::recognize(&checked(text), name, map).unwrap_or_else(|why| panic!("{why}"));
     let subject = function::subject(text, &signature, Options::default());
     let never = AtomicBool::new(false);
-    function::examine(&subject, &signature, None, FEW, &never, || ()).unwrap()
+    function::examine(&subject, &signature, None, FEW_CASES, &never, || ()).unwrap()
 }
 
 fn mistake(text: &str, name: &str) -> Option<&'static str> {
-    examined(text, name, &Map::new())
+    examine(text, name, &Map::new())
         .mistake
         .map(|mistake| mistake.name)
 }
 
-/// A whole quadratic equation, for directions of any length, as the slide has it but for the division that the slide forgets.
+/// A complete quadratic equation, for directions of any length, as on the slide except for the division that
+/// the slide omits.
 const TEXTBOOK: &str = "bool hitSphere(vec3 ro, vec3 rd, vec3 center, float radius, out float t) {
     vec3 oc = ro - center;
     float a = dot(rd, rd);
@@ -49,9 +51,9 @@ void mainImage(out vec4 color, in vec2 place) { color = vec4(0.0); }
 ";
 
 #[test]
-fn planted_mistakes_have_their_names() {
+fn planted_mistakes_are_named() {
     let near = "float t = -b - root;";
-    let of_rung: [(&str, &[Edit]); 9] = [
+    let of_exercise: [(&str, &[Edit]); 9] = [
         ("direction-of-length-1", &[]),
         (
             "roots-not-halved",
@@ -109,23 +111,23 @@ fn planted_mistakes_have_their_names() {
         ),
     ];
     let mut right = 0;
-    let mut told = Vec::new();
+    let mut reported = Vec::new();
     let mut judge = |expected: &str, found: Option<&str>| {
         right += u32::from(found == Some(expected));
-        told.push(format!("{expected}: {found:?}"));
+        reported.push(format!("{expected}: {found:?}"));
     };
-    for (expected, edits) in of_rung {
+    for (expected, edits) in of_exercise {
         judge(expected, mistake(&edited(&SPHERE, edits), "intersectSphere"));
     }
     for (expected, from, to) in of_textbook {
         judge(expected, mistake(&TEXTBOOK.replace(from, to), "hitSphere"));
     }
-    assert!(right >= 15, "{right} of 16 are named: {told:#?}");
+    assert!(right >= 15, "{right} of 16 are named: {reported:#?}");
 }
 
 #[test]
-fn a_right_function_is_not_blamed_and_its_limits_are_told() {
-    let findings = examined(TEXTBOOK, "hitSphere", &Map::new());
+fn correct_functions_are_not_blamed_and_their_limits_are_reported() {
+    let findings = examine(TEXTBOOK, "hitSphere", &Map::new());
     assert_eq!(findings.mistake, None);
     let lines = findings.report.lines();
     assert!(
@@ -140,16 +142,16 @@ fn a_right_function_is_not_blamed_and_its_limits_are_told() {
 }
 
 #[test]
-fn an_example_has_few_digits_and_is_wrong_as_it_says() {
+fn examples_have_few_digits_and_fail_as_stated() {
     let text = edited(&SPHERE, &[("float t = -b - root;", "float t = -b + root;")]);
-    let example = examined(&text, "intersectSphere", &Map::new()).example.unwrap();
+    let example = examine(&text, "intersectSphere", &Map::new()).example.unwrap();
     let digits: usize = example.paste.iter().map(String::len).sum();
     assert!(digits < 160, "{example:?}");
     assert_ne!(example.expected, example.came);
 }
 
 #[test]
-fn signatures_are_recognised_by_types_and_names_or_told() {
+fn signatures_are_recognized_by_types_and_names_or_given() {
     let main = "void mainImage(out vec4 c, in vec2 p) { c = vec4(0.0); }";
     let answer = "vec3 oc = O - C; float b = dot(oc, D); float h = b * b - dot(oc, oc) + R * R;";
     let cases = [
@@ -209,44 +211,44 @@ fn signatures_are_recognised_by_types_and_names_or_told() {
         .into_iter()
         .map(|(path, role)| (path.to_owned(), role))
         .collect();
-    let found = examined(&text, "f", &map).mistake.map(|mistake| mistake.name);
+    let found = examine(&text, "f", &map).mistake.map(|mistake| mistake.name);
     assert_eq!(found, Some("direction-of-length-1"));
-    let why = Signature::recognise(&checked(&text), "g", &Map::new()).unwrap_err();
+    let why = Signature::recognize(&checked(&text), "g", &Map::new()).unwrap_err();
     assert!(why.contains("there is no function g; there are f"), "{why}");
     let other = format!("float f(float x) {{ return x; }}\n{main}");
-    let why = Signature::recognise(&checked(&other), "f", &Map::new()).unwrap_err();
+    let why = Signature::recognize(&checked(&other), "f", &Map::new()).unwrap_err();
     assert!(why.contains("it is not clear what is the ray's origin"), "{why}");
 }
 
 #[test]
-fn the_rungs_functions_are_recognised_and_blamed_for_nothing_but_unit_directions() {
+fn exercise_functions_are_blamed_only_for_unit_directions() {
     let mut seen = 0;
-    for rung in EVERY_RUNG {
-        let Ok(signature) = Signature::recognise(&checked(rung.shader), "intersectSphere", &Map::new())
+    for exercise in EVERY_EXERCISE {
+        let Ok(signature) = Signature::recognize(&checked(exercise.shader), "intersectSphere", &Map::new())
         else {
             continue;
         };
-        let found = mistake(rung.shader, &signature.name);
-        assert_eq!(found, Some("direction-of-length-1"), "{}", rung.name);
+        let found = mistake(exercise.shader, &signature.name);
+        assert_eq!(found, Some("direction-of-length-1"), "{}", exercise.name);
         seen += 1;
     }
     assert!(seen >= 12, "{seen}");
 }
 
 #[test]
-fn other_shapes_are_not_taken_for_spheres() {
-    for rung in EVERY_RUNG {
-        for signature in Signature::all(&checked(rung.shader), &Map::new()) {
+fn other_shapes_are_not_mistaken_for_spheres() {
+    for exercise in EVERY_EXERCISE {
+        for signature in Signature::all(&checked(exercise.shader), &Map::new()) {
             let name = signature.name.to_lowercase();
             // `keepNearest` takes a ray and a sphere, too.
             assert!(
                 name.contains("sph") || name == "keepnearest",
                 "{}: {name}",
-                rung.name
+                exercise.name
             );
         }
     }
-    let why = Signature::recognise(&checked(QUADRICS.shader), "intersectQuadric", &Map::new()).unwrap_err();
+    let why = Signature::recognize(&checked(QUADRICS.shader), "intersectQuadric", &Map::new()).unwrap_err();
     assert!(why.contains("not clear") && why.contains("--map"), "{why}");
     let body = "{ return length(o + d + c) + r; } void mainImage(out vec4 c, in vec2 p) { c = vec4(0.0); }";
     for (head, is_sphere) in [
@@ -256,12 +258,12 @@ fn other_shapes_are_not_taken_for_spheres() {
         ("float f(vec3 o, vec3 d, vec3 c, vec3 n, float r)", false),
         ("float f(vec3 o, vec3 d, vec3 c, vec3 axis, float r)", false),
     ] {
-        let found = Signature::recognise(&checked(&format!("{head} {body}")), name(head), &Map::new());
+        let found = Signature::recognize(&checked(&format!("{head} {body}")), name(head), &Map::new());
         assert_eq!(found.is_ok(), is_sphere, "{head}");
     }
 }
 
-/// The name of the function that a header begins.
+/// The name of the function in a header.
 fn name(head: &str) -> &str {
     head.split([' ', '(']).nth(1).unwrap()
 }
@@ -271,7 +273,7 @@ fn a_strict_gpu_fails_where_the_cpu_does() {
     let Some(mut worker) = worker() else { return };
     let subjects = formula::subjects();
     let never = AtomicBool::new(false);
-    let report = stress::study(&subjects, Some(&mut worker), FEW, &never, || ()).unwrap();
+    let report = stress::study(&subjects, Some(&mut worker), FEW_CASES, &never, || ()).unwrap();
     let mut compared = 0;
     for row in report.rows.iter().filter(|row| row.device != stress::CPU) {
         let same = |other: &&stress::Row| {
@@ -290,9 +292,12 @@ fn a_strict_gpu_fails_where_the_cpu_does() {
 }
 
 #[test]
-fn what_is_known_of_the_formulas_is_found() {
+fn known_weaknesses_of_the_formulas_are_found() {
     let never = AtomicBool::new(false);
-    let few = Settings { cases: 200, ..FEW };
+    let few = Settings {
+        cases: 200,
+        ..FEW_CASES
+    };
     let report = stress::study(&formula::subjects(), None, few, &never, || ()).unwrap();
     let share = |formula: &str, precision: &str, axis: &str, value: &str| {
         let rows = report.rows.iter();
@@ -302,7 +307,7 @@ fn what_is_known_of_the_formulas_is_found() {
             .tally
             .failing_share()
     };
-    // Cancellation in |f|² − r², and what recentring does about it.
+    // Cancellation in |f|² − r², and the effect of recentering.
     assert!(share("textbook", "f32", "distance/radius", "1e4") > 0.1);
     assert!(share("half-b", "f32", "distance/radius", "1e4") > 0.1);
     assert!(share("recentred", "f32", "distance/radius", "1e4") == 0.0);
@@ -353,7 +358,7 @@ fn the_command_writes_its_files_and_names_the_columns() {
 }
 
 #[test]
-fn bad_input_is_told_and_leaves_nothing() {
+fn bad_input_is_reported_and_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.glsl");
     fs::write(&path, "void mainImage(out vec4 c, in vec2 p) { c = vec4(1.0); }").unwrap();
@@ -395,7 +400,7 @@ fn bad_input_is_told_and_leaves_nothing() {
 
 #[cfg(unix)]
 #[test]
-fn an_interrupt_leaves_nothing_half_written() {
+fn an_interrupt_leaves_no_partial_files() {
     use rustix::process::{Pid, Signal, kill_process};
     let folder = tempfile::tempdir().unwrap();
     for arguments in [

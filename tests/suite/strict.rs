@@ -1,4 +1,4 @@
-//! What runs is what was written: strict shaders compute the same bits as Rust's f32.
+//! Strict shaders compute the same bits as Rust's f32, operation by operation.
 
 use toyproof::diagnostic::{File, Files};
 use toyproof::glsl::{Options, check};
@@ -6,7 +6,7 @@ use toyproof::gpu::{Drawn, Worker};
 use toyproof::image::Frame;
 use toyproof::translate::{FloatMode, lower};
 
-/// Sums and products that a driver likes to rearrange, contract or fold.
+/// Sums and products that drivers tend to rearrange, contract or fold.
 const SHADER: &str = "void mainImage(out vec4 c, in vec2 p) {
     float a = p.x * 0.37, b = p.y * 1.13;
     c = vec4((a * 0.1) * 0.3 + a * b, (a + 0.1) + 0.2, 1.0 / (1.0 / b), 1.0);
@@ -34,13 +34,13 @@ fn draw(worker: &mut Worker, float: FloatMode) -> Drawn {
 }
 
 fn differing_pixels(drawn: &Drawn) -> usize {
-    let picture = drawn.clone().image();
-    let width = picture.size()[0] as usize;
+    let rendered_image = drawn.clone().image();
+    let width = rendered_image.size()[0] as usize;
     let differs = |(index, pixel): (usize, &[f32; 4])| {
         let (x, y) = ((index % width) as f32 + 0.5, (index / width) as f32 + 0.5);
         as_written(x, y).map(f32::to_bits) != [pixel[0], pixel[1], pixel[2]].map(f32::to_bits)
     };
-    picture
+    rendered_image
         .pixels()
         .iter()
         .enumerate()
@@ -56,7 +56,7 @@ fn strict_shaders_compute_the_same_bits_as_rust() {
     let strict = draw(&mut worker, FloatMode::Strict);
     assert_eq!(differing_pixels(&strict), 0);
     if strict.device.contains("llvmpipe") {
-        // Left to itself, this driver does algebra: the decorations are what the test is about.
+        // Without the decorations, this driver rearranges arithmetic, so the test is meaningful.
         assert!(differing_pixels(&draw(&mut worker, FloatMode::Fast)) > 0);
     }
 }

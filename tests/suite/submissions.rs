@@ -1,4 +1,4 @@
-//! One submission cannot harm another, the reports, or the terminal of whoever checks it.
+//! One submission cannot harm another, the reports, or the terminal of the user.
 
 use std::fs;
 use std::path::Path;
@@ -15,7 +15,7 @@ fn write(folder: &Path, name: &str, text: &str) {
 }
 
 #[test]
-fn a_folder_named_like_a_report_or_an_image_costs_nobody_theirs() {
+fn folders_named_like_reports_or_images_do_no_harm() {
     let folder = tempfile::tempdir().unwrap();
     let reports = [
         "report.html",
@@ -48,7 +48,7 @@ fn a_folder_named_like_a_report_or_an_image_costs_nobody_theirs() {
 
 #[cfg(unix)]
 #[test]
-fn links_among_the_submissions_do_not_lead_outputs_elsewhere() {
+fn links_among_submissions_do_not_redirect_outputs() {
     use std::os::unix::fs::symlink;
     let folder = tempfile::tempdir().unwrap();
     let hw = folder.path().join("hw");
@@ -80,10 +80,10 @@ fn links_among_the_submissions_do_not_lead_outputs_elsewhere() {
     assert!(hw.join("x-actual.png").is_file() && !hw.join("x-maths.png").exists());
 }
 
-/// Names and texts that try to move the cursor, to color the terminal, or to look like other output.
+/// Names and texts that try to move the cursor, to color the terminal, or to imitate other output.
 #[cfg(unix)]
 #[test]
-fn neither_names_nor_texts_act_on_terminals_and_reports() {
+fn names_and_texts_cannot_affect_terminals_and_reports() {
     let folder = tempfile::tempdir().unwrap();
     let hostile = "\u{1b}[31m\r\u{c}\u{7f}\u{85}\u{9b}2J\u{2028}\u{202e}\u{2066}";
     let forged = format!("hw/a\ncorrect      z.glsl: all pixels agree{hostile}");
@@ -121,7 +121,7 @@ fn neither_names_nor_texts_act_on_terminals_and_reports() {
     }
 }
 
-/// Line ends and tabs are those of the formats themselves.
+/// Asserts that a text has no control characters except line ends and tabs, which belong to the formats.
 #[cfg(unix)]
 fn harmless(channel: &str, text: &str) {
     for (at, line) in text.lines().enumerate() {

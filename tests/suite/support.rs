@@ -1,4 +1,4 @@
-//! Edited rungs of the course, judged as `toyproof check` judges them, but through the library.
+//! Edited exercises of the course, checked as by `toyproof check`, but through the library.
 
 use std::env;
 use std::ops::Range;
@@ -8,32 +8,32 @@ use std::time::Duration;
 
 use toyproof::diagnostic::{self, Deadline, Diagnostic, File, Files};
 use toyproof::glsl::{self, Checked};
-use toyproof::gpu::{Failure, On, Worker};
+use toyproof::gpu::{AdapterSelector, Failure, Worker};
 use toyproof::image::Frame;
 use toyproof::lint::{Lints, lint};
-use toyproof::scene::{self, Moment, Scene};
+use toyproof::scene::{self, FrameTime, Scene};
 use toyproof::tracer::Tracer;
 use toyproof::translate::FloatMode;
 use toyproof::verify::compare::Answer;
-use toyproof::verify::mistake::Suspects;
+use toyproof::verify::mistake::Hypotheses;
 use toyproof::verify::{Case, Expected, Findings, verify};
 
-/// A shader of the course and the scene that it paints.
+/// A shader of the course and its scene.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Rung {
+pub(crate) struct Exercise {
     pub(crate) name: &'static str,
     pub(crate) shader: &'static str,
     pub(crate) scene: &'static str,
-    /// The number of the frame that is judged, and its time in seconds.
+    /// The number of the checked frame, and its time in seconds.
     pub(crate) frame: i32,
     pub(crate) time: f32,
     /// Width and height in pixels.
     pub(crate) size: [u32; 2],
 }
 
-macro_rules! rungs {
-    ($($rung:ident = $name:literal $(at $frame:literal, $time:literal)? $(of $size:ident)?;)*) => {$(
-        pub(crate) static $rung: Rung = Rung {
+macro_rules! exercises {
+    ($($exercise:ident = $name:literal $(at $frame:literal, $time:literal)? $(of $size:ident)?;)*) => {$(
+        pub(crate) static $exercise: Exercise = Exercise {
             name: $name,
             shader: include_str!(concat!("../../glsl/", $name, ".glsl")),
             scene: include_str!(concat!("../../glsl/", $name, ".toml")),
@@ -44,8 +44,8 @@ macro_rules! rungs {
     )*};
 }
 
-/// What most rungs are judged at.
-pub(crate) const STILL: Rung = Rung {
+/// The settings of most exercises.
+pub(crate) const STILL: Exercise = Exercise {
     name: "",
     shader: "",
     scene: "",
@@ -54,7 +54,7 @@ pub(crate) const STILL: Rung = Rung {
     size: SIZE,
 };
 
-rungs! {
+exercises! {
     SAMPLING = "01-sampling";
     SPHERE = "02-sphere";
     SHADING = "03-shading";
@@ -72,11 +72,12 @@ rungs! {
     PARALLEL_RAYS = "15-parallel-rays";
 }
 
-/// The first rungs with rays, in the course's order: spheres, met by the same words in each.
-pub(crate) static RUNGS: [&Rung; 5] = [&SPHERE, &SHADING, &MANY_OBJECTS, &COMPLEX_SCENE, &REFLECTIONS];
+/// The first exercises with rays, in the course's order; all intersect spheres with the same code.
+pub(crate) static EXERCISES: [&Exercise; 5] =
+    [&SPHERE, &SHADING, &MANY_OBJECTS, &COMPLEX_SCENE, &REFLECTIONS];
 
-/// All of the course.
-pub(crate) static EVERY_RUNG: [&Rung; 15] = [
+/// All exercises of the course.
+pub(crate) static EVERY_EXERCISE: [&Exercise; 15] = [
     &SAMPLING,
     &SPHERE,
     &SHADING,
@@ -94,30 +95,30 @@ pub(crate) static EVERY_RUNG: [&Rung; 15] = [
     &PARALLEL_RAYS,
 ];
 
-/// `(from, to)`. `from` occurs exactly once; a `…` in it stands for everything up to the first occurrence of what
-/// follows the `…`.
+/// An edit `(from, to)`. `from` occurs exactly once; a `…` in it matches everything up to the first
+/// occurrence of the text after it.
 pub(crate) type Edit = (&'static str, &'static str);
 
-/// Width and height in pixels: small enough for a hundred pictures, large enough that the share of pixels that may
-/// differ, 0.1 %, is more than a dozen of them.
+/// Width and height in pixels: small enough for a hundred images, large enough that the tolerated share of
+/// differing pixels, 0.1 %, is more than a dozen pixels.
 pub(crate) const SIZE: [u32; 2] = [160, 90];
-/// The same where each pixel takes many samples.
+/// The same for exercises that take many samples per pixel.
 const SMALL: [u32; 2] = [48, 27];
 
-/// The maths question's answer: every test here has a scene.
-pub(crate) fn maths(findings: &Findings) -> &Answer {
-    &findings.maths.as_ref().expect("there is a scene").answer
+/// The answer of the algorithm check: every test here has a scene.
+pub(crate) fn algorithm(findings: &Findings) -> &Answer {
+    &findings.algorithm.as_ref().expect("there is a scene").answer
 }
 
 /// The numbers behind a verdict, for people.
 pub(crate) fn numbers(findings: &Findings) -> String {
     let questions = [
-        ("maths", &findings.maths),
-        ("rounding", &findings.rounding),
+        ("maths", &findings.algorithm),
+        ("rounding", &findings.precision),
         ("toolchain", &findings.toolchain),
     ];
-    let told = questions.into_iter().filter_map(|(name, asked)| {
-        let answer = &asked.as_ref()?.answer;
+    let format_errors = questions.into_iter().filter_map(|(name, requested)| {
+        let answer = &requested.as_ref()?.answer;
         let percent = |count| 100.0 * answer.share(count);
         Some(format!(
             "{name} {:.2} % differ, {:.2} % undecided, {:.2} % undefined, by at most {:.1e}",
@@ -127,17 +128,22 @@ pub(crate) fn numbers(findings: &Findings) -> String {
             answer.max_abs
         ))
     });
-    let told: Vec<_> = told.collect();
-    format!("{}: {}", findings.verdict, told.join("; "))
+    let format_errors: Vec<_> = format_errors.collect();
+    format!("{}: {}", findings.verdict, format_errors.join("; "))
 }
 
-/// The one worker of a test, or none where there is no Vulkan driver and the test is to be skipped.
+/// Creates the only worker of a test, or none where there is no Vulkan driver and the test is skipped.
 ///
 /// # Panics
 /// If there is no driver although `CI` is set, or the worker fails.
 pub(crate) fn worker() -> Option<Worker> {
     let program = PathBuf::from(env!("CARGO_BIN_EXE_toyproof"));
-    let mut worker = Worker::new(program, vec!["worker".into()], On::Auto, Duration::from_secs(60));
+    let mut worker = Worker::new(
+        program,
+        vec!["worker".into()],
+        AdapterSelector::Auto,
+        Duration::from_secs(60),
+    );
     match worker.probe() {
         Ok(_) => Some(worker),
         Err(Failure::NoDriver(why)) if env::var_os("CI").is_none() => {
@@ -148,7 +154,7 @@ pub(crate) fn worker() -> Option<Worker> {
     }
 }
 
-/// A worker on `SwiftShader`, the software driver that Chromium brings, or none where there is no Chromium.
+/// Creates a worker on `SwiftShader`, the software driver that Chromium ships, or none without Chromium.
 pub(crate) fn swiftshader() -> Option<Worker> {
     let manifest = [
         "/usr/lib/chromium",
@@ -164,44 +170,45 @@ pub(crate) fn swiftshader() -> Option<Worker> {
         return None;
     };
     let program = PathBuf::from(env!("CARGO_BIN_EXE_toyproof"));
-    let on = On::Named("SwiftShader".into());
+    let on = AdapterSelector::Named("SwiftShader".into());
     let worker = Worker::new(program, vec!["worker".into()], on, Duration::from_secs(60));
     Some(worker.with_manifest(manifest))
 }
 
-/// A rung's scene.
-pub(crate) fn scene(rung: &Rung) -> Scene {
+/// An exercise's scene.
+pub(crate) fn scene(exercise: &Exercise) -> Scene {
     let mut files = Files::default();
-    let file = files.add(File::new("<scene>", rung.scene));
-    let mut scene = scene::parse(&files, file).unwrap_or_else(|errors| panic!("{}", told(&errors, &files)));
-    scene.film.size = rung.size;
+    let file = files.add(File::new("<scene>", exercise.scene));
+    let mut scene =
+        scene::parse(&files, file).unwrap_or_else(|errors| panic!("{}", format_errors(&errors, &files)));
+    scene.film.size = exercise.size;
     scene
 }
 
-/// The tracer of a rung's scene.
-pub(crate) fn tracer(rung: &Rung) -> Tracer<f64> {
-    let moment = Moment {
-        frame: rung.frame,
-        time: f64::from(rung.time),
+/// The tracer of an exercise's scene.
+pub(crate) fn tracer(exercise: &Exercise) -> Tracer<f64> {
+    let moment = FrameTime {
+        frame: exercise.frame,
+        time: f64::from(exercise.time),
     };
-    Tracer::at(&scene(rung), moment)
+    Tracer::at(&scene(exercise), moment)
 }
 
-/// A shader, checked.
+/// Checks a shader's text.
 ///
 /// # Panics
-/// If it is not valid.
+/// If it is invalid.
 pub(crate) fn checked(shader: &str) -> Checked {
     let mut files = Files::default();
     let file = files.add(File::new("<shader>", shader));
     glsl::check(&files, file, &glsl::Options::default())
-        .unwrap_or_else(|errors| panic!("{}\n{shader}", told(&errors, &files)))
+        .unwrap_or_else(|errors| panic!("{}\n{shader}", format_errors(&errors, &files)))
 }
 
-/// The same with the lints' findings.
+/// Checks a shader's text, and lints it.
 ///
 /// # Panics
-/// Likewise.
+/// If it is invalid.
 pub(crate) fn linted(shader: &str) -> (Checked, Lints) {
     let mut files = Files::default();
     let file = files.add(File::new("<shader>", shader));
@@ -211,62 +218,66 @@ pub(crate) fn linted(shader: &str) -> (Checked, Lints) {
     (checked, lints)
 }
 
-/// The frame that a rung is judged at, in a size.
-pub(crate) fn frame(rung: &Rung, size: [u32; 2]) -> Frame {
+/// The frame in which an exercise is checked, in a size.
+pub(crate) fn frame(exercise: &Exercise, size: [u32; 2]) -> Frame {
     Frame {
         size,
-        frame: rung.frame,
-        time: rung.time,
+        frame: exercise.frame,
+        time: exercise.time,
         ..Frame::default()
     }
 }
 
-/// What `toyproof check` finds of a rung's shader, as edited.
+/// Checks an edited shader of an exercise like `toyproof check`.
 ///
 /// # Panics
-/// If anything goes wrong that is not the picture.
-pub(crate) fn judged(worker: &mut Worker, shader: &str, rung: &Rung) -> Findings {
-    judged_by(Some(worker), shader, rung)
+/// If anything but the comparison of the images fails.
+pub(crate) fn check_exercise(worker: &mut Worker, shader: &str, exercise: &Exercise) -> Findings {
+    check_exercise_with(Some(worker), shader, exercise)
 }
 
-/// The same, without a worker by the evaluator alone.
+/// Like [`check_exercise`], by the evaluator alone if there is no worker.
 ///
 /// # Panics
-/// Likewise.
-pub(crate) fn judged_by(worker: Option<&mut Worker>, shader: &str, rung: &Rung) -> Findings {
-    judged_beside(None, worker, shader, rung)
-}
-
-/// The same, as `toyproof check` does it, which compares what is wrong with classic mistakes.
-///
-/// # Panics
-/// Likewise.
-pub(crate) fn judged_and_named(worker: &mut Worker, shader: &str, rung: &Rung) -> Findings {
-    let suspects = Suspects::of(&scene(rung), &frame(rung, rung.size)).unwrap();
-    judged_beside(Some(&suspects), Some(worker), shader, rung)
-}
-
-/// What `toyproof check` finds without a worker, classic mistakes included.
-///
-/// # Panics
-/// Likewise.
-pub(crate) fn judged_with_names(shader: &str, rung: &Rung) -> Findings {
-    let suspects = Suspects::of(&scene(rung), &frame(rung, rung.size)).unwrap();
-    judged_beside(Some(&suspects), None, shader, rung)
-}
-
-fn judged_beside(
-    suspects: Option<&Suspects>,
+/// Like [`check_exercise`].
+pub(crate) fn check_exercise_with(
     worker: Option<&mut Worker>,
     shader: &str,
-    rung: &Rung,
+    exercise: &Exercise,
 ) -> Findings {
-    let frame = frame(rung, rung.size);
+    check_against(None, worker, shader, exercise)
+}
+
+/// Like [`check_exercise`], also comparing wrong images with known mistakes.
+///
+/// # Panics
+/// Like [`check_exercise`].
+pub(crate) fn check_and_name(worker: &mut Worker, shader: &str, exercise: &Exercise) -> Findings {
+    let suspects = Hypotheses::of(&scene(exercise), &frame(exercise, exercise.size)).unwrap();
+    check_against(Some(&suspects), Some(worker), shader, exercise)
+}
+
+/// Like [`check_and_name`], by the evaluator alone.
+///
+/// # Panics
+/// Like [`check_exercise`].
+pub(crate) fn check_and_name_on_cpu(shader: &str, exercise: &Exercise) -> Findings {
+    let suspects = Hypotheses::of(&scene(exercise), &frame(exercise, exercise.size)).unwrap();
+    check_against(Some(&suspects), None, shader, exercise)
+}
+
+fn check_against(
+    suspects: Option<&Hypotheses>,
+    worker: Option<&mut Worker>,
+    shader: &str,
+    exercise: &Exercise,
+) -> Findings {
+    let frame = frame(exercise, exercise.size);
     let (checked, lints) = linted(shader);
     let case = Case {
         checked: &checked,
         lints: &lints,
-        expected: Some(&Expected::new(scene(rung), &frame)),
+        expected: Some(&Expected::new(scene(exercise), &frame)),
         suspects,
         frame: &frame,
         float: FloatMode::Strict,
@@ -276,7 +287,7 @@ fn judged_beside(
     verify(worker, &case).unwrap_or_else(|failure| panic!("{failure}\n{shader}"))
 }
 
-fn told(errors: &[Diagnostic], files: &Files) -> String {
+fn format_errors(errors: &[Diagnostic], files: &Files) -> String {
     let lines: Vec<_> = errors
         .iter()
         .map(|error| diagnostic::short(error, files))
@@ -284,23 +295,23 @@ fn told(errors: &[Diagnostic], files: &Files) -> String {
     lines.join("\n")
 }
 
-/// The rung's shader after all edits, one after the other.
+/// Applies edits in order to the exercise's shader.
 ///
 /// # Panics
-/// If there is nothing to edit, or it is not clear where.
-pub(crate) fn edited(rung: &Rung, edits: &[Edit]) -> String {
-    edit(rung.shader, edits, rung.name)
+/// If an edit matches nothing or is ambiguous.
+pub(crate) fn edited(exercise: &Exercise, edits: &[Edit]) -> String {
+    edit(exercise.shader, edits, exercise.name)
 }
 
-/// A text after all edits, one after the other; `name` is for messages.
+/// Applies edits in order to a text; `name` is for messages.
 ///
 /// # Panics
-/// If there is nothing to edit, or it is not clear where.
+/// If an edit matches nothing or is ambiguous.
 pub(crate) fn edit(text: &str, edits: &[Edit], name: &str) -> String {
     try_edit(text, edits).unwrap_or_else(|why| panic!("{name}: {why}\n{text}"))
 }
 
-/// The same, or why it cannot be.
+/// Like [`edit`], but returns the error.
 pub(crate) fn try_edit(text: &str, edits: &[Edit]) -> Result<String, String> {
     let mut text = text.to_owned();
     for (from, to) in edits {
@@ -322,7 +333,7 @@ fn place(text: &str, from: &str) -> Result<Range<usize>, String> {
     Ok(start..after + end + tail.len())
 }
 
-/// What an environment variable says.
+/// The value of an environment variable, or the default.
 pub(crate) fn setting<T: FromStr>(name: &str, default: T) -> T {
     env::var(name)
         .ok()

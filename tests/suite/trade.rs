@@ -1,4 +1,5 @@
-//! `toyproof trade` as users run it; how runs are scheduled and judged is tested without a clock, beside the code.
+//! `toyproof trade` as users run it; scheduling and comparison of runs are tested without a clock, next to
+//! the code.
 
 use std::fs;
 use std::time::Instant;
@@ -19,7 +20,7 @@ fn a_scene_and_its_shader_are_measured_within_the_budget() {
     ];
     let run = toyproof(folder.path(), &arguments);
     assert_eq!(run.code, 0, "{}", run.stderr);
-    // The budget, and what a busy machine adds to it.
+    // The budget, and some time for a busy machine.
     assert!(start.elapsed().as_secs_f64() < 12.0, "{:?}", start.elapsed());
     for error in ["1/255", "0.5/255", "1/1000"] {
         let says = format!("the cheapest way to be within {error} of the truth is ");
@@ -53,7 +54,7 @@ fn a_scene_and_its_shader_are_measured_within_the_budget() {
 }
 
 #[test]
-fn one_line_is_told_where_an_error_is_asked_for() {
+fn a_maximum_error_prints_one_line() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("s.toml"), REFLECTIONS.scene).unwrap();
     let arguments = [
@@ -85,7 +86,7 @@ fn one_line_is_told_where_an_error_is_asked_for() {
 }
 
 #[test]
-fn what_there_was_no_time_for_is_told() {
+fn skipped_methods_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("s.toml"), REFLECTIONS.scene).unwrap();
     let arguments = [
@@ -111,7 +112,7 @@ fn what_there_was_no_time_for_is_told() {
 }
 
 #[test]
-fn bad_input_is_told_and_leaves_nothing() {
+fn bad_input_is_reported_and_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("bad.glsl"), "void mainImage(").unwrap();
     for (arguments, code, says) in [

@@ -1,19 +1,19 @@
-//! Shaders whose mathematics is the scene's and for which float32 is not enough, each for another cause; and beside each a
-//! formula that paints the same scene without harm. The first must be `unstable` with the line that loses the digits, the
-//! second `correct`.
+//! Shaders whose algorithm is the scene's but for which float32 is not enough, each for a different cause;
+//! and for each a formula that renders the same scene without harm. The first must be `unstable` with the
+//! line that loses the digits, the second `correct`.
 
 use toyproof::verify::compare::Verdict;
 
-use crate::support::{Edit, MANY_OBJECTS, Rung, SHADING, SPHERE, edit, judged, numbers, worker};
+use crate::support::{Edit, Exercise, MANY_OBJECTS, SHADING, SPHERE, check_exercise, edit, numbers, worker};
 
-/// A scene that asks much of float32, and two ways to paint it.
+/// A scene that is demanding for float32, and two formulas that render it.
 struct Case {
-    /// What goes wrong.
+    /// The cause of the loss.
     cause: &'static str,
-    rung: &'static Rung,
-    /// The rung's scene file, made demanding.
+    exercise: &'static Exercise,
+    /// The exercise's scene file, made demanding.
     scene: &'static [Edit],
-    /// The same in the rung's shader.
+    /// The same for the exercise's shader.
     shader: &'static [Edit],
     /// The formula that loses its digits.
     unstable: &'static [Edit],
@@ -35,8 +35,8 @@ const UNIT: &str = "normalize(vec3(x, y, SCREEN_DEPTH))";
 const LIT: &str = "max(dot(normal, toLight), 0.0)";
 const SHADED: &str = "vec4(color, 1.0)";
 
-/// The squared distance of the centre from the ray instead of b² − c: no difference of large squares.
-const RECENTRED: &[Edit] = &[
+/// The squared distance of the center from the ray instead of b² − c: no difference of large squares.
+const RECENTERED: &[Edit] = &[
     (C, "vec3 aside = f - b * ray.direction;"),
     (
         DISC,
@@ -47,7 +47,7 @@ const RECENTRED: &[Edit] = &[
 static CASES: &[Case] = &[
     Case {
         cause: "a small sphere far away, by the textbook's discriminant",
-        rung: &SPHERE,
+        exercise: &SPHERE,
         scene: &[
             ("screen_distance = 2.0", "screen_distance = 4000.0"),
             (CENTER_TOML, "[0.0, 0.0, -20000.0]"),
@@ -60,11 +60,11 @@ static CASES: &[Case] = &[
         ],
         unstable: &[],
         blamed: &["float c =", "float disc ="],
-        harmless: RECENTRED,
+        harmless: RECENTERED,
     },
     Case {
         cause: "the ground as a huge sphere",
-        rung: &SHADING,
+        exercise: &SHADING,
         scene: &[
             (CENTER_TOML, "[0.0, -8000001.0, -6.0]"),
             ("radius = 1.5", "radius = 8000000.0"),
@@ -75,7 +75,7 @@ static CASES: &[Case] = &[
         ],
         unstable: &[],
         blamed: &["float c ="],
-        // The sphere by its topmost point, and the root that has no difference.
+        // The sphere given by its topmost point, and the root without a difference.
         harmless: &[
             (
                 F,
@@ -91,7 +91,7 @@ static CASES: &[Case] = &[
     },
     Case {
         cause: "a scene far from the origin of the world",
-        rung: &SPHERE,
+        exercise: &SPHERE,
         scene: &[
             ("eye = [0.0, 0.0, 0.0]", "eye = [2000000.0, 0.0, 0.0]"),
             (CENTER_TOML, "[2000000.0, 0.0, -6.0]"),
@@ -112,20 +112,20 @@ static CASES: &[Case] = &[
     },
     Case {
         cause: "two surfaces that lie closer than the digits of t",
-        rung: &MANY_OBJECTS,
+        exercise: &MANY_OBJECTS,
         scene: &[(
             "center = [0.5, -0.7, -4.0]\nradius = 0.3",
             "center = [0.0, 0.0, -6.0]\nradius = 1.0000002",
         )],
         shader: &[("vec3(0.5, -0.7, -4.0), 0.3", "vec3(0.0, 0.0, -6.0), 1.0000002")],
-        // The inner one is asked last and takes the tie.
+        // The inner one is tested last and wins the tie.
         unstable: &[("if (t < hit.t)", "if (t <= hit.t && t < NO_HIT)")],
         blamed: &["if (t <= hit.t"],
         harmless: &[],
     },
     Case {
         cause: "underflow: the square of a tiny direction",
-        rung: &SPHERE,
+        exercise: &SPHERE,
         scene: &[],
         shader: &[
             (DISC, "float disc = b * b - a * c;"),
@@ -148,7 +148,7 @@ static CASES: &[Case] = &[
     },
     Case {
         cause: "overflow: the square of a large distance",
-        rung: &SPHERE,
+        exercise: &SPHERE,
         scene: &[
             (CENTER_TOML, "[0.0, 0.0, -6e19]"),
             ("radius = 1.5", "radius = 1.5e19"),
@@ -177,7 +177,7 @@ static CASES: &[Case] = &[
     },
     Case {
         cause: "a cosine by the law of cosines, for a light far away",
-        rung: &SHADING,
+        exercise: &SHADING,
         scene: &[(
             "position = [5.0, 5.0, 0.0]",
             "position = [500000.0, 500000.0, 0.0]",
@@ -200,7 +200,7 @@ static CASES: &[Case] = &[
     },
     Case {
         cause: "absorption: a number added to keep a sum positive",
-        rung: &SPHERE,
+        exercise: &SPHERE,
         scene: &[],
         shader: &[],
         unstable: &[(SHADED, "vec4((color + 1.0e6) - 1.0e6, 1.0)")],
@@ -209,7 +209,7 @@ static CASES: &[Case] = &[
     },
     Case {
         cause: "the sine of an angle of many turns",
-        rung: &SHADING,
+        exercise: &SHADING,
         scene: &[],
         shader: &[],
         unstable: &[
@@ -232,7 +232,7 @@ static CASES: &[Case] = &[
     },
     Case {
         cause: "overflow: the quotient of two large exponentials",
-        rung: &SPHERE,
+        exercise: &SPHERE,
         scene: &[],
         shader: &[],
         unstable: &[(SHADED, "vec4(color * exp(100.0) / exp(100.0), 1.0)")],
@@ -241,7 +241,7 @@ static CASES: &[Case] = &[
     },
     Case {
         cause: "a normal by differences over too short a step",
-        rung: &SPHERE,
+        exercise: &SPHERE,
         scene: &[],
         shader: &[(
             "Ray cameraRay(",
@@ -269,7 +269,7 @@ static CASES: &[Case] = &[
     },
     Case {
         cause: "a system of equations that is nearly singular",
-        rung: &SPHERE,
+        exercise: &SPHERE,
         scene: &[],
         shader: &[],
         unstable: &[
@@ -291,52 +291,52 @@ static CASES: &[Case] = &[
 ];
 
 #[test]
-fn what_is_right_but_unstable_is_called_so_with_its_line_and_a_harmless_twin_is_correct() {
+fn unstable_formulas_are_blamed_with_their_line_and_stable_ones_are_correct() {
     let Some(mut worker) = worker() else { return };
     let only = std::env::var("TOYPROOF_ONLY").unwrap_or_default();
     let mut failures = Vec::new();
     for case in CASES.iter().filter(|case| case.cause.contains(&only)) {
-        let scene = edit(case.rung.scene, case.scene, case.cause);
-        let common = edit(case.rung.shader, case.shader, case.cause);
+        let scene = edit(case.exercise.scene, case.scene, case.cause);
+        let common = edit(case.exercise.shader, case.shader, case.cause);
         let unstable = edit(&common, case.unstable, case.cause);
-        let findings = judged(
+        let findings = check_exercise(
             &mut worker,
             &unstable,
-            &Rung {
+            &Exercise {
                 scene: scene.clone().leak(),
-                ..*case.rung
+                ..*case.exercise
             },
         );
         let line = findings
             .cause
             .map_or("nowhere", |cause| line_of(&unstable, cause.start as usize));
         let named = case.blamed.iter().any(|blamed| line.contains(blamed));
-        let told = format!(
+        let reported = format!(
             "{}: {}; lost in `{}`",
             case.cause,
             numbers(&findings),
             line.trim()
         );
-        eprintln!("{told}");
+        eprintln!("{reported}");
         if findings.verdict != Verdict::Unstable || !named {
-            failures.push(told);
+            failures.push(reported);
         }
         if case.harmless.is_empty() {
             continue;
         }
         let harmless = edit(&common, case.harmless, case.cause);
-        let findings = judged(
+        let findings = check_exercise(
             &mut worker,
             &harmless,
-            &Rung {
+            &Exercise {
                 scene: scene.leak(),
-                ..*case.rung
+                ..*case.exercise
             },
         );
-        let told = format!("{}, its twin: {}", case.cause, numbers(&findings));
-        eprintln!("{told}");
+        let reported = format!("{}, its twin: {}", case.cause, numbers(&findings));
+        eprintln!("{reported}");
         if findings.verdict != Verdict::Correct {
-            failures.push(told);
+            failures.push(reported);
         }
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));

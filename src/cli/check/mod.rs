@@ -1,33 +1,30 @@
 //! `toyproof check`
 
-mod gallery;
-mod judge;
-mod pictures;
+mod checker;
+mod images;
 mod reference;
 mod reports;
-mod results;
-mod scenes;
-mod stopped;
 
 use std::num::NonZero;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
-use toyproof_diagnostic::path_name;
+use toyproof_diagnostic::{nearest, path_name};
 use toyproof_gpu::INSTALL_HINT;
 use toyproof_verify::compare::{Verdict, grouped, plural};
 use toyproof_verify::contain::{Part, contain};
 
-use self::judge::{Hand, Judge, Judged, Submission};
-use self::pictures::PICTURES;
+use self::checker::{Checker, Outcome, Submission, WorkerContext};
+use self::images::IMAGES;
 pub(super) use self::reference::References;
-use self::results::Results;
+use self::reports::Results;
 use super::inputs::{DriverArgs, Format, FrameArgs, LanguageArgs};
 use super::names::Names;
 use super::pool::{self, InOrder};
 use super::shader::find;
-use super::{Exit, Terminal, codes, interrupt};
-use crate::report::{self, Record, Report, Rubric};
+use super::terminal::watch_interrupts;
+use super::{Exit, Terminal};
+use crate::report::{self, Explanation, Record, Report, Rubric};
 
 /// Compare what shaders paint with the reference tracer, and give a verdict on each
 ///
@@ -47,14 +44,16 @@ pub(super) struct Args {
     /// The scene of all these shaders
     #[arg(long, value_name = "SCENE.toml")]
     scene: Option<PathBuf>,
-    /// Write the pictures (reference, actual, difference), verdict.json, results.jsonl, report.html, report.csv, junit.xml and
-    /// report.sarif into this folder
+    /// Write the pictures (reference, actual, difference), verdict.json, results.jsonl, report.html,
+    /// report.csv, junit.xml and report.sarif into this folder
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Take over what an earlier run into the same folder found, where shader, scene and flags are still the same
+    /// Take over what an earlier run into the same folder found, where shader, scene and flags are still the
+    /// same
     #[arg(long, requires = "out")]
     resume: bool,
-    /// Points for each question; the marks go into results.json, as Gradescope takes them, and into report.csv
+    /// Points for each question; the marks go into results.json, as Gradescope takes them, and into
+    /// report.csv
     #[arg(long, value_name = "RUBRIC.toml", requires = "out")]
     rubric: Option<PathBuf>,
     /// Check so many shaders at a time [default: as many as there are cores]
@@ -73,18 +72,18 @@ pub(super) struct Args {
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     if let Some(code) = &args.explain {
-        return codes::run(code, terminal);
+        return explain_code(code, terminal);
     }
-    // The arguments are asked for a worker once here, so that what is wrong with them is told before anything is done.
+    // A worker is created and dropped here, so that wrong arguments are reported before any work starts.
     let frame = match args.driver.worker().and_then(|_| args.frame.frame()) {
         Ok(frame) => frame,
         Err(error) => {
             terminal.error(error);
-            return Exit::Trouble;
+            return Exit::Error;
         }
     };
     let Ok(rubric) = reports::rubric(args, terminal) else {
-        return Exit::Trouble;
+        return Exit::Error;
     };
     let mut results = None;
     if let Some(out) = &args.out {
@@ -103,12 +102,15 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             }
             Err(error) => {
                 terminal.error(format_args!("cannot write {error}"));
-                return Exit::Trouble;
+                return Exit::Error;
             }
         }
     }
-    let reserved: Vec<&str> = reports::NAMES.into_iter().chain([results::NAME]).collect();
-    let mut names = Names::new(&PICTURES.map(|picture| picture.suffix), &reserved);
+    let reserved: Vec<&str> = reports::REPORT_NAMES
+        .into_iter()
+        .chain([reports::RESULTS_NAME])
+        .collect();
+    let mut names = Names::new(&IMAGES.map(|picture| picture.suffix), &reserved);
     let references = References::new(args.scene.as_deref());
     let submissions: Vec<Submission> = find(&args.shaders, terminal)
         .into_iter()
@@ -120,16 +122,16 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         rubric,
         results,
         order: InOrder::default(),
-        told: Vec::new(),
+        records: Vec::new(),
         device: None,
-        trouble: false,
+        failed: false,
     };
-    batch.check(&submissions, &Judge::new(args, &references, frame));
+    batch.check(&submissions, &Checker::new(args, &references, frame));
     batch.finish(&submissions)
 }
 
-/// What a driver that ended loops by force means for a shader.
-pub(super) fn cut_short(pixels: u64) -> String {
+/// The message on a shader whose loops the driver truncated.
+pub(super) fn loop_truncated(pixels: u64) -> String {
     format!(
         "a loop never ends, or runs longer than this driver allows: it was ended by force in {} {} \
          (Mesa before 23 stops at 65,535 iterations)",
@@ -138,23 +140,23 @@ pub(super) fn cut_short(pixels: u64) -> String {
     )
 }
 
-/// All shaders of one command.
+/// A run over all shaders of one command.
 struct Batch<'a> {
     args: &'a Args,
     terminal: &'a Terminal,
     rubric: Option<Rubric>,
     results: Option<Results>,
-    order: InOrder<(usize, Judged)>,
-    /// The records that have been told of, in order, each with the place of its submission.
-    told: Vec<(usize, Record)>,
+    order: InOrder<(usize, Outcome)>,
+    /// The reported records, in order, each with the index of its submission.
+    records: Vec<(usize, Record)>,
     device: Option<String>,
-    /// Something failed that no verdict tells.
-    trouble: bool,
+    /// Whether something failed that no verdict shows.
+    failed: bool,
 }
 
 impl Batch<'_> {
-    fn check(&mut self, submissions: &[Submission], judge: &Judge) {
-        let stop = interrupt::watch("finishing the shader in hand");
+    fn check(&mut self, submissions: &[Submission], checker: &Checker) {
+        let stop = watch_interrupts("finishing the shader in hand");
         let bar = match submissions {
             [one] => self.terminal.spinner(&one.name),
             several => self.terminal.bar(several.len() as u64, "checking"),
@@ -168,17 +170,17 @@ impl Batch<'_> {
                 Some(record) => {
                     tally.add(record.verdict);
                     bar.inc(1);
-                    self.take(index, Judged::known(record));
+                    self.take(index, Outcome::known(record));
                 }
                 None => todo.push(index),
             }
         }
-        let taken_over = submissions.len() - todo.len();
-        if taken_over > 0 {
+        let reused = submissions.len() - todo.len();
+        if reused > 0 {
             let of = submissions.len();
-            self.terminal.say(&format!(
+            self.terminal.note(&format!(
                 "{} of {} {} taken over from an earlier run",
-                grouped(taken_over as u64),
+                grouped(reused as u64),
                 grouped(of as u64),
                 plural(of as u64, "shader is", "shaders are")
             ));
@@ -188,29 +190,29 @@ impl Batch<'_> {
             None => std::thread::available_parallelism().map_or(1, NonZero::get),
         }
         .clamp(1, todo.len().max(1));
-        pool::each(
+        pool::for_each(
             &todo,
             threads,
             &stop,
-            || Hand::new(self.args, threads),
-            |hand, index| judge.judge(hand, &submissions[index]),
-            |index, judged| {
-                tally.add(judged.record.verdict);
+            || WorkerContext::new(self.args, threads),
+            |context, index| checker.check(context, &submissions[index]),
+            |index, outcome| {
+                tally.add(outcome.record.verdict);
                 bar.inc(1);
                 bar.set_message(tally.to_string());
-                self.keep(&submissions[index], &judged);
-                bar.suspend(|| self.take(index, judged));
+                self.keep(&submissions[index], &outcome);
+                bar.suspend(|| self.take(index, outcome));
                 if self.terminal.is_closed() {
-                    // Nobody reads what comes; the shaders in hand are finished.
+                    // Nobody reads further results; the shaders in progress are finished.
                     stop.store(true, Ordering::Relaxed);
                 }
             },
         );
         bar.finish_and_clear();
-        let is_done = self.told.len() == submissions.len();
+        let is_done = self.records.len() == submissions.len();
         if stop.load(Ordering::Relaxed) && !(self.terminal.is_closed() && is_done) {
-            for (index, judged) in std::mem::take(&mut self.order).rest() {
-                self.tell(index, judged);
+            for (index, outcome) in std::mem::take(&mut self.order).rest() {
+                self.report_outcome(index, outcome);
             }
             let how = match self.args.out {
                 Some(_) => "; the same command with --resume goes on",
@@ -223,45 +225,45 @@ impl Batch<'_> {
             };
             self.terminal
                 .error(format_args!("{why}; what was done is kept{how}"));
-            self.trouble = true;
+            self.failed = true;
         }
     }
 
-    /// Adds a record to the file of results.
-    fn keep(&mut self, submission: &Submission, judged: &Judged) {
+    /// Appends a record to `results.jsonl`.
+    fn keep(&mut self, submission: &Submission, outcome: &Outcome) {
         if let (Some(results), Some(key)) = (&mut self.results, &submission.key)
-            && let Err(error) = results.add(key, &judged.record)
+            && let Err(error) = results.add(key, &outcome.record)
         {
             self.terminal.error(format_args!("cannot write {error}"));
-            self.trouble = true;
+            self.failed = true;
         }
     }
 
-    fn take(&mut self, index: usize, judged: Judged) {
-        for (index, judged) in self.order.take(index, (index, judged)) {
-            self.tell(index, judged);
+    fn take(&mut self, index: usize, outcome: Outcome) {
+        for (index, outcome) in self.order.take(index, (index, outcome)) {
+            self.report_outcome(index, outcome);
         }
     }
 
-    /// Says what was found of a shader.
-    fn tell(&mut self, index: usize, judged: Judged) {
-        for said in &judged.said {
-            said.say(self.terminal);
+    /// Prints the messages and the result line of a shader.
+    fn report_outcome(&mut self, index: usize, outcome: Outcome) {
+        for message in &outcome.messages {
+            message.print(self.terminal);
         }
         if self.args.format == Format::Human {
-            match contain(Part::Summary, || report::line(&judged.record)) {
+            match contain(Part::Summary, || report::line(&outcome.record)) {
                 Ok(line) => self.terminal.result(&line),
                 Err(panic) => {
-                    let Record { shader, verdict, .. } = &judged.record;
+                    let Record { shader, verdict, .. } = &outcome.record;
                     self.terminal.result(&format!("{verdict:<12} {shader}"));
                     self.terminal.error(format_args!("{shader}: {panic}"));
-                    self.trouble = true;
+                    self.failed = true;
                 }
             }
         }
-        self.trouble |= judged.trouble;
-        self.device = judged.device.or(self.device.take());
-        self.told.push((index, judged.record));
+        self.failed |= outcome.failed;
+        self.device = outcome.device.or(self.device.take());
+        self.records.push((index, outcome.record));
     }
 
     fn finish(self, submissions: &[Submission]) -> Exit {
@@ -269,37 +271,37 @@ impl Batch<'_> {
             args,
             terminal,
             rubric,
-            told,
+            records,
             device,
             results,
-            mut trouble,
+            mut failed,
             ..
         } = self;
-        let (told_of, told): (Vec<_>, Vec<_>) = told
+        let (reported, records): (Vec<_>, Vec<_>) = records
             .into_iter()
             .map(|(index, record)| (&submissions[index], record))
             .unzip();
-        let no_driver = told.iter().any(|record| record.reason.contains(INSTALL_HINT));
-        let report = Report::new(device, told);
+        let no_driver = records.iter().any(|record| record.reason.contains(INSTALL_HINT));
+        let report = Report::new(device, records);
         if args.format == Format::Human {
-            terminal.say(&report::summary(report.shaders()));
+            terminal.note(&report::summary(report.shaders()));
         } else {
-            trouble |= !terminal.bytes(report.json().as_bytes());
+            failed |= !terminal.bytes(report.json().as_bytes());
         }
         if let Some(out) = &args.out {
-            // Before the reports, which would make the folder anew.
+            // Before the reports are written, which would create the folder again.
             let is_there = results.as_ref().map_or(Ok(()), Results::check_place);
-            let written = reports::write(&report, &told_of, rubric.as_ref(), out, terminal);
+            let written = reports::write(&report, &reported, rubric.as_ref(), out, terminal);
             match is_there {
                 Ok(()) if written => {
-                    terminal.say(&format!("pictures and reports are in {}", path_name(out)));
+                    terminal.note(&format!("pictures and reports are in {}", path_name(out)));
                 }
-                Ok(()) => trouble = true,
+                Ok(()) => failed = true,
                 Err(error) => {
                     terminal.error(format_args!(
                         "results and pictures were removed while they were written: {error}; run the command again"
                     ));
-                    trouble = true;
+                    failed = true;
                 }
             }
         }
@@ -307,12 +309,43 @@ impl Batch<'_> {
             terminal.detail("`toyproof doctor` tells more of the drivers");
         }
         let verdicts = || report.shaders().iter().map(|record| record.verdict);
-        if trouble || verdicts().any(|verdict| verdict == Verdict::Error) {
-            Exit::Trouble
+        if failed || verdicts().any(|verdict| verdict == Verdict::Error) {
+            Exit::Error
         } else if verdicts().all(Verdict::is_good) {
-            Exit::Good
+            Exit::Success
         } else {
-            Exit::Bad
+            Exit::ShaderFault
         }
     }
+}
+
+/// Prints the explanation of a diagnostic code: `toyproof check --explain CODE`.
+fn explain_code(code: &str, terminal: &Terminal) -> Exit {
+    let Some(Explanation { code, title, text }) = report::explain(code) else {
+        let codes = report::explanations().map(|explanation| explanation.code);
+        let hint = match nearest(code, codes) {
+            Some(near) => format!("did you mean {near}?"),
+            None => "codes are E or W and four digits, as in error[E0301]".to_owned(),
+        };
+        terminal.error(format_args!("there is no code {code}; {hint}"));
+        return Exit::Error;
+    };
+    terminal.result(&format!("{code}: {title}\n\n{}", plain(text)));
+    Exit::Success
+}
+
+/// Converts Markdown for a terminal: fenced code is indented instead.
+fn plain(text: &str) -> String {
+    let mut fenced = false;
+    let mut lines = Vec::new();
+    for line in text.lines() {
+        if line.starts_with("```") {
+            fenced = !fenced;
+        } else if fenced {
+            lines.push(format!("    {line}"));
+        } else {
+            lines.push(line.to_owned());
+        }
+    }
+    lines.join("\n")
 }

@@ -1,59 +1,65 @@
-//! The scenes that shaders are compared with.
+//! The scenes that shaders are compared with, and what is computed once per scene.
 
+use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use toyproof_diagnostic::{File, Files, path_name};
+use toyproof_image::Frame;
 use toyproof_scene::{self as scene, Scene};
+use toyproof_verify::Expected;
+use toyproof_verify::mistake::Hypotheses;
 
-use crate::cli::files::{self, Found, FoundIn, ReadError, Skipped};
+use crate::cli::files::{self, Input, InputSource, ReadError, Skipped};
 use crate::cli::shader::Unusable;
 
-/// The scene of a shader.
+/// The reference scene of a shader.
 pub(in crate::cli) struct Reference {
     pub(in crate::cli) name: String,
     pub(in crate::cli) scene: Result<Scene, Unusable>,
     pub(in crate::cli) files: Files,
 }
 
-/// Where the scenes of shaders come from.
+/// Finds the scenes of shaders.
 pub(in crate::cli) struct References {
-    /// The one that `--scene` names, which may be a pipe and is read once: its path, and its text or why there is none.
+    /// The path and the text, or the error, of the scene that `--scene` names. It may be a pipe, so it is
+    /// read once.
     named: Option<(PathBuf, Result<File, String>)>,
 }
 
 impl References {
-    /// Reads the scene that `--scene` names, if it does.
+    /// Reads the scene that `--scene` names, if any.
     pub(in crate::cli) fn new(named: Option<&Path>) -> Self {
-        let named = named.map(|path| (path.to_owned(), text(path)));
+        let named = named.map(|path| (path.to_owned(), read_text(path)));
         Self { named }
     }
 
-    /// Where the scene of a shader is, and its text or why there is none: the one that `--scene` names, else the one beside the
-    /// shader, unless it is a link that leads out of the folder.
-    pub(super) fn text(&self, found: &Found) -> Option<(PathBuf, Result<File, String>)> {
-        match (&self.named, &found.place) {
+    /// The path of a shader's scene, and its text or the error: the scene that `--scene` names, else the one
+    /// beside the shader, unless that is a link that leads out of the folder.
+    pub(super) fn text(&self, found: &Input) -> Option<(PathBuf, Result<File, String>)> {
+        match (&self.named, &found.source) {
             (Some(named), _) => Some(named.clone()),
-            (None, FoundIn::File(shader)) => {
+            (None, InputSource::File(shader)) => {
                 let beside = shader.with_extension("toml");
                 if !beside.is_file() && !beside.is_symlink() {
                     return None;
                 }
-                let text = match leaves(found, shader, &beside) {
+                let text = match leaving_link(found, shader, &beside) {
                     Some(skipped) => Err(format!("there is no scene to compare with: {skipped}")),
-                    None if beside.is_file() => text(&beside),
+                    None if beside.is_file() => read_text(&beside),
                     None => Err(ReadError::Missing(beside.clone()).to_string()),
                 };
                 Some((beside, text))
             }
-            (None, FoundIn::Stream { .. }) => None,
+            (None, InputSource::Stream { .. }) => None,
         }
     }
 
-    /// The scene of a shader; none if it has none.
-    pub(in crate::cli) fn find(&self, found: &Found) -> Option<Reference> {
+    /// Parses the scene of a shader; none if it has none.
+    pub(in crate::cli) fn find(&self, found: &Input) -> Option<Reference> {
         let (path, text) = self.text(found)?;
         let mut files = Files::default();
-        let scene = text.map_err(Unusable::Trouble).and_then(|text| {
+        let scene = text.map_err(Unusable::Unreadable).and_then(|text| {
             let file = files.add(text);
             scene::parse(&files, file).map_err(Unusable::Invalid)
         });
@@ -65,12 +71,97 @@ impl References {
     }
 }
 
-/// Whether what lies beside a shader is a link out of the folder that was searched, or out of the shader's own.
-fn leaves(found: &Found, shader: &Path, beside: &Path) -> Option<Skipped> {
+/// Checks whether the scene beside a shader is a link that leads out of the searched folder, or else of the
+/// shader's own folder.
+fn leaving_link(found: &Input, shader: &Path, beside: &Path) -> Option<Skipped> {
     let folder = found.folder.as_deref().or(shader.parent())?;
     Skipped::of(beside, folder)
 }
 
-fn text(path: &Path) -> Result<File, String> {
+fn read_text(path: &Path) -> Result<File, String> {
     files::read_text(path).map_err(|error| error.to_string())
+}
+
+// The scenes that shaders have been compared with, shared by all threads.
+
+/// The cache holds at most this many scenes, the most recently used, and fewer if they exceed
+/// `MAX_CACHED_BYTES`.
+const MAX_CACHED_SCENES: usize = 8;
+const MAX_CACHED_BYTES: usize = 256 << 20;
+
+/// A scene with the results that are computed once and shared.
+#[derive(Debug)]
+pub(super) struct CachedScene {
+    pub(super) expected: Expected,
+    hypotheses: OnceLock<Option<Hypotheses>>,
+}
+
+impl CachedScene {
+    /// The hypotheses that a wrong image is compared with.
+    pub(super) fn hypotheses(&self, frame: &Frame) -> Option<&Hypotheses> {
+        let hypotheses = || Hypotheses::of(self.expected.scene(), frame);
+        self.hypotheses.get_or_init(hypotheses).as_ref()
+    }
+}
+
+/// A cache of the most recently used scenes, the latest first. All have the same frame time.
+#[derive(Debug, Default)]
+pub(super) struct SceneCache {
+    latest: Mutex<VecDeque<Arc<CachedScene>>>,
+}
+
+impl SceneCache {
+    /// Returns the cached results of a scene in this frame, creating them if needed.
+    pub(super) fn get(&self, scene: Scene, frame: &Frame) -> Arc<CachedScene> {
+        let mut latest = self.latest.lock().unwrap_or_else(PoisonError::into_inner);
+        let before = latest.iter().position(|known| *known.expected.scene() == scene);
+        let known = before.and_then(|at| latest.remove(at)).unwrap_or_else(|| {
+            Arc::new(CachedScene {
+                expected: Expected::new(scene, frame),
+                hypotheses: OnceLock::new(),
+            })
+        });
+        latest.push_front(Arc::clone(&known));
+        let bytes = |latest: &VecDeque<Arc<CachedScene>>| {
+            let bytes = latest.iter().map(|known| known.expected.bytes());
+            bytes.sum::<usize>()
+        };
+        while latest.len() > MAX_CACHED_SCENES || (latest.len() > 1 && bytes(&latest) > MAX_CACHED_BYTES) {
+            latest.pop_back();
+        }
+        known
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use toyproof_diagnostic::{File, Files};
+    use toyproof_scene as scene;
+
+    fn scene(title: &str) -> Scene {
+        let mut files = Files::default();
+        let text = format!("title = \"{title}\"\n[film]\nsize = [64, 36]\n[background]\n");
+        let file = files.add(File::new("s", text));
+        scene::parse(&files, file).unwrap()
+    }
+
+    #[test]
+    fn recently_used_scenes_are_cached() {
+        let scenes = SceneCache::default();
+        let frame = Frame {
+            size: [64, 36],
+            ..Frame::default()
+        };
+        let known = |title: &str| scenes.get(scene(title), &frame);
+        let first = known("0");
+        for at in 1..MAX_CACHED_SCENES {
+            known(&at.to_string());
+        }
+        assert!(Arc::ptr_eq(&first, &known("0")), "the last of eight");
+        for at in 0..MAX_CACHED_SCENES {
+            known(&format!("other {at}"));
+        }
+        assert!(!Arc::ptr_eq(&first, &known("0")));
+    }
 }

@@ -1,22 +1,27 @@
-//! The files that `--out` gets beside the pictures.
+//! The files that `--out` gets beside the images: the reports, and `results.jsonl`.
 
-use std::path::Path;
+use std::collections::HashMap;
+use std::fs::{File, OpenOptions};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
 
-use toyproof_diagnostic::Files;
+use serde::{Deserialize, Serialize};
+use toyproof_diagnostic::{Files, path_name};
+use toyproof_image::output;
 use toyproof_verify::contain::{Part, contain};
 
 use super::Args;
-use super::gallery::gallery;
-use super::judge::Submission;
-use crate::cli::files::of_content;
+use super::checker::Submission;
+use super::images::gallery;
+use crate::cli::files::content_diagnostic;
 use crate::cli::shader::Unusable;
 use crate::cli::{Terminal, files};
-use crate::report::{Report, Rubric, csv, gradescope, html, junit, sarif};
+use crate::report::{Record, Report, Rubric, csv, gradescope, html, junit, sarif};
 
-/// The rubric that the arguments name, if they name one.
+/// Reads the rubric that the arguments name, if any.
 ///
 /// # Errors
-/// None if it cannot be used, which has been told.
+/// The rubric is unusable; its errors have been printed.
 pub(super) fn rubric(args: &Args, terminal: &Terminal) -> Result<Option<Rubric>, ()> {
     let Some(path) = &args.rubric else {
         return Ok(None);
@@ -27,19 +32,19 @@ pub(super) fn rubric(args: &Args, terminal: &Terminal) -> Result<Option<Rubric>,
             let file = files.add(text);
             Rubric::parse(&files, file).map_err(Unusable::Invalid)
         }
-        Err(error) => Err(match of_content(error, &mut files) {
+        Err(error) => Err(match content_diagnostic(error, &mut files) {
             Ok(diagnostic) => Unusable::Invalid(vec![diagnostic]),
-            Err(error) => Unusable::Trouble(error.to_string()),
+            Err(error) => Unusable::Unreadable(error.to_string()),
         }),
     };
     rubric.map(Some).map_err(|unusable| match unusable {
         Unusable::Invalid(diagnostics) => terminal.diagnostics(&diagnostics, &files),
-        Unusable::Trouble(error) => terminal.error(error),
+        Unusable::Unreadable(error) => terminal.error(error),
     })
 }
 
-/// The reports, in the order in which they are written: whoever sees the last sees all.
-pub(super) const NAMES: [&str; 6] = [
+/// The file names of the reports, in the order in which they are written: once the last exists, all do.
+pub(super) const REPORT_NAMES: [&str; 6] = [
     "report.html",
     "report.csv",
     "junit.xml",
@@ -48,8 +53,8 @@ pub(super) const NAMES: [&str; 6] = [
     "verdict.json",
 ];
 
-/// Writes the reports into the folder; whether that worked. The submissions are those of the report's records. `results.json` is for a
-/// rubric alone.
+/// Writes the reports into the folder; returns false on failure. The submissions are those of the report's
+/// records, in the same order. `results.json` is written only with a rubric.
 pub(super) fn write(
     report: &Report,
     submissions: &[&Submission],
@@ -58,7 +63,7 @@ pub(super) fn write(
     terminal: &Terminal,
 ) -> bool {
     let records = report.shaders();
-    let texts: [&dyn Fn() -> Option<String>; NAMES.len()] = [
+    let texts: [&dyn Fn() -> Option<String>; REPORT_NAMES.len()] = [
         &|| Some(html(report, rubric, &gallery(submissions))),
         &|| Some(csv(records, rubric)),
         &|| Some(junit(records)),
@@ -66,7 +71,7 @@ pub(super) fn write(
         &|| rubric.map(|rubric| gradescope(records, rubric)),
         &|| Some(report.json()),
     ];
-    let written = NAMES
+    let written = REPORT_NAMES
         .iter()
         .zip(texts)
         .map(|(name, text)| match contain(Part::Report, text) {
@@ -77,6 +82,101 @@ pub(super) fn write(
                 false
             }
         });
-    // All are tried.
+    // No short circuit: every report is written.
     written.fold(true, |all, one| all & one)
+}
+
+// `results.jsonl`: holds the record of each shader as soon as it is complete, so that an interrupted run can
+// resume.
+
+/// The name of the file of records.
+pub(super) const RESULTS_NAME: &str = "results.jsonl";
+
+/// A line of the file.
+#[derive(Debug, Serialize, Deserialize)]
+struct Line {
+    /// A hash of everything that the record depends on.
+    key: String,
+    record: Record,
+}
+
+/// The file of records, open for appending.
+#[derive(Debug)]
+pub(super) struct Results {
+    path: PathBuf,
+    file: File,
+    /// The records of an earlier run, by key.
+    known: HashMap<String, Record>,
+    /// The number of lines of an earlier run that could not be read.
+    pub(super) broken: usize,
+}
+
+impl Results {
+    /// Creates the file; with `resume`, keeps the records that it has. An incomplete last line, left by a
+    /// killed run, is dropped.
+    pub(super) fn open(folder: &Path, resume: bool) -> io::Result<Self> {
+        let path = folder.join(RESULTS_NAME);
+        let before = match std::fs::read(&path) {
+            Ok(bytes) if resume => bytes,
+            Err(error) if resume && error.kind() != io::ErrorKind::NotFound => {
+                return Err(with_path(&path, &error));
+            }
+            _ => Vec::new(),
+        };
+        let mut kept = Vec::new();
+        let mut known = HashMap::new();
+        let mut broken = 0;
+        for line in before
+            .split_inclusive(|&byte| byte == b'\n')
+            .filter(|line| line.ends_with(b"\n"))
+        {
+            match serde_json::from_slice(line) {
+                Ok(Line { key, record }) => {
+                    known.insert(key, record);
+                    kept.extend_from_slice(line);
+                }
+                Err(_) => broken += 1,
+            }
+        }
+        output::write_inside(folder, &path, &kept)?;
+        let file = OpenOptions::new().append(true).open(&path);
+        let file = file.map_err(|error| with_path(&path, &error))?;
+        Ok(Self {
+            path,
+            file,
+            known,
+            broken,
+        })
+    }
+
+    /// Checks that the file still exists: what is written to a removed file is lost.
+    pub(super) fn check_place(&self) -> io::Result<()> {
+        match self.path.metadata() {
+            Ok(_) => Ok(()),
+            Err(error) => Err(with_path(&self.path, &error)),
+        }
+    }
+
+    /// Takes the record of an earlier run, if there is one.
+    pub(super) fn known(&mut self, key: &str) -> Option<Record> {
+        self.known.remove(key)
+    }
+
+    /// Appends a record in a single write.
+    pub(super) fn add(&mut self, key: &str, record: &Record) -> io::Result<()> {
+        #[derive(Serialize)]
+        struct Borrowed<'a> {
+            key: &'a str,
+            record: &'a Record,
+        }
+        let mut line = serde_json::to_vec(&Borrowed { key, record }).map_err(io::Error::other)?;
+        line.push(b'\n');
+        self.file
+            .write_all(&line)
+            .map_err(|error| with_path(&self.path, &error))
+    }
+}
+
+fn with_path(path: &Path, error: &io::Error) -> io::Error {
+    io::Error::new(error.kind(), format!("{}: {error}", path_name(path)))
 }

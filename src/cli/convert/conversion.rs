@@ -1,4 +1,4 @@
-//! One shader: translated, and proved where that is asked for.
+//! Translates one shader, and proves the conversion with `--verify`.
 
 use std::path::PathBuf;
 
@@ -6,7 +6,7 @@ use rayon::ThreadPool;
 use toyproof_diagnostic::{Deadline, Diagnostic, Overdue};
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_gpu::browser::{Chromium, Text};
-use toyproof_gpu::{Failure, Worker, Written};
+use toyproof_gpu::{Failure, ShaderArtifact, Worker};
 use toyproof_translate::backend::Target;
 use toyproof_translate::wgsl::{self, Style};
 use toyproof_translate::{FloatMode, Lowered};
@@ -15,75 +15,77 @@ use toyproof_verify::conversion::FRAMES;
 use super::super::inputs::{DriverArgs, LanguageArgs};
 use super::super::shader::{Shader, Unusable, is_invalid};
 use super::super::{Exit, pool};
-use super::args::To;
-use super::proof::{NAGA, Standing, in_browser};
-use super::{header, tool};
-use crate::cli::files::{Found, ReadError};
+use super::proof::{NAGA, ProofStatus, prove_in_browser};
+use super::{To, header, tool};
+use crate::cli::files::{Input, ReadError};
 
-/// What is to be made of every shader.
+/// The settings of the conversion, the same for every shader.
 pub(super) struct Converter<'a> {
     pub(super) to: To,
     pub(super) float: FloatMode,
     pub(super) style: Style,
     pub(super) verify: bool,
-    /// Where a browser is, if it is asked too.
+    /// The path of Chromium; none without `--browser`.
     pub(super) browser: Option<PathBuf>,
     pub(super) language: &'a LanguageArgs,
     pub(super) driver: &'a DriverArgs,
 }
 
-/// What a thread has for itself.
-pub(super) struct Hand {
+/// The processes and the thread pool that a thread owns.
+pub(super) struct WorkerContext {
     translator: Result<Worker, String>,
-    /// What runs what was converted; none where the evaluator is asked to.
+    /// Runs the conversion; none for `--on cpu`.
     pub(super) runner: Result<Option<Worker>, String>,
     pub(super) browser: Option<Chromium>,
-    /// Where the evaluator runs, if others are at work beside it.
+    /// The evaluator's pool, if several threads convert.
     pub(super) pool: Option<ThreadPool>,
 }
 
 /// A converted shader.
-pub(super) struct Made {
+pub(super) struct Conversion {
     pub(super) bytes: Vec<u8>,
-    pub(super) standing: Standing,
-    /// Why it is naga's text where ours was wanted.
-    pub(super) instead: Option<String>,
+    pub(super) status: ProofStatus,
+    /// Why naga's writer was used instead of our own.
+    pub(super) fallback_reason: Option<String>,
 }
 
-impl Made {
-    /// Whether it is proved, or nobody asked.
+impl Conversion {
+    /// Returns whether it is proved, or no proof was requested.
     pub(super) fn is_proved(&self) -> bool {
-        !matches!(self.standing, Standing::Unproved(_) | Standing::Untried(_))
+        !matches!(
+            self.status,
+            ProofStatus::Unproved(_) | ProofStatus::NotProvable(_)
+        )
     }
 }
 
-/// Why there is no conversion.
-pub(super) enum Trouble {
-    /// What is wrong, with its place.
-    Told(Vec<Diagnostic>, Exit),
-    /// What is wrong, in words.
-    Said(String, Exit),
-    /// The shader cannot be had.
+/// The error of a conversion.
+pub(super) enum ConvertError {
+    /// Errors with their positions.
+    Diagnostics(Vec<Diagnostic>, Exit),
+    /// An error without a position.
+    Message(String, Exit),
+    /// The shader cannot be read.
     Unreadable(String),
 }
 
-impl Trouble {
+impl ConvertError {
     pub(super) fn exit(&self) -> Exit {
         match self {
-            Self::Told(_, exit) | Self::Said(_, exit) => *exit,
-            Self::Unreadable(_) => Exit::Trouble,
+            Self::Diagnostics(_, exit) | Self::Message(_, exit) => *exit,
+            Self::Unreadable(_) => Exit::Error,
         }
     }
 }
 
 impl Converter<'_> {
-    /// What one of so many threads works with.
-    pub(super) fn hand(&self, threads: usize) -> Hand {
+    /// Creates the context for one of `threads` threads.
+    pub(super) fn worker_context(&self, threads: usize) -> WorkerContext {
         let runner = self.driver.worker_for(FRAMES.len() as u32);
-        Hand {
+        WorkerContext {
             translator: self.driver.translator(),
             runner: runner.map(|runner| runner.map(Worker::with_plain_code)),
-            pool: self.verify.then(|| pool::own(threads)).flatten(),
+            pool: self.verify.then(|| pool::thread_pool(threads)).flatten(),
             browser: self.browser.as_ref().map(|program| {
                 let patience = self.driver.timeout() * FRAMES.len() as u32;
                 Chromium::new(program.clone(), patience)
@@ -93,77 +95,84 @@ impl Converter<'_> {
 
     pub(super) fn convert(
         &self,
-        hand: &mut Hand,
-        input: &Result<Found, ReadError>,
-    ) -> (Shader, Result<Made, Trouble>) {
+        context: &mut WorkerContext,
+        input: &Result<Input, ReadError>,
+    ) -> (Shader, Result<Conversion, ConvertError>) {
         let shader = Shader::load(input, self.language, Deadline::after(self.driver.timeout()));
-        let made = match &shader.checked {
-            Ok(checked) => self.make(hand, checked, &shader),
-            Err(Unusable::Invalid(diagnostics)) => Err(Trouble::Told(diagnostics.clone(), Exit::Bad)),
-            Err(Unusable::Trouble(error)) => Err(Trouble::Unreadable(error.clone())),
+        let converted = match &shader.checked {
+            Ok(checked) => self.convert_checked(context, checked, &shader),
+            Err(Unusable::Invalid(diagnostics)) => {
+                Err(ConvertError::Diagnostics(diagnostics.clone(), Exit::ShaderFault))
+            }
+            Err(Unusable::Unreadable(error)) => Err(ConvertError::Unreadable(error.clone())),
         };
-        (shader, made)
+        (shader, converted)
     }
 
-    fn make(&self, hand: &mut Hand, checked: &Checked, shader: &Shader) -> Result<Made, Trouble> {
+    fn convert_checked(
+        &self,
+        context: &mut WorkerContext,
+        checked: &Checked,
+        shader: &Shader,
+    ) -> Result<Conversion, ConvertError> {
         let Some(target) = self.to.target() else {
             let lowered = self.lower(checked)?;
             let bytes = lowered.text().as_bytes().to_vec();
-            let standing = if self.verify {
-                let readings = vec![(NAGA.to_owned(), Written::Lowered(lowered))];
-                self.run(hand, (checked, &shader.files), readings, None)
+            let status = if self.verify {
+                let readings = vec![(NAGA.to_owned(), ShaderArtifact::Lowered(lowered))];
+                self.run(context, (checked, &shader.files), readings, None)
             } else {
-                Standing::Unasked
+                ProofStatus::NotRequested
             };
-            return Ok(Made {
+            return Ok(Conversion {
                 bytes,
-                standing,
-                instead: None,
+                status,
+                fallback_reason: None,
             });
         };
         if target == Target::Wgsl && self.float == FloatMode::Fast {
-            let made = self.readable(hand, checked, shader)?;
-            let why = match &made {
+            let converted = self.write_wgsl(context, checked, shader)?;
+            let why = match &converted {
                 Err(why)
-                | Ok(Made {
-                    standing: Standing::Unproved(why),
+                | Ok(Conversion {
+                    status: ProofStatus::Unproved(why),
                     ..
                 }) => why.clone(),
-                Ok(_) => return made.map_err(|why| Trouble::Said(why, Exit::Trouble)),
+                Ok(_) => return converted.map_err(|why| ConvertError::Message(why, Exit::Error)),
             };
             if self.style != Style::Plain {
-                return made.map_err(|why| Trouble::Said(why, Exit::Trouble));
+                return converted.map_err(|why| ConvertError::Message(why, Exit::Error));
             }
-            let other = self.by_naga(hand, checked, target, shader);
-            return match (made, other) {
-                // Neither is proved: the one that people can read.
+            let other = self.convert_with_naga(context, checked, target, shader);
+            return match (converted, other) {
+                // Neither is proved: prefer the readable one.
                 (
-                    Ok(made),
+                    Ok(converted),
                     Err(_)
-                    | Ok(Made {
-                        standing: Standing::Unproved(_) | Standing::Untried(_),
+                    | Ok(Conversion {
+                        status: ProofStatus::Unproved(_) | ProofStatus::NotProvable(_),
                         ..
                     }),
-                ) => Ok(made),
-                (_, other) => other.map(|made| Made {
-                    instead: Some(why),
-                    ..made
+                ) => Ok(converted),
+                (_, other) => other.map(|converted| Conversion {
+                    fallback_reason: Some(why),
+                    ..converted
                 }),
             };
         }
-        self.by_naga(hand, checked, target, shader)
+        self.convert_with_naga(context, checked, target, shader)
     }
 
-    /// WGSL with the author's words; or why there is none.
-    fn readable(
+    /// Writes WGSL that keeps the author's names and comments; or the reason why that is impossible.
+    fn write_wgsl(
         &self,
-        hand: &mut Hand,
+        context: &mut WorkerContext,
         checked: &Checked,
         shader: &Shader,
-    ) -> Result<Result<Made, String>, Trouble> {
+    ) -> Result<Result<Conversion, String>, ConvertError> {
         let deadline = Deadline::after(self.driver.timeout());
         match wgsl::wgsl(checked, &shader.files, self.style, &deadline) {
-            Ok(text) => self.judged(hand, checked, shader, text),
+            Ok(text) => self.verify_wgsl(context, checked, shader, text),
             Err(wgsl::Failure::Overdue(overdue)) => Err(too_slow(overdue)),
             Err(wgsl::Failure::Unprintable(why)) => Ok(Err(format!(
                 "cannot be written in the style {}: {why}",
@@ -172,108 +181,108 @@ impl Converter<'_> {
         }
     }
 
-    /// That WGSL, proved if that is asked for; or why naga does not read it.
-    fn judged(
+    /// Checks that naga reads that WGSL, and proves it with `--verify`; or the reason why naga rejects it.
+    fn verify_wgsl(
         &self,
-        hand: &mut Hand,
+        context: &mut WorkerContext,
         checked: &Checked,
         shader: &Shader,
         text: String,
-    ) -> Result<Result<Made, String>, Trouble> {
+    ) -> Result<Result<Conversion, String>, ConvertError> {
         let hosted = self.style.hosted(&text);
-        match translator(hand)?.read_wgsl(&hosted.text) {
+        match translator(context)?.read_wgsl(&hosted.text) {
             Ok(()) => {}
-            Err(failure @ Failure::Timeout { .. }) => return Err(trouble(failure)),
+            Err(failure @ Failure::Timeout { .. }) => return Err(convert_error(failure)),
             Err(Failure::Reread(why)) => return Ok(Err(why)),
             Err(failure) => return Ok(Err(failure.to_string())),
         }
         let mut bytes = text.into_bytes();
-        let standing = if self.verify {
-            // The other styles are whole only within their hosts.
-            let judged = match self.style {
-                Style::Plain => tool::judge(Target::Wgsl, &bytes),
+        let status = if self.verify {
+            // The other styles are complete only within their hosts.
+            let validated = match self.style {
+                Style::Plain => tool::validate(Target::Wgsl, &bytes),
                 _ => Ok(None),
             };
-            match judged {
-                Err(why) => Standing::Unproved(why),
-                Ok(judge) => {
-                    let readings = vec![(NAGA.to_owned(), Written::Wgsl(hosted.clone()))];
-                    let standing = self.run(hand, (checked, &shader.files), readings, judge);
+            match validated {
+                Err(why) => ProofStatus::Unproved(why),
+                Ok(validator) => {
+                    let readings = vec![(NAGA.to_owned(), ShaderArtifact::Wgsl(hosted.clone()))];
+                    let status = self.run(context, (checked, &shader.files), readings, validator);
                     let text = Text::Wgsl(&hosted.text);
-                    in_browser(hand, checked, shader, standing, text, hosted.upside_down)
+                    prove_in_browser(context, checked, shader, status, text, hosted.upside_down)
                 }
             }
         } else {
-            Standing::Unasked
+            ProofStatus::NotRequested
         };
-        header::put(&mut bytes, Target::Wgsl, &shader.name, &standing);
-        Ok(Ok(Made {
+        header::insert(&mut bytes, Target::Wgsl, &shader.name, &status);
+        Ok(Ok(Conversion {
             bytes,
-            standing,
-            instead: None,
+            status,
+            fallback_reason: None,
         }))
     }
 
-    fn lower(&self, checked: &Checked) -> Result<Lowered, Trouble> {
+    fn lower(&self, checked: &Checked) -> Result<Lowered, ConvertError> {
         let deadline = Deadline::after(self.driver.timeout());
         let lowered = self.float.lower_within(checked, &deadline);
         lowered.map_err(too_slow)
     }
 
-    /// What naga writes of the shader.
-    fn by_naga(
+    /// Converts the shader with naga's writer.
+    fn convert_with_naga(
         &self,
-        hand: &mut Hand,
+        context: &mut WorkerContext,
         checked: &Checked,
         target: Target,
         shader: &Shader,
-    ) -> Result<Made, Trouble> {
+    ) -> Result<Conversion, ConvertError> {
         let lowered = self.lower(checked)?;
-        let mut bytes = translator(hand)?
+        let mut bytes = translator(context)?
             .translate(lowered.clone(), target, self.float)
-            .map_err(trouble)?;
-        let standing = if self.verify {
-            let standing = self.judge(hand, (checked, &shader.files), lowered, target, &bytes);
-            let standing = standing.unwrap_or_else(Standing::Unproved);
+            .map_err(convert_error)?;
+        let status = if self.verify {
+            let status = self.prove(context, (checked, &shader.files), lowered, target, &bytes);
+            let status = status.unwrap_or_else(ProofStatus::Unproved);
             let text = String::from_utf8_lossy(&bytes);
             let text = match target {
                 Target::Glsl => Text::Glsl(&text),
                 _ => Text::Wgsl(&text),
             };
-            in_browser(hand, checked, shader, standing, text, false)
+            prove_in_browser(context, checked, shader, status, text, false)
         } else {
-            Standing::Unasked
+            ProofStatus::NotRequested
         };
-        header::put(&mut bytes, target, &shader.name, &standing);
-        Ok(Made {
+        header::insert(&mut bytes, target, &shader.name, &status);
+        Ok(Conversion {
             bytes,
-            standing,
-            instead: None,
+            status,
+            fallback_reason: None,
         })
     }
 }
 
-/// What translates, in a process of its own.
-fn translator(hand: &mut Hand) -> Result<&mut Worker, Trouble> {
-    let translator = hand.translator.as_mut();
-    translator.map_err(|error| Trouble::Said(error.clone(), Exit::Trouble))
+/// The translator, which is a separate process.
+fn translator(context: &mut WorkerContext) -> Result<&mut Worker, ConvertError> {
+    let translator = context.translator.as_mut();
+    translator.map_err(|error| ConvertError::Message(error.clone(), Exit::Error))
 }
 
-fn too_slow(overdue: Overdue) -> Trouble {
-    Trouble::Told(vec![glsl::overdue(overdue)], Exit::Bad)
+fn too_slow(overdue: Overdue) -> ConvertError {
+    ConvertError::Diagnostics(vec![glsl::overdue(overdue)], Exit::ShaderFault)
 }
 
-fn trouble(failure: Failure) -> Trouble {
+fn convert_error(failure: Failure) -> ConvertError {
     match failure {
-        Failure::Invalid(diagnostics) => Trouble::Told(diagnostics, Exit::Bad),
-        Failure::Refused(diagnostics) => Trouble::Told(diagnostics, Exit::Trouble),
+        Failure::Invalid(diagnostics) => ConvertError::Diagnostics(diagnostics, Exit::ShaderFault),
+        Failure::Refused(diagnostics) => ConvertError::Diagnostics(diagnostics, Exit::Error),
         failure => {
             let exit = if is_invalid(&failure) {
-                Exit::Bad
+                Exit::ShaderFault
             } else {
-                Exit::Trouble
+                Exit::Error
             };
-            Trouble::Said(failure.to_string(), exit)
+            ConvertError::Message(failure.to_string(), exit)
         }
     }
 }

@@ -1,22 +1,23 @@
-//! The comment at the head of a converted file: where it comes from, and what was proved of it.
+//! The comment at the head of a converted file: its source, and what was proved of it.
 
 use std::fmt::Write as _;
 
 use toyproof_translate::backend::{Target, spirv};
 use toyproof_verify::compare::grouped;
-use toyproof_verify::conversion::{Against, FRAMES, Proof, Shown};
+use toyproof_verify::conversion::{Against, FRAMES, Proof, Rgb8Image};
 
-use super::proof::Standing;
+use super::proof::ProofStatus;
 
-/// The version of naga that translates.
+/// The version of naga that is linked.
 const NAGA: &str = "30.0.1";
 
-/// Puts the comment before a text, or behind the `#version` that must come first. In SPIR-V it is a string that nothing refers to.
-pub(super) fn put(bytes: &mut Vec<u8>, target: Target, name: &str, standing: &Standing) {
+/// Inserts the comment before a text, or after the `#version` line, which must come first. In SPIR-V it is a
+/// string that nothing refers to.
+pub(super) fn insert(bytes: &mut Vec<u8>, target: Target, name: &str, status: &ProofStatus) {
     let at = match target {
         Target::Spirv => {
             if let Some(words) = spirv::of_bytes(bytes) {
-                *bytes = spirv::bytes(&spirv::with_note(&words, &head(name, standing)));
+                *bytes = spirv::bytes(&spirv::with_note(&words, &head(name, status)));
             }
             return;
         }
@@ -26,47 +27,47 @@ pub(super) fn put(bytes: &mut Vec<u8>, target: Target, name: &str, standing: &St
             .map_or(0, |end| end + 1),
         Target::Wgsl | Target::Msl | Target::Hlsl => 0,
     };
-    let head = head(name, standing);
+    let head = head(name, status);
     bytes.splice(at..at, head.into_bytes());
 }
 
-fn head(name: &str, standing: &Standing) -> String {
-    // A name may hold anything, also what would end the comment.
+fn head(name: &str, status: &ProofStatus) -> String {
+    // A name may contain anything, even a line break, which would end the comment.
     let name: String = name
         .chars()
         .map(|c| if c.is_control() { '?' } else { c })
         .collect();
     let version = env!("CARGO_PKG_VERSION");
     let mut head = format!("// {name}, converted by toyproof {version} (naga {NAGA}).\n");
-    match standing {
-        Standing::Unasked => {}
-        Standing::Proved(proof, readers) => {
+    match status {
+        ProofStatus::NotRequested => {}
+        ProofStatus::Proved(proof, readers) => {
             let _ = writeln!(
                 head,
                 "// Proved: this file, read again by {} and run on {},",
-                readers.ran.join(" and by "),
+                readers.names.join(" and by "),
                 proof.device
             );
             settings(&mut head, proof);
-            if let Some(judge) = &readers.judge {
-                let _ = writeln!(head, "// {judge}.");
+            if let Some(validator) = &readers.validator {
+                let _ = writeln!(head, "// {validator}.");
             }
             if let Some((name, shown)) = &readers.browser {
                 let _ = writeln!(
                     head,
                     "// {name} on SwiftShader paints in these frames what it paints of the original with WebGL 2: {}.",
-                    told(*shown)
+                    describe_browser(*shown)
                 );
             }
         }
-        Standing::Meant(proof) => {
+        ProofStatus::SourceProved(proof) => {
             head.push_str(
                 "// Proved is what this text was written from, not the text itself: nothing here reads it.\n",
             );
             let _ = writeln!(head, "// That, run on {},", proof.device);
             settings(&mut head, proof);
         }
-        Standing::Unproved(why) | Standing::Untried(why) => {
+        ProofStatus::Unproved(why) | ProofStatus::NotProvable(why) => {
             let why: String = why
                 .chars()
                 .map(|c| if c.is_control() { ' ' } else { c })
@@ -78,7 +79,7 @@ fn head(name: &str, standing: &Standing) -> String {
     head
 }
 
-/// What it was compared with, where, and how much was left out.
+/// Appends what it was compared with, in which frames, and how many pixels were left out.
 fn settings(head: &mut String, proof: &Proof) {
     let against = match proof.against {
         Against::Evaluator => "paints what toyproof's evaluator paints of the original in float32",
@@ -88,7 +89,7 @@ fn settings(head: &mut String, proof: &Proof) {
         .iter()
         .map(|frame| format!("{}x{} at iTime {}", frame.size[0], frame.size[1], frame.time))
         .collect();
-    let _ = writeln!(head, "// {against}: {}.", sum(proof));
+    let _ = writeln!(head, "// {against}: {}.", describe_proof(proof));
     let channels = match proof.against {
         Against::Evaluator => "",
         Against::StrictRun => "; flat channels hold noise",
@@ -97,8 +98,8 @@ fn settings(head: &mut String, proof: &Proof) {
     head.push_str("// Functions whose last bits the target leaves open, sin and the like, were the evaluator's own for that.\n");
 }
 
-/// How far a browser's pictures are apart.
-pub(super) fn told(shown: Shown) -> String {
+/// Describes the difference between a browser's images.
+pub(super) fn describe_browser(shown: Rgb8Image) -> String {
     let by = match format!("{:.2}", shown.max * 255.0).as_str() {
         _ if shown.max == 0.0 => String::new(),
         "0.00" => " by as much as 0.01/255".to_owned(),
@@ -110,8 +111,8 @@ pub(super) fn told(shown: Shown) -> String {
     )
 }
 
-/// How many pixels are equal.
-pub(super) fn sum(proof: &Proof) -> String {
+/// Describes how many pixels are equal.
+pub(super) fn describe_proof(proof: &Proof) -> String {
     let undefined = match proof.undefined() {
         0 => String::new(),
         left_out => format!(
@@ -130,7 +131,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_version_of_naga_is_the_one_that_is_linked() {
+    fn naga_version_matches_the_lock_file() {
         let lock = include_str!("../../../Cargo.lock");
         let package = lock
             .split("[[package]]")
@@ -139,36 +140,39 @@ mod tests {
     }
 
     #[test]
-    fn a_difference_of_nothing_has_no_number() {
-        let said = [0.0, 1e-9, 0.5 / 255.0].map(|max| {
-            let shown = Shown {
+    fn a_zero_difference_has_no_number() {
+        let messages = [0.0, 1e-9, 0.5 / 255.0].map(|max| {
+            let shown = Rgb8Image {
                 pixels: 57_600,
                 differing: 0,
                 max,
             };
-            told(shown)
+            describe_browser(shown)
         });
-        assert!(said[0].ends_with("57,600 pixels, as shown, differs"), "{said:?}");
         assert!(
-            said[1].ends_with("as much as 0.01/255") && said[2].ends_with("more than 0.50/255"),
-            "{said:?}"
+            messages[0].ends_with("57,600 pixels, as shown, differs"),
+            "{messages:?}"
+        );
+        assert!(
+            messages[1].ends_with("as much as 0.01/255") && messages[2].ends_with("more than 0.50/255"),
+            "{messages:?}"
         );
     }
 
     #[test]
-    fn a_name_cannot_end_the_comment_and_a_version_stays_first() {
+    fn names_cannot_end_the_comment_and_the_version_stays_first() {
         let mut bytes = b"#version 300 es\nvoid main() {}\n".to_vec();
-        put(&mut bytes, Target::Glsl, "a\nb.glsl", &Standing::Unasked);
+        insert(&mut bytes, Target::Glsl, "a\nb.glsl", &ProofStatus::NotRequested);
         let text = String::from_utf8(bytes).unwrap();
         assert!(
             text.starts_with("#version 300 es\n// a?b.glsl, converted by toyproof "),
             "{text}"
         );
-        // A header of SPIR-V, and `OpCapability Shader`.
+        // A SPIR-V header, and `OpCapability Shader`.
         let mut words = spirv::bytes(&[0x0723_0203, 0x0001_0000, 0, 7, 0, 0x0002_0011, 1]);
-        put(&mut words, Target::Spirv, "a", &Standing::Unasked);
+        insert(&mut words, Target::Spirv, "a", &ProofStatus::NotRequested);
         let words = spirv::of_bytes(&words).unwrap();
-        // The string has the next id, and stands behind the capability.
+        // The string has the next id, and follows the capability.
         assert_eq!((words[3], words[7] & 0xffff, words[8]), (8, 7, 7));
         assert_eq!(7 + (words[7] >> 16) as usize, words.len());
     }

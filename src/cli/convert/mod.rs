@@ -1,6 +1,5 @@
 //! `toyproof convert`
 
-mod args;
 mod conversion;
 mod header;
 mod proof;
@@ -11,21 +10,142 @@ use std::num::NonZero;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
+use clap::ValueEnum;
 use toyproof_diagnostic::path_name;
 use toyproof_gpu::browser;
 use toyproof_translate::FloatMode;
+use toyproof_translate::backend::Target;
+use toyproof_translate::wgsl::Style;
 use toyproof_verify::compare::{grouped, plural};
 
-pub(super) use self::args::Args;
-use self::args::{StyleName, To};
-use self::conversion::{Converter, Made, Trouble};
-use self::proof::Standing;
-use super::inputs::may_write;
+use self::conversion::{Conversion, ConvertError, Converter};
+use self::proof::ProofStatus;
+use super::inputs::{DriverArgs, LanguageArgs, may_write};
 use super::names::{Names, with_suffix};
 use super::pool::{self, InOrder};
 use super::shader::{Shader, find};
-use super::{Exit, Terminal, interrupt};
-use crate::cli::files::{Found, ReadError};
+use super::terminal::watch_interrupts;
+use super::{Exit, Terminal};
+use crate::cli::files::{Input, ReadError};
+
+const HOSTS: &str = "\
+Examples:
+  toyproof convert glsl/02-sphere.glsl -o sphere.wgsl --verify
+  toyproof convert glsl -o converted --to spv
+
+What a host feeds the result: entry point `main`, colour at location 0. Group 0, binding 0 is a block of 208 bytes \
+(std140): iResolution at byte 0, iTime 12, iTimeDelta 16, iFrame 20, iFrameRate 24, iChannelTime[4] 32 and \
+iChannelResolution[4] 96 (16 bytes each), iMouse 160, iDate 176, iSampleRate 192. The texture of channel K is \
+binding 1+2K, its sampler 2+2K; only those that the shader uses are declared.
+
+Exit code: 0 if every shader was written (and proved, with --verify), 1 if one is at fault, 2 if there was other \
+trouble, as where a conversion is not proved.";
+
+/// Translate shaders to WGSL, SPIR-V, Metal, HLSL or GLSL ES
+#[derive(Debug, clap::Args)]
+#[command(after_help = HOSTS)]
+pub(super) struct Args {
+    /// Shaders: files, folders, or - for standard input
+    #[arg(required = true)]
+    shaders: Vec<PathBuf>,
+    /// A file (.wgsl .spv .metal .hlsl .frag), a folder for several, or - for standard output
+    #[arg(short, long, value_name = "FILE|DIR")]
+    output: PathBuf,
+    /// The language; needed with a folder and with -
+    #[arg(long, value_enum)]
+    to: Option<To>,
+    /// Run what was converted and compare it with the shader, pixel by pixel; write it only if they are
+    /// equal to the bit
+    #[arg(long)]
+    verify: bool,
+    /// Have Chromium paint it too: WGSL with WebGPU, or GLSL with WebGL 2, beside the shader itself with
+    /// WebGL 2, on its software driver; as shown, no color may differ by more than 1/255
+    #[arg(long, requires = "verify")]
+    browser: bool,
+    /// The kind of host that WGSL is for: entry point, bindings, direction of y
+    #[arg(long, value_enum, default_value_t = StyleName::Plain)]
+    style: StyleName,
+    /// Write also what could not be proved; its header says so
+    #[arg(long, requires = "verify")]
+    force: bool,
+    /// Convert so many shaders at a time [default: as many as there are cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256), allow_negative_numbers = true)]
+    jobs: Option<u16>,
+    #[command(flatten)]
+    language: LanguageArgs,
+    #[command(flatten)]
+    driver: DriverArgs,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum To {
+    Wgsl,
+    Spv,
+    Metal,
+    Hlsl,
+    Glsl,
+    /// The GLSL that naga is fed
+    Lowered,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum StyleName {
+    /// A fragment shader with the bindings below; row 0 of its target is the bottom
+    Plain,
+    /// `shader_main` for the Python package of that name
+    WgpuShadertoy,
+    /// A compute shader for compute.toys
+    ComputeToys,
+    /// A Material2d of Bevy
+    Bevy,
+}
+
+impl From<StyleName> for Style {
+    fn from(name: StyleName) -> Self {
+        match name {
+            StyleName::Plain => Self::Plain,
+            StyleName::WgpuShadertoy => Self::WgpuShadertoy,
+            StyleName::ComputeToys => Self::ComputeToys,
+            StyleName::Bevy => Self::Bevy,
+        }
+    }
+}
+
+impl To {
+    pub(super) fn target(self) -> Option<Target> {
+        match self {
+            Self::Wgsl => Some(Target::Wgsl),
+            Self::Spv => Some(Target::Spirv),
+            Self::Metal => Some(Target::Msl),
+            Self::Hlsl => Some(Target::Hlsl),
+            Self::Glsl => Some(Target::Glsl),
+            Self::Lowered => None,
+        }
+    }
+
+    pub(super) fn extension(self) -> &'static str {
+        self.target().map_or("lowered.glsl", Target::extension)
+    }
+
+    /// Its name on the command line.
+    pub(super) fn name(self) -> String {
+        let value = self.to_possible_value();
+        value.map_or_else(String::new, |value| value.get_name().to_owned())
+    }
+
+    /// Returns whether it may be written to a file with the extension of `other`: what naga is fed is GLSL.
+    pub(super) fn may_end_as(self, other: Self) -> bool {
+        self == other || (self, other) == (Self::Lowered, Self::Glsl)
+    }
+
+    pub(super) fn of(path: &Path) -> Option<Self> {
+        let target = Target::of(path)?;
+        Self::value_variants()
+            .iter()
+            .copied()
+            .find(|to| to.target() == Some(target))
+    }
+}
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let inputs = find(&args.shaders, terminal);
@@ -39,7 +159,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             "{}: say the language with --to, or end the file's name in .wgsl, .spv, .metal, .hlsl or .frag",
             path_name(&args.output)
         ));
-        return Exit::Trouble;
+        return Exit::Error;
     };
     if let Some(of) = of_extension
         && !to.may_end_as(of)
@@ -50,30 +170,30 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             of.name(),
             to.name()
         ));
-        return Exit::Trouble;
+        return Exit::Error;
     }
     if several && (standard || of_extension.is_some()) {
         terminal.error(format_args!(
             "several shaders need a folder to go to, not {}",
             path_name(&args.output)
         ));
-        return Exit::Trouble;
+        return Exit::Error;
     }
     if args.style != StyleName::Plain && to != To::Wgsl {
         terminal.error("--style is for WGSL");
-        return Exit::Trouble;
+        return Exit::Error;
     }
     if args.browser && !matches!(to, To::Wgsl | To::Glsl) {
         terminal.error("--browser is for WGSL and GLSL, which browsers run");
-        return Exit::Trouble;
+        return Exit::Error;
     }
     let browser = args.browser.then(browser::find).flatten();
     if args.browser && browser.is_none() {
         terminal.error("--browser needs Chromium, and none is installed here (apt-get install chromium)");
-        return Exit::Trouble;
+        return Exit::Error;
     }
-    // People read what is converted: it keeps the author's functions unless told otherwise.
-    let float = args.driver.asked_float().unwrap_or(FloatMode::Fast);
+    // People read converted shaders: by default they keep the author's functions.
+    let float = args.driver.explicit_float().unwrap_or(FloatMode::Fast);
     let workers = args.driver.translator().and_then(|_| args.driver.worker());
     let converter = match workers {
         Ok(_) => Converter {
@@ -87,7 +207,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         },
         Err(error) => {
             terminal.error(error);
-            return Exit::Trouble;
+            return Exit::Error;
         }
     };
     let threads = args
@@ -100,7 +220,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let jobs = inputs.into_iter().map(|input| {
         let path = match (one, &input) {
             (true, _) | (false, Err(_)) => args.output.clone(),
-            (false, Ok(found)) => with_suffix(&args.output.join(names.place(found)), &suffix),
+            (false, Ok(found)) => with_suffix(&args.output.join(names.assign(found)), &suffix),
         };
         Job { input, path }
     });
@@ -110,22 +230,22 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         .filter_map(|job| job.input.as_ref().ok()?.path())
         .collect();
     if !jobs.iter().all(|job| may_write(&job.path, &originals, terminal)) {
-        return Exit::Trouble;
+        return Exit::Error;
     }
     Batch {
         args,
         terminal,
         several,
         threads,
-        exit: Exit::Good,
+        exit: Exit::Success,
         tally: Tally::default(),
     }
     .convert(&jobs, &converter)
 }
 
-/// A shader and where it goes to.
+/// A shader and its output path.
 struct Job {
-    input: Result<Found, ReadError>,
+    input: Result<Input, ReadError>,
     path: PathBuf,
 }
 
@@ -133,7 +253,7 @@ fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, NonZero::get)
 }
 
-/// How many came to what.
+/// The number of shaders by result.
 #[derive(Debug, Default)]
 struct Tally {
     proved: usize,
@@ -142,42 +262,42 @@ struct Tally {
     refused: usize,
 }
 
-/// All shaders of one command.
+/// A run over all shaders of one command.
 struct Batch<'a> {
     args: &'a Args,
     terminal: &'a Terminal,
     several: bool,
-    /// So many at a time.
+    /// The number of shaders converted at a time.
     threads: usize,
     exit: Exit,
     tally: Tally,
 }
 
-/// What came of a shader, and whether its file was written.
-type Done = (Shader, Result<Made, Trouble>, bool);
+/// A shader, its result, and whether its file was written.
+type Finished = (Shader, Result<Conversion, ConvertError>, bool);
 
 impl Batch<'_> {
     fn convert(mut self, jobs: &[Job], converter: &Converter) -> Exit {
-        let stop = interrupt::watch("finishing the shaders in hand");
+        let stop = watch_interrupts("finishing the shaders in hand");
         let threads = self.threads;
         let bar = match jobs {
             [one] => self.terminal.spinner(&path_name(&one.path)),
             several => self.terminal.bar(several.len() as u64, "converting"),
         };
-        let mut order: InOrder<(usize, Done)> = InOrder::default();
+        let mut order: InOrder<(usize, Finished)> = InOrder::default();
         let todo: Vec<usize> = (0..jobs.len()).collect();
-        pool::each(
+        pool::for_each(
             &todo,
             threads,
             &stop,
-            || converter.hand(threads),
-            |hand, index| converter.convert(hand, &jobs[index].input),
-            |index, (shader, mut made)| {
+            || converter.worker_context(threads),
+            |context, index| converter.convert(context, &jobs[index].input),
+            |index, (shader, mut converted)| {
                 bar.inc(1);
                 bar.suspend(|| {
-                    // A file is there as soon as it can be; what is said of it waits for its turn.
-                    let written = self.write(&jobs[index], &mut made);
-                    for (index, done) in order.take(index, (index, (shader, made, written))) {
+                    // The file is written at once; its messages wait for their turn.
+                    let written = self.write(&jobs[index], &mut converted);
+                    for (index, done) in order.take(index, (index, (shader, converted, written))) {
                         self.finish(&jobs[index], done);
                     }
                 });
@@ -189,47 +309,47 @@ impl Batch<'_> {
         }
         if stop.load(Ordering::Relaxed) {
             self.terminal.error("interrupted; what was done is kept");
-            self.exit = Exit::Trouble;
+            self.exit = Exit::Error;
         }
         if self.several && self.args.verify {
-            self.tell_tally();
+            self.print_tally();
         }
         self.exit
     }
 
-    /// Writes one if it may be written; says whether it is.
-    fn write(&self, job: &Job, made: &mut Result<Made, Trouble>) -> bool {
-        match made {
-            Ok(made) if made.is_proved() || self.args.force => {
-                let bytes = std::mem::take(&mut made.bytes);
+    /// Writes a conversion if it is proved or forced; returns whether it was written.
+    fn write(&self, job: &Job, converted: &mut Result<Conversion, ConvertError>) -> bool {
+        match converted {
+            Ok(converted) if converted.is_proved() || self.args.force => {
+                let bytes = std::mem::take(&mut converted.bytes);
                 self.terminal.write_output(&self.args.output, &job.path, &bytes)
             }
             _ => false,
         }
     }
 
-    /// Says what came of one.
-    fn finish(&mut self, job: &Job, (shader, made, written): Done) {
+    /// Reports the result of one shader.
+    fn finish(&mut self, job: &Job, (shader, converted, written): Finished) {
         self.terminal.diagnostics(&shader.lints.warnings, &shader.files);
         self.tally.written += usize::from(written);
-        let exit = match made {
-            Ok(made) => self.tell_standing(job, &made, written),
-            Err(trouble) => {
+        let exit = match converted {
+            Ok(converted) => self.report_status(job, &converted, written),
+            Err(convert_error) => {
                 self.tally.refused += 1;
-                let exit = trouble.exit();
-                match trouble {
-                    Trouble::Told(diagnostics, _) => {
+                let exit = convert_error.exit();
+                match convert_error {
+                    ConvertError::Diagnostics(diagnostics, _) => {
                         self.terminal.diagnostics(&diagnostics, &shader.files);
-                        self.tell("refused", job, "see above");
+                        self.print_row("refused", job, "see above");
                     }
-                    Trouble::Said(why, _) => {
+                    ConvertError::Message(why, _) => {
                         if self.args.verify {
-                            self.tell("refused", job, &why);
+                            self.print_row("refused", job, &why);
                         } else {
                             self.terminal.error(format_args!("{}: {why}", shader.name));
                         }
                     }
-                    Trouble::Unreadable(why) => self.terminal.error(why),
+                    ConvertError::Unreadable(why) => self.terminal.error(why),
                 }
                 exit
             }
@@ -237,60 +357,60 @@ impl Batch<'_> {
         self.exit = self.exit.max(exit);
     }
 
-    fn tell_standing(&mut self, job: &Job, made: &Made, written: bool) -> Exit {
-        match &made.standing {
-            Standing::Unasked => {}
-            Standing::Proved(proof, readers) => {
+    fn report_status(&mut self, job: &Job, converted: &Conversion, written: bool) -> Exit {
+        match &converted.status {
+            ProofStatus::NotRequested => {}
+            ProofStatus::Proved(proof, readers) => {
                 self.tally.proved += 1;
-                let mut words = header::sum(proof);
+                let mut message = header::describe_proof(proof);
                 if let Some((_, shown)) = readers.browser {
-                    let _ = write!(words, "; in Chromium {}", header::told(shown));
+                    let _ = write!(message, "; in Chromium {}", header::describe_browser(shown));
                 }
-                if let Some(why) = &made.instead {
-                    let _ = write!(words, "; in naga's words: {why}");
+                if let Some(why) = &converted.fallback_reason {
+                    let _ = write!(message, "; in naga's words: {why}");
                 }
-                self.tell("proved", job, &words);
+                self.print_row("proved", job, &message);
             }
-            Standing::Meant(proof) => {
+            ProofStatus::SourceProved(proof) => {
                 self.tally.proved += 1;
-                let sum = header::sum(proof);
-                self.tell(
+                let equal = header::describe_proof(proof);
+                self.print_row(
                     "meaning proved",
                     job,
-                    &format!("{sum}; nothing here reads the text itself"),
+                    &format!("{equal}; nothing here reads the text itself"),
                 );
             }
-            Standing::Unproved(why) | Standing::Untried(why) => {
+            ProofStatus::Unproved(why) | ProofStatus::NotProvable(why) => {
                 self.tally.unproved += 1;
                 let kept = if written {
                     "written all the same"
                 } else {
                     "not written"
                 };
-                self.tell("not proved", job, &format!("{why}; {kept}"));
+                self.print_row("not proved", job, &format!("{why}; {kept}"));
             }
         }
-        if written && made.is_proved() {
-            Exit::Good
+        if written && converted.is_proved() {
+            Exit::Success
         } else {
-            Exit::Trouble
+            Exit::Error
         }
     }
 
-    /// A line of the table of what was proved: on standard output, unless what was converted goes there.
-    fn tell(&self, state: &str, job: &Job, words: &str) {
+    /// Prints a line of the proof table: on standard output, unless the conversion goes there.
+    fn print_row(&self, state: &str, job: &Job, message: &str) {
         if !self.args.verify {
             return;
         }
         let name = job
             .input
             .as_ref()
-            .map_or_else(|_| path_name(&job.path), Found::name);
-        let line = format!("{state:<15}{name}: {words}");
+            .map_or_else(|_| path_name(&job.path), Input::name);
+        let line = format!("{state:<15}{name}: {message}");
         self.line(&line);
     }
 
-    fn tell_tally(&self) {
+    fn print_tally(&self) {
         let Tally {
             proved,
             unproved,
@@ -308,7 +428,7 @@ impl Batch<'_> {
 
     fn line(&self, line: &str) {
         if self.args.output == Path::new("-") {
-            self.terminal.say(line);
+            self.terminal.note(line);
         } else {
             self.terminal.result(line);
         }

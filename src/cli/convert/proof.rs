@@ -1,61 +1,61 @@
-//! What is proved of a conversion: who reads again what was written, and what comes of running what they read.
+//! Proofs of conversions: the written file is read by independent readers, and what they read is run.
 
 use toyproof_diagnostic::{File, Files, short};
 use toyproof_glsl::tree::SamplerShape;
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_gpu::browser::{self, Text};
-use toyproof_gpu::{Failure, Written};
+use toyproof_gpu::{Failure, ShaderArtifact};
 use toyproof_image::Image;
-use toyproof_translate::backend::{Target, reread, spirv};
+use toyproof_translate::backend::{Target, roundtrip, spirv};
 use toyproof_translate::naga_ir::Shape;
 use toyproof_translate::wgsl::Style;
 use toyproof_translate::{FloatMode, Lowered};
 use toyproof_verify as verify;
 use toyproof_verify::compare::{grouped, plural};
-use toyproof_verify::conversion::{Against, Proof, Shown, frames, prove};
+use toyproof_verify::conversion::{Against, Proof, Rgb8Image, frames, prove};
 
 use super::super::shader::Shader;
-use super::conversion::{Converter, Hand};
+use super::conversion::{Converter, WorkerContext};
 use super::tool;
 
-/// Who reads WGSL, and what is fed to naga.
+/// The name of the reader of WGSL and of the GLSL that naga is fed.
 pub(super) const NAGA: &str = "naga";
 
-/// How far a conversion is proved.
-pub(super) enum Standing {
-    /// Nobody asked.
-    Unasked,
-    /// What was written was read again, and paints the same.
+/// The status of a conversion's proof.
+pub(super) enum ProofStatus {
+    /// No proof was requested.
+    NotRequested,
+    /// The file was read again, and renders the same image.
     Proved(Proof, Readers),
-    /// What naga wrote it from paints the same; the text itself was read by nobody.
-    Meant(Proof),
-    /// It is not proved, for that reason.
+    /// The shader that naga wrote the file from renders the same image; no reader reads the file itself.
+    SourceProved(Proof),
+    /// The proof failed, for this reason.
     Unproved(String),
-    /// It could not be put to the proof, for a reason that no other text would change.
-    Untried(String),
+    /// No proof was possible, for a reason that applies to any conversion of the shader.
+    NotProvable(String),
 }
 
-/// Who read what was written.
+/// The readers of a conversion.
 pub(super) struct Readers {
-    /// Who read it so that it could be run, each by itself.
-    pub(super) ran: Vec<String>,
-    /// Who accepts it beside, in words.
-    pub(super) judge: Option<String>,
-    /// The browser that paints it as it paints the original, if it was asked.
-    pub(super) browser: Option<(String, Shown)>,
+    /// The readers whose results were run, each separately.
+    pub(super) names: Vec<String>,
+    /// The validator that accepts it, as text.
+    pub(super) validator: Option<String>,
+    /// The browser that renders it like the original, if `--browser` was given.
+    pub(super) browser: Option<(String, Rgb8Image)>,
 }
 
 impl Converter<'_> {
-    /// Lets all that can read it read what was written, and runs what they read.
-    pub(super) fn judge(
+    /// Reads the conversion with every available reader, and runs the results.
+    pub(super) fn prove(
         &self,
-        hand: &mut Hand,
+        context: &mut WorkerContext,
         (checked, files): (&Checked, &Files),
         lowered: Lowered,
         target: Target,
         bytes: &[u8],
-    ) -> Result<Standing, String> {
-        let judge = tool::judge(target, bytes)?;
+    ) -> Result<ProofStatus, String> {
+        let validator = tool::validate(target, bytes)?;
         let channels = checked.channels.map(|shape| match shape {
             SamplerShape::D2 | SamplerShape::D2Array => Shape::D2,
             SamplerShape::D3 => Shape::D3,
@@ -64,50 +64,50 @@ impl Converter<'_> {
         let mut readings = match target {
             Target::Wgsl => {
                 let text = String::from_utf8_lossy(bytes);
-                vec![(NAGA.to_owned(), Written::Wgsl(Style::Plain.hosted(&text)))]
+                vec![(NAGA.to_owned(), ShaderArtifact::Wgsl(Style::Plain.hosted(&text)))]
             }
             Target::Spirv => {
                 let words = spirv::of_bytes(bytes).ok_or("half a word was written")?;
-                vec![("the driver".to_owned(), Written::Words(words, channels))]
+                vec![("the driver".to_owned(), ShaderArtifact::Words(words, channels))]
             }
-            Target::Glsl => vec![("toyproof's GLSL front end".to_owned(), reread_glsl(bytes)?)],
+            Target::Glsl => vec![("toyproof's GLSL front end".to_owned(), read_glsl(bytes)?)],
             Target::Hlsl | Target::Msl => Vec::new(),
         };
         if let Some((words, who)) = tool::compile(target, bytes)? {
-            readings.push((who, Written::Words(words, channels)));
+            readings.push((who, ShaderArtifact::Words(words, channels)));
         }
         if !readings.is_empty() {
-            return Ok(self.run(hand, (checked, files), readings, judge));
+            return Ok(self.run(context, (checked, files), readings, validator));
         }
-        let meaning = vec![(String::new(), Written::Lowered(lowered))];
-        Ok(match self.run(hand, (checked, files), meaning, None) {
-            Standing::Proved(proof, _) => Standing::Meant(proof),
+        let meaning = vec![(String::new(), ShaderArtifact::Lowered(lowered))];
+        Ok(match self.run(context, (checked, files), meaning, None) {
+            ProofStatus::Proved(proof, _) => ProofStatus::SourceProved(proof),
             other => other,
         })
     }
 
-    /// Runs what was read again, by each who read it; all proofs hold, or there is a reason why not.
+    /// Runs the result of each reader; the status is proved only if all results agree with the shader.
     pub(super) fn run(
         &self,
-        hand: &mut Hand,
+        context: &mut WorkerContext,
         (checked, files): (&Checked, &Files),
-        readings: Vec<(String, Written)>,
-        judge: Option<String>,
-    ) -> Standing {
-        let (ran, written): (Vec<_>, Vec<_>) = readings.into_iter().unzip();
-        let proofs = self.proofs(hand, checked, written);
+        readings: Vec<(String, ShaderArtifact)>,
+        validator: Option<String>,
+    ) -> ProofStatus {
+        let (names, written): (Vec<_>, Vec<_>) = readings.into_iter().unzip();
+        let proofs = self.proofs(context, checked, written);
         let proofs = match proofs {
             Ok(proofs) => proofs,
-            Err(untold) => return untold,
+            Err(status) => return status,
         };
-        if let Some(why) = proofs.first().and_then(|proof| incomparable(proof, files)) {
-            return Standing::Untried(why);
+        if let Some(why) = proofs.first().and_then(|proof| fully_undefined(proof, files)) {
+            return ProofStatus::NotProvable(why);
         }
         let held = || {
             let several = proofs.len() > 1;
             let mut first = None;
-            for (proof, who) in proofs.into_iter().zip(&ran) {
-                let held = held(proof).map_err(|why| {
+            for (proof, who) in proofs.into_iter().zip(&names) {
+                let held = require_proof(proof).map_err(|why| {
                     if several {
                         format!("as {who} reads it, {why}")
                     } else {
@@ -118,89 +118,97 @@ impl Converter<'_> {
             }
             first.ok_or_else(|| "nothing read it".to_owned())
         };
-        held().map_or_else(Standing::Unproved, |proof| {
+        held().map_or_else(ProofStatus::Unproved, |proof| {
             let browser = None;
-            Standing::Proved(proof, Readers { ran, judge, browser })
+            ProofStatus::Proved(
+                proof,
+                Readers {
+                    names,
+                    validator,
+                    browser,
+                },
+            )
         })
     }
 
     fn proofs(
         &self,
-        hand: &mut Hand,
+        context: &mut WorkerContext,
         checked: &Checked,
-        readings: Vec<Written>,
-    ) -> Result<Vec<Proof>, Standing> {
-        let runner = match &mut hand.runner {
+        readings: Vec<ShaderArtifact>,
+    ) -> Result<Vec<Proof>, ProofStatus> {
+        let runner = match &mut context.runner {
             Ok(Some(runner)) => runner,
             Ok(None) => {
                 let why = "to prove a conversion takes a Vulkan driver, and --on cpu asks for none";
-                return Err(Standing::Untried(why.to_owned()));
+                return Err(ProofStatus::NotProvable(why.to_owned()));
             }
-            Err(error) => return Err(Standing::Untried(error.clone())),
+            Err(error) => return Err(ProofStatus::NotProvable(error.clone())),
         };
         let frames = frames(checked);
-        let pool = hand.pool.as_ref();
-        prove(runner, checked, readings, &frames, self.driver.timeout(), pool).map_err(unproved)
+        let pool = context.pool.as_ref();
+        prove(runner, checked, readings, &frames, self.driver.timeout(), pool).map_err(failure_status)
     }
 }
 
-/// What stands of a conversion that has no pictures. Another text has them only if this one is at fault, not where the shader itself
-/// takes too long or cannot be run.
-fn unproved(failure: verify::Failure) -> Standing {
+/// The status of a conversion that could not be rendered. A different conversion would help only if this one
+/// is at fault, not if the shader itself takes too long or cannot be run.
+fn failure_status(failure: verify::Failure) -> ProofStatus {
     use Failure::{Device, Timeout};
     match failure {
         verify::Failure::Gpu(failure) if failure.is_without_driver() => {
-            Standing::Untried(format!("to prove a conversion takes a Vulkan driver: {failure}"))
+            ProofStatus::NotProvable(format!("to prove a conversion takes a Vulkan driver: {failure}"))
         }
         verify::Failure::Cpu(_)
-        | verify::Failure::CutShort(_)
+        | verify::Failure::LoopTruncated(_)
         | verify::Failure::Overdue(_)
-        | verify::Failure::Gpu(Timeout { .. } | Device(_)) => Standing::Untried(failure.to_string()),
-        verify::Failure::Gpu(_) => Standing::Unproved(failure.to_string()),
+        | verify::Failure::Gpu(Timeout { .. } | Device(_)) => ProofStatus::NotProvable(failure.to_string()),
+        verify::Failure::Gpu(_) => ProofStatus::Unproved(failure.to_string()),
     }
 }
 
-/// Lets a browser, if there is one, paint what is proved beside the original: as shown, they must be the same.
-pub(super) fn in_browser(
-    hand: &mut Hand,
+/// Renders a proved conversion and the original in a browser, if there is one: their 8-bit colors may differ
+/// by at most 1/255.
+pub(super) fn prove_in_browser(
+    context: &mut WorkerContext,
     checked: &Checked,
     shader: &Shader,
-    standing: Standing,
+    status: ProofStatus,
     text: Text,
     upside_down: bool,
-) -> Standing {
-    let Some(browser) = &mut hand.browser else {
-        return standing;
+) -> ProofStatus {
+    let Some(browser) = &mut context.browser else {
+        return status;
     };
-    let (proof, mut readers) = match standing {
-        Standing::Proved(proof, readers) => (proof, readers),
+    let (proof, mut readers) = match status {
+        ProofStatus::Proved(proof, readers) => (proof, readers),
         other => return other,
     };
     let is_flat = |shape: &SamplerShape| *shape == SamplerShape::D2;
     if checked.reads_textures() && !checked.channels.iter().all(is_flat) {
-        return Standing::Unproved("a channel that is not flat cannot be fed to Chromium yet".to_owned());
+        return ProofStatus::Unproved("a channel that is not flat cannot be fed to Chromium yet".to_owned());
     }
     let frames = frames(checked);
     let original = browser::as_shadertoy(shader.text(checked));
-    let painted = browser
-        .paint(Text::Glsl(&original), &frames)
+    let images = browser
+        .render(Text::Glsl(&original), &frames)
         .map_err(|failure| format!("the original: {failure}"))
         .and_then(|original| {
             let converted = browser
-                .paint(text, &frames)
+                .render(text, &frames)
                 .map_err(|failure| failure.to_string())?;
             Ok((original, converted))
         });
-    let (original, mut converted) = match painted {
-        Ok(painted) => painted,
-        Err(why) => return Standing::Unproved(why),
+    let (original, mut converted) = match images {
+        Ok(images) => images,
+        Err(why) => return ProofStatus::Unproved(why),
     };
     if upside_down {
         converted = converted.iter().map(Image::upside_down).collect();
     }
-    let shown = Shown::of(&original, &converted, &proof.undefined_at);
+    let shown = Rgb8Image::of(&original, &converted, &proof.undefined_at);
     if shown.differing > 0 {
-        return Standing::Unproved(format!(
+        return ProofStatus::Unproved(format!(
             "in Chromium {} of {} pixels {} not as with WebGL 2 of the original, by up to {:.1}/255",
             grouped(shown.differing),
             grouped(shown.pixels),
@@ -210,11 +218,11 @@ pub(super) fn in_browser(
     }
     let name = browser.name().unwrap_or("Chromium").to_owned();
     readers.browser = Some((name, shown));
-    Standing::Proved(proof, readers)
+    ProofStatus::Proved(proof, readers)
 }
 
-/// Why nothing that is written of a shader can be proved, if that is so.
-fn incomparable(proof: &Proof, files: &Files) -> Option<String> {
+/// The reason why no conversion of a shader can be proved, if every pixel depends on undefined behavior.
+fn fully_undefined(proof: &Proof, files: &Files) -> Option<String> {
     let by = proof
         .undefined_by
         .filter(|_| proof.undefined() == proof.pixels())?;
@@ -229,8 +237,8 @@ fn incomparable(proof: &Proof, files: &Files) -> Option<String> {
     ))
 }
 
-/// The proof if it holds, or why it does not.
-fn held(proof: Proof) -> Result<Proof, String> {
+/// Returns the proof if it holds, or the reason why it does not.
+fn require_proof(proof: Proof) -> Result<Proof, String> {
     if proof.holds() {
         return Ok(proof);
     }
@@ -252,14 +260,14 @@ fn held(proof: Proof) -> Result<Proof, String> {
     ))
 }
 
-/// GLSL that was written, read again by our own front end.
-fn reread_glsl(bytes: &[u8]) -> Result<Written, String> {
+/// Reads the written GLSL with our own front end.
+fn read_glsl(bytes: &[u8]) -> Result<ShaderArtifact, String> {
     let mut files = Files::default();
-    let text = reread::as_shadertoy(&String::from_utf8_lossy(bytes));
+    let text = roundtrip::as_shadertoy(&String::from_utf8_lossy(bytes));
     let file = files.add(File::new("written", &text));
     let checked = glsl::check(&files, file, &glsl::Options::default()).map_err(|errors| {
         let first = errors.first().map(|error| short(error, &files));
         format!("our own front end refuses it: {}", first.unwrap_or_default())
     })?;
-    Ok(Written::Lowered(FloatMode::Fast.lower(&checked)))
+    Ok(ShaderArtifact::Lowered(FloatMode::Fast.lower(&checked)))
 }

@@ -1,4 +1,5 @@
-//! Other people's tools that read what was written, where they are installed: tint, spirv-val, glslang.
+//! External tools that validate or compile the conversion, where they are installed: tint, spirv-val,
+//! glslang.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, Write};
@@ -7,23 +8,23 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use tempfile::{NamedTempFile, tempfile};
-use toyproof_translate::backend::{Target, reread, spirv};
+use toyproof_translate::backend::{Target, roundtrip, spirv};
 
-/// A tool that judges a language: its program and arguments; the file's name follows.
+/// A tool that reads a language: its program and arguments; the file's name is appended.
 struct Tool {
     name: &'static str,
     arguments: &'static [&'static str],
-    /// What asks it for its version; the first line is told.
+    /// The flag that prints its version; the first line of the output is reported.
     version: Option<&'static str>,
 }
 
-/// Who says whether a file in that language is valid.
-fn judge_of(target: Target) -> Option<Tool> {
+/// The validator of a language.
+fn validator_of(target: Target) -> Option<Tool> {
     let (name, arguments, version): (_, &[&str], _) = match target {
         Target::Wgsl => ("tint", &["--format", "wgsl"], None),
         Target::Spirv => ("spirv-val", &["--target-env", "vulkan1.0"], Some("--version")),
         Target::Glsl => (GLSLANG, &["-S", "frag"], Some("--version")),
-        // What compiles HLSL judges it too, and only Apple's compiler reads Metal.
+        // glslang validates HLSL when it compiles it, and only Apple's compiler reads Metal.
         Target::Hlsl | Target::Msl => return None,
     };
     Some(Tool {
@@ -35,11 +36,12 @@ fn judge_of(target: Target) -> Option<Tool> {
 
 const GLSLANG: &str = "glslangValidator";
 
-/// glslang, as what compiles a language for Vulkan.
+/// glslang as a compiler of a language for Vulkan.
 fn compiler_of(target: Target) -> Option<Tool> {
     let arguments: &[&str] = match target {
         Target::Glsl => &["-V", "-S", "frag"],
-        // Without `-Od`, its optimiser does algebra: of `2.0 * x / 240.0` it makes one product, of products and sums `fma`.
+        // Without `-Od`, its optimizer does algebra: it turns `2.0 * x / 240.0` into one product, and
+        // products with sums into `fma`.
         Target::Hlsl => &["-D", "-V", "-Od", "--hlsl-offsets", "-S", "frag", "-e", "main"],
         Target::Wgsl | Target::Spirv | Target::Msl => return None,
     };
@@ -50,37 +52,38 @@ fn compiler_of(target: Target) -> Option<Tool> {
     })
 }
 
-/// Which tool accepts the file, in words; nothing if there is none.
+/// Validates a file; returns which tool accepts it, or none if none is installed.
 ///
 /// # Errors
-/// What the tool says against it.
-pub(super) fn judge(target: Target, bytes: &[u8]) -> Result<Option<String>, String> {
-    let Some(tool) = judge_of(target) else {
+/// The tool's first error message.
+pub(super) fn validate(target: Target, bytes: &[u8]) -> Result<Option<String>, String> {
+    let Some(tool) = validator_of(target) else {
         return Ok(None);
     };
     let file = tool.file(target, bytes)?;
     let read = tool.read(&file, &[])?;
-    Ok(read.map(|()| format!("{} accepts it", tool.told())))
+    Ok(read.map(|()| format!("{} accepts it", tool.name_and_version())))
 }
 
-/// What glslang makes of a file for Vulkan, and its name and version; nothing if it is not installed or reads no such language.
+/// Compiles a file with glslang for Vulkan; returns the SPIR-V and the tool's name and version, or none if
+/// glslang is not installed or does not read the language.
 ///
 /// # Errors
-/// What it says against the file.
+/// The tool's first error message.
 pub(super) fn compile(target: Target, bytes: &[u8]) -> Result<Option<(Vec<u32>, String)>, String> {
     let text = String::from_utf8_lossy(bytes);
-    let (Some(tool), Some(text)) = (compiler_of(target), reread::for_glslang(target, &text)) else {
+    let (Some(tool), Some(text)) = (compiler_of(target), roundtrip::for_glslang(target, &text)) else {
         return Ok(None);
     };
     let file = tool.file(target, text.as_bytes())?;
-    let made = tool.file(Target::Spirv, &[])?;
-    let to = made.path().to_string_lossy().into_owned();
+    let converted = tool.file(Target::Spirv, &[])?;
+    let to = converted.path().to_string_lossy().into_owned();
     if tool.read(&file, &["-o", &to])?.is_none() {
         return Ok(None);
     }
-    let bytes = std::fs::read(made.path()).map_err(|error| format!("{}: {error}", tool.name))?;
+    let bytes = std::fs::read(converted.path()).map_err(|error| format!("{}: {error}", tool.name))?;
     let words = spirv::of_bytes(&bytes).ok_or_else(|| format!("{} wrote half a word", tool.name))?;
-    Ok(Some((words, tool.told())))
+    Ok(Some((words, tool.name_and_version())))
 }
 
 impl Tool {
@@ -97,7 +100,7 @@ impl Tool {
         written.map_err(|error| format!("{} has no file to read: {error}", self.name))
     }
 
-    /// Lets it read a file; nothing if it is not installed.
+    /// Runs the tool on a file; none if it is not installed.
     fn read(&self, file: &NamedTempFile, more: &[&str]) -> Result<Option<()>, String> {
         let output = run(Command::new(self.name)
             .args(self.arguments)
@@ -112,17 +115,19 @@ impl Tool {
         if output.status.success() {
             return Ok(Some(()));
         }
-        let said = [output.stderr, output.stdout].concat();
-        let said = String::from_utf8_lossy(&said).replace(&*file.path().to_string_lossy(), "");
-        let first = said
+        let messages = [output.stderr, output.stdout].concat();
+        let messages = String::from_utf8_lossy(&messages).replace(&*file.path().to_string_lossy(), "");
+        let first = messages
             .lines()
             .find(|line| line.contains("error") || line.contains("ERROR"));
-        let first = first.or_else(|| said.lines().next()).unwrap_or("it says nothing");
+        let first = first
+            .or_else(|| messages.lines().next())
+            .unwrap_or("it says nothing");
         Err(format!("{} refuses it: {}", self.name, first.trim()))
     }
 
-    /// Its name, with its version if it tells one.
-    fn told(&self) -> String {
+    /// Its name, with its version if it reports one.
+    fn name_and_version(&self) -> String {
         let version = self
             .version
             .and_then(|flag| run(Command::new(self.name).arg(flag)).ok());
@@ -135,11 +140,11 @@ impl Tool {
     }
 }
 
-/// How long a tool may take.
-const PATIENCE: Duration = Duration::from_secs(60);
-const NAP: Duration = Duration::from_millis(1);
+/// The time limit of a tool.
+const TIME_LIMIT: Duration = Duration::from_secs(60);
+const POLL_INTERVAL: Duration = Duration::from_millis(1);
 
-/// Runs a tool to its end, or to that of its time.
+/// Runs a tool until it ends or exceeds `TIME_LIMIT`.
 fn run(command: &mut Command) -> io::Result<Output> {
     let (mut stdout, mut stderr) = (tempfile()?, tempfile()?);
     let mut child = command
@@ -147,7 +152,7 @@ fn run(command: &mut Command) -> io::Result<Output> {
         .stdout(stdout.try_clone()?)
         .stderr(stderr.try_clone()?)
         .spawn()?;
-    let deadline = Instant::now() + PATIENCE;
+    let deadline = Instant::now() + TIME_LIMIT;
     let status = loop {
         if let Some(status) = child.try_wait()? {
             break status;
@@ -160,9 +165,9 @@ fn run(command: &mut Command) -> io::Result<Output> {
                 "it did not end within a minute",
             ));
         }
-        thread::sleep(NAP);
+        thread::sleep(POLL_INTERVAL);
     };
-    let said = |file: &mut File| {
+    let read_all = |file: &mut File| {
         let mut bytes = Vec::new();
         file.rewind()?;
         file.read_to_end(&mut bytes)?;
@@ -170,7 +175,7 @@ fn run(command: &mut Command) -> io::Result<Output> {
     };
     Ok(Output {
         status,
-        stdout: said(&mut stdout)?,
-        stderr: said(&mut stderr)?,
+        stdout: read_all(&mut stdout)?,
+        stderr: read_all(&mut stderr)?,
     })
 }

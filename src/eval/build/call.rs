@@ -1,20 +1,20 @@
-//! Calls of the author's functions, inlined (§6.1).
+//! Inlining of calls of user-defined functions (§6.1).
 
 use toyproof_glsl::tree::{
     Direction, ExprId, ExprKind, FunctionId, Place, Type, VariableId, VariableKind, walk,
 };
 
-use super::place::{Home, Target};
-use super::{Builder, Frame, Result};
-use crate::ir::function::{Cells, Node, Value};
-use crate::trace::story::CallId;
+use super::place::{Location, Target};
+use super::{Builder, InlinedCall, Result};
+use crate::ir::{Cells, Node, Value};
+use crate::trace::CallId;
 
-/// What an argument gives to its parameter, and takes back.
-struct Passed {
+/// An evaluated argument.
+struct Argument {
     values: Vec<Value>,
-    /// Where the values are read when the call begins, if not before.
-    late: Option<Target>,
-    back: Option<Target>,
+    /// The part of a variable that is copied in when the call begins, if the values are not read before.
+    copy_in: Option<Target>,
+    copy_out: Option<Target>,
 }
 
 impl Builder<'_> {
@@ -34,45 +34,46 @@ impl Builder<'_> {
             passed.push(self.pass(argument, parameter, may_change)?);
         }
         for passed in &mut passed {
-            if let Some(place) = &passed.late {
-                // Copied in when the call begins, after all arguments, as glslang does.
+            if let Some(place) = &passed.copy_in {
+                // Copied in when the call begins, after all arguments are evaluated, as in glslang.
                 passed.values = self.read(place);
             }
         }
-        let parts = self.parts.len();
-        let mut taken = Vec::new();
+        let outer_out_parameters = self.out_parameters.len();
+        let mut copy_outs = Vec::new();
         for (at, (passed, &parameter)) in passed.into_iter().zip(parameters).enumerate() {
             if matches!(tree[parameter].ty, Type::Sampler(_)) {
                 continue;
             }
-            if let Some(back) = &passed.back
-                && let Some(cells) = self.shared_cells(back, arguments, at)
+            if let Some(copy_out) = &passed.copy_out
+                && let Some(cells) = self.shared_cells(copy_out, arguments, at)
             {
                 if direction(tree[parameter].kind) == Direction::Out {
                     self.store_all(cells, &passed.values);
-                    self.begin_part(parameter, cells);
+                    self.begin_out_parameter(parameter, cells);
                 }
-                self.homes.insert(parameter, Home::Cells(cells));
+                self.locations.insert(parameter, Location::Cells(cells));
                 continue;
             }
             let cells = self.allocate_type(tree[parameter].ty)?;
             self.store_all(cells, &passed.values);
             let with_value = direction(tree[parameter].kind) != Direction::Out;
-            self.begin(parameter, cells, with_value);
-            self.homes.insert(parameter, Home::Cells(cells));
-            taken.extend(passed.back.map(|back| (cells, back)));
+            self.begin_variable(parameter, cells, with_value);
+            self.locations.insert(parameter, Location::Cells(cells));
+            copy_outs.extend(passed.copy_out.map(|copy_out| (cells, copy_out)));
         }
         let result = self.inline(function, call)?;
-        self.end_parts(parts);
+        self.end_out_parameters(outer_out_parameters);
         let value = self.load_all(result);
-        for (cells, back) in taken {
+        for (cells, copy_out) in copy_outs {
             let values = self.load_all(cells);
-            self.write(&back, &values);
+            self.write(&copy_out, &values);
         }
         Ok(value)
     }
 
-    /// The cells of an argument that a function may work on as they are: nobody else can name them while it runs, and they lie in a row.
+    /// Returns the cells of an argument that the function can access in place: they are contiguous, and no
+    /// other name refers to them during the call.
     fn shared_cells(&self, target: &Target, arguments: &[ExprId], at: usize) -> Option<Cells> {
         let root = self.tree.root_variable(arguments[at])?;
         let own = matches!(
@@ -81,69 +82,69 @@ impl Builder<'_> {
         );
         let mut others = arguments.iter().enumerate().filter(|&(other, _)| other != at);
         let alone = others.all(|(_, &other)| self.tree.root_variable(other) != Some(root));
-        (own && alone).then(|| self.row_of(target)).flatten()
+        (own && alone).then(|| self.contiguous_cells(target)).flatten()
     }
 
     /// Evaluates an argument, or the indices of one that is written.
-    fn pass(&mut self, argument: ExprId, parameter: VariableId, may_change: bool) -> Result<Passed> {
+    fn pass(&mut self, argument: ExprId, parameter: VariableId, may_change: bool) -> Result<Argument> {
         let ty = self.tree[parameter].ty;
         if matches!(ty, Type::Sampler(_)) {
             let channel = self.channel(argument);
-            self.homes.insert(parameter, Home::Channel(channel));
-            return Ok(Passed {
+            self.locations.insert(parameter, Location::Channel(channel));
+            return Ok(Argument {
                 values: Vec::new(),
-                late: None,
-                back: None,
+                copy_in: None,
+                copy_out: None,
             });
         }
         let direction = direction(self.tree[parameter].kind);
-        let late = if direction == Direction::In && may_change {
+        let copy_in = if direction == Direction::In && may_change {
             self.target(argument)?
         } else {
             None
         };
         if matches!(direction, Direction::In | Direction::ConstIn) {
-            let values = match &late {
+            let values = match &copy_in {
                 Some(_) => self.zeros(ty),
                 None => self.expression(argument)?,
             };
-            return Ok(Passed {
+            return Ok(Argument {
                 values,
-                late,
-                back: None,
+                copy_in,
+                copy_out: None,
             });
         }
-        let back = self.target(argument)?;
-        Ok(Passed {
+        let copy_out = self.target(argument)?;
+        Ok(Argument {
             values: self.zeros(ty),
-            late: back.clone().filter(|_| direction == Direction::InOut),
-            back,
+            copy_in: copy_out.clone().filter(|_| direction == Direction::InOut),
+            copy_out,
         })
     }
 
-    /// The channel that a sampler is; none for one that nobody feeds.
+    /// Returns the channel of a sampler; none if it is not bound.
     pub(super) fn channel(&mut self, sampler: ExprId) -> Option<u8> {
         let ExprKind::Variable(variable) = self.tree[sampler].kind else {
             return None;
         };
-        match self.home(variable) {
-            Home::Channel(channel) => channel,
+        match self.location(variable) {
+            Location::Channel(channel) => channel,
             _ => None,
         }
     }
 
-    /// The body of a function whose parameters have homes; its result, in cells.
+    /// Inlines the body of a function whose parameters have locations; returns the cells of its result.
     fn inline(&mut self, function: FunctionId, call: Option<CallId>) -> Result<Cells> {
         let tree = self.tree;
         let ty = tree[function].return_type;
         let result = self.allocate_type(ty)?;
-        // As where a function ends without `return`.
+        // The result of a function that ends without `return`.
         let zeros = self.zeros(ty);
         self.store_all(result, &zeros);
         let scope = self.scope();
         let body = self.inner(|builder| {
-            builder.frames.push(Frame { scope, result, call });
-            builder.tell_parameters(function);
+            builder.call_stack.push(InlinedCall { scope, result, call });
+            builder.trace_parameters(function);
             let (breaks, continues) = (
                 std::mem::take(&mut builder.breaks),
                 std::mem::take(&mut builder.continues),
@@ -153,40 +154,40 @@ impl Builder<'_> {
             }
             builder.breaks = breaks;
             builder.continues = continues;
-            builder.frames.pop();
+            builder.call_stack.pop();
             Ok(())
         })?;
         self.push_scope(scope, body);
         Ok(result)
     }
 
-    /// `mainImage`, which paints into `colour`.
-    pub(super) fn main_image(&mut self, function: FunctionId, colour: Cells) -> Result<()> {
+    /// Inlines `mainImage`, with `color` as the cells of its output.
+    pub(super) fn main_image(&mut self, function: FunctionId, color: Cells) -> Result<()> {
         let tree = self.tree;
         let coordinates = self.frag_coord();
         if let &[out, position] = tree[function].parameters.as_slice() {
-            self.homes.insert(out, Home::Cells(colour));
-            self.begin(out, colour, true);
+            self.locations.insert(out, Location::Cells(color));
+            self.begin_variable(out, color, true);
             let cells = self.allocate_type(tree[position].ty)?;
             self.store_all(cells, &coordinates);
-            self.homes.insert(position, Home::Cells(cells));
-            self.begin(position, cells, true);
+            self.locations.insert(position, Location::Cells(cells));
+            self.begin_variable(position, cells, true);
         }
         self.inline(function, None).map(drop)
     }
 
-    /// A scope, or its body alone where nothing leaves it.
-    pub(super) fn push_scope(&self, scope: crate::ir::function::Scope, mut body: Vec<Node>) {
-        super::tail::shorten(&mut body, scope);
-        if super::tail::leaves(&body, scope) {
+    /// Emits a scope, or its body alone if nothing leaves it.
+    pub(super) fn push_scope(&self, scope: crate::ir::Scope, mut body: Vec<Node>) {
+        super::statement::simplify_exits(&mut body, scope);
+        if super::statement::has_break(&body, scope) {
             self.push(Node::Scope { scope, body });
         } else {
-            self.draft.borrow_mut().block.extend(body);
+            self.writer.borrow_mut().block.extend(body);
         }
     }
 }
 
-/// How a parameter is passed.
+/// Returns the direction of a parameter.
 pub(super) fn direction(kind: VariableKind) -> Direction {
     match kind {
         VariableKind::Parameter(direction) => direction,

@@ -1,25 +1,27 @@
-//! Expressions: their components, in order. Chains of thousands of operators are walked without recursion.
+//! Expressions, as lists of components. Chains of thousands of operators are walked without recursion.
 
 use toyproof_glsl::tree::{BinaryOp, ExprId, ExprKind, Scalar, StepOp, Type};
 
-use super::place::Home;
-use super::{Builder, Result, layout};
-use crate::ir::function::{NONE, Node, Value};
-use crate::ir::operation::Operation;
-use crate::trace::story::What;
+use super::place::Location;
+use super::place::{component_count, indexed_element, member_offset, scalar_kind};
+use super::{Builder, Result};
+use crate::ir::Operation;
+use crate::ir::{NONE, Node, Value};
+use crate::trace::What;
 
-/// The most nodes of a side of `?:`, `&&` or `||` that is computed for all pixels rather than jumped over.
-const SMALL: usize = 12;
+/// The maximum number of nodes of an operand of `?:`, `&&` or `||` that is computed for all pixels instead of
+/// being branched over.
+const MAX_SPECULATED_NODES: usize = 12;
 
 impl Builder<'_> {
-    /// The components of an expression's value; none of `void`.
+    /// Returns the components of an expression's value; none for `void`.
     pub(super) fn expression(&mut self, root: ExprId) -> Result<Vec<Value>> {
         self.deeper(|builder| builder.chain(root))
     }
 
     fn chain(&mut self, root: ExprId) -> Result<Vec<Value>> {
         self.bounded()?;
-        // What each expression of a chain begins with, down to one that begins with itself.
+        // The first operands, down to a leaf.
         let mut chain = vec![root];
         while let Some(first) = chain.last().and_then(|&last| self.first_operand(last)) {
             chain.push(first);
@@ -27,32 +29,32 @@ impl Builder<'_> {
         let mut values = match chain.pop() {
             Some(leaf) => {
                 let values = self.leaf(leaf)?;
-                self.tell_part(leaf, &values);
+                self.trace_part(leaf, &values);
                 values
             }
             None => Vec::new(),
         };
         while let Some(expr) = chain.pop() {
-            values = self.go_on(expr, values)?;
-            self.tell_part(expr, &values);
+            values = self.continue_with(expr, values)?;
+            self.trace_part(expr, &values);
         }
         Ok(values)
     }
 
-    /// The one component of a scalar.
+    /// Returns the component of a scalar.
     pub(super) fn scalar(&mut self, expr: ExprId) -> Result<Value> {
         let values = self.expression(expr)?;
         Ok(values.first().copied().unwrap_or_else(|| self.word(0)))
     }
 
-    /// The value of a `bool` that decides what runs.
+    /// Returns the value of a branch condition.
     pub(super) fn condition(&mut self, expr: ExprId) -> Result<Value> {
         let value = self.scalar(expr)?;
-        self.tell(What::Branch, self.at(expr), Type::BOOL, &[value]);
+        self.trace_event(What::Branch, self.at(expr), Type::BOOL, &[value]);
         Ok(value)
     }
 
-    /// The operand that is evaluated first and then no more than its value is asked for.
+    /// Returns the operand that is evaluated first, if only its value is used.
     fn first_operand(&self, expr: ExprId) -> Option<ExprId> {
         match self.tree[expr].kind {
             ExprKind::Binary { left: first, .. } | ExprKind::Sequence { first, .. } => Some(first),
@@ -70,21 +72,21 @@ impl Builder<'_> {
     /// Whether it is a variable in cells, or a part of one.
     fn is_in_cells(&self, expr: ExprId) -> bool {
         let root = self.tree.root_variable(expr);
-        root.is_some_and(|variable| matches!(self.homes.get(&variable), Some(Home::Cells(_))))
+        root.is_some_and(|variable| matches!(self.locations.get(&variable), Some(Location::Cells(_))))
     }
 
     fn leaf(&mut self, expr: ExprId) -> Result<Vec<Value>> {
         let tree = self.tree;
         Ok(match &tree[expr].kind {
             ExprKind::Literal(literal) => vec![self.literal(literal.value)],
-            ExprKind::Variable(variable) => match self.home(*variable) {
-                Home::Cells(cells) => {
+            ExprKind::Variable(variable) => match self.location(*variable) {
+                Location::Cells(cells) => {
                     let own: Vec<u32> = (cells.first..cells.first + cells.count).collect();
-                    self.note_read(tree[expr].ty, &own, None);
+                    self.check_written(tree[expr].ty, &own, None);
                     self.load_all(cells)
                 }
-                Home::Values(values) => values,
-                Home::Channel(_) => Vec::new(),
+                Location::Values(values) => values,
+                Location::Channel(_) => Vec::new(),
             },
             ExprKind::Swizzle { .. } | ExprKind::Member { .. } | ExprKind::Index { .. } => {
                 match self.target(expr)? {
@@ -115,21 +117,21 @@ impl Builder<'_> {
                 arguments,
             } => self.construct(*constructor, tree[expr].ty, arguments)?,
             &ExprKind::Length { array } => {
-                let (_, count) = layout::element(tree, tree[array].ty);
+                let (_, count) = indexed_element(tree, tree[array].ty);
                 vec![self.word(count)]
             }
             ExprKind::Binary { .. } | ExprKind::Sequence { .. } => Vec::new(),
         })
     }
 
-    /// The value of an expression whose first operand has those components.
-    fn go_on(&mut self, expr: ExprId, first: Vec<Value>) -> Result<Vec<Value>> {
+    /// Returns the value of an expression from that of its first operand.
+    fn continue_with(&mut self, expr: ExprId, first: Vec<Value>) -> Result<Vec<Value>> {
         let tree = self.tree;
         match tree[expr].kind {
             ExprKind::Sequence { second, .. } => self.expression(second),
             ExprKind::Binary { op, right, .. } if matches!(op, BinaryOp::And | BinaryOp::Or) => {
                 let left = first.first().copied().unwrap_or(NONE);
-                let (yes, no) = (self.truth(true), self.truth(false));
+                let (yes, no) = (self.bool_value(true), self.bool_value(false));
                 if op == BinaryOp::And {
                     self.choose(
                         left,
@@ -159,15 +161,15 @@ impl Builder<'_> {
                 let Type::Struct(id) = tree[structure].ty else {
                     return Ok(first);
                 };
-                let start = layout::offset(tree, id, member);
-                Ok(first[start..start + layout::size(tree, tree[expr].ty)].to_vec())
+                let start = member_offset(tree, id, member);
+                Ok(first[start..start + component_count(tree, tree[expr].ty)].to_vec())
             }
             ExprKind::Index { base, index } => self.pick(&first, tree[base].ty, index),
             _ => Ok(first),
         }
     }
 
-    /// One or the other, of which only the chosen one is evaluated, unless nothing tells that both were.
+    /// Evaluates one of two expressions; both, if they are small and without side effects.
     fn choose(
         &mut self,
         condition: Value,
@@ -186,9 +188,10 @@ impl Builder<'_> {
         })?;
         let scalars = self.tree.scalars(ty);
 
-        let is_silent =
-            |block: &[Node]| block.len() <= SMALL && block.iter().all(|node| matches!(node, Node::Let(_)));
-        if is_silent(&yes_block) && is_silent(&no_block) {
+        let is_speculatable = |block: &[Node]| {
+            block.len() <= MAX_SPECULATED_NODES && block.iter().all(|node| matches!(node, Node::Let(_)))
+        };
+        if is_speculatable(&yes_block) && is_speculatable(&no_block) {
             for node in yes_block.into_iter().chain(no_block) {
                 self.push(node);
             }
@@ -196,20 +199,22 @@ impl Builder<'_> {
             return Ok(pairs
                 .map(|((yes, no), scalar)| match scalar {
                     _ if yes == no => yes,
-                    Scalar::Bool if self.truth(false) == no => self.binary(Operation::And, condition, yes),
-                    Scalar::Bool if self.truth(true) == yes => self.binary(Operation::Or, condition, no),
-                    _ => self.select(condition, yes, no, layout::kind(scalar)),
+                    Scalar::Bool if self.bool_value(false) == no => {
+                        self.binary(Operation::And, condition, yes)
+                    }
+                    Scalar::Bool if self.bool_value(true) == yes => self.binary(Operation::Or, condition, no),
+                    _ => self.select(condition, yes, no, scalar_kind(scalar)),
                 })
                 .collect());
         }
         let cells = self.allocate_type(ty)?;
-        // Told of on every way to here, so that the cells begin where they are used.
+        // Stored on every path to here, so that the live ranges of the cells begin where they are used.
         let zeros = self.zeros(ty);
         self.store_all(cells, &zeros);
         for (block, values) in [(&mut yes_block, &yes_values), (&mut no_block, &no_values)] {
-            let outer = std::mem::replace(&mut self.draft.borrow_mut().block, std::mem::take(block));
+            let outer = std::mem::replace(&mut self.writer.borrow_mut().block, std::mem::take(block));
             self.store_all(cells, values);
-            *block = std::mem::replace(&mut self.draft.borrow_mut().block, outer);
+            *block = std::mem::replace(&mut self.writer.borrow_mut().block, outer);
         }
         self.push(Node::If {
             condition,
@@ -219,7 +224,7 @@ impl Builder<'_> {
         Ok(self.load_all(cells))
     }
 
-    /// Evaluates the indices of the target, then the value, then reads the target, as WebGL2 does.
+    /// Evaluates the indices of the target, then the value, then reads the target, as in WebGL 2.
     fn assign(
         &mut self,
         op: Option<BinaryOp>,
@@ -237,7 +242,7 @@ impl Builder<'_> {
             values = self.binary_operator(op, types, &old, &values, self.at(whole));
         }
         let what = What::Stored(self.at(target));
-        self.tell(what, self.at(whole), types.0, &values);
+        self.trace_event(what, self.at(whole), types.0, &values);
         self.write(&place, &values);
         Ok(values)
     }
@@ -258,7 +263,7 @@ impl Builder<'_> {
         };
         let new: Vec<Value> = old.iter().map(|&old| self.binary(operation, old, one)).collect();
         let at = self.at(target);
-        self.tell(What::Stored(at), at, ty, &new);
+        self.trace_event(What::Stored(at), at, ty, &new);
         self.write(&place, &new);
         Ok(if postfix { old } else { new })
     }
@@ -266,7 +271,7 @@ impl Builder<'_> {
     fn literal(&self, value: toyproof_glsl::tree::Value) -> Value {
         use toyproof_glsl::tree::Value as Literal;
         match value {
-            Literal::Bool(value) => self.truth(value),
+            Literal::Bool(value) => self.bool_value(value),
             Literal::Int(value) => self.word(value.cast_unsigned()),
             Literal::Uint(value) => self.word(value),
             Literal::Float(value) => self.float(value),

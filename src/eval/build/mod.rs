@@ -1,19 +1,12 @@
-//! From the typed tree to [`Flow`]: calls inlined, everything in components.
+//! Construction of the [`Function`] from the typed tree: calls are inlined, and values are scalarized.
 
 mod builtin;
 mod call;
-mod construct;
 mod expression;
-mod layout;
+mod instrument;
 mod operator;
 mod place;
 mod statement;
-mod tail;
-mod tell;
-mod term;
-mod texture;
-mod undefined;
-mod written;
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -23,66 +16,66 @@ use toyproof_diagnostic::{Deadline, Overdue};
 use toyproof_glsl::Checked;
 use toyproof_glsl::tree::{Direction, ExprId, FunctionId, Item, Place, Tree, Type, VariableId, VariableKind};
 
-use self::place::Home;
-use self::term::Term;
-use self::written::{Written, handed_out};
-use crate::ir::function::{Block, Cell, Cells, Flow, LoopId, NONE, Node, Origin, Scope, Value};
-use crate::ir::operation::{Kind, Operation};
+use self::instrument::{WrittenFlags, out_arguments};
+use self::operator::Term;
+use self::place::{Location, component_count, scalar_kind};
+use crate::ir::{Block, Cell, Cells, Function, LoopId, NONE, Node, Scope, Value, ValueDef};
+use crate::ir::{Kind, Operation};
 use crate::observe::{Predicate, Site, SiteId};
-use crate::render::Other;
-use crate::trace::story::{CallId, EventId, Plot};
+use crate::render::Substitute;
+use crate::trace::{CallId, EventId, TraceSchema};
 
-/// The most values that a program may have: more is refused rather than run out of memory.
+/// The maximum number of values of a program; larger programs are refused before memory runs out.
 const MAX_VALUES: usize = 2_000_000;
 
-/// The most cells: each thread that paints holds 256 bytes for each of them.
+/// The maximum number of cells; each rendering thread holds up to 256 bytes for each cell.
 const MAX_CELLS: usize = 1 << 17;
 
-/// How deep calls, statements and expressions may nest, all together, once calls are inlined.
+/// The maximum nesting depth of inlined calls, statements and expressions together.
 const MAX_DEPTH: usize = 10_000;
 
-/// The stack that so much takes, and to spare.
+/// The stack size in bytes, enough for [`MAX_DEPTH`] with a margin.
 const STACK_BYTES: usize = 128 << 20;
 
 /// Why a shader cannot be evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum Refusal {
-    /// Inlined, it is longer than we take.
+    /// It has too many values after inlining.
     #[error("with all calls written out, this shader is too long to be evaluated on the CPU")]
     TooLong,
-    /// Inlined, it nests deeper than we take.
+    /// It nests too deep after inlining.
     #[error("with all calls written out, this shader nests too deep to be evaluated on the CPU")]
     TooDeep,
-    /// There is no memory for it, or for the stack that is needed.
+    /// There is not enough memory for it, or for the stack.
     #[error("there is not enough memory to evaluate this shader on the CPU")]
     NoMemory,
-    /// Compiling it takes longer than it may.
+    /// Compilation exceeds its time limit.
     #[error(transparent)]
     TooSlow(#[from] Overdue),
 }
 
-/// What comes of operations that GLSL leaves undefined.
+/// The treatment of operations that GLSL leaves undefined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(crate) enum Choice {
-    /// What strict GPU runs make of them.
+pub(crate) enum UndefinedMode {
+    /// Compute what strict GPU runs compute.
     #[default]
-    Usual,
-    /// The same, and it is noted.
-    Noted,
-    /// Something else.
-    Other(Other),
+    Strict,
+    /// Compute what strict GPU runs compute, and record each occurrence.
+    Observed,
+    /// Substitute a different result.
+    Substitute(Substitute),
 }
 
-/// What is compiled besides the picture.
+/// The instrumentation that is compiled into a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(crate) struct Extras {
-    /// What comes of operations that GLSL leaves undefined.
-    pub(crate) choice: Choice,
-    /// What each pixel does, step by step.
-    pub(crate) story: bool,
+pub(crate) struct BuildOptions {
+    /// The treatment of operations that GLSL leaves undefined.
+    pub(crate) undefined: UndefinedMode,
+    /// Whether traces are recorded.
+    pub(crate) trace: bool,
 }
 
-/// Does what may recurse deep, on a stack of its own.
+/// Runs work that may recurse deeply on a thread with a large stack.
 pub(crate) fn with_stack<T: Send>(work: impl FnOnce() -> T + Send) -> std::result::Result<T, Refusal> {
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new()
@@ -93,76 +86,76 @@ pub(crate) fn with_stack<T: Send>(work: impl FnOnce() -> T + Send) -> std::resul
     })
 }
 
-/// What comes of a tree.
+/// A compiled program.
 pub(crate) struct Program {
-    pub(crate) flow: Flow,
-    /// Where something may be noted.
+    pub(crate) function: Function,
+    /// The sites of checks.
     pub(crate) sites: Vec<Site>,
-    /// What may be told.
-    pub(crate) plot: Plot,
+    /// The events of traces.
+    pub(crate) schema: TraceSchema,
 }
 
-/// Writes a shader's flow.
-pub(crate) fn compile(checked: &Checked, extras: Extras, deadline: &Deadline) -> Result<Program> {
+/// Compiles a shader to the intermediate representation.
+pub(crate) fn compile(checked: &Checked, options: BuildOptions, deadline: &Deadline) -> Result<Program> {
     let mut builder = Builder {
         tree: &checked.tree,
         deadline,
-        extras,
-        draft: RefCell::default(),
-        homes: HashMap::new(),
+        options,
+        writer: RefCell::default(),
+        locations: HashMap::new(),
         shared: HashSet::new(),
         cells: Vec::new(),
         scopes: 0,
         loops: Vec::new(),
-        frames: Vec::new(),
+        call_stack: Vec::new(),
         breaks: Vec::new(),
         continues: Vec::new(),
         sites: Vec::new(),
         site_ids: HashMap::new(),
-        open: Vec::new(),
+        unresolved: Vec::new(),
         written: BTreeMap::new(),
-        parts: Vec::new(),
-        handed_out: match extras.choice {
-            Choice::Noted => handed_out(&checked.tree),
+        out_parameters: Vec::new(),
+        out_arguments: match options.undefined {
+            UndefinedMode::Observed => out_arguments(&checked.tree),
             _ => HashSet::new(),
         },
-        plot: Plot::default(),
-        rounds: Vec::new(),
+        schema: TraceSchema::default(),
+        loop_headers: Vec::new(),
         depth: 0,
         discarded: Cell(0),
     };
     builder.program(checked.main_image)?;
-    let draft = builder.draft.into_inner();
-    let [red, green, blue, discarded] = draft.output;
-    let flow = Flow {
-        origins: draft.origins,
+    let writer = builder.writer.into_inner();
+    let [red, green, blue, discarded] = writer.output;
+    let function = Function {
+        defs: writer.defs,
         cells: builder.cells,
         scopes: builder.scopes,
         loops: builder.loops,
-        body: draft.block,
+        body: writer.block,
         output: [red, green, blue, discarded],
     };
     Ok(Program {
-        flow,
+        function,
         sites: builder.sites,
-        plot: builder.plot,
+        schema: builder.schema,
     })
 }
 
-/// The nodes that are being written: shared, so that terms may write as they are added and multiplied.
+/// The nodes that are being written. Shared, so that overloaded operators of [`Term`] can emit nodes.
 #[derive(Debug)]
-struct Draft {
-    origins: Vec<Origin>,
+struct IrWriter {
+    defs: Vec<ValueDef>,
     block: Block,
-    /// Numbers and inputs, which stand nowhere in the code.
-    known: HashMap<Origin, Value>,
+    /// Constants and inputs, which have no node.
+    known: HashMap<ValueDef, Value>,
     output: [Value; 4],
 }
 
-impl Default for Draft {
+impl Default for IrWriter {
     fn default() -> Self {
         Self {
-            origins: Vec::new(),
+            defs: Vec::new(),
             block: Block::new(),
             known: HashMap::new(),
             output: [NONE; 4],
@@ -170,19 +163,19 @@ impl Default for Draft {
     }
 }
 
-impl Draft {
-    fn push(&mut self, origin: Origin) -> Value {
+impl IrWriter {
+    fn push(&mut self, def: ValueDef) -> Value {
         let constant = matches!(
-            origin,
-            Origin::Float(_) | Origin::Word(_) | Origin::Input(..) | Origin::FragCoord(_)
+            def,
+            ValueDef::Float(_) | ValueDef::Word(_) | ValueDef::Input(..) | ValueDef::FragCoord(_)
         );
-        if constant && let Some(&value) = self.known.get(&origin) {
+        if constant && let Some(&value) = self.known.get(&def) {
             return value;
         }
-        let value = Value(self.origins.len() as u32);
-        self.origins.push(origin);
+        let value = Value(self.defs.len() as u32);
+        self.defs.push(def);
         if constant {
-            self.known.insert(origin, value);
+            self.known.insert(def, value);
         } else {
             self.block.push(Node::Let(value));
         }
@@ -192,43 +185,43 @@ impl Draft {
 
 /// A function that is being inlined.
 #[derive(Debug)]
-struct Frame {
+struct InlinedCall {
     scope: Scope,
     result: Cells,
-    /// Its call, for stories.
+    /// Its call, for traces.
     call: Option<CallId>,
 }
 
-/// Writes the flow of a tree.
+/// Builds the function of a tree.
 struct Builder<'a> {
     tree: &'a Tree,
     deadline: &'a Deadline,
-    extras: Extras,
-    draft: RefCell<Draft>,
-    homes: HashMap<VariableId, Home>,
-    /// Variables of a `switch`, whose homes were found before it.
+    options: BuildOptions,
+    writer: RefCell<IrWriter>,
+    locations: HashMap<VariableId, Location>,
+    /// Variables declared in a `switch`, whose cells are allocated before it.
     shared: HashSet<VariableId>,
     cells: Vec<Kind>,
     scopes: u32,
     loops: Vec<Place>,
-    frames: Vec<Frame>,
+    call_stack: Vec<InlinedCall>,
     breaks: Vec<Scope>,
     continues: Vec<Scope>,
     sites: Vec<Site>,
     site_ids: HashMap<Site, SiteId>,
-    /// What was checked and is not settled.
-    open: Vec<(Predicate, [Value; 2])>,
-    /// Variables of which it is kept what is written, by their first cells.
-    written: BTreeMap<u32, Written>,
-    /// The parts of them that are parameters now, the innermost last.
-    parts: Vec<(Cells, Place)>,
-    /// The variables whose values a function may take away.
-    handed_out: HashSet<VariableId>,
-    plot: Plot,
-    /// The rounds of the loops that are being written.
-    rounds: Vec<EventId>,
+    /// Predicates of checks whose results have not been substituted yet.
+    unresolved: Vec<(Predicate, [Value; 2])>,
+    /// The flags of variables whose written components are tracked, by their first cells.
+    written: BTreeMap<u32, WrittenFlags>,
+    /// The parts of tracked variables that are bound to `out` parameters, the innermost last.
+    out_parameters: Vec<(Cells, Place)>,
+    /// The variables that are passed to `out` parameters, which makes them uninitialized.
+    out_arguments: HashSet<VariableId>,
+    schema: TraceSchema,
+    /// The header events of the loops that are being written.
+    loop_headers: Vec<EventId>,
     depth: usize,
-    /// The cell that tells of `discard`.
+    /// The cell that is set by `discard`.
     discarded: Cell,
 }
 
@@ -241,13 +234,14 @@ impl Builder<'_> {
         self.discarded = discarded;
         let zero = self.word(0);
         self.store(discarded, zero);
-        let colour = Cells {
+        let color = Cells {
             first: self.cells.len() as u32,
             count: 4,
         };
-        // Black, and what a shader adds to is opaque, as ShaderToy's own `main` has it; but `out` brings nothing in.
-        let colour_parameter = self.tree[main_image].parameters.first();
-        let added_to = colour_parameter
+        // The color is initially black, and opaque for an `inout` parameter, as in ShaderToy's own `main`; an
+        // `out` parameter takes no value.
+        let color_parameter = self.tree[main_image].parameters.first();
+        let added_to = color_parameter
             .is_some_and(|&parameter| call::direction(self.tree[parameter].kind) == Direction::InOut);
         for value in [0.0, 0.0, 0.0, f64::from(u8::from(added_to))] {
             let cell = self.allocate(Kind::Float);
@@ -255,24 +249,24 @@ impl Builder<'_> {
             self.store(cell, value);
         }
         let body = self.inner(|builder| {
-            builder.frames.push(Frame {
+            builder.call_stack.push(InlinedCall {
                 scope: all,
                 result: Cells { first: 0, count: 0 },
                 call: None,
             });
             builder.globals()?;
-            builder.main_image(main_image, colour)?;
-            builder.frames.pop();
+            builder.main_image(main_image, color)?;
+            builder.call_stack.pop();
             Ok(())
         })?;
         self.push(Node::Scope { scope: all, body });
-        let [r, g, b] = [0, 1, 2].map(|at| self.load(Cell(colour.first + at)));
+        let [r, g, b] = [0, 1, 2].map(|at| self.load(Cell(color.first + at)));
         let discarded = self.load(discarded);
-        self.draft.borrow_mut().output = [r, g, b, discarded];
+        self.writer.borrow_mut().output = [r, g, b, discarded];
         Ok(())
     }
 
-    /// The author's variables outside of functions, in order.
+    /// Declares the global variables, in order.
     fn globals(&mut self) -> Result<()> {
         let tree = self.tree;
         for item in &tree.items {
@@ -289,15 +283,15 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// What a scope's body writes, as a block of its own.
+    /// Collects the nodes that `write` emits in a block of their own.
     fn inner(&mut self, write: impl FnOnce(&mut Self) -> Result<()>) -> Result<Block> {
-        let outer = std::mem::take(&mut self.draft.borrow_mut().block);
+        let outer = std::mem::take(&mut self.writer.borrow_mut().block);
         let written = self.deeper(write);
-        let inner = std::mem::replace(&mut self.draft.borrow_mut().block, outer);
+        let inner = std::mem::replace(&mut self.writer.borrow_mut().block, outer);
         written.map(|()| inner)
     }
 
-    /// One level further down.
+    /// Runs `work` one nesting level deeper.
     fn deeper<T>(&mut self, work: impl FnOnce(&mut Self) -> Result<T>) -> Result<T> {
         self.depth += 1;
         if self.depth > MAX_DEPTH {
@@ -309,7 +303,7 @@ impl Builder<'_> {
     }
 
     fn push(&self, node: Node) {
-        self.draft.borrow_mut().block.push(node);
+        self.writer.borrow_mut().block.push(node);
     }
 
     fn scope(&mut self) -> Scope {
@@ -327,16 +321,16 @@ impl Builder<'_> {
         Cell(self.cells.len() as u32 - 1)
     }
 
-    /// Cells for a variable of that type.
+    /// Allocates cells for a variable of a type.
     fn allocate_type(&mut self, ty: Type) -> Result<Cells> {
         let scalars = self.tree.scalars(ty);
-        if self.cells.len() + layout::size(self.tree, ty) > MAX_CELLS {
+        if self.cells.len() + component_count(self.tree, ty) > MAX_CELLS {
             return Err(Refusal::NoMemory);
         }
 
         let first = self.cells.len() as u32;
         self.cells
-            .extend(scalars.iter().map(|&scalar| layout::kind(scalar)));
+            .extend(scalars.iter().map(|&scalar| scalar_kind(scalar)));
         Ok(Cells {
             first,
             count: scalars.len() as u32,
@@ -354,7 +348,7 @@ impl Builder<'_> {
     }
 
     fn load(&self, cell: Cell) -> Value {
-        self.value(Origin::Load(cell))
+        self.value(ValueDef::Load(cell))
     }
 
     fn load_all(&self, cells: Cells) -> Vec<Value> {
@@ -363,40 +357,40 @@ impl Builder<'_> {
             .collect()
     }
 
-    fn value(&self, origin: Origin) -> Value {
-        self.draft.borrow_mut().push(origin)
+    fn value(&self, def: ValueDef) -> Value {
+        self.writer.borrow_mut().push(def)
     }
 
-    /// Stops when a program grows beyond all measure, or the time is over.
+    /// Fails if the program is too large or the deadline has passed.
     fn bounded(&self) -> Result<()> {
         if self.deadline.is_over() {
             self.deadline.check()?;
         }
-        if self.draft.borrow().origins.len().max(self.plot.events.len()) > MAX_VALUES {
+        if self.writer.borrow().defs.len().max(self.schema.events.len()) > MAX_VALUES {
             return Err(Refusal::TooLong);
         }
         Ok(())
     }
 
     fn float(&self, value: f64) -> Value {
-        self.value(Origin::Float(value.to_bits()))
+        self.value(ValueDef::Float(value.to_bits()))
     }
 
     fn word(&self, value: u32) -> Value {
-        self.value(Origin::Word(value))
+        self.value(ValueDef::Word(value))
     }
 
-    /// A `bool`: no bits, or all.
-    fn truth(&self, value: bool) -> Value {
+    /// Returns a `bool`: 0 or all bits.
+    fn bool_value(&self, value: bool) -> Value {
         self.word(if value { u32::MAX } else { 0 })
     }
 
     fn unary(&self, operation: Operation, a: Value) -> Value {
-        self.value(Origin::Operation(operation, [a, NONE, NONE]))
+        self.value(ValueDef::Operation(operation, [a, NONE, NONE]))
     }
 
     fn binary(&self, operation: Operation, a: Value, b: Value) -> Value {
-        self.value(Origin::Operation(operation, [a, b, NONE]))
+        self.value(ValueDef::Operation(operation, [a, b, NONE]))
     }
 
     fn select(&self, condition: Value, yes: Value, no: Value, kind: Kind) -> Value {
@@ -404,24 +398,24 @@ impl Builder<'_> {
             Kind::Float => Operation::Select,
             Kind::Word => Operation::SelectWord,
         };
-        self.value(Origin::Operation(operation, [condition, yes, no]))
+        self.value(ValueDef::Operation(operation, [condition, yes, no]))
     }
 
     fn term(&self, value: Value) -> Term<'_> {
-        Term::new(&self.draft, value)
+        Term::new(&self.writer, value)
     }
 
     fn terms(&self, values: &[Value]) -> Vec<Term<'_>> {
         values.iter().map(|&value| self.term(value)).collect()
     }
 
-    /// The zero of each component of a type.
+    /// Returns a zero for each component of a type.
     fn zeros(&self, ty: Type) -> Vec<Value> {
         let scalars = self.tree.scalars(ty);
 
         scalars
             .into_iter()
-            .map(|scalar| match layout::kind(scalar) {
+            .map(|scalar| match scalar_kind(scalar) {
                 Kind::Float => self.float(0.0),
                 Kind::Word => self.word(0),
             })

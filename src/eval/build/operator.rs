@@ -1,10 +1,14 @@
-//! Operators (§5.9), component by component.
+//! Operators (§5.9), constructors and conversions (§5.4), component by component.
 
-use toyproof_glsl::tree::{BinaryOp, Place, Scalar, Type, UnaryOp};
+use std::cell::RefCell;
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-use super::{Builder, layout};
-use crate::ir::function::{NONE, Value};
-use crate::ir::operation::{Kind, Operation};
+use toyproof_glsl::tree::{BinaryOp, Constructor, ExprId, Place, Scalar, Type, UnaryOp};
+use toyproof_math::Number;
+
+use super::place::{component_count, scalar_kind};
+use super::{Builder, IrWriter, Result};
+use crate::ir::{Kind, NONE, Operation, Value, ValueDef};
 use crate::observe::{Fault, Predicate};
 
 impl Builder<'_> {
@@ -40,13 +44,13 @@ impl Builder<'_> {
             _ => {}
         }
         let scalar = a_type.scalar().unwrap_or(Scalar::Int);
-        // A scalar meets every component of the other side.
+        // A scalar operand applies to every component of the other.
         let count = a.len().max(b.len());
         let pick = |side: &[Value], at: usize| side[if side.len() == 1 { 0 } else { at }];
         (0..count)
             .map(|index| {
                 let value = self.scalars(op, scalar, pick(a, index), pick(b, index), at);
-                self.settle(value)
+                self.substitute_undefined(value)
             })
             .collect()
     }
@@ -76,7 +80,7 @@ impl Builder<'_> {
                 if signed { O::RemInt } else { O::RemUint }
             }
             B::ShiftLeft | B::ShiftRight => {
-                self.check(Fault::ShiftTooFar, at, Predicate::From(32), [b, NONE]);
+                self.check(Fault::ShiftTooFar, at, Predicate::AtLeast(32), [b, NONE]);
                 match (op, signed) {
                     (B::ShiftLeft, _) => O::ShiftLeft,
                     (_, true) => O::ShiftRightInt,
@@ -115,20 +119,20 @@ impl Builder<'_> {
         self.unary(Operation::Not, greater)
     }
 
-    /// Whether all components are equal.
+    /// Returns whether all components are equal.
     pub(super) fn equal(&self, ty: Type, a: &[Value], b: &[Value]) -> Value {
         let scalars = self.tree.scalars(ty);
 
         let pairs = a.iter().zip(b).zip(scalars);
-        let each = pairs.map(|((&a, &b), scalar)| match layout::kind(scalar) {
+        let each = pairs.map(|((&a, &b), scalar)| match scalar_kind(scalar) {
             Kind::Float => self.binary(Operation::Equal, a, b),
             Kind::Word => self.binary(Operation::EqualWord, a, b),
         });
         let whole = each.reduce(|a, b| self.binary(Operation::And, a, b));
-        whole.unwrap_or_else(|| self.truth(true))
+        whole.unwrap_or_else(|| self.bool_value(true))
     }
 
-    /// The product of a matrix with a matrix or a vector; none of other operands.
+    /// Returns the product of a matrix with a matrix or a vector; none for other operands.
     fn matrix_product(&self, types: (Type, Type), a: &[Value], b: &[Value]) -> Option<Vec<Value>> {
         let rows = |ty| match ty {
             Type::Matrix { rows, .. } => usize::from(rows),
@@ -145,5 +149,230 @@ impl Builder<'_> {
             _ => return None,
         };
         Some(product.into_iter().map(|term| term.value).collect())
+    }
+}
+
+// Constructors and conversions (§5.4).
+
+impl Builder<'_> {
+    pub(super) fn construct(
+        &mut self,
+        constructor: Constructor,
+        ty: Type,
+        arguments: &[ExprId],
+    ) -> Result<Vec<Value>> {
+        let composite = matches!(constructor, Constructor::Struct | Constructor::Array);
+        let mut values = Vec::new();
+        for &argument in arguments {
+            let components = self.expression(argument)?;
+            if composite {
+                values.extend(components);
+                continue;
+            }
+            let (Some(from), Some(to)) = (self.ty(argument).scalar(), ty.scalar()) else {
+                continue;
+            };
+            // Surplus components of the last argument are not converted: they may be out of range.
+            let wanted = match constructor {
+                Constructor::Scalar | Constructor::Splat | Constructor::Diagonal => 1,
+                Constructor::Resize => components.len(),
+                _ => component_count(self.tree, ty) - values.len(),
+            };
+            let at = self.at(argument);
+            for value in components.into_iter().take(wanted) {
+                let converted = self.convert(value, from, to, at);
+                values.push(self.substitute_undefined(converted));
+            }
+        }
+        Ok(match (constructor, ty) {
+            (Constructor::Splat, _) => vec![values[0]; component_count(self.tree, ty)],
+            (Constructor::Diagonal, Type::Matrix { columns, rows }) => {
+                let zero = self.float(0.0);
+                each(
+                    columns,
+                    rows,
+                    |column, row| if column == row { values[0] } else { zero },
+                )
+            }
+            (Constructor::Resize, Type::Matrix { columns, rows }) => {
+                let Some(Type::Matrix {
+                    columns: old_columns,
+                    rows: old_rows,
+                }) = arguments.first().map(|&argument| self.ty(argument))
+                else {
+                    return Ok(values);
+                };
+                let (zero, one) = (self.float(0.0), self.float(1.0));
+                each(columns, rows, |column, row| {
+                    if column < old_columns && row < old_rows {
+                        values[usize::from(column * old_rows + row)]
+                    } else if column == row {
+                        one
+                    } else {
+                        zero
+                    }
+                })
+            }
+            _ => values,
+        })
+    }
+
+    /// Converts a scalar to a different scalar type (§5.4.1).
+    fn convert(&mut self, value: Value, from: Scalar, to: Scalar, at: Place) -> Value {
+        match (from, to) {
+            (Scalar::Float, Scalar::Float)
+            | (Scalar::Bool, Scalar::Bool)
+            | (Scalar::Int | Scalar::Uint, Scalar::Int | Scalar::Uint) => value,
+            (Scalar::Bool, Scalar::Float) => {
+                let (one, zero) = (self.float(1.0), self.float(0.0));
+                self.select(value, one, zero, Kind::Float)
+            }
+            (Scalar::Bool, Scalar::Int | Scalar::Uint) => {
+                let one = self.word(1);
+                self.binary(Operation::And, value, one)
+            }
+            (Scalar::Int, Scalar::Float) => self.unary(Operation::FromInt, value),
+            (Scalar::Uint, Scalar::Float) => self.unary(Operation::FromUint, value),
+            (Scalar::Float, Scalar::Int) => {
+                self.check(Fault::IntegerOverflow, at, Predicate::NotInt, [value, NONE]);
+                self.unary(Operation::ToInt, value)
+            }
+            (Scalar::Float, Scalar::Uint) => {
+                self.check(Fault::IntegerOverflow, at, Predicate::NotUint, [value, NONE]);
+                self.unary(Operation::ToUint, value)
+            }
+            (Scalar::Float, Scalar::Bool) => {
+                let zero = self.float(0.0);
+                self.binary(Operation::NotEqual, value, zero)
+            }
+            (Scalar::Int | Scalar::Uint, Scalar::Bool) => {
+                let zero = self.word(0);
+                let equal = self.binary(Operation::EqualWord, value, zero);
+                self.unary(Operation::Not, equal)
+            }
+        }
+    }
+}
+
+/// Returns the components of a matrix, column by column.
+fn each(columns: u8, rows: u8, component: impl Fn(u8, u8) -> Value) -> Vec<Value> {
+    let component = &component;
+    (0..columns)
+        .flat_map(|column| (0..rows).map(move |row| component(column, row)))
+        .collect()
+}
+
+// Terms: generic numeric code that is called with them emits instructions.
+
+/// A float value of the program that is being written.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Term<'a> {
+    writer: &'a RefCell<IrWriter>,
+    pub(super) value: Value,
+}
+
+/// A `bool` value of the program that is being written.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct BoolTerm<'a>(Term<'a>);
+
+impl<'a> Term<'a> {
+    pub(super) fn new(writer: &'a RefCell<IrWriter>, value: Value) -> Self {
+        Self { writer, value }
+    }
+
+    fn push(self, operation: Operation, operands: [Value; 3]) -> Self {
+        let value = self
+            .writer
+            .borrow_mut()
+            .push(ValueDef::Operation(operation, operands));
+        Self { value, ..self }
+    }
+
+    fn unary(self, operation: Operation) -> Self {
+        self.push(operation, [self.value, NONE, NONE])
+    }
+
+    fn binary(self, operation: Operation, other: Self) -> Self {
+        self.push(operation, [self.value, other.value, NONE])
+    }
+}
+
+macro_rules! operators {
+    ($($trait:ident $method:ident,)*) => {$(
+        impl $trait for Term<'_> {
+            type Output = Self;
+
+            fn $method(self, other: Self) -> Self {
+                self.binary(Operation::$trait, other)
+            }
+        }
+    )*};
+}
+
+operators! {
+    Add add,
+    Sub sub,
+    Mul mul,
+    Div div,
+}
+
+impl Neg for Term<'_> {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        self.unary(Operation::Neg)
+    }
+}
+
+impl BitAnd for BoolTerm<'_> {
+    type Output = Self;
+
+    fn bitand(self, other: Self) -> Self {
+        Self(self.0.binary(Operation::And, other.0))
+    }
+}
+
+impl BitOr for BoolTerm<'_> {
+    type Output = Self;
+
+    fn bitor(self, other: Self) -> Self {
+        Self(self.0.binary(Operation::Or, other.0))
+    }
+}
+
+impl Not for BoolTerm<'_> {
+    type Output = Self;
+
+    fn not(self) -> Self {
+        Self(self.0.unary(Operation::Not))
+    }
+}
+
+impl<'a> Number for Term<'a> {
+    type Truth = BoolTerm<'a>;
+
+    fn literal(self, value: f64) -> Self {
+        let value = self.writer.borrow_mut().push(ValueDef::Float(value.to_bits()));
+        Self { value, ..self }
+    }
+
+    fn sqrt(self) -> Self {
+        self.unary(Operation::Sqrt)
+    }
+
+    fn abs(self) -> Self {
+        self.unary(Operation::Abs)
+    }
+
+    fn floor(self) -> Self {
+        self.unary(Operation::Floor)
+    }
+
+    fn less(self, other: Self) -> BoolTerm<'a> {
+        BoolTerm(self.binary(Operation::Less, other))
+    }
+
+    fn select(condition: BoolTerm<'a>, yes: Self, no: Self) -> Self {
+        yes.push(Operation::Select, [condition.0.value, yes.value, no.value])
     }
 }

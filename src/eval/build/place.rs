@@ -1,91 +1,95 @@
-//! Where an expression's value lies: variables and parts of them, with indices evaluated once.
+//! The locations of variables and their parts; indices are evaluated once.
 
-use toyproof_glsl::tree::{BuiltInVariable, ExprId, ExprKind, Input, Type, VariableId, VariableKind};
+use toyproof_glsl::tree::{
+    BuiltInVariable, ExprId, ExprKind, Input, Scalar, StructId, Tree, Type, VariableId, VariableKind,
+};
 
-use super::{Builder, Result, layout};
-use crate::ir::function::{Cell, Cells, NONE, Node, Origin, Value};
-use crate::ir::operation::{Kind, Operation};
+use super::{Builder, Result};
+use crate::ir::{Cell, Cells, Kind, NONE, Node, Operation, Value, ValueDef};
 use crate::observe::{Fault, Predicate};
 
-/// Where a variable lives.
+/// The location of a variable.
 #[derive(Debug, Clone)]
-pub(super) enum Home {
+pub(super) enum Location {
     /// In cells of its own.
     Cells(Cells),
-    /// It never changes.
+    /// A read-only variable.
     Values(Vec<Value>),
-    /// A sampler: the texture of a channel, or of none.
+    /// A sampler: the texture of a channel, or unbound.
     Channel(Option<u8>),
 }
 
-/// A part of a variable.
+/// A part of a variable: an l-value.
 #[derive(Debug, Clone)]
 pub(super) struct Target {
     ty: Type,
     /// The first of its cells.
     first: u32,
-    /// Which of the components from there on, where they do not follow each other.
+    /// The offsets of its components from there, if they are not contiguous.
     swizzle: Option<Vec<u32>>,
-    /// What is added to each, and the cells that this may lead to.
+    /// The dynamic index added to each, and the cells that it may select.
     index: Option<(Value, Cells)>,
 }
 
 impl Builder<'_> {
-    /// The home of a variable that is in scope.
-    pub(super) fn home(&mut self, variable: VariableId) -> Home {
-        if let Some(home) = self.homes.get(&variable) {
-            return home.clone();
+    /// Returns the location of a variable that is in scope.
+    pub(super) fn location(&mut self, variable: VariableId) -> Location {
+        if let Some(location) = self.locations.get(&variable) {
+            return location.clone();
         }
         let ty = self.tree[variable].ty;
-        let home = match self.tree[variable].kind {
-            VariableKind::Input(Input::Channel(channel)) => Home::Channel(Some(channel)),
+        let location = match self.tree[variable].kind {
+            VariableKind::Input(Input::Channel(channel)) => Location::Channel(Some(channel)),
             VariableKind::Input(input) => {
-                let components = 0..layout::size(self.tree, ty) as u8;
-                Home::Values(
+                let components = 0..component_count(self.tree, ty) as u8;
+                Location::Values(
                     components
-                        .map(|at| self.value(Origin::Input(input, at)))
+                        .map(|at| self.value(ValueDef::Input(input, at)))
                         .collect(),
                 )
             }
-            VariableKind::BuiltIn(BuiltInVariable::FragCoord) => Home::Values(self.frag_coord().to_vec()),
-            VariableKind::BuiltIn(BuiltInVariable::FrontFacing) => Home::Values(vec![self.truth(true)]),
+            VariableKind::BuiltIn(BuiltInVariable::FragCoord) => Location::Values(self.frag_coord().to_vec()),
+            VariableKind::BuiltIn(BuiltInVariable::FrontFacing) => {
+                Location::Values(vec![self.bool_value(true)])
+            }
             VariableKind::BuiltInConstant => {
                 let value = self.tree[variable].value.as_ref();
                 let value = value
                     .and_then(toyproof_glsl::tree::Constant::integer)
                     .unwrap_or(0);
-                Home::Values(vec![self.word(value as u32)])
+                Location::Values(vec![self.word(value as u32)])
             }
-            _ if matches!(ty, Type::Sampler(_)) => Home::Channel(None),
-            VariableKind::Uniform | VariableKind::Varying => Home::Values(self.zeros(ty)),
-            // Written, like `gl_FragDepth`, or broken.
+            _ if matches!(ty, Type::Sampler(_)) => Location::Channel(None),
+            VariableKind::Uniform | VariableKind::Varying => Location::Values(self.zeros(ty)),
+            // A built-in output such as `gl_FragDepth`, or an erroneous declaration.
             _ => {
                 let zeros = self.zeros(ty);
                 match self.allocate_type(ty) {
                     Ok(cells) => {
                         self.store_all(cells, &zeros);
-                        Home::Cells(cells)
+                        Location::Cells(cells)
                     }
-                    Err(_) => Home::Values(zeros),
+                    Err(_) => Location::Values(zeros),
                 }
             }
         };
-        self.homes.insert(variable, home.clone());
-        home
+        self.locations.insert(variable, location.clone());
+        location
     }
 
-    /// `gl_FragCoord`: the middle of the pixel, no depth, and no perspective.
+    /// Returns `gl_FragCoord`: the center of the pixel, with z = 0 and w = 1.
     pub(super) fn frag_coord(&self) -> [Value; 4] {
-        use crate::ir::function::Axis;
+        use crate::ir::Axis;
         [
-            self.value(Origin::FragCoord(Axis::X)),
-            self.value(Origin::FragCoord(Axis::Y)),
+            self.value(ValueDef::FragCoord(Axis::X)),
+            self.value(ValueDef::FragCoord(Axis::Y)),
             self.float(0.0),
             self.float(1.0),
         ]
     }
 
-    /// The part of a variable that an expression is; none if it is none, or not in cells. Evaluates its indices.
+    /// Returns the part of a variable that an expression denotes, and evaluates its indices; none if it
+    /// denotes none, or one that is not in cells.
     pub(super) fn target(&mut self, expr: ExprId) -> Result<Option<Target>> {
         let mut path = Vec::new();
         let mut part = expr;
@@ -101,7 +105,7 @@ impl Builder<'_> {
                 _ => return Ok(None),
             };
         };
-        let Home::Cells(cells) = self.home(variable) else {
+        let Location::Cells(cells) = self.location(variable) else {
             return Ok(None);
         };
         let mut target = Target {
@@ -116,13 +120,13 @@ impl Builder<'_> {
         Ok(Some(target))
     }
 
-    /// Takes a part of a part.
+    /// Narrows a target by one selection.
     fn narrow(&mut self, target: &mut Target, step: ExprId) -> Result<()> {
         let ty = self.ty(step);
         match self.tree[step].kind {
             ExprKind::Member { member, .. } => {
                 if let Type::Struct(id) = target.ty {
-                    target.first += layout::offset(self.tree, id, member) as u32;
+                    target.first += member_offset(self.tree, id, member) as u32;
                 }
             }
             ExprKind::Swizzle { components, .. } => {
@@ -134,11 +138,11 @@ impl Builder<'_> {
                 target.swizzle = Some(chosen.collect());
             }
             ExprKind::Index { index, .. } => {
-                let (element, count) = layout::element(self.tree, target.ty);
+                let (element, count) = indexed_element(self.tree, target.ty);
                 if let Some(at) = self.constant_index(index, count) {
                     target.first += match target.swizzle.take() {
                         Some(swizzle) => swizzle[at],
-                        None => (at * layout::size(self.tree, element)) as u32,
+                        None => (at * component_count(self.tree, element)) as u32,
                     };
                 } else {
                     let index = self.clamped_index(index, count)?;
@@ -152,8 +156,8 @@ impl Builder<'_> {
     }
 
     fn index_at(&mut self, target: &mut Target, index: Value) {
-        let (element, count) = layout::element(self.tree, target.ty);
-        let size = layout::size(self.tree, element) as u32;
+        let (element, count) = indexed_element(self.tree, target.ty);
+        let size = component_count(self.tree, element) as u32;
         let (scaled, reach) = match target.swizzle.take() {
             None if size == 1 => (index, count),
             None => {
@@ -164,8 +168,8 @@ impl Builder<'_> {
                 let mut chosen = self.word(swizzle[0]);
                 for (at, &offset) in (0..).zip(&swizzle).skip(1) {
                     let [at, offset] = [at, offset].map(|word| self.word(word));
-                    let here = self.binary(Operation::EqualWord, index, at);
-                    chosen = self.select(here, offset, chosen, Kind::Word);
+                    let selected = self.binary(Operation::EqualWord, index, at);
+                    chosen = self.select(selected, offset, chosen, Kind::Word);
                 }
                 (chosen, swizzle.iter().max().map_or(1, |last| last + 1))
             }
@@ -181,7 +185,7 @@ impl Builder<'_> {
         target.ty = element;
     }
 
-    /// The value of an index that is a constant expression, and in range.
+    /// Returns the value of an index that is a constant expression and in range.
     pub(super) fn constant_index(&self, index: ExprId, count: u32) -> Option<usize> {
         let value = self.tree.value(index)?.integer()?;
         usize::try_from(value)
@@ -189,43 +193,48 @@ impl Builder<'_> {
             .filter(|&value| value < count as usize)
     }
 
-    /// An index held to its range as naga does it: what is negative is large.
+    /// Returns an index clamped to its range as in naga: negative indices become the last one.
     pub(super) fn clamped_index(&mut self, index: ExprId, count: u32) -> Result<Value> {
         let at = self.at(index);
         let index = self.scalar(index)?;
-        self.check(Fault::IndexOutOfBounds, at, Predicate::From(count), [index, NONE]);
+        self.check(
+            Fault::IndexOutOfBounds,
+            at,
+            Predicate::AtLeast(count),
+            [index, NONE],
+        );
         let last = self.word(count - 1);
-        let held = self.binary(Operation::MinUint, index, last);
-        Ok(self.settle(held))
+        let clamped = self.binary(Operation::MinUint, index, last);
+        Ok(self.substitute_undefined(clamped))
     }
 
-    /// The cells of a part, if they follow each other and no index leads to them.
-    pub(super) fn row_of(&self, target: &Target) -> Option<Cells> {
+    /// Returns the cells of a part, if they are contiguous and not indexed dynamically.
+    pub(super) fn contiguous_cells(&self, target: &Target) -> Option<Cells> {
         (target.swizzle.is_none() && target.index.is_none()).then(|| Cells {
             first: target.first,
-            count: layout::size(self.tree, target.ty) as u32,
+            count: component_count(self.tree, target.ty) as u32,
         })
     }
 
-    /// The cells of a part, before an index is added.
+    /// Returns the cells of a part, before the dynamic index is added.
     fn cells_of(&self, target: &Target) -> Vec<u32> {
         match &target.swizzle {
             Some(swizzle) => swizzle.iter().map(|&at| target.first + at).collect(),
             None => (target.first..)
-                .take(layout::size(self.tree, target.ty))
+                .take(component_count(self.tree, target.ty))
                 .collect(),
         }
     }
 
-    /// The values of a part.
+    /// Loads the values of a part.
     pub(super) fn read(&mut self, target: &Target) -> Vec<Value> {
         let cells = self.cells_of(target);
-        self.note_read(target.ty, &cells, target.index);
+        self.check_written(target.ty, &cells, target.index);
         cells
             .into_iter()
             .map(|cell| match target.index {
                 None => self.load(Cell(cell)),
-                Some((index, cells)) => self.value(Origin::LoadAt {
+                Some((index, cells)) => self.value(ValueDef::LoadAt {
                     cells,
                     offset: cell - cells.first,
                     index,
@@ -235,10 +244,10 @@ impl Builder<'_> {
             .collect()
     }
 
-    /// Puts values into a part.
+    /// Stores values to a part.
     pub(super) fn write(&self, target: &Target, values: &[Value]) {
         for (cell, &value) in self.cells_of(target).into_iter().zip(values) {
-            self.note_written(cell, target.index);
+            self.mark_written(cell, target.index);
             self.push(match target.index {
                 None => Node::Store {
                     cell: Cell(cell),
@@ -254,10 +263,10 @@ impl Builder<'_> {
         }
     }
 
-    /// What an index selects of values that lie in no cells.
+    /// Returns the element that an index selects from values that are not in cells.
     pub(super) fn pick(&mut self, values: &[Value], ty: Type, index: ExprId) -> Result<Vec<Value>> {
-        let (element, count) = layout::element(self.tree, ty);
-        let size = layout::size(self.tree, element);
+        let (element, count) = indexed_element(self.tree, ty);
+        let size = component_count(self.tree, element);
         if let Some(at) = self.constant_index(index, count) {
             return Ok(values[at * size..(at + 1) * size].to_vec());
         }
@@ -272,5 +281,48 @@ impl Builder<'_> {
         };
         self.index_at(&mut target, index);
         Ok(self.read(&target))
+    }
+}
+
+// The component layout of types: columns, members and elements in order.
+
+/// Returns the number of components of a type; 0 for `void` and samplers.
+pub(super) fn component_count(tree: &Tree, ty: Type) -> usize {
+    match ty {
+        Type::Array(id) => {
+            let array = tree.array(id);
+            component_count(tree, array.element) * array.size as usize
+        }
+        Type::Struct(id) => tree[id]
+            .members
+            .iter()
+            .map(|member| component_count(tree, member.ty))
+            .sum(),
+        _ => ty.component_count().map_or(0, usize::from),
+    }
+}
+
+/// Returns the number of components before a member.
+pub(super) fn member_offset(tree: &Tree, id: StructId, member: usize) -> usize {
+    tree[id].members[..member]
+        .iter()
+        .map(|member| component_count(tree, member.ty))
+        .sum()
+}
+
+/// Returns the type of the elements of a type, and their number.
+pub(super) fn indexed_element(tree: &Tree, ty: Type) -> (Type, u32) {
+    match ty {
+        Type::Array(id) => (tree.array(id).element, tree.array(id).size),
+        Type::Matrix { columns, rows } => (Type::vector(Scalar::Float, rows), u32::from(columns)),
+        Type::Vector(scalar, size) => (Type::Scalar(scalar), u32::from(size)),
+        _ => (ty, 1),
+    }
+}
+
+pub(super) fn scalar_kind(scalar: Scalar) -> Kind {
+    match scalar {
+        Scalar::Float => Kind::Float,
+        Scalar::Bool | Scalar::Int | Scalar::Uint => Kind::Word,
     }
 }

@@ -1,21 +1,21 @@
-//! Statements (§6): control as scopes, loops and choices.
+//! Statements (§6): control flow as scopes, loops and branches.
 
 use toyproof_glsl::tree::{
     Arm, Block, Case, Condition, ExprId, Label, Place, Statement, StatementKind, Type, VariableId,
     VariableKind,
 };
 
-use super::place::Home;
-use super::{Builder, Result, tail};
-use crate::ir::function::{Block as Nodes, Cell, Node, Origin, Scope, Value};
-use crate::ir::operation::Operation;
-use crate::trace::story::What;
+use super::place::Location;
+use super::{Builder, Result};
+use crate::ir::Block as Nodes;
+use crate::ir::{Cell, Node, Operation, Scope, Value, ValueDef};
+use crate::trace::What;
 
 impl Builder<'_> {
     pub(super) fn block(&mut self, block: &Block) -> Result<()> {
         for statement in block {
             self.statement(statement)?;
-            let over = matches!(self.draft.borrow().block.last(), Some(Node::Leave(_)));
+            let over = matches!(self.writer.borrow().block.last(), Some(Node::Break(_)));
             if over {
                 break;
             }
@@ -40,79 +40,79 @@ impl Builder<'_> {
                 body,
             } => {
                 self.block(init)?;
-                self.repeat(statement.at, *condition, body, *step, None)?;
+                self.loop_statement(statement.at, *condition, body, *step, None)?;
             }
             StatementKind::While { condition, body } => {
-                self.repeat(statement.at, Some(*condition), body, None, None)?;
+                self.loop_statement(statement.at, Some(*condition), body, None, None)?;
             }
             StatementKind::DoWhile { body, condition } => {
-                self.repeat(statement.at, None, body, None, Some(*condition))?;
+                self.loop_statement(statement.at, None, body, None, Some(*condition))?;
             }
             StatementKind::Break => {
-                self.ran(statement.at);
-                self.leave(self.breaks.last().copied());
+                self.trace_statement(statement.at);
+                self.push_break(self.breaks.last().copied());
             }
             StatementKind::Continue => {
-                self.ran(statement.at);
-                self.leave(self.continues.last().copied());
+                self.trace_statement(statement.at);
+                self.push_break(self.continues.last().copied());
             }
             StatementKind::Return(value) => {
                 if let Some(value) = value {
                     let values = self.expression(*value)?;
-                    self.tell(What::Returned, statement.at, self.ty(*value), &values);
-                    if let Some(frame) = self.frames.last() {
+                    self.trace_event(What::Returned, statement.at, self.ty(*value), &values);
+                    if let Some(frame) = self.call_stack.last() {
                         self.store_all(frame.result, &values);
                     }
                 } else {
-                    self.ran(statement.at);
+                    self.trace_statement(statement.at);
                 }
-                self.leave(self.frames.last().map(|frame| frame.scope));
+                self.push_break(self.call_stack.last().map(|frame| frame.scope));
             }
             StatementKind::Discard => {
-                self.ran(statement.at);
-                let yes = self.truth(true);
+                self.trace_statement(statement.at);
+                let yes = self.bool_value(true);
                 self.store(self.discarded, yes);
-                self.leave(self.frames.first().map(|frame| frame.scope));
+                self.push_break(self.call_stack.first().map(|frame| frame.scope));
             }
         }
         Ok(())
     }
 
-    fn ran(&mut self, at: Place) {
-        self.tell(What::Ran, at, Type::Void, &[]);
+    fn trace_statement(&mut self, at: Place) {
+        self.trace_event(What::Ran, at, Type::Void, &[]);
     }
 
-    fn leave(&self, scope: Option<Scope>) {
+    fn push_break(&self, scope: Option<Scope>) {
         if let Some(scope) = scope {
-            self.push(Node::Leave(scope));
+            self.push(Node::Break(scope));
         }
     }
 
-    /// A variable begins: its initialiser runs, or it is zero.
+    /// Declares a variable: evaluates its initializer, or sets it to zero.
     pub(super) fn declare(&mut self, variable: VariableId) -> Result<()> {
-        let (ty, initialiser) = (self.tree[variable].ty, self.tree[variable].initialiser);
+        let (ty, initializer) = (self.tree[variable].ty, self.tree[variable].initializer);
         if matches!(ty, Type::Sampler(_)) {
             return Ok(());
         }
-        let values = match initialiser {
-            Some(initialiser) => self.expression(initialiser)?,
+        let values = match initializer {
+            Some(initializer) => self.expression(initializer)?,
             None => self.zeros(ty),
         };
-        let cells = match self.homes.get(&variable) {
-            Some(&Home::Cells(cells)) if self.shared.contains(&variable) => cells,
+        let cells = match self.locations.get(&variable) {
+            Some(&Location::Cells(cells)) if self.shared.contains(&variable) => cells,
             _ => self.allocate_type(ty)?,
         };
-        self.homes.insert(variable, Home::Cells(cells));
-        if let (Some(initialiser), Some(at)) = (initialiser, self.tree[variable].at)
+        self.locations.insert(variable, Location::Cells(cells));
+        if let (Some(initializer), Some(at)) = (initializer, self.tree[variable].at)
             && self.tree[variable].value.is_none()
         {
-            let whole = at.to(self.at(initialiser));
-            self.tell(What::Stored(at), whole, ty, &values);
+            let whole = at.to(self.at(initializer));
+            self.trace_event(What::Stored(at), whole, ty, &values);
         }
         self.store_all(cells, &values);
         let local = self.tree[variable].kind == VariableKind::Local;
         if local && !self.shared.contains(&variable) {
-            self.begin(variable, cells, initialiser.is_some());
+            self.begin_variable(variable, cells, initializer.is_some());
         }
         Ok(())
     }
@@ -124,26 +124,26 @@ impl Builder<'_> {
         let condition = self.condition(arm.condition)?;
         let yes = self.inner(|builder| builder.block(&arm.body))?;
         let no = self.inner(|builder| builder.arms(others, otherwise))?;
-        self.choice(condition, yes, no);
+        self.push_if(condition, yes, no);
         Ok(())
     }
 
-    /// An `if`; one that only leaves needs no branches.
-    fn choice(&self, condition: Value, yes: Nodes, no: Nodes) {
+    /// Emits an `if`; one that only breaks needs no blocks.
+    fn push_if(&self, condition: Value, yes: Nodes, no: Nodes) {
         let node = match (&yes[..], &no[..]) {
             ([], []) => return,
-            (&[Node::Leave(scope)], []) => Node::LeaveIf {
+            (&[Node::Break(scope)], []) => Node::BreakIf {
                 scope,
                 condition,
                 when: true,
             },
-            (_, &[Node::Leave(scope)]) => {
-                self.push(Node::LeaveIf {
+            (_, &[Node::Break(scope)]) => {
+                self.push(Node::BreakIf {
                     scope,
                     condition,
                     when: false,
                 });
-                self.draft.borrow_mut().block.extend(yes);
+                self.writer.borrow_mut().block.extend(yes);
                 return;
             }
             _ => Node::If { condition, yes, no },
@@ -151,7 +151,7 @@ impl Builder<'_> {
         self.push(node);
     }
 
-    fn repeat(
+    fn loop_statement(
         &mut self,
         at: Place,
         condition: Option<Condition>,
@@ -162,20 +162,20 @@ impl Builder<'_> {
         let (out, on) = (self.scope(), self.scope());
         let id = self.new_loop(at);
         let nodes = self.inner(|builder| {
-            builder.push(Node::Round(id));
-            builder.begin_round(at);
+            builder.push(Node::LoopHeader(id));
+            builder.begin_iteration(at);
             if let Some(condition) = condition {
                 let condition = match condition {
                     Condition::Expression(expr) => builder.condition(expr)?,
                     Condition::Declare(variable) => {
                         builder.declare(variable)?;
-                        match builder.home(variable) {
-                            Home::Cells(cells) => builder.load(Cell(cells.first)),
-                            _ => builder.truth(false),
+                        match builder.location(variable) {
+                            Location::Cells(cells) => builder.load(Cell(cells.first)),
+                            _ => builder.bool_value(false),
                         }
                     }
                 };
-                builder.leave_unless(out, condition);
+                builder.break_unless(out, condition);
             }
             let nodes = builder.inner(|builder| {
                 builder.breaks.push(out);
@@ -185,7 +185,7 @@ impl Builder<'_> {
                 builder.continues.pop();
                 Ok(())
             })?;
-            let ends = tail::leaves(&nodes, on) || !tail::never_ends(&nodes);
+            let ends = has_break(&nodes, on) || !never_falls_through(&nodes);
             builder.push_scope(on, nodes);
             if ends {
                 if let Some(step) = step {
@@ -193,10 +193,10 @@ impl Builder<'_> {
                 }
                 if let Some(until) = until {
                     let condition = builder.condition(until)?;
-                    builder.leave_unless(out, condition);
+                    builder.break_unless(out, condition);
                 }
             }
-            builder.end_rounds();
+            builder.end_loop();
             Ok(())
         })?;
         let body = vec![Node::Loop { id, body: nodes }];
@@ -204,10 +204,10 @@ impl Builder<'_> {
         Ok(())
     }
 
-    fn leave_unless(&self, scope: Scope, condition: Value) {
-        let origin = self.draft.borrow().origins[condition.0 as usize];
-        if origin != Origin::Word(u32::MAX) {
-            self.push(Node::LeaveIf {
+    fn break_unless(&self, scope: Scope, condition: Value) {
+        let def = self.writer.borrow().defs[condition.0 as usize];
+        if def != ValueDef::Word(u32::MAX) {
+            self.push(Node::BreakIf {
                 scope,
                 condition,
                 when: false,
@@ -215,38 +215,39 @@ impl Builder<'_> {
         }
     }
 
-    /// Each case runs for the pixels whose selector leads to it, or that come from the case before.
+    /// Emits a `switch`: each case runs for the pixels whose selector matches it, or that fall through from
+    /// the case before.
     fn switch(&mut self, selector: ExprId, cases: &[Case]) -> Result<()> {
         let selector = self.scalar(selector)?;
-        self.share(cases)?;
+        self.declare_switch_variables(cases)?;
         let out = self.scope();
         let all = cases.iter().flat_map(|case| &case.labels);
         let named = self.any_label(selector, all);
         let body = self.inner(|builder| {
-            let mut reached = None;
+            let mut falls_through = None;
             for case in cases {
-                let mut here = builder.any_label(selector, &case.labels);
+                let mut matches = builder.any_label(selector, &case.labels);
                 if case.labels.contains(&Label::Default) {
                     let others = match named {
                         Some(named) => builder.unary(Operation::Not, named),
-                        None => builder.truth(true),
+                        None => builder.bool_value(true),
                     };
-                    here = Some(builder.either(here, others));
+                    matches = Some(builder.either(matches, others));
                 }
-                if let Some(before) = reached {
-                    here = Some(builder.either(here, before));
+                if let Some(before) = falls_through {
+                    matches = Some(builder.either(matches, before));
                 }
-                let condition = here.unwrap_or_else(|| builder.truth(false));
+                let condition = matches.unwrap_or_else(|| builder.bool_value(false));
                 let mut body = builder.inner(|builder| {
                     builder.breaks.push(out);
                     builder.block(&case.body)?;
                     builder.breaks.pop();
                     Ok(())
                 })?;
-                reached = (!tail::never_ends(&body)).then_some(condition);
-                if reached.is_none() {
-                    // No later case is for those who leave at the end of this one.
-                    tail::shorten(&mut body, out);
+                falls_through = (!never_falls_through(&body)).then_some(condition);
+                if falls_through.is_none() {
+                    // Pixels that break at the end of this case run no later one.
+                    simplify_exits(&mut body, out);
                 }
                 builder.push(Node::If {
                     condition,
@@ -264,7 +265,7 @@ impl Builder<'_> {
         a.map_or(b, |a| self.binary(Operation::Or, a, b))
     }
 
-    /// Whether the selector is one of the labels; none of no labels.
+    /// Returns whether the selector matches one of the labels; none if there are no labels.
     fn any_label<'b>(&self, selector: Value, labels: impl IntoIterator<Item = &'b Label>) -> Option<Value> {
         let mut any = None;
         for label in labels {
@@ -277,8 +278,9 @@ impl Builder<'_> {
         any
     }
 
-    /// All cases are one scope: what one declares, a later one may read, though control jumped over it.
-    fn share(&mut self, cases: &[Case]) -> Result<()> {
+    /// Allocates the variables that the cases declare. All cases are one scope: a later one may read a
+    /// variable whose declaration was jumped over.
+    fn declare_switch_variables(&mut self, cases: &[Case]) -> Result<()> {
         for statement in cases.iter().flat_map(|case| &case.body) {
             if let StatementKind::Declare(variable) = statement.kind
                 && !matches!(self.tree[variable].ty, Type::Sampler(_))
@@ -287,10 +289,75 @@ impl Builder<'_> {
                 let cells = self.allocate_type(ty)?;
                 let zeros = self.zeros(ty);
                 self.store_all(cells, &zeros);
-                self.homes.insert(variable, Home::Cells(cells));
+                self.locations.insert(variable, Location::Cells(cells));
                 self.shared.insert(variable);
             }
         }
         Ok(())
     }
+}
+
+// Simplification of breaks: a `return` at the end needs no jump, and nodes after `if (c) return x;` are moved
+// into its `else`.
+
+/// The maximum nesting depth of moved nodes.
+const MAX_NESTING: usize = 100;
+
+/// Removes breaks at the end of a scope, after moving nodes so that there are more of them.
+pub(super) fn simplify_exits(body: &mut Nodes, scope: Scope) {
+    simplify_exits_at(body, scope, 0);
+}
+
+fn simplify_exits_at(body: &mut Nodes, scope: Scope, depth: usize) {
+    if depth > MAX_NESTING {
+        return;
+    }
+    let splits = body.iter().position(|node| match node {
+        Node::If { yes, no, .. } => ends_in_break(yes, scope) || ends_in_break(no, scope),
+        _ => false,
+    });
+    if let Some(at) = splits {
+        let rest = body.split_off(at + 1);
+        if let Some(Node::If { yes, no, .. }) = body.last_mut() {
+            match (ends_in_break(yes, scope), ends_in_break(no, scope)) {
+                (true, false) => no.extend(rest),
+                (false, true) => yes.extend(rest),
+                // The rest is unreachable.
+                _ => {}
+            }
+        }
+    }
+    match body.last_mut() {
+        Some(Node::Break(left)) if *left == scope => {
+            body.pop();
+        }
+        Some(Node::If { yes, no, .. }) => {
+            simplify_exits_at(yes, scope, depth + 1);
+            simplify_exits_at(no, scope, depth + 1);
+        }
+        _ => {}
+    }
+}
+
+fn ends_in_break(block: &Nodes, scope: Scope) -> bool {
+    matches!(block.last(), Some(Node::Break(left)) if *left == scope)
+}
+
+/// Whether control never reaches the end of a block.
+pub(super) fn never_falls_through(block: &Nodes) -> bool {
+    match block.last() {
+        Some(Node::Break(_)) => true,
+        Some(Node::If { yes, no, .. }) => never_falls_through(yes) && never_falls_through(no),
+        _ => false,
+    }
+}
+
+/// Whether a block contains a break of a scope.
+pub(super) fn has_break(block: &Nodes, scope: Scope) -> bool {
+    block.iter().any(|node| match node {
+        Node::Break(left) | Node::BreakIf { scope: left, .. } => *left == scope,
+        Node::If { yes, no, .. } => has_break(yes, scope) || has_break(no, scope),
+        Node::Scope { body, .. } | Node::Loop { body, .. } => has_break(body, scope),
+        _ => false,
+    })
 }

@@ -1,56 +1,57 @@
-//! Code for one number type and frame: each step becomes an instruction with the function that does it.
+//! Instruction selection: code for one number type and frame, where each step becomes an instruction with the
+//! function that executes it.
 
 use toyproof_glsl::tree::Input;
 use toyproof_image::Frame;
 
 use crate::batch::LANES;
-use crate::input;
-use crate::ir::function::{Lookup, NONE, Origin, Value};
-use crate::ir::operation::Kind;
+use crate::frame::{float_input, frame_counter};
+use crate::ir::Kind;
+use crate::ir::{Lookup, NONE, Value, ValueDef};
 use crate::lower::linearize::Step;
-use crate::lower::regalloc::Home;
+use crate::lower::regalloc::Location;
 use crate::number::Number;
 use crate::observe::Predicate;
 use crate::ops::{self, Instruction, Level};
 use crate::program::Compiled;
 
-/// Code for one number type and frame.
+/// Executable code for one number type and frame.
 #[derive(Debug)]
 pub struct Prepared<N: Number> {
     pub(crate) code: Vec<Instruction<N>>,
-    /// What scalars begin with; the last of them are computed by `prologue`.
+    /// The initial values of scalars; those of computed constants are set by `prologue`.
     pub(crate) floats: Vec<N>,
     pub(crate) words: Vec<u32>,
     pub(crate) prologue: Vec<Instruction<N>>,
-    /// How many rows there are.
+    /// The number of rows.
     pub(crate) float_rows: usize,
     pub(crate) word_rows: usize,
     pub(crate) masks: usize,
-    /// Chunks in a row.
+    /// The number of chunks in a row.
     pub(crate) width: usize,
     /// Red, green, blue.
-    pub(crate) colour: [Home; 3],
-    pub(crate) discarded: Home,
-    /// `gl_FragCoord`, where it is asked for.
+    pub(crate) color: [Location; 3],
+    pub(crate) discarded: Location,
+    /// The rows of `gl_FragCoord.xy`, where they are used.
     pub(crate) coordinates: [Option<u32>; 2],
 }
 
-/// A row takes this many chunks, or fewer where rows are many.
-const MAX_WIDTH: usize = 16;
+/// The maximum number of chunks in a row; fewer if there are many rows.
+const MAX_ROW_CHUNKS: usize = 16;
 
-/// All rows of a batch should stay in a processor's second cache.
+/// The target size of all rows of a batch, which should fit in the L2 cache.
 const CACHE_BYTES: usize = 768 << 10;
 
-/// Rows that lookups take their coordinates from, where those are scalars.
-const SPARE: u32 = 2;
+/// The number of spare rows that hold the coordinates of lookups with scalar coordinates.
+const SPARE_ROWS: u32 = 2;
 
 impl Compiled {
-    /// Code for a frame in a number type.
+    /// Generates code for a frame in a number type.
     pub(crate) fn prepare<N: Number>(&self, frame: &Frame) -> Prepared<N> {
-        let (flow, homes) = (&self.flow, &self.homes);
-        let rows = homes.rows;
+        let (function, locations) = (&self.function, &self.locations);
+        let rows = locations.rows;
         let row_bytes = rows.floats as usize * size_of::<N>() + rows.words as usize * size_of::<u32>();
-        let mut width = MAX_WIDTH;
+        let mut width = MAX_ROW_CHUNKS;
         while width > 2 && row_bytes * width * LANES > CACHE_BYTES {
             width /= 2;
         }
@@ -61,56 +62,56 @@ impl Compiled {
             code: Vec::new(),
             mask: 0,
         };
-        for &value in &self.flat.constants {
+        for &value in &self.linear.constants {
             writer.compute(value);
         }
         let prologue = std::mem::take(&mut writer.code);
         let code = writer.steps();
-        let mut floats = vec![N::default(); homes.scalars.floats as usize];
-        let mut words = vec![0; homes.scalars.words as usize];
+        let mut floats = vec![N::default(); locations.scalars.floats as usize];
+        let mut words = vec![0; locations.scalars.words as usize];
         let mut coordinates = [None; 2];
-        for (at, origin) in flow.origins.iter().enumerate() {
-            let home = homes.value(Value(at as u32));
-            match (*origin, home) {
-                (Origin::Float(bits), Some(Home::Scalar(to))) => {
+        for (at, def) in function.defs.iter().enumerate() {
+            let location = locations.value(Value(at as u32));
+            match (*def, location) {
+                (ValueDef::Float(bits), Some(Location::Scalar(to))) => {
                     floats[to as usize] = N::from_f64(f64::from_bits(bits));
                 }
-                (Origin::Word(word), Some(Home::Scalar(to))) => words[to as usize] = word,
-                (Origin::Input(Input::Frame, _), Some(Home::Scalar(to))) => {
-                    words[to as usize] = input::word(frame);
+                (ValueDef::Word(word), Some(Location::Scalar(to))) => words[to as usize] = word,
+                (ValueDef::Input(Input::Frame, _), Some(Location::Scalar(to))) => {
+                    words[to as usize] = frame_counter(frame);
                 }
-                (Origin::Input(input, component), Some(Home::Scalar(to))) => {
-                    floats[to as usize] = input::float(frame, input, component);
+                (ValueDef::Input(input, component), Some(Location::Scalar(to))) => {
+                    floats[to as usize] = float_input(frame, input, component);
                 }
-                (Origin::FragCoord(axis), Some(Home::Row(row))) => {
+                (ValueDef::FragCoord(axis), Some(Location::Row(row))) => {
                     coordinates[axis as usize] = Some(row * width as u32);
                 }
                 _ => {}
             }
         }
-        let place = |value| match homes.value(value) {
-            Some(Home::Row(row)) => Home::Row(row * width as u32),
-            Some(home) => home,
-            None => Home::Scalar(0),
+        let place = |value| match locations.value(value) {
+            Some(Location::Row(row)) => Location::Row(row * width as u32),
+            Some(location) => location,
+            None => Location::Scalar(0),
         };
-        let [red, green, blue, discarded] = flow.output;
+        let [red, green, blue, discarded] = function.output;
         Prepared {
             code,
             floats,
             words,
             prologue,
-            float_rows: (rows.floats + SPARE) as usize,
-            word_rows: (rows.words + SPARE) as usize,
-            masks: usize::from(self.flat.masks),
+            float_rows: (rows.floats + SPARE_ROWS) as usize,
+            word_rows: (rows.words + SPARE_ROWS) as usize,
+            masks: usize::from(self.linear.masks),
             width,
-            colour: [red, green, blue].map(place),
+            color: [red, green, blue].map(place),
             discarded: place(discarded),
             coordinates,
         }
     }
 }
 
-/// Writes instructions.
+/// Emits instructions.
 struct Writer<'a, N: Number> {
     compiled: &'a Compiled,
     level: Level,
@@ -120,18 +121,18 @@ struct Writer<'a, N: Number> {
 }
 
 impl<N: Number> Writer<'_, N> {
-    /// A home as instructions name it, and whether it is a row.
-    fn place(&self, home: Option<Home>) -> (u32, bool) {
-        match home {
-            Some(Home::Row(row)) => (row * self.width, true),
-            Some(Home::Scalar(scalar)) => (scalar, false),
-            // Of values that nobody computes.
+    /// Returns a location as encoded in instructions, and whether it is a row.
+    fn place(&self, location: Option<Location>) -> (u32, bool) {
+        match location {
+            Some(Location::Row(row)) => (row * self.width, true),
+            Some(Location::Scalar(scalar)) => (scalar, false),
+            // The value is never computed.
             None => (0, false),
         }
     }
 
     fn value(&self, value: Value) -> (u32, bool) {
-        self.place(self.compiled.homes.value(value))
+        self.place(self.compiled.locations.value(value))
     }
 
     fn push(&mut self, run: ops::Handler<N>, out: u32, operands: [u32; 3], to: u32) {
@@ -146,18 +147,18 @@ impl<N: Number> Writer<'_, N> {
     }
 
     fn steps(&mut self) -> Vec<Instruction<N>> {
-        let flat = &self.compiled.flat;
-        let mut positions = Vec::with_capacity(flat.steps.len() + 1);
-        for (at, (step, mask)) in flat.steps.iter().enumerate() {
+        let linear = &self.compiled.linear;
+        let mut positions = Vec::with_capacity(linear.steps.len() + 1);
+        for (at, (step, mask)) in linear.steps.iter().enumerate() {
             positions.push(self.code.len() as u32);
             self.mask = u32::from(mask.0);
-            if !self.compiled.homes.idle[at] {
+            if !self.compiled.locations.elided[at] {
                 self.step(step);
             }
         }
         positions.push(self.code.len() as u32);
         let mut code = std::mem::take(&mut self.code);
-        for (at, (step, _)) in flat.steps.iter().enumerate() {
+        for (at, (step, _)) in linear.steps.iter().enumerate() {
             if let Step::Split { empty: to, .. }
             | Step::Remove { empty: to, .. }
             | Step::JumpIfEmpty(to)
@@ -174,8 +175,8 @@ impl<N: Number> Writer<'_, N> {
         match *step {
             Step::Compute(value) => self.compute(value),
             Step::Store { cell, value } => {
-                let kind = self.compiled.flow.cells[cell.0 as usize];
-                let (to, to_row) = self.place(self.compiled.homes.cell(cell));
+                let kind = self.compiled.function.cells[cell.0 as usize];
+                let (to, to_row) = self.place(self.compiled.locations.cell(cell));
                 let (from, from_row) = self.value(value);
                 let run = if to_row && self.compiled.shared[cell.0 as usize] {
                     ops::store(self.level, kind, from_row)
@@ -190,10 +191,10 @@ impl<N: Number> Writer<'_, N> {
                 index,
                 value,
             } => {
-                let kind = self.compiled.flow.kind(value);
+                let kind = self.compiled.function.kind(value);
                 let (index, index_is_row) = self.value(index);
                 let (from, value_is_row) = self.value(value);
-                let (first, cells_are_rows) = self.indexed(cells, offset);
+                let (first, cells_are_rows) = self.first_indexed(cells, offset);
                 let run = ops::store_at(self.level, kind, cells_are_rows, index_is_row, value_is_row);
                 self.push(run, from, [index, first, cells.count - 1 - offset], 0);
             }
@@ -236,16 +237,16 @@ impl<N: Number> Writer<'_, N> {
                 values,
                 site,
             } => self.check(predicate, values, site.0),
-            Step::Tell {
+            Step::Trace {
                 event, value: NONE, ..
-            } => self.push(ops::mention(), event, [0; 3], 0),
-            Step::Tell {
+            } => self.push(ops::record_event(), event, [0; 3], 0),
+            Step::Trace {
                 event,
                 component,
                 value,
             } => {
                 let (from, row) = self.value(value);
-                let run = ops::tell(self.compiled.flow.kind(value), row);
+                let run = ops::record(self.compiled.function.kind(value), row);
                 self.push(run, event, [from, 0, 0], component);
             }
         }
@@ -253,7 +254,7 @@ impl<N: Number> Writer<'_, N> {
 
     fn check(&mut self, predicate: Predicate, [a, b]: [Value; 2], site: u32) {
         let limit = match predicate {
-            Predicate::From(limit) => limit,
+            Predicate::AtLeast(limit) => limit,
             _ => 0,
         };
         let (mut first, mut second) = ((0, false), (0, false));
@@ -265,20 +266,20 @@ impl<N: Number> Writer<'_, N> {
         self.push(run, site, [first.0, second.0, 0], limit);
     }
 
-    /// The first row or scalar that an index is added to, in rows; and whether it is a row.
-    fn indexed(&self, cells: crate::ir::function::Cells, offset: u32) -> (u32, bool) {
-        match self.compiled.homes.cell(crate::ir::function::Cell(cells.first)) {
-            Some(Home::Row(row)) => (row + offset, true),
-            Some(Home::Scalar(scalar)) => (scalar + offset, false),
+    /// Returns the first row or scalar that an index is added to, counted in rows, and whether it is a row.
+    fn first_indexed(&self, cells: crate::ir::Cells, offset: u32) -> (u32, bool) {
+        match self.compiled.locations.cell(crate::ir::Cell(cells.first)) {
+            Some(Location::Row(row)) => (row + offset, true),
+            Some(Location::Scalar(scalar)) => (scalar + offset, false),
             None => (0, false),
         }
     }
 
     fn compute(&mut self, value: Value) {
-        let flow = &self.compiled.flow;
+        let function = &self.compiled.function;
         let (out, out_row) = self.value(value);
-        match flow.origin(value) {
-            Origin::Operation(operation, operands) => {
+        match function.def(value) {
+            ValueDef::Operation(operation, operands) => {
                 let (mut places, mut rows) = ([0; 3], [false; 3]);
                 let count = operation.operands().len();
                 for (at, &operand) in operands.iter().enumerate().take(count) {
@@ -287,24 +288,24 @@ impl<N: Number> Writer<'_, N> {
                 let run = ops::compute(self.level, operation, rows);
                 self.push(run, out, places, 0);
             }
-            Origin::Load(cell) => {
-                let kind = flow.cells[cell.0 as usize];
-                let (from, from_row) = self.place(self.compiled.homes.cell(cell));
+            ValueDef::Load(cell) => {
+                let kind = function.cells[cell.0 as usize];
+                let (from, from_row) = self.place(self.compiled.locations.cell(cell));
                 let run = ops::copy(self.level, kind, from_row, out_row);
                 self.push(run, out, [from, 0, 0], 0);
             }
-            Origin::LoadAt {
+            ValueDef::LoadAt {
                 cells,
                 offset,
                 index,
                 kind,
             } => {
                 let (index, index_is_row) = self.value(index);
-                let (first, cells_are_rows) = self.indexed(cells, offset);
+                let (first, cells_are_rows) = self.first_indexed(cells, offset);
                 let run = ops::load_at(self.level, kind, cells_are_rows, index_is_row);
                 self.push(run, out, [index, first, cells.count - 1 - offset], 0);
             }
-            Origin::Texel {
+            ValueDef::Texel {
                 channel,
                 lookup,
                 component,
@@ -314,7 +315,7 @@ impl<N: Number> Writer<'_, N> {
                     Lookup::Filtered { .. } => Kind::Float,
                     Lookup::Fetched => Kind::Word,
                 };
-                let rows = self.compiled.homes.rows;
+                let rows = self.compiled.locations.rows;
                 let spare = match kind {
                     Kind::Float => rows.floats,
                     Kind::Word => rows.words,
@@ -339,7 +340,7 @@ impl<N: Number> Writer<'_, N> {
                 let run = ops::texel(kind == Kind::Float);
                 self.push(run, out, [places[0], places[1], which], offset);
             }
-            Origin::Float(_) | Origin::Word(_) | Origin::Input(..) | Origin::FragCoord(_) => {}
+            ValueDef::Float(_) | ValueDef::Word(_) | ValueDef::Input(..) | ValueDef::FragCoord(_) => {}
         }
     }
 }

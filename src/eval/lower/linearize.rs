@@ -1,21 +1,21 @@
-//! Structured code as steps in a row with jumps and masks.
+//! Linearization of structured code into steps with jumps and masks.
 //!
-//! A mask says which pixels are here. Mask 0 has all of them; a branch that only some pixels take, and a scope that some
-//! leave before others, has its own, numbered by depth. Who leaves is taken out of every mask up to that of the scope; where a mask has become
-//! empty, control jumps to the end of what it belongs to.
+//! A mask marks the active pixels. Mask 0 has all of them; a divergent branch, and a scope that pixels leave
+//! at different times, has its own, numbered by depth. A pixel that leaves a scope is removed from every mask
+//! up to the scope's; where a mask becomes empty, control jumps to the end of its owner.
 
-use crate::ir::function::{Block, Cell, Cells, Flow, LoopId, Node, Origin, Scope, Value};
+use crate::ir::{Block, Cell, Cells, Function, LoopId, Node, Scope, Value, ValueDef};
 use crate::observe::{Predicate, SiteId};
-use crate::opt::divergence::Varying;
+use crate::opt::divergence::Divergence;
 
-/// Names a mask.
+/// Identifies a mask.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Mask(pub(crate) u16);
 
-/// Where to go on: the position of a step, once all are there.
+/// A jump target: a label while code is generated, the index of a step afterwards.
 pub(crate) type Target = u32;
 
-/// A step.
+/// A step of linear code.
 #[derive(Debug, Clone)]
 pub(crate) enum Step {
     Compute(Value),
@@ -29,7 +29,7 @@ pub(crate) enum Step {
         index: Value,
         value: Value,
     },
-    /// Divides the pixels that are here by a varying condition. Jumps if none is for the first branch.
+    /// Splits the active pixels by a divergent condition. Jumps if none takes the first branch.
     Split {
         condition: Value,
         yes: Mask,
@@ -37,12 +37,12 @@ pub(crate) enum Step {
         when: bool,
         empty: Target,
     },
-    /// All pixels that are here, in another mask.
+    /// Copies the active pixels to a mask.
     Copy {
         to: Mask,
     },
-    /// Takes those pixels that are here out of some masks, the innermost first, for which a condition is `when`; jumps if none
-    /// is left.
+    /// Removes active pixels for which the condition is `when` from the masks between two masks, given
+    /// innermost first. Jumps if none is left.
     Remove {
         condition: Option<(Value, bool)>,
         masks: (Mask, Mask),
@@ -56,58 +56,58 @@ pub(crate) enum Step {
         when: bool,
         to: Target,
     },
-    /// One more round of a loop.
+    /// Starts an iteration of a loop.
     Iterate(LoopId),
     Check {
         predicate: Predicate,
         values: [Value; 2],
         site: SiteId,
     },
-    Tell {
+    Trace {
         event: u32,
         component: u32,
         value: Value,
     },
 }
 
-/// A program in a row.
+/// A linearized program.
 #[derive(Debug)]
-pub(crate) struct Flat {
-    /// Each with the mask of the pixels that are there.
+pub(crate) struct LinearCode {
+    /// The steps, each with the mask of its active pixels.
     pub(crate) steps: Vec<(Step, Mask)>,
-    /// How many masks there are.
+    /// The number of masks.
     pub(crate) masks: u16,
-    /// First and last step of each loop, inner ones before outer ones.
+    /// The first and last step of each loop, inner loops before outer ones.
     pub(crate) loops: Vec<(u32, u32)>,
-    /// What is computed once for a frame.
+    /// The values that are computed once for a frame.
     pub(crate) constants: Vec<Value>,
 }
 
-/// Lays a program out. Values of a story may be replaced while it runs: there, nothing is computed before its time.
-pub(crate) fn flatten(flow: &Flow, varying: &Varying, story: bool) -> Flat {
-    let mut pass = Flatten {
-        flow,
-        varying,
-        story,
+/// Linearizes a program. A traced run may replace values, so that nothing is hoisted out of it.
+pub(crate) fn linearize(function: &Function, divergence: &Divergence, traced: bool) -> LinearCode {
+    let mut pass = Linearizer {
+        function,
+        divergence,
+        traced,
         steps: Vec::new(),
         labels: vec![u32::MAX],
         owners: vec![Owner {
             mask: Mask(0),
             end: 0,
         }],
-        scopes: vec![Exit::default(); flow.scopes as usize],
+        scopes: vec![ScopeExit::default(); function.scopes as usize],
         open: 0,
-        left: usize::MAX,
+        outermost_left: usize::MAX,
         masks: 1,
         loops: Vec::new(),
         constants: Vec::new(),
     };
-    pass.block(&flow.body);
-    pass.place(0);
+    pass.block(&function.body);
+    pass.bind(0);
     pass.finish()
 }
 
-/// What a mask belongs to.
+/// The branch or scope that a mask belongs to.
 #[derive(Debug, Clone, Copy)]
 struct Owner {
     mask: Mask,
@@ -115,42 +115,42 @@ struct Owner {
     end: Target,
 }
 
-/// Where a scope that is open ends.
+/// The exit of an open scope.
 #[derive(Debug, Clone, Copy, Default)]
-struct Exit {
-    /// How many scopes are around it.
+struct ScopeExit {
+    /// The number of enclosing scopes.
     depth: usize,
-    /// How many owners are around its inside.
+    /// The number of mask owners around its body.
     owners: usize,
     /// The label of its end.
     end: Target,
 }
 
-struct Flatten<'a> {
-    flow: &'a Flow,
-    varying: &'a Varying,
-    story: bool,
+struct Linearizer<'a> {
+    function: &'a Function,
+    divergence: &'a Divergence,
+    traced: bool,
     steps: Vec<(Step, Mask)>,
-    /// The position of each label.
+    /// The step of each label.
     labels: Vec<u32>,
     owners: Vec<Owner>,
-    scopes: Vec<Exit>,
-    /// How many scopes are open.
+    scopes: Vec<ScopeExit>,
+    /// The number of open scopes.
     open: usize,
-    /// Of the scopes that have been left, how many are around the outermost.
-    left: usize,
+    /// The depth of the outermost scope that was left.
+    outermost_left: usize,
     masks: u16,
     loops: Vec<(u32, u32)>,
     constants: Vec<Value>,
 }
 
-impl Flatten<'_> {
-    fn here(&self) -> Owner {
+impl Linearizer<'_> {
+    fn owner(&self) -> Owner {
         self.owners[self.owners.len() - 1]
     }
 
     fn push(&mut self, step: Step) {
-        let mask = self.here().mask;
+        let mask = self.owner().mask;
         self.steps.push((step, mask));
     }
 
@@ -159,12 +159,12 @@ impl Flatten<'_> {
         self.labels.len() as u32 - 1
     }
 
-    fn place(&mut self, label: Target) {
+    fn bind(&mut self, label: Target) {
         self.labels[label as usize] = self.steps.len() as u32;
     }
 
     fn next_mask(&mut self) -> Mask {
-        let mask = Mask(self.here().mask.0 + 1);
+        let mask = Mask(self.owner().mask.0 + 1);
         self.masks = self.masks.max(mask.0 + 1);
         mask
     }
@@ -177,12 +177,12 @@ impl Flatten<'_> {
 
     fn compute(&mut self, value: Value) {
         if matches!(
-            self.flow.origin(value),
-            Origin::Float(_) | Origin::Word(_) | Origin::Input(..) | Origin::FragCoord(_)
+            self.function.def(value),
+            ValueDef::Float(_) | ValueDef::Word(_) | ValueDef::Input(..) | ValueDef::FragCoord(_)
         ) {
             return;
         }
-        if self.varying.is_constant(value) && !self.story {
+        if self.divergence.is_constant(value) && !self.traced {
             self.constants.push(value);
         } else {
             self.push(Step::Compute(value));
@@ -209,34 +209,34 @@ impl Flatten<'_> {
                 ref yes,
                 ref no,
             } => {
-                if self.varying.value(condition) {
-                    self.divide(condition, yes, no);
+                if self.divergence.value(condition) {
+                    self.divergent_if(condition, yes, no);
                 } else {
-                    self.choose(condition, yes, no);
+                    self.uniform_if(condition, yes, no);
                 }
             }
             Node::Scope { scope, ref body } => self.scope(scope, body),
             Node::Loop { ref body, .. } => {
                 let head = self.label();
-                self.place(head);
+                self.bind(head);
                 let first = self.steps.len() as u32;
                 self.block(body);
                 self.push(Step::Jump(head));
                 self.loops.push((first, self.steps.len() as u32 - 1));
             }
-            Node::Round(id) => self.push(Step::Iterate(id)),
-            Node::Leave(scope) => {
-                self.note_left(scope);
-                self.leave(scope, None);
+            Node::LoopHeader(id) => self.push(Step::Iterate(id)),
+            Node::Break(scope) => {
+                self.note_break(scope);
+                self.push_break(scope, None);
             }
-            Node::LeaveIf {
+            Node::BreakIf {
                 scope,
                 condition,
                 when,
             } => {
-                self.note_left(scope);
-                if self.varying.value(condition) {
-                    self.leave(scope, Some((condition, when)));
+                self.note_break(scope);
+                if self.divergence.value(condition) {
+                    self.push_break(scope, Some((condition, when)));
                 } else if self.is_plain(scope) {
                     let to = self.scopes[scope.0 as usize].end;
                     self.push(Step::JumpIf { condition, when, to });
@@ -247,8 +247,8 @@ impl Flatten<'_> {
                         when: !when,
                         to: on,
                     });
-                    self.leave(scope, None);
-                    self.place(on);
+                    self.push_break(scope, None);
+                    self.bind(on);
                 }
             }
             Node::Check {
@@ -260,11 +260,11 @@ impl Flatten<'_> {
                 values,
                 site,
             }),
-            Node::Tell {
+            Node::Trace {
                 event,
                 component,
                 value,
-            } => self.push(Step::Tell {
+            } => self.push(Step::Trace {
                 event,
                 component,
                 value,
@@ -272,31 +272,31 @@ impl Flatten<'_> {
         }
     }
 
-    fn note_left(&mut self, scope: Scope) {
-        self.left = self.left.min(self.scopes[scope.0 as usize].depth);
+    fn note_break(&mut self, scope: Scope) {
+        self.outermost_left = self.outermost_left.min(self.scopes[scope.0 as usize].depth);
     }
 
-    /// Does some work, and tells whether a scope was left in it that is open now.
-    fn is_left(&mut self, work: impl FnOnce(&mut Self)) -> bool {
-        let before = std::mem::replace(&mut self.left, usize::MAX);
+    /// Emits code, and returns whether it leaves a scope that is open now.
+    fn leaves_open_scope(&mut self, work: impl FnOnce(&mut Self)) -> bool {
+        let before = std::mem::replace(&mut self.outermost_left, usize::MAX);
         work(self);
-        let found = self.left < self.open;
-        self.left = self.left.min(before);
+        let found = self.outermost_left < self.open;
+        self.outermost_left = self.outermost_left.min(before);
         found
     }
 
-    /// Whether all pixels of a scope are here together, if they are.
+    /// Whether the pixels of a scope cannot have diverged here.
     fn is_plain(&self, scope: Scope) -> bool {
         self.scopes[scope.0 as usize].owners == self.owners.len()
     }
 
-    fn leave(&mut self, scope: Scope, condition: Option<(Value, bool)>) {
-        let Exit { owners, end, .. } = self.scopes[scope.0 as usize];
+    fn push_break(&mut self, scope: Scope, condition: Option<(Value, bool)>) {
+        let ScopeExit { owners, end, .. } = self.scopes[scope.0 as usize];
         if condition.is_none() && owners == self.owners.len() {
             self.push(Step::Jump(end));
             return;
         }
-        let (inner, outer) = (self.here(), self.owners[owners - 1]);
+        let (inner, outer) = (self.owner(), self.owners[owners - 1]);
         self.push(Step::Remove {
             condition,
             masks: (inner.mask, outer.mask),
@@ -304,8 +304,8 @@ impl Flatten<'_> {
         });
     }
 
-    /// An `if` that all pixels decide in the same way.
-    fn choose(&mut self, condition: Value, yes: &Block, no: &Block) {
+    /// Emits an `if` with a uniform condition.
+    fn uniform_if(&mut self, condition: Value, yes: &Block, no: &Block) {
         let (otherwise, end) = (self.label(), self.label());
         if yes.is_empty() {
             self.push(Step::JumpIf {
@@ -313,7 +313,7 @@ impl Flatten<'_> {
                 when: true,
                 to: end,
             });
-            self.place(otherwise);
+            self.bind(otherwise);
         } else {
             self.push(Step::JumpIf {
                 condition,
@@ -324,14 +324,14 @@ impl Flatten<'_> {
             if !no.is_empty() {
                 self.push(Step::Jump(end));
             }
-            self.place(otherwise);
+            self.bind(otherwise);
         }
         self.block(no);
-        self.place(end);
+        self.bind(end);
     }
 
-    fn divide(&mut self, condition: Value, yes: &Block, no: &Block) {
-        // The branch that there is comes first.
+    fn divergent_if(&mut self, condition: Value, yes: &Block, no: &Block) {
+        // The non-empty branch comes first.
         let (when, first, second) = if yes.is_empty() {
             (false, no, yes)
         } else {
@@ -339,7 +339,7 @@ impl Flatten<'_> {
         };
         let (otherwise, end) = (self.label(), self.label());
         let mask = self.next_mask();
-        // Both live beside each other while the first branch runs; without a second one, one mask is enough.
+        // Both masks are live while the first branch runs; without a second branch, one mask is enough.
         let other = if second.is_empty() { mask } else { Mask(mask.0 + 1) };
         self.masks = self.masks.max(other.0 + 1);
         self.push(Step::Split {
@@ -349,14 +349,14 @@ impl Flatten<'_> {
             when,
             empty: otherwise,
         });
-        let left = self.is_left(|pass| {
+        let left = self.leaves_open_scope(|pass| {
             pass.owners.push(Owner {
                 mask: mask.max(other),
                 end: otherwise,
             });
             pass.block(first);
             pass.owners.pop();
-            pass.place(otherwise);
+            pass.bind(otherwise);
             if !second.is_empty() {
                 pass.owners.push(Owner {
                     mask: mask.min(other),
@@ -367,27 +367,27 @@ impl Flatten<'_> {
                 pass.owners.pop();
             }
         });
-        self.place(end);
+        self.bind(end);
         if left {
-            let end = self.here().end;
+            let end = self.owner().end;
             self.push(Step::JumpIfEmpty(end));
         }
     }
 
     fn scope(&mut self, scope: Scope, body: &Block) {
         let end = self.label();
-        let own = self.varying.scope(scope);
+        let own = self.divergence.scope(scope);
         if own {
             let mask = self.next_mask();
             self.push(Step::Copy { to: mask });
             self.owners.push(Owner { mask, end });
         }
-        self.scopes[scope.0 as usize] = Exit {
+        self.scopes[scope.0 as usize] = ScopeExit {
             depth: self.open,
             owners: self.owners.len(),
             end,
         };
-        let left = self.is_left(|pass| {
+        let left = self.leaves_open_scope(|pass| {
             pass.open += 1;
             pass.block(body);
             pass.open -= 1;
@@ -395,14 +395,14 @@ impl Flatten<'_> {
         if own {
             self.owners.pop();
         }
-        self.place(end);
+        self.bind(end);
         if own && left {
-            let end = self.here().end;
+            let end = self.owner().end;
             self.push(Step::JumpIfEmpty(end));
         }
     }
 
-    fn finish(self) -> Flat {
+    fn finish(self) -> LinearCode {
         let Self {
             mut steps,
             labels,
@@ -421,7 +421,7 @@ impl Flatten<'_> {
                 _ => {}
             }
         }
-        Flat {
+        LinearCode {
             steps,
             masks,
             loops,

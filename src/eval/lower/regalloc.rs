@@ -1,39 +1,40 @@
-//! Registers: where values and cells live while a batch runs.
+//! Register allocation: the location of each value and cell during a run.
 //!
-//! What varies takes a row of pixels, what does not one scalar. Rows are used again as soon as what they held is read no more (linear
-//! scan; Poletto and Sarkar, “Linear Scan Register Allocation”, TOPLAS 21(5), 1999), so that a batch stays in the cache. A load
-//! that nothing is stored over before its last use is the cell itself; a value that goes only into a cell is computed there.
+//! Divergent values take a row of pixels, uniform ones a scalar. Rows are reused as soon as their value is
+//! dead (linear scan; Poletto and Sarkar, “Linear Scan Register Allocation”, TOPLAS 21(5), 1999), so that a
+//! batch stays in the cache. A load whose cell is not overwritten before its last use is elided; a value that
+//! is only stored to a cell is computed there.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use crate::ir::alias::Groups;
-use crate::ir::function::{Cell, Cells, Flow, Origin, Value};
-use crate::ir::operation::Kind;
-use crate::lower::linearize::{Flat, Step};
-use crate::opt::divergence::Varying;
+use crate::ir::AliasGroups;
+use crate::ir::Kind;
+use crate::ir::{Cell, Cells, Function, Value, ValueDef};
+use crate::lower::linearize::{LinearCode, Step};
+use crate::opt::divergence::Divergence;
 
-/// Where something lives.
+/// The location of a value or cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Home {
-    /// A row of the floats or words, told by its kind.
+pub(crate) enum Location {
+    /// A row of floats or words, depending on the kind.
     Row(u32),
-    /// A scalar.
+    /// A scalar of floats or words, depending on the kind.
     Scalar(u32),
 }
 
-/// Where everything lives, and how much room that takes.
+/// The location of every value and cell, and the number of rows and scalars.
 #[derive(Debug)]
-pub(crate) struct Homes {
-    values: Vec<Option<Home>>,
-    cells: Vec<Option<Home>>,
-    /// Whether a step needs not be done: its value is where it should be.
-    pub(crate) idle: Vec<bool>,
+pub(crate) struct Allocation {
+    values: Vec<Option<Location>>,
+    cells: Vec<Option<Location>>,
+    /// Whether a step is elided: its value already is in its location.
+    pub(crate) elided: Vec<bool>,
     pub(crate) rows: PerKind,
     pub(crate) scalars: PerKind,
 }
 
-/// One number for floats, one for words.
+/// A number for floats and one for words.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct PerKind {
     pub(crate) floats: u32,
@@ -49,27 +50,32 @@ impl PerKind {
     }
 }
 
-impl Homes {
-    /// The home of a value that is computed, or a constant.
-    pub(crate) fn value(&self, value: Value) -> Option<Home> {
+impl Allocation {
+    /// Returns the location of a value that is computed, or a constant.
+    pub(crate) fn value(&self, value: Value) -> Option<Location> {
         self.values[value.0 as usize]
     }
 
-    /// The home of a cell that is accessed.
-    pub(crate) fn cell(&self, cell: Cell) -> Option<Home> {
+    /// Returns the location of a cell that is accessed.
+    pub(crate) fn cell(&self, cell: Cell) -> Option<Location> {
         self.cells[cell.0 as usize]
     }
 }
 
-/// Finds homes.
-pub(crate) fn allocate(flow: &Flow, flat: &Flat, varying: &Varying, groups: &Groups) -> Homes {
-    let mut uses = Uses::new(flow, flat, groups);
+/// Assigns locations to all values and cells.
+pub(crate) fn allocate_registers(
+    function: &Function,
+    linear: &LinearCode,
+    divergence: &Divergence,
+    groups: &AliasGroups,
+) -> Allocation {
+    let mut uses = Uses::new(function, linear, groups);
     uses.collect();
-    let mut pass = Allocate {
-        idle: vec![false; flat.steps.len()],
-        same: vec![None; flow.origins.len()],
+    let mut pass = Allocator {
+        elided: vec![false; linear.steps.len()],
+        cell_of: vec![None; function.defs.len()],
         uses,
-        varying,
+        divergence,
     };
     pass.elide_loads();
     pass.elide_stores();
@@ -78,14 +84,14 @@ pub(crate) fn allocate(flow: &Flow, flat: &Flat, varying: &Varying, groups: &Gro
 
 const NEVER: u32 = u32::MAX;
 
-/// From the first to the last position at which something is needed.
+/// The range from the definition to the last use, as step indices.
 #[derive(Debug, Clone, Copy)]
-struct Span {
+struct LiveRange {
     start: u32,
     end: u32,
 }
 
-impl Span {
+impl LiveRange {
     const NONE: Self = Self { start: NEVER, end: 0 };
 
     fn add(&mut self, at: u32) {
@@ -94,55 +100,55 @@ impl Span {
     }
 }
 
-/// Who is needed where.
+/// The uses of values and cells.
 struct Uses<'a> {
-    flow: &'a Flow,
-    flat: &'a Flat,
-    groups: &'a Groups,
-    /// Of each step, its innermost loop.
+    function: &'a Function,
+    linear: &'a LinearCode,
+    groups: &'a AliasGroups,
+    /// The innermost loop of each step.
     loop_of: Vec<u32>,
-    /// Of each loop, the one around it.
+    /// The enclosing loop of each loop.
     loop_parent: Vec<u32>,
-    values: Vec<Span>,
-    cells: Vec<Span>,
-    /// Where each cell is stored, in order; of those in groups, where any of the group is.
+    values: Vec<LiveRange>,
+    cells: Vec<LiveRange>,
+    /// The steps that store to each cell, in order; for groups, to any cell of the group.
     stores: Vec<Vec<u32>>,
-    /// Where each cell is read.
+    /// The steps that load each cell.
     loads: Vec<Vec<u32>>,
-    /// How often each value is used.
+    /// The number of uses of each value.
     counts: Vec<u32>,
 }
 
 impl<'a> Uses<'a> {
-    fn new(flow: &'a Flow, flat: &'a Flat, groups: &'a Groups) -> Self {
-        let mut loop_of = vec![NEVER; flat.steps.len()];
-        let mut loop_parent = vec![NEVER; flat.loops.len()];
-        // Inner loops come first: whoever fills a position later is around.
-        for (id, &(first, last)) in flat.loops.iter().enumerate().rev() {
+    fn new(function: &'a Function, linear: &'a LinearCode, groups: &'a AliasGroups) -> Self {
+        let mut loop_of = vec![NEVER; linear.steps.len()];
+        let mut loop_parent = vec![NEVER; linear.loops.len()];
+        // Inner loops come first, so in reverse order the later fill is the inner loop.
+        for (id, &(first, last)) in linear.loops.iter().enumerate().rev() {
             loop_parent[id] = loop_of[first as usize];
             loop_of[first as usize..=last as usize].fill(id as u32);
         }
         Self {
-            flow,
-            flat,
+            function,
+            linear,
             groups,
             loop_of,
             loop_parent,
-            values: vec![Span::NONE; flow.origins.len()],
-            cells: vec![Span::NONE; flow.cells.len()],
-            stores: vec![Vec::new(); flow.cells.len()],
-            loads: vec![Vec::new(); flow.cells.len()],
-            counts: vec![0; flow.origins.len()],
+            values: vec![LiveRange::NONE; function.defs.len()],
+            cells: vec![LiveRange::NONE; function.cells.len()],
+            stores: vec![Vec::new(); function.cells.len()],
+            loads: vec![Vec::new(); function.cells.len()],
+            counts: vec![0; function.defs.len()],
         }
     }
 
-    /// The last position at which something that began at `start` is needed if it is used at `at`: in a loop that it
-    /// began before, until the loop's end.
+    /// Returns the last step at which a value defined at `start` and used at `at` is live: the end of the
+    /// outermost loop that contains the use but not the definition.
     fn until(&self, start: u32, at: u32) -> u32 {
         let mut end = at;
         let mut around = self.loop_of[at as usize];
         while around != NEVER {
-            let (first, last) = self.flat.loops[around as usize];
+            let (first, last) = self.linear.loops[around as usize];
             if first <= start {
                 break;
             }
@@ -170,27 +176,27 @@ impl<'a> Uses<'a> {
     }
 
     fn collect(&mut self) {
-        let flat = self.flat;
-        for &value in &flat.constants {
+        let linear = self.linear;
+        for &value in &linear.constants {
             let mut operands = Vec::new();
-            self.flow
-                .origin(value)
+            self.function
+                .def(value)
                 .for_each_operand(|operand| operands.push(operand));
             for operand in operands {
                 self.counts[operand.0 as usize] += 1;
             }
         }
-        for (at, (step, _)) in (0..).zip(&flat.steps) {
+        for (at, (step, _)) in (0..).zip(&linear.steps) {
             match step {
                 Step::Compute(value) => {
-                    let origin = self.flow.origin(*value);
+                    let def = self.function.def(*value);
                     let mut operands = Vec::new();
-                    origin.for_each_operand(|operand| operands.push(operand));
+                    def.for_each_operand(|operand| operands.push(operand));
                     for operand in operands {
                         self.read(operand, at);
                     }
                     self.values[value.0 as usize].add(at);
-                    if let Origin::Load(cell) = origin {
+                    if let ValueDef::Load(cell) = def {
                         self.cell_at(cell, at);
                         self.loads[cell.0 as usize].push(at);
                     }
@@ -216,47 +222,47 @@ impl<'a> Uses<'a> {
                 }
                 | Step::JumpIf { condition, .. } => self.read(*condition, at),
                 Step::Check { values, .. } => {
-                    for &value in values.iter().filter(|&&value| value != crate::ir::function::NONE) {
+                    for &value in values.iter().filter(|&&value| value != crate::ir::NONE) {
                         self.read(value, at);
                     }
                 }
-                Step::Tell { value, .. } if *value != crate::ir::function::NONE => self.read(*value, at),
+                Step::Trace { value, .. } if *value != crate::ir::NONE => self.read(*value, at),
                 _ => {}
             }
         }
-        // The picture is read after the end.
-        let end = self.flat.steps.len() as u32;
-        for value in self.flow.output {
+        // The output is read after the last step.
+        let end = self.linear.steps.len() as u32;
+        for value in self.function.output {
             self.counts[value.0 as usize] += 1;
             self.values[value.0 as usize].add(end);
         }
     }
 }
 
-struct Allocate<'a> {
+struct Allocator<'a> {
     uses: Uses<'a>,
-    varying: &'a Varying,
-    idle: Vec<bool>,
-    /// The cell that a value lives in.
-    same: Vec<Option<Cell>>,
+    divergence: &'a Divergence,
+    elided: Vec<bool>,
+    /// The cell whose location a value shares.
+    cell_of: Vec<Option<Cell>>,
 }
 
-impl Allocate<'_> {
-    /// Lets loads be the cells themselves.
+impl Allocator<'_> {
+    /// Elides loads: their values share the location of the cell.
     fn elide_loads(&mut self) {
-        for (at, (step, _)) in (0..).zip(&self.uses.flat.steps) {
+        for (at, (step, _)) in (0..).zip(&self.uses.linear.steps) {
             let &Step::Compute(value) = step else {
                 continue;
             };
-            let Origin::Load(cell) = self.uses.flow.origin(value) else {
+            let ValueDef::Load(cell) = self.uses.function.def(value) else {
                 continue;
             };
-            let Span { end, .. } = self.uses.values[value.0 as usize];
+            let LiveRange { end, .. } = self.uses.values[value.0 as usize];
             let stores = &self.uses.stores[self.uses.groups.unit(cell)];
             let next = stores.partition_point(|&store| store <= at);
             if stores.get(next).is_none_or(|&store| store > end) {
-                self.idle[at as usize] = true;
-                self.same[value.0 as usize] = Some(cell);
+                self.elided[at as usize] = true;
+                self.cell_of[value.0 as usize] = Some(cell);
                 self.uses.cells[cell.0 as usize].add(end);
                 self.uses.loads[cell.0 as usize].push(end);
             }
@@ -266,24 +272,24 @@ impl Allocate<'_> {
         }
     }
 
-    /// Lets values be computed where they are stored.
+    /// Elides stores: values are computed in the location of the cell.
     fn elide_stores(&mut self) {
-        for (at, (step, mask)) in (0u32..).zip(&self.uses.flat.steps) {
+        for (at, (step, mask)) in (0u32..).zip(&self.uses.linear.steps) {
             let &Step::Store { cell, value } = step else {
                 continue;
             };
-            let Span { start, end } = self.uses.values[value.0 as usize];
+            let LiveRange { start, end } = self.uses.values[value.0 as usize];
             let index = value.0 as usize;
-            let alone = self.uses.counts[index] == 1 && end == at && start < at;
-            if !alone
-                || self.same[index].is_some()
-                || self.varying.is_shared(cell)
-                || self.varying.value(value) != self.varying.cell(cell)
+            let single_use = self.uses.counts[index] == 1 && end == at && start < at;
+            if !single_use
+                || self.cell_of[index].is_some()
+                || self.divergence.is_shared(cell)
+                || self.divergence.value(value) != self.divergence.cell(cell)
                 || self.uses.groups.find(cell).is_some()
             {
                 continue;
             }
-            let steps = &self.uses.flat.steps[start as usize..at as usize];
+            let steps = &self.uses.linear.steps[start as usize..at as usize];
             let straight = steps.iter().all(|(step, other)| {
                 other == mask && matches!(step, Step::Compute(_) | Step::Store { .. } | Step::Check { .. })
             });
@@ -297,116 +303,123 @@ impl Allocate<'_> {
                 && none_between(&self.uses.loads[cell.0 as usize], start + 1)
                 && stores.get(others) == Some(&at)
             {
-                self.idle[at as usize] = true;
-                self.same[index] = Some(cell);
+                self.elided[at as usize] = true;
+                self.cell_of[index] = Some(cell);
                 self.uses.cells[cell.0 as usize].add(start);
             }
         }
     }
 
-    fn assign(self) -> Homes {
+    fn assign(self) -> Allocation {
         let Self {
             uses,
-            varying,
-            idle,
-            same,
+            divergence,
+            elided,
+            cell_of,
         } = self;
-        let flow = uses.flow;
-        let mut homes = Homes {
-            values: vec![None; flow.origins.len()],
-            cells: vec![None; flow.cells.len()],
-            idle,
+        let function = uses.function;
+        let mut locations = Allocation {
+            values: vec![None; function.defs.len()],
+            cells: vec![None; function.cells.len()],
+            elided,
             rows: PerKind::default(),
             scalars: PerKind::default(),
         };
         for &Cells { first, count } in uses.groups.ranges() {
-            // Beside each other in both kinds, so that one index leads to either.
-            let varies = varying.cell(Cell(first));
+            // At the same offsets in both kinds, so that one index works for either.
+            let varies = divergence.cell(Cell(first));
             let room = if varies {
-                &mut homes.rows
+                &mut locations.rows
             } else {
-                &mut homes.scalars
+                &mut locations.scalars
             };
             let start = room.floats.max(room.words);
             for cell in 0..count {
-                let home = if varies { Home::Row } else { Home::Scalar };
-                homes.cells[(first + cell) as usize] = Some(home(start + cell));
+                let location = if varies { Location::Row } else { Location::Scalar };
+                locations.cells[(first + cell) as usize] = Some(location(start + cell));
             }
             (room.floats, room.words) = (start + count, start + count);
         }
         for kind in [Kind::Float, Kind::Word] {
-            assign_kind(kind, &uses, varying, &same, &mut homes);
+            assign_kind(kind, &uses, divergence, &cell_of, &mut locations);
         }
-        for (value, cell) in same.iter().enumerate() {
+        for (value, cell) in cell_of.iter().enumerate() {
             if let Some(cell) = cell {
-                homes.values[value] = homes.cells[cell.0 as usize];
+                locations.values[value] = locations.cells[cell.0 as usize];
             }
         }
-        homes
+        locations
     }
 }
 
-/// Who wants a home.
+/// The owner of a live range.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Tenant {
+enum IntervalOwner {
     Value(u32),
     Cell(u32),
 }
 
-fn assign_kind(kind: Kind, uses: &Uses<'_>, varying: &Varying, same: &[Option<Cell>], homes: &mut Homes) {
-    let flow = uses.flow;
-    let mut waiting: Vec<(u32, u32, Tenant)> = Vec::new();
-    for (at, &Span { start, end }) in uses.values.iter().enumerate() {
+fn assign_kind(
+    kind: Kind,
+    uses: &Uses<'_>,
+    divergence: &Divergence,
+    cell_of: &[Option<Cell>],
+    locations: &mut Allocation,
+) {
+    let function = uses.function;
+    let mut intervals: Vec<(u32, u32, IntervalOwner)> = Vec::new();
+    for (at, &LiveRange { start, end }) in uses.values.iter().enumerate() {
         let value = Value(at as u32);
-        if flow.kind(value) != kind || same[at].is_some() {
+        if function.kind(value) != kind || cell_of[at].is_some() {
             continue;
         }
-        if start != NEVER && varying.value(value) && !matches!(flow.origin(value), Origin::FragCoord(_)) {
-            waiting.push((start, end, Tenant::Value(value.0)));
-        } else if matches!(flow.origin(value), Origin::FragCoord(_)) {
+        if start != NEVER && divergence.value(value) && !matches!(function.def(value), ValueDef::FragCoord(_))
+        {
+            intervals.push((start, end, IntervalOwner::Value(value.0)));
+        } else if matches!(function.def(value), ValueDef::FragCoord(_)) {
             // Written once for each batch, before all steps.
-            waiting.push((0, NEVER, Tenant::Value(value.0)));
+            intervals.push((0, NEVER, IntervalOwner::Value(value.0)));
         } else if uses.counts[at] > 0 || start != NEVER {
-            let next = homes.scalars.of(kind);
-            homes.values[at] = Some(Home::Scalar(*next));
+            let next = locations.scalars.of(kind);
+            locations.values[at] = Some(Location::Scalar(*next));
             *next += 1;
         }
     }
-    for (at, &Span { start, end }) in uses.cells.iter().enumerate() {
+    for (at, &LiveRange { start, end }) in uses.cells.iter().enumerate() {
         let cell = Cell(at as u32);
-        if flow.cells[at] != kind || homes.cells[at].is_some() || start == NEVER {
+        if function.cells[at] != kind || locations.cells[at].is_some() || start == NEVER {
             continue;
         }
-        if varying.cell(cell) {
-            waiting.push((start, end, Tenant::Cell(cell.0)));
+        if divergence.cell(cell) {
+            intervals.push((start, end, IntervalOwner::Cell(cell.0)));
         } else {
-            let next = homes.scalars.of(kind);
-            homes.cells[at] = Some(Home::Scalar(*next));
+            let next = locations.scalars.of(kind);
+            locations.cells[at] = Some(Location::Scalar(*next));
             *next += 1;
         }
     }
-    waiting.sort_unstable();
+    intervals.sort_unstable();
     let mut free: BinaryHeap<Reverse<u32>> = BinaryHeap::new();
-    let mut taken: BinaryHeap<Reverse<(u32, u32)>> = BinaryHeap::new();
-    for (start, end, tenant) in waiting {
-        // A step reads before it writes: what ends where this begins makes room for it.
-        while let Some(&Reverse((until, row))) = taken.peek()
+    let mut occupied: BinaryHeap<Reverse<(u32, u32)>> = BinaryHeap::new();
+    for (start, end, owner) in intervals {
+        // A step reads before it writes: a range that begins where this one ends can reuse its row.
+        while let Some(&Reverse((until, row))) = occupied.peek()
             && until <= start
         {
-            taken.pop();
+            occupied.pop();
             free.push(Reverse(row));
         }
         let row = if let Some(Reverse(row)) = free.pop() {
             row
         } else {
-            let next = homes.rows.of(kind);
+            let next = locations.rows.of(kind);
             *next += 1;
             *next - 1
         };
-        taken.push(Reverse((end, row)));
-        match tenant {
-            Tenant::Value(value) => homes.values[value as usize] = Some(Home::Row(row)),
-            Tenant::Cell(cell) => homes.cells[cell as usize] = Some(Home::Row(row)),
+        occupied.push(Reverse((end, row)));
+        match owner {
+            IntervalOwner::Value(value) => locations.values[value as usize] = Some(Location::Row(row)),
+            IntervalOwner::Cell(cell) => locations.cells[cell as usize] = Some(Location::Row(row)),
         }
     }
 }

@@ -1,9 +1,8 @@
-//! What each operation makes of components.
+//! The semantics of each operation on components.
 
 use toyproof_math::native::flush;
 
-use super::half;
-use crate::ir::operation::{Operation, for_each_operation};
+use crate::ir::{Operation, for_each_operation};
 use crate::number::Number;
 
 /// An operation with one operand.
@@ -11,17 +10,17 @@ pub(super) trait Of1<N: Number, A, R> {
     fn apply(a: A, noise: N::Noise) -> R;
 }
 
-/// An operation with two.
+/// An operation with two operands.
 pub(super) trait Of2<N: Number, A, B, R> {
     fn apply(a: A, b: B, noise: N::Noise) -> R;
 }
 
-/// An operation with three.
+/// An operation with three operands.
 pub(super) trait Of3<N: Number, A, B, C, R> {
     fn apply(a: A, b: B, c: C, noise: N::Noise) -> R;
 }
 
-/// The type of a kind of component, where `N` is the number type.
+/// The Rust type of a kind of component, where `N` is the number type.
 macro_rules! ty {
     (F) => {
         N
@@ -65,9 +64,9 @@ macro_rules! apply {
     };
 }
 
-/// A `bool`: all bits, or none.
+/// Returns the word of a `bool`: all bits, or 0.
 #[inline(always)]
-fn truth(value: bool) -> u32 {
+fn bool_word(value: bool) -> u32 {
     u32::from(value).wrapping_neg()
 }
 
@@ -79,7 +78,8 @@ apply! {
     MulAdd(a: F, b: F, c: F) F = |noise| a.mul(b, noise).add(c, noise);
     MulSub(a: F, b: F, c: F) F = |noise| a.mul(b, noise).sub(c, noise);
     SubMul(a: F, b: F, c: F) F = |noise| c.sub(a.mul(b, noise), noise);
-    // Of NaN, and of zeros of different signs, the second: as lavapipe and SwiftShader.
+    // If an operand is NaN, or for zeros of different signs, the second operand, as in lavapipe and
+    // SwiftShader.
     Min(a: F, b: F) F = |_| if a < b { a } else { b };
     Max(a: F, b: F) F = |_| if a > b { a } else { b };
     Neg(a: F) F = |_| a.neg();
@@ -107,28 +107,28 @@ apply! {
     Log(a: F) F = |noise| a.log(noise);
     Log2(a: F) F = |noise| a.log2(noise);
     Pow(a: F, b: F) F = |noise| a.pow(b, noise);
-    Less(a: F, b: F) W = |_| truth(a < b);
-    LessEqual(a: F, b: F) W = |_| truth(a <= b);
-    Equal(a: F, b: F) W = |_| truth(a == b);
-    NotEqual(a: F, b: F) W = |_| truth(a != b);
-    IsNan(a: F) W = |_| truth(a.is_nan());
-    IsInf(a: F) W = |_| truth(a.abs() == N::from_f64(f64::INFINITY));
+    Less(a: F, b: F) W = |_| bool_word(a < b);
+    LessEqual(a: F, b: F) W = |_| bool_word(a <= b);
+    Equal(a: F, b: F) W = |_| bool_word(a == b);
+    NotEqual(a: F, b: F) W = |_| bool_word(a != b);
+    IsNan(a: F) W = |_| bool_word(a.is_nan());
+    IsInf(a: F) W = |_| bool_word(a.abs() == N::from_f64(f64::INFINITY));
     FromInt(a: W) F = |_| N::from_f64(f64::from(a.cast_signed()));
     FromUint(a: W) F = |_| N::from_f64(f64::from(a));
     ToInt(a: F) W = |_| to_int(a.to_f64()).cast_unsigned();
     ToUint(a: F) W = |_| to_uint(a.to_f64());
     FromBits(a: W) F = |_| N::from_f64(f64::from(flush(f32::from_bits(a))));
     ToBits(a: F) W = |_| a.to_f32().to_bits();
-    PackHalf(a: F, b: F) W = |_| u32::from(half::to_bits(a.to_f32())) | u32::from(half::to_bits(b.to_f32())) << 16;
-    UnpackLow(a: W) F = |_| N::from_f64(f64::from(half::from_bits(a as u16)));
-    UnpackHigh(a: W) F = |_| N::from_f64(f64::from(half::from_bits((a >> 16) as u16)));
+    PackHalf(a: F, b: F) W = |_| u32::from(f32_to_f16(a.to_f32())) | u32::from(f32_to_f16(b.to_f32())) << 16;
+    UnpackLow(a: W) F = |_| N::from_f64(f64::from(f16_to_f32(a as u16)));
+    UnpackHigh(a: W) F = |_| N::from_f64(f64::from(f16_to_f32((a >> 16) as u16)));
     AddWord(a: W, b: W) W = |_| a.wrapping_add(b);
     SubWord(a: W, b: W) W = |_| a.wrapping_sub(b);
     MulWord(a: W, b: W) W = |_| a.wrapping_mul(b);
-    // As naga guards them: by zero the quotient is the dividend, the remainder zero.
+    // As naga guards them: a division by zero returns the dividend, a remainder by zero returns 0.
     DivInt(a: W, b: W) W = |_| if b == 0 { a } else { a.cast_signed().wrapping_div(b.cast_signed()).cast_unsigned() };
     DivUint(a: W, b: W) W = |_| a.checked_div(b).unwrap_or(a);
-    // Floors, as browsers do where GLSL leaves it open.
+    // Floored remainder for operands of different signs, as in browsers; GLSL leaves it undefined.
     RemInt(a: W, b: W) W = |_| {
         let remainder = if b == 0 { 0 } else { a.cast_signed().wrapping_rem(b.cast_signed()).cast_unsigned() };
         if remainder != 0 && (remainder ^ b).cast_signed() < 0 { remainder.wrapping_add(b) } else { remainder }
@@ -146,17 +146,18 @@ apply! {
     MaxInt(a: W, b: W) W = |_| a.cast_signed().max(b.cast_signed()).cast_unsigned();
     MinUint(a: W, b: W) W = |_| a.min(b);
     MaxUint(a: W, b: W) W = |_| a.max(b);
-    EqualWord(a: W, b: W) W = |_| truth(a == b);
-    LessInt(a: W, b: W) W = |_| truth(a.cast_signed() < b.cast_signed());
-    LessUint(a: W, b: W) W = |_| truth(a < b);
+    EqualWord(a: W, b: W) W = |_| bool_word(a == b);
+    LessInt(a: W, b: W) W = |_| bool_word(a.cast_signed() < b.cast_signed());
+    LessUint(a: W, b: W) W = |_| bool_word(a < b);
     Select(a: W, b: F, c: F) F = |_| if a != 0 { b } else { c };
     SelectWord(a: W, b: W, c: W) W = |_| if a != 0 { b } else { c };
-    // Of one value for all pixels; rows have handlers of their own.
+    // Uniform operands only, so the derivative is 0 (or NaN); rows have their own handlers.
     DFdx(a: F) F = |noise| a.sub(a, noise);
     DFdy(a: F) F = |noise| a.sub(a, noise);
 }
 
-/// Towards zero; of what is too large, the largest f32 that an `int` holds: naga clamps to it before it converts.
+/// Rounds toward zero. Values that are too large become the largest f32 that fits an `int`: naga clamps to it
+/// before it converts.
 #[inline(always)]
 fn to_int(x: f64) -> i32 {
     if x < 2_147_483_648.0 {
@@ -166,7 +167,7 @@ fn to_int(x: f64) -> i32 {
     }
 }
 
-/// The same of `uint`.
+/// Rounds toward zero; values that are too large become the largest f32 that fits a `uint`.
 #[inline(always)]
 fn to_uint(x: f64) -> u32 {
     if x < 4_294_967_296.0 {
@@ -176,7 +177,7 @@ fn to_uint(x: f64) -> u32 {
     }
 }
 
-/// What an operation on words makes of them, if it is one.
+/// Evaluates an operation on words; none if it is an operation on floats.
 pub(crate) fn fold(operation: Operation, [a, b, c]: [u32; 3]) -> Option<u32> {
     macro_rules! word {
         ($name:ident(W) W) => {
@@ -200,4 +201,62 @@ pub(crate) fn fold(operation: Operation, [a, b, c]: [u32; 3]) -> Option<u32> {
         };
     }
     for_each_operation!(select)
+}
+
+// Half-precision floats (IEEE 754 binary16).
+
+/// Rounds to the nearest half-precision float, ties to even; overflow gives infinity.
+fn f32_to_f16(x: f32) -> u16 {
+    let bits = x.to_bits();
+    let sign = (bits >> 16) as u16 & 0x8000;
+    let magnitude = bits & 0x7fff_ffff;
+    if magnitude > 0x7f80_0000 {
+        return sign | 0x7e00;
+    }
+    // From 65,520 on: half a unit above the largest finite value.
+    if magnitude >= 0x477f_f000 {
+        return sign | 0x7c00;
+    }
+    if magnitude < 0x3880_0000 {
+        // Below the smallest normal: units of 2⁻²⁴. The scaling is exact, by a power of two.
+        let units = (f32::from_bits(magnitude) * 16_777_216.0).round_ties_even();
+        return sign | units as u16;
+    }
+    let rounded = magnitude + 0xfff + (magnitude >> 13 & 1);
+    sign | ((rounded - 0x3800_0000) >> 13) as u16
+}
+
+/// Converts a half-precision float to f32, exactly.
+fn f16_to_f32(half: u16) -> f32 {
+    let sign = u32::from(half & 0x8000) << 16;
+    let (exponent, fraction) = (u32::from(half >> 10 & 0x1f), u32::from(half & 0x3ff));
+    let magnitude = match exponent {
+        0 => (fraction as f32 / 16_777_216.0).to_bits(),
+        31 => 0x7f80_0000 | fraction << 13,
+        _ => (exponent + 112) << 23 | fraction << 13,
+    };
+    f32::from_bits(sign | magnitude)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn halves_round_trip_and_others_round_to_nearest() {
+        for half in 0..=u16::MAX {
+            let float = f16_to_f32(half);
+            if !float.is_nan() {
+                assert_eq!(f32_to_f16(float), half, "{float}");
+            }
+        }
+        let above_one = f16_to_f32(0x3c01);
+        assert_eq!(
+            f32_to_f16(f32::midpoint(1.0, above_one)),
+            0x3c00,
+            "ties go to even"
+        );
+        assert_eq!(f32_to_f16(65_519.0), 0x7bff);
+        assert_eq!(f32_to_f16(65_520.0), 0x7c00);
+    }
 }

@@ -1,14 +1,14 @@
-//! Operations on rows and on scalars.
+//! Handlers of operations on rows and on scalars.
 
 use std::marker::PhantomData;
 
 use super::apply::{self, Of1, Of2, Of3, ty};
 use super::{Handler, Instruction, Level, One, Row, Run, Sink, Source, for_each_chunk, handler};
 use crate::batch::{Batch, LANES, Lanes};
-use crate::ir::operation::{Operation, for_each_operation};
+use crate::ir::{Operation, for_each_operation};
 use crate::number::Number;
 
-/// One operand from `A`.
+/// An operation with one operand from `A`, into a row.
 struct Rows1<O, A, T, R>(PhantomData<(O, A, T, R)>);
 
 impl<N: Number, O: Of1<N, T, R>, A: Source<N, T>, T: Copy, R: Sink<N>> Run<N> for Rows1<O, A, T, R> {
@@ -29,7 +29,7 @@ impl<N: Number, O: Of1<N, T, R>, A: Source<N, T>, T: Copy, R: Sink<N>> Run<N> fo
     }
 }
 
-/// Two operands.
+/// An operation with two operands, into a row.
 struct Rows2<O, A, B, T, U, R>(PhantomData<(O, A, B, T, U, R)>);
 
 impl<N, O, A, B, T, U, R> Run<N> for Rows2<O, A, B, T, U, R>
@@ -60,7 +60,7 @@ where
     }
 }
 
-/// Three operands.
+/// An operation with three operands, into a row.
 struct Rows3<O, A, B, C, T, U, R>(PhantomData<(O, A, B, C, T, U, R)>);
 
 impl<N, O, A, B, C, T, U, R> Run<N> for Rows3<O, A, B, C, T, U, R>
@@ -93,7 +93,7 @@ where
     }
 }
 
-/// Scalars.
+/// An operation with one scalar operand.
 struct Scalar1<O, T, R>(PhantomData<(O, T, R)>);
 
 impl<N: Number, O: Of1<N, T, R>, T: Sink<N>, R: Sink<N>> Run<N> for Scalar1<O, T, R> {
@@ -130,7 +130,7 @@ impl<N: Number, O: Of3<N, T, U, U, R>, T: Sink<N>, U: Sink<N>, R: Sink<N>> Run<N
     }
 }
 
-/// Differences along x (1) or y (2) in each quad: those of its own row or column, as lavapipe takes them.
+/// Differences along x (1) or y (2) in each quad: those of the pixel's own row or column, as in lavapipe.
 struct Difference<const AXIS: usize>;
 
 impl<N: Number, const AXIS: usize> Run<N> for Difference<AXIS> {
@@ -150,7 +150,8 @@ impl<N: Number, const AXIS: usize> Run<N> for Difference<AXIS> {
     }
 }
 
-/// The handler of an operation whose operands are rows or not; the result is a row if any of them is.
+/// Returns the handler of an operation; `rows` says which operands are rows. The result is a row if any
+/// operand is.
 pub(crate) fn compute<N: Number>(level: Level, operation: Operation, rows: [bool; 3]) -> Handler<N> {
     macro_rules! forms {
         ($name:ident($a:ident) $r:ident) => {

@@ -1,11 +1,11 @@
-//! Masks and jumps.
+//! Handlers of masks and jumps.
 
 use super::{Handler, Instruction, Level, Run, for_each_chunk, handler};
-use crate::batch::{Batch, FUEL, Here, LANES, Stop, any};
+use crate::batch::{Active, Batch, FUEL_ITERATIONS, LANES, Stop, any};
 use crate::number::Number;
 
-/// Divides the pixels that are here by a word: those whose bits are all set go to one mask, the others to another. Operands: the word, the
-/// two masks.
+/// Splits the active pixels by a condition word: those whose word is `WHEN` go to one mask, the others to a
+/// second one. Operands: the word and the two masks.
 struct Split<const WHEN: bool>;
 
 impl<N: Number, const WHEN: bool> Run<N> for Split<WHEN> {
@@ -15,8 +15,8 @@ impl<N: Number, const WHEN: bool> Run<N> for Split<WHEN> {
         let condition = batch.word_row(word);
         let from = batch.mask_row(instruction.mask);
         let (yes_row, no_row) = (batch.mask_row(yes), batch.mask_row(no));
-        let here = batch.here[instruction.mask as usize].get();
-        // Of different sizes, or LLVM takes both tests apart to do them at once, which takes three times as long.
+        let active = batch.active[instruction.mask as usize].get();
+        // Different widths: with equal ones LLVM combines both reductions, which is three times slower.
         let (mut any_chosen, mut any_other) = (0_u32, 0_u64);
         for_each_chunk!(batch, instruction.mask, chunk => {
             let (condition, from) = (condition[chunk].get(), from[chunk].get());
@@ -30,17 +30,17 @@ impl<N: Number, const WHEN: bool> Run<N> for Split<WHEN> {
             no_row[chunk].set(others);
             yes_row[chunk].set(chosen);
         });
-        let no_here = Here {
+        let no_active = Active {
             chunks: any_other as u32,
-            all: here.all && any_chosen == 0,
+            all: active.all && any_chosen == 0,
         };
-        let yes_here = Here {
+        let yes_active = Active {
             chunks: any_chosen,
-            all: here.all && any_other == 0,
+            all: active.all && any_other == 0,
         };
-        batch.here[no as usize].set(no_here);
-        batch.here[yes as usize].set(yes_here);
-        if yes_here.chunks == 0 {
+        batch.active[no as usize].set(no_active);
+        batch.active[yes as usize].set(yes_active);
+        if yes_active.chunks == 0 {
             instruction.to as usize
         } else {
             at + 1
@@ -48,7 +48,7 @@ impl<N: Number, const WHEN: bool> Run<N> for Split<WHEN> {
     }
 }
 
-/// Puts the pixels that are here and whose bits of a word are all set, or none, into another mask. Operands: the word, the mask.
+/// Copies the active pixels whose condition word is `WHEN` into a mask. Operands: the word and the mask.
 struct Choose<const WHEN: bool>;
 
 impl<N: Number, const WHEN: bool> Run<N> for Choose<WHEN> {
@@ -68,8 +68,8 @@ impl<N: Number, const WHEN: bool> Run<N> for Choose<WHEN> {
             chunks |= u32::from(any(&chosen)) << chunk;
             to_row[chunk].set(chosen);
         });
-        let all = batch.here[instruction.mask as usize].get().all && every == [u32::MAX; LANES];
-        batch.here[to as usize].set(Here { chunks, all });
+        let all = batch.active[instruction.mask as usize].get().all && every == [u32::MAX; LANES];
+        batch.active[to as usize].set(Active { chunks, all });
         if chunks == 0 {
             instruction.to as usize
         } else {
@@ -78,7 +78,8 @@ impl<N: Number, const WHEN: bool> Run<N> for Choose<WHEN> {
     }
 }
 
-/// The handler that divides; `when` is the condition of the first mask, `both` whether there are two.
+/// Returns the handler that splits a mask; `when` is the condition of the first mask, `both` whether there
+/// are two.
 pub(crate) fn split<N: Number>(level: Level, when: bool, both: bool) -> Handler<N> {
     match (when, both) {
         (true, true) => handler::<N, Split<true>>(level),
@@ -88,7 +89,7 @@ pub(crate) fn split<N: Number>(level: Level, when: bool, both: bool) -> Handler<
     }
 }
 
-/// The pixels that are here, in another mask: operand 0.
+/// Copies the active pixels into the mask of operand 0.
 struct CopyMask;
 
 impl<N: Number> Run<N> for CopyMask {
@@ -99,7 +100,7 @@ impl<N: Number> Run<N> for CopyMask {
         for_each_chunk!(batch, instruction.mask, chunk => {
             to_row[chunk].set(from_row[chunk].get());
         });
-        batch.here[to as usize].set(batch.here[instruction.mask as usize].get());
+        batch.active[to as usize].set(batch.active[instruction.mask as usize].get());
         at + 1
     }
 }
@@ -108,8 +109,8 @@ pub(crate) fn copy_mask<N: Number>(level: Level) -> Handler<N> {
     handler::<N, CopyMask>(level)
 }
 
-/// Takes pixels that are here out of this mask and those before it, down to operand 1: all, or those for which the word of
-/// operand 0 is all bits (1) or none (0).
+/// Removes active pixels from this mask and the outer ones down to operand 1: all pixels, or those for which
+/// the word of operand 0 is all bits (1) or 0 (0).
 struct Remove<const WHICH: u8>;
 
 const ALL: u8 = 2;
@@ -134,11 +135,11 @@ impl<N: Number, const WHICH: u8> Run<N> for Remove<WHICH> {
             }
             if any(&gone) {
                 for mask in outer..=instruction.mask {
-                    batch.take_out(mask, chunk, &gone);
+                    batch.deactivate(mask, chunk, &gone);
                 }
             }
         });
-        if batch.here[instruction.mask as usize].get().chunks == 0 {
+        if batch.active[instruction.mask as usize].get().chunks == 0 {
             instruction.to as usize
         } else {
             at + 1
@@ -146,7 +147,7 @@ impl<N: Number, const WHICH: u8> Run<N> for Remove<WHICH> {
     }
 }
 
-/// The handler that takes pixels out of masks.
+/// Returns the handler that removes pixels from masks.
 pub(crate) fn remove<N: Number>(level: Level, when: Option<bool>) -> Handler<N> {
     match when {
         None => handler::<N, Remove<ALL>>(level),
@@ -160,7 +161,7 @@ struct JumpIfEmpty;
 impl<N: Number> Run<N> for JumpIfEmpty {
     #[inline(always)]
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
-        if batch.here[instruction.mask as usize].get().chunks == 0 {
+        if batch.active[instruction.mask as usize].get().chunks == 0 {
             instruction.to as usize
         } else {
             at + 1
@@ -185,7 +186,7 @@ pub(crate) fn jump<N: Number>() -> Handler<N> {
     handler::<N, Jump>(Level::Base)
 }
 
-/// Jumps if a scalar word is all bits, or none.
+/// Jumps if a scalar condition is `WHEN`.
 struct JumpIf<const WHEN: bool>;
 
 impl<N: Number, const WHEN: bool> Run<N> for JumpIf<WHEN> {
@@ -208,22 +209,23 @@ pub(crate) fn jump_if<N: Number>(when: bool) -> Handler<N> {
     }
 }
 
-/// One more round of the loop of operand 0, for the pixels that are here; goes to the end of all when somebody stops the run.
+/// Counts an iteration of the loop of operand 0 for the active pixels; jumps past the end if the run is
+/// cancelled.
 struct Iterate;
 
 impl<N: Number> Run<N> for Iterate {
     #[inline(always)]
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
-        if batch.here[instruction.mask as usize].get().all {
-            batch.rounds.set(batch.rounds.get() + 1);
+        if batch.active[instruction.mask as usize].get().all {
+            batch.iterations.set(batch.iterations.get() + 1);
         } else {
             let mask = batch.mask_row(instruction.mask);
             for_each_chunk!(batch, instruction.mask, chunk => {
-                let (mask, mut rounds) = (mask[chunk].get(), batch.own_rounds[chunk].get());
+                let (mask, mut iterations) = (mask[chunk].get(), batch.own_iterations[chunk].get());
                 for lane in 0..LANES {
-                    rounds[lane] = rounds[lane].wrapping_sub(mask[lane]);
+                    iterations[lane] = iterations[lane].wrapping_sub(mask[lane]);
                 }
-                batch.own_rounds[chunk].set(rounds);
+                batch.own_iterations[chunk].set(iterations);
             });
         }
         let fuel = batch.fuel.get();
@@ -237,14 +239,14 @@ impl<N: Number> Run<N> for Iterate {
 
 #[cold]
 fn refuel<N: Number>(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
-    batch.fuel.set(FUEL);
-    let too_often = batch.most_rounds() > batch.limit;
-    if !too_often && !batch.watch.is_over() {
+    batch.fuel.set(FUEL_ITERATIONS);
+    let over_limit = batch.max_iterations() > batch.iteration_limit;
+    if !over_limit && !batch.cancellation.is_cancelled() {
         return at + 1;
     }
     batch.stopped.set(Some(Stop {
         id: instruction.operands[0],
-        too_often,
+        over_limit,
     }));
     usize::MAX
 }

@@ -1,14 +1,15 @@
-//! Cells: copies, stores for the pixels that are here, and indices.
+//! Cells and textures: copies, masked stores, indexed accesses, and texture lookups.
 
 use std::cell::Cell;
 use std::marker::PhantomData;
 
 use super::{Handler, Instruction, Level, One, Row, Run, Sink, Source, for_each_chunk, handler};
 use crate::batch::{Batch, LANES};
-use crate::ir::operation::Kind;
+use crate::frame::Texture;
+use crate::ir::Kind;
 use crate::number::Number;
 
-/// Copies for every pixel in chunks where one is.
+/// Copies whole chunks that have an active pixel.
 struct Copy<A, T>(PhantomData<(A, T)>);
 
 impl<N: Number, A: Source<N, T>, T: Sink<N>> Run<N> for Copy<A, T> {
@@ -34,13 +35,13 @@ impl<N: Number, T: Sink<N>> Run<N> for CopyScalar<T> {
     }
 }
 
-/// Copies for the pixels that are here.
+/// Copies for the active pixels only.
 struct Store<A, T>(PhantomData<(A, T)>);
 
 impl<N: Number, A: Source<N, T>, T: Sink<N>> Run<N> for Store<A, T> {
     #[inline(always)]
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
-        if batch.here[instruction.mask as usize].get().all {
+        if batch.active[instruction.mask as usize].get().all {
             return Copy::<A, T>::run(batch, instruction, at);
         }
         let a = A::open(batch, instruction.operands[0]);
@@ -58,7 +59,7 @@ impl<N: Number, A: Source<N, T>, T: Sink<N>> Run<N> for Store<A, T> {
     }
 }
 
-/// The handler that copies a row or a scalar into a row, or a scalar into a scalar.
+/// Returns the handler that copies a row or a scalar into a row, or a scalar into a scalar.
 pub(crate) fn copy<N: Number>(level: Level, kind: Kind, from_row: bool, to_row: bool) -> Handler<N> {
     match (kind, from_row, to_row) {
         (Kind::Float, true, _) => handler::<N, Copy<Row, N>>(level),
@@ -70,7 +71,7 @@ pub(crate) fn copy<N: Number>(level: Level, kind: Kind, from_row: bool, to_row: 
     }
 }
 
-/// The handler that stores into a row for the pixels that are here.
+/// Returns the handler that stores into a row for the active pixels.
 pub(crate) fn store<N: Number>(level: Level, kind: Kind, from_row: bool) -> Handler<N> {
     match (kind, from_row) {
         (Kind::Float, true) => handler::<N, Store<Row, N>>(level),
@@ -80,21 +81,22 @@ pub(crate) fn store<N: Number>(level: Level, kind: Kind, from_row: bool) -> Hand
     }
 }
 
-/// Where indexed cells lie: operands are the index, the first row or scalar, and how many follow it.
+/// Returns the row or scalar that an index selects. Operands: the index, the first row or scalar, and the
+/// number of those after it.
 #[inline(always)]
-fn held<N: Number>(instruction: &Instruction<N>, index: u32) -> usize {
-    // In range by construction; held to it all the same.
+fn indexed_location<N: Number>(instruction: &Instruction<N>, index: u32) -> usize {
+    // In range by construction; clamped for memory safety.
     (instruction.operands[1] + index.min(instruction.operands[2])) as usize
 }
 
-/// Of rows by one index.
+/// Loads one of several rows by a uniform index.
 struct LoadRow<T>(PhantomData<T>);
 
 impl<N: Number, T: Sink<N>> Run<N> for LoadRow<T> {
     #[inline(always)]
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
         let index = batch.word_scalars[instruction.operands[0] as usize].get();
-        let row = T::row(batch, (held(instruction, index) * batch.width) as u32);
+        let row = T::row(batch, (indexed_location(instruction, index) * batch.width) as u32);
         let out = T::row(batch, instruction.out);
         for_each_chunk!(batch, instruction.mask, chunk => {
             out[chunk].set(row[chunk].get());
@@ -103,7 +105,7 @@ impl<N: Number, T: Sink<N>> Run<N> for LoadRow<T> {
     }
 }
 
-/// Of rows, each pixel by its own index.
+/// Loads from rows, each pixel by its own index.
 struct GatherRows<T>(PhantomData<T>);
 
 impl<N: Number, T: Sink<N>> Run<N> for GatherRows<T> {
@@ -115,7 +117,7 @@ impl<N: Number, T: Sink<N>> Run<N> for GatherRows<T> {
             let index = index[chunk].get();
             let mut result = [T::default(); LANES];
             for lane in 0..LANES {
-                let row = T::row(batch, (held(instruction, index[lane]) * batch.width) as u32);
+                let row = T::row(batch, (indexed_location(instruction, index[lane]) * batch.width) as u32);
                 let lanes: &Cell<[T]> = &row[chunk];
                 result[lane] = lanes.as_slice_of_cells()[lane].get();
             }
@@ -125,7 +127,7 @@ impl<N: Number, T: Sink<N>> Run<N> for GatherRows<T> {
     }
 }
 
-/// Of scalars, each pixel by its own index.
+/// Loads from scalars, each pixel by its own index.
 struct GatherScalars<T>(PhantomData<T>);
 
 impl<N: Number, T: Sink<N>> Run<N> for GatherScalars<T> {
@@ -137,7 +139,7 @@ impl<N: Number, T: Sink<N>> Run<N> for GatherScalars<T> {
             let index = index[chunk].get();
             let mut result = [T::default(); LANES];
             for lane in 0..LANES {
-                result[lane] = T::scalar(batch, held(instruction, index[lane]) as u32).get();
+                result[lane] = T::scalar(batch, indexed_location(instruction, index[lane]) as u32).get();
             }
             out[chunk].set(result);
         });
@@ -145,20 +147,21 @@ impl<N: Number, T: Sink<N>> Run<N> for GatherScalars<T> {
     }
 }
 
-/// Of scalars by one index.
+/// Loads one of several scalars by a uniform index.
 struct LoadScalar<T>(PhantomData<T>);
 
 impl<N: Number, T: Sink<N>> Run<N> for LoadScalar<T> {
     #[inline(always)]
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
         let index = batch.word_scalars[instruction.operands[0] as usize].get();
-        let value = T::scalar(batch, held(instruction, index) as u32).get();
+        let value = T::scalar(batch, indexed_location(instruction, index) as u32).get();
         T::scalar(batch, instruction.out).set(value);
         at + 1
     }
 }
 
-/// The handler that reads one of some cells, which are rows or scalars, by an index that is a row or a scalar.
+/// Returns the handler that loads one of several cells, which are rows or scalars, by an index that is a row
+/// or a scalar.
 pub(crate) fn load_at<N: Number>(
     level: Level,
     kind: Kind,
@@ -177,7 +180,7 @@ pub(crate) fn load_at<N: Number>(
     }
 }
 
-/// Into rows, each pixel by its index, for those that are here.
+/// Stores into rows, each active pixel by its own index.
 struct Scatter<I, A, T>(PhantomData<(I, A, T)>);
 
 impl<N: Number, I: Source<N, u32>, A: Source<N, T>, T: Sink<N>> Run<N> for Scatter<I, A, T> {
@@ -190,7 +193,7 @@ impl<N: Number, I: Source<N, u32>, A: Source<N, T>, T: Sink<N>> Run<N> for Scatt
             let (index, value, mask) = (I::chunk(index, chunk), A::chunk(value, chunk), mask[chunk].get());
             for lane in 0..LANES {
                 if mask[lane] != 0 {
-                    let row = T::row(batch, (held(instruction, index[lane]) * batch.width) as u32);
+                    let row = T::row(batch, (indexed_location(instruction, index[lane]) * batch.width) as u32);
                     let lanes: &Cell<[T]> = &row[chunk];
                     lanes.as_slice_of_cells()[lane].set(value[lane]);
                 }
@@ -207,12 +210,12 @@ impl<N: Number, T: Sink<N>> Run<N> for StoreScalar<T> {
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
         let index = batch.word_scalars[instruction.operands[0] as usize].get();
         let value = T::scalar(batch, instruction.out).get();
-        T::scalar(batch, held(instruction, index) as u32).set(value);
+        T::scalar(batch, indexed_location(instruction, index) as u32).set(value);
         at + 1
     }
 }
 
-/// The handler that writes one of some cells: `out` is what it writes.
+/// Returns the handler that stores into one of several cells; `out` is the stored value.
 pub(crate) fn store_at<N: Number>(
     level: Level,
     kind: Kind,
@@ -231,5 +234,81 @@ pub(crate) fn store_at<N: Number>(
         (Kind::Word, true, false, true) => handler::<N, Scatter<One, Row, u32>>(level),
         (Kind::Word, true, false, false) => handler::<N, Scatter<One, One, u32>>(level),
         (Kind::Word, false, ..) => handler::<N, StoreScalar<u32>>(Level::Base),
+    }
+}
+
+// Texture lookups.
+
+/// A filtered lookup. Operands 0 and 1 are rows of coordinates, operand 2 is 4 · channel + component, `to`
+/// the offset in texels.
+struct Filtered;
+
+impl<N: Number> Run<N> for Filtered {
+    #[inline(always)]
+    fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
+        let [x, y, which] = instruction.operands;
+        let (x, y) = (batch.float_row(x), batch.float_row(y));
+        let out = batch.float_row(instruction.out);
+        let offset =
+            [instruction.to as u16, (instruction.to >> 16) as u16].map(|axis| i32::from(axis.cast_signed()));
+        let texture = texture(batch, which);
+        for_each_chunk!(batch, instruction.mask, chunk => {
+            let (x, y) = (x[chunk].get(), y[chunk].get());
+            let mut result = [N::default(); LANES];
+            for lane in 0..LANES {
+                result[lane] = match texture {
+                    Some(texture) => texture.sample([x[lane], y[lane]], offset, which as usize % 4, batch.noise),
+                    None => unbound_texel(which),
+                };
+            }
+            out[chunk].set(result);
+        });
+        at + 1
+    }
+}
+
+/// A lookup of single texels. Operands 0 and 1 are rows of texel coordinates.
+struct Fetched;
+
+impl<N: Number> Run<N> for Fetched {
+    #[inline(always)]
+    fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
+        let [x, y, which] = instruction.operands;
+        let (x, y) = (batch.word_row(x), batch.word_row(y));
+        let out = batch.float_row(instruction.out);
+        let texture = texture(batch, which);
+        for_each_chunk!(batch, instruction.mask, chunk => {
+            let (x, y) = (x[chunk].get(), y[chunk].get());
+            let mut result = [N::default(); LANES];
+            for lane in 0..LANES {
+                result[lane] = match texture {
+                    Some(texture) => {
+                        let place = [x[lane], y[lane]].map(u32::cast_signed);
+                        N::from_f64(f64::from(texture.fetch(place, which as usize % 4)))
+                    }
+                    None => unbound_texel(which),
+                };
+            }
+            out[chunk].set(result);
+        });
+        at + 1
+    }
+}
+
+fn texture<'a, N: Number>(batch: &'a Batch<'_, N>, which: u32) -> Option<&'a Texture<'a>> {
+    batch.textures[which as usize / 4 % 4].as_ref()
+}
+
+/// Returns a component of an unbound channel: opaque black.
+fn unbound_texel<N: Number>(which: u32) -> N {
+    N::from_f64(f64::from(u8::from(which % 4 == 3)))
+}
+
+/// Returns the handler of a lookup with coordinates in rows.
+pub(crate) fn texel<N: Number>(filtered: bool) -> Handler<N> {
+    if filtered {
+        handler::<N, Filtered>(Level::Base)
+    } else {
+        handler::<N, Fetched>(Level::Base)
     }
 }

@@ -1,56 +1,53 @@
-//! What runs: each instruction holds the function that does it, made for its operation, its operands, and the number type.
+//! The interpreter: each instruction holds the function that executes it, monomorphized for its operation,
+//! its operand forms, and the number type.
 //!
-//! Rows are read a chunk at a time by value and then written, so that the compiler knows that nothing overlaps, and makes
-//! vector instructions of it. Chunks without a pixel that is here are skipped.
+//! Rows are copied out a chunk at a time and then written, so that the compiler knows that nothing aliases,
+//! and vectorizes. Chunks without active pixels are skipped.
 
 mod apply;
-mod check;
 mod compute;
 mod control;
-mod half;
 mod memory;
-mod tell;
-mod texel;
+mod record;
 
 pub(crate) use apply::fold;
-pub(crate) use check::check;
 pub(crate) use compute::compute;
 pub(crate) use control::{copy_mask, iterate, jump, jump_if, jump_if_empty, remove, split};
-pub(crate) use memory::{copy, load_at, store, store_at};
-pub(crate) use tell::{mention, tell};
-pub(crate) use texel::texel;
+pub(crate) use memory::{copy, load_at, store, store_at, texel};
+pub(crate) use record::{check, record, record_event};
 
 use crate::batch::{Batch, Lanes};
 use crate::number::Number;
 
-/// An instruction that is ready to run.
+/// An executable instruction.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Instruction<N: Number> {
     pub(crate) run: Handler<N>,
-    /// Where the result goes.
+    /// The row or scalar of the result.
     pub(crate) out: u32,
     pub(crate) operands: [u32; 3],
-    /// The mask of the pixels that are here.
+    /// The mask of the active pixels.
     pub(crate) mask: u32,
-    /// Where to go on, for those that jump.
+    /// The target of a jump; further operands of other instructions.
     pub(crate) to: u32,
 }
 
-/// Does an instruction and tells the position of the next. Made for a processor that [`Level::detect`] found.
+/// Executes an instruction and returns the index of the next. Compiled for a level that [`Level::detect`]
+/// found on this processor.
 pub(crate) type Handler<N> = unsafe fn(&Batch<'_, N>, &Instruction<N>, usize) -> usize;
 
-/// Which vector instructions the processor has.
+/// The vector instruction set of the processor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Level {
-    /// Those that the target always has.
+    /// The instructions that the compilation target always has.
     Base,
-    /// Eight floats at once.
+    /// AVX2 and FMA: eight floats at once.
     #[cfg(target_arch = "x86_64")]
     Avx2,
 }
 
 impl Level {
-    /// The best that this processor has.
+    /// Returns the best level that this processor supports.
     pub(crate) fn detect() -> Self {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
@@ -65,7 +62,7 @@ trait Run<N: Number> {
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize;
 }
 
-/// The function that does instructions of a kind on a processor.
+/// Returns the function that executes instructions of a kind on a processor.
 fn handler<N: Number, R: Run<N>>(level: Level) -> Handler<N> {
     match level {
         Level::Base => base::<N, R>,
@@ -84,7 +81,7 @@ fn avx2<N: Number, R: Run<N>>(batch: &Batch<'_, N>, instruction: &Instruction<N>
     R::run(batch, instruction, at)
 }
 
-/// Runs instructions from the first until one leads past the last.
+/// Runs instructions from the first until one jumps past the last.
 pub(crate) fn run<N: Number>(batch: &Batch<'_, N>, code: &[Instruction<N>]) {
     let mut at = 0;
     while let Some(instruction) = code.get(at) {
@@ -99,10 +96,10 @@ pub(crate) fn run<N: Number>(batch: &Batch<'_, N>, code: &[Instruction<N>]) {
     }
 }
 
-/// Does something for each chunk that has a pixel that is here.
+/// Executes a block for each chunk that has an active pixel.
 macro_rules! for_each_chunk {
     ($batch:expr, $mask:expr, $chunk:ident => $body:block) => {{
-        let mut chunks = $batch.here[$mask as usize].get().chunks;
+        let mut chunks = $batch.active[$mask as usize].get().chunks;
         if chunks == u32::MAX >> (32 - $batch.width) {
             for $chunk in 0..$batch.width $body
         } else {
@@ -116,17 +113,17 @@ macro_rules! for_each_chunk {
 }
 use for_each_chunk;
 
-/// An operand in a row.
+/// An operand in a row: a value for each pixel.
 #[derive(Debug)]
 struct Row;
 
-/// An operand that is one for all pixels.
+/// A scalar operand: one value for all pixels.
 #[derive(Debug)]
 struct One;
 
-/// Where an operand is read.
+/// The source of an operand.
 trait Source<N: Number, T> {
-    /// What is looked up before the first chunk.
+    /// The state that is looked up before the first chunk.
     type Open<'a>: Copy;
 
     fn open<'a>(batch: &'a Batch<'_, N>, operand: u32) -> Self::Open<'a>;
@@ -167,12 +164,12 @@ macro_rules! sources {
 sources!(N, float_row, float_scalars);
 sources!(u32, word_row, word_scalars);
 
-/// Where a result goes.
+/// The destination of a result.
 trait Sink<N: Number>: Sized + Copy + Default {
     fn row<'a>(batch: &'a Batch<'_, N>, out: u32) -> &'a [std::cell::Cell<Lanes<Self>>];
     fn scalar<'a>(batch: &'a Batch<'_, N>, out: u32) -> &'a std::cell::Cell<Self>;
-    /// The first where the mask has all bits, the second where it has none. Bit by bit: of a choice LLVM makes stores under a mask, which
-    /// take many times as long on processors by AMD.
+    /// Returns `yes` where the mask is all bits, `no` where it is 0. Bit by bit: LLVM compiles a conditional
+    /// to masked stores, which are many times slower on AMD processors.
     fn blend(mask: u32, yes: Self, no: Self) -> Self;
 }
 

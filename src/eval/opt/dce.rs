@@ -1,135 +1,136 @@
-//! What nothing asks for is taken out: values, stores to cells that are never read, and choices with nothing in them. What is left asks for
-//! others: what it is made of, and the conditions of the choices that it stands in.
+//! Dead code elimination: removes unused values, stores to cells that are never read, and empty `if`s.
+//!
+//! A kept node requires its operands and the conditions of the `if`s around it.
 
-use crate::ir::alias::Groups;
-use crate::ir::function::{Block, Cell, Flow, Node, Origin, Value};
+use crate::ir::AliasGroups;
+use crate::ir::{Block, Cell, Function, Node, Value, ValueDef};
 use crate::observe::Predicate;
 
-/// Rewrites a program.
-pub(crate) fn prune(flow: &mut Flow) {
-    // Cells that only an index leads to which nobody asks for are in no group the second time.
+/// Removes dead code from a function.
+pub(crate) fn eliminate_dead_code(function: &mut Function) {
+    // Cells that were only reached by dead indexed accesses are in no alias group in the second pass.
     for _ in 0..2 {
-        once(flow);
+        once(function);
     }
 }
 
-fn once(flow: &mut Flow) {
-    let groups = Groups::of(flow);
-    let body = std::mem::take(&mut flow.body);
-    let mut pass = Prune {
-        values: vec![false; flow.origins.len()],
-        cells: vec![false; flow.cells.len()],
-        stores: vec![Vec::new(); flow.cells.len()],
-        homes: vec![0; flow.origins.len()],
-        choices: vec![Choice {
-            around: 0,
+fn once(function: &mut Function) {
+    let groups = AliasGroups::of(function);
+    let body = std::mem::take(&mut function.body);
+    let mut pass = DeadCodeElimination {
+        values: vec![false; function.defs.len()],
+        cells: vec![false; function.cells.len()],
+        stores: vec![Vec::new(); function.cells.len()],
+        branch_of: vec![0; function.defs.len()],
+        branches: vec![Branch {
+            parent: 0,
             condition: None,
         }],
-        pending: flow.output.to_vec(),
+        pending: function.output.to_vec(),
         groups,
-        flow,
+        function,
     };
-    pass.roots(&body, 0);
-    pass.spread();
-    let body = pass.keep(body);
-    pass.flow.body = body;
+    pass.collect_roots(&body, 0);
+    pass.propagate();
+    let body = pass.retain(body);
+    pass.function.body = body;
 }
 
-/// A choice: an [`Node::If`], or the first, what is around all.
-struct Choice {
-    around: usize,
-    /// Until it is asked for, since something in it is kept.
+/// A control dependency: an [`Node::If`], or for index 0, the whole body.
+struct Branch {
+    parent: usize,
+    /// Taken once the condition is required.
     condition: Option<Value>,
 }
 
-struct Prune<'a> {
-    flow: &'a mut Flow,
-    groups: Groups,
+struct DeadCodeElimination<'a> {
+    function: &'a mut Function,
+    groups: AliasGroups,
     values: Vec<bool>,
     cells: Vec<bool>,
-    /// What is stored to each cell, and in which choice; to those of a group, to its first.
+    /// The values stored to each cell, and the branch of the store; for groups, by the first cell.
     stores: Vec<Vec<(Value, usize)>>,
-    /// The choice in which each value is computed.
-    homes: Vec<usize>,
-    choices: Vec<Choice>,
+    /// The branch that computes each value.
+    branch_of: Vec<usize>,
+    branches: Vec<Branch>,
     pending: Vec<Value>,
 }
 
-impl Prune<'_> {
-    fn roots(&mut self, block: &Block, choice: usize) {
+impl DeadCodeElimination<'_> {
+    fn collect_roots(&mut self, block: &Block, branch: usize) {
         for node in block {
             match node {
-                Node::Let(value) => self.homes[value.0 as usize] = choice,
-                Node::Store { cell, value } => self.stores[self.groups.unit(*cell)].push((*value, choice)),
+                Node::Let(value) => self.branch_of[value.0 as usize] = branch,
+                Node::Store { cell, value } => self.stores[self.groups.unit(*cell)].push((*value, branch)),
                 Node::StoreAt {
                     cells, index, value, ..
                 } => {
                     let unit = self.groups.unit(Cell(cells.first));
-                    self.stores[unit].extend([(*index, choice), (*value, choice)]);
+                    self.stores[unit].extend([(*index, branch), (*value, branch)]);
                 }
                 Node::If { condition, .. } => {
-                    self.choices.push(Choice {
-                        around: choice,
+                    self.branches.push(Branch {
+                        parent: branch,
                         condition: Some(*condition),
                     });
-                    let inner = self.choices.len() - 1;
-                    node.for_each_block(|block| self.roots(block, inner));
+                    let inner = self.branches.len() - 1;
+                    node.for_each_block(|block| self.collect_roots(block, inner));
                 }
-                Node::Scope { body, .. } => self.roots(body, choice),
+                Node::Scope { body, .. } => self.collect_roots(body, branch),
                 Node::Loop { body, .. } => {
-                    self.ask(choice);
-                    self.roots(body, choice);
+                    self.require(branch);
+                    self.collect_roots(body, branch);
                 }
-                _ if self.is_certain(node) => {}
+                _ if self.never_fires(node) => {}
                 _ => {
                     node.for_each_value(|value| self.pending.push(value));
-                    self.ask(choice);
+                    self.require(branch);
                 }
             }
         }
     }
 
-    /// Asks for the conditions of a choice and of those around it.
-    fn ask(&mut self, mut choice: usize) {
-        while let Some(condition) = self.choices[choice].condition.take() {
+    /// Requires the conditions of a branch and of those around it.
+    fn require(&mut self, mut branch: usize) {
+        while let Some(condition) = self.branches[branch].condition.take() {
             self.pending.push(condition);
-            choice = self.choices[choice].around;
+            branch = self.branches[branch].parent;
         }
     }
 
-    fn spread(&mut self) {
+    fn propagate(&mut self) {
         while let Some(value) = self.pending.pop() {
             if std::mem::replace(&mut self.values[value.0 as usize], true) {
                 continue;
             }
-            self.ask(self.homes[value.0 as usize]);
-            let origin = self.flow.origin(value);
-            origin.for_each_operand(|operand| self.pending.push(operand));
-            let cell = match origin {
-                Origin::Load(cell) => cell,
-                Origin::LoadAt { cells, .. } => Cell(cells.first),
+            self.require(self.branch_of[value.0 as usize]);
+            let def = self.function.def(value);
+            def.for_each_operand(|operand| self.pending.push(operand));
+            let cell = match def {
+                ValueDef::Load(cell) => cell,
+                ValueDef::LoadAt { cells, .. } => Cell(cells.first),
                 _ => continue,
             };
             let unit = self.groups.unit(cell);
             if !std::mem::replace(&mut self.cells[unit], true) {
-                for (value, choice) in std::mem::take(&mut self.stores[unit]) {
+                for (value, branch) in std::mem::take(&mut self.stores[unit]) {
                     self.pending.push(value);
-                    self.ask(choice);
+                    self.require(branch);
                 }
             }
         }
     }
 
-    /// Whether a node notes what is written for certain.
-    fn is_certain(&self, node: &Node) -> bool {
+    /// Whether a node is a check of a constant flag that is set, which never fires.
+    fn never_fires(&self, node: &Node) -> bool {
         matches!(node, Node::Check {
             predicate: Predicate::Zero,
             values: [value, _],
             ..
-        } if matches!(self.flow.origin(*value), Origin::Word(word) if word != 0))
+        } if matches!(self.function.def(*value), ValueDef::Word(word) if word != 0))
     }
 
-    fn keep(&self, block: Block) -> Block {
+    fn retain(&self, block: Block) -> Block {
         let mut out = Block::with_capacity(block.len());
         for node in block {
             let kept = match node {
@@ -139,19 +140,19 @@ impl Prune<'_> {
                     self.cells[self.groups.unit(Cell(cells.first))].then_some(node)
                 }
                 Node::If { condition, yes, no } => {
-                    let [yes, no] = [yes, no].map(|block| self.keep(block));
+                    let [yes, no] = [yes, no].map(|block| self.retain(block));
                     let empty = yes.is_empty() && no.is_empty();
                     (!empty).then_some(Node::If { condition, yes, no })
                 }
                 Node::Scope { scope, body } => {
-                    let body = self.keep(body);
+                    let body = self.retain(body);
                     (!body.is_empty()).then_some(Node::Scope { scope, body })
                 }
                 Node::Loop { id, body } => Some(Node::Loop {
                     id,
-                    body: self.keep(body),
+                    body: self.retain(body),
                 }),
-                _ => (!self.is_certain(&node)).then_some(node),
+                _ => (!self.never_fires(&node)).then_some(node),
             };
             out.extend(kept);
         }

@@ -1,39 +1,39 @@
-//! A product that only a sum or difference next to it takes becomes one instruction with that: it need not be stored and read again. Both
-//! are rounded as before.
+//! Fusion: a product whose only use is a sum or difference in the same block becomes one instruction with it,
+//! which saves a store and a load. Both operations are still rounded.
 
-use crate::ir::function::{Block, Flow, Node, Origin, Value};
-use crate::ir::operation::Operation;
-use crate::opt::divergence::Varying;
+use crate::ir::Operation;
+use crate::ir::{Block, Function, Node, Value, ValueDef};
+use crate::opt::divergence::Divergence;
 
-/// Rewrites a program.
-pub(crate) fn fuse(flow: &mut Flow, varying: &Varying) {
+/// Fuses products in a function.
+pub(crate) fn fuse(function: &mut Function, divergence: &Divergence) {
     let mut pass = Fuse {
-        uses: vec![0; flow.origins.len()],
-        here: vec![0; flow.origins.len()],
+        uses: vec![0; function.defs.len()],
+        block_of: vec![0; function.defs.len()],
         blocks: 0,
-        gone: vec![false; flow.origins.len()],
-        varying,
-        flow,
+        fused: vec![false; function.defs.len()],
+        divergence,
+        function,
     };
-    for value in pass.flow.output {
+    for value in pass.function.output {
         pass.uses[value.0 as usize] += 1;
     }
-    let mut body = std::mem::take(&mut pass.flow.body);
+    let mut body = std::mem::take(&mut pass.function.body);
     pass.count(&body);
     pass.block(&mut body);
-    pass.flow.body = body;
+    pass.function.body = body;
 }
 
 struct Fuse<'a> {
-    flow: &'a mut Flow,
-    varying: &'a Varying,
-    /// How often each value is used.
+    function: &'a mut Function,
+    divergence: &'a Divergence,
+    /// The number of uses of each value.
     uses: Vec<u32>,
-    /// In which block each value is computed, once that is reached.
-    here: Vec<u32>,
+    /// The block that computes each value, once it has been visited.
+    block_of: Vec<u32>,
     blocks: u32,
-    /// Which are not computed by themselves any more.
-    gone: Vec<bool>,
+    /// Products that were fused.
+    fused: Vec<bool>,
 }
 
 impl Fuse<'_> {
@@ -42,7 +42,7 @@ impl Fuse<'_> {
             let uses = &mut self.uses;
             let mut count = |value: Value| uses[value.0 as usize] += 1;
             if let Node::Let(value) = node {
-                self.flow.origin(*value).for_each_operand(&mut count);
+                self.function.def(*value).for_each_operand(&mut count);
             }
             node.for_each_value(count);
             node.for_each_block(|block| self.count(block));
@@ -51,25 +51,25 @@ impl Fuse<'_> {
 
     fn block(&mut self, block: &mut Block) {
         self.blocks += 1;
-        let here = self.blocks;
+        let block_id = self.blocks;
         for node in block.iter_mut() {
             if let Node::Let(value) = node {
-                self.value(*value, here);
-                self.here[value.0 as usize] = here;
+                self.value(*value, block_id);
+                self.block_of[value.0 as usize] = block_id;
             }
             node.for_each_block_mut(|block| self.block(block));
         }
-        block.retain(|node| !matches!(node, Node::Let(value) if self.gone[value.0 as usize]));
+        block.retain(|node| !matches!(node, Node::Let(value) if self.fused[value.0 as usize]));
     }
 
-    fn value(&mut self, value: Value, here: u32) {
-        let Origin::Operation(operation @ (Operation::Add | Operation::Sub), [a, b, _]) =
-            self.flow.origin(value)
+    fn value(&mut self, value: Value, block_id: u32) {
+        let ValueDef::Operation(operation @ (Operation::Add | Operation::Sub), [a, b, _]) =
+            self.function.def(value)
         else {
             return;
         };
-        let left = self.product(a, here).map(|factors| (a, factors, b));
-        let right = || self.product(b, here).map(|factors| (b, factors, a));
+        let left = self.product(a, block_id).map(|factors| (a, factors, b));
+        let right = || self.product(b, block_id).map(|factors| (b, factors, a));
         let Some((product, [x, y], other)) = left.or_else(right) else {
             return;
         };
@@ -78,16 +78,16 @@ impl Fuse<'_> {
             _ if product == a => Operation::MulSub,
             _ => Operation::SubMul,
         };
-        self.gone[product.0 as usize] = true;
-        self.flow.origins[value.0 as usize] = Origin::Operation(fused, [x, y, other]);
+        self.fused[product.0 as usize] = true;
+        self.function.defs[value.0 as usize] = ValueDef::Operation(fused, [x, y, other]);
     }
 
-    /// The factors of a product that varies, comes from the same block, and is used once.
-    fn product(&self, value: Value, here: u32) -> Option<[Value; 2]> {
+    /// Returns the factors of a divergent product from the same block that is used once.
+    fn product(&self, value: Value, block_id: u32) -> Option<[Value; 2]> {
         let at = value.0 as usize;
-        match self.flow.origin(value) {
-            Origin::Operation(Operation::Mul, [x, y, _])
-                if self.uses[at] == 1 && self.here[at] == here && self.varying.value(value) =>
+        match self.function.def(value) {
+            ValueDef::Operation(Operation::Mul, [x, y, _])
+                if self.uses[at] == 1 && self.block_of[at] == block_id && self.divergence.value(value) =>
             {
                 Some([x, y])
             }

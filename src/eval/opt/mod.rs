@@ -1,4 +1,4 @@
-//! Passes from the intermediate representation to the same with less work; none changes a bit of the image.
+//! Optimization passes on the intermediate representation; none changes a bit of the image.
 
 pub(crate) mod dce;
 pub(crate) mod divergence;

@@ -8,11 +8,11 @@ use crate::codes::Code;
 use crate::token::Symbol;
 use crate::tree::{BuiltIn, ExprId, ExprKind, Place, Scalar, StructId, Swizzle, Type, VariableKind};
 
-/// The three sets of names for components; one selection takes all of its names from one (§5.5).
+/// The three sets of component names; a swizzle takes all of its names from one set (§5.5).
 const COMPONENT_NAMES: [&str; 3] = ["xyzw", "rgba", "stpq"];
 
 impl Checker<'_> {
-    /// A name where a value is needed.
+    /// Resolves a name that is used as a value.
     pub(crate) fn name(&mut self, name: Symbol, at: Place) -> ExprId {
         let text = self.text(name);
         match self.scopes.find(name) {
@@ -20,7 +20,7 @@ impl Checker<'_> {
                 let found = &self.tree[variable];
                 let constant = match found.kind {
                     VariableKind::BuiltInConstant => true,
-                    VariableKind::Const => found.initialiser.is_some_and(|value| self.tree[value].constant),
+                    VariableKind::Const => found.initializer.is_some_and(|value| self.tree[value].constant),
                     _ => false,
                 };
                 let ty = found.ty;
@@ -45,12 +45,12 @@ impl Checker<'_> {
         }
     }
 
-    /// Whether the name means anything here.
+    /// Whether the name is declared in the current scope or built in.
     pub(crate) fn is_declared(&self, name: Symbol) -> bool {
         self.scopes.find(name).is_some() || BuiltIn::named(self.text(name)).is_some()
     }
 
-    /// The structure that the name means here, if it means one.
+    /// The structure that the name denotes in the current scope, if any.
     pub(crate) fn struct_named(&self, name: Symbol) -> Option<StructId> {
         match self.scopes.find(name)? {
             Entity::Struct(found) => Some(*found),
@@ -58,25 +58,28 @@ impl Checker<'_> {
         }
     }
 
-    /// `base.name`: a member or a swizzle.
+    /// Checks `base.name`: a member or a swizzle.
     pub(crate) fn field(&mut self, base: ExprId, name: Symbol, at: Place) -> ExprId {
         let (ty, constant) = (self.ty(base), self.tree[base].constant);
         let whole = self.tree[base].at.to(at);
         let text = self.text(name);
         match ty {
-            Type::Error => self.broken(whole),
+            Type::Error => self.error_expr(whole),
             Type::Struct(id) => {
                 let members = &self.tree[id].members;
                 let Some(member) = members.iter().position(|member| member.name == text) else {
                     if self.incomplete.contains(&id) {
-                        return self.broken(whole);
+                        return self.error_expr(whole);
                     }
                     let near = nearest(text, members.iter().map(|member| &*member.name));
                     let message = match near {
                         Some(near) => {
-                            format!("{} has no member `{text}`; did you mean `{near}`?", self.said(ty))
+                            format!(
+                                "{} has no member `{text}`; did you mean `{near}`?",
+                                self.quoted_type(ty)
+                            )
                         }
-                        None => format!("{} has no member `{text}`", self.said(ty)),
+                        None => format!("{} has no member `{text}`", self.quoted_type(ty)),
                     };
                     let names: Vec<_> = members
                         .iter()
@@ -96,7 +99,7 @@ impl Checker<'_> {
             }
             Type::Vector(scalar, size) => {
                 let Some(components) = swizzle(text, size) else {
-                    let message = format!("`.{text}` selects no components of {}", self.said(ty));
+                    let message = format!("`.{text}` selects no components of {}", self.quoted_type(ty));
                     let label = format!("it has `.{}`", &"xyzw"[..usize::from(size)]);
                     let diagnostic = Code::UnknownMember.at(at, message).label(label);
                     return self.refuse_with(diagnostic, at);
@@ -108,48 +111,48 @@ impl Checker<'_> {
                 self.push(kind, Type::vector(scalar, components.size()), constant, whole)
             }
             _ => {
-                let message = format!("{} has no members; this asks for `.{text}`", self.said(ty));
+                let message = format!("{} has no members; this asks for `.{text}`", self.quoted_type(ty));
                 self.refuse(Code::UnknownMember, at, message)
             }
         }
     }
 
-    /// `array.length()` (§5.7): the only method there is.
+    /// Checks `array.length()` (§5.7), the only method in GLSL.
     pub(crate) fn method(&mut self, base: ExprId, name: Symbol, at: Place) -> ExprId {
         let ty = self.ty(base);
         let whole = self.tree[base].at.to(at);
         match ty {
-            Type::Error => self.broken(whole),
+            Type::Error => self.error_expr(whole),
             Type::Array(_) if self.text(name) == "length" => {
                 self.push(ExprKind::Length { array: base }, Type::INT, true, whole)
             }
             _ => {
-                let message = format!("{} has no method `{}`", self.said(ty), self.text(name));
+                let message = format!("{} has no method `{}`", self.quoted_type(ty), self.text(name));
                 self.refuse(Code::UnknownMember, at, message)
             }
         }
     }
 
-    /// `base[index]`.
+    /// Checks `base[index]`.
     pub(crate) fn index(&mut self, base: ExprId, index: ExprId, close: Place) -> ExprId {
         let at = self.tree[base].at.to(close);
         let (ty, index_type) = (self.ty(base), self.ty(index));
         if ty == Type::Error || index_type == Type::Error {
-            return self.broken(at);
+            return self.error_expr(at);
         }
         let (element, size) = match ty {
             Type::Vector(scalar, size) => (Type::Scalar(scalar), u32::from(size)),
             Type::Matrix { columns, rows } => (Type::Vector(Scalar::Float, rows), u32::from(columns)),
             Type::Array(array) => (self.tree.array(array).element, self.tree.array(array).size),
             _ => {
-                let message = format!("{} has no elements to index", self.said(ty));
+                let message = format!("{} has no elements to index", self.quoted_type(ty));
                 return self.refuse(Code::BadIndex, at, message);
             }
         };
         if !matches!(index_type, Type::INT | Type::UINT) {
             let message = format!(
                 "an index must be `int` or `uint`, and this is {}",
-                self.said(index_type)
+                self.quoted_type(index_type)
             );
             return self.refuse(Code::BadIndex, self.tree[index].at, message);
         }
@@ -158,13 +161,13 @@ impl Checker<'_> {
         {
             let message = format!(
                 "the index {value} is out of range: {} has {size} elements",
-                self.said(ty)
+                self.quoted_type(ty)
             );
             let at = self.tree[index].at;
             let label = format!("the last one is {}", size.saturating_sub(1));
             return self.refuse_with(Code::BadIndex.at(at, message).label(label), at);
         }
-        // §4.1.7: which sampler it is must be known beforehand.
+        // §4.1.7: the sampler must be known at compile time.
         if matches!(element, Type::Sampler(_)) && !self.tree[index].constant {
             let message = "the index of an array of samplers must be a constant expression";
             return self.refuse(Code::NotConstant, self.tree[index].at, message);
@@ -179,7 +182,7 @@ impl Checker<'_> {
     }
 }
 
-/// The components that a selection names, all of one set and all within `size`.
+/// The components that a swizzle selects, all from one set of names and all less than `size`.
 fn swizzle(text: &str, size: u8) -> Option<Swizzle> {
     COMPONENT_NAMES.iter().find_map(|names| {
         let components: Option<Vec<u8>> = text

@@ -1,22 +1,24 @@
-//! Variables and constants (§4.2, §4.3).
+//! Declarations of variables and constants, and their qualifiers (§4.2, §4.3).
 
 use super::scope::Entity;
-use super::{Checker, Qualifiers, Size, Specifier, liberal_conversion};
-use crate::codes::{Code, tell};
+use super::{Checker, Size, Specifier, is_desktop_conversion};
+use crate::codes::{Code, push_limited};
+use crate::keywords::Keyword;
 use crate::token::Symbol;
-use crate::tree::{ExprId, Place, Scalar, Type, Variable, VariableId, VariableKind};
+use crate::tree::{BuiltInVariable, ExprId, Place, Scalar, Type, Variable, VariableId, VariableKind};
 
-/// One name of a declaration with what belongs to it alone.
+/// One declarator: a name with its own array sizes and initializer.
 #[derive(Debug)]
 pub(crate) struct Declarator {
     pub(crate) name: Symbol,
     pub(crate) at: Place,
     pub(crate) sizes: Vec<Size>,
-    pub(crate) initialiser: Option<ExprId>,
+    pub(crate) initializer: Option<ExprId>,
 }
 
 impl Checker<'_> {
-    /// Declares a variable, in scope from here on. Its initialiser was read before and does not know it (§4.2.2).
+    /// Declares a variable, in scope from here on. Its initializer was parsed before the name was in scope
+    /// (§4.2.2).
     pub(crate) fn declare_variable(
         &mut self,
         qualifiers: &Qualifiers,
@@ -27,30 +29,31 @@ impl Checker<'_> {
             name,
             at,
             sizes,
-            initialiser,
+            initializer,
         } = declarator;
         let kind = self.variable_kind(qualifiers);
         let sizes: Vec<_> = sizes.iter().chain(&specifier.sizes).copied().collect();
-        let given = initialiser.map(|expr| self.ty(expr));
+        let given = initializer.map(|expr| self.ty(expr));
         let ty = self.array_type(specifier.base, &sizes, given, at);
         let ty = self.variable_type(ty, kind, at);
-        self.flat_fits(qualifiers, ty, kind, at);
-        let initialiser = self.initialiser(initialiser, ty, kind, name, at);
-        // Where value and type contradict each other, either may be meant; but what only lacks a conversion has the type that is written.
-        let contradicted = match (initialiser.map(|expr| self.ty(expr)), given) {
-            (Some(Type::Error), Some(given)) if given != Type::Error => !liberal_conversion(given, ty),
+        self.check_flat(qualifiers, ty, kind, at);
+        let initializer = self.initializer(initializer, ty, kind, name, at);
+        // If the initializer contradicts the declared type, either may be intended. If only an implicit
+        // conversion is missing, the declared type is.
+        let contradicted = match (initializer.map(|expr| self.ty(expr)), given) {
+            (Some(Type::Error), Some(given)) if given != Type::Error => !is_desktop_conversion(given, ty),
             _ => false,
         };
         let ty = if contradicted { Type::Error } else { ty };
-        let value = initialiser
+        let value = initializer
             .filter(|_| kind == VariableKind::Const)
             .and_then(|expr| self.tree.value(expr));
-        let allowed = self.may_declare(name, at);
+        let allowed = self.check_declarable(name, at);
         let variable = self.tree.variables.push(Variable {
             name: self.text(name).to_owned(),
             ty,
             kind,
-            initialiser,
+            initializer,
             value,
             at: Some(at),
         });
@@ -60,14 +63,14 @@ impl Checker<'_> {
         variable
     }
 
-    /// Declares a name whose declaration cannot be read: it may be anything.
-    pub(crate) fn declare_unread(&mut self, name: Symbol, at: Place) {
+    /// Declares a name whose declaration could not be parsed, with the type `Error`.
+    pub(crate) fn declare_unparsed(&mut self, name: Symbol, at: Place) {
         if self.scopes.find_here(name).is_none() {
             let variable = self.tree.variables.push(Variable {
                 name: self.text(name).to_owned(),
                 ty: Type::Error,
                 kind: VariableKind::Local,
-                initialiser: None,
+                initializer: None,
                 value: None,
                 at: Some(at),
             });
@@ -75,7 +78,7 @@ impl Checker<'_> {
         }
     }
 
-    /// What an array holds; of anything else, itself.
+    /// The element type of an array; any other type unchanged.
     pub(super) fn element(&self, ty: Type) -> Type {
         match ty {
             Type::Array(id) => self.tree.array(id).element,
@@ -83,24 +86,28 @@ impl Checker<'_> {
         }
     }
 
-    /// The type, if a variable of that kind can have it.
+    /// Returns the type if a variable of that kind can have it, otherwise reports an error.
     fn variable_type(&mut self, ty: Type, kind: VariableKind, at: Place) -> Type {
         let problem = match ty {
             Type::Void => "a variable cannot be `void`".to_owned(),
             _ if kind != VariableKind::Uniform && self.holds_sampler(ty) => {
-                format!("{} can only be a uniform or a parameter", self.said(ty))
+                format!("{} can only be a uniform or a parameter", self.quoted_type(ty))
             }
-            _ if !self.passes_stages(ty, kind) => {
-                format!("{} cannot come from another stage or go there", self.said(ty))
+            _ if !self.is_stage_io_type(ty, kind) => {
+                format!(
+                    "{} cannot come from another stage or go there",
+                    self.quoted_type(ty)
+                )
             }
-            _ => return self.bounded(ty, at),
+            _ => return self.check_size_limit(ty, at),
         };
         self.error(Code::BadType, at, problem);
         Type::Error
     }
 
-    /// What may be `in` and `out` of a fragment shader: no `bool`, and nothing but vectors `out` (§4.3.4, §4.3.6).
-    fn passes_stages(&self, ty: Type, kind: VariableKind) -> bool {
+    /// Whether a fragment shader's `in` or `out` can have the type: no `bool`, and only scalars and vectors
+    /// for `out` (§4.3.4, §4.3.6).
+    fn is_stage_io_type(&self, ty: Type, kind: VariableKind) -> bool {
         let element = self.element(ty);
         match kind {
             VariableKind::Varying => element.scalar() != Some(Scalar::Bool),
@@ -112,7 +119,7 @@ impl Checker<'_> {
         }
     }
 
-    fn initialiser(
+    fn initializer(
         &mut self,
         given: Option<ExprId>,
         ty: Type,
@@ -124,7 +131,7 @@ impl Checker<'_> {
         let Some(expr) = given else {
             if kind == VariableKind::Const {
                 self.error(
-                    Code::Uninitialised,
+                    Code::Uninitialized,
                     at,
                     format!("the constant `{text}` has no value"),
                 );
@@ -143,7 +150,7 @@ impl Checker<'_> {
             return None;
         }
         let expr = self.expect(expr, ty, &format!("the value of `{text}`"));
-        // §4.3.3; desktop GLSL asks it of constants that sizes depend on only.
+        // §4.3.3; desktop GLSL requires this only of constants used as array sizes.
         let must_be_constant = matches!(kind, VariableKind::Const | VariableKind::Global);
         if must_be_constant && ty != Type::Error && !self.lenient && !self.tree[expr].constant {
             let what = if kind == VariableKind::Const {
@@ -163,10 +170,11 @@ impl Checker<'_> {
         Some(expr)
     }
 
-    /// Whether this scope can take the name; if not, or if the name is GLSL's, says so.
-    pub(super) fn may_declare(&mut self, name: Symbol, at: Place) -> bool {
+    /// Whether the current scope can declare the name; otherwise reports an error. Also checks for reserved
+    /// names.
+    pub(super) fn check_declarable(&mut self, name: Symbol, at: Place) -> bool {
         let text = self.text(name);
-        self.may_name(text, at);
+        self.check_reserved_name(text, at);
         let first = match self.scopes.find_here(name) {
             None => None,
             Some(Entity::Variable(id)) => Some(self.tree[*id].at),
@@ -189,8 +197,8 @@ impl Checker<'_> {
         false
     }
 
-    /// §3.8: names that begin with `gl_` are GLSL's, names with two underscores are better left alone.
-    pub(super) fn may_name(&mut self, text: &str, at: Place) {
+    /// Checks for reserved names (§3.8): an error for `gl_…`, a warning for two underscores.
+    pub(super) fn check_reserved_name(&mut self, text: &str, at: Place) {
         if text.starts_with("gl_") {
             self.error(
                 Code::Redeclared,
@@ -199,11 +207,11 @@ impl Checker<'_> {
             );
         } else if text.contains("__") {
             let message = format!("names with two underscores such as `{text}` belong to GLSL");
-            tell(&mut self.warnings, Code::ReservedName.at(at, message));
+            push_limited(&mut self.warnings, Code::ReservedName.at(at, message));
         }
     }
 
-    /// §9 has no `;` alone at global scope; desktop GLSL does.
+    /// Whether a lone `;` is allowed at global scope: not in §9, but in desktop GLSL.
     pub(crate) fn takes_stray_semicolons(&self) -> bool {
         self.lenient
     }
@@ -214,5 +222,158 @@ impl Checker<'_> {
 
     pub(crate) fn close_scope(&mut self) {
         self.scopes.close();
+    }
+}
+
+// Qualifiers before the type of a declaration (§4.3, §4.5, §4.6).
+
+/// The qualifiers before the type of a declaration.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Qualifiers {
+    pub(crate) storage: Option<(Storage, Place)>,
+    /// `const`; combined with `in` for parameters only.
+    pub(crate) is_const: Option<Place>,
+    /// The qualifiers of inputs and outputs: `invariant`, `flat`, `smooth`, `centroid`, `layout`.
+    pub(crate) interface: Vec<(Keyword, Place)>,
+    /// `highp`, `mediump` or `lowp`.
+    pub(crate) precision: Option<Place>,
+}
+
+impl Qualifiers {
+    /// The place of the first qualifier that is not a precision.
+    pub(crate) fn other_than_precision(&self) -> Option<Place> {
+        self.storage
+            .map(|(_, at)| at)
+            .or(self.is_const)
+            .or(self.interface.first().map(|&(_, at)| at))
+    }
+
+    /// Whether that keyword is the only qualifier.
+    pub(crate) fn is_only(&self, keyword: Keyword) -> bool {
+        matches!(&self.interface[..], &[(only, _)] if only == keyword)
+            && self.storage.is_none()
+            && self.is_const.is_none()
+            && self.precision.is_none()
+    }
+}
+
+/// A storage qualifier (§4.3).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Storage {
+    Uniform,
+    In,
+    Out,
+    InOut,
+}
+
+impl Checker<'_> {
+    /// Determines the kind of variable that a declaration creates.
+    fn variable_kind(&mut self, qualifiers: &Qualifiers) -> VariableKind {
+        let global = self.scopes.is_global();
+        self.check_interface_qualifiers(qualifiers);
+        if let (Some((_, at)), Some(_)) = (qualifiers.storage, qualifiers.is_const) {
+            self.error(Code::BadQualifier, at, "only a parameter can be `const` and `in`");
+        }
+        match qualifiers.storage {
+            None if qualifiers.is_const.is_some() => VariableKind::Const,
+            None if global => VariableKind::Global,
+            None => VariableKind::Local,
+            Some((Storage::Uniform, _)) if global => VariableKind::Uniform,
+            Some((Storage::In, _)) if global => VariableKind::Varying,
+            Some((Storage::Out, _)) if global => VariableKind::Output,
+            Some((storage, at)) => {
+                let message = match storage {
+                    Storage::Uniform => "a local variable cannot be `uniform`",
+                    Storage::In | Storage::Out | Storage::InOut => {
+                        "only a parameter can be `in`, `out` or `inout` here"
+                    }
+                };
+                self.error(Code::BadQualifier, at, message);
+                VariableKind::Local
+            }
+        }
+    }
+
+    /// Checks which qualifiers `in` and `out` allow in a fragment shader (§4.3.8, §4.3.9, §4.6.1).
+    fn check_interface_qualifiers(&mut self, qualifiers: &Qualifiers) {
+        let global = self.scopes.is_global();
+        for &(keyword, at) in &qualifiers.interface {
+            let (wanted, whose) = match keyword {
+                Keyword::Invariant | Keyword::Layout => (Storage::Out, "outputs"),
+                _ => (Storage::In, "inputs"),
+            };
+            let message = if !global {
+                "this qualifier is for globals only".to_owned()
+            } else if qualifiers.storage.is_none_or(|(storage, _)| storage != wanted) {
+                format!("`{}` is for {whose} only", keyword.text())
+            } else {
+                continue;
+            };
+            self.error(Code::BadQualifier, at, message);
+        }
+    }
+
+    /// Checks that an integer input is `flat` (§4.3.4): integers are not interpolated.
+    fn check_flat(&mut self, qualifiers: &Qualifiers, ty: Type, kind: VariableKind, at: Place) {
+        let flat = qualifiers
+            .interface
+            .iter()
+            .any(|&(keyword, _)| keyword == Keyword::Flat);
+        let integral = matches!(self.element(ty).scalar(), Some(Scalar::Int | Scalar::Uint));
+        if kind == VariableKind::Varying && integral && !flat {
+            let message = format!("an input of type {} must be `flat`", self.quoted_type(ty));
+            self.error(Code::BadQualifier, at, message);
+        }
+    }
+
+    /// Checks `layout(name = …)`: an output of a fragment shader takes only `location` (§4.3.8.2).
+    pub(crate) fn layout(&mut self, name: Symbol, at: Place) {
+        let text = self.text(name);
+        if text != "location" {
+            let message = format!("a fragment shader has no layout `{text}`");
+            self.error(Code::BadQualifier, at, message);
+        }
+    }
+
+    /// Checks `invariant x;`: `x` must be a declared output (§4.6.1).
+    pub(crate) fn invariant(&mut self, name: Symbol, at: Place) {
+        let expr = self.name(name, at);
+        if let Some(variable) = self.tree.root_variable(expr)
+            && !matches!(
+                self.tree[variable].kind,
+                VariableKind::Output | VariableKind::BuiltIn(BuiltInVariable::FragDepth)
+            )
+        {
+            self.error(Code::BadQualifier, at, "only an output can be `invariant`");
+        }
+    }
+
+    /// Checks that a type with a precision qualifier is numeric or a sampler (§4.5.3).
+    pub(crate) fn check_precision_qualifier(&mut self, qualifiers: &Qualifiers, specifier: &Specifier) {
+        let numeric = matches!(specifier.base, Type::Sampler(_) | Type::Error)
+            || specifier
+                .base
+                .scalar()
+                .is_some_and(|scalar| scalar != Scalar::Bool);
+        if let Some(at) = qualifiers.precision
+            && !numeric
+        {
+            let message = format!("{} has no precision", self.quoted_type(specifier.base));
+            self.error(Code::BadQualifier, at, message);
+        }
+    }
+
+    /// Checks `precision highp t;`: `t` must be `float`, `int` or a sampler (§4.5.4).
+    pub(crate) fn precision(&mut self, specifier: &Specifier) {
+        let (ty, at) = (specifier.base, specifier.at);
+        if !specifier.sizes.is_empty() {
+            self.error(Code::BadType, at, "an array has no default precision");
+        } else if !matches!(ty, Type::FLOAT | Type::INT | Type::Sampler(_)) {
+            let message = format!(
+                "only `int`, `float` and samplers have a precision, not {}",
+                self.quoted_type(ty)
+            );
+            self.error(Code::BadType, at, message);
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! Functions: declared, overloaded, defined (§6.1).
+//! Functions (§6.1): declarations, overloads, definitions, and the checks of the whole program.
 
 use std::collections::HashSet;
 
@@ -10,7 +10,7 @@ use crate::tree::{
     Block, BuiltIn, Direction, Function, FunctionId, Item, Place, Type, Variable, VariableId, VariableKind,
 };
 
-/// A parameter as it stands in the text.
+/// A parameter of a function's header.
 #[derive(Debug)]
 pub(crate) struct Parameter {
     pub(crate) name: Option<Symbol>,
@@ -19,25 +19,25 @@ pub(crate) struct Parameter {
     pub(crate) at: Place,
 }
 
-/// What is known of the function whose body is being read.
+/// The state of the function whose body is being parsed.
 #[derive(Debug)]
 pub(super) struct Context {
     pub(super) function: FunctionId,
     pub(super) return_type: Type,
-    /// Whether a `return` came.
+    /// Whether the body contains a `return`.
     pub(super) returns: bool,
-    /// Whether a `return` gave something else than the header says: either may be meant.
+    /// Whether the type of a returned value contradicts the header: either may be intended.
     pub(super) contradicted: bool,
-    /// The undeclared names that were told of.
+    /// The undeclared names that were reported.
     pub(super) undeclared: HashSet<Symbol>,
-    /// How many loops are open.
+    /// The number of enclosing loops.
     pub(super) loops: usize,
-    /// How many loops and switches are open.
+    /// The number of enclosing loops and switches.
     pub(super) breakable: usize,
 }
 
 impl Checker<'_> {
-    /// The type of a parameter, if one can have it.
+    /// Returns the type of a parameter, or reports an error if parameters cannot have it.
     pub(crate) fn parameter_type(&mut self, specifier: &Specifier, direction: Direction) -> Type {
         let ty = self.complete_type(specifier);
         let at = specifier.at;
@@ -46,13 +46,13 @@ impl Checker<'_> {
             return Type::Error;
         }
         if matches!(direction, Direction::Out | Direction::InOut) && self.holds_sampler(ty) {
-            let message = format!("a parameter of type {} can only be `in`", self.said(ty));
+            let message = format!("a parameter of type {} can only be `in`", self.quoted_type(ty));
             self.error(Code::BadType, at, message);
         }
-        self.bounded(ty, at)
+        self.check_size_limit(ty, at)
     }
 
-    /// Declares an overload, or finds the one that the header repeats.
+    /// Declares an overload, or finds the one that the header redeclares.
     pub(crate) fn declare_function(
         &mut self,
         result: &Specifier,
@@ -62,14 +62,14 @@ impl Checker<'_> {
     ) -> FunctionId {
         let return_type = self.complete_type(result);
         if self.holds_sampler(return_type) {
-            let message = format!("a function cannot return {}", self.said(return_type));
+            let message = format!("a function cannot return {}", self.quoted_type(return_type));
             self.error(Code::BadType, result.at, message);
         }
         let mut overloads = match self.scopes.find_here(name) {
             Some(Entity::Functions(overloads)) => overloads.clone(),
             _ => Vec::new(),
         };
-        // What cannot be called has a body all the same, which is checked as it stands.
+        // The body of a function that cannot be declared is checked all the same.
         let mut allowed = true;
         for &old in &overloads {
             if self.takes_exactly(old, parameters) {
@@ -81,7 +81,7 @@ impl Checker<'_> {
             }
         }
         if overloads.is_empty() {
-            allowed = self.may_declare(name, at) && self.may_be_own_function(name, at);
+            allowed = self.check_declarable(name, at) && self.check_not_built_in_function(name, at);
         }
         let parameters = parameters
             .iter()
@@ -101,8 +101,9 @@ impl Checker<'_> {
         function
     }
 
-    /// §6.1: no function is named as a built-in one; variables and structures may be, and hide it. Desktop GLSL lets functions, too.
-    fn may_be_own_function(&mut self, name: Symbol, at: Place) -> bool {
+    /// Checks that a function does not redefine a built-in one (§6.1); variables and structures may hide it.
+    /// Desktop GLSL allows functions, too.
+    fn check_not_built_in_function(&mut self, name: Symbol, at: Place) -> bool {
         let text = self.text(name);
         let allowed = self.lenient || BuiltIn::named(text).is_none();
         if !allowed {
@@ -114,10 +115,13 @@ impl Checker<'_> {
 
     fn parameter(&mut self, parameter: &Parameter) -> VariableId {
         self.tree.variables.push(Variable {
-            name: parameter.name.map_or("", |name| self.words.text(name)).to_owned(),
+            name: parameter
+                .name
+                .map_or("", |name| self.interner.text(name))
+                .to_owned(),
             ty: parameter.ty,
             kind: VariableKind::Parameter(parameter.direction),
-            initialiser: None,
+            initializer: None,
             value: None,
             at: Some(parameter.at),
         })
@@ -132,7 +136,7 @@ impl Checker<'_> {
                 .all(|(&old, new)| self.tree[old].ty == new.ty)
     }
 
-    /// A second header with the same parameter types must be the same in the rest, too.
+    /// Checks that a second header with the same parameter types is otherwise the same, too.
     fn same_header(
         &mut self,
         old: FunctionId,
@@ -158,7 +162,7 @@ impl Checker<'_> {
         false
     }
 
-    /// A header without body.
+    /// Records a prototype.
     pub(crate) fn prototype(&mut self, function: FunctionId) {
         self.tree.items.push(Item::Prototype(function));
     }
@@ -179,7 +183,7 @@ impl Checker<'_> {
             let id = self.parameter(parameter);
             ids.push(id);
             if let Some(name) = parameter.name
-                && self.may_declare(name, parameter.at)
+                && self.check_declarable(name, parameter.at)
             {
                 self.scopes.declare(name, Entity::Variable(id));
             }
@@ -200,7 +204,7 @@ impl Checker<'_> {
         self.scopes.close();
         let context = self.function.take();
         let Function { return_type, at, .. } = self.tree[function];
-        // Some paths may miss it, as in WebGL; not all.
+        // As in WebGL, some paths may lack a `return`, but not all.
         if context.as_ref().is_some_and(|context| context.contradicted) {
             self.tree[function].return_type = Type::Error;
         }
@@ -209,11 +213,141 @@ impl Checker<'_> {
             let message = format!("`{}` never returns a value", self.tree[function].name);
             let note = format!(
                 "end it with `return …;` and a {}, or make it `void`",
-                self.said(return_type)
+                self.quoted_type(return_type)
             );
             self.report(Code::BadReturn.at(at, message).note(note));
         }
         self.tree[function].body = Some(body);
         self.tree.items.push(Item::Function(function));
+    }
+}
+
+// Checks of the whole program: calls of functions without a body, recursion, and `mainImage` (§6.1).
+
+impl Checker<'_> {
+    /// Checks, once all functions are parsed, that every called function has a body and that none is
+    /// recursive (§6.1.2). Returns `mainImage`.
+    pub(crate) fn finish(&mut self) -> Option<FunctionId> {
+        self.find_late_declarations();
+        // A missing definition may be in unparsable text.
+        let complete = self.errors.is_empty() && !self.lacks_names;
+        let calls = std::mem::take(&mut self.calls);
+        let mut reported = HashSet::new();
+        for &(_, callee, at) in &calls {
+            if complete && self.tree[callee].body.is_none() && reported.insert(callee) {
+                let message = format!(
+                    "`{}` is declared and called, but has no body",
+                    self.tree[callee].name
+                );
+                self.report(
+                    Code::Undefined
+                        .at(at, message)
+                        .related(self.tree[callee].at.span, "declared here"),
+                );
+            }
+        }
+        if let Some((function, at)) = self.find_recursion(&calls) {
+            let message = format!(
+                "by this call, `{}` comes to call itself",
+                self.tree[function].name
+            );
+            let note = "GLSL has no stack, so no function may call itself: use a loop";
+            self.report(Code::Recursion.at(at, message).note(note));
+        }
+        // `main` in place of `mainImage` has been reported.
+        if self
+            .tree
+            .functions
+            .iter()
+            .any(|(_, function)| function.name == "main")
+        {
+            return None;
+        }
+        if complete || (!self.lacks_names && self.interner.find("mainImage").is_none()) {
+            return self.main_image();
+        }
+        None
+    }
+
+    /// A recursive function and the last call of its cycle.
+    fn find_recursion(&self, calls: &[(FunctionId, FunctionId, Place)]) -> Option<(FunctionId, Place)> {
+        let functions = self.tree.functions.len();
+        let mut callees = vec![Vec::new(); functions];
+        let mut callers = vec![0_usize; functions];
+        for &(caller, callee, _) in calls {
+            callees[caller.index()].push(callee.index());
+            callers[callee.index()] += 1;
+        }
+        // Repeatedly remove functions without callers. Each remaining function has a remaining caller.
+        let mut free: Vec<_> = (0..functions)
+            .filter(|&function| callers[function] == 0)
+            .collect();
+        while let Some(function) = free.pop() {
+            for &callee in &callees[function] {
+                callers[callee] -= 1;
+                if callers[callee] == 0 {
+                    free.push(callee);
+                }
+            }
+        }
+        // So following callers leads into a cycle: the first function visited twice is in it.
+        let mut call_of = vec![None; functions];
+        for &(caller, callee, at) in calls {
+            if callers[caller.index()] > 0 {
+                call_of[callee.index()] = Some((caller, at));
+            }
+        }
+        let mut visited = vec![false; functions];
+        let mut function = self.tree.functions.ids().find(|id| callers[id.index()] > 0)?;
+        loop {
+            let (caller, at) = call_of[function.index()]?;
+            if std::mem::replace(&mut visited[function.index()], true) {
+                return Some((function, at));
+            }
+            function = caller;
+        }
+    }
+
+    /// Finds `void mainImage(out vec4, in vec2)`, which `ShaderToy` calls.
+    fn main_image(&mut self) -> Option<FunctionId> {
+        use crate::tree::Scalar::Float;
+        let mut near = None;
+        for (id, function) in self.tree.functions.iter() {
+            if function.name != "mainImage" || function.body.is_none() {
+                continue;
+            }
+            near = Some(function.at);
+            let parameters = function
+                .parameters
+                .iter()
+                .map(|&id| (self.tree[id].ty, self.tree[id].kind));
+            let fits = matches!(
+                parameters.collect::<Vec<_>>()[..],
+                [
+                    (
+                        Type::Vector(Float, 4),
+                        VariableKind::Parameter(Direction::Out | Direction::InOut)
+                    ),
+                    (
+                        Type::Vector(Float, 2),
+                        VariableKind::Parameter(Direction::In | Direction::ConstIn)
+                    ),
+                ]
+            );
+            if fits && function.return_type == Type::Void {
+                return Some(id);
+            }
+        }
+        let (at, message) = match near {
+            Some(_) => (
+                near,
+                "this `mainImage` does not have the parameters that ShaderToy gives it",
+            ),
+            None => (self.end, "the shader has no function `mainImage`"),
+        };
+        let diagnostic = Code::NoMainImage.at(at?, message);
+        let calls = "ShaderToy calls `void mainImage(out vec4 fragColor, in vec2 fragCoord)` for each pixel";
+        self.report(diagnostic.note(calls));
+        None
     }
 }

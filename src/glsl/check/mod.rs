@@ -1,69 +1,61 @@
-//! The rules (GLSL ES 3.00.6 §4–§8): what the parser asks at each construct, answered with typed nodes.
+//! The semantic rules (GLSL ES 3.00.6 §4–§8): the parser calls the checker for each construct and gets typed
+//! nodes.
 //!
-//! A mistake is told once: its expression gets [`Type::Error`], which fits everywhere.
+//! Each error is reported once: its expression gets [`Type::Error`], which fits everywhere.
 
 mod access;
-mod assign;
 mod call;
-mod channel;
-mod construct;
 mod declare;
-mod extent;
+mod fixit;
 mod function;
-mod mend;
 mod operator;
-mod overload;
 mod prelude;
-mod qualifier;
 mod scope;
 mod signature;
 mod statement;
 mod types;
-mod unknown;
-mod whole;
 
 use std::collections::HashSet;
 
-pub(crate) use declare::Declarator;
-pub(crate) use function::Parameter;
-pub(crate) use qualifier::{Qualifiers, Storage};
-pub(crate) use statement::Labels;
 use toyproof_diagnostic::{Deadline, Diagnostic};
-pub(crate) use types::{Members, Size, Specifier};
 
-pub(crate) use self::channel::Channels;
-use self::extent::Extent;
+pub(crate) use self::declare::{Declarator, Qualifiers, Storage};
 use self::function::Context;
+pub(crate) use self::function::Parameter;
+pub(crate) use self::prelude::Channels;
 use self::scope::Scopes;
-use super::codes::{Code, IN_MACRO, MAX_TOLD, tell};
-use super::options::Options;
-use super::preprocess::Preprocessed;
-use super::token::Symbol;
-use super::tree::{Expr, ExprId, ExprKind, FunctionId, Literal, Place, Scalar, StructId, Tree, Type, Value};
-use super::words::Words;
+pub(crate) use self::statement::Labels;
+use self::types::Extent;
+pub(crate) use self::types::{Members, Size, Specifier};
+use crate::Options;
+use crate::codes::{Code, IN_MACRO, MAX_TOLD, push_limited};
+use crate::keywords::Interner;
+use crate::preprocess::Preprocessed;
+use crate::token::Symbol;
+use crate::tree::{Expr, ExprId, ExprKind, FunctionId, Literal, Place, Scalar, StructId, Tree, Type, Value};
 
-/// Builds the tree and keeps the rules.
+/// Builds the tree and enforces the rules.
 pub(crate) struct Checker<'a> {
-    words: &'a Words,
+    interner: &'a Interner,
     lenient: bool,
     pub(crate) tree: Tree,
     scopes: Scopes,
     channels: Channels,
-    /// What is known of each structure of the tree, in order.
+    /// The extent of each structure of the tree, by index.
     struct_extents: Vec<Extent>,
-    /// The function whose body is being read.
+    /// The function whose body is being parsed.
     function: Option<Context>,
-    /// Who calls whom, and where.
+    /// Every call: caller, callee and place.
     calls: Vec<(FunctionId, FunctionId, Place)>,
-    /// The names that were told not to be declared, and where.
+    /// The names that were reported as undeclared, and where.
     unknown: Vec<(Symbol, Place)>,
-    /// Structures whose members could not all be read.
+    /// Structures some of whose members could not be parsed.
     incomplete: Vec<StructId>,
-    /// Names that may be declared in what could not be read.
-    doubtful: HashSet<Symbol>,
-    /// Whether any name may be.
+    /// Names that unparsable text may declare.
+    maybe_declared: HashSet<Symbol>,
+    /// Whether unparsable text may declare any name.
     lacks_names: bool,
-    /// What is written last.
+    /// The last token of the text.
     end: Option<Place>,
     pub(crate) errors: Vec<Diagnostic>,
     pub(crate) warnings: Vec<Diagnostic>,
@@ -73,12 +65,12 @@ pub(crate) struct Checker<'a> {
 impl<'a> Checker<'a> {
     pub(crate) fn new(text: &'a Preprocessed, options: &Options, channels: Channels) -> Self {
         let mut checker = Self {
-            words: &text.words,
+            interner: &text.interner,
             unknown: Vec::new(),
             incomplete: Vec::new(),
-            doubtful: HashSet::new(),
+            maybe_declared: HashSet::new(),
             lacks_names: text.lacks_names,
-            // The last of the tokens is the end itself, which may stand lines below what is written.
+            // The last token is `End`, which may be lines below the last visible token.
             end: text.tokens.iter().rev().take(2).next_back().map(|token| token.at),
             lenient: options.lenient,
             tree: Tree::default(),
@@ -95,29 +87,29 @@ impl<'a> Checker<'a> {
         checker
     }
 
-    /// Whether so many errors were told that more would help nobody.
+    /// Whether the limit on reported errors is reached.
     pub(crate) fn is_full(&self) -> bool {
         self.errors.len() >= MAX_TOLD
     }
 
-    /// Tells an error; one in the body of a macro is told at its first use only.
+    /// Reports an error; an error in the body of a macro is reported at its first use only.
     pub(crate) fn report(&mut self, diagnostic: Diagnostic) {
-        let in_macro = diagnostic.related.iter().any(|(_, words)| words == IN_MACRO);
+        let in_macro = diagnostic.related.iter().any(|(_, text)| text == IN_MACRO);
         let again =
             |other: &Diagnostic| other.message == diagnostic.message && other.related == diagnostic.related;
         if !in_macro || !self.errors.iter().any(again) {
-            tell(&mut self.errors, diagnostic);
+            push_limited(&mut self.errors, diagnostic);
         }
     }
 
-    /// From now on, that this name is not declared is not told.
-    pub(crate) fn doubt(&mut self, name: Symbol) {
-        self.doubtful.insert(name);
+    /// Stops reporting this name as undeclared.
+    pub(crate) fn mark_maybe_declared(&mut self, name: Symbol) {
+        self.maybe_declared.insert(name);
     }
 
-    /// Whether an undeclared name may be declared in what could not be read.
-    fn is_doubtful(&self, name: Symbol) -> bool {
-        self.lacks_names || self.doubtful.contains(&name)
+    /// Whether unparsable text may declare the name.
+    fn is_maybe_declared(&self, name: Symbol) -> bool {
+        self.lacks_names || self.maybe_declared.contains(&name)
     }
 
     fn error(&mut self, code: Code, at: Place, message: impl Into<String>) {
@@ -125,7 +117,7 @@ impl<'a> Checker<'a> {
     }
 
     fn text(&self, symbol: Symbol) -> &'a str {
-        self.words.text(symbol)
+        self.interner.text(symbol)
     }
 
     fn ty(&self, expr: ExprId) -> Type {
@@ -133,7 +125,7 @@ impl<'a> Checker<'a> {
     }
 
     /// The type of an expression, quoted for a message.
-    fn said(&self, ty: Type) -> String {
+    fn quoted_type(&self, ty: Type) -> String {
         format!("`{}`", self.tree.type_name(ty))
     }
 
@@ -149,8 +141,8 @@ impl<'a> Checker<'a> {
         id
     }
 
-    /// What stands for an expression whose mistake has been told.
-    pub(crate) fn broken(&mut self, at: Place) -> ExprId {
+    /// The expression that replaces one whose error has been reported.
+    pub(crate) fn error_expr(&mut self, at: Place) -> ExprId {
         let nothing = Literal {
             text: "".into(),
             value: Value::Bool(false),
@@ -158,16 +150,16 @@ impl<'a> Checker<'a> {
         self.push(ExprKind::Literal(nothing), Type::Error, true, at)
     }
 
-    /// Tells a mistake in an expression and stands in for it.
+    /// Reports an error in an expression and returns an error expression.
     pub(crate) fn refuse(&mut self, code: Code, at: Place, message: impl Into<String>) -> ExprId {
         self.error(code, at, message);
-        self.broken(at)
+        self.error_expr(at)
     }
 
-    /// The same with all that there is to say.
+    /// Reports a complete diagnostic and returns an error expression.
     fn refuse_with(&mut self, diagnostic: Diagnostic, at: Place) -> ExprId {
         self.report(diagnostic);
-        self.broken(at)
+        self.error_expr(at)
     }
 
     pub(crate) fn literal(&mut self, literal: Literal, at: Place) -> ExprId {
@@ -175,29 +167,30 @@ impl<'a> Checker<'a> {
         self.push(ExprKind::Literal(literal), ty, true, at)
     }
 
-    /// The expression as a value of that type: itself, or under `lenient` converted as desktop GLSL does. None if it does not fit.
+    /// Converts an expression to a type: returns it unchanged, or under `lenient` converted as in desktop
+    /// GLSL. Returns `None` if it does not fit.
     fn convert(&mut self, expr: ExprId, to: Type) -> Option<ExprId> {
         let from = self.ty(expr);
         if from == to || from == Type::Error || to == Type::Error {
             return Some(expr);
         }
-        if !self.converts(from, to) {
+        if !self.converts_implicitly(from, to) {
             return None;
         }
         let Expr { constant, at, .. } = self.tree[expr];
         let kind = ExprKind::Construct {
-            constructor: construct::conversion(to),
+            constructor: call::conversion(to),
             arguments: vec![expr],
         };
         Some(self.push(kind, to, constant, at))
     }
 
-    /// Whether desktop GLSL converts so without being asked (GLSL 4.60 §4.1.10), and we may.
-    fn converts(&self, from: Type, to: Type) -> bool {
-        self.lenient && liberal_conversion(from, to)
+    /// Whether `lenient` is set and desktop GLSL converts implicitly from one type to the other.
+    fn converts_implicitly(&self, from: Type, to: Type) -> bool {
+        self.lenient && is_desktop_conversion(from, to)
     }
 
-    /// The expression as a value of that type, or an error that names what for.
+    /// Converts an expression to a type, or reports an error in which `role` names the expression.
     fn expect(&mut self, expr: ExprId, to: Type, role: &str) -> ExprId {
         if let Some(fits) = self.convert(expr, to) {
             return fits;
@@ -205,21 +198,21 @@ impl<'a> Checker<'a> {
         let (from, at) = (self.ty(expr), self.tree[expr].at);
         let message = format!(
             "{role} must be {}, and this is {}",
-            self.said(to),
-            self.said(from)
+            self.quoted_type(to),
+            self.quoted_type(from)
         );
-        let diagnostic = self.mended(Code::Mismatch.at(at, message), expr, to);
+        let diagnostic = self.with_fixit(Code::Mismatch.at(at, message), expr, to);
         self.refuse_with(diagnostic, at)
     }
 
-    /// A condition: a `bool` (§6.2).
+    /// Checks a condition, which must be a `bool` (§6.2).
     pub(crate) fn condition(&mut self, expr: ExprId) -> ExprId {
         self.expect(expr, Type::BOOL, "a condition")
     }
 }
 
-/// Whether desktop GLSL converts so without being asked (GLSL 4.60 §4.1.10).
-fn liberal_conversion(from: Type, to: Type) -> bool {
+/// Whether desktop GLSL converts implicitly from one type to the other (GLSL 4.60 §4.1.10).
+fn is_desktop_conversion(from: Type, to: Type) -> bool {
     let rank = |ty: Type| match ty.scalar() {
         Some(Scalar::Int) => 1,
         Some(Scalar::Uint) => 2,

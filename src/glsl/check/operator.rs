@@ -1,8 +1,11 @@
-//! Operators without side effects (§5.9), `?:` and `,`.
+//! Operators (§5.9), `?:`, `,`, and assignments (§5.8).
 
-use super::{Checker, liberal_conversion};
+use super::{Checker, is_desktop_conversion};
 use crate::codes::Code;
-use crate::tree::{BinaryOp, ExprId, ExprKind, Place, Scalar, Type, UnaryOp};
+use crate::tree::{
+    BinaryOp, BuiltInVariable, Direction, ExprId, ExprKind, Input, Place, Scalar, StepOp, Type, UnaryOp,
+    VariableKind,
+};
 
 impl Checker<'_> {
     pub(crate) fn unary(&mut self, op: UnaryOp, operand: ExprId, at: Place) -> ExprId {
@@ -14,7 +17,7 @@ impl Checker<'_> {
             UnaryOp::BitNot => is_integral(ty),
         };
         if !fits && ty != Type::Error {
-            let message = format!("`{}` does not take {}", op.symbol(), self.said(ty));
+            let message = format!("`{}` does not take {}", op.symbol(), self.quoted_type(ty));
             let mut diagnostic = Code::BadOperands.at(at, message);
             if op == UnaryOp::Not && matches!(ty, Type::Scalar(_)) {
                 diagnostic = diagnostic
@@ -30,26 +33,26 @@ impl Checker<'_> {
         let at = self.tree[left].at.to(self.tree[right].at);
         let (a, b) = (self.ty(left), self.ty(right));
         if a == Type::Error || b == Type::Error {
-            return self.broken(at);
+            return self.error_expr(at);
         }
-        let (left, right) = self.balance(op, left, right);
+        let (left, right) = self.promote_operands(op, left, right);
         let Some(ty) = self.binary_type(op, self.ty(left), self.ty(right)) else {
             let message = format!(
                 "`{}` does not take {} and {}",
                 op.symbol(),
-                self.said(a),
-                self.said(b)
+                self.quoted_type(a),
+                self.quoted_type(b)
             );
             let diagnostic = Code::BadOperands.at(at, message);
-            let diagnostic = self.mended_operands(diagnostic, op, left, right);
+            let diagnostic = self.with_operand_fixit(diagnostic, op, left, right);
             return self.refuse_with(diagnostic, at);
         };
         let constant = self.tree[left].constant && self.tree[right].constant;
         self.push(ExprKind::Binary { op, left, right }, ty, constant, at)
     }
 
-    /// Under `lenient`, converts the operand of the weaker scalar type.
-    fn balance(&mut self, op: BinaryOp, left: ExprId, right: ExprId) -> (ExprId, ExprId) {
+    /// Under `lenient`, converts the operand whose scalar type has the lower rank.
+    fn promote_operands(&mut self, op: BinaryOp, left: ExprId, right: ExprId) -> (ExprId, ExprId) {
         let shift = matches!(op, BinaryOp::ShiftLeft | BinaryOp::ShiftRight);
         let (a, b) = (self.ty(left), self.ty(right));
         let (Some(x), Some(y)) = (a.scalar(), b.scalar()) else {
@@ -63,7 +66,7 @@ impl Checker<'_> {
         (to_right.unwrap_or(left), to_left.unwrap_or(right))
     }
 
-    /// The type of `a op b`; none if there is no such operation.
+    /// The type of `a op b`; none if the operator does not accept the operands.
     pub(super) fn binary_type(&self, op: BinaryOp, a: Type, b: Type) -> Option<Type> {
         match op {
             BinaryOp::Multiply => product(a, b),
@@ -73,7 +76,7 @@ impl Checker<'_> {
             BinaryOp::Remainder | BinaryOp::BitAnd | BinaryOp::BitXor | BinaryOp::BitOr => {
                 componentwise(a, b).filter(|&ty| is_integral(ty))
             }
-            // The signs may differ; a scalar takes no vector to shift by.
+            // The operands may differ in signedness; a scalar cannot be shifted by a vector.
             BinaryOp::ShiftLeft | BinaryOp::ShiftRight => {
                 let sizes = (a.component_count()?, b.component_count()?);
                 (is_integral(a) && is_integral(b) && (sizes.1 == 1 || sizes.0 == sizes.1)).then_some(a)
@@ -105,28 +108,31 @@ impl Checker<'_> {
         if a != b && a != Type::Error && b != Type::Error {
             let message = format!(
                 "`?:` chooses between values of one type, and these are {} and {}",
-                self.said(a),
-                self.said(b)
+                self.quoted_type(a),
+                self.quoted_type(b)
             );
             let diagnostic = Code::Mismatch.at(at, message);
-            let diagnostic = if liberal_conversion(a, b) {
-                self.related_mend(diagnostic, yes, b)
+            let diagnostic = if is_desktop_conversion(a, b) {
+                self.with_related_fixit(diagnostic, yes, b)
             } else {
-                self.related_mend(diagnostic, no, a)
+                self.with_related_fixit(diagnostic, no, a)
             };
             return self.refuse_with(diagnostic, at);
         }
-        // Samplers are no values (§4.1.7). WebGL has no `?:` between calls without value, arrays or structures.
+        // Samplers are not values (§4.1.7). WebGL does not allow `?:` of `void`, arrays or structures.
         let webgl_has_none = matches!(a, Type::Array(_) | Type::Struct(_)) && !self.lenient;
         if a == Type::Void || self.holds_sampler(a) || webgl_has_none {
-            let message = format!("`?:` cannot choose between values of type {}", self.said(a));
+            let message = format!(
+                "`?:` cannot choose between values of type {}",
+                self.quoted_type(a)
+            );
             return self.refuse(Code::BadType, at, message);
         }
         let constant = [condition, yes, no].iter().all(|&part| self.tree[part].constant);
         self.push(ExprKind::Conditional { condition, yes, no }, a, constant, at)
     }
 
-    /// `first, second`: never a constant expression (§4.3.3).
+    /// Checks `first, second`, which is never a constant expression (§4.3.3).
     pub(crate) fn sequence(&mut self, first: ExprId, second: ExprId) -> ExprId {
         let at = self.tree[first].at.to(self.tree[second].at);
         let ty = self.ty(second);
@@ -138,7 +144,7 @@ fn is_integral(ty: Type) -> bool {
     matches!(ty.scalar(), Some(Scalar::Int | Scalar::Uint))
 }
 
-/// The type of an operation on components: of equal types, or of a scalar with anything of its scalars.
+/// The type of a componentwise operation: on equal types, or on a scalar and a type of the same scalar type.
 fn componentwise(a: Type, b: Type) -> Option<Type> {
     if a.scalar()? != b.scalar()? {
         return None;
@@ -150,7 +156,7 @@ fn componentwise(a: Type, b: Type) -> Option<Type> {
     }
 }
 
-/// The type of a product: linear-algebraic where a matrix meets a matrix or a vector.
+/// The type of a product: linear-algebraic for a matrix with a matrix or vector, otherwise componentwise.
 fn product(a: Type, b: Type) -> Option<Type> {
     match (a, b) {
         (Type::Matrix { columns, rows }, Type::Vector(Scalar::Float, size)) => {
@@ -163,5 +169,125 @@ fn product(a: Type, b: Type) -> Option<Type> {
             (inner == other).then_some(Type::Matrix { columns, rows })
         }
         _ => componentwise(a, b).filter(|ty| ty.scalar() != Some(Scalar::Bool)),
+    }
+}
+
+// Assignments and lvalues (§5.8).
+
+impl Checker<'_> {
+    pub(crate) fn assign(&mut self, op: Option<BinaryOp>, target: ExprId, value: ExprId) -> ExprId {
+        let at = self.tree[target].at.to(self.tree[value].at);
+        if !self.check_lvalue(target, "assigned to") {
+            return self.error_expr(at);
+        }
+        let ty = self.ty(target);
+        let value = match op {
+            None => self.expect(value, ty, "the value assigned here"),
+            Some(op) => self.compound_operand(op, target, value),
+        };
+        if ty == Type::Error || self.ty(value) == Type::Error {
+            return self.error_expr(at);
+        }
+        self.push(ExprKind::Assign { op, target, value }, ty, false, at)
+    }
+
+    /// Checks the right side of `+=` and similar: the operation must result in the target's type.
+    fn compound_operand(&mut self, op: BinaryOp, target: ExprId, value: ExprId) -> ExprId {
+        let (a, mut value) = (self.ty(target), value);
+        let scalar = a.scalar();
+        if let Some(to) = scalar.and_then(|scalar| self.ty(value).with_scalar(scalar)) {
+            value = self.convert(value, to).unwrap_or(value);
+        }
+        let b = self.ty(value);
+        if a == Type::Error || b == Type::Error || self.binary_type(op, a, b) == Some(a) {
+            return value;
+        }
+        let at = self.tree[target].at.to(self.tree[value].at);
+        let message = format!(
+            "`{}=` does not take {} and {}",
+            op.symbol(),
+            self.quoted_type(a),
+            self.quoted_type(b)
+        );
+        let diagnostic = Code::BadOperands.at(at, message);
+        let diagnostic = self.with_operand_fixit(diagnostic, op, target, value);
+        self.refuse_with(diagnostic, at)
+    }
+
+    pub(crate) fn step(&mut self, op: StepOp, postfix: bool, target: ExprId, at: Place) -> ExprId {
+        let at = at.to(self.tree[target].at);
+        let ty = self.ty(target);
+        if ty == Type::Error || !self.check_lvalue(target, "changed") {
+            return self.error_expr(at);
+        }
+        if ty.scalar().is_none_or(|scalar| scalar == Scalar::Bool) {
+            let message = format!("`{}` does not take {}", op.symbol(), self.quoted_type(ty));
+            return self.refuse(Code::BadOperands, at, message);
+        }
+        self.push(ExprKind::Step { op, postfix, target }, ty, false, at)
+    }
+
+    /// Whether the expression is an lvalue; if not, reports an error. `verb` names the operation in the
+    /// message.
+    pub(super) fn check_lvalue(&mut self, expr: ExprId, verb: &str) -> bool {
+        let at = self.tree[expr].at;
+        if self.ty(expr) == Type::Error {
+            return true;
+        }
+        let mut part = expr;
+        let variable = loop {
+            part = match self.tree[part].kind {
+                ExprKind::Variable(variable) => break variable,
+                ExprKind::Swizzle { components, .. } if components.repeats() => {
+                    let message = format!(
+                        "`.{}` names a component twice and cannot be {verb}",
+                        components.name()
+                    );
+                    self.error(Code::NotWritable, at, message);
+                    return false;
+                }
+                ExprKind::Swizzle { vector: base, .. }
+                | ExprKind::Member { structure: base, .. }
+                | ExprKind::Index { base, .. } => base,
+                _ => {
+                    self.error(
+                        Code::NotWritable,
+                        at,
+                        format!("this is not a variable, so it cannot be {verb}"),
+                    );
+                    return false;
+                }
+            };
+        };
+        let variable = &self.tree[variable];
+        let ty = self.tree.type_name(variable.ty);
+        let copy = format!(
+            "give a variable of your own its value and change that: `{ty} mine = {};`",
+            variable.name
+        );
+        let constant = "leave `const` out of its declaration if it is to change";
+        let (what, note) = match variable.kind {
+            VariableKind::BuiltInConstant => ("a constant", None),
+            VariableKind::Const => ("a constant", Some(constant.to_owned())),
+            VariableKind::Parameter(Direction::ConstIn) => ("a `const` parameter", Some(constant.to_owned())),
+            VariableKind::Input(Input::Channel(_)) => ("a sampler", None),
+            VariableKind::Input(_) | VariableKind::Uniform => ("a uniform", Some(copy)),
+            VariableKind::Varying => ("an input", Some(copy)),
+            VariableKind::BuiltIn(built_in) if built_in != BuiltInVariable::FragDepth => {
+                ("an input", Some(copy))
+            }
+            _ if self.holds_sampler(self.ty(expr)) => ("a sampler", None),
+            _ => return true,
+        };
+        let message = format!("`{}` is {what} and cannot be {verb}", variable.name);
+        let mut diagnostic = Code::NotWritable.at(at, message);
+        if let (Some(declared), VariableKind::Const | VariableKind::Parameter(_)) =
+            (variable.at, variable.kind)
+        {
+            diagnostic = diagnostic.related(declared.span, "declared here");
+        }
+        diagnostic.notes.extend(note);
+        self.report(diagnostic);
+        false
     }
 }

@@ -1,12 +1,17 @@
-//! What is declared before the author's first line: `ShaderToy`'s inputs, and the variables and constants of §7.
+//! The built-in declarations: `ShaderToy`'s inputs, the variables and constants of §7, and the shapes of
+//! channels.
 
 use std::ops::RangeInclusive;
 
 use super::Checker;
 use super::scope::Entity;
-use crate::tree::{BuiltInVariable, Constant, Input, Sampler, Scalar, Type, Value, Variable, VariableKind};
+use crate::Options;
+use crate::tree::{
+    BuiltInVariable, Constant, ExprId, ExprKind, Input, Sampler, SamplerShape, Scalar, Type, Value, Variable,
+    VariableKind,
+};
 
-/// The smallest values that WebGL 2 promises (§7.3).
+/// The minimum values that WebGL 2 guarantees (§7.3).
 const LIMITS: [(&str, i32); 9] = [
     ("gl_MaxVertexAttribs", 16),
     ("gl_MaxVertexUniformVectors", 256),
@@ -19,7 +24,7 @@ const LIMITS: [(&str, i32); 9] = [
     ("gl_MaxDrawBuffers", 4),
 ];
 
-/// How far a texture lookup can be offset on every machine.
+/// The range of texel offsets that every implementation supports.
 pub(super) const TEXEL_OFFSETS: RangeInclusive<i32> = -8..=7;
 
 impl Checker<'_> {
@@ -70,13 +75,88 @@ impl Checker<'_> {
             name: name.to_owned(),
             ty,
             kind,
-            initialiser: None,
+            initializer: None,
             value: value.map(|value| Constant::scalar(Value::Int(value))),
             at: None,
         });
-        // A name that the text does not hold needs no meaning.
-        if let Some(symbol) = self.words.find(name) {
+        // A name that does not occur in the text need not be in scope.
+        if let Some(symbol) = self.interner.find(name) {
             self.scopes.declare(symbol, Entity::Variable(variable));
+        }
+    }
+}
+
+// Inference of the shapes of channels that the options do not give.
+
+/// The known or inferred shapes of the four channels.
+#[derive(Debug, Clone)]
+pub(crate) struct Channels {
+    pub(crate) shapes: [SamplerShape; 4],
+    /// Which shapes the options give.
+    given: [bool; 4],
+    /// Whether a use changed a shape in this pass: then the shader must be parsed again.
+    pub(crate) changed: bool,
+}
+
+impl Channels {
+    pub(crate) fn new(options: &Options) -> Self {
+        Self {
+            shapes: options.channels.map(|shape| shape.unwrap_or(SamplerShape::D2)),
+            given: options.channels.map(|shape| shape.is_some()),
+            changed: false,
+        }
+    }
+}
+
+impl Checker<'_> {
+    /// Called when no overload takes the arguments: returns whether one would if a channel among them had a
+    /// different shape, and changes the channel's shape.
+    pub(super) fn infer_channel(
+        &mut self,
+        arguments: &[ExprId],
+        resolves: impl Fn(&Self, &[Type]) -> bool,
+    ) -> bool {
+        for (position, &argument) in arguments.iter().enumerate() {
+            let Some(channel) = self
+                .channel(argument)
+                .filter(|&channel| !self.channels.given[channel])
+            else {
+                continue;
+            };
+            let mut types = self.types(arguments);
+            // Shapes only move forward in this list, so that the shader is parsed a few times at most. Every
+            // lookup that takes a cube and a direction also takes a volume, but not the reverse.
+            let order = [SamplerShape::D2, SamplerShape::Cube, SamplerShape::D3];
+            let now = self.channels.shapes[channel];
+            if types[position] != Type::Sampler(Sampler::float(now)) {
+                // Changed earlier in this pass, which continues with the old shape until the shader is parsed
+                // again.
+                return true;
+            }
+            for &shape in order.iter().skip_while(|&&shape| shape != now).skip(1) {
+                types[position] = Type::Sampler(Sampler::float(shape));
+                if resolves(self, &types) {
+                    self.channels.shapes[channel] = shape;
+                    self.channels.changed = true;
+                    return true;
+                }
+            }
+        }
+        false
+    }
+
+    /// The shapes of the channels so far.
+    pub(crate) fn channels(&self) -> &Channels {
+        &self.channels
+    }
+
+    fn channel(&self, argument: ExprId) -> Option<usize> {
+        let ExprKind::Variable(variable) = self.tree[argument].kind else {
+            return None;
+        };
+        match self.tree[variable].kind {
+            VariableKind::Input(Input::Channel(channel)) => Some(usize::from(channel)),
+            _ => None,
         }
     }
 }

@@ -1,24 +1,30 @@
-//! Which name means what, where (§4.2).
+//! Scopes: name lookup (§4.2), and diagnostics for unknown names.
 
 use std::collections::HashMap;
 
-use crate::token::Symbol;
-use crate::tree::{FunctionId, StructId, VariableId};
+use toyproof_diagnostic::nearest;
 
-/// What a name can mean. Types, variables and functions share their names (§4.2.2).
+use super::Checker;
+use crate::codes::Code;
+use crate::foreign::Foreign;
+use crate::keywords::Word;
+use crate::token::Symbol;
+use crate::tree::{BuiltIn, ExprId, FunctionId, Place, StructId, Type, VariableId};
+
+/// The entity that a name denotes. Types, variables and functions share one namespace (§4.2.2).
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Entity {
     Variable(VariableId),
     Struct(StructId),
-    /// All overloads.
+    /// All overloads of a function.
     Functions(Vec<FunctionId>),
 }
 
-/// The scopes that are open, the innermost last; the outermost is the global one.
+/// The open scopes, innermost last; the outermost is the global scope.
 #[derive(Debug)]
 pub(super) struct Scopes {
-    /// The meanings of each name, with the depth of the scope that gave it; the innermost last.
-    meanings: HashMap<Symbol, Vec<(usize, Entity)>>,
+    /// The entities of each name with the depth of the declaring scope, innermost last.
+    entities: HashMap<Symbol, Vec<(usize, Entity)>>,
     /// The names that each scope declared.
     declared: Vec<Vec<Symbol>>,
 }
@@ -26,7 +32,7 @@ pub(super) struct Scopes {
 impl Default for Scopes {
     fn default() -> Self {
         Self {
-            meanings: HashMap::new(),
+            entities: HashMap::new(),
             declared: vec![Vec::new()],
         }
     }
@@ -39,8 +45,8 @@ impl Scopes {
 
     pub(super) fn close(&mut self) {
         for name in self.declared.pop().unwrap_or_default() {
-            if let Some(meanings) = self.meanings.get_mut(&name) {
-                meanings.pop();
+            if let Some(entities) = self.entities.get_mut(&name) {
+                entities.pop();
             }
         }
     }
@@ -49,36 +55,190 @@ impl Scopes {
         self.declared.len() == 1
     }
 
-    /// What the name means here.
+    /// The entity that the name denotes.
     pub(super) fn find(&self, name: Symbol) -> Option<&Entity> {
-        self.meanings.get(&name)?.last().map(|(_, entity)| entity)
+        self.entities.get(&name)?.last().map(|(_, entity)| entity)
     }
 
-    /// Every name that means something here, in no order.
+    /// Every visible name, in no particular order.
     pub(super) fn names(&self) -> impl Iterator<Item = (Symbol, &Entity)> {
-        self.meanings
+        self.entities
             .iter()
-            .filter_map(|(&name, meanings)| Some((name, &meanings.last()?.1)))
+            .filter_map(|(&name, entities)| Some((name, &entities.last()?.1)))
     }
 
-    /// What the innermost scope itself says of the name.
+    /// The entity that the innermost scope itself declares for the name.
     pub(super) fn find_here(&self, name: Symbol) -> Option<&Entity> {
-        let (depth, entity) = self.meanings.get(&name)?.last()?;
+        let (depth, entity) = self.entities.get(&name)?.last()?;
         (*depth == self.declared.len()).then_some(entity)
     }
 
-    /// Gives the name its meaning in the innermost scope, in place of an older one there.
+    /// Declares the name in the innermost scope, replacing an earlier declaration there.
     pub(super) fn declare(&mut self, name: Symbol, entity: Entity) {
         let depth = self.declared.len();
-        let meanings = self.meanings.entry(name).or_default();
-        match meanings.last_mut() {
+        let entities = self.entities.entry(name).or_default();
+        match entities.last_mut() {
             Some((at, old)) if *at == depth => *old = entity,
             _ => {
-                meanings.push((depth, entity));
+                entities.push((depth, entity));
                 if let Some(scope) = self.declared.last_mut() {
                     scope.push(name);
                 }
             }
         }
+    }
+}
+
+// Unknown names, and suggestions for them.
+
+impl Checker<'_> {
+    /// Reports an undeclared variable, once in each function.
+    pub(super) fn undeclared(&mut self, name: Symbol, at: Place) -> ExprId {
+        let text = self.text(name);
+        let (variables, functions) = self.names_in_scope();
+        let near = nearest(text, variables)
+            .or_else(|| nearest(text, functions))
+            .map(str::to_owned);
+        self.report_undeclared(name, at, format!("`{text}` is not declared"), near)
+    }
+
+    /// Reports an undeclared function, once in each function.
+    pub(super) fn undeclared_function(&mut self, name: Symbol, at: Place) -> ExprId {
+        let text = self.text(name);
+        let (variables, functions) = self.names_in_scope();
+        let near = nearest(text, functions)
+            .or_else(|| nearest(text, variables))
+            .map(str::to_owned);
+        self.report_undeclared(name, at, format!("there is no function `{text}`"), near)
+    }
+
+    fn report_undeclared(
+        &mut self,
+        name: Symbol,
+        at: Place,
+        message: String,
+        near: Option<String>,
+    ) -> ExprId {
+        let known = self
+            .function
+            .as_mut()
+            .is_some_and(|context| !context.undeclared.insert(name));
+        if known || self.is_maybe_declared(name) {
+            return self.error_expr(at);
+        }
+        let diagnostic = match (Foreign::named(self.text(name)), near) {
+            (Some(foreign), _) => Code::Undeclared
+                .at(at, message)
+                .label(format!("write {}", foreign.replacement()))
+                .note(foreign.note()),
+            (None, Some(near)) => Code::Undeclared.at(at, format!("{message}; did you mean `{near}`?")),
+            (None, None) => Code::Undeclared.at(at, message),
+        };
+        self.report(diagnostic);
+        self.unknown.push((name, at));
+        self.error_expr(at)
+    }
+
+    /// After parsing: changes the errors about names that are declared later in the text to say so.
+    pub(super) fn find_late_declarations(&mut self) {
+        for (name, at) in std::mem::take(&mut self.unknown) {
+            let late = match self.scopes.find(name) {
+                Some(&Entity::Variable(id)) => self.tree[id].at,
+                Some(&Entity::Struct(id)) => Some(self.tree[id].at),
+                Some(Entity::Functions(ids)) => ids.first().map(|&id| self.tree[id].at),
+                None => None,
+            };
+            let reported = self
+                .errors
+                .iter_mut()
+                .find(|error| error.span == Some(at.span) && error.code == Code::Undeclared.as_str());
+            if let (Some(late), Some(reported)) = (late, reported)
+                && late.span.start > at.span.start
+            {
+                let text = self.interner.text(name);
+                reported.message = format!("`{text}` is used before it is declared");
+                reported
+                    .related
+                    .push((late.span, "declared here, too late".to_owned()));
+                reported.notes =
+                    vec!["a name can be used only after its declaration: move that up".to_owned()];
+            }
+        }
+    }
+
+    /// The visible variables and functions, sorted by name.
+    fn names_in_scope(&self) -> (Vec<&str>, Vec<&str>) {
+        let declared = self.scopes.names();
+        let (mut variables, mut functions): (Vec<_>, Vec<_>) = (Vec::new(), Vec::new());
+        for (name, entity) in declared {
+            match entity {
+                Entity::Variable(_) => variables.push(self.interner.text(name)),
+                Entity::Struct(_) | Entity::Functions(_) => functions.push(self.interner.text(name)),
+            }
+        }
+        // Built-in variables are in a scope only if the text mentions their names.
+        let given = self.tree.variables.iter().map(|(_, variable)| variable);
+        variables.extend(
+            given
+                .filter(|variable| variable.at.is_none())
+                .map(|variable| &*variable.name),
+        );
+        functions.extend(BuiltIn::ALL.iter().map(|function| function.name()));
+        for names in [&mut variables, &mut functions] {
+            names.sort_unstable();
+            names.dedup();
+        }
+        (variables, functions)
+    }
+
+    fn type_names(&self) -> Vec<&str> {
+        let structs = self.scopes.names().filter_map(|(name, entity)| match entity {
+            Entity::Struct(_) => Some(self.interner.text(name)),
+            _ => None,
+        });
+        let mut names: Vec<_> = structs.chain(self.interner.types()).collect();
+        names.sort_unstable();
+        names
+    }
+
+    /// Reports an unknown type, and returns the type that is probably intended.
+    pub(crate) fn unknown_type(&mut self, name: Symbol, at: Place) -> Type {
+        let text = self.text(name);
+        let named = |name: &str| match self.interner.word(self.interner.find(name)?) {
+            Word::Type(ty) => Some(ty),
+            _ => None,
+        };
+        let reserved = self.interner.word(name) == Word::Reserved;
+        if let Some(foreign) = Foreign::named(text) {
+            let code = if reserved {
+                Code::ReservedWord
+            } else {
+                Code::Undeclared
+            };
+            let ty = foreign.glsl_equivalent().and_then(named).unwrap_or(Type::Error);
+            self.report(
+                code.at(at, format!("there is no type `{text}`"))
+                    .label(format!("write {}", foreign.replacement()))
+                    .note(foreign.note()),
+            );
+            return ty;
+        }
+        if reserved {
+            self.error(
+                Code::ReservedWord,
+                at,
+                format!("`{text}` is a word that GLSL reserves"),
+            );
+            return Type::Error;
+        }
+        if !self.is_maybe_declared(name) {
+            let message = match nearest(text, self.type_names()) {
+                Some(near) => format!("there is no type `{text}`; did you mean `{near}`?"),
+                None => format!("there is no type `{text}`"),
+            };
+            self.error(Code::Undeclared, at, message);
+            self.mark_maybe_declared(name);
+        }
+        Type::Error
     }
 }

@@ -1,4 +1,4 @@
-//! Jumps and labels (§6.2, §6.4).
+//! Jumps and `switch` labels (§6.2, §6.4).
 
 use std::collections::HashSet;
 
@@ -6,10 +6,10 @@ use super::Checker;
 use crate::codes::Code;
 use crate::tree::{ExprId, Label, Place, Type};
 
-/// How many labels a `switch` may have: lavapipe loses the device at 50,000.
+/// Maximum number of labels of a `switch`: lavapipe loses the device at 50,000.
 const MAX_LABELS: usize = 20_000;
 
-/// The labels of a `switch` so far.
+/// The labels of a `switch` parsed so far.
 #[derive(Debug)]
 pub(crate) struct Labels {
     selector: Type,
@@ -18,13 +18,13 @@ pub(crate) struct Labels {
 }
 
 impl Checker<'_> {
-    /// What a `switch` chooses by: an `int` or `uint`.
+    /// Checks the selector of a `switch`: an `int` or `uint`.
     pub(crate) fn selector(&mut self, selector: ExprId) -> Labels {
         let (ty, at) = (self.ty(selector), self.tree[selector].at);
         if !matches!(ty, Type::INT | Type::UINT | Type::Error) {
             let message = format!(
                 "a `switch` needs an `int` or `uint`, and this is {}",
-                self.said(ty)
+                self.quoted_type(ty)
             );
             self.error(Code::BadSwitch, at, message);
         }
@@ -35,12 +35,12 @@ impl Checker<'_> {
         }
     }
 
-    /// `case expr:`.
+    /// Checks `case expr:`.
     pub(crate) fn case(&mut self, labels: &mut Labels, expr: ExprId) -> Label {
         let at = self.tree[expr].at;
         let expr = self.expect(expr, labels.selector, "this label");
         let value = self.integer(expr).filter(|_| self.tree[expr].constant);
-        // An `int` and a `uint` of the same bits never meet in one `switch`.
+        // All labels of one `switch` have one type, so bit patterns identify values.
         let bits = value.unwrap_or_default() as u32;
         if self.ty(expr) != Type::Error {
             if value.is_none() {
@@ -61,7 +61,7 @@ impl Checker<'_> {
         Label::Case { expr, value: bits }
     }
 
-    /// `default:`.
+    /// Checks `default:`.
     pub(crate) fn default(&mut self, labels: &mut Labels, at: Place) -> Label {
         if std::mem::replace(&mut labels.has_default, true) {
             self.error(Code::BadSwitch, at, "this `switch` has a `default` already");
@@ -73,7 +73,7 @@ impl Checker<'_> {
         self.error(Code::BadSwitch, at, message);
     }
 
-    /// Inside of a loop: `break` and `continue` are allowed.
+    /// Enters a loop, in which `break` and `continue` are allowed.
     pub(crate) fn enter_loop(&mut self) {
         if let Some(context) = &mut self.function {
             context.loops += 1;
@@ -88,7 +88,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Inside of a `switch`: `break` is allowed.
+    /// Enters a `switch`, in which `break` is allowed.
     pub(crate) fn enter_switch(&mut self) {
         if let Some(context) = &mut self.function {
             context.breakable += 1;
@@ -117,8 +117,8 @@ impl Checker<'_> {
         }
     }
 
-    /// A `return` may be in what cannot be read.
-    pub(crate) fn may_return(&mut self) {
+    /// Records that unparsable text may contain a `return`.
+    pub(crate) fn assume_returns(&mut self) {
         if let Some(context) = &mut self.function {
             context.returns = true;
         }
@@ -135,7 +135,7 @@ impl Checker<'_> {
             None if !matches!(wanted, Type::Void | Type::Error) => {
                 let message = format!(
                     "`{name}` returns {}, and this `return` has no value",
-                    self.said(wanted)
+                    self.quoted_type(wanted)
                 );
                 self.error(Code::BadReturn, at, message);
                 None
@@ -148,7 +148,7 @@ impl Checker<'_> {
                 if given != Type::Error {
                     let note = format!(
                         "write `return;`, or {} before its name instead of `void`",
-                        self.said(given)
+                        self.quoted_type(given)
                     );
                     diagnostic = diagnostic.note(note);
                 }
@@ -162,11 +162,11 @@ impl Checker<'_> {
                 let given = self.ty(value);
                 let message = format!(
                     "`{name}` returns {}, and this is {}",
-                    self.said(wanted),
-                    self.said(given)
+                    self.quoted_type(wanted),
+                    self.quoted_type(given)
                 );
                 let diagnostic = Code::BadReturn.at(self.tree[value].at, message);
-                let diagnostic = self.mended(diagnostic, value, wanted);
+                let diagnostic = self.with_fixit(diagnostic, value, wanted);
                 self.report(diagnostic);
                 if let Some(context) = &mut self.function {
                     context.contradicted = true;

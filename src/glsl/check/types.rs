@@ -1,14 +1,15 @@
-//! Types as declarations spell them: arrays, structures, and what may be where (§4.1).
+//! Types in declarations: arrays, structures, and their limits (§4.1).
 
 use std::collections::HashMap;
 
 use super::Checker;
 use super::scope::Entity;
+use crate::MAX_NESTING;
 use crate::codes::Code;
 use crate::token::Symbol;
 use crate::tree::{ExprId, ExprKind, Member, Place, Struct, StructId, Type, VariableKind};
 
-/// The largest array that WebGL takes.
+/// Maximum number of elements of an array in WebGL.
 const MAX_ARRAY_SIZE: i64 = 65_536;
 
 /// The size of one dimension of an array.
@@ -16,31 +17,31 @@ const MAX_ARRAY_SIZE: i64 = 65_536;
 pub(crate) enum Size {
     /// `[n]`.
     Of(u32),
-    /// `[]`: what the initialiser has.
+    /// `[]`: taken from the initializer.
     Inferred(Place),
-    /// One whose mistake has been told.
+    /// A size whose error has been reported.
     Broken,
 }
 
-/// A type as it stands before names: `float`, `vec3[2]`.
+/// A type specifier: `float`, `vec3[2]`.
 #[derive(Debug, Clone)]
 pub(crate) struct Specifier {
     pub(crate) base: Type,
-    /// The sizes that follow it, the outermost first.
+    /// The sizes that follow it, outermost first.
     pub(crate) sizes: Vec<Size>,
     pub(crate) at: Place,
 }
 
-/// The members of a structure, as far as they are read.
+/// The members of a structure parsed so far.
 #[derive(Default)]
 pub(crate) struct Members {
     pub(crate) all: Vec<Member>,
-    /// Where each name stands first.
+    /// The first place of each name.
     places: HashMap<Symbol, Place>,
 }
 
 impl Checker<'_> {
-    /// `[expr]`: a constant integral expression of at least 1 (§4.1.9).
+    /// Checks `[expr]`: a constant integral expression of at least 1 (§4.1.9).
     pub(crate) fn array_size(&mut self, expr: ExprId) -> Size {
         let (ty, at) = (self.ty(expr), self.tree[expr].at);
         if ty == Type::Error {
@@ -49,7 +50,7 @@ impl Checker<'_> {
         let problem = if !matches!(ty, Type::INT | Type::UINT) {
             format!(
                 "the size of an array must be `int` or `uint`, and this is {}",
-                self.said(ty)
+                self.quoted_type(ty)
             )
         } else if !self.tree[expr].constant {
             "the size of an array must be a constant expression".to_owned()
@@ -77,7 +78,8 @@ impl Checker<'_> {
         Size::Broken
     }
 
-    /// The array type of those sizes, the outermost first. `given` is what an initialiser has where a size is left open.
+    /// The array type of the given sizes, outermost first. `given` is the type of the initializer, which
+    /// determines the sizes that are omitted.
     pub(super) fn array_type(&mut self, base: Type, sizes: &[Size], given: Option<Type>, at: Place) -> Type {
         if sizes.len() > 1 && !self.lenient {
             self.error(Code::ArrayOfArrays, at, "GLSL ES 3.00 has no arrays of arrays");
@@ -87,10 +89,10 @@ impl Checker<'_> {
             self.error(Code::BadType, at, "there are no arrays of `void`");
             return Type::Error;
         }
-        if !self.may_have_dimensions(base, sizes.len(), at) {
+        if !self.check_dimensions(base, sizes.len(), at) {
             return Type::Error;
         }
-        // What the initialiser has at each dimension.
+        // The initializer's size in each dimension.
         let mut inferred = Vec::new();
         let mut rest = given;
         for _ in sizes {
@@ -119,12 +121,13 @@ impl Checker<'_> {
         ty
     }
 
-    /// The type that a specifier spells, all of its sizes told.
+    /// The type of a specifier whose sizes must all be given.
     pub(super) fn complete_type(&mut self, specifier: &Specifier) -> Type {
         self.array_type(specifier.base, &specifier.sizes, None, specifier.at)
     }
 
-    /// `struct name { members }` (§4.1.8). The name is declared once the members are read: a structure cannot hold itself.
+    /// Declares `struct name { members }` (§4.1.8). The name is declared after the members are parsed: a
+    /// structure cannot contain itself.
     pub(crate) fn declare_struct(
         &mut self,
         name: Option<Symbol>,
@@ -140,19 +143,19 @@ impl Checker<'_> {
         });
         self.struct_extents.push(extent);
         if let Some(name) = name
-            && self.may_declare(name, at)
+            && self.check_declarable(name, at)
         {
             self.scopes.declare(name, Entity::Struct(id));
         }
         id
     }
 
-    /// Some members of this structure could not be read.
-    pub(crate) fn lacks_members(&mut self, id: StructId) {
+    /// Records that some members of the structure could not be parsed.
+    pub(crate) fn mark_incomplete(&mut self, id: StructId) {
         self.incomplete.push(id);
     }
 
-    /// One declarator of a member list.
+    /// Adds one declarator of a member list.
     pub(crate) fn member(
         &mut self,
         members: &mut Members,
@@ -162,7 +165,7 @@ impl Checker<'_> {
         at: Place,
     ) {
         let text = self.text(name);
-        self.may_name(text, at);
+        self.check_reserved_name(text, at);
         let all: Vec<_> = sizes.iter().chain(&specifier.sizes).copied().collect();
         let ty = self.array_type(specifier.base, &all, None, at);
         if ty == Type::Void {
@@ -182,5 +185,101 @@ impl Checker<'_> {
             ty,
             at,
         });
+    }
+}
+
+// Limits on the size and nesting of types.
+
+/// Maximum nesting depth of structures in WebGL.
+const MAX_STRUCT_NESTING: usize = 4;
+
+/// Maximum number of scalars of a variable in WebGL: 16 MB.
+const MAX_SCALARS: u64 = 1 << 22;
+
+/// The cached size and nesting of a type.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Extent {
+    pub(super) holds_sampler: bool,
+    /// Nesting depth of structures, including the type itself.
+    structs: usize,
+    /// Nesting depth of structures and arrays.
+    depth: usize,
+    scalars: u64,
+}
+
+impl Checker<'_> {
+    /// The extent of a type. Takes constant time for structures, whose extent is stored at their declaration.
+    pub(super) fn extent(&self, ty: Type) -> Extent {
+        match ty {
+            Type::Array(id) => {
+                let array = self.tree.array(id);
+                let element = self.extent(array.element);
+                Extent {
+                    depth: element.depth + 1,
+                    scalars: element.scalars.saturating_mul(u64::from(array.size)),
+                    ..element
+                }
+            }
+            Type::Struct(id) => self.struct_extents[id.index()],
+            _ => Extent {
+                holds_sampler: matches!(ty, Type::Sampler(_)),
+                scalars: u64::from(ty.component_count().unwrap_or(1)),
+                ..Extent::default()
+            },
+        }
+    }
+
+    /// The extent of a structure with the given members; reports an error if it nests too deep.
+    fn struct_extent(&mut self, members: &[Member], at: Place) -> Extent {
+        let mut whole = Extent::default();
+        for member in members {
+            let extent = self.extent(member.ty);
+            whole.holds_sampler |= extent.holds_sampler;
+            whole.structs = whole.structs.max(extent.structs);
+            whole.depth = whole.depth.max(extent.depth);
+            whole.scalars = whole.scalars.saturating_add(extent.scalars);
+        }
+        whole.structs += 1;
+        whole.depth += 1;
+        let limit = if self.lenient {
+            MAX_NESTING
+        } else {
+            MAX_STRUCT_NESTING
+        };
+        if whole.structs > limit || whole.depth > MAX_NESTING {
+            let message = format!("structures stand more than {limit} deep in each other here");
+            self.error(Code::TooDeep, at, message);
+            // Reported once: outer structures get an empty extent for this one.
+            return Extent {
+                holds_sampler: whole.holds_sampler,
+                ..Extent::default()
+            };
+        }
+        whole
+    }
+
+    /// Whether a type is or contains a sampler: such values cannot be compared, selected or assigned
+    /// (§4.1.7).
+    pub(super) fn holds_sampler(&self, ty: Type) -> bool {
+        self.extent(ty).holds_sampler
+    }
+
+    /// Returns the type if a variable can be that large, otherwise reports an error.
+    pub(super) fn check_size_limit(&mut self, ty: Type, at: Place) -> Type {
+        if self.extent(ty).scalars <= MAX_SCALARS {
+            return ty;
+        }
+        let message = format!("{} is larger than WebGL takes: 16 MB", self.quoted_type(ty));
+        self.error(Code::BadArraySize, at, message);
+        Type::Error
+    }
+
+    /// Checks that an array of such elements does not have too many dimensions.
+    fn check_dimensions(&mut self, element: Type, dimensions: usize, at: Place) -> bool {
+        let fits = self.extent(element).depth + dimensions <= MAX_NESTING;
+        if !fits {
+            self.error(Code::TooDeep, at, "this array has too many dimensions");
+        }
+        fits
     }
 }

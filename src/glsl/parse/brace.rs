@@ -1,46 +1,47 @@
-//! Braces that do not pair. Which one is at fault, no grammar can tell; how the author indented the lines often can.
+//! Unbalanced braces. The grammar cannot determine which brace is at fault, but the indentation of the lines
+//! often can.
 
 use toyproof_diagnostic::Diagnostic;
 
 use super::bracket::{missing, stray};
-use super::layout::Layout;
+use super::recover::Layout;
 use crate::codes::Code;
+use crate::keywords::{Interner, Keyword, Word};
 use crate::token::{Punctuator, Token, TokenKind};
-use crate::words::{Keyword, Word, Words};
 
-/// How many faults are put right one by one.
+/// Maximum number of faults that are repaired one by one.
 const MAX_REPAIRS: usize = 16;
 
-/// How far a function's header is looked through for its end.
-const MAX_HEADER: usize = 1000;
+/// Maximum number of tokens in which the end of a function's header is searched.
+const MAX_HEADER_TOKENS: usize = 1000;
 
-/// What is wrong with the braces; places are indices of tokens.
+/// A fault in the pairing of braces; positions are token indices.
 enum Fault {
     /// `open` has no partner, which belongs before `before`.
     NeverClosed { open: usize, before: usize },
     /// A `{` is missing after `after`, for the `}` at `close`.
     NeverOpened { after: usize, close: usize },
-    /// This `}` has no partner.
+    /// The `}` at `close` has no partner.
     Stray { close: usize },
 }
 
-/// Pairs the braces of a text whose other brackets are paired.
+/// Balances the braces of a text whose other brackets are balanced.
 pub(super) fn pair(
     mut tokens: Vec<Token>,
-    words: &Words,
+    interner: &Interner,
     layout: Layout,
-    told: &mut Vec<Diagnostic>,
+    reported: &mut Vec<Diagnostic>,
 ) -> Vec<Token> {
     for _ in 0..MAX_REPAIRS {
         let Some(fault) = (Search {
             tokens: &tokens,
-            words,
+            interner,
             layout,
         })
         .fault() else {
             break;
         };
-        told.push(tell(&fault, &tokens));
+        reported.push(diagnose(&fault, &tokens));
         match fault {
             Fault::NeverClosed { before, .. } => {
                 tokens.insert(before, missing(Punctuator::RightBrace, tokens[before]));
@@ -54,7 +55,7 @@ pub(super) fn pair(
     tokens
 }
 
-fn tell(fault: &Fault, tokens: &[Token]) -> Diagnostic {
+fn diagnose(fault: &Fault, tokens: &[Token]) -> Diagnostic {
     match *fault {
         Fault::NeverClosed { open, before } => {
             let diagnostic = Code::Unclosed.at(tokens[open].at, "this `{` is never closed");
@@ -74,12 +75,12 @@ fn tell(fault: &Fault, tokens: &[Token]) -> Diagnostic {
 
 struct Search<'a> {
     tokens: &'a [Token],
-    words: &'a Words,
+    interner: &'a Interner,
     layout: Layout<'a>,
 }
 
 impl Search<'_> {
-    /// Whether every brace has its partner, wherever it may stand.
+    /// Whether every brace has a partner, at any position.
     fn is_paired(&self) -> bool {
         let mut depth = 0_usize;
         for token in self.tokens {
@@ -93,22 +94,22 @@ impl Search<'_> {
         depth == 0
     }
 
-    /// The first fault, if the braces do not pair.
+    /// The first fault, or none if the braces are balanced.
     fn fault(&self) -> Option<Fault> {
         if self.is_paired() {
             return None;
         }
         let mut open = Vec::new();
-        // The pairs of the function that is being read, in the order of their `}`.
+        // The pairs of the current function, in the order of their `}`.
         let mut pairs = Vec::new();
-        // The end of a header that no `{` follows.
+        // The end of a header that is not followed by `{`.
         let mut bare = None;
         for (index, token) in self.tokens.iter().enumerate() {
             match token.kind {
                 TokenKind::Punctuator(Punctuator::LeftBrace) => open.push(index),
                 TokenKind::Punctuator(Punctuator::RightBrace) => match open.pop() {
                     Some(partner) => pairs.push((partner, index)),
-                    None => return Some(self.too_many(&pairs, bare, index)),
+                    None => return Some(self.extra_close(&pairs, bare, index)),
                 },
                 _ if let Some(&last) = open.last()
                     && self.opens_structure(last)
@@ -125,7 +126,7 @@ impl Search<'_> {
                     };
                     let has_body = self.is(end + 1, Punctuator::LeftBrace);
                     match open.last() {
-                        Some(&last) if has_body => return Some(self.too_few(&pairs, last, index)),
+                        Some(&last) if has_body => return Some(self.missing_close(&pairs, last, index)),
                         Some(_) => {}
                         None => {
                             pairs.clear();
@@ -137,11 +138,12 @@ impl Search<'_> {
             }
         }
         let last = *open.last()?;
-        Some(self.too_few(&pairs, last, self.tokens.len() - 1))
+        Some(self.missing_close(&pairs, last, self.tokens.len() - 1))
     }
 
-    /// Why blocks are open at `here`, where none should be: the first one whose `}` stands less deep than it is to blame, else the last.
-    fn too_few(&self, pairs: &[(usize, usize)], last: usize, here: usize) -> Fault {
+    /// The fault if blocks are open at `here` where none should be: the first block whose `}` is indented
+    /// less than its line, otherwise the innermost one.
+    fn missing_close(&self, pairs: &[(usize, usize)], last: usize, here: usize) -> Fault {
         let indent = |index: usize| self.layout.indent(self.tokens[index]);
         let dedents = |&&(open, close): &&(usize, usize)| {
             self.layout.begins_line(self.tokens[close]) && indent(close) < indent(open)
@@ -164,8 +166,9 @@ impl Search<'_> {
         }
     }
 
-    /// Why the `}` at `here` has no partner: an earlier one that stands deeper than its own may have taken it.
-    fn too_many(&self, pairs: &[(usize, usize)], bare: Option<usize>, here: usize) -> Fault {
+    /// The fault if the `}` at `here` has no partner: an earlier `}` that is indented deeper than its block
+    /// may have taken it.
+    fn extra_close(&self, pairs: &[(usize, usize)], bare: Option<usize>, here: usize) -> Fault {
         if let Some(after) = bare {
             return Fault::NeverOpened { after, close: here };
         }
@@ -176,7 +179,7 @@ impl Search<'_> {
         let Some(&(open, close)) = pairs.iter().find(deeper) else {
             return Fault::Stray { close: here };
         };
-        // The last line as deep as the `}` that ends in the head of a block.
+        // The last line with the indentation of the `}` that ends with the head of a block.
         let wanted = indent(close);
         let head = (open + 1..close - 1).rev().find(|&index| {
             let ends_line = self
@@ -190,20 +193,21 @@ impl Search<'_> {
         }
     }
 
-    /// Whether the `{` at `open` begins the members of a structure.
+    /// Whether the `{` at `open` begins a structure's members.
     fn opens_structure(&self, open: usize) -> bool {
         let is_struct = |before: usize| {
             let token = open.checked_sub(before).map(|index| self.tokens[index].kind);
-            matches!(token, Some(TokenKind::Word(word)) if self.words.word(word) == Word::Keyword(Keyword::Struct))
+            matches!(token, Some(TokenKind::Word(word)) if self.interner.word(word) == Word::Keyword(Keyword::Struct))
         };
         is_struct(1) || is_struct(2)
     }
 
-    /// Whether no member can be here: another structure or a constant begins, or the `;` after the `}` stands.
+    /// Whether the token cannot be in a member list: it begins another structure or a constant, or is a `;`
+    /// after a `;`.
     fn ends_structure(&self, index: usize) -> bool {
         match self.tokens[index].kind {
             TokenKind::Word(word) => matches!(
-                self.words.word(word),
+                self.interner.word(word),
                 Word::Keyword(Keyword::Struct | Keyword::Const)
             ),
             TokenKind::Punctuator(Punctuator::Semicolon) => self.is(index - 1, Punctuator::Semicolon),
@@ -215,16 +219,19 @@ impl Search<'_> {
         match self.tokens[index].kind {
             TokenKind::Punctuator(punctuator) => punctuator == Punctuator::RightParen,
             TokenKind::Word(word) => {
-                matches!(self.words.word(word), Word::Keyword(Keyword::Else | Keyword::Do))
+                matches!(
+                    self.interner.word(word),
+                    Word::Keyword(Keyword::Else | Keyword::Do)
+                )
             }
             _ => false,
         }
     }
 
-    /// The `)` of a function's header, `type name(…)`, that begins here.
+    /// The index of the `)` of a function's header, `type name(…)`, if one begins at `start`.
     fn header(&self, start: usize) -> Option<usize> {
         let word = |index: usize| match self.tokens.get(index)?.kind {
-            TokenKind::Word(word) => Some(self.words.word(word)),
+            TokenKind::Word(word) => Some(self.interner.word(word)),
             _ => None,
         };
         let is_header = matches!(word(start)?, Word::Type(_) | Word::Name)
@@ -234,7 +241,7 @@ impl Search<'_> {
             return None;
         }
         let mut depth = 0;
-        for index in (start + 2..self.tokens.len()).take(MAX_HEADER) {
+        for index in (start + 2..self.tokens.len()).take(MAX_HEADER_TOKENS) {
             match self.tokens[index].kind {
                 TokenKind::Punctuator(Punctuator::LeftParen) => depth += 1,
                 TokenKind::Punctuator(Punctuator::RightParen) => depth -= 1,

@@ -1,45 +1,45 @@
-//! Round and square brackets that do not pair: told, and put right, so that the rest can be read.
+//! Unbalanced parentheses and square brackets: reported and repaired, so that the rest can be parsed.
 
 use toyproof_diagnostic::{Diagnostic, File, Span};
 
 use super::brace;
-use super::layout::Layout;
-use crate::codes::{Code, tell};
+use super::recover::Layout;
+use crate::codes::{Code, push_limited};
+use crate::keywords::{Interner, Keyword, Word};
 use crate::preprocess::Preprocessed;
 use crate::token::{Punctuator, Token, TokenKind};
 use crate::tree::Place;
-use crate::words::{Keyword, Word, Words};
 
-/// Pairs the brackets of a text. What stands too much becomes [`TokenKind::Stray`], what is missing is put in; both are told. After that, every
-/// bracket has its partner.
+/// Balances the brackets of a text. An extra bracket becomes [`TokenKind::Stray`], a missing one is inserted;
+/// both are reported. Afterwards every bracket has a partner.
 pub(crate) fn balance(text: &mut Preprocessed, file: &File) {
-    let (tokens, mut told) = pair(&text.tokens, &text.words);
-    let tokens = brace::pair(tokens, &text.words, Layout::new(file), &mut told);
-    if !told.is_empty() {
+    let (tokens, mut reported) = pair(&text.tokens, &text.interner);
+    let tokens = brace::pair(tokens, &text.interner, Layout::new(file), &mut reported);
+    if !reported.is_empty() {
         text.tokens = tokens;
-        for diagnostic in told {
-            tell(&mut text.diagnostics, diagnostic);
+        for diagnostic in reported {
+            push_limited(&mut text.diagnostics, diagnostic);
         }
     }
 }
 
-/// A token that nobody wrote, right before `next`.
+/// An inserted token, right before `next`.
 pub(super) fn missing(punctuator: Punctuator, next: Token) -> Token {
     let span = next.at.span;
     Token {
         kind: TokenKind::Punctuator(punctuator),
         at: Place::plain(Span::new(span.file, span.start, span.start)),
-        told: true,
+        reported: true,
     }
 }
 
-/// Makes a token one that does not belong there.
+/// Marks a token as stray and reported.
 pub(super) fn stray(token: &mut Token) {
     token.kind = TokenKind::Stray;
-    token.told = true;
+    token.reported = true;
 }
 
-/// The bracket that closes this one.
+/// The closing bracket for an opening one.
 pub(super) fn closing(open: Punctuator) -> Option<Punctuator> {
     match open {
         Punctuator::LeftParen => Some(Punctuator::RightParen),
@@ -49,23 +49,23 @@ pub(super) fn closing(open: Punctuator) -> Option<Punctuator> {
     }
 }
 
-/// A bracket that waits for its partner.
+/// An open bracket.
 struct Open {
     token: Token,
     bracket: Punctuator,
-    /// How many `;` may stand in it: two in the head of a `for`.
+    /// The number of `;` it may still contain: two in the head of a `for`.
     semicolons: usize,
 }
 
-/// Pairs `()` and `[]`; both end before the `;`, `{` or `}` that cannot stand in them.
-fn pair(tokens: &[Token], words: &Words) -> (Vec<Token>, Vec<Diagnostic>) {
+/// Balances `()` and `[]`; both end before a `;`, `{` or `}` that they cannot contain.
+fn pair(tokens: &[Token], interner: &Interner) -> (Vec<Token>, Vec<Diagnostic>) {
     let mut pairing = Pairing {
         done: Vec::with_capacity(tokens.len()),
         open: Vec::new(),
-        told: Vec::new(),
+        reported: Vec::new(),
     };
     let keyword = |token: &Token| match token.kind {
-        TokenKind::Word(word) => match words.word(word) {
+        TokenKind::Word(word) => match interner.word(word) {
             Word::Keyword(keyword) => Some(keyword),
             _ => None,
         },
@@ -80,14 +80,14 @@ fn pair(tokens: &[Token], words: &Words) -> (Vec<Token>, Vec<Diagnostic>) {
         };
         pairing.take(token, opener, &tokens[index + 1..]);
     }
-    (pairing.done, pairing.told)
+    (pairing.done, pairing.reported)
 }
 
-/// What a bracket follows.
+/// The construct that a bracket follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Opener {
     For,
-    /// `struct` or `struct name`: its `{` is out of place in parentheses, but does not end them.
+    /// `struct` or `struct name`: its `{` is not allowed in parentheses, but does not end them.
     Struct,
     Other,
 }
@@ -95,14 +95,14 @@ enum Opener {
 struct Pairing {
     done: Vec<Token>,
     open: Vec<Open>,
-    told: Vec<Diagnostic>,
+    reported: Vec<Diagnostic>,
 }
 
 impl Pairing {
     fn take(&mut self, token: Token, opener: Opener, rest: &[Token]) {
         let TokenKind::Punctuator(punctuator) = token.kind else {
             if token.kind == TokenKind::End {
-                self.close_round(token);
+                self.close_up_to_brace(token);
             }
             self.done.push(token);
             return;
@@ -113,12 +113,12 @@ impl Pairing {
                 bracket: punctuator,
                 semicolons: if opener == Opener::For { 2 } else { 0 },
             }),
-            Punctuator::LeftBrace if opener != Opener::Struct && self.goes_on(rest) => {
-                return self.out_of_place(token, punctuator);
+            Punctuator::LeftBrace if opener != Opener::Struct && self.closes_later(rest) => {
+                return self.report_misplaced(token, punctuator);
             }
             Punctuator::LeftBrace => {
                 if opener != Opener::Struct {
-                    self.close_round(token);
+                    self.close_up_to_brace(token);
                 }
                 self.open.push(Open {
                     token,
@@ -127,13 +127,13 @@ impl Pairing {
                 });
             }
             Punctuator::RightBrace => {
-                self.close_round(token);
+                self.close_up_to_brace(token);
                 self.open.pop();
             }
             Punctuator::Semicolon
-                if self.open.last().is_some_and(|open| open.semicolons == 0) && self.goes_on(rest) =>
+                if self.open.last().is_some_and(|open| open.semicolons == 0) && self.closes_later(rest) =>
             {
-                return self.out_of_place(token, punctuator);
+                return self.report_misplaced(token, punctuator);
             }
             Punctuator::Semicolon => {
                 while self.open.last().is_some_and(|open| open.semicolons == 0) {
@@ -149,7 +149,7 @@ impl Pairing {
         self.done.push(token);
     }
 
-    /// Takes a `)` or `]`.
+    /// Consumes a `)` or `]`.
     fn close(&mut self, token: Token, punctuator: Punctuator, rest: &[Token]) {
         let closes = |open: &Open| closing(open.bracket) == Some(punctuator);
         match &self.open[..] {
@@ -157,14 +157,14 @@ impl Pairing {
                 self.open.pop();
                 self.done.push(token);
             }
-            // `f(a[i)`: the inner one is not closed.
+            // `f(a[i)`: the inner bracket is not closed.
             [.., outer, inner] if closes(outer) && inner.bracket != Punctuator::LeftBrace => {
                 self.close_last(token);
                 self.open.pop();
                 self.done.push(token);
             }
-            // `f(x];`: the wrong one, unless the right one follows.
-            [.., last] if last.bracket != Punctuator::LeftBrace && !self.goes_on(rest) => {
+            // `f(x];`: the wrong bracket, unless the right one follows.
+            [.., last] if last.bracket != Punctuator::LeftBrace && !self.closes_later(rest) => {
                 self.wrong_partner(token, punctuator);
             }
             _ => {
@@ -175,13 +175,14 @@ impl Pairing {
                 };
                 let message = format!("this `{}` has no `{opening}`", punctuator.text());
                 let note = format!("remove it, or put the `{opening}` where it belongs");
-                self.told.push(Code::Unclosed.at(token.at, message).note(note));
+                self.reported
+                    .push(Code::Unclosed.at(token.at, message).note(note));
                 self.push_stray(token);
             }
         }
     }
 
-    /// Tells of a `(` that meets a `]`, or the other way round, and closes it.
+    /// Reports a `(` closed by a `]`, or the reverse, and closes it.
     fn wrong_partner(&mut self, token: Token, punctuator: Punctuator) {
         let Some(Open {
             token: open, bracket, ..
@@ -194,7 +195,7 @@ impl Pairing {
         };
         let (open_text, right_text) = (bracket.text(), right.text());
         let message = format!("`{}` does not close `{open_text}`", punctuator.text());
-        self.told.push(
+        self.reported.push(
             Code::Unclosed
                 .at(token.at, message)
                 .label(format!("write `{right_text}` here"))
@@ -202,7 +203,7 @@ impl Pairing {
         );
         self.done.push(Token {
             kind: TokenKind::Punctuator(right),
-            told: true,
+            reported: true,
             ..token
         });
     }
@@ -212,9 +213,9 @@ impl Pairing {
         self.done.push(token);
     }
 
-    /// Whether all brackets that are open since the last `{` are closed by what follows up to the next `;` or brace: then what stands here
-    /// does not end them.
-    fn goes_on(&self, rest: &[Token]) -> bool {
+    /// Whether all brackets opened since the last `{` are closed before the next `;` or brace: then the
+    /// current token does not end them.
+    fn closes_later(&self, rest: &[Token]) -> bool {
         let mut wanted = self
             .open
             .iter()
@@ -245,8 +246,8 @@ impl Pairing {
         false
     }
 
-    /// Tells of a `;` or `{` in parentheses.
-    fn out_of_place(&mut self, token: Token, punctuator: Punctuator) {
+    /// Reports a `;` or `{` in parentheses.
+    fn report_misplaced(&mut self, token: Token, punctuator: Punctuator) {
         let diagnostic = Code::Syntax.at(
             token.at,
             format!("`{}` cannot stand in parentheses", punctuator.text()),
@@ -258,12 +259,12 @@ impl Pairing {
             (_, Some(open)) => diagnostic.related(open.token.at.span, "opened here"),
             _ => diagnostic,
         };
-        self.told.push(diagnostic);
+        self.reported.push(diagnostic);
         self.push_stray(token);
     }
 
     /// Closes every `(` and `[` since the last `{`.
-    fn close_round(&mut self, next: Token) {
+    fn close_up_to_brace(&mut self, next: Token) {
         while self
             .open
             .last()
@@ -283,11 +284,11 @@ impl Pairing {
         };
         let message = format!("this `{}` is never closed", bracket.text());
         let diagnostic = Code::Unclosed.at(token.at, message);
-        self.told.push(if next.kind == TokenKind::End {
+        self.reported.push(if next.kind == TokenKind::End {
             diagnostic.note(format!("the text ends before its `{}`", closing.text()))
         } else {
-            let words = format!("its `{}` is missing before this", closing.text());
-            diagnostic.related(next.at.span, words)
+            let label = format!("its `{}` is missing before this", closing.text());
+            diagnostic.related(next.at.span, label)
         });
         self.done.push(missing(closing, next));
     }

@@ -1,14 +1,14 @@
 //! Declarations: types, variables, structures, functions (§4, §6.1).
 
 use super::{Halt, Parsed, Parser};
-use crate::check::{Declarator, Members, Qualifiers, Size, Specifier};
+use crate::check::{Declarator, Members, Parameter, Qualifiers, Size, Specifier, Storage};
 use crate::codes::Code;
+use crate::keywords::{Keyword, Word};
 use crate::token::{Punctuator, Symbol, TokenKind};
-use crate::tree::{Item, Place, Type, VariableId};
-use crate::words::{Keyword, Word};
+use crate::tree::{Direction, Item, Place, Type, VariableId};
 
 impl Parser<'_> {
-    /// One declaration at global scope, or a function.
+    /// Parses one declaration at global scope, or a function.
     pub(super) fn external_declaration(&mut self) -> Parsed<()> {
         if self.check.takes_stray_semicolons() && self.eat(Punctuator::Semicolon) {
             return Ok(());
@@ -32,7 +32,7 @@ impl Parser<'_> {
             );
         }
         let specifier = self.type_specifier()?;
-        self.check.precision_fits(&qualifiers, &specifier);
+        self.check.check_precision_qualifier(&qualifiers, &specifier);
         let structs: Vec<_> = self
             .check
             .tree
@@ -61,7 +61,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// A declaration inside of a function, with its `;`.
+    /// Parses a declaration inside a function, with its `;`.
     pub(super) fn local_declaration(&mut self) -> Parsed<Vec<VariableId>> {
         if self.eat_keyword(Keyword::Precision) {
             self.precision_statement()?;
@@ -69,7 +69,7 @@ impl Parser<'_> {
         }
         let qualifiers = self.qualifiers()?;
         let specifier = self.type_specifier()?;
-        self.check.precision_fits(&qualifiers, &specifier);
+        self.check.check_precision_qualifier(&qualifiers, &specifier);
         if self.eat(Punctuator::Semicolon) {
             return Ok(Vec::new());
         }
@@ -81,30 +81,33 @@ impl Parser<'_> {
         let (name, at) = self.name()?;
         if self.is(Punctuator::LeftParen) {
             let diagnostic = Code::Syntax.at(at, "a function cannot be declared inside of a function");
-            let (ty, name) = (self.check.tree.type_name(specifier.base), self.words.text(name));
+            let (ty, name) = (
+                self.check.tree.type_name(specifier.base),
+                self.interner.text(name),
+            );
             let note = format!("a variable gets its value by `{ty} {name} = {ty}(…);`");
             return self.halt_with(diagnostic.note(note));
         }
         self.declarators(&qualifiers, &specifier, name, at)
     }
 
-    /// `bool b = f()` as the condition of a loop.
+    /// Parses `bool b = f()` as the condition of a loop.
     pub(super) fn condition_declaration(&mut self) -> Parsed<VariableId> {
         let qualifiers = self.qualifiers()?;
         let specifier = self.named_type()?;
-        self.check.precision_fits(&qualifiers, &specifier);
+        self.check.check_precision_qualifier(&qualifiers, &specifier);
         let (name, at) = self.name()?;
         if !self.is(Punctuator::Assign) {
             return self.unexpected("`=`");
         }
         let declarator = self.declarator(name, at)?;
-        if let Some(value) = declarator.initialiser {
+        if let Some(value) = declarator.initializer {
             self.check.condition(value);
         }
         Ok(self.check.declare_variable(&qualifiers, &specifier, declarator))
     }
 
-    /// `precision highp float;`: precision has no effect where everything is `highp`.
+    /// Parses `precision highp float;`, which has no effect because everything is `highp`.
     fn precision_statement(&mut self) -> Parsed<()> {
         match self.keyword() {
             Some(Keyword::Highp | Keyword::Mediump | Keyword::Lowp) => self.next(),
@@ -115,18 +118,18 @@ impl Parser<'_> {
         self.semicolon("`;`")
     }
 
-    /// Whether a name follows that is no type: `invariant x;`.
+    /// Whether a name follows that is not a type: `invariant x;`.
     fn is_redeclaration(&self) -> bool {
         matches!(self.kind(), TokenKind::Word(symbol)
-            if self.words.word(symbol) == Word::Name && self.check.struct_named(symbol).is_none())
+            if self.interner.word(symbol) == Word::Name && self.check.struct_named(symbol).is_none())
     }
 
-    /// `uniform Name { … }` (§4.3.7), at its name.
+    /// Whether an interface block, `uniform Name { … }` (§4.3.7), begins at its name.
     fn is_block(&self) -> bool {
         self.word() == Some(Word::Name) && self.peek(1).kind == TokenKind::Punctuator(Punctuator::LeftBrace)
     }
 
-    /// A type by name or a structure, and the sizes that follow.
+    /// Parses a type name or a structure, and the sizes that follow.
     fn type_specifier(&mut self) -> Parsed<Specifier> {
         if self.keyword() != Some(Keyword::Struct) {
             return self.named_type();
@@ -140,7 +143,7 @@ impl Parser<'_> {
     pub(super) fn named_type(&mut self) -> Parsed<Specifier> {
         let at = self.token().at;
         let base = match self.kind() {
-            TokenKind::Word(symbol) => match self.words.word(symbol) {
+            TokenKind::Word(symbol) => match self.interner.word(symbol) {
                 Word::Type(ty) => Some(ty),
                 Word::Name => self.check.struct_named(symbol).map(Type::Struct),
                 Word::Keyword(_) | Word::Reserved => None,
@@ -155,16 +158,17 @@ impl Parser<'_> {
         Ok(Specifier { base, sizes, at })
     }
 
-    /// What a name stands for that is no type and stands where one must, a name after it: told, and taken for what it may mean.
+    /// Handles an unknown name in the position of a type, followed by a name: reports it and returns the type
+    /// that is probably intended.
     fn unknown_type(&mut self) -> Option<Type> {
         let TokenKind::Word(symbol) = self.kind() else {
             return None;
         };
         let begins_declaration = match (self.word(), self.peek(1).kind) {
             (Some(Word::Name), TokenKind::Word(_)) => true,
-            // Not `static float x` nor `class A {`.
+            // Excludes `static float x` and `class A {`.
             (Some(Word::Reserved), TokenKind::Word(name)) => {
-                self.words.word(name) == Word::Name
+                self.interner.word(name) == Word::Name
                     && self.peek(2).kind != TokenKind::Punctuator(Punctuator::LeftBrace)
             }
             _ => false,
@@ -172,7 +176,7 @@ impl Parser<'_> {
         begins_declaration.then(|| self.check.unknown_type(symbol, self.token().at))
     }
 
-    /// `[n][]…`.
+    /// Parses `[n][]…`.
     pub(super) fn sizes(&mut self) -> Parsed<Vec<Size>> {
         let mut sizes = Vec::new();
         while self.is(Punctuator::LeftBracket) {
@@ -189,7 +193,7 @@ impl Parser<'_> {
         Ok(sizes)
     }
 
-    /// `struct name { members }`, after the word `struct`.
+    /// Parses `struct name { members }`, after the keyword `struct`.
     fn structure(&mut self, at: Place) -> Parsed<Type> {
         let name = if self.is(Punctuator::LeftBrace) {
             None
@@ -214,12 +218,12 @@ impl Parser<'_> {
             .check
             .declare_struct(name.map(|(name, _)| name), members.all, place);
         if !complete {
-            self.check.lacks_members(id);
+            self.check.mark_incomplete(id);
         }
         Ok(Type::Struct(id))
     }
 
-    /// `vec3 a, b[2];`.
+    /// Parses `vec3 a, b[2];`.
     fn members(&mut self, members: &mut Members) -> Parsed<()> {
         let qualifiers = self.qualifiers()?;
         if let Some(at) = qualifiers.other_than_precision() {
@@ -235,7 +239,7 @@ impl Parser<'_> {
             );
         }
         let specifier = self.named_type()?;
-        self.check.precision_fits(&qualifiers, &specifier);
+        self.check.check_precision_qualifier(&qualifiers, &specifier);
         loop {
             let (name, at) = self.name()?;
             let sizes = self.sizes()?;
@@ -246,7 +250,8 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether a structure has just been read and a new line begins something else: then only its `;` is missing.
+    /// Whether a structure was just parsed and a new line begins a different construct: then only its `;` is
+    /// missing.
     fn ends_without_name(&self) -> bool {
         let previous = self.tokens[self.at - 1];
         previous.kind == TokenKind::Punctuator(Punctuator::RightBrace)
@@ -254,12 +259,12 @@ impl Parser<'_> {
             && self.layout.line_between(previous, self.token())
     }
 
-    /// `float , a;`: the grammar of §9 lets the first declarator be empty.
+    /// Consumes the comma of `float , a;`: the grammar of §9 allows an empty first declarator.
     fn eat_empty_declarator(&mut self) -> bool {
         self.eat(Punctuator::Comma)
     }
 
-    /// The rest of a declaration, from the sizes of its first name to the `;`.
+    /// Parses the rest of a declaration, from the sizes of its first name to the `;`.
     fn declarators(
         &mut self,
         qualifiers: &Qualifiers,
@@ -271,10 +276,10 @@ impl Parser<'_> {
         let (mut name, mut at) = (name, at);
         loop {
             let Ok(declarator) = self.declarator(name, at) else {
-                self.check.declare_unread(name, at);
+                self.check.declare_unparsed(name, at);
                 return Err(Halt);
             };
-            let wanted = if declarator.initialiser.is_some() {
+            let wanted = if declarator.initializer.is_some() {
                 "`;`, `,` or an operator"
             } else {
                 "`=`, `;`, `,` or `[`"
@@ -288,10 +293,10 @@ impl Parser<'_> {
         }
     }
 
-    /// `[n] = value`, both optional.
+    /// Parses `[n] = value`, both optional.
     fn declarator(&mut self, name: Symbol, at: Place) -> Parsed<Declarator> {
         let sizes = self.sizes()?;
-        let initialiser = if self.eat(Punctuator::Assign) {
+        let initializer = if self.eat(Punctuator::Assign) {
             Some(self.assignment()?)
         } else {
             None
@@ -300,7 +305,186 @@ impl Parser<'_> {
             name,
             at,
             sizes,
-            initialiser,
+            initializer,
         })
+    }
+}
+
+// Qualifiers (§4.3–§4.7).
+
+impl Parser<'_> {
+    /// Parses the qualifiers before a type, in the order of §4.7: `invariant`, interpolation, layout,
+    /// storage, precision.
+    pub(super) fn qualifiers(&mut self) -> Parsed<Qualifiers> {
+        let mut qualifiers = Qualifiers::default();
+        let mut last = 0;
+        loop {
+            let at = self.token().at;
+            let Some(keyword) = self.keyword() else {
+                return Ok(qualifiers);
+            };
+            let rank = match keyword {
+                Keyword::Invariant => 1,
+                Keyword::Flat | Keyword::Smooth => 2,
+                Keyword::Layout => 3,
+                Keyword::Const | Keyword::Centroid => 4,
+                Keyword::In | Keyword::Out | Keyword::InOut | Keyword::Uniform => 5,
+                Keyword::Highp | Keyword::Mediump | Keyword::Lowp => 6,
+                _ => return Ok(qualifiers),
+            };
+            self.next();
+            if rank <= last {
+                let message = format!("`{}` cannot stand after what is before it", keyword.text());
+                self.check.report(Code::BadQualifier.at(at, message));
+            }
+            last = rank;
+            match keyword {
+                Keyword::Const => qualifiers.is_const = Some(at),
+                Keyword::Uniform => qualifiers.storage = Some((Storage::Uniform, at)),
+                Keyword::In => qualifiers.storage = Some((Storage::In, at)),
+                Keyword::Out => qualifiers.storage = Some((Storage::Out, at)),
+                Keyword::InOut => qualifiers.storage = Some((Storage::InOut, at)),
+                Keyword::Highp | Keyword::Mediump | Keyword::Lowp => qualifiers.precision = Some(at),
+                _ => qualifiers.interface.push((keyword, at)),
+            }
+            if keyword == Keyword::Layout {
+                self.layout()?;
+            }
+        }
+    }
+
+    /// Parses `(location = 0, …)`, which is checked but not stored.
+    fn layout(&mut self) -> Parsed<()> {
+        self.expect(Punctuator::LeftParen)?;
+        loop {
+            let (name, at) = self.name()?;
+            self.check.layout(name, at);
+            if self.eat(Punctuator::Assign) && !matches!(self.next().kind, TokenKind::Number(_)) {
+                self.at -= 1;
+                return self.unexpected("an integer");
+            }
+            if !self.eat(Punctuator::Comma) {
+                self.expect(Punctuator::RightParen)?;
+                return Ok(());
+            }
+        }
+    }
+}
+
+// Functions (§6.1).
+
+impl Parser<'_> {
+    /// Parses the rest of a prototype or definition, from its `(`.
+    pub(super) fn function(
+        &mut self,
+        qualifiers: &Qualifiers,
+        result: &Specifier,
+        name: Symbol,
+        at: Place,
+    ) -> Parsed<()> {
+        if let Some(at) = qualifiers.other_than_precision() {
+            self.check
+                .report(Code::BadQualifier.at(at, "a result has no qualifier but its precision"));
+        }
+        let parameters = self.parameters()?;
+        let function = self.check.declare_function(result, name, at, &parameters);
+        if self.eat(Punctuator::Semicolon) {
+            self.check.prototype(function);
+            return Ok(());
+        }
+        if !self.is(Punctuator::LeftBrace) {
+            return self.unexpected("`{` or `;`");
+        }
+        self.check.open_body(function, at, &parameters);
+        let body = self.block();
+        self.check.close_body(function, body?);
+        Ok(())
+    }
+
+    /// Parses `(in vec3 p, float t)`, `()` or `(void)`.
+    fn parameters(&mut self) -> Parsed<Vec<Parameter>> {
+        self.expect(Punctuator::LeftParen)?;
+        let void = self.word() == Some(Word::Type(Type::Void));
+        if void && self.peek(1).kind == TokenKind::Punctuator(Punctuator::RightParen) {
+            self.next();
+        }
+        let mut parameters = Vec::new();
+        if self.eat(Punctuator::RightParen) {
+            return Ok(parameters);
+        }
+        loop {
+            let start = self.at;
+            match self.recovering_item(Self::parameter) {
+                Some(parameter) => parameters.push(parameter),
+                None => parameters.push(self.placeholder_parameter(start)),
+            }
+            if !self.eat(Punctuator::Comma) {
+                self.expect(Punctuator::RightParen)?;
+                return Ok(parameters);
+            }
+        }
+    }
+
+    fn parameter(&mut self) -> Parsed<Parameter> {
+        let qualifiers = self.qualifiers()?;
+        let direction = self.direction(&qualifiers);
+        let mut specifier = self.named_type()?;
+        self.check.check_precision_qualifier(&qualifiers, &specifier);
+        let name = match self.kind() {
+            TokenKind::Word(_) => Some(self.name()?),
+            _ => None,
+        };
+        let at = name.map_or(specifier.at, |(_, at)| at);
+        let mut sizes = self.sizes()?;
+        sizes.append(&mut specifier.sizes);
+        specifier.sizes = sizes;
+        let parameter = Parameter {
+            name: name.map(|(name, _)| name),
+            ty: self.check.parameter_type(&specifier, direction),
+            direction,
+            at,
+        };
+        if !self.is(Punctuator::Comma) && !self.is(Punctuator::RightParen) {
+            return self.unexpected("`,` or `)`");
+        }
+        Ok(parameter)
+    }
+
+    /// The replacement for a parameter that cannot be parsed: of type `Error`, with the last name in its
+    /// text.
+    fn placeholder_parameter(&self, start: usize) -> Parameter {
+        let tokens = &self.tokens[start..self.at.min(self.tokens.len())];
+        let name = tokens.iter().rev().find_map(|token| match token.kind {
+            TokenKind::Word(word) if self.interner.word(word) == Word::Name => Some((word, token.at)),
+            _ => None,
+        });
+        Parameter {
+            name: name.map(|(name, _)| name),
+            ty: Type::Error,
+            direction: Direction::In,
+            at: name.map_or(self.tokens[start].at, |(_, at)| at),
+        }
+    }
+
+    fn direction(&mut self, qualifiers: &Qualifiers) -> Direction {
+        let interface = qualifiers.interface.first().map(|&(_, at)| at);
+        let wrong = match (qualifiers.storage, qualifiers.is_const, interface) {
+            (_, _, Some(at)) | (Some((Storage::Uniform, at)), _, _) => {
+                Some((at, "a parameter can be `const`, `in`, `out` or `inout`"))
+            }
+            (Some((Storage::Out | Storage::InOut, at)), Some(_), None) => {
+                Some((at, "a `const` parameter can only be `in`"))
+            }
+            _ => None,
+        };
+        if let Some((at, message)) = wrong {
+            self.check.report(Code::BadQualifier.at(at, message));
+        }
+        match qualifiers.storage {
+            Some((Storage::Out, _)) => Direction::Out,
+            Some((Storage::InOut, _)) => Direction::InOut,
+            _ if qualifiers.is_const.is_some() => Direction::ConstIn,
+            _ => Direction::In,
+        }
     }
 }

@@ -1,14 +1,14 @@
-//! Expressions (§5.1): one function for each kind of operator; chains are loops.
+//! Expressions (§5.1): one function for each kind of operator; chains are loops. Also numeric literals.
 
 use super::{Parsed, Parser};
 use crate::check::Specifier;
 use crate::codes::Code;
+use crate::keywords::{Keyword, Word};
 use crate::token::{Punctuator, TokenKind};
 use crate::tree::{ExprId, Literal, Place, StepOp, Type, UnaryOp, Value};
-use crate::words::{Keyword, Word};
 
 impl Parser<'_> {
-    /// `a, b, c`.
+    /// Parses `a, b, c`.
     pub(super) fn expression(&mut self) -> Parsed<ExprId> {
         let mut expr = self.assignment()?;
         while self.eat(Punctuator::Comma) {
@@ -18,7 +18,7 @@ impl Parser<'_> {
         Ok(expr)
     }
 
-    /// `a = b = c`, which groups to the right.
+    /// Parses `a = b = c`, which is right-associative.
     pub(super) fn assignment(&mut self) -> Parsed<ExprId> {
         self.nested(|parser| {
             let target = parser.conditional()?;
@@ -35,7 +35,7 @@ impl Parser<'_> {
         })
     }
 
-    /// `a ? b : c`, which groups to the right; also what constant expressions are.
+    /// Parses `a ? b : c`, which is right-associative; constant expressions are of this form, too.
     pub(super) fn conditional(&mut self) -> Parsed<ExprId> {
         let condition = self.binary(1)?;
         if !self.eat(Punctuator::Question) {
@@ -47,7 +47,8 @@ impl Parser<'_> {
         Ok(self.check.conditional(condition, yes, no))
     }
 
-    /// Operators that bind at least as tightly as `precedence`. A chain of one level is a loop; only a tighter operator nests.
+    /// Parses binary operators of at least `precedence`. A chain of one precedence is a loop; only operators
+    /// of higher precedence recurse.
     fn binary(&mut self, precedence: u8) -> Parsed<ExprId> {
         let mut left = self.unary()?;
         while let TokenKind::Punctuator(punctuator) = self.kind()
@@ -115,7 +116,7 @@ impl Parser<'_> {
         }
     }
 
-    /// What follows a point: a member, a swizzle or `length()`.
+    /// Parses the text after a `.`: a member, a swizzle or `length()`.
     fn selection(&mut self, base: ExprId) -> Parsed<ExprId> {
         let (name, at) = self.name()?;
         if self.is(Punctuator::LeftParen) {
@@ -131,7 +132,7 @@ impl Parser<'_> {
         match token.kind {
             TokenKind::Number(text) => {
                 self.next();
-                match super::number::literal(self.words.text(text)) {
+                match super::expression::literal(self.interner.text(text)) {
                     Ok(literal) => Ok(self.check.literal(literal, token.at)),
                     Err((code, message)) => Ok(self.check.refuse(code, token.at, message)),
                 }
@@ -143,7 +144,7 @@ impl Parser<'_> {
                 self.check.tree[expr].at = token.at.to(close);
                 Ok(expr)
             }
-            TokenKind::Word(symbol) => match self.words.word(symbol) {
+            TokenKind::Word(symbol) => match self.interner.word(symbol) {
                 Word::Keyword(keyword @ (Keyword::True | Keyword::False)) => {
                     self.next();
                     let literal = Literal {
@@ -162,9 +163,9 @@ impl Parser<'_> {
                     }
                     let start = self.at;
                     let (arguments, close) = self.arguments()?;
-                    let told = self.check.errors.len();
+                    let reported = self.check.errors.len();
                     let called = self.check.call(symbol, token.at, arguments, token.at.to(close));
-                    self.note_decimal_comma(told, start);
+                    self.note_decimal_comma(reported, start);
                     Ok(called)
                 }
                 Word::Keyword(_) => self.unexpected("an expression"),
@@ -173,12 +174,12 @@ impl Parser<'_> {
         }
     }
 
-    /// `type(…)` or `type[n](…)`.
+    /// Parses `type(…)` or `type[n](…)`.
     fn constructor(&mut self) -> Parsed<ExprId> {
         let specifier: Specifier = self.named_type()?;
         if !self.is(Punctuator::LeftParen) {
             let name = self.check.tree.type_name(specifier.base);
-            if self.is(Punctuator::RightParen) && !self.is_told() {
+            if self.is(Punctuator::RightParen) && !self.is_reported() {
                 let message = format!("GLSL has no casts: write `{name}(…)` around the value");
                 return self.halt(Code::Syntax, specifier.at, message);
             }
@@ -187,13 +188,13 @@ impl Parser<'_> {
         let start = self.at;
         let (arguments, close) = self.arguments()?;
         let at = specifier.at.to(close);
-        let told = self.check.errors.len();
-        let constructed = self.check.construct(&specifier, arguments, at);
-        self.note_decimal_comma(told, start);
-        Ok(constructed)
+        let reported = self.check.errors.len();
+        let push_constructor = self.check.construct(&specifier, arguments, at);
+        self.note_decimal_comma(reported, start);
+        Ok(push_constructor)
     }
 
-    /// `(a, b)`, `()` or `(void)`; and the place of the `)`.
+    /// Parses `(a, b)`, `()` or `(void)`; also returns the place of the `)`.
     fn arguments(&mut self) -> Parsed<(Vec<ExprId>, Place)> {
         self.expect(Punctuator::LeftParen)?;
         let mut arguments = Vec::new();
@@ -209,5 +210,101 @@ impl Parser<'_> {
         }
         let close = self.expect(Punctuator::RightParen)?;
         Ok((arguments, close))
+    }
+}
+
+// Numeric literals (§4.1.3, §4.1.4).
+
+/// The value of a numeric literal, or the error in it.
+pub(super) fn literal(text: &str) -> Result<Literal, (Code, String)> {
+    let value = if is_float(text) {
+        float(text)
+    } else {
+        integer(text)
+    };
+    Ok(Literal {
+        text: text.into(),
+        value: value?,
+    })
+}
+
+fn is_float(text: &str) -> bool {
+    let hexadecimal = text.starts_with("0x") || text.starts_with("0X");
+    !hexadecimal && text.contains(['.', 'e', 'E'])
+}
+
+fn float(text: &str) -> Result<Value, (Code, String)> {
+    let digits = text.strip_suffix(['f', 'F']).unwrap_or(text);
+    // Forms that Rust accepts but GLSL does not (`inf`, `1`) do not reach this. As in WebGL, a number that is
+    // too large is infinity.
+    match digits.parse() {
+        Ok(value) => Ok(Value::Float(value)),
+        Err(_) => Err((Code::BadNumber, format!("`{text}` is no number"))),
+    }
+}
+
+fn integer(text: &str) -> Result<Value, (Code, String)> {
+    let (digits, unsigned) = match text.strip_suffix(['u', 'U']) {
+        Some(digits) => (digits, true),
+        None => (text, false),
+    };
+    let (digits, radix) = match digits.strip_prefix("0x").or(digits.strip_prefix("0X")) {
+        Some(digits) => (digits, 16),
+        None if digits.len() > 1 && digits.starts_with('0') => (&digits[1..], 8),
+        None => (digits, 10),
+    };
+    if digits.is_empty() || !digits.chars().all(|c| c.is_digit(radix)) {
+        let message = if digits
+            .strip_suffix(['f', 'F'])
+            .is_some_and(|rest| rest.parse::<u64>().is_ok())
+        {
+            let number = text.trim_end_matches(['f', 'F']);
+            format!("`{text}` needs a point to be a `float`: write `{number}.0`")
+        } else if radix == 8 && digits.chars().all(|c| c.is_ascii_digit()) {
+            let number = text.trim_start_matches('0');
+            format!("`{text}` begins with 0, which makes it octal: write `{number}`")
+        } else {
+            format!("`{text}` is no number")
+        };
+        return Err((Code::BadNumber, message));
+    }
+    match u32::from_str_radix(digits, radix) {
+        // An `int` takes the bit pattern: 0xFFFFFFFF is −1 (§4.1.3).
+        Ok(bits) if unsigned => Ok(Value::Uint(bits)),
+        Ok(bits) => Ok(Value::Int(bits.cast_signed())),
+        Err(_) => Err((Code::NumberRange, format!("`{text}` does not fit 32 bits"))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers() {
+        let cases = [
+            ("0", Some(Value::Int(0))),
+            ("010", Some(Value::Int(8))),
+            ("0x1F", Some(Value::Int(31))),
+            ("0XfU", Some(Value::Uint(15))),
+            ("4294967295", Some(Value::Int(-1))),
+            ("2147483648u", Some(Value::Uint(1 << 31))),
+            (".5", Some(Value::Float(0.5))),
+            ("1.", Some(Value::Float(1.0))),
+            ("1e3", Some(Value::Float(1000.0))),
+            ("1.5E-1f", Some(Value::Float(0.15))),
+            ("1e999", Some(Value::Float(f64::INFINITY))),
+            ("4294967296", None),
+            ("08", None),
+            ("0x", None),
+            ("1f", None),
+            ("1.xx", None),
+            ("1..", None),
+            ("1e", None),
+            ("1.0u", None),
+        ];
+        for (text, value) in cases {
+            assert_eq!(literal(text).ok().map(|literal| literal.value), value, "{text}");
+        }
     }
 }

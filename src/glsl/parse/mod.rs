@@ -1,71 +1,66 @@
 //! The grammar (GLSL ES 3.00.6 §9), by recursive descent.
 //!
-//! Each function reads one construct and asks the checker for its node. What does not fit the grammar cannot be read: it has then
-//! been told why, and [`Halt`] travels up to who can go on, which is the list of statements, parameters or declarations around it.
+//! Each function parses one construct and calls the checker for its node. If a construct cannot be parsed,
+//! the error has been reported, and [`Halt`] propagates to the enclosing list of statements, parameters or
+//! declarations, which resumes after it.
 
 mod brace;
 mod bracket;
-mod control;
 mod declaration;
 mod expression;
-mod function;
-mod habit;
-mod layout;
-mod number;
-mod qualifier;
 mod recover;
 mod statement;
 
-pub(super) use bracket::balance;
-use layout::Layout;
 use toyproof_diagnostic::{Diagnostic, File, Span};
 
-use super::MAX_NESTING;
-use super::check::Checker;
-use super::codes::Code;
-use super::foreign::Foreign;
-use super::preprocess::Preprocessed;
-use super::token::{Punctuator, Symbol, Token, TokenKind};
-use super::tree::Place;
-use super::words::{Keyword, Word, Words};
+pub(super) use self::bracket::balance;
+use self::recover::Layout;
+use crate::MAX_NESTING;
+use crate::check::Checker;
+use crate::codes::Code;
+use crate::foreign::Foreign;
+use crate::keywords::{Interner, Keyword, Word};
+use crate::preprocess::Preprocessed;
+use crate::token::{Punctuator, Symbol, Token, TokenKind};
+use crate::tree::Place;
 
-/// The reason was told; this construct cannot be read.
+/// This construct cannot be parsed; the reason has been reported.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Halt;
 
 type Parsed<T> = Result<T, Halt>;
 
-/// Reads tokens and asks the checker.
+/// Parses tokens and calls the checker.
 pub(crate) struct Parser<'a> {
     tokens: &'a [Token],
-    words: &'a Words,
+    interner: &'a Interner,
     layout: Layout<'a>,
     at: usize,
-    /// How many constructs are open that count for [`MAX_NESTING`].
+    /// The number of open constructs that count for [`MAX_NESTING`].
     depth: usize,
-    /// Where the piece begins that is being read: a statement without those inside of it.
-    piece: usize,
-    /// How many errors were told before it.
-    told_before: usize,
+    /// The first token of the current recovery unit: a statement without its inner statements.
+    unit_start: usize,
+    /// The number of errors reported before the unit.
+    errors_before_unit: usize,
     check: Checker<'a>,
 }
 
 impl<'a> Parser<'a> {
-    /// The brackets of the text are [balanced](balance).
+    /// Makes a parser for a text whose brackets are [balanced](balance).
     pub(crate) fn new(text: &'a Preprocessed, file: &'a File, check: Checker<'a>) -> Self {
         Self {
             tokens: &text.tokens,
-            words: &text.words,
+            interner: &text.interner,
             layout: Layout::new(file),
             at: 0,
             depth: 0,
-            piece: 0,
-            told_before: 0,
+            unit_start: 0,
+            errors_before_unit: 0,
             check,
         }
     }
 
-    /// Reads everything, up to what can be read.
+    /// Parses the whole text and returns the checker.
     pub(crate) fn parse(mut self) -> Checker<'a> {
         while !self.is_at_end() {
             self.recovering(Self::external_declaration);
@@ -77,13 +72,13 @@ impl<'a> Parser<'a> {
         self.peek(0)
     }
 
-    /// The token that many after the next; the text ends in `End` for ever.
+    /// The token `ahead` positions after the next one; after the end, always `End`.
     fn peek(&self, ahead: usize) -> Token {
         let last = self.tokens.len() - 1;
         self.tokens[(self.at + ahead).min(last)]
     }
 
-    /// Whether there is nothing left to read, nothing left to tell, or no time.
+    /// Whether the parser stops: at the end of the text, at the limit on errors, or at the deadline.
     fn is_at_end(&self) -> bool {
         self.kind() == TokenKind::End || self.check.is_full() || self.check.deadline.is_over()
     }
@@ -92,15 +87,15 @@ impl<'a> Parser<'a> {
         self.token().kind
     }
 
-    /// Takes the next token.
+    /// Consumes the next token.
     fn next(&mut self) -> Token {
         let token = self.token();
         self.at += 1;
         token
     }
 
-    /// From there to the token taken last.
-    fn since(&self, start: Place) -> Place {
+    /// The place from `start` to the last consumed token.
+    fn place_from(&self, start: Place) -> Place {
         start.to(self.tokens[self.at.saturating_sub(1).min(self.tokens.len() - 1)].at)
     }
 
@@ -108,7 +103,7 @@ impl<'a> Parser<'a> {
         self.kind() == TokenKind::Punctuator(punctuator)
     }
 
-    /// Takes the punctuator if it comes next.
+    /// Consumes the punctuator if it is the next token.
     fn eat(&mut self, punctuator: Punctuator) -> bool {
         let here = self.is(punctuator);
         self.at += usize::from(here);
@@ -122,8 +117,8 @@ impl<'a> Parser<'a> {
         self.unexpected(&format!("`{}`", punctuator.text()))
     }
 
-    /// The `;` that ends a statement or declaration. Where it is missing and the next token begins something new, all goes on as if it stood
-    /// there.
+    /// Consumes the `;` that ends a statement or declaration. If it is missing and the next token begins a
+    /// new construct, reports that and continues as if it were there.
     fn semicolon(&mut self, wanted: &str) -> Parsed<()> {
         if self.eat(Punctuator::Semicolon) {
             return Ok(());
@@ -152,10 +147,10 @@ impl<'a> Parser<'a> {
         Ok(())
     }
 
-    /// What the author wrote for a token.
+    /// The text of a token; none for tokens without a text.
     fn spelling(&self, token: Token) -> Option<&'a str> {
         match token.kind {
-            TokenKind::Word(symbol) | TokenKind::Number(symbol) => Some(self.words.text(symbol)),
+            TokenKind::Word(symbol) | TokenKind::Number(symbol) => Some(self.interner.text(symbol)),
             TokenKind::Punctuator(punctuator) => Some(punctuator.text()),
             TokenKind::Unknown(_) | TokenKind::Stray | TokenKind::Newline | TokenKind::End => None,
         }
@@ -163,7 +158,7 @@ impl<'a> Parser<'a> {
 
     fn word(&self) -> Option<Word> {
         match self.kind() {
-            TokenKind::Word(symbol) => Some(self.words.word(symbol)),
+            TokenKind::Word(symbol) => Some(self.interner.word(symbol)),
             _ => None,
         }
     }
@@ -181,17 +176,17 @@ impl<'a> Parser<'a> {
         here
     }
 
-    /// A name of the author's.
+    /// Parses an identifier.
     fn name(&mut self) -> Parsed<(Symbol, Place)> {
         match self.token() {
             Token {
                 kind: TokenKind::Word(symbol),
                 at,
                 ..
-            } if matches!(self.words.word(symbol), Word::Name | Word::Reserved) => {
+            } if matches!(self.interner.word(symbol), Word::Name | Word::Reserved) => {
                 self.at += 1;
-                // One that is reserved is told of where it is declared, and then read as a name.
-                if self.words.word(symbol) == Word::Reserved {
+                // A reserved word is reported where it is declared, and then treated as a name.
+                if self.interner.word(symbol) == Word::Reserved {
                     self.check.report(self.reserved(symbol, at));
                 }
                 Ok((symbol, at))
@@ -200,11 +195,11 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// Tells that the next token is not what the grammar has here.
+    /// Reports that the next token does not fit the grammar.
     fn unexpected<T>(&mut self, wanted: &str) -> Parsed<T> {
         let Token { kind, at, .. } = self.token();
         let found = match kind {
-            TokenKind::Word(symbol) if self.words.word(symbol) == Word::Reserved => {
+            TokenKind::Word(symbol) if self.interner.word(symbol) == Word::Reserved => {
                 return self.halt_with(self.reserved(symbol, at));
             }
             _ => match self.spelling(self.token()) {
@@ -213,42 +208,43 @@ impl<'a> Parser<'a> {
             },
         };
         let diagnostic = Code::Syntax.at(at, format!("expected {wanted}, found {found}"));
-        self.halt_with(self.with_habit(diagnostic))
+        self.halt_with(self.with_foreign_syntax_hint(diagnostic))
     }
 
-    /// What is said of a word that may not be used.
+    /// The error about a reserved word.
     fn reserved(&self, word: Symbol, at: Place) -> Diagnostic {
-        let text = self.words.text(word);
+        let text = self.interner.text(word);
         let diagnostic = Code::ReservedWord.at(at, format!("`{text}` is a word that GLSL reserves"));
         match Foreign::named(text) {
             Some(foreign) => diagnostic
-                .label(format!("write {}", foreign.instead()))
+                .label(format!("write {}", foreign.replacement()))
                 .note(foreign.note()),
             None => diagnostic.label("choose another name"),
         }
     }
 
-    /// Gives the piece up that is being read, and tells why. What else is wrong with it may come from that and is not told.
+    /// Reports an error and gives up the current recovery unit. Other errors of the unit may follow from this
+    /// one and are dropped.
     fn halt<T>(&mut self, code: Code, at: Place, message: impl Into<String>) -> Parsed<T> {
         self.halt_with(code.at(at, message))
     }
 
     fn halt_with<T>(&mut self, diagnostic: Diagnostic) -> Parsed<T> {
-        if self.is_told() {
+        if self.is_reported() {
             return self.halt_silently();
         }
-        self.check.errors.truncate(self.told_before);
+        self.check.errors.truncate(self.errors_before_unit);
         self.check.report(diagnostic);
         Err(Halt)
     }
 
-    /// The same where the reason has been told.
+    /// Gives up the current recovery unit, whose error has been reported.
     fn halt_silently<T>(&mut self) -> Parsed<T> {
-        self.check.errors.truncate(self.told_before);
+        self.check.errors.truncate(self.errors_before_unit);
         Err(Halt)
     }
 
-    /// Reads something one level deeper.
+    /// Parses a construct one nesting level deeper.
     fn nested<T>(&mut self, read: impl FnOnce(&mut Self) -> Parsed<T>) -> Parsed<T> {
         if self.depth == MAX_NESTING {
             let at = self.token().at;

@@ -1,44 +1,50 @@
-//! Going on after what cannot be read.
+//! Error recovery: skipping text that cannot be parsed, source layout, and hints about foreign syntax.
+
+use toyproof_diagnostic::{Diagnostic, File};
 
 use super::bracket::closing;
 use super::{Halt, Parsed, Parser};
-use crate::token::{Punctuator, TokenKind};
-use crate::words::{Keyword, Word};
+use crate::codes::Code;
+use crate::foreign::Foreign;
+use crate::keywords::{Keyword, Word};
+use crate::token::{Punctuator, Token, TokenKind};
 
 impl Parser<'_> {
-    /// Reads one of a list of statements or declarations; if it cannot be read, passes over it.
+    /// Parses one of a list of statements or declarations; if it cannot be parsed, skips it.
     pub(super) fn recovering<T>(&mut self, read: impl FnOnce(&mut Self) -> Parsed<T>) -> Option<T> {
         let start = self.at;
-        self.end_piece();
+        self.end_unit();
         let result = read(self);
         if result.is_err() {
-            self.pass_over(start);
-            self.unread(start);
+            self.skip_construct(start);
+            self.mark_names_maybe_declared(start);
         }
-        self.end_piece();
+        self.end_unit();
         result.ok()
     }
 
-    /// Another piece begins here. What seemed wrong in one that holds a mistake told before may come from that, and is not told.
-    pub(super) fn end_piece(&mut self) {
-        if self.is_told() {
-            self.check.errors.truncate(self.told_before);
+    /// Starts a new recovery unit. Errors of a unit that contains a reported token may follow from that error
+    /// and are dropped.
+    pub(super) fn end_unit(&mut self) {
+        if self.is_reported() {
+            self.check.errors.truncate(self.errors_before_unit);
         }
-        self.piece = self.at;
-        self.told_before = self.check.errors.len();
+        self.unit_start = self.at;
+        self.errors_before_unit = self.check.errors.len();
     }
 
-    /// Whether the piece that is being read holds a mistake that has been told.
-    pub(super) fn is_told(&self) -> bool {
+    /// Whether the current recovery unit contains a token whose error has been reported.
+    pub(super) fn is_reported(&self) -> bool {
         let end = (self.at + 1).min(self.tokens.len());
-        self.tokens[self.piece.min(end)..end]
+        self.tokens[self.unit_start.min(end)..end]
             .iter()
-            .any(|token| token.told)
+            .any(|token| token.reported)
     }
 
-    /// Passes over what is left of the statement or declaration that began at `start`: up to its `;` or past its `{…}`, but never past the
-    /// `}` around it, nor over a line that begins a statement. At least one token is passed.
-    fn pass_over(&mut self, start: usize) {
+    /// Skips the rest of the statement or declaration that began at `start`: up to its `;` or past its `{…}`,
+    /// but never past the enclosing `}`, nor past a line that begins a statement. At least one token is
+    /// skipped.
+    fn skip_construct(&mut self, start: usize) {
         let begun = self.tokens[start..self.at.min(self.tokens.len())].iter();
         let mut depth = begun.fold(0_usize, |depth, token| match token.kind {
             TokenKind::Punctuator(punctuator) if closing(punctuator).is_some() => depth + 1,
@@ -70,40 +76,41 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether the next token begins a line with what only a new statement or declaration begins with.
-    pub(super) fn begins_statement(&self) -> bool {
+    /// Whether the next token is the first of its line and can only begin a new statement or declaration.
+    fn begins_statement(&self) -> bool {
         let begins = match self.word() {
             Some(Word::Keyword(Keyword::Else | Keyword::True | Keyword::False)) => false,
             Some(Word::Keyword(_)) => true,
-            // A constructor is no declaration.
+            // A constructor is not a declaration.
             Some(Word::Type(_)) => matches!(self.peek(1).kind, TokenKind::Word(_)),
             _ => false,
         };
         begins && self.layout.begins_line(self.token())
     }
 
-    /// Every name that may have been declared in what could not be read is doubtful from now on: that it is not declared is not told.
-    fn unread(&mut self, start: usize) {
-        let words = self.words;
-        self.check.may_return();
+    /// Marks every name that the skipped text may declare, so that it is not reported as undeclared.
+    fn mark_names_maybe_declared(&mut self, start: usize) {
+        let interner = self.interner;
+        self.check.assume_returns();
         for pair in self.tokens[start..self.at.min(self.tokens.len())].windows(2) {
             let declares = match pair[0].kind {
-                TokenKind::Word(word) => !matches!(words.word(word), Word::Keyword(Keyword::Return)),
+                TokenKind::Word(word) => !matches!(interner.word(word), Word::Keyword(Keyword::Return)),
                 TokenKind::Punctuator(punctuator) => punctuator == Punctuator::Comma,
                 TokenKind::Number(_) => true,
                 _ => false,
             };
             if let TokenKind::Word(name) = pair[1].kind
                 && declares
-                && words.word(name) == Word::Name
+                && interner.word(name) == Word::Name
             {
-                self.check.doubt(name);
+                self.check.mark_maybe_declared(name);
             }
         }
     }
 
-    /// Reads what stands in parentheses, such as the head of an `if`; if it cannot be read, goes on after the `)` with nothing.
-    pub(super) fn parenthesised<T>(
+    /// Parses a parenthesized construct such as the head of an `if`; if it cannot be parsed, resumes after
+    /// the `)` and returns `None`.
+    pub(super) fn parenthesized<T>(
         &mut self,
         read: impl FnOnce(&mut Self) -> Parsed<T>,
     ) -> Parsed<Option<T>> {
@@ -115,13 +122,13 @@ impl Parser<'_> {
         });
         if result.is_err() {
             self.at = self.partner(open).ok_or(Halt)? + 1;
-            self.unread(open);
+            self.mark_names_maybe_declared(open);
         }
-        self.end_piece();
+        self.end_unit();
         Ok(result.ok())
     }
 
-    /// The bracket that closes the one at `open`.
+    /// The index of the bracket that closes the one at `open`.
     fn partner(&self, open: usize) -> Option<usize> {
         let mut depth = 0_usize;
         for (index, token) in self.tokens.iter().enumerate().skip(open) {
@@ -137,7 +144,8 @@ impl Parser<'_> {
         None
     }
 
-    /// Reads one of a list that commas separate; if it cannot be read, passes over it up to the comma or closing bracket.
+    /// Parses one item of a comma-separated list; if it cannot be parsed, skips to the comma or closing
+    /// bracket.
     pub(super) fn recovering_item<T>(&mut self, read: impl FnOnce(&mut Self) -> Parsed<T>) -> Option<T> {
         let start = self.at;
         let result = read(self);
@@ -155,9 +163,9 @@ impl Parser<'_> {
                 }
                 self.next();
             }
-            self.unread(start);
+            self.mark_names_maybe_declared(start);
         }
-        self.end_piece();
+        self.end_unit();
         result.ok()
     }
 }
@@ -167,4 +175,158 @@ fn is_closing(punctuator: Punctuator) -> bool {
         punctuator,
         Punctuator::RightParen | Punctuator::RightBracket | Punctuator::RightBrace
     )
+}
+
+// Source layout: where lines begin, and their indentation. It does not matter in GLSL, but shows the author's
+// intention where brackets do not match.
+
+/// The width of a tab in columns, as in most editors.
+const TAB_WIDTH: usize = 4;
+
+/// The source text of the tokens.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Layout<'a> {
+    text: &'a str,
+}
+
+impl<'a> Layout<'a> {
+    pub(super) fn new(file: &'a File) -> Self {
+        Self { text: file.text() }
+    }
+
+    /// Whether only blanks precede the token on its line.
+    pub(super) fn begins_line(self, token: Token) -> bool {
+        let before = &self.text.as_bytes()[..token.at.span.start as usize];
+        let last = before.iter().rev().find(|byte| !matches!(byte, b' ' | b'\t'));
+        matches!(last, None | Some(b'\n' | b'\r'))
+    }
+
+    /// The indentation of the token's line in columns.
+    pub(super) fn indent(self, token: Token) -> usize {
+        let before = &self.text[..token.at.span.start as usize];
+        let line = before.rfind('\n').map_or(0, |newline| newline + 1);
+        let blanks = self.text[line..]
+            .bytes()
+            .take_while(|byte| matches!(byte, b' ' | b'\t'));
+        blanks.fold(0, |width, byte| {
+            if byte == b'\t' {
+                width - width % TAB_WIDTH + TAB_WIDTH
+            } else {
+                width + 1
+            }
+        })
+    }
+
+    /// Whether a line ends between two consecutive tokens.
+    pub(super) fn line_between(self, first: Token, second: Token) -> bool {
+        let gap = self
+            .text
+            .get(first.at.span.end as usize..second.at.span.start as usize);
+        gap.is_some_and(|gap| gap.contains('\n'))
+    }
+}
+
+// Hints about syntax of other languages and notations: the GLSL to write instead.
+
+impl Parser<'_> {
+    /// Adds a hint to a diagnostic about the next token if it looks like syntax of another language.
+    pub(super) fn with_foreign_syntax_hint(&self, diagnostic: Diagnostic) -> Diagnostic {
+        use Punctuator::{Assign, Comma, Greater, LeftBrace, Less};
+        let previous = self.at.checked_sub(1).and_then(|at| self.tokens.get(at));
+        match (previous.map(|token| token.kind), self.kind()) {
+            (_, TokenKind::Word(symbol))
+                if let Some(foreign) = Foreign::named(self.interner.text(symbol)) =>
+            {
+                diagnostic.label(format!("write {}", foreign.replacement()))
+            }
+            (Some(before), TokenKind::Punctuator(LeftBrace)) if self.comes_before_value(before) => diagnostic
+                .note(
+                    "GLSL ES has no lists in braces: write `vec3(…)` for a vector, `float[](…)` for an array",
+                ),
+            (Some(TokenKind::Punctuator(Assign)), TokenKind::Punctuator(comparison @ (Less | Greater))) => {
+                diagnostic.label(format!("write `{}=`", comparison.text()))
+            }
+            (Some(TokenKind::Punctuator(Comma)), TokenKind::Number(_))
+                if let Some(number) = self.decimal_comma(self.at - 1) =>
+            {
+                diagnostic.label(format!("write `{number}`: GLSL has a decimal point"))
+            }
+            _ => diagnostic,
+        }
+    }
+
+    /// Whether a value, and not a block, follows such a token.
+    fn comes_before_value(&self, kind: TokenKind) -> bool {
+        use Punctuator::{Assign, Comma, LeftBrace, LeftParen};
+        match kind {
+            TokenKind::Punctuator(before) => matches!(before, Assign | Comma | LeftBrace | LeftParen),
+            TokenKind::Word(symbol) => self.interner.word(symbol) == Word::Keyword(Keyword::Return),
+            _ => false,
+        }
+    }
+
+    /// Whether the next word is another language's `else if`, followed by a condition.
+    pub(super) fn is_foreign_else_if(&self) -> bool {
+        let TokenKind::Word(symbol) = self.kind() else {
+            return false;
+        };
+        let foreign = Foreign::named(self.interner.text(symbol));
+        foreign.is_some_and(|foreign| foreign.replacement() == "`else if`")
+            && !self.check.is_declared(symbol)
+            && self.peek(1).kind == TokenKind::Punctuator(Punctuator::LeftParen)
+    }
+
+    /// Reports a foreign `else if`, which is then parsed as `else if`.
+    pub(super) fn report_foreign_else_if(&mut self) {
+        let token = self.token();
+        let text = self.spelling(token).unwrap_or_default();
+        let diagnostic = Code::Syntax.at(token.at, format!("GLSL has no `{text}`"));
+        // Errors in the preceding arm must not suppress this one.
+        self.end_unit();
+        self.check.report(diagnostic.label("write `else if`"));
+        self.end_unit();
+    }
+
+    /// The decimal number that two integers with a comma but no space between them probably stand for.
+    fn decimal_comma(&self, comma: usize) -> Option<String> {
+        let three = self.tokens.get(comma.checked_sub(1)?..comma + 2)?;
+        let adjoin = |pair: &[Token]| pair[0].at.spelled.end == pair[1].at.spelled.start;
+        let is_comma = three[1].kind == TokenKind::Punctuator(Punctuator::Comma);
+        if !is_comma || !three.windows(2).all(adjoin) {
+            return None;
+        }
+        let [whole, fraction] = [three[0], three[2]].map(|token| match token.kind {
+            TokenKind::Number(text) => Some(self.interner.text(text)),
+            _ => None,
+        });
+        let (whole, fraction) = (whole?, fraction?);
+        let is_whole = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
+        (is_whole(whole) && is_whole(fraction)).then(|| format!("{whole}.{fraction}"))
+    }
+
+    /// Adds a note about a decimal comma to the last error about a list of arguments, if an error was
+    /// reported after the first `reported` ones. The list begins at the token `start` and ends here.
+    pub(super) fn note_decimal_comma(&mut self, reported: usize, start: usize) {
+        if self.check.errors.len() <= reported {
+            return;
+        }
+        let is_comma = |index: &usize| self.tokens[*index].kind == TokenKind::Punctuator(Punctuator::Comma);
+        let commas = || (start..self.at.min(self.tokens.len() - 1)).filter(is_comma);
+        // If no comma is followed by a space and no number has a point, the author means integers.
+        let is_spaced =
+            |index: usize| self.tokens[index].at.spelled.end != self.tokens[index + 1].at.spelled.start;
+        let has_point = |index: usize| match self.tokens[index].kind {
+            TokenKind::Number(text) => self.interner.text(text).contains('.'),
+            _ => false,
+        };
+        let is_mixed = commas().any(|index| is_spaced(index) || has_point(index - 1) || has_point(index + 1));
+        let meant = commas().find_map(|comma| self.decimal_comma(comma));
+        if let Some(number) = meant.filter(|_| is_mixed)
+            && let Some(error) = self.check.errors.pop()
+        {
+            let comma = number.replace('.', ",");
+            let note = format!("is `{comma}` one number? write `{number}`: GLSL has a decimal point");
+            self.check.errors.push(error.note(note));
+        }
+    }
 }

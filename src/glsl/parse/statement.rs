@@ -1,13 +1,14 @@
-//! Statements (§6).
+//! Statements and control flow (§6).
 
 use super::{Parsed, Parser};
+use crate::check::Labels;
 use crate::codes::Code;
-use crate::token::{Punctuator, TokenKind};
-use crate::tree::{Block, Place, Statement, StatementKind};
-use crate::words::{Keyword, Word};
+use crate::keywords::{Keyword, Word};
+use crate::token::{Punctuator, Token, TokenKind};
+use crate::tree::{Arm, Block, Case, Condition, Label, Place, Statement, StatementKind};
 
 impl Parser<'_> {
-    /// `{ … }` without a scope of its own: the caller has opened one.
+    /// Parses `{ … }` without opening a scope, which the caller has done.
     pub(super) fn block(&mut self) -> Parsed<Block> {
         self.expect(Punctuator::LeftBrace)?;
         let mut block = Block::new();
@@ -17,11 +18,11 @@ impl Parser<'_> {
             }
             self.recovering(|parser| parser.statement(&mut block));
         }
-        self.end_piece();
+        self.end_unit();
         Ok(block)
     }
 
-    /// One statement of the text, appended as the none, one or several that it is in the tree.
+    /// Parses one statement and appends the zero, one or several statements that it is in the tree.
     pub(super) fn statement(&mut self, block: &mut Block) -> Parsed<()> {
         self.nested(|parser| {
             let at = parser.token().at;
@@ -41,13 +42,17 @@ impl Parser<'_> {
                     None => return parser.simple_statement(block),
                 },
             };
-            let at = if kind.is_compound() { at } else { parser.since(at) };
+            let at = if kind.is_compound() {
+                at
+            } else {
+                parser.place_from(at)
+            };
             block.push(Statement { kind, at });
             Ok(())
         })
     }
 
-    /// A statement that begins with a keyword; none if the keyword begins a declaration.
+    /// Parses a statement that begins with a keyword; returns `None` if the keyword begins a declaration.
     fn keyword_statement(&mut self, keyword: Keyword, at: Place) -> Parsed<Option<StatementKind>> {
         Ok(Some(match keyword {
             Keyword::If => self.if_statement()?,
@@ -97,35 +102,35 @@ impl Parser<'_> {
         }))
     }
 
-    /// The `;` that ends a statement.
+    /// Consumes the `;` that ends a statement.
     pub(super) fn end(&mut self, kind: StatementKind) -> Parsed<StatementKind> {
         self.semicolon("`;` or an operator")?;
         Ok(kind)
     }
 
-    /// A declaration or an expression; only what follows the name of a type tells them apart.
-    pub(super) fn simple_statement(&mut self, block: &mut Block) -> Parsed<()> {
+    /// Parses a declaration or an expression statement, which differ only after the name of a type.
+    fn simple_statement(&mut self, block: &mut Block) -> Parsed<()> {
         if self.is_declaration() {
             return self.declaration_statement(block);
         }
         let at = self.token().at;
         let expr = self.expression()?;
         let kind = self.end(StatementKind::Expression(expr))?;
-        let at = self.since(at);
+        let at = self.place_from(at);
         block.push(Statement { kind, at });
         Ok(())
     }
 
-    /// Whether a declaration begins here: with a qualifier, or with a type that no constructor's `(` follows.
-    pub(super) fn is_declaration(&self) -> bool {
+    /// Whether a declaration begins here: a qualifier, or a type not followed by a constructor's `(`.
+    fn is_declaration(&self) -> bool {
         let TokenKind::Word(symbol) = self.kind() else {
             return false;
         };
-        let is_type = match self.words.word(symbol) {
+        let is_type = match self.interner.word(symbol) {
             Word::Keyword(keyword) => return !matches!(keyword, Keyword::True | Keyword::False),
             Word::Type(_) => true,
             Word::Name if self.check.struct_named(symbol).is_some() => true,
-            // A type that does not exist; what has a meaning is rather followed by a mistake.
+            // An unknown type. A declared name is more likely an expression with an error.
             Word::Name if self.check.is_declared(symbol) => false,
             Word::Name | Word::Reserved => {
                 return self.names_variable(1) && !self.layout.line_between(self.token(), self.peek(1));
@@ -134,7 +139,7 @@ impl Parser<'_> {
         if !is_type {
             return false;
         }
-        // Past any `[n]`: names follow declarations' types, `(` follows constructors'.
+        // After any `[n]`, a name follows a declaration's type and `(` a constructor's.
         let mut ahead = 1;
         let mut nesting = 0;
         loop {
@@ -150,11 +155,10 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether the token that many after the next is a name that is being declared.
+    /// Whether the token `ahead` positions after the next one is a name that is being declared.
     fn names_variable(&self, ahead: usize) -> bool {
         use Punctuator::{Assign, Comma, LeftBracket, LeftParen, Semicolon};
-        let is_name =
-            matches!(self.peek(ahead).kind, TokenKind::Word(symbol) if self.words.word(symbol) == Word::Name);
+        let is_name = matches!(self.peek(ahead).kind, TokenKind::Word(symbol) if self.interner.word(symbol) == Word::Name);
         is_name
             && matches!(
                 self.peek(ahead + 1).kind,
@@ -166,7 +170,7 @@ impl Parser<'_> {
         let at = self.token().at;
         let first = self.check.tree.structs.len();
         let variables = self.local_declaration()?;
-        let at = self.since(at);
+        let at = self.place_from(at);
         let structs = self
             .check
             .tree
@@ -180,20 +184,200 @@ impl Parser<'_> {
         Ok(())
     }
 
-    pub(super) fn scoped<T>(&mut self, read: impl FnOnce(&mut Self) -> Parsed<T>) -> Parsed<T> {
+    fn scoped<T>(&mut self, read: impl FnOnce(&mut Self) -> Parsed<T>) -> Parsed<T> {
         self.check.open_scope();
         let result = read(self);
         self.check.close_scope();
         result
     }
 
-    /// What an `if`, `else` or loop guards: a block, or one statement. The caller has opened a scope.
-    pub(super) fn guarded(&mut self) -> Parsed<Block> {
+    /// Parses the body of an `if`, `else` or loop: a block, or one statement. The caller has opened a scope.
+    fn statement_body(&mut self) -> Parsed<Block> {
         if self.is(Punctuator::LeftBrace) {
             return self.nested(Self::block);
         }
         let mut block = Block::new();
         self.statement(&mut block)?;
         Ok(block)
+    }
+}
+
+// `if`, `switch` and loops (§6.2, §6.3).
+
+impl Parser<'_> {
+    /// Parses `if … else if … else …`, the whole chain in one loop.
+    fn if_statement(&mut self) -> Parsed<StatementKind> {
+        let mut arms = Vec::new();
+        loop {
+            self.next();
+            let at = self.token().at;
+            let condition = self.parenthesized(|parser| {
+                let condition = parser.expression()?;
+                Ok(parser.check.condition(condition))
+            })?;
+            let condition = condition.unwrap_or_else(|| self.check.error_expr(at));
+            let body = self.scoped(Self::statement_body)?;
+            arms.push(Arm { condition, body });
+            if self.is_foreign_else_if() {
+                self.report_foreign_else_if();
+                continue;
+            }
+            if !self.eat_keyword(Keyword::Else) {
+                return Ok(StatementKind::If {
+                    arms,
+                    otherwise: None,
+                });
+            }
+            if self.keyword() != Some(Keyword::If) {
+                let otherwise = Some(self.scoped(Self::statement_body)?);
+                return Ok(StatementKind::If { arms, otherwise });
+            }
+        }
+    }
+
+    fn switch_statement(&mut self) -> Parsed<StatementKind> {
+        self.next();
+        let at = self.token().at;
+        let selector = self.parenthesized(Self::expression)?;
+        let selector = selector.unwrap_or_else(|| self.check.error_expr(at));
+        let mut labels = self.check.selector(selector);
+        self.expect(Punctuator::LeftBrace)?;
+        self.check.enter_switch();
+        let cases = self.scoped(|parser| parser.cases(&mut labels));
+        self.check.leave_switch();
+        Ok(StatementKind::Switch {
+            selector,
+            cases: cases?,
+        })
+    }
+
+    /// Parses the labels of a `switch`, the statements after them, and the `}`.
+    fn cases(&mut self, labels: &mut Labels) -> Parsed<Vec<Case>> {
+        let mut cases: Vec<Case> = Vec::new();
+        // Whether no statement followed the last label: the next label then joins it.
+        let mut bare = false;
+        while !self.eat(Punctuator::RightBrace) {
+            if self.is_at_end() {
+                return self.unexpected("`}`");
+            }
+            let at = self.token().at;
+            if !matches!(self.keyword(), Some(Keyword::Case | Keyword::Default)) {
+                if cases.is_empty() {
+                    self.check.misplaced_label(at, "a `switch` begins with a label");
+                    cases.push(Case {
+                        labels: Vec::new(),
+                        body: Block::new(),
+                        at,
+                    });
+                }
+                if let Some(case) = cases.last_mut() {
+                    self.recovering(|parser| parser.statement(&mut case.body));
+                }
+                bare = false;
+                continue;
+            }
+            let label = self.recovering(|parser| parser.label(labels));
+            match (cases.last_mut(), label) {
+                (Some(case), Some(label)) if bare => case.labels.push(label),
+                (_, label) => cases.push(Case {
+                    labels: label.into_iter().collect(),
+                    body: Block::new(),
+                    at,
+                }),
+            }
+            bare = label.is_some();
+        }
+        // §6.2: something must follow the last label.
+        if bare {
+            let close = self.tokens[self.at - 1].at;
+            self.check
+                .misplaced_label(close, "a statement must follow the last label of a `switch`");
+        }
+        Ok(cases)
+    }
+
+    /// Parses `case 1:` or `default:`.
+    fn label(&mut self, labels: &mut Labels) -> Parsed<Label> {
+        let Token { at, .. } = self.token();
+        let is_case = self.keyword() == Some(Keyword::Case);
+        self.next();
+        let label = if is_case {
+            let expr = self.expression()?;
+            self.check.case(labels, expr)
+        } else {
+            self.check.default(labels, at)
+        };
+        self.expect(Punctuator::Colon)?;
+        Ok(label)
+    }
+
+    fn for_statement(&mut self) -> Parsed<StatementKind> {
+        self.next();
+        let head = self.parenthesized(|parser| {
+            let mut init = Block::new();
+            if !parser.eat(Punctuator::Semicolon) {
+                parser.simple_statement(&mut init)?;
+            }
+            let condition = if parser.is(Punctuator::Semicolon) {
+                None
+            } else {
+                Some(parser.loop_condition()?)
+            };
+            parser.expect(Punctuator::Semicolon)?;
+            let step = if parser.is(Punctuator::RightParen) {
+                None
+            } else {
+                Some(parser.expression()?)
+            };
+            Ok((init, condition, step))
+        })?;
+        let (init, condition, step) = head.unwrap_or_default();
+        let body = self.loop_body(Self::statement_body)?;
+        Ok(StatementKind::For {
+            init,
+            condition,
+            step,
+            body,
+        })
+    }
+
+    fn while_statement(&mut self) -> Parsed<StatementKind> {
+        self.next();
+        let at = self.token().at;
+        let condition = self.parenthesized(Self::loop_condition)?;
+        let condition = condition.unwrap_or_else(|| Condition::Expression(self.check.error_expr(at)));
+        let body = self.loop_body(Self::statement_body)?;
+        Ok(StatementKind::While { condition, body })
+    }
+
+    fn do_statement(&mut self) -> Parsed<StatementKind> {
+        self.next();
+        let body = self.loop_body(|parser| parser.scoped(Self::statement_body))?;
+        if !self.eat_keyword(Keyword::While) {
+            return self.unexpected("`while`");
+        }
+        let at = self.token().at;
+        let condition = self.parenthesized(|parser| {
+            let condition = parser.expression()?;
+            Ok(parser.check.condition(condition))
+        })?;
+        let condition = condition.unwrap_or_else(|| self.check.error_expr(at));
+        self.end(StatementKind::DoWhile { body, condition })
+    }
+
+    fn loop_body(&mut self, read: impl FnOnce(&mut Self) -> Parsed<Block>) -> Parsed<Block> {
+        self.check.enter_loop();
+        let body = read(self);
+        self.check.leave_loop();
+        body
+    }
+
+    /// An expression, or a declaration with initializer.
+    fn loop_condition(&mut self) -> Parsed<Condition> {
+        if self.is_declaration() {
+            return Ok(Condition::Declare(self.condition_declaration()?));
+        }
+        let condition = self.expression()?;
+        Ok(Condition::Expression(self.check.condition(condition)))
     }
 }

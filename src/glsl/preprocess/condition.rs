@@ -1,31 +1,31 @@
-//! `#if` and its kin: which groups of lines are read, and the integers that decide it.
+//! Conditional directives: `#if` groups, and the integer expressions that control them.
 
 use toyproof_diagnostic::Diagnostic;
 
-use super::define::nothing_left;
+use super::macros::expect_end_of_directive;
 use super::{PpToken, Preprocessor};
 use crate::codes::Code;
 use crate::token::{Punctuator, TokenKind};
-use crate::tree::Place;
+use crate::tree::{BinaryOp, Place, UnaryOp};
 
-/// An `#if` that waits for its `#endif`.
+/// An open `#if` group.
 pub(super) struct Group {
-    /// Whether the lines around it are read.
+    /// Whether the enclosing lines are active.
     outer: bool,
     branch: Branch,
-    /// Whether its `#else` came already.
+    /// Whether its `#else` has been read.
     last: bool,
     pub(super) at: Place,
 }
 
-/// What becomes of the lines of a group.
+/// The state of a group's current branch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Branch {
-    /// They are read now.
+    /// The branch is active.
     Read,
-    /// They are passed over until a branch comes whose condition holds.
+    /// Skipped until a branch whose condition holds.
     Waiting,
-    /// They are passed over up to `#endif`: a branch was read already, or the lines around are not read.
+    /// Skipped up to `#endif`: an earlier branch was active, or the enclosing lines are not.
     Over,
 }
 
@@ -39,7 +39,7 @@ impl Preprocessor<'_> {
     pub(super) fn on_if(&mut self, line: &[PpToken], at: Place) -> Result<(), Box<Diagnostic>> {
         let outer = self.is_active();
         let value = if outer { self.evaluate(line, at) } else { Ok(false) };
-        // A condition that cannot be told counts as false: what follows is still balanced.
+        // An invalid condition counts as false; the group is still opened, so that directives stay balanced.
         self.open(outer, matches!(value, Ok(true)), at);
         value.map(|_| ())
     }
@@ -66,17 +66,21 @@ impl Preprocessor<'_> {
         match name {
             _ if !outer => Ok(()),
             None => Code::MalformedDirective.refuse(at, "the name of a macro is missing here"),
-            Some(_) => nothing_left(&line[1..]),
+            Some(_) => expect_end_of_directive(&line[1..]),
         }
     }
 
     pub(super) fn on_elif(&mut self, line: &[PpToken], at: Place) -> Result<(), Box<Diagnostic>> {
         let group = self.branch(at, "#elif")?;
-        let asked = group.branch == Branch::Waiting;
+        let is_evaluated = group.branch == Branch::Waiting;
         group.branch = Branch::Over;
-        // The condition is looked at only if no branch was read before.
-        let value = if asked { self.evaluate(line, at) } else { Ok(false) };
-        if asked && let Some(group) = self.groups.last_mut() {
+        // The condition is evaluated only if no earlier branch was active.
+        let value = if is_evaluated {
+            self.evaluate(line, at)
+        } else {
+            Ok(false)
+        };
+        if is_evaluated && let Some(group) = self.groups.last_mut() {
             group.branch = if matches!(value, Ok(true)) {
                 Branch::Read
             } else {
@@ -94,13 +98,17 @@ impl Preprocessor<'_> {
             Branch::Over
         };
         group.last = true;
-        if group.outer { nothing_left(line) } else { Ok(()) }
+        if group.outer {
+            expect_end_of_directive(line)
+        } else {
+            Ok(())
+        }
     }
 
     pub(super) fn on_endif(&mut self, line: &[PpToken], at: Place) -> Result<(), Box<Diagnostic>> {
         match self.groups.pop() {
             None => Code::UnbalancedCondition.refuse(at, "this `#endif` has no `#if`"),
-            Some(group) if group.outer => nothing_left(line),
+            Some(group) if group.outer => expect_end_of_directive(line),
             Some(_) => Ok(()),
         }
     }
@@ -119,7 +127,7 @@ impl Preprocessor<'_> {
         });
     }
 
-    /// The group whose next branch begins.
+    /// The innermost group, which starts its next branch.
     fn branch(&mut self, at: Place, name: &str) -> Result<&mut Group, Box<Diagnostic>> {
         match self.groups.last_mut() {
             None => Code::UnbalancedCondition.refuse(at, format!("this `{name}` has no `#if`")),
@@ -133,10 +141,10 @@ impl Preprocessor<'_> {
     }
 
     fn evaluate(&mut self, line: &[PpToken], at: Place) -> Result<bool, Box<Diagnostic>> {
-        // `defined` is answered before macros are expanded (§3.4).
-        let answered = self.answer_defined(line)?;
+        // `defined` is evaluated before macros are expanded (§3.4).
+        let replaced = self.replace_defined(line)?;
         let errors = self.diagnostics.len();
-        let tokens = self.expand_list(answered);
+        let tokens = self.expand_list(replaced);
         if self.diagnostics.len() > errors {
             return Ok(false);
         }
@@ -147,17 +155,17 @@ impl Preprocessor<'_> {
         }
     }
 
-    fn answer_defined(&mut self, line: &[PpToken]) -> Result<Vec<PpToken>, Box<Diagnostic>> {
-        let mut answered = Vec::with_capacity(line.len());
+    fn replace_defined(&mut self, line: &[PpToken]) -> Result<Vec<PpToken>, Box<Diagnostic>> {
+        let mut replaced = Vec::with_capacity(line.len());
         let mut rest = line;
         while let [token, tail @ ..] = rest {
             rest = tail;
             let TokenKind::Word(word) = token.kind else {
-                answered.push(*token);
+                replaced.push(*token);
                 continue;
             };
-            if self.words.text(word) != "defined" {
-                answered.push(*token);
+            if self.interner.text(word) != "defined" {
+                replaced.push(*token);
                 continue;
             }
             let paren = |token: &PpToken, wanted| token.kind == TokenKind::Punctuator(wanted);
@@ -175,13 +183,158 @@ impl Preprocessor<'_> {
             };
             rest = after;
             let value = self
-                .words
+                .interner
                 .symbol(if self.macros.contains_key(&name) { "1" } else { "0" });
-            answered.push(PpToken {
+            replaced.push(PpToken {
                 kind: TokenKind::Number(value),
                 ..*token
             });
         }
-        Ok(answered)
+        Ok(replaced)
     }
+}
+
+// Integer constant expressions (§3.4).
+
+impl Preprocessor<'_> {
+    /// Evaluates the integer constant expression at the beginning of a list; also returns the tokens after
+    /// it.
+    pub(super) fn constant<'t>(
+        &self,
+        tokens: &'t [PpToken],
+        at: Place,
+    ) -> Result<(i64, &'t [PpToken]), Box<Diagnostic>> {
+        let mut evaluator = Evaluator {
+            preprocessor: self,
+            rest: tokens,
+            at,
+            depth: 0,
+        };
+        let value = evaluator.binary(1, true)?;
+        Ok((value, evaluator.rest))
+    }
+}
+
+/// Maximum nesting depth of parentheses and unary operators in a condition.
+const MAX_CONDITION_NESTING: usize = 256;
+
+/// Parses and evaluates an expression in one pass.
+struct Evaluator<'p, 't> {
+    preprocessor: &'p Preprocessor<'p>,
+    rest: &'t [PpToken],
+    at: Place,
+    depth: usize,
+}
+
+impl Evaluator<'_, '_> {
+    /// Evaluates a chain of operators of at least `precedence`. If `is_evaluated` is false, the value is
+    /// ignored, and `1 / 0` or an unknown name is not an error (§3.4: `&&` and `||` short-circuit).
+    fn binary(&mut self, precedence: u8, is_evaluated: bool) -> Result<i64, Box<Diagnostic>> {
+        let mut left = self.unary(is_evaluated)?;
+        while let Some(op) = self.peek_operator().filter(|op| op.precedence() >= precedence) {
+            let at = self.rest.first().map_or(self.at, |token| token.at);
+            self.rest = &self.rest[1..];
+            let evaluates_right = match op {
+                BinaryOp::And => is_evaluated && left != 0,
+                BinaryOp::Or => is_evaluated && left == 0,
+                _ => is_evaluated,
+            };
+            let right = self.binary(op.precedence() + 1, evaluates_right)?;
+            left = match compute(op, left, right) {
+                Some(value) => value,
+                None if is_evaluated => return Code::BadCondition.refuse(at, "division by zero"),
+                None => 0,
+            };
+        }
+        Ok(left)
+    }
+
+    fn unary(&mut self, is_evaluated: bool) -> Result<i64, Box<Diagnostic>> {
+        let Some((&token, rest)) = self.rest.split_first() else {
+            return Code::BadCondition.refuse(self.at, "the condition ends too early");
+        };
+        self.rest = rest;
+        let op = match token.kind {
+            TokenKind::Number(number) => return integer(self.preprocessor.interner.text(number), token.at),
+            TokenKind::Word(_) if !is_evaluated => return Ok(0),
+            TokenKind::Word(name) => {
+                let message = format!("`{}` is no macro", self.preprocessor.interner.text(name));
+                return Code::BadCondition.refuse(token.at, message);
+            }
+            TokenKind::Punctuator(Punctuator::LeftParen) => None,
+            TokenKind::Punctuator(Punctuator::Plus) => Some(UnaryOp::Plus),
+            TokenKind::Punctuator(Punctuator::Minus) => Some(UnaryOp::Minus),
+            TokenKind::Punctuator(Punctuator::Not) => Some(UnaryOp::Not),
+            TokenKind::Punctuator(Punctuator::Tilde) => Some(UnaryOp::BitNot),
+            _ => return Code::BadCondition.refuse(token.at, "an integer is missing here"),
+        };
+        if self.depth == MAX_CONDITION_NESTING {
+            return Code::TooDeep.refuse(token.at, "this condition is nested too deep");
+        }
+        self.depth += 1;
+        let value = if let Some(op) = op {
+            let value = self.unary(is_evaluated)?;
+            match op {
+                UnaryOp::Plus => value,
+                UnaryOp::Minus => value.wrapping_neg(),
+                UnaryOp::Not => i64::from(value == 0),
+                UnaryOp::BitNot => !value,
+            }
+        } else {
+            let value = self.binary(1, is_evaluated)?;
+            match self.rest.split_first() {
+                Some((close, rest)) if close.kind == TokenKind::Punctuator(Punctuator::RightParen) => {
+                    self.rest = rest;
+                }
+                _ => return Code::BadCondition.refuse(token.at, "this `(` has no `)`"),
+            }
+            value
+        };
+        self.depth -= 1;
+        Ok(value)
+    }
+
+    fn peek_operator(&self) -> Option<BinaryOp> {
+        match self.rest.first()?.kind {
+            TokenKind::Punctuator(punctuator) => {
+                punctuator.binary_operator().filter(|&op| op != BinaryOp::Xor)
+            }
+            _ => None,
+        }
+    }
+}
+
+fn integer(text: &str, at: Place) -> Result<i64, Box<Diagnostic>> {
+    let digits = text.strip_suffix(['u', 'U']).unwrap_or(text);
+    let value = match digits.strip_prefix("0x").or(digits.strip_prefix("0X")) {
+        Some(hex) => i64::from_str_radix(hex, 16),
+        None if digits.starts_with('0') => i64::from_str_radix(digits, 8),
+        None => digits.parse(),
+    };
+    value.or_else(|_| Code::BadCondition.refuse(at, format!("`{text}` is no integer")))
+}
+
+/// Computes one operation; none for a division by zero.
+fn compute(op: BinaryOp, a: i64, b: i64) -> Option<i64> {
+    Some(match op {
+        BinaryOp::Multiply => a.wrapping_mul(b),
+        BinaryOp::Divide => a.checked_div(b)?,
+        BinaryOp::Remainder => a.checked_rem(b)?,
+        BinaryOp::Add => a.wrapping_add(b),
+        BinaryOp::Subtract => a.wrapping_sub(b),
+        BinaryOp::ShiftLeft => a.wrapping_shl(b as u32),
+        BinaryOp::ShiftRight => a.wrapping_shr(b as u32),
+        BinaryOp::Less => i64::from(a < b),
+        BinaryOp::Greater => i64::from(a > b),
+        BinaryOp::LessEqual => i64::from(a <= b),
+        BinaryOp::GreaterEqual => i64::from(a >= b),
+        BinaryOp::Equal => i64::from(a == b),
+        BinaryOp::NotEqual => i64::from(a != b),
+        BinaryOp::BitAnd => a & b,
+        BinaryOp::BitXor => a ^ b,
+        BinaryOp::BitOr => a | b,
+        BinaryOp::And => i64::from(a != 0 && b != 0),
+        BinaryOp::Xor => i64::from((a != 0) != (b != 0)),
+        BinaryOp::Or => i64::from(a != 0 || b != 0),
+    })
 }

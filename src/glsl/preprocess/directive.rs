@@ -1,15 +1,15 @@
-//! The lines that begin with `#`.
+//! Directives: the lines that begin with `#`.
 
 use toyproof_diagnostic::Diagnostic;
 
-use super::define::nothing_left;
-use super::{Past, PpToken, Preprocessor};
+use super::macros::expect_end_of_directive;
+use super::{PpToken, Preprocessor, Seen};
 use crate::codes::Code;
 use crate::token::TokenKind;
 use crate::tree::Place;
 
 impl Preprocessor<'_> {
-    /// Obeys the directive whose `#` has been read, up to and including its newline.
+    /// Executes the directive whose `#` has been read, up to and including its newline.
     pub(super) fn directive(&mut self, hash: Place) {
         let first = self.lex();
         let TokenKind::Word(name) = first.kind else {
@@ -17,7 +17,7 @@ impl Preprocessor<'_> {
             return;
         };
         let at = hash.to(first.at);
-        let name = self.words.text(name).to_owned();
+        let name = self.interner.text(name).to_owned();
         if name == "error" && self.is_active() {
             let message = self.lexer.rest_of_line();
             self.report(Code::ErrorDirective.at(at, format!("#error {message}")));
@@ -37,7 +37,7 @@ impl Preprocessor<'_> {
             "line" => self.line(line, at),
             "version" => self.version(&line, at),
             "extension" => self.extension(&line, at),
-            // §3.4: what is not understood is ignored.
+            // §3.4: unknown pragmas are ignored.
             "pragma" => Ok(()),
             _ => Code::UnknownDirective.refuse(at, format!("there is no directive `#{name}`")),
         };
@@ -46,7 +46,7 @@ impl Preprocessor<'_> {
         }
     }
 
-    /// `#` alone on its line means nothing (§3.4).
+    /// Handles `#` alone on its line, which has no effect (§3.4).
     fn null_directive(&mut self, first: PpToken) {
         if matches!(first.kind, TokenKind::Newline | TokenKind::End) {
             return;
@@ -68,7 +68,8 @@ impl Preprocessor<'_> {
         }
     }
 
-    /// `#line n` or `#line n file`: from the next line on (§3.4). Diagnostics keep counting the author's lines.
+    /// Executes `#line n` or `#line n file`, which take effect from the next line (§3.4). Diagnostics keep
+    /// the lines of the file.
     fn line(&mut self, line: Vec<PpToken>, at: Place) -> Result<(), Box<Diagnostic>> {
         let tokens = self.expand_list(line);
         let (number, rest) = self.constant(&tokens, at)?;
@@ -79,10 +80,10 @@ impl Preprocessor<'_> {
         }
         let (file, rest) = self.constant(rest, at)?;
         self.file_number = file;
-        nothing_left(rest)
+        expect_end_of_directive(rest)
     }
 
-    /// The line that a token stands on, counted from the last one asked for: so all questions together take linear time.
+    /// The line of a token, counted from the previous query, so that all queries together take linear time.
     pub(super) fn line_of(&mut self, at: Place) -> i64 {
         let (byte, line) = self.counted;
         let start = at.span.start as usize;
@@ -96,33 +97,33 @@ impl Preprocessor<'_> {
         line
     }
 
-    /// `#version 300 es`, first or not at all.
+    /// Checks `#version 300 es`, which must come first.
     fn version(&mut self, line: &[PpToken], at: Place) -> Result<(), Box<Diagnostic>> {
-        if self.past > Past::Nothing {
+        if self.seen > Seen::Nothing {
             return Code::BadVersion.refuse(at, "`#version` must come before everything else");
         }
-        let words: Vec<_> = line.iter().map(|token| self.text(token)).collect();
-        if words == ["300", "es"] {
+        let texts: Vec<_> = line.iter().map(|token| self.text(token)).collect();
+        if texts == ["300", "es"] {
             return Ok(());
         }
         let message = format!(
             "`#version {}` is not what `ShaderToy` speaks: `#version 300 es`",
-            words.join(" ")
+            texts.join(" ")
         );
         Code::BadVersion.refuse(at, message.replace("`ShaderToy`", "ShaderToy"))
     }
 
-    /// `#extension name : behaviour` (§3.5). We have none.
+    /// Checks `#extension name : behavior` (§3.5). No extension is supported.
     fn extension(&mut self, line: &[PpToken], at: Place) -> Result<(), Box<Diagnostic>> {
-        let words: Vec<_> = line.iter().map(|token| self.text(token)).collect();
-        let [name, ":", behaviour @ ("require" | "enable" | "warn" | "disable")] = words[..] else {
+        let texts: Vec<_> = line.iter().map(|token| self.text(token)).collect();
+        let [name, ":", behavior @ ("require" | "enable" | "warn" | "disable")] = texts[..] else {
             let message = "this is not `#extension name : require`, `enable`, `warn` or `disable`";
             return Code::MalformedDirective.refuse(at, message);
         };
-        if self.past == Past::Text {
+        if self.seen == Seen::Text {
             return Code::BadExtension.refuse(at, "`#extension` must come before all declarations");
         }
-        let fatal = behaviour == "require" || (name == "all" && behaviour == "enable");
+        let fatal = behavior == "require" || (name == "all" && behavior == "enable");
         if fatal {
             return Code::BadExtension.refuse(at, format!("the extension `{name}` is not supported"));
         }
@@ -135,7 +136,7 @@ impl Preprocessor<'_> {
 
     fn text(&self, token: &PpToken) -> &str {
         match token.kind {
-            TokenKind::Word(symbol) | TokenKind::Number(symbol) => self.words.text(symbol),
+            TokenKind::Word(symbol) | TokenKind::Number(symbol) => self.interner.text(symbol),
             TokenKind::Punctuator(punctuator) => punctuator.text(),
             TokenKind::Unknown(_) | TokenKind::Stray | TokenKind::Newline | TokenKind::End => "",
         }

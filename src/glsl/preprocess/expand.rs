@@ -1,4 +1,4 @@
-//! Macro expansion, as C++98 §16.3 has it.
+//! Macro expansion (C++98 §16.3).
 
 use super::macros::Body;
 use super::{PpToken, Preprocessor};
@@ -6,21 +6,21 @@ use crate::codes::Code;
 use crate::token::{Punctuator, Symbol, TokenKind};
 use crate::tree::Place;
 
-/// How many tokens all macros of a file together may produce. Honest shaders stay under 200,000; what doubles with each macro
-/// does not.
-pub(super) const BUDGET: usize = 1 << 20;
+/// Maximum number of tokens that all macros of a file together may produce. Honest shaders need less than
+/// 200,000; macros that double the count at each level need more.
+pub(super) const MAX_EXPANSION_TOKENS: usize = 1 << 20;
 
-/// How deep macro calls may stand in each other's arguments.
-const MAX_DEPTH: usize = 256;
+/// Maximum nesting depth of macro calls in each other's arguments.
+const MAX_ARGUMENT_NESTING: usize = 256;
 
-/// A list of tokens being read.
+/// A partially consumed list of tokens.
 pub(super) struct Frame {
     tokens: std::vec::IntoIter<PpToken>,
-    /// The macro whose expansion this is.
+    /// The macro that expanded to this list, if any.
     of: Option<Symbol>,
 }
 
-/// Where tokens come from: frames on top of the running text, or on top of nothing.
+/// The source of tokens: frames on top of the file, or on top of nothing.
 pub(super) enum Stream {
     Text(Vec<Frame>),
     List(Vec<Frame>),
@@ -45,8 +45,8 @@ impl Preprocessor<'_> {
             let Some(found) = self.macros.get(&name) else {
                 return token;
             };
-            if found.busy > 0 || token.frozen {
-                token.frozen = true;
+            if found.active_expansions > 0 || token.no_expand {
+                token.no_expand = true;
                 return token;
             }
             let function = found.parameters.as_ref().map(Vec::len);
@@ -64,7 +64,7 @@ impl Preprocessor<'_> {
                     }
                     None => return token,
                 }
-                if !self.count_fits(name, used, &mut arguments, count) {
+                if !self.check_argument_count(name, used, &mut arguments, count) {
                     return token;
                 }
             }
@@ -77,7 +77,7 @@ impl Preprocessor<'_> {
         }
     }
 
-    /// All tokens of a list after expansion, as if the list were all there is.
+    /// Expands all tokens of a list, as if it were the whole input.
     pub(super) fn expand_list(&mut self, tokens: Vec<PpToken>) -> Vec<PpToken> {
         let outer = std::mem::replace(&mut self.stream, Stream::List(Vec::new()));
         self.push(tokens, None);
@@ -95,7 +95,8 @@ impl Preprocessor<'_> {
         expanded
     }
 
-    /// The body with arguments in place of parameters, each expanded for itself first (C++98 §16.3.1).
+    /// Substitutes arguments for parameters in a body; each argument is expanded by itself first (C++98
+    /// §16.3.1).
     fn substitute(&mut self, body: Body, used: Place, arguments: Vec<Vec<PpToken>>) -> Vec<PpToken> {
         let (tokens, parameter) = match body {
             Body::Tokens { tokens, parameter } => (tokens, parameter),
@@ -133,7 +134,7 @@ impl Preprocessor<'_> {
     }
 
     fn expand_argument(&mut self, tokens: Vec<PpToken>, used: Place) -> Vec<PpToken> {
-        if self.depth == MAX_DEPTH {
+        if self.depth == MAX_ARGUMENT_NESTING {
             self.give_up(used);
             return Vec::new();
         }
@@ -143,7 +144,8 @@ impl Preprocessor<'_> {
         expanded
     }
 
-    /// The tokens between parentheses, split at the commas that stand in no inner ones; and the place of the `)`.
+    /// Reads the arguments of a macro call: the tokens between parentheses, split at commas outside inner
+    /// parentheses. Also returns the place of the `)`.
     fn arguments(&mut self, name: Symbol, at: Place, open: Place) -> Option<(Vec<Vec<PpToken>>, Place)> {
         let mut arguments = vec![Vec::new()];
         let mut nesting = 0;
@@ -153,7 +155,7 @@ impl Preprocessor<'_> {
                 TokenKind::End => {
                     let message = format!(
                         "the arguments of the macro `{}` have no `)`",
-                        self.words.text(name)
+                        self.interner.text(name)
                     );
                     self.report(Code::BadMacroCall.at(at.to(open), message));
                     self.gave_up = true;
@@ -177,21 +179,22 @@ impl Preprocessor<'_> {
         }
     }
 
-    fn count_fits(
+    fn check_argument_count(
         &mut self,
         name: Symbol,
         used: Place,
         arguments: &mut Vec<Vec<PpToken>>,
         wanted: usize,
     ) -> bool {
-        // `F()` gives no argument to a macro without parameters, and an empty one to a macro with one.
+        // `F()` passes no argument to a macro without parameters, and an empty one to a macro with one
+        // parameter.
         if wanted == 0 && matches!(&arguments[..], [only] if only.is_empty()) {
             arguments.clear();
         }
         if arguments.len() == wanted {
             return true;
         }
-        let name = self.words.text(name);
+        let name = self.interner.text(name);
         let message = format!(
             "the macro `{name}` takes {wanted} arguments and is given {}",
             arguments.len()
@@ -200,7 +203,7 @@ impl Preprocessor<'_> {
         false
     }
 
-    /// Whether `(` follows; if so it is taken. The name of a function macro without `(` is a mere name.
+    /// Consumes a `(` if it follows. Without it, the name of a function-like macro is an ordinary name.
     fn open_paren(&mut self) -> Option<Place> {
         let mut token = self.next_of_stream();
         while token.kind == TokenKind::Newline {
@@ -221,7 +224,7 @@ impl Preprocessor<'_> {
             if let Some(done) = self.stream.frames().pop().and_then(|frame| frame.of)
                 && let Some(definition) = self.macros.get_mut(&done)
             {
-                definition.busy -= 1;
+                definition.active_expansions -= 1;
             }
         }
         match self.stream {
@@ -232,13 +235,13 @@ impl Preprocessor<'_> {
 
     fn push(&mut self, tokens: Vec<PpToken>, of: Option<Symbol>) {
         if let Some(definition) = of.and_then(|name| self.macros.get_mut(&name)) {
-            definition.busy += 1;
+            definition.active_expansions += 1;
         }
         let tokens = tokens.into_iter();
         self.stream.frames().push(Frame { tokens, of });
     }
 
-    /// Ends everything: told once, and no token follows.
+    /// Stops preprocessing: reports that once, and returns the end of the text.
     fn give_up(&mut self, at: Place) -> PpToken {
         if !self.gave_up {
             self.report(Code::TooMuchExpansion.at(at, "macros expand to too many tokens here"));
@@ -253,10 +256,10 @@ impl Preprocessor<'_> {
 
     fn number(&mut self, value: i64, at: Place) -> PpToken {
         PpToken {
-            kind: TokenKind::Number(self.words.symbol(&value.to_string())),
+            kind: TokenKind::Number(self.interner.symbol(&value.to_string())),
             at,
             spaced: false,
-            frozen: false,
+            no_expand: false,
         }
     }
 
@@ -265,12 +268,12 @@ impl Preprocessor<'_> {
             kind: TokenKind::End,
             at: self.lexer.place(),
             spaced: false,
-            frozen: false,
+            no_expand: false,
         }
     }
 }
 
-/// An argument of a macro call; expanded at its first use.
+/// An argument of a macro call, expanded at its first use.
 enum Argument {
     Raw(Vec<PpToken>),
     Expanded(Vec<PpToken>),

@@ -1,44 +1,45 @@
-//! From characters to tokens (GLSL ES 3.00.6 §3.1–3.4): line continuation, comments, words, numbers, punctuators.
+//! The lexer (GLSL ES 3.00.6 §3.1–3.4): line continuations, comments, words, numbers, punctuators.
 
 use toyproof_diagnostic::{Diagnostic, FileId, Span};
 
 use crate::codes::Code;
+use crate::keywords::Interner;
 use crate::token::{Punctuator, TokenKind};
 use crate::tree::Place;
-use crate::words::Words;
 
-/// A token with what only the preprocessor asks about.
+/// A token with the data that only the preprocessor needs.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PpToken {
     pub(super) kind: TokenKind,
     pub(super) at: Place,
-    /// Whether blanks or a comment stand before it: `F (x)` defines an object macro, `F(x)` a function macro.
+    /// Whether blanks or a comment precede it: `F (x)` defines an object-like macro, `F(x)` a function-like
+    /// one.
     pub(super) spaced: bool,
-    /// Whether it names a macro inside of that macro's own expansion: then it is never expanded again.
-    pub(super) frozen: bool,
+    /// Whether it is a macro's name in that macro's own expansion, and must never be expanded.
+    pub(super) no_expand: bool,
 }
 
-/// A comment `// toyproof: …`.
+/// A `// toyproof: …` comment.
 #[derive(Debug, Clone, Copy)]
 pub struct Remark {
-    /// Where it stands, from its `//` to the end of its line.
+    /// Its span, from the `//` to the end of the line.
     pub at: Span,
-    /// Whether nothing but comments stands before it in the file.
+    /// Whether only comments precede it in the file.
     pub first: bool,
-    /// Whether nothing else stands on its line.
+    /// Whether it is alone on its line.
     pub alone: bool,
 }
 
-/// Reads one file, token by token. Newlines are tokens; at the end it gives `End` for ever.
+/// Tokenizes one file. Newlines are tokens; after the last token it returns `End` forever.
 pub(super) struct Lexer<'a> {
     file: FileId,
     text: &'a str,
     at: usize,
-    /// The text of the word or number being read, without line continuations.
+    /// The text of the current word or number, without line continuations.
     scratch: String,
-    /// Whether a token was read that is no newline.
+    /// Whether a token other than a newline was read.
     begun: bool,
-    /// What the comments so far say to us.
+    /// The `// toyproof:` comments so far.
     pub(super) remarks: Vec<Remark>,
 }
 
@@ -54,8 +55,8 @@ impl<'a> Lexer<'a> {
         }
     }
 
-    /// The next token. A comment counts as one blank, however many lines it has (§3.3).
-    pub(super) fn next(&mut self, words: &mut Words, diagnostics: &mut Vec<Diagnostic>) -> PpToken {
+    /// Reads the next token. A comment counts as one blank, even across lines (§3.3).
+    pub(super) fn next(&mut self, interner: &mut Interner, diagnostics: &mut Vec<Diagnostic>) -> PpToken {
         let begin = self.at;
         if let Err(error) = self.skip_blanks() {
             diagnostics.push(*error);
@@ -70,18 +71,18 @@ impl<'a> Lexer<'a> {
             }
             Some(c) if is_word_start(c) => {
                 self.take_while(|_, c| is_word_start(c) || c.is_ascii_digit());
-                TokenKind::Word(words.symbol(&self.scratch))
+                TokenKind::Word(interner.symbol(&self.scratch))
             }
             Some(c)
                 if c.is_ascii_digit()
                     || (c == '.' && self.peek_second().is_some_and(|c| c.is_ascii_digit())) =>
             {
-                // As C's pp-number: what runs on from a digit is one token, right or wrong.
+                // Like C's pp-number: everything that continues a digit is one token, valid or not.
                 self.take_while(|so_far, c| {
                     let exponent = so_far.ends_with(['e', 'E']) && !so_far.starts_with("0x");
                     is_word_start(c) || c.is_ascii_digit() || c == '.' || (matches!(c, '+' | '-') && exponent)
                 });
-                TokenKind::Number(words.symbol(&self.scratch))
+                TokenKind::Number(interner.symbol(&self.scratch))
             }
             Some(c) => self.punctuator(c),
         };
@@ -91,11 +92,11 @@ impl<'a> Lexer<'a> {
             kind,
             at: Place::plain(span),
             spaced,
-            frozen: false,
+            no_expand: false,
         }
     }
 
-    /// The rest of the line, as written and without the blanks around it.
+    /// The rest of the line, without surrounding blanks.
     pub(super) fn rest_of_line(&mut self) -> String {
         self.scratch.clear();
         while let Some(c) = self.peek().filter(|&c| c != '\n') {
@@ -105,18 +106,18 @@ impl<'a> Lexer<'a> {
         self.scratch.trim().to_owned()
     }
 
-    /// Passes over all that is left.
+    /// Skips to the end of the text.
     pub(super) fn skip_to_end(&mut self) {
         self.at = self.text.len();
     }
 
-    /// Where the next token is looked for.
+    /// The current position.
     pub(super) fn place(&self) -> Place {
         Place::plain(Span::new(self.file, self.at as u32, self.at as u32))
     }
 
     fn punctuator(&mut self, first: char) -> TokenKind {
-        // Tried in the order of `ALL`: the longest wins.
+        // In the order of `ALL`, the longest match comes first.
         for &punctuator in Punctuator::ALL {
             let text = punctuator.text();
             if u8::try_from(first).is_ok_and(|first| text.as_bytes()[0] == first) {
@@ -175,7 +176,7 @@ impl<'a> Lexer<'a> {
         Code::UnterminatedComment.refuse(Place::plain(open), "this comment is never closed")
     }
 
-    /// Reads into `scratch` while `accept(so_far, next)`.
+    /// Appends characters to `scratch` while `accept(so_far, next)` holds.
     fn take_while(&mut self, accept: impl Fn(&str, char) -> bool) {
         self.scratch.clear();
         while let Some(c) = self.peek().filter(|&c| accept(&self.scratch, c)) {
@@ -192,7 +193,7 @@ impl<'a> Lexer<'a> {
         here
     }
 
-    /// The next character; `\r\n` and `\r` read as `\n`, and line continuations are passed over (§3.2).
+    /// The next character; `\r\n` and `\r` read as `\n`, and line continuations are skipped (§3.2).
     fn peek(&mut self) -> Option<char> {
         let bytes = self.text.as_bytes();
         loop {
@@ -218,7 +219,7 @@ impl<'a> Lexer<'a> {
         second
     }
 
-    /// Steps over the character that `peek` told of.
+    /// Advances past the character that `peek` returned.
     fn bump(&mut self) {
         let rest = &self.text[self.at..];
         self.at += match rest.chars().next() {

@@ -1,32 +1,34 @@
-//! What macros are, and which are there before the first line.
+//! Macros: definitions, `#define`, `#undef`, and predefined macros.
 
 use std::collections::HashMap;
 use std::rc::Rc;
 
-use toyproof_diagnostic::{FileId, Span};
+use toyproof_diagnostic::{Diagnostic, FileId, Span};
 
-use super::PpToken;
-use crate::token::{Symbol, TokenKind};
+use super::{PpToken, Preprocessor};
+use crate::codes::Code;
+use crate::keywords::Interner;
+use crate::token::{Punctuator, Symbol, TokenKind};
 use crate::tree::Place;
-use crate::words::Words;
 
 /// A macro.
 #[derive(Debug, Clone)]
 pub(super) struct Macro {
-    /// The parameters of a function macro; none for an object macro.
+    /// The parameters of a function-like macro; none for an object-like macro.
     pub(super) parameters: Option<Vec<Symbol>>,
     pub(super) body: Body,
-    /// Where its name stands in its definition.
+    /// The place of its name in its definition.
     pub(super) at: Place,
-    /// How many of its expansions are being read: while there is one, its name stands for itself.
-    pub(super) busy: usize,
+    /// The number of its active expansions; while there is one, the name is not expanded.
+    pub(super) active_expansions: usize,
     pub(super) predefined: bool,
 }
 
-/// What a macro expands to.
+/// The replacement of a macro.
 #[derive(Debug, Clone)]
 pub(super) enum Body {
-    /// The tokens of its definition; `parameter[i]` tells which parameter token `i` is.
+    /// The tokens of its definition; `parameter[i]` is the index of the parameter that token `i` names, if
+    /// any.
     Tokens {
         tokens: Rc<[PpToken]>,
         parameter: Rc<[Option<usize>]>,
@@ -43,20 +45,20 @@ impl Macro {
             parameters,
             body,
             at,
-            busy: 0,
+            active_expansions: 0,
             predefined: false,
         }
     }
 
-    /// What is defined before the first line: by §3.4, and `HW_PERFORMANCE` by `ShaderToy`.
-    pub(super) fn predefined(file: FileId, words: &mut Words) -> HashMap<Symbol, Self> {
+    /// The predefined macros: those of §3.4, and ShaderToy's `HW_PERFORMANCE`.
+    pub(super) fn predefined(file: FileId, interner: &mut Interner) -> HashMap<Symbol, Self> {
         let at = Place::plain(Span::new(file, 0, 0));
         let mut number = |text| {
             let token = PpToken {
-                kind: TokenKind::Number(words.symbol(text)),
+                kind: TokenKind::Number(interner.symbol(text)),
                 at,
                 spaced: false,
-                frozen: false,
+                no_expand: false,
             };
             Body::Tokens {
                 tokens: [token].into(),
@@ -78,8 +80,152 @@ impl Macro {
                     predefined,
                     ..Self::new(None, body, at)
                 };
-                (words.symbol(name), definition)
+                (interner.symbol(name), definition)
             })
             .collect()
     }
+}
+
+// `#define` and `#undef`.
+
+impl Preprocessor<'_> {
+    pub(super) fn define(&mut self, line: &[PpToken], at: Place) -> Result<(), Box<Diagnostic>> {
+        let (name, name_at, rest) = self.macro_name(line, at)?;
+        let (parameters, body) = match rest {
+            [first, rest @ ..]
+                if first.kind == TokenKind::Punctuator(Punctuator::LeftParen) && !first.spaced =>
+            {
+                let (parameters, body) = self.parameters(rest, first.at)?;
+                (Some(parameters), body)
+            }
+            body => (None, body),
+        };
+        let parameter = |token: &PpToken| match (token.kind, &parameters) {
+            (TokenKind::Word(word), Some(parameters)) => parameters.iter().position(|&p| p == word),
+            _ => None,
+        };
+        let new = Body::Tokens {
+            parameter: body.iter().map(parameter).collect(),
+            tokens: body.into(),
+        };
+        if let Some(old) = self.macros.get(&name)
+            && !(old.parameters == parameters && same_body(&old.body, &new))
+        {
+            let message = format!(
+                "the macro `{}` is defined already, and differently",
+                self.interner.text(name)
+            );
+            return Err(Box::new(
+                Code::BadMacro
+                    .at(name_at, message)
+                    .related(old.at.span, "first defined here"),
+            ));
+        }
+        // Redefining a macro identically changes nothing, even during its expansion.
+        self.macros
+            .entry(name)
+            .or_insert_with(|| Macro::new(parameters, new, name_at));
+        Ok(())
+    }
+
+    pub(super) fn undef(&mut self, line: &[PpToken], at: Place) -> Result<(), Box<Diagnostic>> {
+        let (name, _, rest) = self.macro_name(line, at)?;
+        self.macros.remove(&name);
+        expect_end_of_directive(rest)
+    }
+
+    /// The macro name that a directive begins with, if it may be defined and undefined; also returns its
+    /// place and the rest of the line.
+    fn macro_name<'t>(
+        &mut self,
+        line: &'t [PpToken],
+        at: Place,
+    ) -> Result<(Symbol, Place, &'t [PpToken]), Box<Diagnostic>> {
+        let [
+            PpToken {
+                kind: TokenKind::Word(name),
+                at,
+                ..
+            },
+            rest @ ..,
+        ] = line
+        else {
+            let at = line.first().map_or(at, |token| token.at);
+            return Code::MalformedDirective.refuse(at, "the name of a macro is missing here");
+        };
+        let text = self.interner.text(*name);
+        let predefined = self.macros.get(name).is_some_and(|old| old.predefined);
+        if predefined || text.starts_with("GL_") || text == "defined" {
+            let message = format!("`{text}` belongs to GLSL and cannot be defined or undefined");
+            return Code::BadMacro.refuse(*at, message);
+        }
+        if text.contains("__") {
+            let message = format!("names with two underscores such as `{text}` belong to GLSL");
+            self.report(Code::ReservedName.at(*at, message));
+        }
+        Ok((*name, *at, rest))
+    }
+
+    fn parameters<'t>(
+        &self,
+        line: &'t [PpToken],
+        open: Place,
+    ) -> Result<(Vec<Symbol>, &'t [PpToken]), Box<Diagnostic>> {
+        let mut parameters = Vec::new();
+        let mut rest = line;
+        if let [
+            PpToken {
+                kind: TokenKind::Punctuator(Punctuator::RightParen),
+                ..
+            },
+            body @ ..,
+        ] = rest
+        {
+            return Ok((parameters, body));
+        }
+        loop {
+            let [name, after, tail @ ..] = rest else {
+                let at = rest.first().map_or(open, |token| token.at);
+                return Code::MalformedDirective.refuse(at, "the parameters of this macro have no `)`");
+            };
+            let TokenKind::Word(parameter) = name.kind else {
+                return Code::MalformedDirective.refuse(name.at, "the name of a parameter is missing here");
+            };
+            if parameters.contains(&parameter) {
+                let message = format!(
+                    "this macro has two parameters `{}`",
+                    self.interner.text(parameter)
+                );
+                return Code::BadMacro.refuse(name.at, message);
+            }
+            parameters.push(parameter);
+            rest = tail;
+            match after.kind {
+                TokenKind::Punctuator(Punctuator::RightParen) => return Ok((parameters, rest)),
+                TokenKind::Punctuator(Punctuator::Comma) => {}
+                _ => return Code::MalformedDirective.refuse(after.at, "`,` or `)` is missing here"),
+            }
+        }
+    }
+}
+
+/// Checks that no tokens follow a directive.
+pub(super) fn expect_end_of_directive(rest: &[PpToken]) -> Result<(), Box<Diagnostic>> {
+    match rest {
+        [] => Ok(()),
+        [first, ..] => Code::MalformedDirective.refuse(first.at, "this is too much for the directive"),
+    }
+}
+
+/// Whether two bodies have the same tokens with blanks in the same positions (§3.4).
+fn same_body(old: &Body, new: &Body) -> bool {
+    let (Body::Tokens { tokens: old, .. }, Body::Tokens { tokens: new, .. }) = (old, new) else {
+        return false;
+    };
+    old.len() == new.len()
+        && old
+            .iter()
+            .zip(new.iter())
+            .enumerate()
+            .all(|(index, (old, new))| old.kind == new.kind && (index == 0 || old.spaced == new.spaced))
 }

@@ -1,13 +1,12 @@
-//! The preprocessor (GLSL ES 3.00.6 §3.4): from an author's text to the tokens that remain.
+//! The preprocessor (GLSL ES 3.00.6 §3.4): turns source text into the tokens that remain.
 //!
-//! Token based, as in C++98: each token keeps the place where its characters stand and, out of a macro, where that macro was used. Time is
-//! linear in what is read and expanded, and expansion has a budget, so that hostile macros end in a diagnostic.
+//! It works on tokens, as in C++98: each token keeps the place of its characters and, if it comes from a
+//! macro, the place where that macro was used. Time is linear in the text and its expansion, and expansion
+//! has a budget, so that hostile macros end in a diagnostic.
 
 mod condition;
-mod define;
 mod directive;
 mod expand;
-mod integer;
 mod lexer;
 mod macros;
 
@@ -20,37 +19,37 @@ use self::expand::Stream;
 pub use self::lexer::Remark;
 use self::lexer::{Lexer, PpToken};
 use self::macros::Macro;
-use super::codes::{Code, tell};
+use super::codes::{Code, push_limited};
 use super::token::{Punctuator, Symbol, Token, TokenKind};
-use super::words::Words;
+use crate::keywords::Interner;
 
-/// How long a name may be (WebGL 2, §4.3.1).
-const MAX_NAME: usize = 1024;
+/// Maximum length of a name in bytes (WebGL 2, §4.3.1).
+const MAX_NAME_BYTES: usize = 1024;
 
-/// What a text is after preprocessing.
+/// The result of preprocessing.
 pub(crate) struct Preprocessed {
     /// The tokens, ending in one [`TokenKind::End`].
     pub(crate) tokens: Vec<Token>,
-    /// Their texts.
-    pub(crate) words: Words,
-    /// What its comments say to us.
+    /// The texts of the tokens.
+    pub(crate) interner: Interner,
+    /// The `// toyproof:` comments.
     pub(crate) remarks: Vec<Remark>,
     /// Errors and warnings.
     pub(crate) diagnostics: Vec<Diagnostic>,
-    /// Whether so much of the text is lost to errors that the rest means nothing.
+    /// Whether errors made so much of the text unusable that the rest must not be parsed.
     pub(crate) incomplete: bool,
-    /// Whether names may be lost to errors: of macros, and of what an `#include` was to declare.
+    /// Whether errors may hide names: of macros, or of what an `#include` was to declare.
     pub(crate) lacks_names: bool,
 }
 
-/// Errors after which nothing is known of the text: what is commented out, which branch of an `#if` is read.
+/// Errors after which the active text is unknown: the extent of a comment, or the branch of an `#if`.
 const LOSES_TEXT: [Code; 3] = [
     Code::UnterminatedComment,
     Code::BadCondition,
     Code::UnbalancedCondition,
 ];
 
-/// Errors after which names may lack their meaning.
+/// Errors after which declarations of names may be missing.
 const LOSES_NAMES: [Code; 5] = [
     Code::UnknownDirective,
     Code::MalformedDirective,
@@ -59,14 +58,14 @@ const LOSES_NAMES: [Code; 5] = [
     Code::PasteOperator,
 ];
 
-/// Preprocesses one file, to its end whatever is wrong with it, or to where it is when the time is over.
+/// Preprocesses one file to its end despite errors, or until the deadline.
 #[must_use]
 pub(crate) fn preprocess(files: &Files, file: FileId, deadline: &Deadline) -> Preprocessed {
     let mut preprocessor = Preprocessor::new(files, file);
     let mut tokens = Vec::new();
     loop {
         let mut token = preprocessor.next_expanded();
-        preprocessor.past = Past::Text;
+        preprocessor.seen = Seen::Text;
         match token.kind {
             TokenKind::Newline => continue,
             TokenKind::Unknown(c) => {
@@ -84,7 +83,7 @@ pub(crate) fn preprocess(files: &Files, file: FileId, deadline: &Deadline) -> Pr
                 token.kind = TokenKind::Stray;
             }
             TokenKind::Punctuator(Punctuator::Hash | Punctuator::Paste) => {
-                // A macro with one is harmless until it is used.
+                // A macro that contains one is harmless until it is used.
                 let message = if token.at.is_expanded() {
                     "GLSL ES has no `#` and no `##` in macros"
                 } else {
@@ -96,15 +95,15 @@ pub(crate) fn preprocess(files: &Files, file: FileId, deadline: &Deadline) -> Pr
             _ => {}
         }
         if let TokenKind::Word(word) = token.kind
-            && preprocessor.words.text(word).len() > MAX_NAME
+            && preprocessor.interner.text(word).len() > MAX_NAME_BYTES
         {
-            let message = format!("WebGL takes no name of more than {MAX_NAME} characters");
+            let message = format!("WebGL takes no name of more than {MAX_NAME_BYTES} characters");
             preprocessor.report(Code::Syntax.at(token.at, message));
         }
         tokens.push(Token {
             kind: token.kind,
             at: token.at,
-            told: token.kind == TokenKind::Stray,
+            reported: token.kind == TokenKind::Stray,
         });
         if token.kind == TokenKind::End || deadline.is_over() {
             break;
@@ -112,16 +111,16 @@ pub(crate) fn preprocess(files: &Files, file: FileId, deadline: &Deadline) -> Pr
     }
     let diagnostics = preprocessor.diagnostics;
     let any_of = |codes: &[Code]| {
-        let told = |code: &Code| {
+        let reported = |code: &Code| {
             diagnostics
                 .iter()
                 .any(|diagnostic| diagnostic.code == code.as_str())
         };
-        codes.iter().any(told)
+        codes.iter().any(reported)
     };
     Preprocessed {
         tokens,
-        words: preprocessor.words,
+        interner: preprocessor.interner,
         remarks: preprocessor.lexer.remarks,
         incomplete: preprocessor.gave_up || any_of(&LOSES_TEXT),
         lacks_names: any_of(&LOSES_NAMES),
@@ -129,17 +128,17 @@ pub(crate) fn preprocess(files: &Files, file: FileId, deadline: &Deadline) -> Pr
     }
 }
 
-/// What came already.
+/// The kinds of tokens seen so far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Past {
+enum Seen {
     Nothing,
-    /// `#version` may not follow.
+    /// A directive: `#version` may not follow.
     Directive,
-    /// A token that is no directive's: `#extension` may not follow (§3.5).
+    /// A token outside directives: `#extension` may not follow (§3.5).
     Text,
 }
 
-/// The character of GLSL that one from elsewhere looks like.
+/// The GLSL punctuator that a Unicode character resembles.
 fn lookalike(c: char) -> Option<&'static str> {
     Some(match c {
         '–' | '—' | '−' | '‐' => "-",
@@ -160,47 +159,49 @@ fn lookalike(c: char) -> Option<&'static str> {
 struct Preprocessor<'a> {
     text: &'a str,
     lexer: Lexer<'a>,
-    words: Words,
+    interner: Interner,
     macros: HashMap<Symbol, Macro>,
-    /// The macro bodies being read, the innermost last; below them the lexer.
+    /// The macro bodies being expanded, innermost last; below them the lexer.
     stream: Stream,
-    /// The `#if` groups that are open.
+    /// The open `#if` groups.
     groups: Vec<Group>,
     /// Whether the next token begins a line.
     line_start: bool,
-    past: Past,
-    /// What `#line` adds to line numbers, and the number it gives the file: seen by `__LINE__` and `__FILE__` only.
+    seen: Seen,
+    /// The offset that `#line` adds to line numbers, and the file number it sets: visible to `__LINE__` and
+    /// `__FILE__` only.
     line_offset: i64,
     file_number: i64,
-    /// A byte and its line, for counting on.
+    /// A byte position and its line, from which lines are counted.
     counted: (usize, i64),
-    /// How many tokens macros may still produce.
+    /// The number of tokens that macros may still produce.
     budget: usize,
-    /// Whether they took all that followed: produced more, nested too deep, or had no `)`.
+    /// Whether preprocessing stopped because macros produced too many tokens, nested too deep, or a call had
+    /// no `)`.
     gave_up: bool,
-    /// How deep macro calls stand in arguments of macro calls.
+    /// Nesting depth of macro calls in arguments of macro calls.
     depth: usize,
     diagnostics: Vec<Diagnostic>,
 }
 
 impl<'a> Preprocessor<'a> {
     fn new(files: &'a Files, file: FileId) -> Self {
-        let mut words = Words::default();
-        let macros = Macro::predefined(file, &mut words);
+        let mut interner = Interner::default();
+        let macros = Macro::predefined(file, &mut interner);
         let text = files.get(file).text();
         Self {
             text,
             lexer: Lexer::new(file, text),
-            words,
+            interner,
             macros,
             stream: Stream::Text(Vec::new()),
             groups: Vec::new(),
             line_start: true,
-            past: Past::Nothing,
+            seen: Seen::Nothing,
             line_offset: 0,
             file_number: 0,
             counted: (0, 1),
-            budget: expand::BUDGET,
+            budget: expand::MAX_EXPANSION_TOKENS,
             gave_up: false,
             depth: 0,
             diagnostics: Vec::new(),
@@ -208,14 +209,14 @@ impl<'a> Preprocessor<'a> {
     }
 
     fn report(&mut self, diagnostic: Diagnostic) {
-        tell(&mut self.diagnostics, diagnostic);
+        push_limited(&mut self.diagnostics, diagnostic);
     }
 
     fn lex(&mut self) -> PpToken {
-        self.lexer.next(&mut self.words, &mut self.diagnostics)
+        self.lexer.next(&mut self.interner, &mut self.diagnostics)
     }
 
-    /// The next token of the running text; directives are obeyed and skipped groups passed over on the way.
+    /// The next token of the file; executes directives and skips inactive groups on the way.
     fn next_of_text(&mut self) -> PpToken {
         loop {
             let remarks = self.lexer.remarks.len();
@@ -227,7 +228,7 @@ impl<'a> Preprocessor<'a> {
                 TokenKind::Newline => self.line_start = true,
                 TokenKind::Punctuator(Punctuator::Hash) if self.line_start => {
                     self.directive(token.at);
-                    self.past = self.past.max(Past::Directive);
+                    self.seen = self.seen.max(Seen::Directive);
                 }
                 TokenKind::End => {
                     while let Some(group) = self.groups.pop() {

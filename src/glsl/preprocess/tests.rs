@@ -11,7 +11,7 @@ fn expand(text: &str) -> String {
         return first.code.to_string();
     }
     let texts = result.tokens.iter().filter_map(|token| match token.kind {
-        TokenKind::Word(symbol) | TokenKind::Number(symbol) => Some(result.words.text(symbol)),
+        TokenKind::Word(symbol) | TokenKind::Number(symbol) => Some(result.interner.text(symbol)),
         TokenKind::Punctuator(punctuator) => Some(punctuator.text()),
         _ => None,
     });
@@ -40,7 +40,7 @@ fn tokens() {
 }
 
 #[test]
-fn macros_rescan_but_never_expand_themselves() {
+fn macros_are_rescanned_but_never_expand_recursively() {
     check(&[
         ("#define A B\n#define B 1\nA", "1"),
         ("#define A A + B\n#define B A\nA", "A + A"),
@@ -165,16 +165,16 @@ fn hostile_macros_end_in_a_diagnostic() {
 }
 
 #[test]
-fn tokens_know_their_use_and_their_spelling() {
+fn tokens_keep_their_use_and_spelling() {
     let mut files = Files::default();
     let file = files.add(File::new("a", "#define F(x) x + b\n#define G F(c)\nF(a); G"));
     let result = preprocess(&files, file, &Deadline::default());
-    let told: Vec<_> = result.tokens[..7]
+    let reported: Vec<_> = result.tokens[..7]
         .iter()
         .map(|token| (files.text(token.at.span), files.text(token.at.spelled)))
         .collect();
     assert_eq!(
-        told,
+        reported,
         [
             ("a", "a"),
             ("F(a)", "+"),

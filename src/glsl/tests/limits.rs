@@ -1,10 +1,16 @@
-//! Inputs of any size and depth end in a tree or a diagnostic, soon and on a small stack.
+//! Tests that inputs of any size and depth end in a tree or a diagnostic, quickly and on a small stack; and
+//! invariants of all trees.
+
+use std::collections::HashSet;
 
 use super::{MAIN, check_text};
-use crate::{Options, tree};
+use crate::tree::{
+    self, Block, Condition, ExprId, ExprKind, Item, Label, Place, StatementKind, Tree, Type, VariableId,
+};
+use crate::{Checked, Options};
 
-/// On a stack of 2 MB, as threads have it.
-fn on_a_small_stack<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+/// Runs `work` on a stack of 2 MB, the default for threads.
+fn with_small_stack<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     std::thread::scope(|scope| {
         let builder = std::thread::Builder::new().stack_size(2 << 20);
         builder.spawn_scoped(scope, work).unwrap().join().unwrap()
@@ -16,7 +22,7 @@ fn each(indices: std::ops::Range<usize>, line: fn(usize) -> String) -> String {
 }
 
 #[test]
-fn nesting_has_a_limit_that_is_told() {
+fn too_deep_nesting_is_reported() {
     let shapes: [(&str, &str, &str); 9] = [
         ("(", "1.", ")"),
         ("sin(", "1.", ")"),
@@ -39,11 +45,11 @@ fn nesting_has_a_limit_that_is_told() {
         };
         for depth in [50_000, 300] {
             let text = text(depth);
-            let errors = on_a_small_stack(|| check_text(&text, &Options::default()).unwrap_err());
+            let errors = with_small_stack(|| check_text(&text, &Options::default()).unwrap_err());
             assert_eq!(errors[0].code, "E0101", "{open} {depth}");
         }
         let shallow = text(20);
-        on_a_small_stack(|| check_text(&shallow, &Options::default())).unwrap();
+        with_small_stack(|| check_text(&shallow, &Options::default())).unwrap();
     }
     for (open, depth, accepted) in [
         ("if (true) ", 240, true),
@@ -52,7 +58,7 @@ fn nesting_has_a_limit_that_is_told() {
         ("for (;;) ", 50_000, false),
     ] {
         let text = format!("void test() {{ {} ; }} {MAIN}", open.repeat(depth));
-        let result = on_a_small_stack(|| check_text(&text, &Options::default()).map(drop));
+        let result = with_small_stack(|| check_text(&text, &Options::default()).map(drop));
         assert_eq!(result.is_ok(), accepted, "{open} {depth}");
     }
     let parens = format!(
@@ -60,11 +66,11 @@ fn nesting_has_a_limit_that_is_told() {
         "(".repeat(250),
         ")".repeat(250)
     );
-    on_a_small_stack(|| check_text(&parens, &Options::default()).map(drop)).unwrap();
+    with_small_stack(|| check_text(&parens, &Options::default()).map(drop)).unwrap();
 }
 
 #[test]
-fn long_chains_are_no_nesting() {
+fn long_chains_do_not_count_as_nesting() {
     let sum = "a + ".repeat(20_000);
     let commas = "a, ".repeat(20_000);
     let swizzles = ".xy".repeat(20_000);
@@ -73,7 +79,7 @@ fn long_chains_are_no_nesting() {
         "const float k = {} 1.; void test(float a) {{ a = {sum} a; a = ({commas} a); vec2 v; v = v{swizzles}; {ifs} ; }} {MAIN}",
         "1. + ".repeat(20_000)
     );
-    let checked = on_a_small_stack(|| check_text(&text, &Options::default())).unwrap();
+    let checked = with_small_stack(|| check_text(&text, &Options::default())).unwrap();
     let k = checked
         .tree
         .variables
@@ -89,11 +95,11 @@ fn long_chains_are_no_nesting() {
         format!("const float k{index} = k{} * 2.;\n", index - 1)
     });
     let text = format!("const float k0 = 1.;\n{consts}{MAIN}");
-    on_a_small_stack(|| check_text(&text, &Options::default())).unwrap();
+    with_small_stack(|| check_text(&text, &Options::default())).unwrap();
 }
 
 #[test]
-fn structures_of_structures_cost_nothing() {
+fn nested_structures_take_linear_time() {
     let levels = each(1..60, |level| {
         let last = level - 1;
         format!(
@@ -117,13 +123,13 @@ fn structures_of_structures_cost_nothing() {
         format!("float a{};\n{MAIN}", "[1]".repeat(20_000)),
     ];
     for text in texts {
-        let errors = on_a_small_stack(|| check_text(&text, &lenient).unwrap_err());
+        let errors = with_small_stack(|| check_text(&text, &lenient).unwrap_err());
         assert_eq!(errors[0].code, "E0101");
     }
 }
 
 #[test]
-fn a_variable_has_a_limit() {
+fn variable_size_is_limited() {
     let text = |size| format!("struct S {{ vec4 a[1024]; }}; S s[{size}]; {MAIN}");
     assert!(check_text(&text(1024), &Options::default()).is_ok());
     let errors = check_text(&text(1025), &Options::default()).unwrap_err();
@@ -131,20 +137,20 @@ fn a_variable_has_a_limit() {
 }
 
 #[test]
-fn no_more_is_told_than_helps() {
+fn number_of_reported_errors_is_limited() {
     for line in ["@\n", "#if 1\n", "#define a__b 1\n#undef a__b\n@\n", "x y;\n"] {
         let text = format!("{}{MAIN}", line.repeat(10_000));
-        let told = check_text(&text, &Options::default()).unwrap_err();
-        assert!(told.len() <= 100, "{line}");
+        let reported = check_text(&text, &Options::default()).unwrap_err();
+        assert!(reported.len() <= 100, "{line}");
         assert!(
-            told.iter().any(|diagnostic| diagnostic.code.starts_with('E')),
+            reported.iter().any(|diagnostic| diagnostic.code.starts_with('E')),
             "{line}"
         );
     }
 }
 
 #[test]
-fn cut_short_anywhere_a_shader_ends_in_a_diagnostic() {
+fn truncated_shaders_end_in_a_diagnostic() {
     let text = "#define F(x) (x)\nstruct S { vec2 a[2]; };\nvoid mainImage(out vec4 c, in vec2 f) {\n S s; for (int i = 0; \
                 i < 2; i++) { switch (i) { case 0: s.a[i] = F(f); default: c = true ? vec4(1) : vec4(0); } } /* x */ }\n";
     assert!(check_text(text, &Options::default()).is_ok());
@@ -157,9 +163,9 @@ fn cut_short_anywhere_a_shader_ends_in_a_diagnostic() {
     }
 }
 
-/// Whatever is looked at again for each part of a text takes minutes for these.
+/// Any quadratic algorithm takes minutes for these inputs.
 #[test]
-fn a_megabyte_of_one_construct_takes_time_in_proportion() {
+fn a_megabyte_of_one_construct_takes_linear_time() {
     let terms = |term: &str, operator: &str| vec![term; 60_000].join(operator);
     let numbers = terms("1.", ",");
     let statements: [(&str, String); 12] = [
@@ -210,7 +216,7 @@ fn a_megabyte_of_one_construct_takes_time_in_proportion() {
 }
 
 #[test]
-fn every_stage_ends_when_its_time_is_over() {
+fn every_stage_stops_at_its_deadline() {
     use toyproof_diagnostic::{Deadline, File, Files};
 
     use crate::check::{Channels, Checker};
@@ -244,4 +250,177 @@ fn every_stage_ends_when_its_time_is_over() {
     };
     assert!(parse(&in_time) > 0);
     assert_eq!(parse(&late), 0);
+}
+
+// Invariants of every tree that `check` returns.
+
+const TEXT: &str = "
+    struct Ray { vec3 o, d; float t[2]; };
+    const int N = 2;
+    const Ray unit = Ray(vec3(0), vec3(0, 0, 1), float[](1., 2.));
+    float seed = 3. * float(N), rows[N];
+    float hash(inout float s) { s += 1.; return fract(sin(s++) * 43758.5453123); }
+    float hash(vec2 p) { float s = p.x; return hash(s) + hash(p.y); }
+    bool hit(Ray r, out float t, const in int i) { t = r.t[i]; return t > 0. && dot(r.o, r.d) < 1. || i == 0; }
+    void test() {
+        float t, u = 1.;
+        for (int i = 0, j = N; i < j; i++, j -= 1) { if (i == 0) continue; else if (i == 1) t = u; else { break; } }
+        while (bool more = hit(unit, t, 1)) { u = more ? -t : +u; do u *= 2.; while (u < 1.); }
+        switch (N) { case 0: case N: t = (u, 2.); break; default: { struct S { int a; } s = S(1); rows[s.a] = t; } }
+        mat2 m = mat2(1, 2, 3, 4); m[0].yx *= m; t = modf(m[1][0], u); int n = rows.length();
+        if (hit(unit, m[0].x, 0)) { discard; } return;
+    }
+";
+
+/// The roots of all expressions in statements and declarations.
+fn roots(tree: &Tree) -> Vec<ExprId> {
+    let mut roots = Vec::new();
+    for item in &tree.items {
+        match *item {
+            Item::Variable(variable) => declare(tree, variable, &mut roots),
+            Item::Function(function) => block(tree, tree[function].body.as_ref().unwrap(), &mut roots),
+            Item::Struct(_) | Item::Prototype(_) => {}
+        }
+    }
+    roots
+}
+
+fn declare(tree: &Tree, variable: VariableId, roots: &mut Vec<ExprId>) {
+    if let Some(initializer) = tree[variable].initializer {
+        assert_eq!(tree[initializer].ty, tree[variable].ty);
+        roots.push(initializer);
+    }
+}
+
+fn condition(tree: &Tree, condition: Condition, roots: &mut Vec<ExprId>) {
+    match condition {
+        Condition::Expression(expr) => roots.push(expr),
+        Condition::Declare(variable) => declare(tree, variable, roots),
+    }
+}
+
+fn block(tree: &Tree, statements: &Block, roots: &mut Vec<ExprId>) {
+    for statement in statements {
+        match &statement.kind {
+            StatementKind::Expression(expr) => roots.push(*expr),
+            StatementKind::Declare(variable) => declare(tree, *variable, roots),
+            StatementKind::Block(body) => block(tree, body, roots),
+            StatementKind::If { arms, otherwise } => {
+                for arm in arms {
+                    roots.push(arm.condition);
+                    block(tree, &arm.body, roots);
+                }
+                if let Some(body) = otherwise {
+                    block(tree, body, roots);
+                }
+            }
+            StatementKind::Switch { selector, cases } => {
+                roots.push(*selector);
+                for case in cases {
+                    roots.extend(case.labels.iter().filter_map(|label| match label {
+                        Label::Case { expr, .. } => Some(*expr),
+                        Label::Default => None,
+                    }));
+                    block(tree, &case.body, roots);
+                }
+            }
+            StatementKind::For {
+                init,
+                condition: test,
+                step,
+                body,
+            } => {
+                block(tree, init, roots);
+                if let Some(test) = test {
+                    condition(tree, *test, roots);
+                }
+                roots.extend(*step);
+                block(tree, body, roots);
+            }
+            StatementKind::While {
+                condition: test,
+                body,
+            } => {
+                condition(tree, *test, roots);
+                block(tree, body, roots);
+            }
+            StatementKind::DoWhile { body, condition } => {
+                block(tree, body, roots);
+                roots.push(*condition);
+            }
+            StatementKind::Return(value) => roots.extend(*value),
+            StatementKind::Struct(_)
+            | StatementKind::Break
+            | StatementKind::Continue
+            | StatementKind::Discard => {}
+        }
+    }
+}
+
+fn checked(lenient: bool) -> Checked {
+    let options = Options {
+        lenient,
+        ..Options::default()
+    };
+    let text = if lenient {
+        TEXT.replace("3. * float(N)", "3 * iTime")
+    } else {
+        TEXT.to_owned()
+    };
+    check_text(&(text + MAIN), &options).unwrap()
+}
+
+#[test]
+fn every_expression_has_one_parent_and_fits_it() {
+    for lenient in [false, true] {
+        let Checked { tree, .. } = checked(lenient);
+        let mut seen = HashSet::new();
+        for expr in roots(&tree).into_iter().flat_map(|root| tree.postorder(root)) {
+            assert!(seen.insert(expr), "{:?} twice", tree[expr]);
+            assert_ne!(tree[expr].ty, Type::Error);
+            match &tree[expr].kind {
+                ExprKind::Call { function, arguments } => {
+                    let parameters = tree[*function].parameters.iter().map(|&id| tree[id].ty);
+                    assert!(parameters.eq(arguments.iter().map(|&argument| tree[argument].ty)));
+                }
+                ExprKind::Assign {
+                    op: None,
+                    target,
+                    value,
+                } => assert_eq!(tree[*target].ty, tree[*value].ty),
+                ExprKind::Conditional { yes, no, .. } => assert_eq!(tree[*yes].ty, tree[*no].ty),
+                _ => {}
+            }
+        }
+        // Only the size expressions of two arrays are not in the tree: their types contain the sizes.
+        assert_eq!(tree.exprs.len(), seen.len() + 2);
+    }
+}
+
+#[test]
+fn places_of_statements_and_literals_match_the_text() {
+    let Checked { tree, .. } = checked(false);
+    let spelled = |at: Place| &TEXT[at.spelled.start as usize..at.spelled.end as usize];
+    for expr in roots(&tree).into_iter().flat_map(|root| tree.postorder(root)) {
+        if let ExprKind::Literal(literal) = &tree[expr].kind
+            && tree[expr].at.span.end as usize <= TEXT.len()
+        {
+            assert_eq!(spelled(tree[expr].at), &*literal.text);
+        }
+    }
+    let (_, hash) = tree
+        .functions
+        .iter()
+        .find(|(_, function)| function.name == "hash")
+        .unwrap();
+    let statements: Vec<_> = hash
+        .body
+        .iter()
+        .flatten()
+        .map(|statement| spelled(statement.at))
+        .collect();
+    assert_eq!(
+        statements,
+        ["s += 1.;", "return fract(sin(s++) * 43758.5453123);"]
+    );
 }

@@ -1,6 +1,5 @@
-//! The rules of the specification, each with what keeps it and what breaks it.
+//! Tests of the specification's rules: for each, code that keeps it and code that breaks it.
 
-mod invariants;
 mod limits;
 mod recovery;
 
@@ -16,8 +15,9 @@ fn check_text(text: &str, options: &Options) -> Result<Checked, Vec<Diagnostic>>
     check(&files, file, options)
 }
 
-/// `ok`, or the code of the first error. What is no function or declaration is a statement.
-fn verdict(text: &str, options: &Options) -> String {
+/// `ok`, or the code of the first error. Text that is not a function or declaration is wrapped as a
+/// statement.
+fn outcome(text: &str, options: &Options) -> String {
     let text = match text.strip_prefix("{") {
         Some(_) => format!("void test() {text}\n{MAIN}"),
         None if text.contains("mainImage") => text.to_owned(),
@@ -34,7 +34,8 @@ fn verdict(text: &str, options: &Options) -> String {
     }
 }
 
-/// Cases line by line: the verdict, then the text. `strict` and `lenient` judge differently where two verdicts stand, as in `E0306/ok`.
+/// Checks one case per line: the expected result, then the text. Two results as in `E0306/ok` are those of
+/// `strict` and `lenient`.
 fn cases(table: &str) {
     let lenient = Options {
         lenient: true,
@@ -45,7 +46,7 @@ fn cases(table: &str) {
         let (wanted, text) = line.split_once(' ').unwrap();
         let both = wanted.split_once('/').unwrap_or((wanted, wanted));
         let text = text.trim_start();
-        let found = (verdict(text, &Options::default()), verdict(text, &lenient));
+        let found = (outcome(text, &Options::default()), outcome(text, &lenient));
         if (found.0.as_str(), found.1.as_str()) != both {
             wrong.push(format!("{}/{} {text}", found.0, found.1));
         }
@@ -381,7 +382,7 @@ fn main_image() {
 }
 
 #[test]
-fn channels_take_the_shape_that_their_use_asks_for() {
+fn channel_shapes_are_inferred_from_use() {
     let text = format!(
         "vec4 f(samplerCube s) {{ return textureLod(s, vec3(1), 0.); }}
          void g() {{ texture(iChannel1, vec3(1)); f(iChannel2); texture(iChannel3, vec3(1)); texelFetch(iChannel3, ivec3(1), 0); }} {MAIN}"
@@ -394,16 +395,16 @@ fn channels_take_the_shape_that_their_use_asks_for() {
         SamplerShape::D3,
     ];
     assert_eq!(checked.channels, shapes);
-    let told = Options {
+    let reported = Options {
         channels: [Some(SamplerShape::D2); 4],
         ..Options::default()
     };
-    assert!(check_text(&text, &told).is_err());
+    assert!(check_text(&text, &reported).is_err());
     cases("E0302 { texture(iChannel0, vec3(1)); texture(iChannel0, vec2(1)); }");
 }
 
 #[test]
-fn errors_stand_on_their_line_and_know_their_macro() {
+fn errors_have_their_line_and_their_macro() {
     let text =
         "#define BAD(x) (x + oops)\nvoid mainImage(out vec4 c, in vec2 f) {\n    c = vec4(BAD(1.));\n}\n";
     let mut files = Files::default();
@@ -417,15 +418,15 @@ fn errors_stand_on_their_line_and_know_their_macro() {
 }
 
 #[test]
-fn one_mistake_is_told_once_and_others_beside_it() {
+fn each_error_is_reported_once() {
     let text = format!("void test() {{ float a = b.x + 1.; a = a * 2.; c = 1.; }} {MAIN}");
     let errors = check_text(&text, &Options::default()).unwrap_err();
-    let told: Vec<_> = errors.iter().map(|error| error.message.as_str()).collect();
-    assert_eq!(told, ["`b` is not declared", "`c` is not declared"]);
+    let reported: Vec<_> = errors.iter().map(|error| error.message.as_str()).collect();
+    assert_eq!(reported, ["`b` is not declared", "`c` is not declared"]);
 }
 
 #[test]
-fn lenient_conversions_and_late_initialisers_stand_in_the_tree() {
+fn lenient_conversions_and_initializers_are_explicit_in_the_tree() {
     use tree::{Constructor, ExprKind, VariableKind};
     let options = Options {
         lenient: true,
@@ -438,10 +439,10 @@ fn lenient_conversions_and_late_initialisers_stand_in_the_tree() {
         .iter()
         .find(|(_, variable)| variable.name == "t")
         .unwrap();
-    let initialiser = t.initialiser.unwrap();
+    let initializer = t.initializer.unwrap();
     assert_eq!(t.kind, VariableKind::Global);
-    assert!(!tree[initialiser].constant);
-    let ExprKind::Binary { left, .. } = tree[initialiser].kind else {
+    assert!(!tree[initializer].constant);
+    let ExprKind::Binary { left, .. } = tree[initializer].kind else {
         panic!("no product");
     };
     let scalar = Constructor::Scalar;

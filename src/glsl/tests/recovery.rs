@@ -1,4 +1,4 @@
-//! Every mistake of a text is told, and nothing that only follows from one.
+//! Tests that every error of a text is reported, and no consequential error.
 
 use toyproof_diagnostic as diagnostic;
 use toyproof_diagnostic::{File, Files};
@@ -7,7 +7,7 @@ use super::{MAIN, check_text};
 use crate::{Options, check};
 
 /// `line: code` of each error, in order.
-fn told(text: &str) -> Vec<String> {
+fn reported(text: &str) -> Vec<String> {
     let mut files = Files::default();
     let file = files.add(File::new("a", format!("{text}\n{MAIN}")));
     let errors = check(&files, file, &Options::default()).unwrap_err();
@@ -22,11 +22,11 @@ fn told(text: &str) -> Vec<String> {
 
 #[track_caller]
 fn expect(text: &str, wanted: &[&str]) {
-    assert_eq!(told(text), wanted, "{text}");
+    assert_eq!(reported(text), wanted, "{text}");
 }
 
 #[test]
-fn statements_are_told_of_one_by_one() {
+fn errors_in_statements_are_reported_separately() {
     let text = "float f(float x) {
     float a = 1.0
     float b = 2.0 +;
@@ -63,7 +63,7 @@ fn statements_are_told_of_one_by_one() {
 }
 
 #[test]
-fn declarations_are_told_of_one_by_one() {
+fn errors_in_declarations_are_reported_separately() {
     let text = "struct S { float a float b; vec3 c };
 float f(vec2 p, flaot x, vec3) { return p.x + x; }
 float g(vec2 p, ) { return q + p.x; }
@@ -79,7 +79,7 @@ void last() { late = 1.0; k2 = 1.0; }";
 }
 
 #[test]
-fn what_was_declared_in_a_broken_declaration_is_not_missing() {
+fn names_in_broken_declarations_are_not_reported_as_undeclared() {
     for text in [
         "void f() { vec3 a = ; a.x = 1.0; a = a * 2; }",
         "void f() { float a = 1.0 b, c = 2.0; c = b + a; }",
@@ -96,12 +96,12 @@ fn what_was_declared_in_a_broken_declaration_is_not_missing() {
         "void f() { if (oops > 1.0) { float a = oops; } }",
         "float f() { return 1.0 + ; }",
     ] {
-        assert_eq!(told(text).len(), 1, "{text}: {:?}", told(text));
+        assert_eq!(reported(text).len(), 1, "{text}: {:?}", reported(text));
     }
 }
 
 #[test]
-fn a_brace_is_missed_where_the_lines_say_so() {
+fn missing_braces_are_located_by_indentation() {
     expect(
         "float f(float x) {\n    if (x > 1.0) {\n        x = 1.0;\n    return x;\n}\nfloat g() { return oops; }",
         &["2: E0105", "6: E0200"],
@@ -114,7 +114,7 @@ fn a_brace_is_missed_where_the_lines_say_so() {
         "float f(float x)\n{\n    for (;;)\n    {\n        x = 1.0;\n    return x;\n}\nfloat g() { return oops; }",
         &["4: E0105", "8: E0200"],
     );
-    // Without indentation, the innermost that is open.
+    // Without indentation, the innermost open block is at fault.
     expect(
         "float f(float x) {\nif (x > 1.0) {\nreturn x;\n}\nfloat g() { return oops; }",
         &["1: E0105", "5: E0200"],
@@ -134,7 +134,7 @@ fn a_brace_is_missed_where_the_lines_say_so() {
 }
 
 #[test]
-fn round_brackets_are_missed_in_their_statement() {
+fn missing_parentheses_are_reported_in_their_statement() {
     expect(
         "float f(float x) {\n    x = sin(cos(x);\n    if (x > (1.0) { x = 2.0; }\n    x = abs(x));\n    return x;\n}",
         &["2: E0105", "3: E0105", "4: E0105"],
@@ -145,7 +145,7 @@ fn round_brackets_are_missed_in_their_statement() {
 }
 
 #[test]
-fn fifty_are_told_and_no_more() {
+fn at_most_fifty_errors_are_reported() {
     let text = format!(
         "void f() {{\n{}}}\n{MAIN}",
         "    a = ;\n    b + c\n".repeat(40_000)
@@ -178,19 +178,19 @@ fn hostile_texts_take_linear_time() {
     for text in texts {
         let start = std::time::Instant::now();
         assert!(check_text(&text, &Options::default()).is_err());
-        // Quadratic time would be minutes; this is for slow machines.
+        // Quadratic time would be minutes; the limit allows for slow machines.
         assert!(start.elapsed().as_secs() < 20, "{}", &text[..20]);
     }
 }
 
 #[test]
-fn the_preprocessor_hides_nothing_that_can_be_told() {
+fn preprocessor_errors_do_not_hide_other_errors() {
     expect("float a = 2.0 § 3.0;\nfloat b = oops;", &["1: E0001", "2: E0200"]);
     expect(
         "#version 330\nfloat b = oops;\n#error no\nfloat c = 1;",
         &["1: E0011", "2: E0200", "3: E0010", "4: E0301"],
     );
-    // But where it is not known what is read, nothing more is said.
+    // But if the active text is unknown, nothing else is reported.
     expect(
         "#if oops\nfloat b = oops;\n#else\nfloat c = 1;\n#endif",
         &["1: E0005"],
@@ -199,7 +199,7 @@ fn the_preprocessor_hides_nothing_that_can_be_told() {
 }
 
 #[test]
-fn a_missing_semicolon_is_told_where_it_belongs() {
+fn a_missing_semicolon_is_reported_where_it_belongs() {
     let mut files = Files::default();
     let file = files.add(File::new(
         "a",

@@ -1,4 +1,4 @@
-//! The built-in functions (GLSL ES 3.00.6 §8) by name; their signatures are `check`'s.
+//! The built-in functions (GLSL ES 3.00.6 §8) by name; `check` holds their signatures.
 
 macro_rules! built_in_functions {
     ($($variant:ident $name:literal,)*) => {
@@ -9,10 +9,10 @@ macro_rules! built_in_functions {
         }
 
         impl BuiltIn {
-            /// All of them.
+            /// All built-in functions.
             pub const ALL: &[Self] = &[$(Self::$variant),*];
 
-            /// As GLSL writes it.
+            /// Its name in GLSL.
             #[must_use]
             pub fn name(self) -> &'static str {
                 match self {
@@ -125,19 +125,19 @@ built_in_functions! {
 }
 
 impl BuiltIn {
-    /// Which parameter is written, if one is: `modf`'s second.
+    /// The index of the parameter that is written, if any: `modf`'s second.
     #[must_use]
     pub fn out_parameter(self) -> Option<usize> {
         (self == Self::Modf).then_some(1)
     }
 
-    /// Whether it reads a texture; such calls are no constant expressions (§4.3.3).
+    /// Whether it reads a texture; such calls are not constant expressions (§4.3.3).
     #[must_use]
     pub fn is_texture(self) -> bool {
         self >= Self::TextureSize && self <= Self::TextureProjGradOffset
     }
 
-    /// Whether it compares with the neighbours in the pixel's quad.
+    /// Whether it is a derivative, which uses the neighbors in the pixel's quad.
     #[must_use]
     pub fn is_derivative(self) -> bool {
         matches!(self, Self::DFdx | Self::DFdy | Self::Fwidth)

@@ -1,63 +1,62 @@
-//! Expressions (GLSL ES 3.00.6 §5).
+//! Expressions and operators (GLSL ES 3.00.6 §5).
 
-use super::{BinaryOp, BuiltIn, FunctionId, Id, Place, StepOp, Type, UnaryOp, Value, VariableId};
+use super::{BuiltIn, FunctionId, Id, Place, Type, Value, VariableId};
 
-/// Names an expression of a tree.
+/// The id of an expression.
 pub type ExprId = Id<Expr>;
 
-/// An expression: typed, placed, and child of exactly one expression or statement, so that a pass may
-/// change it where it stands.
+/// An expression. Each is the child of exactly one expression or statement, so that a pass may change it in
+/// place.
 #[derive(Debug, Clone)]
 pub struct Expr {
-    /// What it does.
+    /// The operation.
     pub kind: ExprKind,
-    /// The type of its value; the operands have exactly the types that the specification asks for: every
-    /// conversion stands in the tree as a constructor.
+    /// The type of the value. Operands have exactly the types that the specification requires: every
+    /// conversion is an explicit constructor.
     pub ty: Type,
-    /// Whether it is a constant expression (§4.3.3); [`Tree::value`](super::Tree::value) then computes it.
+    /// Whether it is a constant expression (§4.3.3), which [`Tree::value`](super::Tree::value) evaluates.
     pub constant: bool,
-    /// Where it stands.
+    /// Its place in the source text.
     pub at: Place,
 }
 
-/// What an expression does. Operands are evaluated from left to right; `&&`, `||` and `?:` evaluate only
-/// what they need.
+/// The kind of an expression. Operands are evaluated from left to right; `&&`, `||` and `?:` short-circuit.
 #[derive(Debug, Clone)]
 pub enum ExprKind {
     /// A number, or `true` or `false`.
     Literal(Literal),
-    /// A variable's value, or the variable itself where an lvalue is asked for.
+    /// A variable: its value, or an lvalue.
     Variable(VariableId),
     /// `-x`, `+x`, `!x`, `~x`.
     Unary {
-        /// Which.
+        /// The operator.
         op: UnaryOp,
-        /// On what.
+        /// The operand.
         operand: ExprId,
     },
     /// `a + b`, `a && b`, …
     Binary {
-        /// Which.
+        /// The operator.
         op: BinaryOp,
         /// The left side.
         left: ExprId,
         /// The right side.
         right: ExprId,
     },
-    /// `a = b`, `a += b`, …: the value is what `target` then holds.
+    /// `a = b`, `a += b`, …: the value is that of `target` after the assignment.
     Assign {
-        /// The operation of `+=` and the like; none for `=`.
+        /// The operator of a compound assignment such as `+=`; none for `=`.
         op: Option<BinaryOp>,
         /// An lvalue; its indices are evaluated once.
         target: ExprId,
-        /// What is assigned.
+        /// The right side.
         value: ExprId,
     },
     /// `++x`, `x--`, …
     Step {
-        /// Which.
+        /// The operator.
         op: StepOp,
-        /// Whether the value is that before the step: `x++`.
+        /// Whether it is the postfix form `x++`, whose value is that before the step.
         postfix: bool,
         /// An lvalue; its indices are evaluated once.
         target: ExprId,
@@ -71,86 +70,86 @@ pub enum ExprKind {
         /// The value if false.
         no: ExprId,
     },
-    /// `a, b`: both, the value is that of the second.
+    /// `a, b`: evaluates both; the value is that of the second.
     Sequence {
         /// Evaluated first.
         first: ExprId,
         /// The value.
         second: ExprId,
     },
-    /// A call of one of the author's functions. `in` arguments are copied in; `out` and `inout` arguments are
-    /// lvalues, copied back after the call (§6.1.1).
+    /// A call of a user function. `in` arguments are copied in; `out` and `inout` arguments are lvalues,
+    /// copied back after the call (§6.1.1).
     Call {
-        /// Which.
+        /// The function.
         function: FunctionId,
-        /// One for each parameter, of its type.
+        /// One argument for each parameter, of its type.
         arguments: Vec<ExprId>,
     },
-    /// A call of a built-in function; the signature is told by the types of arguments and value.
+    /// A call of a built-in function; the types of arguments and value determine the signature.
     BuiltIn {
-        /// Which.
+        /// The function.
         function: BuiltIn,
-        /// As written.
+        /// The arguments as written.
         arguments: Vec<ExprId>,
     },
     /// `vec3(…)`, `Ray(…)`, `float[](…)`: makes a value of the expression's type.
     Construct {
-        /// How.
+        /// The kind of constructor.
         constructor: Constructor,
-        /// As written.
+        /// The arguments as written.
         arguments: Vec<ExprId>,
     },
     /// `v.xy`.
     Swizzle {
         /// A vector.
         vector: ExprId,
-        /// Which components.
+        /// The selected components.
         components: Swizzle,
     },
     /// `s.m`.
     Member {
-        /// Of structure type.
+        /// An expression of structure type.
         structure: ExprId,
         /// The index into [`Struct::members`](super::Struct::members).
         member: usize,
     },
     /// `a[i]` of an array, a matrix (a column) or a vector (a component).
     Index {
-        /// What is indexed.
+        /// The indexed value.
         base: ExprId,
         /// An `int` or `uint`; in range if it is a constant expression.
         index: ExprId,
     },
-    /// `a.length()` of an array: a constant expression.
+    /// `a.length()` of an array, a constant expression.
     Length {
-        /// The array; it has no side effects that count.
+        /// The array; its side effects do not count.
         array: ExprId,
     },
 }
 
-/// A number as written, with the value it stands for.
+/// A literal with its text and value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Literal {
     /// As written: `.5`, `1e3`, `0x1Fu`, `true`.
     pub text: Box<str>,
-    /// What it stands for; floats as the nearest `f64`.
+    /// The value; floats as the nearest `f64`.
     pub value: Value,
 }
 
-/// How a constructor makes its value (§5.4).
+/// The kind of a constructor (§5.4).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Constructor {
-    /// `float(x)`: the first component of one scalar, vector or matrix, converted. Under `lenient` also what an
-    /// implicit conversion of a scalar becomes.
+    /// `float(x)`: the first component of one scalar, vector or matrix, converted. Under `lenient` also an
+    /// implicit conversion of a scalar.
     Scalar,
     /// `vec3(s)`: a scalar in every component.
     Splat,
-    /// `vec3(a, b, …)`, `vec3(v4)`, `ivec2(v2)`: the components of the arguments in order, converted; those left
-    /// over in the last argument are not used.
+    /// `vec3(a, b, …)`, `vec3(v4)`, `ivec2(v2)`: the components of the arguments in order, converted; surplus
+    /// components of the last argument are dropped.
     Vector,
     /// `mat3(s)`: a scalar along the diagonal, zero elsewhere.
     Diagonal,
-    /// `mat3(m)`: another matrix's components where it has them, the identity's elsewhere.
+    /// `mat3(m)`: the components of a matrix of a different size where it has them, otherwise the identity's.
     Resize,
     /// `mat2(a, b, …)`, `mat2(v4)`: components in column order.
     Matrix,
@@ -168,7 +167,7 @@ pub struct Swizzle {
 }
 
 impl Swizzle {
-    /// Those components, of which there are one to four.
+    /// Makes a swizzle of one to four components; none for other counts or components over 3.
     #[must_use]
     pub fn new(components: &[u8]) -> Option<Self> {
         if components.is_empty() || components.len() > 4 || components.iter().any(|&c| c > 3) {
@@ -188,13 +187,13 @@ impl Swizzle {
         &self.components[..usize::from(self.len)]
     }
 
-    /// How many there are: the size of the value.
+    /// The number of components: the size of the value.
     #[must_use]
     pub fn size(self) -> u8 {
         self.len
     }
 
-    /// Whether a component stands in it twice, as in `v.xx`: then it is no lvalue (§5.5).
+    /// Whether a component occurs twice, as in `v.xx`: then it is not an lvalue (§5.5).
     #[must_use]
     pub fn repeats(&self) -> bool {
         let mut seen = [false; 4];
@@ -203,7 +202,7 @@ impl Swizzle {
             .any(|&c| std::mem::replace(&mut seen[usize::from(c)], true))
     }
 
-    /// As written with x, y, z, w.
+    /// The swizzle in x, y, z, w.
     #[must_use]
     pub fn name(&self) -> String {
         self.components()
@@ -213,7 +212,7 @@ impl Swizzle {
     }
 }
 
-/// The one list of what is an operand: `$visit` gets a reference to each, in the order of evaluation.
+/// The only list of operands: `$visit` gets a reference to each, in the order of evaluation.
 macro_rules! visit_operands {
     ($kind:expr, $visit:ident) => {
         match $kind {
@@ -257,8 +256,159 @@ impl ExprKind {
         visit_operands!(self, visit);
     }
 
-    /// Calls `visit` with each operand, in the order of evaluation, to put another in its place.
+    /// Calls `visit` with a mutable reference to each operand, in the order of evaluation.
     pub fn for_each_operand_mut(&mut self, mut visit: impl FnMut(&mut ExprId)) {
         visit_operands!(self, visit);
+    }
+}
+
+// Operators (GLSL ES 3.00.6 §5.1).
+
+/// The unary operators that have no side effect.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum UnaryOp {
+    /// `+x`.
+    Plus,
+    /// `-x`.
+    Minus,
+    /// `!x` of a `bool`.
+    Not,
+    /// `~x` of integers.
+    BitNot,
+}
+
+/// `++` or `--`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum StepOp {
+    /// `++`.
+    Increment,
+    /// `--`.
+    Decrement,
+}
+
+/// The binary operators; `=` and `,` have expressions of their own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum BinaryOp {
+    /// `a * b`: also the linear-algebraic product of matrices and vectors (§5.9).
+    Multiply,
+    /// `a / b`.
+    Divide,
+    /// `a % b` of integers.
+    Remainder,
+    /// `a + b`.
+    Add,
+    /// `a - b`.
+    Subtract,
+    /// `a << b`.
+    ShiftLeft,
+    /// `a >> b`.
+    ShiftRight,
+    /// `a < b` of scalars.
+    Less,
+    /// `a > b` of scalars.
+    Greater,
+    /// `a <= b` of scalars.
+    LessEqual,
+    /// `a >= b` of scalars.
+    GreaterEqual,
+    /// `a == b` for all types except samplers; the result is one `bool`.
+    Equal,
+    /// `a != b` for all types except samplers; the result is one `bool`.
+    NotEqual,
+    /// `a & b`.
+    BitAnd,
+    /// `a ^ b`.
+    BitXor,
+    /// `a | b`.
+    BitOr,
+    /// `a && b`: evaluates `b` only if `a` is true.
+    And,
+    /// `a ^^ b`.
+    Xor,
+    /// `a || b`: evaluates `b` only if `a` is false.
+    Or,
+}
+
+impl BinaryOp {
+    /// The operator with exchanged sides: `a < b` is `b > a`. Operators other than comparisons are unchanged.
+    #[must_use]
+    pub fn mirrored(self) -> Self {
+        match self {
+            Self::Less => Self::Greater,
+            Self::Greater => Self::Less,
+            Self::LessEqual => Self::GreaterEqual,
+            Self::GreaterEqual => Self::LessEqual,
+            other => other,
+        }
+    }
+}
+
+impl UnaryOp {
+    /// The operator's symbol in GLSL.
+    #[must_use]
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Plus => "+",
+            Self::Minus => "-",
+            Self::Not => "!",
+            Self::BitNot => "~",
+        }
+    }
+}
+
+impl StepOp {
+    /// The operator's symbol in GLSL.
+    #[must_use]
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Increment => "++",
+            Self::Decrement => "--",
+        }
+    }
+}
+
+impl BinaryOp {
+    /// The operator's symbol in GLSL.
+    #[must_use]
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Multiply => "*",
+            Self::Divide => "/",
+            Self::Remainder => "%",
+            Self::Add => "+",
+            Self::Subtract => "-",
+            Self::ShiftLeft => "<<",
+            Self::ShiftRight => ">>",
+            Self::Less => "<",
+            Self::Greater => ">",
+            Self::LessEqual => "<=",
+            Self::GreaterEqual => ">=",
+            Self::Equal => "==",
+            Self::NotEqual => "!=",
+            Self::BitAnd => "&",
+            Self::BitXor => "^",
+            Self::BitOr => "|",
+            Self::And => "&&",
+            Self::Xor => "^^",
+            Self::Or => "||",
+        }
+    }
+
+    /// The precedence, from 1 (`||`) to 11 (`*`), as in the table of §5.1; all are left-associative.
+    #[must_use]
+    pub fn precedence(self) -> u8 {
+        match self {
+            Self::Multiply | Self::Divide | Self::Remainder => 11,
+            Self::Add | Self::Subtract => 10,
+            Self::ShiftLeft | Self::ShiftRight => 9,
+            Self::Less | Self::Greater | Self::LessEqual | Self::GreaterEqual => 8,
+            Self::Equal | Self::NotEqual => 7,
+            Self::BitAnd => 6,
+            Self::BitXor => 5,
+            Self::BitOr => 4,
+            Self::And => 3,
+            Self::Xor => 2,
+            Self::Or => 1,
+        }
     }
 }

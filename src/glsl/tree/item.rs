@@ -1,94 +1,93 @@
-//! What stands outside of functions, and the variables of all scopes.
+//! Declarations at global scope, variables of all scopes, and statements.
 
-use super::{Block, Constant, ExprId, Id, Place, StructId, Type};
+use super::{Constant, ExprId, Id, Place, StructId, Type};
 
-/// One declaration at global scope, in the author's order.
+/// One declaration at global scope.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Item {
     /// A structure.
     Struct(StructId),
     /// A variable or constant.
     Variable(VariableId),
-    /// `float f(float);`: a declaration without body of a function that is defined elsewhere, or never called.
+    /// `float f(float);`: a prototype of a function that is defined elsewhere, or never called.
     Prototype(FunctionId),
     /// A function with its body.
     Function(FunctionId),
 }
 
-/// Names a function of a tree.
+/// The id of a function.
 pub type FunctionId = Id<Function>;
 
-/// A function of the author: one overload of its name.
+/// A user function: one overload of its name.
 #[derive(Debug, Clone)]
 pub struct Function {
-    /// The author's name for it.
+    /// Its name.
     pub name: String,
-    /// `void` for none.
+    /// The return type; `void` if there is no result.
     pub return_type: Type,
-    /// In order; each is a [`VariableKind::Parameter`]. Those of the definition, if there is one.
+    /// The parameters in order, each a [`VariableKind::Parameter`]; those of the definition, if there is one.
     pub parameters: Vec<VariableId>,
-    /// None if it is declared and never defined; then nothing calls it.
+    /// None if it is declared but not defined; then it is never called.
     pub body: Option<Block>,
-    /// Where its name stands in the definition, else in the first prototype.
+    /// The place of its name in the definition, otherwise in the first prototype.
     pub at: Place,
 }
 
-/// Names a variable of a tree.
+/// The id of a variable.
 pub type VariableId = Id<Variable>;
 
-/// A variable, a constant, a parameter, a uniform or something built in.
+/// A variable, a constant, a parameter, a uniform or a built-in variable.
 #[derive(Debug, Clone)]
 pub struct Variable {
-    /// The author's name for it; empty for a parameter without one. Several variables may share a name: scopes
-    /// are resolved.
+    /// Its name; empty for an unnamed parameter. Several variables may share a name: scopes are resolved.
     pub name: String,
     /// Its type.
     pub ty: Type,
-    /// What it is.
+    /// Its kind.
     pub kind: VariableKind,
-    /// What it begins with. Of a local without one, and of a global, the beginning is zero, as in WebGL.
-    pub initialiser: Option<ExprId>,
+    /// The initial value. A local or a global without one starts as zero, as in WebGL.
+    pub initializer: Option<ExprId>,
     /// The value of a constant.
     pub value: Option<Constant>,
-    /// Where its name stands; none for what is built in.
+    /// The place of its name; none for built-in variables.
     pub at: Option<Place>,
 }
 
-/// What a variable is.
+/// The kind of a variable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum VariableKind {
-    /// At global scope, written by the shader. Its initialiser is a constant expression, except under `lenient`:
-    /// then initialisers run before `mainImage`, in the author's order.
+    /// A global variable of the shader. Its initializer is a constant expression, except under `lenient`:
+    /// then initializers run before `mainImage`, in source order.
     Global,
-    /// `const` with an initialiser, at any scope. [`Variable::value`] is known if the initialiser is a constant
-    /// expression, as it is except under `lenient`.
+    /// `const` with an initializer, at any scope. [`Variable::value`] is known if the initializer is a
+    /// constant expression, as it is except under `lenient`.
     Const,
-    /// Inside of a function.
+    /// A local variable of a function.
     Local,
-    /// Of a function.
+    /// A parameter of a function.
     Parameter(Direction),
-    /// A uniform that `ShaderToy` feeds.
+    /// A uniform that `ShaderToy` sets.
     Input(Input),
-    /// A uniform that the author declares and nobody feeds: zero.
+    /// A uniform that the shader declares; nothing sets it, so it is zero.
     Uniform,
-    /// A varying that the author declares with `in` and nobody feeds: zero.
+    /// A varying that the shader declares with `in`; nothing sets it, so it is zero.
     Varying,
-    /// An output that the author declares with `out`, and nobody reads.
+    /// An output that the shader declares with `out`; nothing reads it.
     Output,
-    /// `gl_FragCoord` and the like.
+    /// A built-in variable such as `gl_FragCoord`.
     BuiltIn(BuiltInVariable),
-    /// `gl_MaxDrawBuffers` and the like; its value is known.
+    /// A built-in constant such as `gl_MaxDrawBuffers`; its value is known.
     BuiltInConstant,
 }
 
-/// How a parameter is passed (§6.1.1).
+/// The direction in which a parameter is passed (§6.1.1).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Direction {
-    /// Copied in; the function may change its copy.
+    /// Copied in; the function may modify its copy.
     In,
     /// `const in`: copied in, never changed.
     ConstIn,
-    /// Copied back at the end; zero at the beginning, as in WebGL.
+    /// Copied back at the end; initially zero, as in WebGL.
     Out,
     /// Copied in, and back at the end.
     InOut,
@@ -103,7 +102,7 @@ pub enum Input {
     Time,
     /// `float iTimeDelta`: seconds.
     TimeDelta,
-    /// `float iFrameRate`: frames a second.
+    /// `float iFrameRate`: frames per second.
     FrameRate,
     /// `int iFrame`: from 0.
     Frame,
@@ -121,7 +120,7 @@ pub enum Input {
     Channel(u8),
 }
 
-/// The variables that every fragment shader has (§7.2).
+/// The built-in variables of fragment shaders (§7.2).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum BuiltInVariable {
     /// `vec4 gl_FragCoord`.
@@ -130,6 +129,141 @@ pub enum BuiltInVariable {
     FrontFacing,
     /// `vec2 gl_PointCoord`.
     PointCoord,
-    /// `float gl_FragDepth`: written.
+    /// `float gl_FragDepth`, an output.
     FragDepth,
+}
+
+// Statements (GLSL ES 3.00.6 §6).
+
+/// A sequence of statements. Nesting is limited to [`MAX_NESTING`](crate::MAX_NESTING); `else if` chains do
+/// not nest.
+pub type Block = Vec<Statement>;
+
+/// A statement.
+#[derive(Debug, Clone)]
+pub struct Statement {
+    /// The kind of statement.
+    pub kind: StatementKind,
+    /// Its place, up to its `;`; for compound statements, their first keyword or `{`.
+    pub at: Place,
+}
+
+/// The kind of a statement.
+#[derive(Debug, Clone)]
+pub enum StatementKind {
+    /// `f(x);`, `x = 1.;`.
+    Expression(ExprId),
+    /// Declares a local variable, in scope from here to the end of the enclosing block; its initializer, if
+    /// any, runs each time. `float a, b;` becomes two statements.
+    Declare(VariableId),
+    /// Declares a structure inside a function.
+    Struct(StructId),
+    /// `{ … }`: a scope of its own.
+    Block(Block),
+    /// `if (a) … else if (b) … else …`.
+    If {
+        /// The conditions with their bodies, in order; at least one.
+        arms: Vec<Arm>,
+        /// The body of the last `else`.
+        otherwise: Option<Block>,
+    },
+    /// `switch`.
+    Switch {
+        /// An `int` or `uint`.
+        selector: ExprId,
+        /// The cases in order, with fallthrough (§6.2). All share one scope.
+        cases: Vec<Case>,
+    },
+    /// `for (init; condition; step) …`.
+    For {
+        /// Declarations, or one expression. The declared variables are in scope in the loop only.
+        init: Block,
+        /// The loop is infinite if there is none.
+        condition: Option<Condition>,
+        /// Evaluated after each iteration and by `continue`.
+        step: Option<ExprId>,
+        /// The body.
+        body: Block,
+    },
+    /// `while (condition) …`.
+    While {
+        /// Evaluated before each iteration.
+        condition: Condition,
+        /// The body.
+        body: Block,
+    },
+    /// `do … while (condition);`.
+    DoWhile {
+        /// The body.
+        body: Block,
+        /// A `bool`, evaluated after each iteration and by `continue`.
+        condition: ExprId,
+    },
+    /// `break;`.
+    Break,
+    /// `continue;`.
+    Continue,
+    /// `return;` or `return x;`, where `x` has exactly the function's return type.
+    Return(Option<ExprId>),
+    /// `discard;`.
+    Discard,
+}
+
+/// One condition of an `if` with its body.
+#[derive(Debug, Clone)]
+pub struct Arm {
+    /// A `bool`.
+    pub condition: ExprId,
+    /// Runs if the condition is true and no earlier one was.
+    pub body: Block,
+}
+
+/// The condition of a `for` or `while`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Condition {
+    /// A `bool`.
+    Expression(ExprId),
+    /// `while (bool b = f())`: a `bool` with initializer, declared and tested before each iteration.
+    Declare(VariableId),
+}
+
+/// A group of adjacent labels of a `switch` and the statements that follow them.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// At least one: adjacent labels such as `case 0: case 1:` are grouped.
+    pub labels: Vec<Label>,
+    /// The statements up to the next label, without an implied `break`.
+    pub body: Block,
+    /// The place of the first label.
+    pub at: Place,
+}
+
+/// A label of a `switch`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Label {
+    /// `case x:`.
+    Case {
+        /// The expression, of the selector's type.
+        expr: ExprId,
+        /// Its value; of an `int`, the bit pattern.
+        value: u32,
+    },
+    /// `default:`.
+    Default,
+}
+
+impl StatementKind {
+    /// Whether it contains other statements.
+    #[must_use]
+    pub fn is_compound(&self) -> bool {
+        matches!(
+            self,
+            Self::Block(_)
+                | Self::If { .. }
+                | Self::Switch { .. }
+                | Self::For { .. }
+                | Self::While { .. }
+                | Self::DoWhile { .. }
+        )
+    }
 }

@@ -1,76 +1,76 @@
-//! The typed tree: a shader whose every rule has been checked.
+//! The typed tree of a shader that passed all checks.
 //!
-//! Names are resolved to ids, every expression has its type, literals stay as written, and evaluation order and
-//! short circuit are as the author wrote them. Parentheses, comments, macros and precision qualifiers are gone;
-//! [`Place`]s lead back to the text.
+//! Names are resolved to ids, every expression has its type, literals stay as written, and evaluation order
+//! and short circuit are the source's. Parentheses, comments, macros and precision qualifiers are removed;
+//! [`Place`]s refer back to the source text.
 //!
-//! Nodes live in arenas ([`Arena`]) and are named by `Copy` ids: `tree[id]` reads any of them, `tree.exprs.push(…)` makes
-//! one, and a pass that rewrites a function takes its body out (`tree[f].body.take()`), works, and puts it back.
+//! Nodes are stored in arenas ([`Arena`]) and referred to by `Copy` ids: `tree[id]` reads any of them,
+//! `tree.exprs.push(…)` adds one, and a pass that rewrites a function takes its body out
+//! (`tree[f].body.take()`), changes it, and puts it back.
 //!
-//! Depth: blocks nest at most [`MAX_NESTING`](super::MAX_NESTING) deep, and operands a few times as deep, so that recursion over them
-//! is safe, with one exception. The first operand of a chain `a + b + c + …` (also of `,`, and of postfix `.x`, `[i]`) may be thousands
-//! deep: walk it with a loop, or any expression with [`Tree::postorder`], which needs no stack. `else if` chains are flat.
+//! Depth: blocks nest at most [`MAX_NESTING`](super::MAX_NESTING) deep, and operands a few times as deep, so
+//! that recursion over them is safe, with one exception. The first operand of a chain `a + b + c + …` (also
+//! of `,`, and of postfix `.x`, `[i]`) may be thousands deep: traverse it with a loop, or any expression with
+//! [`Tree::postorder`], which does not recurse. `else if` chains are flat.
 
-mod arena;
 mod builtin;
-mod constant;
 mod expr;
 mod item;
-mod operator;
-mod place;
-mod statement;
 mod types;
 pub mod walk;
 
 use std::collections::HashMap;
+use std::fmt;
+use std::hash::{Hash, Hasher};
+use std::marker::PhantomData;
 use std::ops::{Index, IndexMut};
 
-pub use arena::{Arena, Id};
-pub use builtin::BuiltIn;
-pub use constant::{Constant, Value};
-pub use expr::{Constructor, Expr, ExprId, ExprKind, Literal, Swizzle};
-pub use item::{
-    BuiltInVariable, Direction, Function, FunctionId, Input, Item, Variable, VariableId, VariableKind,
+use toyproof_diagnostic::Span;
+
+pub use self::builtin::BuiltIn;
+pub use self::expr::{BinaryOp, Constructor, Expr, ExprId, ExprKind, Literal, StepOp, Swizzle, UnaryOp};
+pub use self::item::{
+    Arm, Block, BuiltInVariable, Case, Condition, Direction, Function, FunctionId, Input, Item, Label,
+    Statement, StatementKind, Variable, VariableId, VariableKind,
 };
-pub use operator::{BinaryOp, StepOp, UnaryOp};
-pub use place::Place;
-pub use statement::{Arm, Block, Case, Condition, Label, Statement, StatementKind};
-pub use types::{ArrayId, ArrayType, Member, Sampler, SamplerShape, Scalar, Struct, StructId, Type};
+pub use self::types::{
+    ArrayId, ArrayType, Constant, Member, Sampler, SamplerShape, Scalar, Struct, StructId, Type, Value,
+};
 
 /// A type-checked shader.
 #[derive(Debug, Clone, Default)]
 pub struct Tree {
-    /// Every expression.
+    /// All expressions.
     pub exprs: Arena<Expr>,
-    /// Every variable of every scope, the inputs and built-in ones included.
+    /// All variables of all scopes, including inputs and built-in ones.
     pub variables: Arena<Variable>,
-    /// Every function of the author.
+    /// All user functions.
     pub functions: Arena<Function>,
-    /// Every structure of the author.
+    /// All user-defined structures.
     pub structs: Arena<Struct>,
-    /// The author's declarations at global scope, in order.
+    /// The declarations at global scope, in source order.
     pub items: Vec<Item>,
     arrays: Arena<ArrayType>,
     array_ids: HashMap<ArrayType, ArrayId>,
-    /// The values of constant expressions, as far as they are kept; none of those without a value.
+    /// The cached values of constant expressions; `None` for those without a value.
     pub(super) values: HashMap<ExprId, Option<Constant>>,
 }
 
 impl Tree {
-    /// The type of arrays of `size` elements.
+    /// The type of arrays with `size` elements, created once.
     pub fn array_of(&mut self, element: Type, size: u32) -> Type {
         let array = ArrayType { element, size };
         let arrays = &mut self.arrays;
         Type::Array(*self.array_ids.entry(array).or_insert_with(|| arrays.push(array)))
     }
 
-    /// What an array type is made of.
+    /// The element type and size of an array type.
     #[must_use]
     pub fn array(&self, id: ArrayId) -> ArrayType {
         self.arrays[id]
     }
 
-    /// The type as GLSL writes it: `vec3`, `Ray`, `float[4]`; `float[2][3]` is two arrays of three.
+    /// The type in GLSL syntax: `vec3`, `Ray`, `float[4]`; `float[2][3]` is two arrays of three.
     #[must_use]
     pub fn type_name(&self, mut ty: Type) -> String {
         let mut dimensions = Vec::new();
@@ -92,7 +92,8 @@ impl Tree {
         name + &dimensions.concat()
     }
 
-    /// What each component of a value is: columns, members and elements in order. None of `void` and samplers.
+    /// The scalar type of each component of a value: columns, members and elements in order. Empty for `void`
+    /// and samplers.
     #[must_use]
     pub fn scalars(&self, ty: Type) -> Vec<Scalar> {
         match ty {
@@ -111,10 +112,10 @@ impl Tree {
         }
     }
 
-    /// The expressions at and below `root`, operands before what uses them, in the order of evaluation.
+    /// The expressions at and below `root`, operands before their users, in the order of evaluation.
     #[must_use]
     pub fn postorder(&self, root: ExprId) -> Vec<ExprId> {
-        // Users before operands, the last operand first; reversed, that is the order wanted.
+        // Collects users before operands, last operand first; reversed, that is evaluation order.
         let mut order = Vec::new();
         let mut pending = vec![root];
         while let Some(id) = pending.pop() {
@@ -125,7 +126,7 @@ impl Tree {
         order
     }
 
-    /// The variable that an lvalue is, or is a part of; none for other expressions.
+    /// The variable that an lvalue is or is a part of; none for other expressions.
     #[must_use]
     pub fn root_variable(&self, mut lvalue: ExprId) -> Option<VariableId> {
         loop {
@@ -140,11 +141,11 @@ impl Tree {
     }
 }
 
-/// A kind of node that trees hold.
+/// A kind of node in a tree.
 pub trait Node: Sized {
-    /// Where a tree holds them.
+    /// The arena of these nodes.
     fn arena(tree: &Tree) -> &Arena<Self>;
-    /// The same, to change them.
+    /// The mutable arena of these nodes.
     fn arena_mut(tree: &mut Tree) -> &mut Arena<Self>;
 }
 
@@ -178,6 +179,172 @@ impl<T: Node> IndexMut<Id<T>> for Tree {
     }
 }
 
+// Arenas: one vector for each kind of node, and ids for its elements.
+//
+// Ids are `Copy`, so that passes can hold them during rewrites. Dropping a tree of any depth drops a few
+// vectors, so that no input overflows the stack.
+
+/// The id of one `T` in the arena that created it.
+pub struct Id<T> {
+    index: u32,
+    of: PhantomData<fn() -> T>,
+}
+
+impl<T> Id<T> {
+    /// The position in the arena, for side tables.
+    #[must_use]
+    pub fn index(self) -> usize {
+        self.index as usize
+    }
+}
+
+impl<T> Clone for Id<T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T> Copy for Id<T> {}
+
+impl<T> PartialEq for Id<T> {
+    fn eq(&self, other: &Self) -> bool {
+        self.index == other.index
+    }
+}
+
+impl<T> Eq for Id<T> {}
+
+impl<T> PartialOrd for Id<T> {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl<T> Ord for Id<T> {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        self.index.cmp(&other.index)
+    }
+}
+
+impl<T> Hash for Id<T> {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.index.hash(state);
+    }
+}
+
+impl<T> fmt::Debug for Id<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "#{}", self.index)
+    }
+}
+
+/// The nodes of one kind, in order of creation.
+#[derive(Debug, Clone)]
+pub struct Arena<T> {
+    nodes: Vec<T>,
+}
+
+impl<T> Default for Arena<T> {
+    fn default() -> Self {
+        Self { nodes: Vec::new() }
+    }
+}
+
+impl<T> Arena<T> {
+    /// Adds a node and returns its id.
+    pub fn push(&mut self, node: T) -> Id<T> {
+        let id = Self::id(self.nodes.len());
+        self.nodes.push(node);
+        id
+    }
+
+    /// The number of nodes.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Whether the arena is empty.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    /// The ids of all nodes.
+    pub fn ids(&self) -> impl Iterator<Item = Id<T>> + use<T> {
+        (0..self.nodes.len()).map(Self::id)
+    }
+
+    /// All nodes with their ids.
+    pub fn iter(&self) -> impl Iterator<Item = (Id<T>, &T)> {
+        self.ids().zip(&self.nodes)
+    }
+
+    /// The preprocessor's token budget keeps all counts far below 2³².
+    fn id(index: usize) -> Id<T> {
+        Id {
+            index: index as u32,
+            of: PhantomData,
+        }
+    }
+}
+
+impl<T> Index<Id<T>> for Arena<T> {
+    type Output = T;
+
+    fn index(&self, id: Id<T>) -> &T {
+        &self.nodes[id.index()]
+    }
+}
+
+impl<T> IndexMut<Id<T>> for Arena<T> {
+    fn index_mut(&mut self, id: Id<T>) -> &mut T {
+        &mut self.nodes[id.index()]
+    }
+}
+
+// Source places, through macros.
+
+/// The place of a node in the source text: where it is used and where its characters are.
+///
+/// The two differ for text from a macro's body: then `span` is the use of the outermost macro (`F(x)` in the
+/// file) and `spelled` is in the body of a `#define`. For macro arguments, which are text of the file, they
+/// are equal.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Place {
+    /// The span in the file outside macro bodies, which diagnostics use for line numbers.
+    pub span: Span,
+    /// The span of the characters.
+    pub spelled: Span,
+}
+
+impl Place {
+    /// Makes a place of text outside of any macro.
+    #[must_use]
+    pub fn plain(span: Span) -> Self {
+        Self { span, spelled: span }
+    }
+
+    /// The place from `self` to `other`. If it does not lie within one macro expansion, `spelled` is the same
+    /// as `span`.
+    #[must_use]
+    pub fn to(self, other: Self) -> Self {
+        let span = self.span.to(other.span);
+        let spelled = if self.span == other.span && self.is_expanded() && other.is_expanded() {
+            self.spelled.to(other.spelled)
+        } else {
+            span
+        };
+        Self { span, spelled }
+    }
+
+    /// Whether the characters are in the body of a macro.
+    #[must_use]
+    pub fn is_expanded(self) -> bool {
+        self.span != self.spelled
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use toyproof_diagnostic::{File, Files, Span};
@@ -185,7 +352,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_array_type_is_made_once_and_named_outside_in() {
+    fn array_types_are_unique_and_named_outermost_first() {
         let mut tree = Tree::default();
         let inner = tree.array_of(Type::FLOAT, 3);
         let outer = tree.array_of(inner, 2);
@@ -195,7 +362,7 @@ mod tests {
     }
 
     #[test]
-    fn postorder_gives_operands_first_and_survives_any_depth() {
+    fn postorder_visits_operands_first_at_any_depth() {
         let mut tree = Tree::default();
         let file = Files::default().add(File::new("a", ""));
         let mut push = |kind| {
@@ -224,14 +391,14 @@ mod tests {
             made.extend([right, chain]);
         }
         assert_eq!(tree.postorder(chain), made);
-        // Put the right operand in place of the left one: half of the chain is gone.
+        // Replace the left operand by the right one, which halves the chain.
         let right = made[made.len() - 2];
         tree[chain].kind.for_each_operand_mut(|operand| *operand = right);
         assert_eq!(tree.postorder(chain), [right, right, chain]);
     }
 
     #[test]
-    fn a_swizzle_knows_its_repeats() {
+    fn swizzles_detect_repeated_components() {
         assert!(Swizzle::new(&[0, 1, 0]).is_some_and(|s| s.repeats() && s.name() == "xyx"));
         assert!(Swizzle::new(&[3, 2]).is_some_and(|s| !s.repeats() && s.size() == 2));
         assert!(Swizzle::new(&[]).is_none() && Swizzle::new(&[4]).is_none());

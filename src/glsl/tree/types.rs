@@ -1,12 +1,14 @@
-//! Types (GLSL ES 3.00.6 §4.1).
+//! Types (GLSL ES 3.00.6 §4.1), and values of constant expressions.
+
+use std::sync::Arc;
 
 use super::{Id, Place};
 
-/// A type; `Copy`, and equal exactly if it is the same type: arrays and structures are named by id, and
-/// [`Tree::array_of`](super::Tree::array_of) makes each array type once.
+/// A type. It is `Copy`; two are equal if and only if they are the same type: arrays and structures are
+/// identified by id, and [`Tree::array_of`](super::Tree::array_of) creates each array type once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Type {
-    /// `void`: of functions that return nothing.
+    /// `void`, the return type of functions without a result.
     Void,
     /// `bool`, `int`, `uint`, `float`.
     Scalar(Scalar),
@@ -14,24 +16,24 @@ pub enum Type {
     Vector(Scalar, u8),
     /// `mat3`, `mat2x4`, …: 2, 3 or 4 columns of 2, 3 or 4 floats.
     Matrix {
-        /// How many columns: the first number of `mat2x4`.
+        /// The number of columns: the first number of `mat2x4`.
         columns: u8,
-        /// How many rows: the second number of `mat2x4`.
+        /// The number of rows: the second number of `mat2x4`.
         rows: u8,
     },
     /// `sampler2D`, `isamplerCube`, …
     Sampler(Sampler),
-    /// A structure of the author.
+    /// A user-defined structure.
     Struct(StructId),
     /// An array of known size.
     Array(ArrayId),
-    /// Of an expression in which an error was found and told: it fits everywhere, so that one mistake is
-    /// told once. Never in a tree that `check` returns.
+    /// The type of an expression whose error has been reported. It fits everywhere, so that each error is
+    /// reported once. Never in a tree that `check` returns.
     #[default]
     Error,
 }
 
-/// `bool`, `int`, `uint` or `float`: also what vectors are made of.
+/// A scalar type, also the component type of vectors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Scalar {
     /// `bool`.
@@ -44,10 +46,10 @@ pub enum Scalar {
     Float,
 }
 
-/// A sampler type: what a texture is made of and how it is looked up.
+/// A sampler type: texel type, shape, and whether it compares depths.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Sampler {
-    /// What a texel's components are: `float`, `int` or `uint`.
+    /// The type of a texel's components: `float`, `int` or `uint`.
     pub texel: Scalar,
     /// The texture's shape.
     pub shape: SamplerShape,
@@ -68,40 +70,40 @@ pub enum SamplerShape {
     D2Array,
 }
 
-/// Names an array type of a tree.
+/// The id of an array type.
 pub type ArrayId = Id<ArrayType>;
 
 /// An array type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct ArrayType {
-    /// The type of an element; an array only under `lenient` (arrays of arrays are of ES 3.10).
+    /// The element type; an array only under `lenient` (GLSL ES 3.10 has arrays of arrays).
     pub element: Type,
-    /// How many; at least 1.
+    /// The number of elements, at least 1.
     pub size: u32,
 }
 
-/// Names a structure of a tree.
+/// The id of a structure.
 pub type StructId = Id<Struct>;
 
-/// A structure type. Each declaration is a type of its own, whatever its name (§4.1.8).
+/// A structure type. Each declaration is a distinct type, whatever its name (§4.1.8).
 #[derive(Debug, Clone)]
 pub struct Struct {
-    /// The author's name for it; empty for `struct { … } x;`.
+    /// Its name; empty for `struct { … } x;`.
     pub name: String,
     /// Its members, at least one.
     pub members: Vec<Member>,
-    /// Where the name (or the word `struct`) stands.
+    /// The place of its name, or of the keyword `struct`.
     pub at: Place,
 }
 
 /// A member of a structure.
 #[derive(Debug, Clone)]
 pub struct Member {
-    /// The author's name for it.
+    /// Its name.
     pub name: String,
     /// Its type.
     pub ty: Type,
-    /// Where its name stands.
+    /// The place of its name.
     pub at: Place,
 }
 
@@ -115,7 +117,7 @@ impl Type {
     /// `float`.
     pub const FLOAT: Self = Self::Scalar(Scalar::Float);
 
-    /// The vector of that many components; the scalar itself for one.
+    /// The vector type with `size` components; the scalar itself for one.
     #[must_use]
     pub fn vector(scalar: Scalar, size: u8) -> Self {
         match size {
@@ -124,7 +126,7 @@ impl Type {
         }
     }
 
-    /// What its components are: of scalars, vectors and matrices.
+    /// The component type of a scalar, vector or matrix.
     #[must_use]
     pub fn scalar(self) -> Option<Scalar> {
         match self {
@@ -134,7 +136,7 @@ impl Type {
         }
     }
 
-    /// How many components a scalar, vector or matrix has.
+    /// The number of components of a scalar, vector or matrix.
     #[must_use]
     pub fn component_count(self) -> Option<u8> {
         match self {
@@ -145,7 +147,8 @@ impl Type {
         }
     }
 
-    /// The same shape of another scalar: `ivec3` for `vec3` and `int`. Of scalars and vectors only.
+    /// The type of the same shape with a different component type: `ivec3` for `vec3` and `int`. For scalars
+    /// and vectors only.
     #[must_use]
     pub fn with_scalar(self, scalar: Scalar) -> Option<Self> {
         match self {
@@ -157,7 +160,7 @@ impl Type {
 }
 
 impl Scalar {
-    /// The word for it.
+    /// Its name in GLSL.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -168,7 +171,7 @@ impl Scalar {
         }
     }
 
-    /// What the names of its vectors begin with: `ivec3`.
+    /// The prefix of its vector types' names: `i` in `ivec3`.
     #[must_use]
     pub fn vector_prefix(self) -> &'static str {
         match self {
@@ -184,7 +187,7 @@ impl Sampler {
     /// `sampler2D`.
     pub const D2: Self = Self::float(SamplerShape::D2);
 
-    /// The word for it: `isampler2DArray`.
+    /// Its name in GLSL: `isampler2DArray`.
     #[must_use]
     pub fn name(self) -> String {
         let shape = match self.shape {
@@ -197,13 +200,135 @@ impl Sampler {
         format!("{}sampler{shape}{shadow}", self.texel.vector_prefix())
     }
 
-    /// The sampler of floats of that shape.
+    /// The float sampler of a shape.
     #[must_use]
     pub const fn float(shape: SamplerShape) -> Self {
         Self {
             texel: Scalar::Float,
             shape,
             shadow: false,
+        }
+    }
+}
+
+// Values of constant expressions.
+
+/// The value of a scalar.
+///
+/// Floats are `f64`: a literal is the nearest `f64`, and constant expressions are evaluated in `f64`. The
+/// specification requires only integers of such values (array sizes, indices, labels); consumers that
+/// evaluate the shader recompute its constants from the tree in their own number type.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Value {
+    /// A `bool`.
+    Bool(bool),
+    /// An `int`.
+    Int(i32),
+    /// A `uint`.
+    Uint(u32),
+    /// A `float`.
+    Float(f64),
+}
+
+/// The value of an expression of any type.
+///
+/// Arrays and structures share their parts with the values they were made from, so that a copy, an element
+/// access and a constructor take time proportional to their direct parts only.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Constant {
+    /// Its type.
+    pub ty: Type,
+    content: Content,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Content {
+    /// A scalar.
+    One(Value),
+    /// A vector or matrix, in column order.
+    Components(Arc<[Value]>),
+    /// A structure or array: the members or elements in order, and their total number of scalars.
+    Parts(Arc<[Constant]>, usize),
+}
+
+impl Constant {
+    /// Makes a scalar.
+    #[must_use]
+    pub fn scalar(value: Value) -> Self {
+        Self {
+            ty: value.ty(),
+            content: Content::One(value),
+        }
+    }
+
+    /// Makes a scalar, vector or matrix of its components, in column order.
+    #[must_use]
+    pub fn of_components(ty: Type, components: Vec<Value>) -> Self {
+        let content = match components[..] {
+            [only] => Content::One(only),
+            _ => Content::Components(components.into()),
+        };
+        Self { ty, content }
+    }
+
+    /// Makes a structure or array of its members or elements.
+    #[must_use]
+    pub fn of_parts(ty: Type, parts: Vec<Self>) -> Self {
+        let counts = parts.iter().map(Self::scalar_count);
+        let count = counts.fold(0, usize::saturating_add);
+        let content = Content::Parts(parts.into(), count);
+        Self { ty, content }
+    }
+
+    /// The components of a scalar, vector or matrix, in column order; empty for structures and arrays.
+    #[must_use]
+    pub fn components(&self) -> &[Value] {
+        match &self.content {
+            Content::One(value) => std::slice::from_ref(value),
+            Content::Components(values) => values,
+            Content::Parts(..) => &[],
+        }
+    }
+
+    /// The members of a structure or the elements of an array; empty for other values.
+    #[must_use]
+    pub fn parts(&self) -> &[Self] {
+        match &self.content {
+            Content::Parts(parts, _) => parts,
+            Content::One(_) | Content::Components(_) => &[],
+        }
+    }
+
+    /// The total number of scalars at all depths.
+    #[must_use]
+    pub fn scalar_count(&self) -> usize {
+        match &self.content {
+            Content::One(_) => 1,
+            Content::Components(values) => values.len(),
+            Content::Parts(_, count) => *count,
+        }
+    }
+
+    /// The value of an `int` or `uint`; none for other types.
+    #[must_use]
+    pub fn integer(&self) -> Option<i64> {
+        match self.content {
+            Content::One(Value::Int(value)) => Some(i64::from(value)),
+            Content::One(Value::Uint(value)) => Some(i64::from(value)),
+            _ => None,
+        }
+    }
+}
+
+impl Value {
+    /// The scalar type of the value.
+    #[must_use]
+    pub fn ty(self) -> Type {
+        match self {
+            Self::Bool(_) => Type::BOOL,
+            Self::Int(_) => Type::INT,
+            Self::Uint(_) => Type::UINT,
+            Self::Float(_) => Type::FLOAT,
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Visitors of statements and of what expressions write. Blocks nest at most `MAX_NESTING` deep, so these recurse.
+//! Traversals of statements and expressions. Blocks nest at most `MAX_NESTING` deep, so these recurse.
 
 use std::collections::HashSet;
 
@@ -7,7 +7,7 @@ use crate::tree::{
     VariableKind,
 };
 
-/// The blocks directly inside of a statement, in order; the `init` of a `for` is one.
+/// The blocks directly inside a statement, in order; the `init` of a `for` is one.
 #[must_use]
 pub fn inner(statement: &Statement) -> Vec<&Block> {
     match &statement.kind {
@@ -21,7 +21,7 @@ pub fn inner(statement: &Statement) -> Vec<&Block> {
     }
 }
 
-/// The blocks directly inside of a statement that hold statements of any kind: not the `init` of a `for`.
+/// The blocks directly inside a statement that can contain any statement: not the `init` of a `for`.
 pub fn inner_mut(statement: &mut Statement) -> Vec<&mut Block> {
     match &mut statement.kind {
         StatementKind::Block(body)
@@ -38,7 +38,7 @@ pub fn inner_mut(statement: &mut Statement) -> Vec<&mut Block> {
     }
 }
 
-/// Calls `visit` with every statement, outer ones before those inside of them.
+/// Calls `visit` with every statement, outer statements before inner ones.
 pub fn each<'a>(block: &'a [Statement], visit: &mut dyn FnMut(&'a Statement)) {
     for statement in block {
         visit(statement);
@@ -48,8 +48,8 @@ pub fn each<'a>(block: &'a [Statement], visit: &mut dyn FnMut(&'a Statement)) {
     }
 }
 
-/// Rebuilds a block from the inside out: `change` is given each statement, those inside of it done, and puts what
-/// becomes of it into the new block. The `init` of a `for` stays as it is.
+/// Rebuilds a block bottom-up: `change` gets each statement, whose inner statements are done, and appends its
+/// replacement to the new block. The `init` of a `for` is unchanged.
 pub fn rebuild(block: Block, change: &mut dyn FnMut(Statement, &mut Block)) -> Block {
     let mut out = Block::with_capacity(block.len());
     for mut statement in block {
@@ -61,17 +61,17 @@ pub fn rebuild(block: Block, change: &mut dyn FnMut(Statement, &mut Block)) -> B
     out
 }
 
-/// The expressions that a statement evaluates itself, in the order of its text.
+/// The expressions that a statement evaluates itself, in source order.
 #[must_use]
 pub fn own_expressions(tree: &Tree, statement: &Statement) -> Vec<ExprId> {
-    let initialiser = |variable: VariableId| tree[variable].initialiser;
+    let initializer = |variable: VariableId| tree[variable].initializer;
     let tested = |condition: &Condition| match *condition {
         Condition::Expression(expr) => Some(expr),
-        Condition::Declare(variable) => initialiser(variable),
+        Condition::Declare(variable) => initializer(variable),
     };
     match &statement.kind {
         StatementKind::Expression(expr) => vec![*expr],
-        StatementKind::Declare(variable) => initialiser(*variable).into_iter().collect(),
+        StatementKind::Declare(variable) => initializer(*variable).into_iter().collect(),
         StatementKind::If { arms, .. } => arms.iter().map(|arm| arm.condition).collect(),
         StatementKind::Switch { selector, .. } => vec![*selector],
         StatementKind::For { condition, step, .. } => {
@@ -88,7 +88,7 @@ pub fn own_expressions(tree: &Tree, statement: &Statement) -> Vec<ExprId> {
     }
 }
 
-/// The variables that a statement declares itself.
+/// The variable that a statement itself declares, if any.
 #[must_use]
 pub fn declared(statement: &Statement) -> Option<VariableId> {
     match statement.kind {
@@ -105,7 +105,7 @@ pub fn declared(statement: &Statement) -> Option<VariableId> {
     }
 }
 
-/// Every expression that a block evaluates: whole trees, by their roots.
+/// The roots of all expressions that a block evaluates.
 #[must_use]
 pub fn roots(tree: &Tree, block: &Block) -> Vec<ExprId> {
     let mut roots = Vec::new();
@@ -115,8 +115,8 @@ pub fn roots(tree: &Tree, block: &Block) -> Vec<ExprId> {
     roots
 }
 
-/// Whether running an expression does more than give a value, or may take long: an assignment or a call of an
-/// author's function stands in it.
+/// Whether evaluating an expression has side effects or may take long: it contains an assignment, a call of a
+/// user function, or a built-in function with an `out` parameter.
 #[must_use]
 pub fn acts(tree: &Tree, root: ExprId) -> bool {
     any(tree, root, |kind| match kind {
@@ -126,7 +126,7 @@ pub fn acts(tree: &Tree, root: ExprId) -> bool {
     })
 }
 
-/// Whether one is found at or below an expression.
+/// Whether `is_one` holds for any expression at or below `root`.
 pub fn any(tree: &Tree, root: ExprId, mut is_one: impl FnMut(&ExprKind) -> bool) -> bool {
     let mut pending = vec![root];
     while let Some(id) = pending.pop() {
@@ -138,7 +138,7 @@ pub fn any(tree: &Tree, root: ExprId, mut is_one: impl FnMut(&ExprKind) -> bool)
     false
 }
 
-/// Whether control can leave a loop's body by a `continue` of that loop.
+/// Whether a loop's body contains a `continue` of that loop.
 #[must_use]
 pub fn continues(block: &Block) -> bool {
     block.iter().any(|statement| match &statement.kind {
@@ -148,7 +148,7 @@ pub fn continues(block: &Block) -> bool {
     })
 }
 
-/// Whether nothing that follows the statement in its block is ever run.
+/// Whether the statement is a jump, after which nothing in its block runs.
 #[must_use]
 pub fn jumps(statement: &Statement) -> bool {
     matches!(
@@ -157,7 +157,7 @@ pub fn jumps(statement: &Statement) -> bool {
     )
 }
 
-/// The labels of a `case` that are values, with their texts.
+/// The expressions of the `case` labels, without `default`.
 pub fn values(labels: &[Label]) -> impl Iterator<Item = ExprId> + '_ {
     labels.iter().filter_map(|label| match label {
         Label::Case { expr, .. } => Some(*expr),
@@ -165,7 +165,7 @@ pub fn values(labels: &[Label]) -> impl Iterator<Item = ExprId> + '_ {
     })
 }
 
-/// Whether a variable stands in an expression.
+/// Whether an expression contains a variable.
 #[must_use]
 pub fn mentions(tree: &Tree, root: ExprId, variable: VariableId) -> bool {
     any(
@@ -175,8 +175,9 @@ pub fn mentions(tree: &Tree, root: ExprId, variable: VariableId) -> bool {
     )
 }
 
-/// Whether evaluating `value` may change what a path reads, its variable or what its indices are made of:
-/// that stands in `value` where something acts, or a function that is called may know it.
+/// Whether evaluating `value` may change what the lvalue `path` reads (its variable or variables in its
+/// indices): `value` has side effects and contains such a variable, or calls a function that may access a
+/// global one.
 #[must_use]
 pub fn may_change(tree: &Tree, value: ExprId, path: ExprId) -> bool {
     if !acts(tree, value) {
@@ -200,7 +201,8 @@ pub fn may_change(tree: &Tree, value: ExprId, path: ExprId) -> bool {
 }
 
 impl Tree {
-    /// Calls `visit` with each lvalue that the expression itself writes, not its operands, and with the value where `=` gives one.
+    /// Calls `visit` with each lvalue that the expression itself (not its operands) writes, and with the
+    /// assigned value for `=`.
     pub fn each_write(&self, expr: ExprId, mut visit: impl FnMut(ExprId, Option<ExprId>)) {
         match &self[expr].kind {
             ExprKind::Assign { op, target, value } => visit(*target, op.is_none().then_some(*value)),
@@ -222,7 +224,7 @@ impl Tree {
     }
 }
 
-/// How a parameter is passed.
+/// The direction of a parameter.
 #[must_use]
 pub fn direction(tree: &Tree, parameter: VariableId) -> Direction {
     match tree[parameter].kind {

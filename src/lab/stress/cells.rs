@@ -1,23 +1,23 @@
-//! Cases for every step of the axes, with the truth about each.
+//! Cases for each step of the axes, with the reference result of each.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
-use super::axis::{Axis, Case, Kind, Shot, Step};
+use super::axis::{Axis, Case, Kind, RaySphere, Step};
+use super::case_sampler::Random;
 use super::exact::{self, Precise};
-use super::random::Random;
 
-/// How often a case is drawn anew, at most, for each that is wanted: grazing ones are rare.
-const DRAWS: usize = 64;
+/// The maximum number of samples per requested case: grazing cases are rare.
+const MAX_ATTEMPTS_PER_CASE: usize = 64;
 
-/// The cases of all axes of a kind, one after the other.
+/// The cases of all axes of a kind, step by step.
 #[derive(Debug, Default)]
 pub(super) struct Cells {
     pub(super) cases: Vec<Case>,
-    /// What is right about each.
-    pub(super) exact: Vec<Truth>,
+    /// The reference result of each case.
+    pub(super) references: Vec<Reference>,
     pub(super) steps: Vec<Cell>,
 }
 
@@ -29,62 +29,68 @@ pub(super) struct Cell {
     pub(super) range: Range<usize>,
 }
 
-/// What is right about a case.
+/// The reference result of a case.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Truth {
+pub(super) struct Reference {
     /// The smallest t > 0.
     pub(super) t: Option<Precise>,
-    /// Where that is so near that it may as well be taken for where the ray starts: what else is right.
-    pub(super) otherwise: Otherwise,
-    /// A part of the case is infinite or NaN: no hit is right, and so is NaN.
+    /// The alternative result that is also accepted, if `t` is so small that the hit may count as the ray's
+    /// origin.
+    pub(super) alternative: Alternative,
+    /// A part of the case is infinite or NaN: both a miss and NaN are accepted.
     pub(super) undefined: bool,
 }
 
-/// What else is right of a ray.
+/// An alternative result that is also accepted.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) enum Otherwise {
+pub(super) enum Alternative {
     #[default]
     Nothing,
     Miss,
     Hit(Precise),
 }
 
-impl Truth {
+impl Reference {
     pub(super) const UNDEFINED: Self = Self {
         t: None,
-        otherwise: Otherwise::Nothing,
+        alternative: Alternative::Nothing,
         undefined: true,
     };
 }
 
-/// Of a ray that starts at a surface, a hit nearer than this share of the radius may be left out.
-const NEAR: f64 = 1e-3;
+/// The distance below which a hit may be ignored by a ray that starts at a surface, in radii.
+const NEAR_HIT_RADII: f64 = 1e-3;
 
-/// What is right about a case, and its discriminant; none where a part of it is no number. `near`: whether it starts at the surface.
-pub(super) fn truth_of(case: &Case, near: bool) -> Option<(Truth, f64)> {
-    let (met, size) = match *case {
-        Case::Sphere(Shot { o, d, c, r }) => (exact::sphere(o, d, c, r)?, f64::from(r)),
+/// The reference result of a case, and its discriminant; `None` for secondary rays, and if a part is infinite
+/// or NaN. `near`: whether the ray starts at the surface.
+pub(super) fn reference_of(case: &Case, near: bool) -> Option<(Reference, f64)> {
+    let (intersection, size) = match *case {
+        Case::Sphere(RaySphere { o, d, c, r }) => (exact::sphere(o, d, c, r)?, f64::from(r)),
         Case::Quadric { o, d, q, g, k } => (exact::quadric(o, d, q, g, k)?, 1.0),
-        // What is asked of them is not where they meet anything.
+        // Secondary rays are not tested for their hits.
         Case::Secondary { .. } => return None,
     };
-    let next = met.roots.iter().find(|root| root.high > NEAR * size).copied();
-    let is_near = |t: Precise| near && t.high <= NEAR * size;
-    let truth = Truth {
-        t: met.t,
-        otherwise: match (met.t.is_some_and(is_near), next) {
-            (false, _) => Otherwise::Nothing,
-            (true, None) => Otherwise::Miss,
-            (true, Some(next)) => Otherwise::Hit(next),
+    let next = intersection
+        .roots
+        .iter()
+        .find(|root| root.high > NEAR_HIT_RADII * size)
+        .copied();
+    let is_near = |t: Precise| near && t.high <= NEAR_HIT_RADII * size;
+    let reference = Reference {
+        t: intersection.t,
+        alternative: match (intersection.t.is_some_and(is_near), next) {
+            (false, _) => Alternative::Nothing,
+            (true, None) => Alternative::Miss,
+            (true, Some(next)) => Alternative::Hit(next),
         },
         undefined: false,
     };
-    Some((truth, met.discriminant))
+    Some((reference, intersection.discriminant))
 }
 
 impl Cells {
-    /// So many cases for each step of the axes of that kind; none if it was interrupted.
-    pub(super) fn draw(
+    /// Samples `count` cases for each step of the axes of a kind; `None` if interrupted.
+    pub(super) fn sample(
         axes: &[Axis],
         kind: Kind,
         seed: u64,
@@ -96,26 +102,26 @@ impl Cells {
             .filter(|axis| axis.kind == kind)
             .flat_map(|axis| axis.steps.iter().map(move |&step| (axis, step)))
             .collect();
-        let drawn: Vec<Vec<_>> = steps
+        let sampled: Vec<Vec<_>> = steps
             .par_iter()
             .map(|(axis, step)| {
                 let random = &mut Random::new(seed, &[axis.name, &step.to_string()]);
-                let draws = (0..count * DRAWS).map_while(|_| {
+                let attempts = (0..count * MAX_ATTEMPTS_PER_CASE).map_while(|_| {
                     let stop = interrupt.load(Ordering::Relaxed);
-                    (!stop).then(|| drawn(axis, *step, random))
+                    (!stop).then(|| sample_case(axis, *step, random))
                 });
-                draws.flatten().take(count).collect()
+                attempts.flatten().take(count).collect()
             })
             .collect();
         if interrupt.load(Ordering::Relaxed) {
             return None;
         }
         let mut all = Self::default();
-        for ((axis, step), drawn) in steps.into_iter().zip(drawn) {
+        for ((axis, step), sampled) in steps.into_iter().zip(sampled) {
             let start = all.cases.len();
-            for (case, exact) in drawn {
+            for (case, reference) in sampled {
                 all.cases.push(case);
-                all.exact.push(exact);
+                all.references.push(reference);
             }
             all.steps.push(Cell {
                 axis: axis.name,
@@ -127,12 +133,12 @@ impl Cells {
     }
 }
 
-fn drawn(axis: &Axis, step: Step, random: &mut Random) -> Option<(Case, Truth)> {
-    let case = axis.draw(random, step)?;
-    match truth_of(&case, axis.name == "origin") {
+fn sample_case(axis: &Axis, step: Step, random: &mut Random) -> Option<(Case, Reference)> {
+    let case = axis.sample(random, step)?;
+    match reference_of(&case, axis.name == "origin") {
         Some((_, discriminant)) if discriminant.abs() < axis.margin => None,
-        Some((truth, _)) => Some((case, truth)),
-        None => Some((case, Truth::UNDEFINED)),
+        Some((reference, _)) => Some((case, reference)),
+        None => Some((case, Reference::UNDEFINED)),
     }
 }
 
@@ -142,46 +148,48 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_step_has_its_cases_and_a_seed_draws_them_again() {
+    fn steps_are_filled_and_reproducible() {
         let axes = axes();
         let never = AtomicBool::new(false);
         for kind in [Kind::Spheres, Kind::Quadrics, Kind::Secondaries] {
-            let drawn = Cells::draw(&axes, kind, 7, 20, &never).unwrap();
-            for cell in &drawn.steps {
+            let sampled = Cells::sample(&axes, kind, 7, 20, &never).unwrap();
+            for cell in &sampled.steps {
                 assert_eq!(cell.range.len(), 20, "{} {}", cell.axis, cell.step);
             }
-            let again = Cells::draw(&axes, kind, 7, 20, &never).unwrap();
-            // NaN is not equal to itself, its words are.
-            assert_eq!(format!("{:?}", drawn.cases), format!("{:?}", again.cases));
-            let other = Cells::draw(&axes, kind, 8, 20, &never).unwrap();
-            assert_ne!(format!("{:?}", drawn.cases), format!("{:?}", other.cases));
+            let repeated = Cells::sample(&axes, kind, 7, 20, &never).unwrap();
+            // NaN does not equal itself, but its text does.
+            assert_eq!(format!("{:?}", sampled.cases), format!("{:?}", repeated.cases));
+            let other = Cells::sample(&axes, kind, 8, 20, &never).unwrap();
+            assert_ne!(format!("{:?}", sampled.cases), format!("{:?}", other.cases));
         }
         let stopped = AtomicBool::new(true);
-        assert!(Cells::draw(&axes, Kind::Spheres, 7, 20, &stopped).is_none());
+        assert!(Cells::sample(&axes, Kind::Spheres, 7, 20, &stopped).is_none());
     }
 
     #[test]
-    fn both_answers_occur_on_every_axis_of_spheres() {
-        let drawn = Cells::draw(&axes(), Kind::Spheres, 1, 200, &AtomicBool::new(false)).unwrap();
-        for cell in drawn.steps {
-            let hits = drawn.exact[cell.range.clone()]
+    fn sphere_axes_contain_hits_and_misses() {
+        let sampled = Cells::sample(&axes(), Kind::Spheres, 1, 200, &AtomicBool::new(false)).unwrap();
+        for cell in sampled.steps {
+            let hits = sampled.references[cell.range.clone()]
                 .iter()
-                .filter_map(|truth| truth.t)
+                .filter_map(|reference| reference.t)
                 .count();
-            let told = format!("{} {}: {hits} of 200", cell.axis, cell.step);
+            let context = format!("{} {}: {hits} of 200", cell.axis, cell.step);
             match (cell.axis, cell.step) {
                 ("grazing", Step::Number(delta)) => {
-                    assert_eq!(hits, if delta > 0.0 { 200 } else { 0 }, "{told}");
+                    assert_eq!(hits, if delta > 0.0 { 200 } else { 0 }, "{context}");
                 }
-                ("parts", Step::Word("zero direction")) => assert_eq!(hits, 0, "{told}"),
-                ("parts", Step::Word(word)) if word.starts_with("infinite") || word.starts_with("NaN") => {
-                    assert_eq!(hits, 0, "{told}");
+                ("parts", Step::Label("zero direction")) => assert_eq!(hits, 0, "{context}"),
+                ("parts", Step::Label(label))
+                    if label.starts_with("infinite") || label.starts_with("NaN") =>
+                {
+                    assert_eq!(hits, 0, "{context}");
                 }
-                ("parts", Step::Word("zero radius"))
-                | ("origin", Step::Word("the origin inside"))
+                ("parts", Step::Label("zero radius"))
+                | ("origin", Step::Label("the origin inside"))
                 | ("gap of shells", _) => {}
-                ("origin", Step::Word("the origin one ULP inside")) => assert_eq!(hits, 200, "{told}"),
-                _ => assert!((20..=195).contains(&hits), "{told}"),
+                ("origin", Step::Label("the origin one ULP inside")) => assert_eq!(hits, 200, "{context}"),
+                _ => assert!((20..=195).contains(&hits), "{context}"),
             }
         }
     }

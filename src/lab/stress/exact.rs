@@ -1,7 +1,8 @@
-//! The oracle: where a ray meets a surface of second degree, in integers.
+//! The exact reference: ray–quadric intersection in integer arithmetic.
 //!
-//! Every f32 is an integer times a power of two, and so are sums and products of them. Whether a ray meets a surface is the sign of such
-//! a number, found without rounding; a root is then taken to more bits than any type that is tested has.
+//! Each f32 is an integer times a power of two, and so are sums and products of them. Whether a ray hits a
+//! surface is the sign of such a number, computed without rounding; roots are then computed to more bits than
+//! any tested type has.
 
 use std::cmp::Ordering;
 use std::ops::{Add, Mul, Neg, Sub};
@@ -9,10 +10,11 @@ use std::ops::{Add, Mul, Neg, Sub};
 use dashu_int::IBig;
 use dashu_int::ops::{Abs, BitTest, SquareRoot};
 
-/// Bits that roots and quotients are taken to: three times those of f64, so that what is left over is far below its last place.
+/// The precision of roots and quotients, in bits: three times that of f64, so that the remainder is far below
+/// its last place.
 const BITS: usize = 160;
 
-/// mantissa · 2^exponent
+/// The number mantissa · 2^exponent.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Dyadic {
     mantissa: IBig,
@@ -20,7 +22,7 @@ struct Dyadic {
 }
 
 impl Dyadic {
-    /// None if it is infinite or NaN.
+    /// Converts a float; `None` if it is infinite or NaN.
     fn new(value: f32) -> Option<Self> {
         if !value.is_finite() {
             return None;
@@ -47,7 +49,7 @@ impl Dyadic {
         self.mantissa.cmp(&IBig::ZERO)
     }
 
-    /// Both mantissas over the smaller exponent.
+    /// Both mantissas at the smaller exponent.
     fn aligned(&self, other: &Self) -> (IBig, IBig, isize) {
         let exponent = self.exponent.min(other.exponent);
         let shifted = |one: &Self| &one.mantissa << (one.exponent - exponent) as usize;
@@ -58,10 +60,10 @@ impl Dyadic {
         (&self.mantissa).abs().bit_len()
     }
 
-    /// The square root of what is not negative, rounded down to at least [`BITS`] bits.
+    /// The square root of a non-negative number, rounded down to at least [`BITS`] bits.
     fn sqrt(&self) -> Self {
         let mut shift = (2 * BITS).saturating_sub(self.bits()) as isize;
-        // Half of the exponent must be whole.
+        // Half of the exponent must be an integer.
         shift += (self.exponent - shift).rem_euclid(2);
         let radicand = (&self.mantissa).abs() << shift as usize;
         Self {
@@ -70,7 +72,7 @@ impl Dyadic {
         }
     }
 
-    /// The quotient by what is not 0, rounded to at least [`BITS`] bits.
+    /// The quotient by a nonzero number, truncated to at least [`BITS`] bits.
     fn over(&self, other: &Self) -> Self {
         let shift = (BITS + other.bits()).saturating_sub(self.bits());
         Self {
@@ -84,7 +86,7 @@ impl Dyadic {
         one.cmp(&other)
     }
 
-    /// The nearest f64 below in size, and what is left, likewise.
+    /// The number truncated to f64, and the remainder likewise.
     fn pair(&self) -> Precise {
         let high = self.leading();
         let rest = self - &high.0;
@@ -94,13 +96,13 @@ impl Dyadic {
         }
     }
 
-    /// The first 53 bits, and their value.
+    /// The leading 53 bits, and their value.
     fn leading(&self) -> (Self, f64) {
         let drop = self.bits().saturating_sub(53);
         let cut = (&self.mantissa).abs() >> drop;
         let negative = self.sign() == Ordering::Less;
         let exponent = self.exponent + drop as isize;
-        // It has 53 bits: the conversion is exact.
+        // It has at most 53 bits: the conversion is exact.
         let size = u64::try_from(&cut).unwrap_or(u64::MAX) as f64;
         let value = libm::scalbn(size, exponent as i32);
         let (mantissa, value) = if negative { (-cut, -value) } else { (cut, value) };
@@ -145,17 +147,18 @@ operation!(Mul, mul, a, b => Dyadic {
     exponent: a.exponent + b.exponent,
 });
 
-/// A number to a hundred bits: the sum of two f64.
+/// A number of about a hundred bits: the sum of two f64.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Precise {
-    /// Its first 53 bits.
+    /// The leading 53 bits.
     pub high: f64,
-    /// The next ones.
+    /// The next 53 bits.
     pub low: f64,
 }
 
 impl Precise {
-    /// How far `value` is off, in units of the last place of a number of `digits` binary digits and of this size.
+    /// The error of `value`, in units in the last place of a number of `digits` binary digits at this
+    /// magnitude.
     #[must_use]
     pub fn ulps(self, value: f64, digits: u32) -> f64 {
         let (_, exponent) = libm::frexp(self.high);
@@ -164,19 +167,19 @@ impl Precise {
     }
 }
 
-/// Where a ray meets a surface: o + t·d.
+/// The intersections of a ray o + t·d with a surface.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Met {
+pub struct Intersection {
     /// The smallest t > 0.
     pub t: Option<Precise>,
-    /// All t, the smaller first: two, equal where the ray touches; one where the equation is of first degree.
+    /// All t in ascending order: two, equal for a tangent ray; one if the equation is linear.
     pub roots: Vec<Precise>,
-    /// The discriminant over what it is measured by: δ = (r² − squared distance of centre and line) / r² for spheres,
-    /// (b² − a c) / (d·d q·q) for quadrics, whose size is 1.
+    /// The normalized discriminant: δ = (r² − squared distance of center and line) / r² for spheres, (b² − a
+    /// c) / (d·d q·q) for quadrics, which have size 1.
     pub discriminant: f64,
 }
 
-/// a t² − 2 b t + c = 0.
+/// Solves a t² − 2 b t + c = 0.
 fn solve(a: &Dyadic, b: &Dyadic, c: &Dyadic, disc: &Dyadic) -> Vec<Dyadic> {
     let zero = |number: &Dyadic| number.sign() == Ordering::Equal;
     if disc.sign() == Ordering::Less || (zero(a) && zero(b)) {
@@ -199,12 +202,12 @@ fn solve(a: &Dyadic, b: &Dyadic, c: &Dyadic, disc: &Dyadic) -> Vec<Dyadic> {
     roots
 }
 
-/// `unit` is what the discriminant is measured by.
-fn met(a: &Dyadic, b: &Dyadic, c: &Dyadic, unit: &Dyadic) -> Met {
+/// `unit` normalizes the discriminant.
+fn intersect(a: &Dyadic, b: &Dyadic, c: &Dyadic, unit: &Dyadic) -> Intersection {
     let disc = &(b * b) - &(a * c);
     let roots = solve(a, b, c, &disc);
     let ahead = roots.iter().find(|t| t.sign() == Ordering::Greater);
-    Met {
+    Intersection {
         t: ahead.map(Dyadic::pair),
         roots: roots.iter().map(Dyadic::pair).collect(),
         discriminant: if unit.sign() == Ordering::Equal {
@@ -224,21 +227,22 @@ fn dot(u: &[Dyadic; 3], v: &[Dyadic; 3]) -> Dyadic {
     &(&(&u[0] * &v[0]) + &(&u[1] * &v[1])) + &(&u[2] * &v[2])
 }
 
-/// Where the ray from o along d, of any length, meets the sphere of centre c and radius r; none if a part is infinite or NaN.
+/// Intersects the ray from o along d, of any length, with the sphere of center c and radius r; `None` if a
+/// part is infinite or NaN.
 #[must_use]
-pub fn sphere(o: [f32; 3], d: [f32; 3], c: [f32; 3], r: f32) -> Option<Met> {
+pub fn sphere(o: [f32; 3], d: [f32; 3], c: [f32; 3], r: f32) -> Option<Intersection> {
     let (o, d, c, r) = (vector(o)?, vector(d)?, vector(c)?, Dyadic::new(r)?);
     let f = [0, 1, 2].map(|i| &o[i] - &c[i]);
     let toward = [0, 1, 2].map(|i| &c[i] - &o[i]);
     let r2 = &r * &r;
     let a = dot(&d, &d);
     let unit = &a * &r2;
-    Some(met(&a, &dot(&toward, &d), &(&dot(&f, &f) - &r2), &unit))
+    Some(intersect(&a, &dot(&toward, &d), &(&dot(&f, &f) - &r2), &unit))
 }
 
-/// The same for the quadric q·p² + 2 g z + k = 0, where the square is taken component by component.
+/// Intersects it with the quadric q·p² + 2 g z + k = 0, where p² is taken by component.
 #[must_use]
-pub fn quadric(o: [f32; 3], d: [f32; 3], q: [f32; 3], g: f32, k: f32) -> Option<Met> {
+pub fn quadric(o: [f32; 3], d: [f32; 3], q: [f32; 3], g: f32, k: f32) -> Option<Intersection> {
     let (o, d, q) = (vector(o)?, vector(d)?, vector(q)?);
     let (g, k) = (Dyadic::new(g)?, Dyadic::new(k)?);
     let weighted = |u: &[Dyadic; 3], v: &[Dyadic; 3]| dot(&[0, 1, 2].map(|i| &q[i] * &u[i]), v);
@@ -248,7 +252,7 @@ pub fn quadric(o: [f32; 3], d: [f32; 3], q: [f32; 3], g: f32, k: f32) -> Option<
     let c = &(&weighted(&o, &o) + &(&gz + &gz)) + &k;
     let a = weighted(&d, &d);
     let unit = &dot(&d, &d) * &dot(&q, &q);
-    Some(met(&a, &b, &c, &unit))
+    Some(intersect(&a, &b, &c, &unit))
 }
 
 #[cfg(test)]
@@ -257,29 +261,35 @@ mod tests {
 
     const AHEAD: [f32; 3] = [0.0, 0.0, -1.0];
 
-    fn highs(met: &Met) -> Vec<f64> {
-        met.roots.iter().map(|root| root.high).collect()
+    fn highs(intersection: &Intersection) -> Vec<f64> {
+        intersection.roots.iter().map(|root| root.high).collect()
     }
 
     #[test]
-    fn spheres_are_met_where_a_hand_finds_it() {
-        // Through the middle: from 6 away, with radius 1.5.
-        let met = sphere([0.0; 3], AHEAD, [0.0, 0.0, -6.0], 1.5).unwrap();
-        assert_eq!(highs(&met), [4.5, 7.5]);
-        assert_eq!((met.t.unwrap().high, met.discriminant), (4.5, 1.0));
-        // The same ray told by a vector of length 2.
-        let met = sphere([0.0; 3], [0.0, 0.0, -2.0], [0.0, 0.0, -6.0], 1.5).unwrap();
-        assert_eq!(highs(&met), [2.25, 3.75]);
-        // 3-4-5: passing the centre at 3/5 of the radius, δ = 1 − 9/25.
-        let met = sphere([3.0, 0.0, 0.0], AHEAD, [0.0, 0.0, -10.0], 5.0).unwrap();
-        assert_eq!(highs(&met), [6.0, 14.0]);
-        assert!((met.discriminant - 16.0 / 25.0).abs() < 1e-15);
-        // Touching, and by less than a float can tell of the squares.
-        let met = sphere([1.0, 0.0, 0.0], AHEAD, [0.0, 0.0, -7.0], 1.0).unwrap();
-        assert_eq!((highs(&met), met.discriminant), (vec![7.0, 7.0], 0.0));
-        let met = sphere([1.0, 1e-20, 0.0], AHEAD, [0.0, 0.0, -7.0], 1.0).unwrap();
-        assert_eq!(highs(&met), [0.0; 0]);
-        assert!((met.discriminant / -1e-40 - 1.0).abs() < 1e-6);
+    fn sphere_intersections_match_manual_calculation() {
+        // Through the center: from distance 6, with radius 1.5.
+        let intersection = sphere([0.0; 3], AHEAD, [0.0, 0.0, -6.0], 1.5).unwrap();
+        assert_eq!(highs(&intersection), [4.5, 7.5]);
+        assert_eq!(
+            (intersection.t.unwrap().high, intersection.discriminant),
+            (4.5, 1.0)
+        );
+        // The same ray with a direction of length 2.
+        let intersection = sphere([0.0; 3], [0.0, 0.0, -2.0], [0.0, 0.0, -6.0], 1.5).unwrap();
+        assert_eq!(highs(&intersection), [2.25, 3.75]);
+        // 3-4-5: passing the center at 3/5 of the radius, δ = 1 − 9/25.
+        let intersection = sphere([3.0, 0.0, 0.0], AHEAD, [0.0, 0.0, -10.0], 5.0).unwrap();
+        assert_eq!(highs(&intersection), [6.0, 14.0]);
+        assert!((intersection.discriminant - 16.0 / 25.0).abs() < 1e-15);
+        // Tangent, and missing by less than the squares can resolve in floating point.
+        let intersection = sphere([1.0, 0.0, 0.0], AHEAD, [0.0, 0.0, -7.0], 1.0).unwrap();
+        assert_eq!(
+            (highs(&intersection), intersection.discriminant),
+            (vec![7.0, 7.0], 0.0)
+        );
+        let intersection = sphere([1.0, 1e-20, 0.0], AHEAD, [0.0, 0.0, -7.0], 1.0).unwrap();
+        assert_eq!(highs(&intersection), [0.0; 0]);
+        assert!((intersection.discriminant / -1e-40 - 1.0).abs() < 1e-6);
         // From inside, from the surface, and away from it.
         let t = |o, d| sphere(o, d, [0.0; 3], 2.0).unwrap().t.map(|t| t.high);
         assert_eq!(t([0.0; 3], AHEAD), Some(2.0));
@@ -293,26 +303,26 @@ mod tests {
 
     #[test]
     fn irrational_roots_have_a_hundred_bits() {
-        // Passing the centre at 1 with radius 3: √8, here to 33 digits.
-        let met = sphere([1.0, 0.0, 0.0], AHEAD, [0.0, 0.0, 0.0], 3.0).unwrap();
-        let t = met.t.unwrap();
+        // Passing the center at 1 with radius 3: √8, here to 33 digits.
+        let intersection = sphere([1.0, 0.0, 0.0], AHEAD, [0.0, 0.0, 0.0], 3.0).unwrap();
+        let t = intersection.t.unwrap();
         assert_eq!(t.high, 2.828_427_124_746_19);
         assert!((t.low - 2.507_433_435_810_044e-16).abs() < 1e-30, "{t:?}");
     }
 
     #[test]
-    fn quadrics_are_met_where_a_hand_finds_it() {
+    fn quadric_intersections_match_manual_calculation() {
         let along_x = [1.0, 0.0, 0.0];
         // The cylinder x² + y² = 4, across and along.
         let cylinder = |o, d| quadric(o, d, [1.0, 1.0, 0.0], 0.0, -4.0).unwrap();
         assert_eq!(highs(&cylinder([-5.0, 0.0, 9.0], along_x)), [3.0, 7.0]);
         assert_eq!(highs(&cylinder([0.5, 0.0, 9.0], AHEAD)), [0.0; 0]);
-        // The cone x² + y² = z², along a generator's direction: of first degree.
+        // The cone x² + y² = z², parallel to a generator: a linear equation.
         let cone = |o, d| quadric(o, d, [1.0, 1.0, -1.0], 0.0, 0.0).unwrap();
         assert_eq!(highs(&cone([-4.0, 0.0, 0.0], [1.0, 0.0, 1.0])), [2.0]);
-        // Through its apex, twice the same.
+        // Through its apex: a double root.
         assert_eq!(highs(&cone([0.0, 0.0, 3.0], AHEAD)), [3.0, 3.0]);
-        // The paraboloid x² + y² = 2 z from above, along its axis.
+        // The paraboloid x² + y² = 2 z from above, parallel to its axis.
         let bowl = quadric([2.0, 0.0, 5.0], AHEAD, [1.0, 1.0, 0.0], -1.0, 0.0).unwrap();
         assert_eq!(highs(&bowl), [3.0]);
     }
@@ -320,10 +330,10 @@ mod tests {
     #[test]
     fn the_smallest_and_the_largest_floats_are_exact() {
         let tiny = f32::from_bits(1);
-        let met = sphere([0.0; 3], [0.0, 0.0, -tiny], [0.0, 0.0, -8.0 * tiny], tiny).unwrap();
-        assert_eq!(highs(&met), [7.0, 9.0]);
-        let met = sphere([0.0; 3], AHEAD, [0.0, 0.0, -f32::MAX], 1.0).unwrap();
-        let near = met.roots[0];
+        let intersection = sphere([0.0; 3], [0.0, 0.0, -tiny], [0.0, 0.0, -8.0 * tiny], tiny).unwrap();
+        assert_eq!(highs(&intersection), [7.0, 9.0]);
+        let intersection = sphere([0.0; 3], AHEAD, [0.0, 0.0, -f32::MAX], 1.0).unwrap();
+        let near = intersection.roots[0];
         assert_eq!(near.high + near.low, f64::from(f32::MAX));
         assert!(near.high < f64::from(f32::MAX));
     }
@@ -335,9 +345,9 @@ mod tests {
             low: 1.0 / 54_043_195_528_445_952.0,
         };
         assert!(third.ulps(1.0 / 3.0, 53) < 0.5);
-        let single = 1.0f32 / 3.0;
-        assert!(third.ulps(f64::from(single), 24) < 0.5);
-        let next = f32::from_bits(single.to_bits() + 1);
+        let nearest = 1.0f32 / 3.0;
+        assert!(third.ulps(f64::from(nearest), 24) < 0.5);
+        let next = f32::from_bits(nearest.to_bits() + 1);
         let steps = third.ulps(f64::from(next), 24);
         assert!(steps > 0.5 && steps < 1.5, "{steps}");
     }

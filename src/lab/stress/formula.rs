@@ -1,22 +1,22 @@
-//! What is tested: the ways to intersect a ray with a sphere and with a quadric, and to start a ray from a surface, each written once, in
-//! GLSL. The evaluator runs it in f32 and in f64, a GPU as it is.
+//! The test subjects: methods to intersect a ray with a sphere or a quadric, and to start a ray from a
+//! surface, each written once, in GLSL. The evaluator runs them in f32 and f64, a GPU unchanged.
 
 use toyproof_glsl as glsl;
 
 use super::axis::Kind;
 use super::function::Signature;
 
-/// A way to intersect a ray with a sphere.
+/// A formula for ray–sphere intersection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Formula {
     /// Its name.
     pub name: &'static str,
-    /// `float NAME(vec3 o, vec3 d, vec3 c, float r, float tMin)`, for directions of any length unless it says otherwise: the smallest t
-    /// above tMin, or what is not above tMin where there is none.
+    /// `float NAME(vec3 o, vec3 d, vec3 c, float r, float tMin)`, for directions of any length unless stated
+    /// otherwise: returns the smallest t above tMin, or a value not above tMin if there is none.
     pub text: &'static str,
 }
 
-/// The course's slide: t² + 2 b t + c = 0 with a = 1.
+/// The formula of the course's slides: t² + 2 b t + c = 0 with a = 1.
 pub const UNIT: Formula = Formula {
     name: "course",
     text: "// b² − c, for directions of length 1.
@@ -77,9 +77,9 @@ float geometric(vec3 o, vec3 d, vec3 c, float r, float tMin) {
 ",
 };
 
-/// The recentred discriminant with stable roots: Haines, Günther and Akenine-Möller, “Precision Improvements for Ray/Sphere
-/// Intersection”, Ray Tracing Gems (2019), chapter 7.
-pub const RECENTRED: Formula = Formula {
+/// The recentered discriminant with stable roots: Haines, Günther and Akenine-Möller, “Precision Improvements
+/// for Ray/Sphere Intersection”, Ray Tracing Gems (2019), chapter 7.
+pub const RECENTERED: Formula = Formula {
     name: "recentred",
     text: "// The distance of the line from the centre as a vector, and roots that do not cancel.
 float recentred(vec3 o, vec3 d, vec3 c, float r, float tMin) {
@@ -129,11 +129,11 @@ float scaled(vec3 o, vec3 d, vec3 c, float r, float tMin) {
 ",
 };
 
-/// The ways to intersect a ray with a sphere.
-pub const FORMULAS: [Formula; 6] = [UNIT, TEXTBOOK, HALF_B, GEOMETRIC, RECENTRED, SCALED];
+/// All formulas for ray–sphere intersection.
+pub const FORMULAS: [Formula; 6] = [UNIT, TEXTBOOK, HALF_B, GEOMETRIC, RECENTERED, SCALED];
 
 impl Formula {
-    /// The name of its function.
+    /// The name of its GLSL function.
     #[must_use]
     pub fn function(&self) -> &'static str {
         if self.name == HALF_B.name {
@@ -144,35 +144,36 @@ impl Formula {
     }
 }
 
-/// Something that is put to the test.
+/// A test subject.
 #[derive(Debug, Clone)]
 pub struct Subject {
     /// Its name.
     pub name: String,
-    /// What it is tested on.
+    /// The kind of cases that it is tested on.
     pub kind: Kind,
-    /// A shader: the texels of a case are in channels 0 to 2, and its colour is what came of it.
+    /// A shader: it reads the texels of a case from channels 0 to 2, and returns the result as a color.
     pub text: String,
-    /// Whether it also means something in f64.
+    /// Whether it is also meaningful in f64.
     pub in_f64: bool,
-    /// How its colour is read.
+    /// The interpretation of its color.
     pub reading: Reading,
-    /// What the language is.
+    /// The options of its language.
     pub options: glsl::Options,
 }
 
-/// How the colour that a shader leaves for a case is read.
+/// The interpretation of the color that a shader returns for a case.
 #[derive(Debug, Clone)]
 pub enum Reading {
-    /// Red is t; what is not positive is a miss.
+    /// Red is t; a value that is not positive is a miss.
     Root,
-    /// Red tells a hit of the surface that the ray leaves, green a near one that was lost, each by a 1.
+    /// Red is 1 if the ray hits the surface that it leaves, green is 1 if it misses a nearby one.
     Secondary,
-    /// As a function of that signature tells: t, flag and second t.
+    /// The result of a function of that signature: t, flag and second t.
     Function(Signature),
 }
 
-/// The main function that reads a case and leaves `result`, an expression of type vec3 in `a`, `b` and `c`, the texels.
+/// A `mainImage` that reads a case and returns `result`, an expression of type vec3 that may use the texels
+/// `a`, `b` and `c`.
 pub(super) fn main(steps: &str, result: &str) -> String {
     format!(
         "void mainImage(out vec4 color, in vec2 place) {{
@@ -186,7 +187,7 @@ pub(super) fn main(steps: &str, result: &str) -> String {
     )
 }
 
-/// All that toyproof knows of itself.
+/// All built-in subjects.
 #[must_use]
 pub fn subjects() -> Vec<Subject> {
     let spheres = FORMULAS.into_iter().map(|formula| Subject {
@@ -215,7 +216,7 @@ pub fn subjects() -> Vec<Subject> {
     let secondaries = STRATEGIES.into_iter().map(|strategy| Subject {
         name: strategy.name.to_owned(),
         kind: Kind::Secondaries,
-        text: format!("{}{}{}", RECENTRED.text, strategy.helper, strategy.main()),
+        text: format!("{}{}{}", RECENTERED.text, strategy.helper, strategy.main()),
         in_f64: strategy.helper.is_empty(),
         reading: Reading::Secondary,
         options: glsl::Options::default(),
@@ -223,7 +224,7 @@ pub fn subjects() -> Vec<Subject> {
     spheres.chain(quadrics).chain(secondaries).collect()
 }
 
-/// Ways to intersect a ray with q·p² + 2 g z + k = 0.
+/// Formulas to intersect a ray with q·p² + 2 g z + k = 0.
 const QUADRICS: [(&str, &str); 2] = [
     (
         "quadric, textbook",
@@ -263,15 +264,15 @@ float quadric(vec3 o, vec3 d, vec3 q, float g, float k) {
     ),
 ];
 
-/// A way to keep a ray from meeting the surface that it leaves.
+/// A strategy to avoid self-intersection of a ray with the surface that it leaves.
 #[derive(Debug, Clone, Copy)]
 struct Strategy {
     name: &'static str,
-    /// A function that `start` needs; such bits are of f32.
+    /// A helper function for `start`, which may use the bits of f32.
     helper: &'static str,
-    /// Where the ray starts: from `p` with the normal `n`, on the sphere (c, r).
+    /// The ray's origin, from the point `p` with the normal `n` on the sphere (c, r).
     start: &'static str,
-    /// The smallest t that counts.
+    /// The minimum accepted t.
     t_min: &'static str,
     /// Whether the surface itself is tested.
     tests_own: bool,
@@ -302,7 +303,8 @@ const STRATEGIES: [Strategy; 7] = [
         start: "p + 1.0e-3 * n",
         ..PLAIN
     },
-    // Wächter and Binder, “A Fast and Robust Method for Avoiding Self-Intersection”, Ray Tracing Gems (2019), chapter 6.
+    // Wächter and Binder, “A Fast and Robust Method for Avoiding Self-Intersection”, Ray Tracing Gems
+    // (2019), chapter 6.
     Strategy {
         name: "offset in ULPs",
         helper: "float moved(float p, float n) {
@@ -314,8 +316,8 @@ const STRATEGIES: [Strategy; 7] = [
         start: "vec3(moved(p.x, n.x), moved(p.y, n.y), moved(p.z, n.z))",
         ..PLAIN
     },
-    // Pharr, Jakob and Humphreys, “Physically Based Rendering” (4th edition, 2023), 6.8.6: off the box of what rounding can have done to
-    // a point that was put back onto the sphere.
+    // Pharr, Jakob and Humphreys, “Physically Based Rendering” (4th edition, 2023), 6.8.6: offset to the edge
+    // of the rounding-error bounds of a point projected back onto the sphere.
     Strategy {
         name: "off the error box",
         helper: "vec3 offBox(vec3 p, vec3 n, vec3 c, float r) {
@@ -335,8 +337,8 @@ const STRATEGIES: [Strategy; 7] = [
 ];
 
 impl Strategy {
-    /// Finds where the first ray meets the sphere, sends the second, and looks for the sphere again and for a small one that touches the
-    /// way of the ray nearly at once.
+    /// A `mainImage` that intersects the first ray with the sphere, sends the second, and tests it against
+    /// the sphere again, and against a small sphere nearly in contact with its origin.
     fn main(&self) -> String {
         let Self {
             start,

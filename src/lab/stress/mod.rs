@@ -1,47 +1,46 @@
-//! Numerical stability at the extremes: how formulas that find where a ray meets a surface fail, and from where on.
+//! Numerical stability at extreme arguments: finds where ray–surface intersection formulas fail.
 //!
-//! A subject is a shader that reads rays and surfaces from its channels and paints what it makes of them, a pixel for each. It runs in f32
-//! and in f64 on the evaluator, and on a GPU; [`exact`] tells the truth about the very floats that it read.
+//! A subject is a shader that reads rays and surfaces from its channels and returns its results, one pixel
+//! per case. It runs in f32 and f64 on the evaluator, and on a GPU; [`exact`] computes the reference from the
+//! same floats.
 
 pub mod axis;
-mod breakdown;
+mod case_sampler;
 mod cells;
 pub mod exact;
 pub mod formula;
 pub mod function;
-mod paint;
-mod picture;
-mod random;
-mod table;
+mod output;
 mod tally;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-pub use breakdown::Breakdown;
-pub use paint::Failure;
+use axis::{Case, Kind, Step, axes};
+use cells::Cells;
+use formula::{Reading, Subject};
+use function::Answers;
 use serde::Serialize;
-pub use tally::Tally;
-use toyproof_eval::Program;
-use toyproof_gpu::Worker;
+pub use tally::{Breakdown, Tally};
+use thiserror::Error;
+use toyproof_diagnostic::{Diagnostic, File, Files};
+use toyproof_eval::{self as eval, Number, Program, UndefinedPolicy};
+use toyproof_glsl::{self as glsl, Checked};
+use toyproof_gpu::{self as gpu, Worker};
+use toyproof_image::{Frame, Image};
 use toyproof_translate::FloatMode;
 
-use self::axis::{Case, Kind, Step, axes};
-use self::cells::Cells;
-use self::formula::{Reading, Subject};
-use self::function::Answers;
-
-/// How much is tested.
+/// The settings of a study.
 #[derive(Debug, Clone, Copy)]
 pub struct Settings {
-    /// What all cases are drawn from.
+    /// The seed of all cases.
     pub seed: u64,
-    /// How many for each step of an axis.
+    /// The number of cases for each step of an axis.
     pub cases: usize,
     /// How far the GPU's driver may rearrange arithmetic.
     pub float: FloatMode,
 }
 
-/// What a subject made of one step of an axis.
+/// The results of a subject for one step of an axis.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Row {
     /// The subject's name.
@@ -50,33 +49,33 @@ pub struct Row {
     pub precision: &'static str,
     /// `cpu`, or the adapter and its driver.
     pub device: String,
-    /// What is taken to its limits.
+    /// The axis.
     pub axis: &'static str,
-    /// How far.
-    #[serde(serialize_with = "table::word")]
+    /// The step.
+    #[serde(serialize_with = "output::serialize_step")]
     pub value: Step,
-    /// What came of it.
+    /// The statistics.
     #[serde(flatten)]
     pub tally: Tally,
 }
 
-/// What was found.
+/// The results of a study.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Report {
-    /// What the cases were drawn from.
+    /// The seed of the cases.
     pub seed: u64,
-    /// How many there were at most for each step.
+    /// The maximum number of cases for each step.
     pub cases: usize,
-    /// Where the formulas fail, on the CPU.
+    /// Where the formulas fail on the CPU.
     pub breakdowns: Vec<Breakdown>,
-    /// Of every subject, on every device, for every step.
+    /// The results of every subject on every device for every step.
     pub rows: Vec<Row>,
 }
 
-/// The evaluator's name among devices.
+/// The device name of the evaluator.
 pub const CPU: &str = "cpu";
 
-/// How many runs [`study`] reports as done, one by one.
+/// The number of runs in a [`study`], each of which calls `done`.
 #[must_use]
 pub fn runs(subjects: &[Subject], gpu: bool) -> u64 {
     let runs = subjects
@@ -85,10 +84,11 @@ pub fn runs(subjects: &[Subject], gpu: bool) -> u64 {
     runs.sum()
 }
 
-/// Puts subjects to the test; `done` is called after each run.
+/// Tests subjects on all axes; calls `done` after each run.
 ///
 /// # Errors
-/// Why it could not be done; [`Failure::Interrupted`] as soon as `interrupt` is set.
+///
+/// [`Failure`] if a subject cannot be run; [`Failure::Interrupted`] as soon as `interrupt` is set.
 pub fn study(
     subjects: &[Subject],
     mut worker: Option<&mut Worker>,
@@ -103,20 +103,21 @@ pub fn study(
         if subjects.peek().is_none() {
             continue;
         }
-        let cells =
-            Cells::draw(&axes, kind, settings.seed, settings.cases, interrupt).ok_or(Failure::Interrupted)?;
-        // After all cases come those that tell how a function says no.
+        let cells = Cells::sample(&axes, kind, settings.seed, settings.cases, interrupt)
+            .ok_or(Failure::Interrupted)?;
+        // The last cases reveal how a function reports a miss.
         let count = cells.cases.len();
         let misses = function::clear_misses().into_iter().map(Case::Sphere);
-        let asked: Vec<Case> = cells.cases.iter().copied().chain(misses).collect();
-        let frame = paint::frame(&asked);
+        let all_cases: Vec<Case> = cells.cases.iter().copied().chain(misses).collect();
+        let frame = case_frame(&all_cases);
         for subject in subjects {
-            let checked = paint::checked(subject)?;
-            let program = Program::prepared(&checked, toyproof_eval::Variant::Plain)
-                .map_err(toyproof_eval::Failure::from)?;
-            let mut take = |precision, digits, device: &str, colors: &[[f64; 3]]| {
+            let checked = check_subject(subject)?;
+            let program = Program::prepared(&checked, UndefinedPolicy::Plain).map_err(eval::Failure::from)?;
+            let mut record = |precision, digits, device: &str, colors: &[[f64; 3]]| {
                 let answers = match &subject.reading {
-                    Reading::Function(signature) => Some(Answers::of(signature, &colors[count..asked.len()])),
+                    Reading::Function(signature) => {
+                        Some(Answers::of(signature, &colors[count..all_cases.len()]))
+                    }
                     _ => None,
                 };
                 let run = Run {
@@ -133,20 +134,20 @@ pub fn study(
                     Ok(())
                 }
             };
-            take("f32", 24, CPU, &paint::on_cpu::<f32>(&program, &frame)?)?;
+            record("f32", 24, CPU, &render_on_cpu::<f32>(&program, &frame)?)?;
             if subject.in_f64 {
-                take("f64", 53, CPU, &paint::on_cpu::<f64>(&program, &frame)?)?;
+                record("f64", 53, CPU, &render_on_cpu::<f64>(&program, &frame)?)?;
             }
             if let Some(worker) = worker.as_deref_mut() {
-                let (colors, device) = paint::on_gpu(worker, &checked, &frame, settings.float)?;
-                take("f32", 24, &device, &colors)?;
+                let (colors, device) = render_on_gpu(worker, &checked, &frame, settings.float)?;
+                record("f32", 24, &device, &colors)?;
             }
         }
     }
-    let of_cpu: Vec<&Row> = rows.iter().filter(|row| row.device == CPU).collect();
+    let cpu_rows: Vec<&Row> = rows.iter().filter(|row| row.device == CPU).collect();
     let same = |a: &&Row, b: &&Row| a.formula == b.formula && a.precision == b.precision;
-    let breakdowns = of_cpu.chunk_by(same);
-    let breakdowns = breakdowns.flat_map(|rows| breakdown::breakdowns(&axes, rows));
+    let breakdowns = cpu_rows.chunk_by(same);
+    let breakdowns = breakdowns.flat_map(|rows| tally::breakdowns(&axes, rows));
     Ok(Report {
         seed: settings.seed,
         cases: settings.cases,
@@ -164,12 +165,12 @@ struct Run<'a> {
 }
 
 impl Cells {
-    /// A row for each step, of what a subject left for all cases.
+    /// The results of a run: a row for each step.
     fn rows(&self, subject: &Subject, run: &Run, colors: &[[f64; 3]]) -> Vec<Row> {
         let rows = self.steps.iter().map(|cell| {
             let range = cell.range.clone();
             let answers = colors[range.clone()].iter().copied();
-            let cases = answers.zip(self.exact[range].iter().copied());
+            let cases = answers.zip(self.references[range].iter().copied());
             Row {
                 formula: subject.name.clone(),
                 precision: run.precision,
@@ -181,4 +182,82 @@ impl Cells {
         });
         rows.collect()
     }
+}
+
+// Running a subject: one pixel per case, whose numbers are in the channels.
+
+/// The width of the image, in cases.
+const FRAME_WIDTH: usize = 512;
+
+/// The reason why a subject could not be run.
+#[derive(Debug, Error)]
+pub enum Failure {
+    /// The shader made for it does not compile.
+    #[error("{}", first_message(.0))]
+    Invalid(Vec<Diagnostic>),
+    /// The evaluator failed.
+    #[error(transparent)]
+    Cpu(#[from] eval::Failure),
+    /// The GPU failed.
+    #[error(transparent)]
+    Gpu(#[from] gpu::Failure),
+    /// The user interrupted the run.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+fn first_message(diagnostics: &[Diagnostic]) -> &str {
+    diagnostics.first().map_or("", |first| &first.message)
+}
+
+/// Parses and checks a subject's shader.
+fn check_subject(subject: &Subject) -> Result<Checked, Failure> {
+    let mut files = Files::default();
+    let file = files.add(File::new("<stress>", subject.text.as_str()));
+    glsl::check(&files, file, &subject.options).map_err(Failure::Invalid)
+}
+
+/// A frame whose channels hold the cases.
+fn case_frame(cases: &[Case]) -> Frame {
+    let width = cases.len().clamp(1, FRAME_WIDTH);
+    let height = cases.len().div_ceil(width).max(1);
+    let channel = |i: usize| {
+        let mut pixels: Vec<_> = cases.iter().map(|case| case.texels()[i]).collect();
+        pixels.resize(width * height, [0.0; 4]);
+        Some(Image::new(width as u32, height as u32, pixels))
+    };
+    Frame {
+        size: [width as u32, height as u32],
+        channels: [channel(0), channel(1), channel(2), None],
+        ..Frame::default()
+    }
+}
+
+/// Runs a shader on the evaluator, and returns the colors of all pixels in order: one per case, then padding.
+fn render_on_cpu<N: Number>(program: &Program, frame: &Frame) -> Result<Vec<[f64; 3]>, Failure> {
+    let settings = eval::Settings::<N> {
+        undefined: UndefinedPolicy::Plain,
+        ..eval::Settings::default()
+    };
+    let framebuffer = program.render(frame, &settings)?.framebuffer;
+    let [width, height] = frame.size;
+    let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    Ok(places
+        .map(|(x, y)| framebuffer.get(x, y).map(Number::to_f64))
+        .collect())
+}
+
+/// Runs a shader on a GPU, and returns the colors and the device's name.
+fn render_on_gpu(
+    worker: &mut Worker,
+    checked: &Checked,
+    frame: &Frame,
+    float: FloatMode,
+) -> Result<(Vec<[f64; 3]>, String), Failure> {
+    let rendered = worker.draw_unwatched(float.lower(checked), frame.clone(), float)?;
+    let device = rendered.device.clone();
+    let image = rendered.image();
+    let colors = image.pixels().iter();
+    let colors = colors.map(|&[r, g, b, _]| [r, g, b].map(f64::from));
+    Ok((colors.collect(), device))
 }

@@ -1,36 +1,39 @@
-//! What a subject made of the cases of one step of an axis.
+//! Statistics of a subject's results for one step of an axis.
 
 use serde::Serialize;
 
-use super::cells::{Otherwise, Truth};
+use super::Row;
+use super::axis::{Axis, Easy, Kind, Step};
+use super::cells::{Alternative, Reference};
 use super::exact::Precise;
 use super::formula::Reading;
 use super::function::Answers;
 
-/// A root that is off by more than this share is as good as none: a ULP of f32 is a ten-thousandth of it.
-const LARGEST_ERROR: f64 = 1e-3;
+/// The maximum relative error of a usable root: about ten thousand ULPs of f32.
+const MAX_RELATIVE_ERROR: f64 = 1e-3;
 
-/// Counted over the cases of one step.
+/// Counts over the cases of one step.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Tally {
-    /// How many cases there were.
+    /// The number of cases.
     pub cases: u64,
-    /// Hits told for misses, and misses for hits.
+    /// Misses reported as hits, and hits reported as misses.
     pub wrong_hits: u64,
-    /// Of rays that meet the surface and were found to: errors of t in units in the last place of the number type: the median, the
-    /// one that one in a hundred exceeds, and the largest. None where there was no such ray.
+    /// Errors of t for rays that hit the surface and were reported as hits, in units in the last place of the
+    /// number type: median, 99th percentile and maximum. `None` if there were no such rays.
     pub t_ulp: Option<[f64; 3]>,
-    /// Answers that are NaN or infinite.
+    /// Results that are NaN or infinite.
     pub nan: u64,
-    /// Rays that met the surface that they leave.
+    /// Rays that hit the surface that they leave.
     pub self_hits: u64,
-    /// Rays that did not meet what is near.
+    /// Rays that missed a nearby surface.
     pub lost: u64,
-    /// Cases whose answer cannot be used: a wrong hit, a NaN, a t that is off by more than a thousandth, a self-hit, a lost root.
+    /// Cases with an unusable result: a wrong hit, NaN, a t with a relative error above 1/1000, a self-hit, a
+    /// lost hit.
     pub failing: u64,
 }
 
-/// What a shader says of a ray.
+/// A shader's result for a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Outcome {
     Miss,
@@ -39,27 +42,27 @@ pub(super) enum Outcome {
 }
 
 impl Outcome {
-    /// Whether it can be used where `exact` is right.
-    pub(super) fn is_right(self, exact: &Truth) -> bool {
+    /// Whether the result is usable, given the reference `exact`.
+    pub(super) fn is_right(self, exact: &Reference) -> bool {
         let agrees = |with: Option<Precise>| match (self, with) {
-            (Self::Hit(t), Some(exact)) => (t - exact.high).abs() <= LARGEST_ERROR * exact.high,
+            (Self::Hit(t), Some(exact)) => (t - exact.high).abs() <= MAX_RELATIVE_ERROR * exact.high,
             (Self::Miss, None) => true,
             (Self::Nan, None) => exact.undefined,
             _ => false,
         };
         agrees(exact.t)
-            || match exact.otherwise {
-                Otherwise::Nothing => false,
-                Otherwise::Miss => agrees(None),
-                Otherwise::Hit(t) => agrees(Some(t)),
+            || match exact.alternative {
+                Alternative::Nothing => false,
+                Alternative::Miss => agrees(None),
+                Alternative::Hit(t) => agrees(Some(t)),
             }
     }
 }
 
 impl Reading {
-    /// What a colour says of a ray.
+    /// Interprets a color.
     ///
-    /// `misses`: how a function says no.
+    /// `misses`: how a function reports a miss.
     pub(super) fn outcome(misses: Option<&Answers>, color: [f64; 3]) -> Outcome {
         if let Some(answers) = misses {
             return answers.outcome(color);
@@ -76,12 +79,13 @@ impl Reading {
 }
 
 impl Tally {
-    /// `digits` are those of the number type, in bits; `answers` tell how a function says no.
+    /// Counts the results of one step. `digits`: the precision of the number type, in bits; `answers`: how a
+    /// function reports a miss.
     pub(super) fn of(
         reading: &Reading,
         digits: u32,
         answers: Option<&Answers>,
-        cases: impl Iterator<Item = ([f64; 3], Truth)>,
+        cases: impl Iterator<Item = ([f64; 3], Reference)>,
     ) -> Self {
         let mut tally = Self::default();
         let mut errors = Vec::new();
@@ -112,10 +116,114 @@ impl Tally {
         tally
     }
 
-    /// The share of cases whose answer cannot be used.
+    /// The share of cases with an unusable result, in [0, 1].
     #[must_use]
     pub fn failing_share(&self) -> f64 {
         self.failing as f64 / self.cases.max(1) as f64
+    }
+}
+
+// Breakdowns: the steps from which a formula fails.
+
+/// A step fails if the share of unusable results exceeds this.
+const MAX_FAILING_SHARE: f64 = 0.01;
+
+/// Where a formula fails on an axis.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Breakdown {
+    /// The formula.
+    pub formula: String,
+    /// `f32` or `f64`.
+    pub precision: &'static str,
+    /// The axis.
+    pub axis: &'static str,
+    /// The first failing step, counted from the easy ones.
+    pub from: String,
+    /// The share of unusable results in that step, in [0, 1].
+    pub failing: f64,
+    /// The failure as text, to follow “fails”.
+    pub says: String,
+}
+
+/// All breakdowns in the rows of one formula, precision and device.
+pub(super) fn breakdowns(axes: &[Axis], rows: &[&Row]) -> Vec<Breakdown> {
+    axes.iter().flat_map(|axis| axis_breakdowns(axis, rows)).collect()
+}
+
+/// Joins items as “a, b and c”.
+pub(super) fn join_list(items: &[String]) -> String {
+    match items {
+        [] => String::new(),
+        [one] => one.clone(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}
+
+fn axis_breakdowns(axis: &Axis, rows: &[&Row]) -> Vec<Breakdown> {
+    let rows: Vec<&Row> = rows.iter().filter(|row| row.axis == axis.name).copied().collect();
+    let name = axis.name;
+    let breakdown = |row: &Row, says: String| Breakdown {
+        formula: row.formula.clone(),
+        precision: row.precision,
+        axis: name,
+        from: row.value.to_string(),
+        failing: row.tally.failing_share(),
+        says,
+    };
+    let fails = |row: &&&Row| row.tally.failing_share() > MAX_FAILING_SHARE;
+    let is = |row: &&&Row, side: fn(f64) -> bool| matches!(row.value, Step::Number(x) if side(x));
+    let found: Vec<_> = match axis.easy {
+        Easy::First => {
+            let first = rows.iter().find(fails);
+            first
+                .map(|row| breakdown(row, format!("from {name} {} on", row.value)))
+                .into_iter()
+                .collect()
+        }
+        Easy::One => {
+            let low = rows.iter().rev().filter(|row| is(row, |x| x <= 1.0)).find(fails);
+            let high = rows.iter().filter(|row| is(row, |x| x > 1.0)).find(fails);
+            let low = low.map(|row| breakdown(row, format!("from {name} {} down", row.value)));
+            let high = high.map(|row| breakdown(row, format!("from {name} {} up", row.value)));
+            low.into_iter().chain(high).collect()
+        }
+        Easy::Ends => {
+            let size = |row: &Row| match row.value {
+                Step::Number(x) => Step::Number(x.abs()),
+                label @ Step::Label(_) => label,
+            };
+            let hits = rows.iter().filter(|row| is(row, |x| x > 0.0)).find(fails);
+            let misses = rows.iter().rev().filter(|row| is(row, |x| x < 0.0)).find(fails);
+            let hits =
+                hits.map(|row| breakdown(row, format!("on hits that graze from |δ| {} on", size(row))));
+            let misses =
+                misses.map(|row| breakdown(row, format!("on misses that graze from |δ| {} on", size(row))));
+            hits.into_iter().chain(misses).collect()
+        }
+        Easy::Unordered => rows
+            .iter()
+            .filter(fails)
+            .map(|row| breakdown(row, describe_unordered_step(axis, row)))
+            .collect(),
+    };
+    found
+}
+
+fn describe_unordered_step(axis: &Axis, row: &Row) -> String {
+    let percent = |count: u64| 100.0 * count as f64 / row.tally.cases.max(1) as f64;
+    match axis.kind {
+        Kind::Secondaries => {
+            let parts = [
+                (row.tally.self_hits, "meet their own surface"),
+                (row.tally.lost, "lose what is near"),
+            ];
+            let parts = parts.into_iter().filter(|(count, _)| *count > 0);
+            let parts: Vec<_> = parts
+                .map(|(count, says)| format!("{:.1} % {says}", percent(count)))
+                .collect();
+            format!("for {} at {} ({})", axis.name, row.value, join_list(&parts))
+        }
+        _ => format!("with {}", row.value),
     }
 }
 
@@ -124,7 +232,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_case_counts_for_what_it_is() {
+    fn tally_counts_each_kind_of_failure() {
         let exact = |t: f64| Some(Precise { high: t, low: 0.0 });
         let off = 2.0 + 2.0 * f64::from(f32::EPSILON);
         let cases = [
@@ -137,26 +245,26 @@ mod tests {
             (1.0, None),
             (-1.0, None),
         ];
-        let truth = |t| Truth {
+        let reference = |t| Reference {
             t,
-            ..Truth::default()
+            ..Reference::default()
         };
-        let colors = cases.map(|(t, exact)| ([t, 0.0, 0.0], truth(exact)));
+        let colors = cases.map(|(t, exact)| ([t, 0.0, 0.0], reference(exact)));
         let tally = Tally::of(&Reading::Root, 24, None, colors.into_iter());
         assert_eq!((tally.cases, tally.wrong_hits, tally.nan), (8, 3, 2));
         assert_eq!(tally.failing, 5, "all but two hits and a miss");
         assert_eq!(tally.t_ulp, Some([1.0, 4_194_304.0, 4_194_304.0]));
-        let secondary = [[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0; 3]].map(|color| (color, truth(None)));
+        let secondary = [[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0; 3]].map(|color| (color, reference(None)));
         let tally = Tally::of(&Reading::Secondary, 24, None, secondary.into_iter());
         assert_eq!((tally.self_hits, tally.lost, tally.failing), (2, 1, 2));
     }
 
     #[test]
-    fn what_is_next_to_the_start_may_be_left_out_or_not() {
+    fn near_hits_may_be_ignored() {
         let precise = |high| Precise { high, low: 0.0 };
-        let truth = Truth {
+        let reference = Reference {
             t: Some(precise(1e-7)),
-            otherwise: Otherwise::Hit(precise(2.0)),
+            alternative: Alternative::Hit(precise(2.0)),
             undefined: false,
         };
         for (outcome, right) in [
@@ -165,7 +273,7 @@ mod tests {
             (Outcome::Miss, false),
             (Outcome::Hit(1.0), false),
         ] {
-            assert_eq!(outcome.is_right(&truth), right, "{outcome:?}");
+            assert_eq!(outcome.is_right(&reference), right, "{outcome:?}");
         }
     }
 }

@@ -1,106 +1,106 @@
-//! The trade of accuracy for time: every way to a picture that a scene or a shader allows, what it costs, and how far it is from the truth.
+//! Accuracy against time: measures the cost and the error of every rendering method that a scene or a shader
+//! allows, relative to a reference image.
 
-mod error;
+mod method;
+mod reference;
 mod schedule;
-mod statistics;
 mod table;
-mod truth;
-mod way;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-pub use error::Error;
+use method::{Group, Method, RenderContext, Shader};
+pub use reference::Error;
+use reference::Reference;
+use schedule::{Cost, Runner};
+pub use schedule::{Times, median};
 use serde::Serialize;
-pub use statistics::{Times, median};
 pub use table::ERRORS;
-use thiserror::Error as Failing;
 use toyproof_eval as eval;
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_gpu::Worker;
 use toyproof_image::{Frame, Image};
 use toyproof_scene::Scene;
 
-use self::schedule::{Cost, Runner};
-use self::truth::Truth;
-use self::way::{Group, Shader, Way, Workshop};
-use crate::stress;
+use super::stress;
 
-/// What is to be measured.
+/// The scene or shader to measure.
 #[derive(Debug)]
 pub struct Subject<'a> {
-    /// What people call it.
+    /// The name shown to users.
     pub name: String,
-    /// The scene, of the frame's size; none for a shader alone.
+    /// The scene, at the frame's size; `None` for a shader alone.
     pub scene: Option<&'a Scene>,
-    /// The shader that paints it: its text and its tree.
+    /// The shader that renders it: its text and its tree.
     pub shader: Option<(&'a str, &'a Checked)>,
-    /// What the shader's language is.
+    /// The options of the shader's language.
     pub options: glsl::Options,
     /// The frame.
     pub frame: &'a Frame,
-    /// Devices by name, each with its worker; what counts as the GPU comes first.
+    /// Devices by name, each with its worker; the first is the GPU, the others are additional devices.
     pub workers: Vec<(String, Worker)>,
-    /// When the time began to run.
+    /// The start of the time budget.
     pub start: Instant,
-    /// How long everything may take, counted from then.
+    /// The time budget of the whole study, from `start`.
     pub budget: Duration,
 }
 
-/// Why nothing was measured.
-#[derive(Debug, Failing)]
+/// The reason why nothing was measured.
+#[derive(Debug, thiserror::Error)]
 pub enum Failure {
     /// The shader cannot be evaluated.
     #[error(transparent)]
     Cpu(#[from] eval::Failure),
-    /// The function that meets spheres cannot be asked.
+    /// The shader's ray–sphere function cannot be evaluated.
     #[error(transparent)]
     Function(#[from] stress::Failure),
-    /// The user stopped it.
+    /// The user interrupted the study.
     #[error("interrupted")]
     Interrupted,
 }
 
-/// A way and what it is worth.
+/// A method with its measured time and error.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Measured {
-    /// What it is.
+pub struct MethodResult {
+    /// The name of the method.
     pub way: String,
-    /// What runs it.
+    /// The renderer and precision.
     pub group: &'static str,
-    /// What a frame takes.
+    /// The time of a frame.
     pub seconds: Times,
-    /// How far it is from the truth.
+    /// The error relative to the reference.
     pub error: Error,
-    /// Whether no other way is both faster and nearer to the truth.
+    /// Whether the method is on the Pareto front: no other is both faster and more accurate.
     pub best: bool,
 }
 
-/// What was measured.
+/// The results of a study.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Report {
-    /// What was measured.
+    /// The name of the subject.
     pub subject: String,
-    /// Width and height in pixels.
+    /// The width and height in pixels.
     pub size: [u32; 2],
-    /// How the truth was made.
+    /// A description of the reference image.
     pub truth: String,
-    /// The truth's own error: a root mean square, in [0, 1].
+    /// The error of the reference itself: a root mean square, in [0, 1].
     pub truth_error: f64,
-    /// Ways that there was no time for, or that failed.
+    /// Methods that failed or exceeded the time budget.
     pub left_out: Vec<String>,
-    /// The ways, the fastest first.
-    pub ways: Vec<Measured>,
+    /// The methods, fastest first.
+    pub ways: Vec<MethodResult>,
 }
 
-/// The share of the budget that the truth may take.
-const FOR_TRUTH: f64 = 0.35;
+/// The share of the time budget for the reference image, in [0, 1].
+const REFERENCE_BUDGET_SHARE: f64 = 0.35;
 
-/// Measures; `passed` is told now and then what share of the budget is gone.
+/// Measures all methods within the time budget; calls `progress` with the share of the budget that has
+/// elapsed.
 ///
 /// # Errors
-/// Why nothing was measured; [`Failure::Interrupted`] soon after `interrupt` is set.
-pub fn study(subject: Subject, interrupt: &AtomicBool, passed: impl Fn(f64)) -> Result<Report, Failure> {
+///
+/// [`Failure`] if nothing was measured; [`Failure::Interrupted`] soon after `interrupt` is set.
+pub fn study(subject: Subject, interrupt: &AtomicBool, progress: impl Fn(f64)) -> Result<Report, Failure> {
     let Subject {
         name,
         scene,
@@ -111,13 +111,13 @@ pub fn study(subject: Subject, interrupt: &AtomicBool, passed: impl Fn(f64)) -> 
         start,
         budget,
     } = subject;
-    // Charts are drawn and files written afterwards.
+    // The reserve is for drawing charts and writing files.
     let budget = budget.mul_f64(0.97).saturating_sub(Duration::from_millis(100));
     let mut shaders = Vec::new();
     if let Some((text, checked)) = shader {
         shaders.extend(Shader::new("", text, &options));
         let replacements = match stress::function::replacements(text, checked, &options) {
-            // There are ways that need no shader.
+            // The scene's own methods need no shader.
             Err(_) if options.deadline.check().is_err() => Vec::new(),
             replacements => replacements?,
         };
@@ -125,71 +125,71 @@ pub fn study(subject: Subject, interrupt: &AtomicBool, passed: impl Fn(f64)) -> 
             shaders.extend(Shader::new(formula, &text, &options));
         }
     }
-    let workshop = Workshop {
+    let context = RenderContext {
         frame,
         shaders,
         workers,
-        patience: budget,
+        frame_timeout: budget,
     };
-    let for_truth = budget.mul_f64(FOR_TRUTH);
-    let truth = match (scene, workshop.shaders.first()) {
-        (Some(scene), _) => Truth::of_scene(scene, frame, for_truth),
-        (None, Some(shader)) => Truth::of_shader(shader, frame, for_truth)?,
+    let reference_time = budget.mul_f64(REFERENCE_BUDGET_SHARE);
+    let reference = match (scene, context.shaders.first()) {
+        (Some(scene), _) => Reference::of_scene(scene, frame, reference_time),
+        (None, Some(shader)) => Reference::of_shader(shader, frame, reference_time)?,
         (None, None) => return Err(eval::Failure::TimeUp.into()),
     };
     let background = scene.map(background);
     let background = background.map(|scene| {
-        let tracer = toyproof_tracer::Tracer::<f64>::at(&scene, Workshop::moment(frame));
+        let tracer = toyproof_tracer::Tracer::<f64>::at(&scene, RenderContext::frame_time(frame));
         tracer.picture(|| ())
     });
     let samples = scene.map_or(1.0, |scene| f64::from(scene.film.samples));
-    let mut ways = scene.map_or_else(Vec::new, way::of_scene);
-    ways.extend(workshop.of_shaders(samples));
-    let costs: Vec<Cost> = ways.iter().map(Way::cost).collect();
+    let mut methods = scene.map_or_else(Vec::new, method::scene_methods);
+    methods.extend(context.shader_methods(samples));
+    let costs: Vec<Cost> = methods.iter().map(Method::cost).collect();
     let mut bench = Bench {
         start,
         budget,
-        workshop,
-        errors: vec![None; ways.len()],
-        ways,
-        truth: &truth.picture,
+        context,
+        errors: vec![None; methods.len()],
+        methods,
+        reference: &reference.image,
         background,
         interrupt,
-        passed,
+        progress,
     };
     let seconds = schedule::measure(&mut bench, &costs, budget.as_secs_f64())?;
     let mut measured = Vec::new();
     let mut left_out = Vec::new();
-    for ((way, error), seconds) in bench.ways.iter().zip(&bench.errors).zip(seconds) {
+    for ((method, error), seconds) in bench.methods.iter().zip(&bench.errors).zip(seconds) {
         match error {
-            Some(error) if !seconds.is_empty() => measured.push(Measured {
-                way: way.name.clone(),
-                group: word(way.group),
+            Some(error) if !seconds.is_empty() => measured.push(MethodResult {
+                way: method.name.clone(),
+                group: group_name(method.group),
                 seconds: Times::of(&seconds),
                 error: *error,
                 best: false,
             }),
-            _ => left_out.push(way.name.clone()),
+            _ => left_out.push(method.name.clone()),
         }
     }
     measured.sort_by(|a, b| a.seconds.median.total_cmp(&b.seconds.median));
-    mark_best(&mut measured);
+    mark_pareto_front(&mut measured);
     Ok(Report {
         subject: name,
         size: frame.size,
-        truth: truth.says,
-        truth_error: truth.error,
+        truth: reference.description,
+        truth_error: reference.error,
         left_out,
         ways: measured,
     })
 }
 
-fn word(group: Group) -> &'static str {
+fn group_name(group: Group) -> &'static str {
     let found = Group::ALL.iter().find(|(other, _)| *other == group);
-    found.map_or("", |(_, word)| word)
+    found.map_or("", |(_, name)| name)
 }
 
-/// The scene with nothing in it.
+/// The scene without objects.
 fn background(scene: &Scene) -> Scene {
     let mut empty = scene.clone();
     empty.objects.clear();
@@ -200,49 +200,49 @@ fn background(scene: &Scene) -> Scene {
     empty
 }
 
-/// A way that takes longer is worth its time only if its error is smaller by more than this share.
-const WORTH: f64 = 0.01;
+/// The minimum relative reduction of the error that puts a slower method on the Pareto front.
+const MIN_ERROR_REDUCTION: f64 = 0.01;
 
-/// Pareto's front, of ways by their time.
-fn mark_best(measured: &mut [Measured]) {
+/// Marks the Pareto front of methods that are sorted by time.
+fn mark_pareto_front(measured: &mut [MethodResult]) {
     let mut least = f64::INFINITY;
-    for way in measured {
-        way.best = way.error.rmse < (1.0 - WORTH) * least;
-        if way.best {
-            least = way.error.rmse;
+    for result in measured {
+        result.best = result.error.rmse < (1.0 - MIN_ERROR_REDUCTION) * least;
+        if result.best {
+            least = result.error.rmse;
         }
     }
 }
 
-/// Runs ways, on the clock of the machine.
+/// Runs methods, measured by the machine's clock.
 struct Bench<'a, P> {
     start: Instant,
     budget: Duration,
-    workshop: Workshop<'a>,
-    ways: Vec<Way>,
+    context: RenderContext<'a>,
+    methods: Vec<Method>,
     errors: Vec<Option<Error>>,
-    truth: &'a Image,
+    reference: &'a Image,
     background: Option<Image>,
     interrupt: &'a AtomicBool,
-    passed: P,
+    progress: P,
 }
 
 impl<P: Fn(f64)> Runner for Bench<'_, P> {
     type Failure = Failure;
 
-    fn run(&mut self, way: usize, first: bool) -> Result<Option<f64>, Failure> {
+    fn run(&mut self, method: usize, warm_up: bool) -> Result<Option<f64>, Failure> {
         if self.interrupt.load(Ordering::Relaxed) {
             return Err(Failure::Interrupted);
         }
         let left = self.budget.saturating_sub(self.start.elapsed());
-        self.workshop.patience = left.max(Duration::from_millis(100));
-        let made = self.workshop.make(&self.ways[way].how);
-        (self.passed)(self.now() / self.budget.as_secs_f64());
-        let Some((picture, took)) = made else {
+        self.context.frame_timeout = left.max(Duration::from_millis(100));
+        let rendered = self.context.render(&self.methods[method].backend);
+        (self.progress)(self.now() / self.budget.as_secs_f64());
+        let Some((image, took)) = rendered else {
             return Ok(None);
         };
-        if first {
-            self.errors[way] = Some(Error::of(self.truth, &picture, self.background.as_ref()));
+        if warm_up {
+            self.errors[method] = Some(Error::of(self.reference, &image, self.background.as_ref()));
         }
         Ok(Some(took.as_secs_f64()))
     }
@@ -253,10 +253,10 @@ impl<P: Fn(f64)> Runner for Bench<'_, P> {
 }
 
 impl Report {
-    /// The fastest way whose root mean square error is at most that; none if none is near enough.
+    /// The fastest method whose root mean square error is at most `error`; `None` if there is none.
     #[must_use]
-    pub fn cheapest(&self, error: f64) -> Option<&Measured> {
-        self.ways.iter().find(|way| way.error.rmse <= error)
+    pub fn cheapest(&self, error: f64) -> Option<&MethodResult> {
+        self.ways.iter().find(|result| result.error.rmse <= error)
     }
 }
 
@@ -264,8 +264,8 @@ impl Report {
 mod tests {
     use super::*;
 
-    fn way(name: &str, median: f64, rmse: f64) -> Measured {
-        Measured {
+    fn way(name: &str, median: f64, rmse: f64) -> MethodResult {
+        MethodResult {
             way: name.to_owned(),
             group: "",
             seconds: Times {
@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn the_front_holds_what_nothing_faster_beats() {
+    fn pareto_front_omits_dominated_methods() {
         let mut ways = [
             way("a", 1.0, 0.1),
             way("b", 2.0, 0.2),
@@ -291,8 +291,12 @@ mod tests {
             way("d", 4.0, 0.01),
             way("e", 5.0, 0.0),
         ];
-        mark_best(&mut ways);
-        let best: Vec<_> = ways.iter().filter(|way| way.best).map(|way| &*way.way).collect();
+        mark_pareto_front(&mut ways);
+        let best: Vec<_> = ways
+            .iter()
+            .filter(|result| result.best)
+            .map(|result| &*result.way)
+            .collect();
         assert_eq!(best, ["a", "d", "e"]);
         let report = Report {
             subject: "s".to_owned(),
@@ -302,8 +306,8 @@ mod tests {
             left_out: Vec::new(),
             ways: ways.to_vec(),
         };
-        assert_eq!(report.cheapest(0.05).map(|way| &*way.way), Some("d"));
-        assert_eq!(report.cheapest(0.0).map(|way| &*way.way), Some("e"));
+        assert_eq!(report.cheapest(0.05).map(|result| &*result.way), Some("d"));
+        assert_eq!(report.cheapest(0.0).map(|result| &*result.way), Some("e"));
         assert_eq!(report.cheapest(-1.0), None);
         assert_eq!(report.stability(), None);
         let mut pair = report.clone();
@@ -311,8 +315,8 @@ mod tests {
             way("gpu strict", 1.0, 0.1),
             way("gpu strict, recentred", 1.5, 0.01),
         ];
-        for way in &mut pair.ways {
-            way.group = word(Group::Strict);
+        for result in &mut pair.ways {
+            result.group = group_name(Group::Strict);
         }
         assert!(
             pair.stability().unwrap().contains("(+50 %)"),

@@ -1,94 +1,102 @@
-//! Which way runs when: within a budget, and interleaved, so that what slows the machine for a while slows all ways alike.
+//! Schedules the runs of all methods within the time budget. Runs are interleaved, so that a temporary
+//! slowdown of the machine affects all methods alike.
 
-/// What runs ways, and has a clock: a mock in tests.
+use serde::Serialize;
+
+/// Runs methods, and has a clock; a mock in tests.
 pub(super) trait Runner {
-    /// Why it had to stop.
+    /// The reason why it had to stop.
     type Failure;
 
-    /// Runs a way; the seconds that its frame took, or none if it cannot run and is to be left out. `first`: it is warming up.
-    fn run(&mut self, way: usize, first: bool) -> Result<Option<f64>, Self::Failure>;
+    /// Runs a method. Returns the seconds of its frame; `None` if it cannot run and is to be skipped.
+    fn run(&mut self, method: usize, warm_up: bool) -> Result<Option<f64>, Self::Failure>;
 
     /// Seconds since the start.
     fn now(&self) -> f64;
 }
 
-/// No way is measured more often than this.
-const MOST_RUNS: usize = 31;
-/// How much longer a warm-up may take than the cheaper ones let think.
-const MARGIN: f64 = 1.5;
+/// The maximum number of measured runs of a method.
+const MAX_RUNS: usize = 31;
+/// The safety factor on the estimated time of a warm-up run.
+const WARM_UP_MARGIN: f64 = 1.5;
 
-/// What a way is thought to cost.
+/// The estimated cost of a method.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cost {
-    /// Of ways of one kind, the cheap ones tell what the others will need.
+    /// The kind of method: the times of cheap methods predict those of others of the same kind.
     pub(super) kind: usize,
-    /// In any unit.
+    /// The cost of a frame, in any unit that is common to the kind.
     pub(super) size: f64,
 }
 
-/// What the ways of a kind have taken, in seconds.
+/// The times measured for methods of one kind, in seconds.
 #[derive(Debug, Clone, Copy, Default)]
-struct Known {
-    /// A frame, for each unit of cost.
+struct CostModel {
+    /// The time of a frame per unit of cost.
     per_cost: f64,
-    /// What surrounds a frame: what compiles it, say.
-    around: f64,
+    /// The time outside of the frame, such as compilation.
+    overhead: f64,
 }
 
-impl Known {
+impl CostModel {
     fn estimate(&self, cost: f64) -> f64 {
-        self.around + MARGIN * self.per_cost * cost
+        self.overhead + WARM_UP_MARGIN * self.per_cost * cost
     }
 
-    /// `took`: the whole run; `frame`: its frame.
+    /// Adds a measurement; `took`: seconds of the whole run; `frame`: seconds of its frame.
     fn learn(&mut self, cost: f64, took: f64, frame: f64) {
-        // Cheap frames hold more than their samples: the dearer tell better.
+        // The fixed cost of a frame weighs more in cheap frames, so expensive ones predict better.
         self.per_cost = (0.5 * self.per_cost).max(frame / cost.max(f64::MIN_POSITIVE));
-        self.around = self.around.max(took - frame);
+        self.overhead = self.overhead.max(took - frame);
     }
 }
 
-/// The measured seconds of each way, its warm-up left out. A way whose warm-up the budget has no room for has none; cheap ones come first.
+/// Measures the seconds of each method, without its warm-up run. Cheap methods run first; a method whose
+/// warm-up run does not fit in the budget has no times.
 pub(super) fn measure<R: Runner>(
     runner: &mut R,
     costs: &[Cost],
     budget: f64,
 ) -> Result<Vec<Vec<f64>>, R::Failure> {
     let mut seconds: Vec<Vec<f64>> = vec![Vec::new(); costs.len()];
-    // What a run costs, all that surrounds its frame included; none for ways that are left out.
-    let mut needed: Vec<Option<f64>> = vec![None; costs.len()];
+    // Seconds of a whole run, including everything outside of the frame; `None` for skipped methods.
+    let mut run_seconds: Vec<Option<f64>> = vec![None; costs.len()];
     let mut order: Vec<usize> = (0..costs.len()).collect();
     order.sort_by(|&a, &b| costs[a].size.total_cmp(&costs[b].size));
     let kinds = costs.iter().map(|cost| cost.kind + 1).max().unwrap_or(0);
-    let mut known = vec![Known::default(); kinds];
-    for &way in &order {
-        let (start, Cost { kind, size }) = (runner.now(), costs[way]);
-        if start + known[kind].estimate(size) > budget {
+    let mut models = vec![CostModel::default(); kinds];
+    for &method in &order {
+        let (start, Cost { kind, size }) = (runner.now(), costs[method]);
+        if start + models[kind].estimate(size) > budget {
             continue;
         }
-        if let Some(frame) = runner.run(way, true)? {
+        if let Some(frame) = runner.run(method, true)? {
             let took = runner.now() - start;
-            needed[way] = Some(took);
-            known[kind].learn(size, took, frame);
+            run_seconds[method] = Some(took);
+            models[kind].learn(size, took, frame);
         }
     }
-    order.retain(|&way| needed[way].is_some());
-    for round in 0..MOST_RUNS {
+    order.retain(|&method| run_seconds[method].is_some());
+    for iteration in 0..MAX_RUNS {
         let mut ran = false;
-        // There and back again: no way always follows the same other.
-        let turn = round * order.len() / 3;
+        // Alternating directions and a moving start, so that no method always follows the same other.
+        let offset = iteration * order.len() / 3;
         for i in 0..order.len() {
-            let place = if round % 2 == 0 { i } else { order.len() - 1 - i };
-            let way = order[(place + turn) % order.len()];
+            let position = if iteration % 2 == 0 {
+                i
+            } else {
+                order.len() - 1 - i
+            };
+            let method = order[(position + offset) % order.len()];
             let start = runner.now();
-            if start + needed[way].unwrap_or(f64::INFINITY) > budget {
+            if start + run_seconds[method].unwrap_or(f64::INFINITY) > budget {
                 continue;
             }
-            if let Some(took) = runner.run(way, false)? {
-                seconds[way].push(took);
+            if let Some(took) = runner.run(method, false)? {
+                seconds[method].push(took);
                 ran = true;
             }
-            needed[way] = Some(runner.now() - start);
+            run_seconds[method] = Some(runner.now() - start);
         }
         if !ran {
             break;
@@ -97,16 +105,74 @@ pub(super) fn measure<R: Runner>(
     Ok(seconds)
 }
 
+// Statistics of measured times.
+
+/// The maximum modified z-score of an inlier: Iglewicz and Hoaglin, “How to Detect and Handle Outliers”
+/// (ASQC, 1993), section 3.3. It uses the median absolute deviation, because outliers inflate the standard
+/// deviation.
+const MAX_MODIFIED_Z_SCORE: f64 = 3.5;
+/// The third quartile of the standard normal distribution: the ratio of its median absolute deviation to its
+/// standard deviation.
+const QUARTILE: f64 = 0.6745;
+
+/// Statistics of a method's times.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Times {
+    /// The number of runs, without the warm-up.
+    pub runs: usize,
+    /// The median without outliers, in seconds.
+    pub median: f64,
+    /// The median absolute deviation from it, in seconds.
+    pub deviation: f64,
+    /// The number of outliers.
+    pub outliers: usize,
+}
+
+/// The median of the values; 0 if there are none.
+#[must_use]
+pub fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    match sorted.len() {
+        0 => 0.0,
+        count if count % 2 == 1 => sorted[count / 2],
+        count => 0.5 * (sorted[count / 2 - 1] + sorted[count / 2]),
+    }
+}
+
+fn deviation(values: &[f64], from: f64) -> f64 {
+    let distances: Vec<_> = values.iter().map(|value| (value - from).abs()).collect();
+    median(&distances)
+}
+
+impl Times {
+    /// Computes the statistics of times in seconds.
+    #[must_use]
+    pub fn of(seconds: &[f64]) -> Self {
+        let center = median(seconds);
+        let spread = deviation(seconds, center);
+        let is_inlier = |second: &f64| QUARTILE * (second - center).abs() <= MAX_MODIFIED_Z_SCORE * spread;
+        let inliers: Vec<f64> = seconds.iter().copied().filter(is_inlier).collect();
+        let median = median(&inliers);
+        Self {
+            runs: seconds.len(),
+            median,
+            deviation: deviation(&inliers, median),
+            outliers: seconds.len() - inliers.len(),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Ways that take what they are told to, on a clock of their own.
+    /// Methods with given durations on a simulated clock.
     #[derive(Default)]
     struct Mock {
         now: f64,
-        /// Seconds of a frame, and of what surrounds it.
-        takes: Vec<(f64, f64)>,
+        /// By method: seconds of a frame, and of the overhead.
+        durations: Vec<(f64, f64)>,
         ran: Vec<(usize, bool)>,
         broken: Option<usize>,
     }
@@ -114,11 +180,11 @@ mod tests {
     impl Runner for Mock {
         type Failure = ();
 
-        fn run(&mut self, way: usize, first: bool) -> Result<Option<f64>, ()> {
-            self.ran.push((way, first));
-            let (frame, around) = self.takes[way];
-            self.now += frame + around + if first { around } else { 0.0 };
-            Ok((self.broken != Some(way)).then_some(frame))
+        fn run(&mut self, method: usize, warm_up: bool) -> Result<Option<f64>, ()> {
+            self.ran.push((method, warm_up));
+            let (frame, overhead) = self.durations[method];
+            self.now += frame + overhead + if warm_up { overhead } else { 0.0 };
+            Ok((self.broken != Some(method)).then_some(frame))
         }
 
         fn now(&self) -> f64 {
@@ -130,28 +196,28 @@ mod tests {
         sizes.iter().map(|&size| Cost { kind: 0, size }).collect()
     }
 
-    fn mock(takes: &[(f64, f64)]) -> Mock {
+    fn mock(durations: &[(f64, f64)]) -> Mock {
         Mock {
-            takes: takes.to_vec(),
+            durations: durations.to_vec(),
             ..Mock::default()
         }
     }
 
     #[test]
-    fn every_way_warms_up_once_and_is_then_measured_in_turn() {
+    fn methods_warm_up_once_and_are_interleaved() {
         let mut mock = mock(&[(0.01, 0.0), (0.02, 0.01), (0.03, 0.0)]);
         let seconds = measure(&mut mock, &costs(&[1.0, 2.0, 3.0]), 1.0).unwrap();
         assert!(seconds.iter().all(|times| times.len() > 8), "{seconds:?}");
         assert_eq!(seconds[1][0], 0.02, "what surrounds a frame is not counted");
-        assert_eq!(mock.ran.iter().filter(|(_, first)| *first).count(), 3);
+        assert_eq!(mock.ran.iter().filter(|(_, warm_up)| *warm_up).count(), 3);
         let counts = seconds.iter().map(Vec::len);
         assert!(counts.clone().max().unwrap() - counts.min().unwrap() <= 2);
-        // Each way has followed each other one.
+        // Each method has followed each other one.
         let measured: Vec<_> = mock
             .ran
             .iter()
-            .filter(|(_, first)| !first)
-            .map(|(way, _)| *way)
+            .filter(|(_, warm_up)| !warm_up)
+            .map(|(method, _)| *method)
             .collect();
         for (a, b) in [(0, 1), (1, 0), (0, 2), (2, 0), (1, 2), (2, 1)] {
             assert!(measured.windows(2).any(|pair| pair == [a, b]), "{a} before {b}");
@@ -159,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn the_budget_is_kept_and_used() {
+    fn budget_is_kept_and_used() {
         for budget in [0.5, 2.0, 10.0] {
             let mut mock = mock(&[(0.01, 0.002), (0.1, 0.0), (0.3, 0.1), (4.0, 0.0)]);
             measure(&mut mock, &costs(&[1.0, 10.0, 30.0, 400.0]), budget).unwrap();
@@ -169,14 +235,14 @@ mod tests {
     }
 
     #[test]
-    fn what_the_budget_has_no_room_for_never_starts() {
+    fn methods_beyond_the_budget_never_start() {
         let mut mock = mock(&[(0.1, 0.0), (50.0, 0.0)]);
         let seconds = measure(&mut mock, &costs(&[1.0, 500.0]), 3.0).unwrap();
         assert!(seconds[1].is_empty() && seconds[0].len() > 20, "{seconds:?}");
     }
 
     #[test]
-    fn what_one_kind_needs_says_nothing_of_another() {
+    fn kinds_have_separate_cost_estimates() {
         let mut mock = mock(&[(0.001, 1.0), (0.01, 0.0), (0.6, 0.0)]);
         let costs = [(0, 1.0), (1, 1.0), (1, 64.0)].map(|(kind, size)| Cost { kind, size });
         let seconds = measure(&mut mock, &costs, 10.0).unwrap();
@@ -184,18 +250,42 @@ mod tests {
     }
 
     #[test]
-    fn a_way_that_cannot_run_is_left_out() {
+    fn failing_methods_are_skipped() {
         let mut mock = mock(&[(0.1, 0.0), (0.1, 0.0)]);
         mock.broken = Some(1);
         let seconds = measure(&mut mock, &costs(&[1.0, 1.0]), 1.0).unwrap();
         assert!(seconds[1].is_empty() && !seconds[0].is_empty());
-        assert_eq!(mock.ran.iter().filter(|(way, _)| *way == 1).count(), 1);
+        assert_eq!(mock.ran.iter().filter(|(method, _)| *method == 1).count(), 1);
     }
 
     #[test]
-    fn cheap_ways_are_not_run_for_ever() {
+    fn runs_are_limited() {
         let mut mock = mock(&[(1e-6, 0.0)]);
         let seconds = measure(&mut mock, &costs(&[1.0]), 1e9).unwrap();
-        assert_eq!(seconds[0].len(), MOST_RUNS);
+        assert_eq!(seconds[0].len(), MAX_RUNS);
+    }
+
+    #[test]
+    fn median_and_deviation_ignore_outliers() {
+        assert_eq!(median(&[]), 0.0);
+        assert_eq!(median(&[3.0, 1.0, 2.0]), 2.0);
+        assert_eq!(median(&[4.0, 1.0, 2.0, 3.0]), 2.5);
+        let times = Times::of(&[1.0, 1.1, 0.9, 1.0, 1.05, 0.95, 9.0]);
+        assert_eq!((times.runs, times.outliers, times.median), (7, 1, 1.0));
+        assert!((times.deviation - 0.05).abs() < 1e-12);
+    }
+
+    #[test]
+    fn uniform_and_equal_times_have_no_outliers() {
+        assert_eq!(Times::of(&[1.0, 2.0, 3.0, 4.0, 5.0]).outliers, 0);
+        let times = Times::of(&[2.0; 5]);
+        assert_eq!((times.outliers, times.median, times.deviation), (0, 2.0, 0.0));
+    }
+
+    #[test]
+    fn score_matches_iglewicz_and_hoaglin() {
+        // With median 2 and deviation 1, the limit is 2 + 3.5 / 0.6745 = 7.189.
+        assert_eq!(Times::of(&[1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 7.18]).outliers, 0);
+        assert_eq!(Times::of(&[1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 7.20]).outliers, 1);
     }
 }

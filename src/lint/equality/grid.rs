@@ -1,4 +1,4 @@
-//! Floats on a grid of whole numbers, halves and the like, where `+ - *` do not round.
+//! Floats on a grid of integers, halves and finer fractions, on which `+ - *` do not round.
 
 use std::cell::RefCell;
 use std::collections::{HashMap, HashSet};
@@ -7,18 +7,18 @@ use toyproof_glsl::tree::{
     BinaryOp, BuiltIn, Constructor, ExprId, ExprKind, Input, UnaryOp, Value, VariableId, VariableKind,
 };
 
-use super::super::program::{Definition, Program, is_float, last};
+use crate::program::{Definition, Program, is_float, newest};
 
-const BUDGET: usize = 500;
+const MAX_EXPRS: usize = 500;
 
-/// Multiples of this count as on the grid.
-const STEP: f64 = 1.0 / 1024.0;
+/// The spacing of the grid: multiples of this are on it.
+const GRID_STEP: f64 = 1.0 / 1024.0;
 
-/// What is known of the expressions of a program, each looked at once.
+/// Caches which expressions of a program lie on the grid.
 pub(super) struct Grid<'a> {
     pub(super) program: &'a Program<'a>,
     known: RefCell<HashMap<ExprId, bool>>,
-    /// Whether a variable is anywhere given what a function rounded to a whole number.
+    /// Whether a function that rounds to integers defines the variable anywhere.
     rounded: RefCell<HashMap<VariableId, bool>>,
 }
 
@@ -31,30 +31,30 @@ impl<'a> Grid<'a> {
         }
     }
 
-    /// Whether all that an expression may be lies on the grid, or cannot be told to lie elsewhere.
-    pub(super) fn holds(&self, expr: ExprId) -> bool {
+    /// Whether all values of an expression lie on the grid, or are not known to lie elsewhere.
+    pub(super) fn contains(&self, expr: ExprId) -> bool {
         if let Some(&known) = self.known.borrow().get(&expr) {
             return known;
         }
-        let holds = self.holds_within_budget(expr);
+        let holds = self.contains_within_budget(expr);
         self.known.borrow_mut().insert(expr, holds);
         holds
     }
 
-    fn holds_within_budget(&self, expr: ExprId) -> bool {
+    fn contains_within_budget(&self, expr: ExprId) -> bool {
         let mut pending = vec![expr];
         let mut seen: HashSet<VariableId> = HashSet::new();
-        for left in (0..BUDGET).rev() {
+        for left in (0..MAX_EXPRS).rev() {
             match pending.pop() {
                 None => return true,
-                Some(expr) if !stays(self, expr, &mut seen, left, &mut pending) => return false,
+                Some(expr) if !stays_on_grid(self, expr, &mut seen, left, &mut pending) => return false,
                 Some(_) => {}
             }
         }
         true
     }
 
-    /// `x = floor(x);`: which of its values is asked for, is not known.
+    /// `x = floor(x);`: it is unknown which definition of `x` a use reads.
     fn is_rounded_somewhere(&self, variable: VariableId) -> bool {
         *self.rounded.borrow_mut().entry(variable).or_insert_with(|| {
             let mut definitions = self.program.definitions(variable).iter();
@@ -66,8 +66,9 @@ impl<'a> Grid<'a> {
     }
 }
 
-/// Whether an expression stays on the grid if what it pushes does, of which no more than `left` will be looked at.
-fn stays(
+/// Whether an expression lies on the grid, provided that the operands pushed to `pending` do; at most `left`
+/// of those will be examined.
+fn stays_on_grid(
     grid: &Grid,
     expr: ExprId,
     seen: &mut HashSet<VariableId>,
@@ -81,7 +82,7 @@ fn stays(
     }
     if let Some(constant) = tree.value(expr) {
         return constant.components().iter().all(|scalar| match scalar {
-            Value::Float(value) => (value / STEP).fract() == 0.0 && value.abs() < 65536.0,
+            Value::Float(value) => (value / GRID_STEP).fract() == 0.0 && value.abs() < 65536.0,
             _ => true,
         });
     }
@@ -93,7 +94,7 @@ fn stays(
                 return false;
             }
             if seen.insert(*variable) && !grid.is_rounded_somewhere(*variable) {
-                for definition in last(program.definitions(*variable), left) {
+                for definition in newest(program.definitions(*variable), left) {
                     match definition {
                         Definition::Value(value) => pending.push(*value),
                         Definition::Change(change) => match tree[*change].kind {
@@ -111,7 +112,7 @@ fn stays(
                             ExprKind::Assign { value, .. } => pending.push(value),
                             _ => {}
                         },
-                        Definition::Outside => {}
+                        Definition::External => {}
                     }
                 }
             }
@@ -158,11 +159,11 @@ fn stays(
             true
         }
         ExprKind::Call { function, .. } => {
-            pending.extend(last(program.returned(*function), left));
+            pending.extend(newest(program.returned(*function), left));
             true
         }
         ExprKind::BuiltIn { function, arguments } => {
-            let keeps = keeps_to_grid(*function);
+            let keeps = preserves_grid(*function);
             if keeps {
                 pending.extend(arguments);
             }
@@ -172,8 +173,8 @@ fn stays(
     }
 }
 
-/// Whether a function gives what lies on the grid if its arguments do.
-fn keeps_to_grid(function: BuiltIn) -> bool {
+/// Whether a function maps arguments on the grid to results on it.
+fn preserves_grid(function: BuiltIn) -> bool {
     use BuiltIn as B;
     matches!(
         function,

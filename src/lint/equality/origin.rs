@@ -1,4 +1,4 @@
-//! Where a float comes from, as far as its rounding goes.
+//! The origins of a float, and whether they round.
 
 use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
@@ -7,14 +7,13 @@ use toyproof_glsl::tree::{
     BinaryOp, BuiltIn, Constructor, ExprId, ExprKind, Tree, Type, UnaryOp, Value, VariableId, VariableKind,
 };
 
-use super::super::program::{Definition, Program, last};
-use super::super::shape::Shape;
 use super::grid::Grid;
+use crate::program::{Definition, Program, Shape, newest};
 
-/// How many expressions are looked at; of what has more, nothing is known.
-const BUDGET: usize = 2_000;
+/// The maximum number of expressions examined; the origin is unknown beyond it.
+const MAX_EXPRS: usize = 2_000;
 
-/// Where the values of a program come from, each variable's looked for once.
+/// Finds the origins of values, and caches those of variables.
 pub(super) struct Origins<'a> {
     grid: Grid<'a>,
     of_variables: HashMap<VariableId, Rc<Origin>>,
@@ -38,24 +37,24 @@ impl<'a> Origins<'a> {
     }
 }
 
-/// All that a value may be, whichever way control goes.
+/// The possible origins of a value over all control flow.
 #[derive(Debug, Default)]
 pub(super) struct Origin {
     unknown: bool,
     rounded: bool,
-    /// By a sum or difference, which may miss zero.
+    /// Whether the rounded value is a sum or difference, which may miss zero.
     cancelled: bool,
-    /// What it is given as it is.
-    given: Vec<f64>,
-    /// The variables that hand it on.
-    names: HashSet<VariableId>,
+    /// Constants that it may equal without rounding.
+    exact_values: Vec<f64>,
+    /// Variables that pass the value on unchanged.
+    aliases: HashSet<VariableId>,
 }
 
 impl Origin {
     fn of(grid: &Grid, expr: ExprId) -> Self {
         let mut origin = Self::default();
         let mut pending = vec![(expr, 1.0)];
-        for _ in 0..BUDGET {
+        for _ in 0..MAX_EXPRS {
             match pending.pop() {
                 Some((expr, sign)) if !origin.unknown => origin.follow(grid, expr, sign, &mut pending),
                 _ => return origin,
@@ -65,7 +64,7 @@ impl Origin {
         origin
     }
 
-    /// Whether it is known to come out of arithmetic that rounds.
+    /// Whether it is known to result from arithmetic that rounds.
     pub(super) fn is_rounded(&self) -> bool {
         self.rounded && !self.unknown
     }
@@ -74,29 +73,29 @@ impl Origin {
         self.cancelled
     }
 
-    /// Whether it may be just this, unrounded.
-    pub(super) fn is_given(&self, value: f64) -> bool {
-        self.given.contains(&value)
+    /// Whether it may equal this constant without rounding.
+    pub(super) fn may_be_exactly(&self, value: f64) -> bool {
+        self.exact_values.contains(&value)
     }
 
-    /// Whether the other expression may be computed from this value, or from a variable that it is: then the two may be the
-    /// same by more than chance.
+    /// Whether the other expression may be computed from this value, or from a variable that holds it: the
+    /// two may then be equal by construction.
     pub(super) fn feeds(&self, program: &Program, own: ExprId, other: ExprId) -> bool {
         let tree = program.tree;
         let own = Shape::of(tree, own);
         let mut pending = vec![other];
         let mut seen = HashSet::new();
-        for _ in 0..BUDGET {
+        for _ in 0..MAX_EXPRS {
             let Some(expr) = pending.pop() else {
                 return false;
             };
             match tree[expr].kind {
-                ExprKind::Variable(variable) if self.names.contains(&variable) => return true,
+                ExprKind::Variable(variable) if self.aliases.contains(&variable) => return true,
                 ExprKind::Variable(variable) if seen.insert(variable) => {
-                    for definition in last(program.definitions(variable), BUDGET) {
+                    for definition in newest(program.definitions(variable), MAX_EXPRS) {
                         match definition {
                             Definition::Value(value) | Definition::Change(value) => pending.push(*value),
-                            Definition::Outside => {}
+                            Definition::External => {}
                         }
                     }
                 }
@@ -107,7 +106,7 @@ impl Origin {
         true
     }
 
-    fn round(&mut self, cancels: bool) {
+    fn mark_rounded(&mut self, cancels: bool) {
         self.rounded = true;
         self.cancelled |= cancels;
     }
@@ -118,7 +117,7 @@ impl Origin {
         if let Some(constant) = tree.value(expr) {
             for scalar in constant.components() {
                 if let Value::Float(value) = scalar {
-                    self.given.push(sign * value);
+                    self.exact_values.push(sign * value);
                 }
             }
             return;
@@ -134,8 +133,8 @@ impl Origin {
                 operand,
             } => pending.push((*operand, sign)),
             ExprKind::Binary { op, .. } => {
-                if !grid.holds(expr) {
-                    self.round(matches!(op, BinaryOp::Add | BinaryOp::Subtract));
+                if !grid.contains(expr) {
+                    self.mark_rounded(matches!(op, BinaryOp::Add | BinaryOp::Subtract));
                 }
             }
             ExprKind::Conditional { yes, no, .. } => pending.extend([(*yes, sign), (*no, sign)]),
@@ -143,7 +142,7 @@ impl Origin {
                 pending.push((*value, sign));
             }
             ExprKind::Call { function, .. } => {
-                let returned = last(program.returned(*function), BUDGET);
+                let returned = newest(program.returned(*function), MAX_EXPRS);
                 pending.extend(returned.iter().map(|&value| (value, sign)));
             }
             ExprKind::BuiltIn { function, arguments } => {
@@ -159,7 +158,8 @@ impl Origin {
                     self.unknown = true;
                 }
             }
-            // One component may be another's sentinel: followed only where all of them are alike.
+            // One component may be another's sentinel: a vector is followed only if all of its components
+            // come from one value.
             ExprKind::Swizzle { vector: base, .. } | ExprKind::Index { base, .. }
                 if matches!(tree[*base].ty, Type::Vector(..)) =>
             {
@@ -177,38 +177,38 @@ impl Origin {
         pending: &mut Vec<(ExprId, f64)>,
     ) {
         let tree = grid.program.tree;
-        if !self.names.insert(variable) {
+        if !self.aliases.insert(variable) {
             return;
         }
         let definitions = grid.program.definitions(variable);
-        if definitions.len() > BUDGET {
+        if definitions.len() > MAX_EXPRS {
             self.unknown = true;
             return;
         }
-        // A function cannot know that its argument is exact, and most often is right to ask.
-        self.unknown |=
-            matches!(tree[variable].kind, VariableKind::Parameter(_)) && definitions != [Definition::Outside];
+        // A function cannot know whether its argument is exact, so its comparison is usually justified.
+        self.unknown |= matches!(tree[variable].kind, VariableKind::Parameter(_))
+            && definitions != [Definition::External];
         if definitions.is_empty() && matches!(tree[variable].kind, VariableKind::Local | VariableKind::Global)
         {
-            self.given.push(0.0);
+            self.exact_values.push(0.0);
         }
-        // `x = floor(x);`: which of its values is compared, is not known.
+        // `x = floor(x);`: it is unknown which definition the comparison reads.
         let exact = |definition: &Definition| match definition {
-            Definition::Value(value) => tree.value(*value).is_none() && grid.holds(*value),
+            Definition::Value(value) => tree.value(*value).is_none() && grid.contains(*value),
             _ => false,
         };
         self.unknown |= definitions.len() > 1 && definitions.iter().any(exact);
         for definition in definitions {
             match definition {
                 Definition::Value(value) => pending.push((*value, sign)),
-                Definition::Outside => {}
+                Definition::External => {}
                 Definition::Change(change) => match tree[*change].kind {
                     ExprKind::Step { target, .. }
                     | ExprKind::Assign {
                         op: Some(_), target, ..
                     } => {
-                        if !grid.holds(target) {
-                            self.round(true);
+                        if !grid.contains(target) {
+                            self.mark_rounded(true);
                         }
                     }
                     _ => self.unknown = true,
@@ -230,25 +230,25 @@ impl Origin {
         match function {
             B::Min | B::Max | B::Clamp => pending.extend(arguments.iter().map(|&argument| (argument, sign))),
             B::Abs => pending.extend([(arguments[0], 1.0), (arguments[0], -1.0)]),
-            // At both ends it gives its arguments as they are.
+            // At weights 0 and 1, `mix` returns its arguments unchanged.
             B::Mix => {
                 pending.extend(arguments[..2].iter().map(|&argument| (argument, sign)));
-                if !grid.holds(arguments[2]) {
-                    self.round(true);
+                if !grid.contains(arguments[2]) {
+                    self.mark_rounded(true);
                 }
             }
             B::Smoothstep => {
-                self.given.extend([0.0, sign]);
-                self.round(false);
+                self.exact_values.extend([0.0, sign]);
+                self.mark_rounded(false);
             }
             B::Floor | B::Ceil | B::Trunc | B::Round | B::RoundEven | B::Sign | B::Step => {}
             B::Mod | B::Fract => {
-                if !grid.holds(expr) {
-                    self.round(true);
+                if !grid.contains(expr) {
+                    self.mark_rounded(true);
                 }
             }
-            B::Dot if is_square(grid.program.tree, arguments) => self.round(false),
-            B::Sin | B::Cos | B::Tan | B::Dot | B::Cross | B::Reflect => self.round(true),
+            B::Dot if is_square(grid.program.tree, arguments) => self.mark_rounded(false),
+            B::Sin | B::Cos | B::Tan | B::Dot | B::Cross | B::Reflect => self.mark_rounded(true),
             B::Sqrt
             | B::InverseSqrt
             | B::Pow
@@ -261,13 +261,13 @@ impl Origin {
             | B::Normalize
             | B::Atan
             | B::Asin
-            | B::Acos => self.round(false),
+            | B::Acos => self.mark_rounded(false),
             _ => self.unknown = true,
         }
     }
 }
 
-/// Whether a vector is multiplied by itself.
+/// Whether both arguments are the same vector.
 fn is_square(tree: &Tree, arguments: &[ExprId]) -> bool {
     Shape::of(tree, arguments[0]) == Shape::of(tree, arguments[1])
 }

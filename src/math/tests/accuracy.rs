@@ -1,15 +1,18 @@
-//! How far the functions are from the truth, and that flushing denormals changes nothing.
+//! Measures the errors of the functions, and checks that flushing denormals changes no result.
 //!
-//! The oracle is libm in f64: at most about one unit in the last place of f64 from the truth, 2⁻²⁹ of ours.
+//! The reference is libm in f64, with an error of at most about one unit in the last place of f64, which is
+//! 2⁻²⁹ of an f32's.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use proptest::prelude::*;
 use rayon::prelude::*;
 
-use super::flushing::Flushing;
-use crate as e;
+use crate as math;
 use crate::native::{self, flush};
+use crate::{Float, Number, Word};
 
-/// A function of one argument, its oracle, and how far it may be from it.
+/// A function of one argument, its reference, and its error limit.
 struct Case {
     name: &'static str,
     native: fn(f32) -> f32,
@@ -17,7 +20,7 @@ struct Case {
     exact: fn(f64) -> f64,
     /// The largest error, in units in the last place of an f32 next to the exact value.
     limit: f64,
-    /// Where the error is that large: the bits of the argument.
+    /// The bits of an argument with that error.
     worst: u32,
 }
 
@@ -26,7 +29,7 @@ macro_rules! cases {
         [$(Case {
             name: stringify!($name),
             native: native::$name,
-            flushing: e::$name::<Flushing>,
+            flushing: math::$name::<Flushing>,
             exact: $exact,
             limit: $limit,
             worst: $worst,
@@ -34,8 +37,9 @@ macro_rules! cases {
     };
 }
 
-/// The largest errors among every 97th float where the function is neither constant nor its argument, and among every 97th of all from
-/// the 48th on; all floats may have slightly larger ones, and the limits leave a few hundredths for them.
+/// The largest errors among every 97th float where the function is neither constant nor its argument, and
+/// among every 97th of all floats from the 48th on. Other floats may have slightly larger errors; the limits
+/// allow a few hundredths for them.
 fn cases() -> [Case; 16] {
     cases! {
         sin = libm::sin, 0.82, 0x73C3_51C2;
@@ -57,13 +61,13 @@ fn cases() -> [Case; 16] {
     }
 }
 
-/// libm's, which gives finite values far below 1.
+/// libm's acosh, which returns finite values far below 1.
 fn acosh(x: f64) -> f64 {
     if x < 1.0 { f64::NAN } else { libm::acosh(x) }
 }
 
-/// The distance in units in the last place of an f32 next to the exact value. Where that is no normal float or the smallest, zero and the
-/// smallest normal float count as exact.
+/// The error in units in the last place of an f32 next to the exact value. If that value is at most the
+/// smallest normal float, zero and that float count as exact.
 fn error(computed: f32, exact: f64) -> f64 {
     let rounded = exact as f32;
     if exact.is_nan() || rounded.is_infinite() || computed.is_infinite() {
@@ -84,10 +88,10 @@ fn same(a: f32, b: f32) -> bool {
 }
 
 impl Case {
-    /// The error at an argument.
+    /// The error at one argument.
     ///
     /// # Panics
-    /// If it would be another where every operation flushes.
+    /// If the result differs when every operation flushes denormals.
     fn error(&self, x: f32) -> f64 {
         let x = flush(x);
         let computed = (self.native)(x);
@@ -100,7 +104,7 @@ impl Case {
         error(computed, (self.exact)(f64::from(x)))
     }
 
-    /// Among every `stride`th float, from that one on.
+    /// The largest error among every `stride`th float from `first` on, and its argument.
     fn largest_error(&self, stride: usize, first: usize) -> (f64, f32) {
         let arguments = (0..(1_usize << 32) / stride).into_par_iter();
         let errors = arguments.map(|index| {
@@ -114,7 +118,8 @@ impl Case {
 #[test]
 #[expect(clippy::print_stderr, reason = "a sweep tells what it found")]
 fn no_error_is_larger_than_its_limit_and_no_limit_than_its_error() {
-    // TOYPROOF_STRIDE=1 tries all floats, in twenty minutes of a core for each function (with `cargo test --release`).
+    // TOYPROOF_STRIDE=1 tests all floats, which takes 20 core minutes for each function (with `cargo test
+    // --release`).
     let number = |name, usual| std::env::var(name).map_or(usual, |number| number.parse().unwrap());
     let (stride, start) = (number("TOYPROOF_STRIDE", 8191), number("TOYPROOF_FIRST", 0));
     for case in &cases() {
@@ -134,8 +139,8 @@ fn no_error_is_larger_than_its_limit_and_no_limit_than_its_error() {
     }
 }
 
-/// Where something changes, or ends.
-const EDGES: [f32; 32] = [
+/// Arguments at the ends of ranges and at the switches between formulas.
+const EDGE_CASES: [f32; 32] = [
     0.0,
     1e-40,
     f32::MIN_POSITIVE,
@@ -170,14 +175,14 @@ const EDGES: [f32; 32] = [
     f32::INFINITY,
 ];
 
-fn signed_edges() -> impl Iterator<Item = f32> + Clone {
-    EDGES.into_iter().flat_map(|x| [x, -x]).chain([f32::NAN])
+fn signed_edge_cases() -> impl Iterator<Item = f32> + Clone {
+    EDGE_CASES.into_iter().flat_map(|x| [x, -x]).chain([f32::NAN])
 }
 
 #[test]
-fn edges_are_as_in_c() {
+fn edge_cases_are_as_in_c() {
     for case in &cases() {
-        for x in signed_edges() {
+        for x in signed_edge_cases() {
             let error = case.error(x);
             assert!(error <= case.limit, "{}({x:e}): {error}", case.name);
             let (computed, exact) = ((case.native)(x), (case.exact)(f64::from(flush(x))));
@@ -191,16 +196,17 @@ fn edges_are_as_in_c() {
     }
 }
 
-/// The largest error that millions of random arguments have.
+/// The largest error for millions of random arguments, in units in the last place.
 const POW_LIMIT: f64 = 0.85;
-/// A hundred million pairs whose quotient lies between 0.5 and 0.5463, where its own rounding counts most, have errors of up to 1.67.
+/// A hundred million pairs with quotients between 0.5 and 0.5463, where the rounding of the quotient matters
+/// most, have errors of up to 1.67.
 const ATAN2_LIMIT: f64 = 1.75;
 
-/// The error, where the function is defined: of x < 0 it is not.
+/// The error of `pow`; 0 for x < 0, where the function is undefined.
 fn pow_error(x: f32, y: f32) -> f64 {
     let (x, y) = (flush(x), flush(y));
     let computed = native::pow(x, y);
-    let flushed = e::pow(Flushing::new(x), Flushing::new(y)).get();
+    let flushed = math::pow(Flushing::new(x), Flushing::new(y)).get();
     assert!(
         same(computed, flushed),
         "pow({x:e}, {y:e}) is {computed:e}, or {flushed:e} with denormals flushed"
@@ -209,14 +215,14 @@ fn pow_error(x: f32, y: f32) -> f64 {
         assert!(computed.is_nan(), "pow({x:e}, {y:e}) is {computed:e}");
         return 0.0;
     }
-    // −0 is a zero like the other.
+    // −0 counts as 0.
     error(computed, libm::pow(f64::from(x.abs()), f64::from(y)))
 }
 
 fn atan2_error(y: f32, x: f32) -> f64 {
     let (x, y) = (flush(x), flush(y));
     let computed = native::atan2(y, x);
-    let flushed = e::atan2(Flushing::new(y), Flushing::new(x)).get();
+    let flushed = math::atan2(Flushing::new(y), Flushing::new(x)).get();
     assert!(
         same(computed, flushed),
         "atan({y:e}, {x:e}) is {computed:e}, or {flushed:e} with denormals flushed"
@@ -225,9 +231,9 @@ fn atan2_error(y: f32, x: f32) -> f64 {
 }
 
 #[test]
-fn edges_of_two_arguments_are_as_in_c() {
-    for x in signed_edges() {
-        for y in signed_edges() {
+fn edge_cases_of_two_arguments_are_as_in_c() {
+    for x in signed_edge_cases() {
+        for y in signed_edge_cases() {
             let error = pow_error(x, y);
             assert!(error <= POW_LIMIT, "pow({x:e}, {y:e}): {error}");
             let error = atan2_error(x, y);
@@ -240,8 +246,8 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(100_000))]
 
     #[test]
-    fn pow_is_near(x in any::<u32>(), y in any::<u32>()) {
-        // Any bits; and results all over the range of floats.
+    fn pow_is_accurate(x in any::<u32>(), y in any::<u32>()) {
+        // Any bits, and results over the full range of floats.
         let (x, y) = (f32::from_bits(x), f32::from_bits(y));
         prop_assert!(pow_error(x, y) <= POW_LIMIT);
         let reach = 128.0 / libm::log2f(x.abs());
@@ -250,8 +256,106 @@ proptest! {
     }
 
     #[test]
-    fn atan2_is_near(y in any::<u32>(), x in any::<u32>(), near in -1e3f32..1e3, close in -1e3f32..1e3) {
+    fn atan2_is_accurate(y in any::<u32>(), x in any::<u32>(), near in -1e3f32..1e3, close in -1e3f32..1e3) {
         prop_assert!(atan2_error(f32::from_bits(y), f32::from_bits(x)) <= ATAN2_LIMIT);
         prop_assert!(atan2_error(near, close) <= ATAN2_LIMIT, "atan({}, {})", near, close);
+    }
+}
+
+// A number type for tests: f32 with denormal operands and results of every operation flushed.
+
+#[derive(Debug, Clone, Copy)]
+struct Flushing(f32);
+
+fn flush_subnormal(x: f32) -> f32 {
+    if x.is_subnormal() { 0.0_f32.copysign(x) } else { x }
+}
+
+impl Flushing {
+    fn new(x: f32) -> Self {
+        Self(flush_subnormal(x))
+    }
+
+    fn get(self) -> f32 {
+        flush_subnormal(self.0)
+    }
+}
+
+macro_rules! operators {
+    ($($operator:ident $name:ident;)*) => {$(
+        impl $operator for Flushing {
+            type Output = Self;
+
+            fn $name(self, other: Self) -> Self {
+                Self::new(self.get().$name(other.get()))
+            }
+        }
+
+        impl $operator<f32> for Flushing {
+            type Output = Self;
+
+            fn $name(self, other: f32) -> Self {
+                self.$name(Self(other))
+            }
+        }
+    )*};
+}
+
+operators! {
+    Add add;
+    Sub sub;
+    Mul mul;
+    Div div;
+}
+
+impl Neg for Flushing {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self::new(-self.0)
+    }
+}
+
+impl Number for Flushing {
+    type Truth = bool;
+
+    fn literal(self, value: f64) -> Self {
+        Self(value as f32)
+    }
+
+    fn sqrt(self) -> Self {
+        Self::new(self.get().sqrt())
+    }
+
+    fn abs(self) -> Self {
+        Self(self.0.abs())
+    }
+
+    fn floor(self) -> Self {
+        Self(self.get().floor())
+    }
+
+    fn less(self, other: Self) -> bool {
+        self.get() < other.get()
+    }
+
+    fn select(condition: bool, yes: Self, no: Self) -> Self {
+        if condition { yes } else { no }
+    }
+}
+
+impl Float for Flushing {
+    type Bits = Word;
+
+    fn to_bits(self) -> Word {
+        Word(self.0.to_bits())
+    }
+
+    fn from_bits(bits: Word) -> Self {
+        Self(f32::from_bits(bits.0))
+    }
+
+    fn from_signed(bits: Word) -> Self {
+        Self(bits.0.cast_signed() as f32)
     }
 }

@@ -1,3 +1,97 @@
+//! Tests of the functions in f64 against mathematical identities, which hold for any order of operations.
+
 mod accuracy;
-mod flushing;
-mod formulas;
+
+use proptest::prelude::*;
+
+use super::{
+    Matrix, cross, determinant, distance, dot, faceforward, inverse, length, mix, modulo, normalize,
+    outer_product, reflect, refract, smoothstep,
+};
+
+/// Far above f64's rounding errors for components up to 2, far below the effect of a wrong sign or index.
+const TOLERANCE: f64 = 1e-9;
+
+fn near(a: f64, b: f64) -> bool {
+    (a - b).abs() <= TOLERANCE * (1.0 + a.abs().max(b.abs()))
+}
+
+fn vector(size: usize) -> impl Strategy<Value = Vec<f64>> {
+    prop::collection::vec(-2.0..2.0, size)
+}
+
+/// The identity matrix in column order.
+fn identity(size: usize) -> Vec<f64> {
+    (0..size * size)
+        .map(|at| f64::from(u8::from(at % (size + 1) == 0)))
+        .collect()
+}
+
+proptest! {
+    #[test]
+    fn an_inverse_times_its_matrix_is_the_identity((size, components) in (2..=4usize).prop_flat_map(|n| (Just(n), vector(n * n)))) {
+        let m = Matrix::new(&components, size);
+        let det = determinant(&m);
+        prop_assume!(det.abs() > 1e-2);
+        for product in [m.times(&inverse(&m)), inverse(&m).times(&m)] {
+            let close = product.components().iter().zip(identity(size)).all(|(&a, b)| near(a, b));
+            prop_assert!(close, "{product:?}");
+        }
+        // Rotating the columns changes the determinant's sign, except for three columns.
+        let mut rotated = components.clone();
+        rotated.rotate_left(size);
+        let sign = if size == 3 { 1.0 } else { -1.0 };
+        prop_assert!(near(determinant(&Matrix::new(&rotated, size)), sign * det));
+    }
+
+    #[test]
+    fn products_agree_with_each_other(a in vector(6), b in vector(6), v in vector(2), w in vector(3)) {
+        // A matrix of two columns of three rows, and one of three columns of two rows.
+        let (m, k) = (Matrix::new(&a, 3), Matrix::new(&b, 2));
+        let at_once = m.times(&k).times_vector(&w);
+        let in_turn = m.times_vector(&k.times_vector(&w));
+        prop_assert!(at_once.iter().zip(&in_turn).all(|(&a, &b)| near(a, b)));
+        prop_assert!(near(dot(&w, &m.times_vector(&v)), dot(&m.vector_times(&w), &v)));
+        let outer = outer_product(&w, &v);
+        prop_assert!(outer.times_vector(&v).iter().zip(&w).all(|(&a, &w)| near(a, w * dot(&v, &v))));
+    }
+
+    #[test]
+    fn geometric_functions_satisfy_their_identities(a in vector(3), b in vector(3)) {
+        prop_assume!(length(&a) > 0.1 && length(&b) > 0.1);
+        let n = normalize(&a);
+        prop_assert!(near(length(&n), 1.0) && near(dot(&n, &a), length(&a)));
+        prop_assert!(near(distance(&a, &b), (dot(&a, &a) - 2.0 * dot(&a, &b) + dot(&b, &b)).sqrt()));
+        let c = cross([a[0], a[1], a[2]], [b[0], b[1], b[2]]);
+        prop_assert!(near(dot(&c, &a), 0.0) && near(dot(&c, &b), 0.0));
+        let mirrored = reflect(&b, &n);
+        prop_assert!(near(dot(&mirrored, &n), -dot(&b, &n)) && near(length(&mirrored), length(&b)));
+        prop_assert!(dot(&faceforward(&n, &b, &n), &b) <= 0.0);
+        // Snell's law: the tangential component is scaled by eta, and the direction keeps length 1.
+        let (i, eta) = (normalize(&b), 0.75);
+        let bent = refract(&i, &faceforward(&n, &i, &n), eta);
+        let across = |v: &[f64]| cross([v[0], v[1], v[2]], [n[0], n[1], n[2]]);
+        prop_assert!(near(length(&bent), 1.0));
+        prop_assert!(across(&bent).iter().zip(across(&i)).all(|(&a, b)| near(a, eta * b)));
+    }
+
+    #[test]
+    fn scalar_functions_satisfy_their_identities(x in -9.0..9.0f64, y in -9.0..9.0f64) {
+        prop_assume!(y.abs() > 0.1);
+        let m = modulo(x, y);
+        prop_assert!(near(((x - m) / y).round(), (x - m) / y) && m / y > -TOLERANCE && m / y < 1.0 + TOLERANCE);
+        prop_assert!(near(mix(x, y, 0.0), x) && near(mix(x, y, 1.0), y));
+        prop_assert!(near(smoothstep(0.0, 4.0, x) + smoothstep(0.0, 4.0, 4.0 - x), 1.0));
+    }
+}
+
+#[test]
+fn refraction_beyond_the_critical_angle_is_zero() {
+    assert_eq!(refract(&[0.8, -0.6], &[0.0, 1.0], 2.0), [0.0, 0.0]);
+}
+
+#[test]
+fn vectors_of_one_component_work() {
+    assert_eq!(length(&[-3.0_f32]), 3.0);
+    assert_eq!(normalize(&[-3.0_f32]), [-1.0]);
+}

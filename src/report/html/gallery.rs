@@ -1,28 +1,29 @@
-//! The pictures of a page: each once, however many shaders paint it.
+//! The images of a page, without duplicates.
 
 use std::collections::HashMap;
 
 use sha2::{Digest, Sha256};
-use toyproof_image::Shown;
+use toyproof_image::Rgb8Image;
 
-/// How many bytes of PNGs a page may hold. As text they are a third longer, and the rest of a page for 500 shaders is about 2 MB: so
-/// the whole stays below 20 MB.
-pub const BUDGET: usize = 13_000_000;
+/// The maximum size of all PNGs of a page, in bytes. Base64 adds a third, and the rest of a page for 500
+/// shaders is about 2 MB, so that the page stays below 20 MB.
+pub const MAX_IMAGE_BYTES: usize = 13_000_000;
 
-/// What is shown of a shader beside its record. Pictures are places in the gallery.
+/// The material shown of a shader beside its record. Images are indices into the gallery.
 #[derive(Debug, Default)]
 pub struct Exhibit {
-    /// The shader's text.
+    /// The shader's source text.
     pub source: Option<String>,
-    /// What it paints.
+    /// The rendered image.
     pub actual: Option<usize>,
-    /// What its scene looks like.
+    /// The reference image.
     pub reference: Option<usize>,
-    /// How the questions' pixels stand: maths, rounding, toolchain. None where all agree, or it was not asked.
-    pub questions: [Option<usize>; 3],
+    /// The difference images of the checks: algorithm, precision, toolchain. None where all pixels agree or
+    /// the check did not run.
+    pub checks: [Option<usize>; 3],
 }
 
-/// All pictures of a page, as PNGs, and what shows them.
+/// All images of a page, as PNGs, and the exhibits that refer to them.
 #[derive(Debug)]
 pub struct Gallery {
     step: u32,
@@ -33,7 +34,8 @@ pub struct Gallery {
 }
 
 impl Gallery {
-    /// An empty one, of whose pictures only every `step`th pixel of every `step`th row is there, from the bottom left.
+    /// Creates an empty gallery, whose images hold only every `step`th pixel of every `step`th row, from the
+    /// bottom left.
     #[must_use]
     pub fn new(step: u32) -> Self {
         Self {
@@ -45,8 +47,8 @@ impl Gallery {
         }
     }
 
-    /// Takes a PNG; gives its place.
-    pub fn hang(&mut self, png: Vec<u8>) -> usize {
+    /// Adds a PNG; returns its index, which duplicates share.
+    pub fn add_image(&mut self, png: Vec<u8>) -> usize {
         let place = *self
             .places
             .entry(Sha256::digest(&png).into())
@@ -58,12 +60,12 @@ impl Gallery {
         place
     }
 
-    /// Takes what is shown of the next shader.
-    pub fn show(&mut self, exhibit: Exhibit) {
+    /// Adds the exhibit of the next shader.
+    pub fn add_exhibit(&mut self, exhibit: Exhibit) {
         self.exhibits.push(exhibit);
     }
 
-    /// The bytes of all pictures.
+    /// The size of all PNGs in bytes.
     #[must_use]
     pub fn bytes(&self) -> usize {
         self.bytes
@@ -82,16 +84,16 @@ impl Gallery {
     }
 }
 
-/// Every `step`th pixel of every `step`th row of the picture's upper left part of that size, from that part's bottom left: pixels as they are, not
-/// means of several.
+/// Subsamples an image: every `step`th pixel of every `step`th row of its upper left part of the given size,
+/// from that part's bottom left. Pixels are copied, not averaged.
 #[must_use]
-pub fn every(step: u32, picture: &Shown, [width, height]: [u32; 2]) -> Shown {
+pub fn subsample(step: u32, picture: &Rgb8Image, [width, height]: [u32; 2]) -> Rgb8Image {
     let [whole_width, whole_height] = picture.size();
     let (width, height) = (width.min(whole_width), height.min(whole_height));
     let below = whole_height - height;
     let steps = |side| (0..side).step_by(step as usize);
     let pixels = steps(height).flat_map(|y| steps(width).map(move |x| picture.get(x, below + y)));
-    Shown::new(width.div_ceil(step), height.div_ceil(step), pixels.collect())
+    Rgb8Image::new(width.div_ceil(step), height.div_ceil(step), pixels.collect())
 }
 
 #[cfg(test)]
@@ -99,18 +101,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_picture_hangs_once() {
+    fn images_are_deduplicated() {
         let mut gallery = Gallery::new(1);
-        let places = [b"one", b"two", b"one"].map(|png| gallery.hang(png.to_vec()));
+        let places = [b"one", b"two", b"one"].map(|png| gallery.add_image(png.to_vec()));
         assert_eq!((places, gallery.bytes()), ([0, 1, 0], 6));
     }
 
     #[test]
-    fn thinned_pictures_begin_at_the_bottom_left_of_what_is_no_legend() {
-        // Red is x, green is y; the lowest row is a legend.
+    fn subsampling_starts_at_the_bottom_left_above_the_legend() {
+        // Red is x, green is y; the bottom row is a legend.
         let pixels = (0..4).flat_map(|y| (0..5).map(move |x| [x, y, 0]));
-        let picture = Shown::new(5, 4, pixels.collect());
-        let thin = every(2, &picture, [4, 3]);
+        let picture = Rgb8Image::new(5, 4, pixels.collect());
+        let thin = subsample(2, &picture, [4, 3]);
         assert_eq!(thin.size(), [2, 2]);
         let places: Vec<_> = thin.pixels().iter().map(|p| (p[0], p[1])).collect();
         assert_eq!(places, [(0, 1), (2, 1), (0, 3), (2, 3)]);

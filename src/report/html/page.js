@@ -1,4 +1,4 @@
-// What the page does where scripts run. Texts of shaders only ever become text.
+// The behavior of the page where scripts run. Shader texts are only ever inserted as text nodes.
 'use strict';
 (() => {
   const $ = (selector, within = document) => within.querySelector(selector);
@@ -11,7 +11,7 @@
   const settings = JSON.parse($('#settings').textContent);
   const STEP = settings.step;
 
-  // The table: sorted by a click on a column's head, narrowed by words and verdicts.
+  // The table: sorted by a click on a column header, filtered by text and verdicts.
 
   const body = $('#shaders tbody');
   const rows = [...body.rows];
@@ -31,7 +31,7 @@
       const [left, right] = [valueOf(a, column), valueOf(b, column)];
       return typeof left === 'number' ? left - right : words.compare(left, right);
     };
-    // Rows that are alike in this column stay in the order that they came in.
+    // The sort is stable: rows that are equal in this column keep their order.
     const sorted = [...rows].sort((a, b) => (down ? -order(a, b) : order(a, b)) || rows.indexOf(a) - rows.indexOf(b));
     body.append(...sorted);
     moves();
@@ -86,7 +86,7 @@
   const close = () => {
     const link = linkOf(open);
     location.hash = '';
-    // The table must be there again before it can have the focus.
+    // The table must be visible again before it can be focused.
     show();
     link.focus();
   };
@@ -119,9 +119,9 @@
   };
   addEventListener('hashchange', show);
 
-  // Its pictures.
+  // The images of a shader.
 
-  /** A picture's pixels, the upper left part of that size; the whole if none is told. */
+  /** The pixels of an image's upper left part of the given size; of the whole image without a size. */
   const pixels = async (place, size) => {
     const image = new Image();
     image.src = `data:image/png;base64,${document.getElementById(`p${place}`).textContent}`;
@@ -135,9 +135,9 @@
 
   const colourOf = (picture, at) => [...picture.data.subarray(4 * at, 4 * at + 3)];
   const differenceOf = (a, b) => Math.max(...a.map((value, part) => Math.abs(value - b[part])));
-  /** The colours of a legend that stand for sizes, the largest first. */
+  /** The legend's colors for magnitudes, the largest first. */
   const bands = settings.eye.filter(([name]) => name.startsWith('>')).reverse();
-  /** The colour of a difference in 8-bit levels. */
+  /** The color of a difference in 8-bit levels. */
   const heat = Array.from({ length: 256 }, (_, levels) => {
     const band = bands.find(([name]) => levels / 255 > Number(name.slice(2)));
     return [...(band ? band[1] : [0, 0, 0]), 255];
@@ -168,7 +168,7 @@
       if (data[name] !== undefined) pictures[name] = await pixels(data[name], [width, height]);
     }
     if (pictures.reference) pictures.difference = heatMap(pictures.reference, pictures.actual);
-    // Somebody may have gone on in the meantime.
+    // The user may have moved on in the meantime.
     if (open !== article) return;
     $('.viewer', article)?.remove();
 
@@ -272,7 +272,7 @@
         paint();
       });
     }
-    // The pixels that the questions name become buttons, once.
+    // The pixels that the checks name become buttons, once.
     for (const span of $$('span.pixel', article)) {
       const button = make('button', { type: 'button', className: 'pixel', textContent: span.textContent });
       Object.assign(button.dataset, span.dataset);

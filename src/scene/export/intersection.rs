@@ -1,10 +1,11 @@
-//! Where rays meet surfaces.
+//! Intersections of rays with spheres, planes, quadrics, and grids of spheres.
 
 use std::fmt::Write;
 
-use super::parts::Parts;
-use super::quadric;
-use crate::Sampler;
+use super::image::PCG;
+use super::structure::{moved_direction, moved_point};
+use super::{Parts, number, vector};
+use crate::{Quadric, QuadricKind, Sampler, Scatter};
 
 impl Parts<'_> {
     pub(super) fn intersections(&self, sampler: Sampler) -> Vec<String> {
@@ -30,7 +31,7 @@ impl Parts<'_> {
             loops += &self.nearest("Plane", "planes", "planes[i]", normal);
         }
         if !self.quadrics.is_empty() {
-            pieces.push(quadric::INTERSECT.to_owned());
+            pieces.push(INTERSECT_QUADRIC.to_owned());
             let normal = "normalOf(quadrics[i], hit.point, ray.direction)";
             loops += &self.nearest("Quadric", "quadrics", "quadrics[i]", normal);
         }
@@ -40,7 +41,8 @@ impl Parts<'_> {
         pieces
     }
 
-    /// The loop over one kind of surfaces, which keeps the nearest hit; `own` is the surface that was met.
+    /// Returns the loop over one kind of surfaces, which keeps the nearest hit; `own` is the surface that was
+    /// hit.
     fn nearest(&self, kind: &str, all: &str, own: &str, normal: &str) -> String {
         let count = all.to_uppercase();
         let color = if self.checkers {
@@ -55,13 +57,13 @@ impl Parts<'_> {
         if self.traces_paths && kind == "Sphere" {
             taken += "            hit.sphere = i;\n";
         }
-        let met = if kind == "Grid" {
+        let intersect_call = if kind == "Grid" {
             "        Sphere sphere;\n        float t = intersectGrid(ray, grids[i], sphere);\n".to_owned()
         } else {
             format!("        float t = intersect{kind}(ray, {own});\n")
         };
         format!(
-            "    for (int i = 0; i < {count}; i++) {{\n{met}        if (t < hit.t) {{\n            hit.t = t;\n            \
+            "    for (int i = 0; i < {count}; i++) {{\n{intersect_call}        if (t < hit.t) {{\n            hit.t = t;\n            \
              hit.point = ray.origin + t * ray.direction;\n            hit.normal = {normal};\n            \
              hit.color = {color};\n{taken}        }}\n    }}\n"
         )
@@ -100,5 +102,267 @@ float intersectSphere(Ray ray, Sphere sphere) {
 const INTERSECT_PLANE: &str = "float intersectPlane(Ray ray, Plane plane) {
     float t = dot(plane.normal, plane.point - ray.origin) / dot(plane.normal, ray.direction);
     return t > 0.00001 ? t : NO_HIT;
+}
+";
+
+// Quadrics.
+
+pub(super) const QUADRIC_FORM: &str =
+    "// q.x x^2 + q.y y^2 + q.z z^2 + 2 g z + k = 0 for low <= z <= high, in coordinates along the axes of a quadric.
+struct Form {
+    vec3 q;
+    float g;
+    float k;
+    float low;
+    float high;
+};
+";
+
+pub(super) const QUADRIC_STRUCTURE: &str = "struct Quadric {
+    vec3 origin;
+    mat3 axes;
+    Form form;
+";
+
+/// Returns the functions that the values of the quadrics call.
+pub(super) fn quadric_functions<'a>(quadrics: impl Iterator<Item = &'a Quadric>) -> Vec<String> {
+    let mut pieces = Vec::new();
+    for quadric in quadrics {
+        let (text, _) = form(&quadric.kind);
+        let frame = (!is_ellipsoid(quadric)).then_some(FRAME);
+        for piece in [Some(text), frame].into_iter().flatten() {
+            if !pieces.iter().any(|known| known == piece) {
+                pieces.push(piece.to_owned());
+            }
+        }
+    }
+    pieces
+}
+
+/// Returns the values of the members of a quadric that not every surface has.
+pub(super) fn quadric_values(quadric: &Quadric, motion: Option<usize>) -> String {
+    let axes = quadric
+        .axes
+        .map(|axis| moved_direction(axis, quadric.origin, motion));
+    let axes = if is_ellipsoid(quadric) {
+        format!("mat3({})", axes.join(", "))
+    } else {
+        format!("frame({})", axes[2])
+    };
+    let (_, form) = form(&quadric.kind);
+    format!("{}, {axes}, {form}", moved_point(quadric.origin, motion))
+}
+
+fn is_ellipsoid(quadric: &Quadric) -> bool {
+    matches!(quadric.kind, QuadricKind::Ellipsoid { .. })
+}
+
+/// Returns the function that constructs the form of a quadric, and its call.
+fn form(kind: &QuadricKind) -> (&'static str, String) {
+    let call = |name, numbers: &[f64]| {
+        let numbers: Vec<_> = numbers.iter().map(|&value| number(value)).collect();
+        format!("{name}({})", numbers.join(", "))
+    };
+    match *kind {
+        QuadricKind::Ellipsoid { radii } => (ELLIPSOID, format!("ellipsoid({})", vector(radii))),
+        QuadricKind::Cylinder { radius, height } => (CYLINDER, call("cylinder", &[radius, height])),
+        QuadricKind::Cone { radius, height } => (CONE, call("cone", &[radius, height])),
+        QuadricKind::Paraboloid { radius, height } => (PARABOLOID, call("paraboloid", &[radius, height])),
+        QuadricKind::Hyperboloid {
+            waist,
+            radius,
+            height,
+        } => (HYPERBOLOID, call("hyperboloid", &[waist, radius, height])),
+    }
+}
+
+const FRAME: &str = "// Two directions at right angles to the axis, and the axis.
+mat3 frame(vec3 axis) {
+    vec3 x = abs(axis.z) > 0.9 ? vec3(1.0, 0.0, 0.0) : cross(axis, vec3(0.0, 0.0, 1.0));
+    x = normalize(x - dot(x, axis) * axis);
+    return mat3(x, cross(axis, x), axis);
+}
+";
+
+const ELLIPSOID: &str = "Form ellipsoid(vec3 radii) {
+    return Form(1.0 / (radii * radii), 0.0, -1.0, -NO_HIT, NO_HIT);
+}
+";
+
+const CYLINDER: &str = "Form cylinder(float radius, float height) {
+    return Form(vec3(1.0, 1.0, 0.0), 0.0, -radius * radius, 0.0, height);
+}
+";
+
+const CONE: &str = "Form cone(float radius, float height) {
+    float slope = radius / height;
+    return Form(vec3(1.0, 1.0, -slope * slope), 0.0, 0.0, 0.0, height);
+}
+";
+
+const PARABOLOID: &str = "Form paraboloid(float radius, float height) {
+    return Form(vec3(1.0, 1.0, 0.0), -0.5 * radius * radius / height, 0.0, 0.0, height);
+}
+";
+
+const HYPERBOLOID: &str = "Form hyperboloid(float waist, float radius, float height) {
+    float z = 0.5 * height;
+    float slope2 = (radius * radius - waist * waist) / (z * z);
+    return Form(vec3(1.0, 1.0, -slope2), 0.0, -waist * waist, -z, z);
+}
+";
+
+pub(super) const INTERSECT_QUADRIC: &str =
+    "// As for spheres, from the point of the ray that is closest to the origin.
+float intersectQuadric(Ray ray, Quadric quadric) {
+    Form form = quadric.form;
+    vec3 d = ray.direction * quadric.axes;
+    vec3 origin = (ray.origin - quadric.origin) * quadric.axes;
+    float ahead = -dot(origin, d);
+    vec3 o = origin + ahead * d;
+    float a = dot(form.q * d, d);
+    float b = dot(form.q * d, o) + form.g * d.z;
+    float c = dot(form.q * o, o) + 2.0 * form.g * o.z + form.k;
+    float disc = b * b - a * c;
+    if (disc < 0.0) {
+        return NO_HIT;
+    }
+    // The root that does not cancel, and the other by their product; where a is 0 there is only that.
+    float q = b > 0.0 ? -b - sqrt(disc) : -b + sqrt(disc);
+    float t0 = q == 0.0 ? NO_HIT : c / q;
+    float t1 = a == 0.0 ? NO_HIT : q / a;
+    float near = min(t0, t1);
+    float z = o.z + near * d.z;
+    if (ahead + near > 0.00001 && z >= form.low && z <= form.high) {
+        return ahead + near;
+    }
+    float beyond = max(t0, t1);
+    z = o.z + beyond * d.z;
+    if (ahead + beyond > 0.00001 && z >= form.low && z <= form.high) {
+        return ahead + beyond;
+    }
+    return NO_HIT;
+}
+
+// What is open shows both sides.
+vec3 normalOf(Quadric quadric, vec3 point, vec3 direction) {
+    vec3 p = (point - quadric.origin) * quadric.axes;
+    vec3 normal = normalize(quadric.axes * (quadric.form.q * p + vec3(0.0, 0.0, quadric.form.g)));
+    return quadric.form.high < NO_HIT ? faceforward(normal, direction, normal) : normal;
+}
+";
+
+// Grids with a sphere in each cell, traversed along the ray.
+
+impl Parts<'_> {
+    /// Returns the functions that find the first sphere of a grid.
+    pub(super) fn grid(&self, sampler: Sampler) -> Vec<String> {
+        let mut pieces = Vec::new();
+        if sampler != Sampler::Independent {
+            pieces.push(PCG.to_owned());
+        }
+        let mut members = String::new();
+        if self.checkers {
+            members += ", grid.other, grid.side";
+        }
+        for property in self.properties() {
+            let _ = write!(members, ", grid.{}", property.name);
+        }
+        pieces.push(SPHERE_IN.replace("MEMBERS", &members));
+        pieces.push(INTERSECT_GRID.to_owned());
+        pieces
+    }
+}
+
+/// Returns the values of the members of a grid that not every surface has.
+pub(super) fn grid_values(scatter: &Scatter) -> String {
+    let [x, y, z] = scatter.cells;
+    let [small, large] = scatter.radius.map(number);
+    format!(
+        "{}, ivec3({x}, {y}, {z}), {}, {small}, {large}, {}u",
+        vector(scatter.corner),
+        number(scatter.spacing),
+        scatter.seed
+    )
+}
+
+pub(super) const GRID_STRUCTURE: &str = "// Cubic cells with a sphere in each, wholly inside of it.
+struct Grid {
+    vec3 corner;
+    ivec3 cells;
+    float spacing;
+    float small;
+    float large;
+    uint seed;
+";
+
+const SPHERE_IN: &str = "uint drawn;
+
+float draw() {
+    drawn = pcg(drawn);
+    return float(drawn >> 8u) / 16777216.0;
+}
+
+// The sphere of a cell.
+Sphere sphereIn(Grid grid, ivec3 cell) {
+    drawn = grid.seed + uint(cell.x + grid.cells.x * (cell.y + grid.cells.y * cell.z));
+    float radius = mix(grid.small, grid.large, draw());
+    float room = grid.spacing - 2.0 * radius;
+    float x = draw();
+    float y = draw();
+    float z = draw();
+    float r = draw();
+    float g = draw();
+    float b = draw();
+    vec3 center = grid.corner + grid.spacing * vec3(cell) + radius + room * vec3(x, y, z);
+    return Sphere(center, radius, grid.color * (0.2 + 0.8 * vec3(r, g, b))MEMBERS);
+}
+";
+
+const INTERSECT_GRID: &str = "// The first hit, cell by cell (Amanatides and Woo, \"A Fast Voxel Traversal Algorithm for Ray Tracing\", 1987).
+float intersectGrid(Ray ray, Grid grid, out Sphere sphere) {
+    // A direction along an axis never leaves a cell across it.
+    vec3 direction = mix(ray.direction, vec3(1.0e-20), equal(ray.direction, vec3(0.0)));
+    vec3 low = (grid.corner - ray.origin) / direction;
+    vec3 high = (grid.corner + grid.spacing * vec3(grid.cells) - ray.origin) / direction;
+    vec3 into = min(low, high);
+    vec3 outOf = max(low, high);
+    float enter = max(max(into.x, into.y), max(into.z, 0.0));
+    float leave = min(outOf.x, min(outOf.y, outOf.z));
+    ivec3 cell = ivec3(0);
+    if (enter < leave) {
+        vec3 place = (ray.origin + enter * ray.direction - grid.corner) / grid.spacing;
+        cell = clamp(ivec3(floor(place)), ivec3(0), grid.cells - 1);
+    }
+    sphere = sphereIn(grid, cell);
+    if (enter >= leave) {
+        return NO_HIT;
+    }
+    ivec3 stride = ivec3(sign(direction));
+    // t at which the ray leaves the cell along each axis, and how much later it leaves the one after.
+    vec3 next = (grid.corner + grid.spacing * vec3(cell + max(stride, 0)) - ray.origin) / direction;
+    vec3 step = grid.spacing / abs(direction);
+    int steps = grid.cells.x + grid.cells.y + grid.cells.z;
+    for (int i = 0; i < steps; i++) {
+        sphere = sphereIn(grid, cell);
+        float t = intersectSphere(ray, sphere);
+        if (t < NO_HIT) {
+            return t;
+        }
+        if (next.x < next.y && next.x < next.z) {
+            cell.x += stride.x;
+            next.x += step.x;
+        } else if (next.y < next.z) {
+            cell.y += stride.y;
+            next.y += step.y;
+        } else {
+            cell.z += stride.z;
+            next.z += step.z;
+        }
+        if (any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, grid.cells))) {
+            return NO_HIT;
+        }
+    }
+    return NO_HIT;
 }
 ";

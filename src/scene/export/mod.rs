@@ -1,29 +1,22 @@
-//! The shader that paints a scene, in the course's style, holding only what the scene requires.
+//! Export of the shader that renders a scene, in the course's style, with only the code that the scene
+//! requires.
 
-mod background;
-mod camera;
-mod disney;
-mod figure;
-mod film;
-mod grid;
+mod image;
+mod integrator;
 mod intersection;
-mod light;
-mod material;
-mod motion;
-mod parts;
-mod path;
-mod quadric;
-mod sampler;
+mod shading;
 mod structure;
-mod whitted;
 
-use self::parts::Parts;
-use crate::{Sampler, Scene};
+use self::image::{background_function, camera_function, figure_functions, random_functions};
+use self::intersection::quadric_functions;
+use self::shading::{DISNEY_STRUCTURE, GLASS, Kind, REFLECTIVE};
+use self::structure::motion_functions;
+use crate::{Integrator, Object, Point, Quadric, Requirements, Sampler, Scatter, Scattered, Scene, Shape};
 
-/// A `ShaderToy` shader that paints the scene.
+/// Returns a ShaderToy shader that renders the scene.
 ///
 /// # Errors
-/// What the scene uses that cannot be written yet, in the words of the scene file.
+/// The feature of the scene that has no shader yet, named as in the scene file.
 pub fn shader(scene: &Scene) -> Result<String, String> {
     if matches!(scene.film.sampler, Sampler::Stratified | Sampler::Sobol) {
         return Err("the samplers \"stratified\" and \"sobol\"".to_owned());
@@ -37,4 +30,167 @@ fn number(value: f64) -> String {
 
 fn vector([x, y, z]: [f64; 3]) -> String {
     format!("vec3({}, {}, {})", number(x), number(y), number(z))
+}
+
+// The code fragments that a scene needs, and their order.
+
+/// The code fragments that a scene needs.
+struct Parts<'a> {
+    /// Emitters come first if paths are traced.
+    spheres: Vec<(Point, f64, &'a Object)>,
+    planes: Vec<(Point, Point, &'a Object)>,
+    quadrics: Vec<(Quadric, &'a Object)>,
+    /// Scatters without motion; the spheres of others are among the rest.
+    grids: Vec<&'a Scatter>,
+    /// Whether any surface is checkered.
+    checkers: bool,
+    /// The models in use, in order of their first object.
+    models: Vec<Kind>,
+    traces_paths: bool,
+}
+
+impl<'a> Parts<'a> {
+    fn of(scene: &'a Scene) -> Self {
+        let mut parts = Self {
+            spheres: Vec::new(),
+            planes: Vec::new(),
+            quadrics: Vec::new(),
+            grids: Vec::new(),
+            checkers: false,
+            models: Vec::new(),
+            traces_paths: scene.film.integrator == Integrator::Path,
+        };
+        let mut in_grids = vec![false; scene.objects.len()];
+        for Scattered { scatter, objects } in &scene.scatters {
+            let is_emitter = parts.traces_paths && Kind::of(&scatter.material.model) == Kind::Emitter;
+            if scatter.motion.is_none() && !is_emitter {
+                in_grids[objects.clone()].fill(true);
+                parts.grids.push(scatter);
+            }
+        }
+        for (object, in_grid) in scene.objects.iter().zip(in_grids) {
+            let kind = Kind::of(&object.material.model);
+            parts.checkers |= object.material.checker.is_some();
+            if !parts.models.contains(&kind) {
+                parts.models.push(kind);
+            }
+            if in_grid {
+                continue;
+            }
+            match object.shape {
+                Shape::Sphere { center, radius } => parts.spheres.push((center, radius, object)),
+                Shape::Plane { point, normal } => parts.planes.push((point, normal, object)),
+                Shape::Quadric(quadric) => parts.quadrics.push((quadric, object)),
+            }
+        }
+        if parts.traces_paths {
+            parts.spheres.sort_by_key(|(_, _, object)| !is_emitter(object));
+        }
+        parts
+    }
+
+    fn uses(&self, model: Kind) -> bool {
+        self.models.contains(&model)
+    }
+
+    fn uses_any(&self, models: &[Kind]) -> bool {
+        models.iter().any(|&model| self.uses(model))
+    }
+
+    /// Whether lights illuminate any surface.
+    fn is_lit(&self) -> bool {
+        !self.traces_paths && self.uses_any(&REFLECTIVE)
+    }
+
+    /// Whether hits carry a model constant: there is more than one model.
+    fn has_model_ids(&self) -> bool {
+        self.models.len() > 1
+    }
+
+    fn text(&self, scene: &Scene) -> String {
+        let moves = Requirements::of(scene).motion;
+        let mut pieces = vec![self.constants(scene)];
+        if !scene.objects.is_empty() {
+            if self.uses(Kind::Disney) {
+                pieces.push(DISNEY_STRUCTURE.to_owned());
+            }
+            pieces.push(self.structures(scene));
+        }
+        if scene.film.sampler != Sampler::Center {
+            pieces.push(random_functions(scene.film.sampler));
+        }
+        if !scene.objects.is_empty() {
+            pieces.extend(motion_functions(if moves { &scene.motions } else { &[] }));
+            pieces.extend(quadric_functions(
+                self.quadrics.iter().map(|(quadric, _)| quadric),
+            ));
+            pieces.push(self.scene(scene));
+            pieces.extend(self.intersections(scene.film.sampler));
+        }
+        pieces.push(background_function(&scene.background));
+        if self.is_lit() {
+            pieces.extend(self.shading(scene));
+        }
+        pieces.extend(self.trace());
+        pieces.extend(figure_functions(&scene.figures));
+        pieces.push(camera_function(scene));
+        pieces.push(self.main(scene));
+        pieces.join("\n")
+    }
+
+    fn trace(&self) -> Vec<String> {
+        if self.models.is_empty() {
+            let text = "vec3 trace(vec3 origin, vec3 direction) {\n    return background(direction);\n}\n";
+            return vec![text.to_owned()];
+        }
+        if self.traces_paths {
+            self.path()
+        } else {
+            self.whitted()
+        }
+    }
+
+    fn constants(&self, scene: &Scene) -> String {
+        let title = match scene.title.lines().next() {
+            None | Some("") => "A scene",
+            Some(title) => title,
+        };
+        let mut text = format!("// {title}\n\nconst float NO_HIT = 1.0e30;\n");
+        let mut push = |line: String| text.push_str(&line);
+        if self.traces_paths || self.uses_any(&[Kind::Diffuse, Kind::Glossy, Kind::Disney]) {
+            push("const float PI = 3.14159265359;\n".to_owned());
+        }
+        let shine = self.spheres.iter().filter(|(_, _, object)| is_emitter(object));
+        let emitters = if self.traces_paths { shine.count() } else { 0 };
+        let lights = if self.is_lit() { scene.lights.len() } else { 0 };
+        for (what, count) in [
+            ("SAMPLES", scene.film.samples as usize),
+            ("SPHERES", self.spheres.len()),
+            ("PLANES", self.planes.len()),
+            ("QUADRICS", self.quadrics.len()),
+            ("GRIDS", self.grids.len()),
+            ("EMITTERS", emitters),
+            ("LIGHTS", lights),
+        ] {
+            if count > usize::from(what == "SAMPLES") {
+                push(format!("const int {what} = {count};\n"));
+            }
+        }
+        if self.is_lit() {
+            push(format!("const vec3 AMBIENT = {};\n", vector(scene.ambient)));
+        }
+        if self.traces_paths || self.uses(Kind::Mirror) || self.uses_any(&GLASS) {
+            push(format!("const int MAX_DEPTH = {};\n", scene.film.max_depth));
+        }
+        if self.has_model_ids() {
+            for (index, model) in self.models.iter().enumerate() {
+                push(format!("const int {} = {index};\n", model.glsl_name()));
+            }
+        }
+        text
+    }
+}
+
+fn is_emitter(object: &Object) -> bool {
+    Kind::of(&object.material.model) == Kind::Emitter
 }

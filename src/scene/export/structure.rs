@@ -1,14 +1,14 @@
-//! Structures, and the arrays of them that hold the scene.
+//! The structures of a shader, the arrays that hold the scene, and its motions.
 
 use std::fmt::Write;
 
-use super::light::Lights;
-use super::parts::Parts;
-use super::{grid, motion, number, quadric, vector};
-use crate::{Light, Material, Scene};
+use super::intersection::{GRID_STRUCTURE, QUADRIC_FORM, QUADRIC_STRUCTURE, grid_values, quadric_values};
+use super::shading::LightShare;
+use super::{Parts, number, vector};
+use crate::{Light, Material, Motion, Period, Point, Scene};
 
 impl Parts<'_> {
-    /// The members that all surfaces have.
+    /// Returns the members that all surfaces have.
     fn members(&self) -> String {
         let checker = if self.checkers {
             "    vec3 other;\n    float side;\n"
@@ -18,12 +18,12 @@ impl Parts<'_> {
         format!("    vec3 color;\n{checker}{}", self.own_members())
     }
 
-    /// Whether there are any, in grids or not.
+    /// Whether there are spheres, in grids or not.
     pub(super) fn has_spheres(&self) -> bool {
         !self.spheres.is_empty() || !self.grids.is_empty()
     }
 
-    /// Those that a hit takes over.
+    /// Returns the members that are copied to a hit.
     fn own_members(&self) -> String {
         let properties = self.properties();
         let lines = properties
@@ -32,7 +32,7 @@ impl Parts<'_> {
         lines.collect()
     }
 
-    /// Their values.
+    /// Returns the values of the members that all surfaces have.
     fn values(&self, material: &Material) -> String {
         let mut text = vector(material.color);
         if self.checkers {
@@ -76,17 +76,17 @@ impl Parts<'_> {
             );
         }
         if !self.quadrics.is_empty() {
-            let (form, structure) = (quadric::FORM, quadric::STRUCTURE);
+            let (form, structure) = (QUADRIC_FORM, QUADRIC_STRUCTURE);
             let _ = write!(
                 text,
                 "\n{form}\n{structure}{members}}};\n\nQuadric quadrics[QUADRICS];\n"
             );
         }
         if !self.grids.is_empty() {
-            let structure = grid::STRUCTURE;
+            let structure = GRID_STRUCTURE;
             let _ = write!(text, "\n{structure}{members}}};\n\nGrid grids[GRIDS];\n");
         }
-        if self.lit() && !scene.lights.is_empty() {
+        if self.is_lit() && !scene.lights.is_empty() {
             let shadow = if has_shadow(scene) {
                 "    bool shadow;\n"
             } else {
@@ -108,7 +108,7 @@ impl Parts<'_> {
     pub(super) fn scene(&self, scene: &Scene) -> String {
         let mut text = "void makeScene() {\n".to_owned();
         for (index, (center, radius, object)) in self.spheres.iter().enumerate() {
-            let (center, radius) = (motion::point(*center, object.motion), number(*radius));
+            let (center, radius) = (moved_point(*center, object.motion), number(*radius));
             let values = self.values(&object.material);
             let _ = writeln!(
                 text,
@@ -116,20 +116,20 @@ impl Parts<'_> {
             );
         }
         for (index, (point, normal, object)) in self.planes.iter().enumerate() {
-            let normal = motion::direction(*normal, *point, object.motion);
-            let point = motion::point(*point, object.motion);
+            let normal = moved_direction(*normal, *point, object.motion);
+            let point = moved_point(*point, object.motion);
             let values = self.values(&object.material);
             let _ = writeln!(text, "    planes[{index}] = Plane({point}, {normal}, {values});");
         }
         for (index, (one, object)) in self.quadrics.iter().enumerate() {
-            let (own, values) = (quadric::values(one, object.motion), self.values(&object.material));
+            let (own, values) = (quadric_values(one, object.motion), self.values(&object.material));
             let _ = writeln!(text, "    quadrics[{index}] = Quadric({own}, {values});");
         }
         for (index, scatter) in self.grids.iter().enumerate() {
-            let (own, values) = (grid::values(scatter), self.values(&scatter.material));
+            let (own, values) = (grid_values(scatter), self.values(&scatter.material));
             let _ = writeln!(text, "    grids[{index}] = Grid({own}, {values});");
         }
-        if self.lit() {
+        if self.is_lit() {
             for (index, light) in scene.lights.iter().enumerate() {
                 let _ = writeln!(
                     text,
@@ -142,18 +142,18 @@ impl Parts<'_> {
     }
 }
 
-/// Whether lights say if they cast shadows.
+/// Whether lights have a member for shadows.
 fn has_shadow(scene: &Scene) -> bool {
-    Lights::which(scene, |light| light.shadow) == Lights::Some
+    LightShare::which(scene, |light| light.shadow) == LightShare::Some
 }
 
-/// Whether lights have a radius.
+/// Whether lights have a member for their radius.
 fn has_radius(scene: &Scene) -> bool {
-    Lights::which(scene, |light| light.radius > 0.0) != Lights::None
+    LightShare::which(scene, |light| light.radius > 0.0) != LightShare::None
 }
 
 fn light_values(scene: &Scene, light: &Light) -> String {
-    let mut values = vec![motion::point(light.position, light.motion), vector(light.color)];
+    let mut values = vec![moved_point(light.position, light.motion), vector(light.color)];
     if has_shadow(scene) {
         values.push(light.shadow.to_string());
     }
@@ -162,3 +162,57 @@ fn light_values(scene: &Scene, light: &Light) -> String {
     }
     values.join(", ")
 }
+
+// Motions.
+
+/// Returns the functions that move points; none if nothing moves.
+pub(super) fn motion_functions(motions: &[Motion]) -> Vec<String> {
+    if motions.is_empty() {
+        return Vec::new();
+    }
+    let own = motions.iter().enumerate().map(|(index, motion)| {
+        let turns = match motion.period {
+            Period::Frames(frames) => format!("float(iFrame) / {}", number(frames)),
+            Period::Seconds(seconds) => format!("iTime / {}", number(seconds)),
+        };
+        let [pivot, axis] = [motion.pivot, motion.axis].map(vector);
+        let turned = format!("rotateAbout(p, {pivot}, {axis}, {turns})");
+        let carried = match motion.within {
+            Some(outer) => format!("motion{outer}({turned})"),
+            None => turned,
+        };
+        format!("vec3 motion{index}(vec3 p) {{\n    return {carried};\n}}\n")
+    });
+    let mut pieces = vec![ROTATE.to_owned()];
+    pieces.extend(own);
+    pieces
+}
+
+/// Returns the expression of a point after its motion.
+pub(super) fn moved_point(point: Point, motion: Option<usize>) -> String {
+    match motion {
+        Some(motion) => format!("motion{motion}({})", vector(point)),
+        None => vector(point),
+    }
+}
+
+/// Returns the expression of a direction that is rotated by the motion of a point.
+pub(super) fn moved_direction(direction: Point, at: Point, motion: Option<usize>) -> String {
+    let Some(motion) = motion else {
+        return vector(direction);
+    };
+    let [direction, at] = [direction, at].map(vector);
+    format!("motion{motion}({at} + {direction}) - motion{motion}({at})")
+}
+
+const ROTATE: &str = "// Rodrigues' formula: v turned about a unit axis.
+vec3 rotate(vec3 v, vec3 axis, float angle) {
+    float c = cos(angle);
+    float s = sin(angle);
+    return c * v + s * cross(axis, v) + (1.0 - c) * dot(axis, v) * axis;
+}
+
+vec3 rotateAbout(vec3 p, vec3 pivot, vec3 axis, float turns) {
+    return pivot + rotate(p - pivot, axis, 6.28318530718 * fract(turns));
+}
+";

@@ -1,10 +1,10 @@
-//! Takes values that are in range and notes those that are not.
+//! Checked values of a scene file, and diagnostics for those that are refused.
 
 use std::ops::Range;
 
 use glam::DVec3;
 use toml::Spanned;
-use toyproof_diagnostic::{Diagnostic, FileId, Span};
+use toyproof_diagnostic::{Diagnostic, FileId, Files, Span};
 use toyproof_image::check_size;
 
 use super::super::{Color, Point, Scene};
@@ -29,7 +29,7 @@ impl Checks {
         }
     }
 
-    /// The scene, if nothing was refused.
+    /// Returns the scene, or the diagnostics if anything was refused.
     pub(super) fn finish(self, scene: Scene) -> Result<Scene, Vec<Diagnostic>> {
         if self.diagnostics.is_empty() {
             Ok(scene)
@@ -43,17 +43,17 @@ impl Checks {
             .push(Diagnostic::error("E0502", message).at(span(self.file, bytes)));
     }
 
-    /// Refuses a file that is fine but for showing nothing: most likely it is unfinished, or no scene.
-    pub(super) fn nothing_to_see(&mut self) {
+    /// Refuses a valid file that shows nothing: most likely it is unfinished, or not a scene.
+    pub(super) fn refuse_empty(&mut self) {
         if self.diagnostics.is_empty() {
-            let words =
+            let message =
                 "this scene shows nothing; give it a surface such as `[[sphere]]`, or a `[background]`";
-            self.refuse(0..0, words.to_owned());
+            self.refuse(0..0, message.to_owned());
         }
     }
 
-    /// A key that is there only for another kind of the thing.
-    pub(super) fn foreign<T>(&mut self, key: &str, value: Option<&Spanned<T>>, owner: &str, actual: &str) {
+    /// Refuses a key that belongs to a different kind of the item.
+    pub(super) fn refuse_key<T>(&mut self, key: &str, value: Option<&Spanned<T>>, owner: &str, actual: &str) {
         if let Some(value) = value {
             self.refuse(
                 value.span(),
@@ -62,8 +62,8 @@ impl Checks {
         }
     }
 
-    /// The value of a key that this kind of the thing cannot do without; `place` is where the kind is named.
-    pub(super) fn needed<T>(&mut self, key: &str, value: Option<T>, place: &Range<usize>) -> Option<T> {
+    /// Returns the value of a required key; `place` is where the kind is named.
+    pub(super) fn required<T>(&mut self, key: &str, value: Option<T>, place: &Range<usize>) -> Option<T> {
         if value.is_none() {
             self.refuse(place.clone(), format!("{key} is missing"));
         }
@@ -98,7 +98,7 @@ impl Checks {
         value.into_inner()
     }
 
-    /// A direction of any length but 0; of length 1 as it comes out.
+    /// Returns a direction, normalized; it may have any length but 0.
     pub(super) fn direction(&mut self, what: &str, value: Option<Triple>, default: Point) -> Point {
         let Some(value) = value else {
             return default;
@@ -139,7 +139,7 @@ impl Checks {
         number
     }
 
-    /// A number from 0 to 1.
+    /// Returns a number from 0 to 1.
     pub(super) fn share(&mut self, what: &str, value: &Spanned<f64>) -> f64 {
         let number = *value.get_ref();
         if !(0.0..=1.0).contains(&number) {
@@ -174,5 +174,43 @@ impl Checks {
             self.refuse(value.span(), message);
             [1, 1]
         })
+    }
+}
+
+// Diagnostics for errors of the TOML parser.
+
+/// Converts an error of the TOML parser or of deserialization to a diagnostic.
+#[must_use]
+pub fn of_toml(code: &'static str, error: &::toml::de::Error, files: &Files, file: FileId) -> Diagnostic {
+    let lines: Vec<_> = error.message().lines().map(str::trim).collect();
+    let bytes = error.span().unwrap_or_default();
+    let span = span(file, bytes);
+    let message = header_hint(error.message(), files.text(span)).unwrap_or_else(|| {
+        let terms = RUST_TERMS.iter();
+        terms.fold(lines.join("; "), |message, (rust, toml)| {
+            message.replace(rust, toml)
+        })
+    });
+    Diagnostic::error(code, message).at(span)
+}
+
+/// Rust's names of types, and TOML's.
+const RUST_TERMS: [(&str, &str); 4] = [
+    ("invalid type: map", "invalid type: a table"),
+    ("expected f64", "expected a number"),
+    ("expected i64", "expected a whole number"),
+    ("expected a sequence", "expected a list"),
+];
+
+/// Returns the message for a table whose header is that of an array of tables, or the reverse.
+fn header_hint(message: &str, written: &str) -> Option<String> {
+    let is_table = message.starts_with("invalid type: map, expected ");
+    let name = written.trim().trim_matches(['[', ']']);
+    if !is_table || !written.starts_with('[') {
+        None
+    } else if written.starts_with("[[") {
+        Some(format!("there is only one such table: write `[{name}]`"))
+    } else {
+        Some(format!("there may be several such tables: write `[[{name}]]`"))
     }
 }

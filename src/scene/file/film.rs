@@ -1,19 +1,19 @@
-//! `[film]` and `[camera]`
+//! `[film]`, `[camera]` and `[[figure]]`
 
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::super::{Camera, Film, Integrator, Projection, Sampler, ToneMap};
-use super::checks::{Checks, Triple};
+use super::super::{Camera, Figure, Film, Integrator, Outline, Projection, Sampler, ToneMap};
+use super::checks::{Checks, Pair, Triple};
 
-/// The most samples a pixel.
+/// The maximum number of samples per pixel.
 const MAX_SAMPLES: i64 = 65_536;
-/// The most path segments.
+/// The maximum number of path segments.
 const MAX_DEPTH: i64 = 1_000;
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Table {
+pub(super) struct FilmTable {
     size: Option<Spanned<[i64; 2]>>,
     samples: Option<Spanned<i64>>,
     sampler: Option<SamplerName>,
@@ -47,7 +47,7 @@ enum ToneMapName {
     Reinhard,
 }
 
-impl Table {
+impl FilmTable {
     pub(super) fn check(self, checks: &mut Checks) -> Film {
         Film {
             size: checks.size(self.size),
@@ -99,12 +99,12 @@ impl CameraTable {
         };
         let projection = match name {
             ProjectionName::Pinhole => {
-                checks.foreign("width", self.width.as_ref(), "parallel", "pinhole");
+                checks.refuse_key("width", self.width.as_ref(), "parallel", "pinhole");
                 let screen_distance = or_two("screen_distance", self.screen_distance, checks);
                 Projection::Pinhole { screen_distance }
             }
             ProjectionName::Parallel => {
-                checks.foreign(
+                checks.refuse_key(
                     "screen_distance",
                     self.screen_distance.as_ref(),
                     "pinhole",
@@ -117,6 +117,92 @@ impl CameraTable {
         Camera {
             eye: checks.point("eye", self.eye, [0.0; 3]),
             projection,
+        }
+    }
+}
+
+// `[[figure]]`
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FigureTable {
+    outline: Spanned<OutlineName>,
+    color: Spanned<[f64; 3]>,
+    center: Option<Pair>,
+    radius: Option<Spanned<f64>>,
+    size: Option<Spanned<f64>>,
+    height: Option<Spanned<f64>>,
+    amplitude: Option<Spanned<f64>>,
+    frequency: Option<Spanned<f64>>,
+}
+
+#[derive(Deserialize, Clone, Copy, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+enum OutlineName {
+    Disk,
+    Wave,
+    Heart,
+}
+
+impl OutlineName {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Disk => "disk",
+            Self::Wave => "wave",
+            Self::Heart => "heart",
+        }
+    }
+}
+
+impl FigureTable {
+    pub(super) fn check(self, checks: &mut Checks) -> Figure {
+        let place = self.outline.span();
+        let name = self.outline.into_inner();
+        let numbers = [
+            ("radius", OutlineName::Disk, &self.radius),
+            ("size", OutlineName::Heart, &self.size),
+            ("height", OutlineName::Wave, &self.height),
+            ("amplitude", OutlineName::Wave, &self.amplitude),
+            ("frequency", OutlineName::Wave, &self.frequency),
+        ];
+        for (key, owner, value) in numbers {
+            if owner != name {
+                checks.refuse_key(key, value.as_ref(), owner.name(), name.name());
+            }
+        }
+        if name == OutlineName::Wave {
+            checks.refuse_key("center", self.center.as_ref(), "disk", name.name());
+        }
+        let positive = |key: &str, value: &Option<Spanned<f64>>, checks: &mut Checks| {
+            let value = checks.required(key, value.as_ref(), &place);
+            value.map_or(1.0, |value| checks.positive(key, value))
+        };
+        let number = |key: &str, value: &Option<Spanned<f64>>, checks: &mut Checks| {
+            let value = checks.required(key, value.as_ref(), &place);
+            value.map_or(1.0, |value| checks.finite(key, value))
+        };
+        let center = |checks: &mut Checks| {
+            let value = checks.required("center", self.center.as_ref(), &place);
+            value.map_or([0.0; 2], |value| checks.pair("center", value))
+        };
+        let outline = match name {
+            OutlineName::Disk => Outline::Disk {
+                center: center(checks),
+                radius: positive("radius", &self.radius, checks),
+            },
+            OutlineName::Wave => Outline::Wave {
+                height: number("height", &self.height, checks),
+                amplitude: number("amplitude", &self.amplitude, checks),
+                frequency: number("frequency", &self.frequency, checks),
+            },
+            OutlineName::Heart => Outline::Heart {
+                center: center(checks),
+                size: positive("size", &self.size, checks),
+            },
+        };
+        Figure {
+            outline,
+            color: checks.color("color", Some(self.color), [0.0; 3]),
         }
     }
 }

@@ -1,11 +1,8 @@
-//! The scene file: TOML, with every mistake told by line and column.
+//! The scene file: TOML, with a diagnostic for every error.
 
 mod checks;
-mod figure;
 mod film;
-mod material;
-mod motion;
-mod shape;
+mod surface;
 #[cfg(test)]
 mod tests;
 
@@ -13,15 +10,15 @@ use serde::Deserialize;
 use toml::Spanned;
 use toyproof_diagnostic::{Diagnostic, FileId, Files};
 
+pub use self::checks::of_toml;
 use self::checks::{Checks, Triple};
-use self::motion::Names;
-use super::{Background, Integrator, Light, Model, Object, Scattered, Scene, Shape, of_toml};
+use self::surface::Names;
+use super::{Background, Integrator, Light, Model, Object, Scattered, Scene, Shape};
 
-/// Reads a scene.
+/// Parses a scene.
 ///
 /// # Errors
-/// What the file should have said, for the first thing that TOML or its schema refuses, or for every value
-/// that is out of range.
+/// Diagnostics for the first error of the TOML syntax or schema, or for all values that are out of range.
 pub fn parse(files: &Files, file: FileId) -> Result<Scene, Vec<Diagnostic>> {
     let text = files.get(file).text();
     let document: Document =
@@ -39,32 +36,32 @@ struct Document {
     ambient: Option<Triple>,
     max_offset: Option<Spanned<f64>>,
     #[serde(default)]
-    film: film::Table,
+    film: film::FilmTable,
     #[serde(default)]
     camera: film::CameraTable,
     background: Option<Spanned<BackgroundTable>>,
     #[serde(default)]
-    figure: Vec<figure::Table>,
+    figure: Vec<film::FigureTable>,
     #[serde(default)]
-    motion: Vec<motion::Table>,
+    motion: Vec<surface::MotionTable>,
     #[serde(default)]
     light: Vec<LightTable>,
     #[serde(default)]
-    sphere: Vec<shape::SphereTable>,
+    sphere: Vec<surface::SphereTable>,
     #[serde(default)]
-    plane: Vec<shape::PlaneTable>,
+    plane: Vec<surface::PlaneTable>,
     #[serde(default)]
-    ellipsoid: Vec<shape::EllipsoidTable>,
+    ellipsoid: Vec<surface::EllipsoidTable>,
     #[serde(default)]
-    cylinder: Vec<shape::CylinderTable>,
+    cylinder: Vec<surface::CylinderTable>,
     #[serde(default)]
-    cone: Vec<shape::ConeTable>,
+    cone: Vec<surface::ConeTable>,
     #[serde(default)]
-    paraboloid: Vec<shape::ParaboloidTable>,
+    paraboloid: Vec<surface::ParaboloidTable>,
     #[serde(default)]
-    hyperboloid: Vec<shape::HyperboloidTable>,
+    hyperboloid: Vec<surface::HyperboloidTable>,
     #[serde(default)]
-    scatter: Vec<shape::ScatterTable>,
+    scatter: Vec<surface::ScatterTable>,
 }
 
 #[derive(Deserialize)]
@@ -92,18 +89,18 @@ impl Document {
         let scene_ambient = checks.color("ambient", self.ambient, [0.0; 3]);
         let has_background = self.background.is_some();
         let film = self.film.check(checks);
-        let (motions, names) = motion::check(self.motion, checks);
+        let (motions, names) = surface::check_motions(self.motion, checks);
         let mut lights = Vec::new();
         for light in self.light {
-            let drawn = light.radius.as_ref().map(Spanned::span);
+            let light_radius = light.radius.as_ref().map(Spanned::span);
             if film.integrator == Integrator::Path {
-                let words =
+                let message =
                     "a path-traced scene is lit by surfaces whose model is \"emitter\", not by lights";
-                checks.refuse(light.position.span(), words.to_owned());
-            } else if let Some(drawn) = drawn
+                checks.refuse(light.position.span(), message.to_owned());
+            } else if let Some(light_radius) = light_radius
                 && !film.sampler.draws()
             {
-                checks.refuse(drawn, needs_a_sampler("a light with a radius"));
+                checks.refuse(light_radius, needs_a_sampler("a light with a radius"));
             }
             lights.push(light.check(&names, checks));
         }
@@ -114,39 +111,39 @@ impl Document {
             scatters: Vec::new(),
             film,
         };
-        surfaces.take(self.sphere);
-        surfaces.take(self.plane);
-        surfaces.take(self.ellipsoid);
-        surfaces.take(self.cylinder);
-        surfaces.take(self.cone);
-        surfaces.take(self.paraboloid);
-        surfaces.take(self.hyperboloid);
-        surfaces.take_scatters(self.scatter);
+        surfaces.add(self.sphere);
+        surfaces.add(self.plane);
+        surfaces.add(self.ellipsoid);
+        surfaces.add(self.cylinder);
+        surfaces.add(self.cone);
+        surfaces.add(self.paraboloid);
+        surfaces.add(self.hyperboloid);
+        surfaces.add_scatters(self.scatter);
         let Surfaces {
             objects, scatters, ..
         } = surfaces;
         if film.integrator == Integrator::Path
             && let Some(ambient) = ambient
         {
-            let words = "a path-traced scene has no ambient light; its background is all around it";
-            checks.refuse(ambient, words.to_owned());
+            let message = "a path-traced scene has no ambient light; its background is all around it";
+            checks.refuse(ambient, message.to_owned());
         }
         let glass = |object: &Object| matches!(object.material.model, Model::Glass { .. });
-        if film.max_depth > MAX_BRANCHES
+        if film.max_depth > MAX_GLASS_DEPTH
             && let Some(max_depth) = max_depth
             && objects.iter().any(glass)
         {
-            let words = format!(
-                "max_depth must be at most {MAX_BRANCHES} where there is glass, which parts each ray in two"
+            let message = format!(
+                "max_depth must be at most {MAX_GLASS_DEPTH} where there is glass, which parts each ray in two"
             );
-            checks.refuse(max_depth, words);
+            checks.refuse(max_depth, message);
         }
         let scene = Scene {
             title: self.title,
             ambient: scene_ambient,
-            max_offset: self
-                .max_offset
-                .map_or(MAX_OFFSET, |offset| checks.positive("max_offset", &offset)),
+            max_offset: self.max_offset.map_or(DEFAULT_MAX_OFFSET, |offset| {
+                checks.positive("max_offset", &offset)
+            }),
             film,
             camera: self.camera.check(checks),
             background: background(self.background, checks),
@@ -161,16 +158,16 @@ impl Document {
             motions,
         };
         if scene.objects.is_empty() && scene.figures.is_empty() && !has_background {
-            checks.nothing_to_see();
+            checks.refuse_empty();
         }
         scene
     }
 }
 
-/// How far off their surface secondary rays start in most shaders, at most.
-const MAX_OFFSET: f64 = 1e-3;
-/// The most path segments of a scene with glass.
-const MAX_BRANCHES: u32 = 16;
+/// The default of `max_offset` in scene units, as in most shaders.
+const DEFAULT_MAX_OFFSET: f64 = 1e-3;
+/// The maximum number of path segments of a scene with glass.
+const MAX_GLASS_DEPTH: u32 = 16;
 
 fn needs_a_sampler(what: &str) -> String {
     format!("{what} needs a film whose sampler draws: \"independent\", \"stratified\" or \"sobol\"")
@@ -178,11 +175,11 @@ fn needs_a_sampler(what: &str) -> String {
 
 /// A table that describes surfaces.
 trait Surface {
-    /// The surfaces, each with the place in the file where its model is named.
+    /// Returns the surfaces, and the bytes of the file that name their model.
     fn check(self, names: &Names, checks: &mut Checks) -> (Vec<Object>, std::ops::Range<usize>);
 }
 
-/// Gathers surfaces and checks what hangs together.
+/// Collects surfaces and checks them against the film.
 struct Surfaces<'a> {
     names: &'a Names,
     checks: &'a mut Checks,
@@ -192,23 +189,23 @@ struct Surfaces<'a> {
 }
 
 impl Surfaces<'_> {
-    fn take<S: Surface>(&mut self, tables: Vec<S>) {
+    fn add<S: Surface>(&mut self, tables: Vec<S>) {
         for table in tables {
             let (objects, place) = table.check(self.names, self.checks);
             if let Some(object) = objects.first() {
-                self.suits(object, place);
+                self.check_compatibility(object, place);
             }
             self.objects.extend(objects);
         }
     }
 
-    fn take_scatters(&mut self, tables: Vec<shape::ScatterTable>) {
+    fn add_scatters(&mut self, tables: Vec<surface::ScatterTable>) {
         for table in tables {
             let (scatter, place) = table.check(self.names, self.checks);
             let first = self.objects.len();
             self.objects.extend(scatter.spheres());
             if let Some(object) = self.objects.get(first).cloned() {
-                self.suits(&object, place);
+                self.check_compatibility(&object, place);
             }
             self.scatters.push(Scattered {
                 scatter,
@@ -217,12 +214,12 @@ impl Surfaces<'_> {
         }
     }
 
-    /// Whether shape, model and integrator go together.
-    fn suits(&mut self, object: &Object, place: std::ops::Range<usize>) {
+    /// Refuses incompatible combinations of shape, model and integrator.
+    fn check_compatibility(&mut self, object: &Object, place: std::ops::Range<usize>) {
         let Object { shape, material, .. } = object;
         if matches!(material.model, Model::Glass { .. }) && !shape.is_closed() {
-            let words = "glass needs an inside, and so a sphere or an ellipsoid";
-            return self.checks.refuse(place, words.to_owned());
+            let message = "glass needs an inside, and so a sphere or an ellipsoid";
+            return self.checks.refuse(place, message.to_owned());
         }
         if self.film.integrator == Integrator::Whitted {
             return;
@@ -237,8 +234,8 @@ impl Surfaces<'_> {
             Model::Emitter if matches!(shape, Shape::Sphere { .. }) => {}
             Model::Emitter => self.checks.refuse(place, "an emitter is a sphere".to_owned()),
             _ => {
-                let words = "the integrator \"path\" knows the models \"diffuse\", \"glossy\", \"mirror\" and \"emitter\"";
-                self.checks.refuse(place, words.to_owned());
+                let message = "the integrator \"path\" knows the models \"diffuse\", \"glossy\", \"mirror\" and \"emitter\"";
+                self.checks.refuse(place, message.to_owned());
             }
         }
     }

@@ -13,7 +13,7 @@ const SPHERE: &str =
     "[[sphere]]\ncenter = [0, 0, -6.0]\nradius = 1.5\nmaterial = { model = \"facing\", color = [1, 1, 0] }\n";
 
 #[test]
-fn what_a_file_does_not_say_has_its_default() {
+fn missing_keys_have_defaults() {
     let scene = read("[background]").unwrap();
     assert_eq!(
         scene.film,
@@ -39,7 +39,7 @@ fn what_a_file_does_not_say_has_its_default() {
 }
 
 #[test]
-fn a_scene_that_shows_nothing_is_told_once() {
+fn an_empty_scene_is_reported_once() {
     for text in ["", "title = \"soon\"\n[film]\nsize = [4, 4]\n"] {
         let errors = read(text).unwrap_err();
         assert!(
@@ -52,7 +52,7 @@ fn a_scene_that_shows_nothing_is_told_once() {
 }
 
 #[test]
-fn the_largest_offset_is_above_zero() {
+fn max_offset_must_be_positive() {
     assert_eq!(
         read("max_offset = 0.01\n[background]\n").unwrap().max_offset,
         0.01
@@ -61,7 +61,7 @@ fn the_largest_offset_is_above_zero() {
 }
 
 #[test]
-fn a_whole_scene_is_read_as_written() {
+fn a_complete_scene_is_read_as_written() {
     let scene = read(&format!(
         "title = \"t\"\nambient = [0.1, 0.2, 0.3]\n[film]\nsize = [4, 2]\nsamples = 3\nsampler = \"sine-hash\"\nmax_depth = 9\n\
          tone_map = \"reinhard\"\ngamma = 2.2\n\
@@ -105,8 +105,8 @@ fn a_whole_scene_is_read_as_written() {
 
 #[test]
 #[expect(clippy::too_many_lines, reason = "a table")]
-fn each_mistake_is_told_by_line_column_and_what_was_expected() {
-    for (text, place, words) in [
+fn each_error_has_its_line_column_and_expectation() {
+    for (text, place, message) in [
         (
             "[film]\nsise = [1, 1]",
             "s.toml:2:1: error[E0501]",
@@ -269,7 +269,7 @@ fn each_mistake_is_told_by_line_column_and_what_was_expected() {
     ] {
         let errors = read(text).unwrap_err();
         assert!(
-            errors[0].starts_with(place) && errors[0].contains(words),
+            errors[0].starts_with(place) && errors[0].contains(message),
             "{text}: {errors:?}"
         );
         assert!(!errors[0].contains('\n'));
@@ -282,7 +282,7 @@ fn each_mistake_is_told_by_line_column_and_what_was_expected() {
 }
 
 #[test]
-fn every_value_out_of_range_is_told_at_once() {
+fn all_values_out_of_range_are_reported_together() {
     assert_eq!(
         read("ambient = [inf, 0, 0]\n[film]\nsamples = 0\nmax_depth = 0")
             .unwrap_err()

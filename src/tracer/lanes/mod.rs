@@ -1,42 +1,39 @@
-//! Numbers side by side: the same operation on as many as the processor has lanes for, with the bits in each lane that
-//! it has alone. Nothing is fused and nothing is put in another order, so that a kernel says the same on every processor.
+//! SIMD: one operation on as many numbers as the processor has lanes. Each lane has the same bits as a scalar
+//! computation: nothing is fused or reordered, so that kernels give the same results on every processor.
 
 #![expect(
     clippy::inline_always,
     reason = "only what is inlined into a kernel is compiled for its instruction set"
 )]
 
-mod columns;
-mod length;
-mod set;
+mod instruction_set;
 mod wide;
 
 use std::fmt::Debug;
 use std::marker::PhantomData;
 
-pub(super) use columns::Columns;
 use pulp::Scalar;
-pub(super) use wide::{Wide, Wide3};
+pub(super) use wide::{Columns, Wide, Wide3};
 
-/// Instructions on several numbers of one type at once.
+/// SIMD instructions for one number type.
 pub trait Lanes<T>: Copy + Debug {
-    /// A number for each lane.
+    /// One number per lane.
     type Numbers: Copy + Debug;
-    /// A yes or no for each lane.
+    /// One boolean per lane.
     type Mask: Copy + Debug;
-    /// The same instructions for at most eight lanes.
+    /// The same instructions with at most eight lanes.
     type Eight: Lanes<T>;
 
-    /// How many lanes there are: a power of two, at most `MOST_LANES`.
+    /// Number of lanes: a power of two, at most `MAX_LANES`.
     const COUNT: usize;
 
-    /// The same instructions for at most eight lanes.
+    /// Returns the same instructions with at most eight lanes.
     fn eight(self) -> Self::Eight;
-    /// One number in all lanes.
+    /// Broadcasts a number to all lanes.
     fn splat(self, value: T) -> Self::Numbers;
-    /// The first of a slice that has at least as many as there are lanes.
+    /// Loads the first numbers of a slice, which must hold at least one per lane.
     fn load(self, from: &[T]) -> Self::Numbers;
-    /// To the first of such a slice.
+    /// Stores to the first elements of such a slice.
     fn store(self, numbers: Self::Numbers, to: &mut [T]);
     /// a + b
     fn add(self, a: Self::Numbers, b: Self::Numbers) -> Self::Numbers;
@@ -50,13 +47,13 @@ pub trait Lanes<T>: Copy + Debug {
     fn neg(self, a: Self::Numbers) -> Self::Numbers;
     /// √a
     fn sqrt(self, a: Self::Numbers) -> Self::Numbers;
-    /// Bit by bit.
+    /// Bitwise and.
     fn and(self, a: Self::Numbers, b: Self::Numbers) -> Self::Numbers;
-    /// Bit by bit.
+    /// Bitwise or.
     fn or(self, a: Self::Numbers, b: Self::Numbers) -> Self::Numbers;
-    /// The smaller; any of the two where one is NaN.
+    /// Minimum; either operand if one is NaN.
     fn min(self, a: Self::Numbers, b: Self::Numbers) -> Self::Numbers;
-    /// The larger; any of the two where one is NaN.
+    /// Maximum; either operand if one is NaN.
     fn max(self, a: Self::Numbers, b: Self::Numbers) -> Self::Numbers;
     /// a < b
     fn less(self, a: Self::Numbers, b: Self::Numbers) -> Self::Mask;
@@ -64,35 +61,37 @@ pub trait Lanes<T>: Copy + Debug {
     fn less_or_equal(self, a: Self::Numbers, b: Self::Numbers) -> Self::Mask;
     /// a = b
     fn equal(self, a: Self::Numbers, b: Self::Numbers) -> Self::Mask;
-    /// Lane by lane.
+    /// Selects lane by lane.
     fn select(self, mask: Self::Mask, yes: Self::Numbers, no: Self::Numbers) -> Self::Numbers;
-    /// The smallest of all lanes; any of them where one is NaN.
-    fn least(self, a: Self::Numbers) -> T;
-    /// The largest, likewise.
-    fn greatest(self, a: Self::Numbers) -> T;
-    /// The sum, in an order that depends on the instruction set: to be asked only whether it is 0.
-    fn sum(self, a: Self::Numbers) -> T;
-    /// Bit i tells of lane i.
+    /// Minimum over all lanes; any of them if one is NaN.
+    fn reduce_min(self, a: Self::Numbers) -> T;
+    /// Maximum over all lanes; any of them if one is NaN.
+    fn reduce_max(self, a: Self::Numbers) -> T;
+    /// Sum over all lanes. The order depends on the instruction set, so the result may only be compared with
+    /// 0.
+    fn reduce_sum(self, a: Self::Numbers) -> T;
+    /// Converts a mask to bits: bit i is lane i.
     fn bits(self, mask: Self::Mask) -> u32;
 }
 
-/// The most lanes of any instruction set.
-pub(super) const MOST_LANES: usize = 16;
+/// Maximum number of lanes over all instruction sets.
+pub(super) const MAX_LANES: usize = 16;
 
-/// Something to do with an instruction set.
+/// A computation that is generic over the instruction set.
 pub trait Kernel<T> {
-    /// What comes out.
+    /// The result.
     type Output;
-    /// Does it. To be inlined always, with all that it calls: only so is it compiled for the instruction set.
+    /// Runs the kernel. Implementations and all their callees must be inlined, since only then are they
+    /// compiled for the instruction set.
     fn run<S: Lanes<T>>(self, simd: S) -> Self::Output;
 }
 
-/// The instruction sets that there are code paths for.
+/// The supported instruction sets.
 #[derive(Debug, Clone, Copy)]
 pub enum Level {
     /// One lane.
     Base,
-    /// AVX2, without its fused operations.
+    /// AVX2, without fused multiply-add.
     #[cfg(target_arch = "x86_64")]
     Avx2(pulp::x86::V3),
     /// AVX-512.
@@ -104,12 +103,12 @@ pub enum Level {
 }
 
 impl Level {
-    /// The best that this processor has.
+    /// Returns the best instruction set of this processor.
     pub(super) fn best() -> Self {
         Self::all().last().unwrap_or(Self::Base)
     }
 
-    /// Those that it has, the best last.
+    /// Iterates over the instruction sets of this processor, the best last.
     pub(super) fn all() -> impl Iterator<Item = Self> {
         let base = std::iter::once(Self::Base);
         #[cfg(target_arch = "x86_64")]
@@ -125,37 +124,39 @@ impl Level {
     }
 }
 
-/// A number type that kernels exist for.
-pub trait Vectorised: Sized {
-    /// Runs a kernel compiled for that instruction set.
+/// A number type for which kernels exist.
+pub trait Vectorized: Sized {
+    /// Runs a kernel compiled for an instruction set.
     fn run<K: Kernel<Self>>(level: Level, kernel: K) -> K::Output;
 }
 
-macro_rules! vectorised {
+macro_rules! vectorized {
     ($($number:ty),*) => {
-        $(impl Vectorised for $number {
+        $(impl Vectorized for $number {
             #[inline(always)]
             fn run<K: Kernel<Self>>(level: Level, kernel: K) -> K::Output {
                 match level {
                     Level::Base => kernel.run(Scalar),
                     #[cfg(target_arch = "x86_64")]
-                    Level::Avx2(simd) => simd.vectorize(Call(kernel, simd, PhantomData)),
+                    Level::Avx2(simd) => simd.vectorize(KernelCall(kernel, simd, PhantomData)),
                     #[cfg(target_arch = "x86_64")]
-                    Level::Avx512(simd) => simd.vectorize(Call(kernel, simd, PhantomData)),
+                    Level::Avx512(simd) => simd.vectorize(KernelCall(kernel, simd, PhantomData)),
                     #[cfg(target_arch = "aarch64")]
-                    Level::Neon(simd) => simd.vectorize(Call(kernel, simd, PhantomData)),
+                    Level::Neon(simd) => simd.vectorize(KernelCall(kernel, simd, PhantomData)),
                 }
             }
         }
         )*
     };
 }
-vectorised!(f32, f64);
+vectorized!(f32, f64);
 
-/// A kernel and its instruction set, to be compiled for it.
-struct Call<T, K, S>(K, S, PhantomData<T>);
+/// A kernel and its instruction set, as pulp's closure type.
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+struct KernelCall<T, K, S>(K, S, PhantomData<T>);
 
-impl<T, K: Kernel<T>, S: Lanes<T>> pulp::NullaryFnOnce for Call<T, K, S> {
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+impl<T, K: Kernel<T>, S: Lanes<T>> pulp::NullaryFnOnce for KernelCall<T, K, S> {
     type Output = K::Output;
 
     #[inline(always)]

@@ -1,10 +1,12 @@
-//! Lanes to reckon with as with numbers.
+//! Vectors of lanes with arithmetic operators.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::Lanes;
+use num_traits::Float;
 
-/// A number for each lane, to reckon with.
+use super::{Lanes, MAX_LANES};
+
+/// One number per lane, with operators.
 #[derive(Debug)]
 pub(in super::super) struct Wide<T, S: Lanes<T>> {
     simd: S,
@@ -34,7 +36,7 @@ impl<T, S: Lanes<T>> Wide<T, S> {
             numbers: simd.splat(value),
         }
     }
-    /// The first of a slice, as many as there are lanes.
+    /// Loads the first numbers of a slice, one per lane.
     #[inline(always)]
     pub(in super::super) fn load(simd: S, from: &[T]) -> Self {
         Self {
@@ -46,20 +48,20 @@ impl<T, S: Lanes<T>> Wide<T, S> {
     pub(in super::super) fn store(self, to: &mut [T]) {
         self.simd.store(self.numbers, to);
     }
-    /// The smallest of all lanes; any of them where one is NaN.
+    /// Minimum over all lanes; any of them if one is NaN.
     #[inline(always)]
-    pub(in super::super) fn least(self) -> T {
-        self.simd.least(self.numbers)
+    pub(in super::super) fn reduce_min(self) -> T {
+        self.simd.reduce_min(self.numbers)
     }
-    /// The largest, likewise.
+    /// Maximum over all lanes; any of them if one is NaN.
     #[inline(always)]
-    pub(in super::super) fn greatest(self) -> T {
-        self.simd.greatest(self.numbers)
+    pub(in super::super) fn reduce_max(self) -> T {
+        self.simd.reduce_max(self.numbers)
     }
-    /// The sum, to be asked only whether it is 0.
+    /// Sum over all lanes, which may only be compared with 0.
     #[inline(always)]
-    pub(in super::super) fn sum(self) -> T {
-        self.simd.sum(self.numbers)
+    pub(in super::super) fn reduce_sum(self) -> T {
+        self.simd.reduce_sum(self.numbers)
     }
     #[inline(always)]
     pub(in super::super) fn sqrt(self) -> Self {
@@ -120,7 +122,7 @@ impl<T, S: Lanes<T>> Neg for Wide<T, S> {
     }
 }
 
-/// Three components for each lane.
+/// A three-component vector per lane.
 #[derive(Debug, Clone, Copy)]
 pub(in super::super) struct Wide3<T, S: Lanes<T>>(
     pub(in super::super) Wide<T, S>,
@@ -133,7 +135,7 @@ impl<T: Copy, S: Lanes<T>> Wide3<T, S> {
     pub(in super::super) fn splat(simd: S, [x, y, z]: [T; 3]) -> Self {
         Self(Wide::splat(simd, x), Wide::splat(simd, y), Wide::splat(simd, z))
     }
-    /// As many as there are lanes, from `at` on.
+    /// Loads one vector per lane, from index `at` on.
     #[inline(always)]
     pub(in super::super) fn load<const N: usize>(simd: S, [x, y, z]: &[[T; N]; 3], at: usize) -> Self {
         Self(
@@ -150,7 +152,7 @@ impl<T: Copy, S: Lanes<T>> Wide3<T, S> {
             self.2.select(mask, no.2),
         )
     }
-    /// (x·x + y·y) + z·z, as glam's.
+    /// (x·x + y·y) + z·z, in the order of glam.
     #[inline(always)]
     pub(in super::super) fn dot(self, other: Self) -> Wide<T, S> {
         self.0 * other.0 + self.1 * other.1 + self.2 * other.2
@@ -165,7 +167,7 @@ impl<T, S: Lanes<T>> Neg for Wide3<T, S> {
     }
 }
 
-macro_rules! of_vectors {
+macro_rules! vector_operator {
     ($($operator:ident $name:ident),*) => {
         $(impl<T, S: Lanes<T>> $operator for Wide3<T, S> {
             type Output = Self;
@@ -176,9 +178,9 @@ macro_rules! of_vectors {
         })*
     };
 }
-of_vectors!(Add add, Sub sub);
+vector_operator!(Add add, Sub sub);
 
-macro_rules! of_vectors_and_numbers {
+macro_rules! vector_scalar_operator {
     ($($operator:ident $name:ident),*) => {
         $(impl<T, S: Lanes<T>> $operator<Wide<T, S>> for Wide3<T, S> {
             type Output = Self;
@@ -189,4 +191,71 @@ macro_rules! of_vectors_and_numbers {
         })*
     };
 }
-of_vectors_and_numbers!(Mul mul, Div div);
+vector_scalar_operator!(Mul mul, Div div);
+
+impl<T: Float, S: Lanes<T>> Wide3<T, S> {
+    /// Scales each vector near 1 by a power of two, so that no square overflows, and returns that power.
+    /// Vectors whose size is zero, subnormal or not finite are not scaled.
+    #[inline(always)]
+    fn scaled(self, simd: S) -> (Self, Wide<T, S>) {
+        let [one, smallest_normal, infinity] =
+            [T::one(), T::min_positive_value(), T::infinity()].map(|number| Wide::splat(simd, number));
+        let Self(x, y, z) = self;
+        let size = x.max(-x).max(y.max(-y)).max(z.max(-z));
+        // Keep the exponent bits only.
+        let power = size.and(infinity);
+        let power = power.select(smallest_normal.less_or_equal(size), one);
+        let power = power.select(size.less(infinity), one);
+        (self * (one / power), power)
+    }
+
+    /// Normalizes each vector; see [`Vector::normalize`](crate::real::Vector::normalize).
+    #[inline(always)]
+    pub(in super::super) fn normalize(self, simd: S) -> Self {
+        let (scaled, _) = self.scaled(simd);
+        scaled / scaled.dot(scaled).sqrt()
+    }
+
+    #[inline(always)]
+    pub(in super::super) fn length(self, simd: S) -> Wide<T, S> {
+        let (scaled, power) = self.scaled(simd);
+        scaled.dot(scaled).sqrt() * power
+    }
+}
+
+/// [`MAX_LANES`] vectors as a structure of arrays.
+#[derive(Debug)]
+#[repr(align(64))]
+pub(in super::super) struct Columns<T>([[T; MAX_LANES]; 3]);
+
+impl<T: Copy> Columns<T> {
+    /// Repeats one vector.
+    pub(in super::super) fn splat([x, y, z]: [T; 3]) -> Self {
+        Self([[x; MAX_LANES], [y; MAX_LANES], [z; MAX_LANES]])
+    }
+
+    #[inline]
+    pub(in super::super) fn get(&self, at: usize) -> [T; 3] {
+        [self.0[0][at], self.0[1][at], self.0[2][at]]
+    }
+
+    #[inline]
+    pub(in super::super) fn set(&mut self, at: usize, [x, y, z]: [T; 3]) {
+        self.0[0][at] = x;
+        self.0[1][at] = y;
+        self.0[2][at] = z;
+    }
+
+    /// Loads one vector per lane, from index `at` on.
+    #[inline(always)]
+    pub(in super::super) fn load<S: Lanes<T>>(&self, simd: S, at: usize) -> Wide3<T, S> {
+        Wide3::load(simd, &self.0, at)
+    }
+
+    #[inline(always)]
+    pub(in super::super) fn store<S: Lanes<T>>(&mut self, vectors: Wide3<T, S>, at: usize) {
+        vectors.0.store(&mut self.0[0][at..]);
+        vectors.1.store(&mut self.0[1][at..]);
+        vectors.2.store(&mut self.0[2][at..]);
+    }
+}

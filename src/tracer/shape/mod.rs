@@ -1,40 +1,41 @@
-//! Where rays meet surfaces.
+//! Intersection of rays with surfaces.
 
-mod plane;
-mod quadric;
-mod sphere;
+#![expect(
+    clippy::inline_always,
+    reason = "only what is inlined into a kernel is compiled for its instruction set"
+)]
+
 #[cfg(test)]
 mod tests;
 
 use std::fmt::Debug;
 
-pub(super) use plane::Plane;
-pub(super) use quadric::Quadric;
-pub(super) use sphere::{Sphere, Surfaces};
-use toyproof_scene as scene;
+use toyproof_scene::{self as scene, Equation};
 
-use super::ray::Ray;
-use super::real::Real;
-use super::style::Style;
+use crate::lanes::{Columns, Kernel, Lanes, Level, MAX_LANES, Wide};
+use crate::ray::Ray;
+use crate::ray_epsilon::RayEpsilonPolicy;
+use crate::real::{Real, Vector};
+use crate::spheres::IntersectSphere;
 
-/// What a ray can meet.
+/// A surface that rays can intersect.
 pub(super) trait Primitive<T: Real>: Debug + Send + Sync {
-    /// The smallest t > `t_min` at which the ray, which starts elsewhere, meets it.
-    fn intersect(&self, ray: &Ray<T>, style: &impl Style<T>) -> Option<T>;
+    /// Returns the smallest t > `t_min` at which a ray that starts elsewhere intersects the surface.
+    fn intersect(&self, ray: &Ray<T>, policy: &impl RayEpsilonPolicy<T>) -> Option<T>;
 
-    /// The same for a ray that starts on it: that start is no hit.
-    fn intersect_own(&self, ray: &Ray<T>, style: &impl Style<T>) -> Option<T>;
+    /// Like [`Primitive::intersect`] for a ray that starts on the surface; its start is not a hit.
+    fn intersect_own(&self, ray: &Ray<T>, policy: &impl RayEpsilonPolicy<T>) -> Option<T>;
 
-    /// The point at t, and the normal there.
+    /// Returns the point at t and the normal there.
     fn surface(&self, ray: &Ray<T>, t: T) -> [T::Vec3; 2];
 
-    /// Itself, if it is a sphere.
+    /// Returns the sphere if it is one.
     fn sphere(&self) -> Option<&Sphere<T>> {
         None
     }
 }
 
-/// Any shape, where a scene has several kinds.
+/// A shape of any kind, for scenes that mix them.
 #[derive(Debug)]
 pub(super) enum Shape<T: Real> {
     Sphere(Sphere<T>),
@@ -53,19 +54,19 @@ impl<T: Real> Shape<T> {
 }
 
 impl<T: Real> Primitive<T> for Shape<T> {
-    fn intersect(&self, ray: &Ray<T>, style: &impl Style<T>) -> Option<T> {
+    fn intersect(&self, ray: &Ray<T>, policy: &impl RayEpsilonPolicy<T>) -> Option<T> {
         match self {
-            Self::Sphere(sphere) => sphere.intersect(ray, style),
-            Self::Quadric(quadric) => quadric.intersect(ray, style),
-            Self::Plane(plane) => plane.intersect(ray, style),
+            Self::Sphere(sphere) => sphere.intersect(ray, policy),
+            Self::Quadric(quadric) => quadric.intersect(ray, policy),
+            Self::Plane(plane) => plane.intersect(ray, policy),
         }
     }
 
-    fn intersect_own(&self, ray: &Ray<T>, style: &impl Style<T>) -> Option<T> {
+    fn intersect_own(&self, ray: &Ray<T>, policy: &impl RayEpsilonPolicy<T>) -> Option<T> {
         match self {
-            Self::Sphere(sphere) => sphere.intersect_own(ray, style),
-            Self::Quadric(quadric) => quadric.intersect_own(ray, style),
-            Self::Plane(plane) => plane.intersect_own(ray, style),
+            Self::Sphere(sphere) => sphere.intersect_own(ray, policy),
+            Self::Quadric(quadric) => quadric.intersect_own(ray, policy),
+            Self::Plane(plane) => plane.intersect_own(ray, policy),
         }
     }
 
@@ -85,11 +86,242 @@ impl<T: Real> Primitive<T> for Shape<T> {
     }
 }
 
-/// The roots of a t² − 2 b t + c = 0, the smaller first; `disc` = b² − a c ≥ 0. The one of larger size comes from
-/// q = b + sign(b) √disc, which does not cancel, the other from c/q. For a → 0 one root goes to infinity and the other,
-/// c/q, stays; for a = b = 0 there is none, and both are infinite or NaN.
+/// Solves a t² − 2 b t + c = 0, smaller root first; `disc` = b² − a c ≥ 0. The root of larger magnitude is
+/// q/a with q = b + sign(b) √disc, which does not cancel; the other is c/q. For a → 0 one root goes to
+/// infinity and the other, c/q, remains. For a = b = 0 there is no root, and both results are infinite or
+/// NaN.
 fn roots<T: Real>(a: T, b: T, c: T, disc: T) -> [T; 2] {
     let q = b + disc.sqrt().copysign(b);
     let (one, other) = (c / q, q / a);
     if one < other { [one, other] } else { [other, one] }
+}
+
+/// A sphere.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sphere<T: Real> {
+    pub(super) center: T::Vec3,
+    pub(super) radius: T,
+}
+
+impl<T: Real> Sphere<T> {
+    pub(super) fn new(center: [f64; 3], radius: f64) -> Self {
+        Self {
+            center: T::Vec3::from_f64(center),
+            radius: T::from_f64(radius),
+        }
+    }
+}
+
+impl<T: Real> Sphere<T> {
+    fn nearest_root(&self, ray: &Ray<T>, t_min: T, is_own: bool) -> Option<T> {
+        let kernel = IntersectSphere {
+            origin: ray.origin.to_array(),
+            direction: ray.direction.to_array(),
+            center: self.center.to_array(),
+            radius: self.radius,
+            t_min,
+            is_own,
+        };
+        T::run(Level::Base, kernel)
+    }
+}
+
+impl<T: Real> Primitive<T> for Sphere<T> {
+    fn intersect(&self, ray: &Ray<T>, policy: &impl RayEpsilonPolicy<T>) -> Option<T> {
+        self.nearest_root(ray, policy.t_min(ray.from.is_some()), false)
+    }
+
+    /// A ray that leaves the sphere does not hit it again; a ray that enters it hits the far side.
+    fn intersect_own(&self, ray: &Ray<T>, policy: &impl RayEpsilonPolicy<T>) -> Option<T> {
+        self.nearest_root(ray, policy.t_min(true), true)
+    }
+
+    fn surface(&self, ray: &Ray<T>, t: T) -> [T::Vec3; 2] {
+        let point = ray.origin + ray.direction * t;
+        let normal = (point - self.center).normalize();
+        [point, normal]
+    }
+
+    fn sphere(&self) -> Option<&Self> {
+        Some(self)
+    }
+}
+
+/// Kernel that computes [`Primitive::surface`] for the first `count` rays and the spheres that they hit.
+#[derive(Debug)]
+pub(super) struct Surfaces<'a, T> {
+    pub(super) count: usize,
+    pub(super) origins: &'a Columns<T>,
+    pub(super) directions: &'a Columns<T>,
+    pub(super) t: &'a [T; MAX_LANES],
+    pub(super) centers: &'a Columns<T>,
+    /// Receives the points and the normals.
+    pub(super) out: &'a mut [Columns<T>; 2],
+}
+
+impl<T: Real> Kernel<T> for Surfaces<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Lanes<T>>(self, simd: S) {
+        let [points, normals] = self.out;
+        let mut at = 0;
+        while at < self.count {
+            let t = Wide::load(simd, &self.t[at..]);
+            let point = self.origins.load(simd, at) + self.directions.load(simd, at) * t;
+            points.store(point, at);
+            normals.store((point - self.centers.load(simd, at)).normalize(simd), at);
+            at += S::COUNT;
+        }
+    }
+}
+
+/// A quadric q·p² + 2 g z + k = 0 in local coordinates p = (x, y, z), whose unit is a power of two near the
+/// size of the surface. p² is taken component by component.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Quadric<T: Real> {
+    origin: T::Vec3,
+    /// Directions of the local axes.
+    axes: [T::Vec3; 3],
+    /// Local unit of length in scene units, and its reciprocal.
+    unit: T,
+    inverse_unit: T,
+    q: T::Vec3,
+    g: T,
+    k: T,
+    /// Range of z; `None` for a closed surface.
+    ends: Option<[T; 2]>,
+}
+
+impl<T: Real> Quadric<T> {
+    fn new(quadric: &scene::Quadric) -> Self {
+        let size = quadric.kind.size();
+        let unit = if size.is_normal() {
+            size.power_of_two()
+        } else {
+            1.0
+        };
+        let Equation { q, g, k, ends } = quadric.kind.equation(unit);
+        Self {
+            origin: T::Vec3::from_f64(quadric.origin),
+            axes: quadric.axes.map(T::Vec3::from_f64),
+            unit: T::from_f64(unit),
+            inverse_unit: T::from_f64(unit.recip()),
+            q: T::Vec3::from_f64(q),
+            g: T::from_f64(g),
+            k: T::from_f64(k),
+            ends: ends.map(|ends| ends.map(T::from_f64)),
+        }
+    }
+
+    /// Rotates a vector to local axes.
+    fn rotate_to_local(&self, v: T::Vec3) -> T::Vec3 {
+        let [x, y, z] = self.axes.map(|axis| axis.dot(v));
+        T::Vec3::new(x, y, z)
+    }
+
+    /// Rotates a vector to scene axes.
+    fn rotate_to_scene(&self, v: T::Vec3) -> T::Vec3 {
+        let [x, y, z] = v.to_array();
+        self.axes[0] * x + self.axes[1] * y + self.axes[2] * z
+    }
+
+    /// Transforms origin and direction to local coordinates.
+    fn localize(&self, ray: &Ray<T>) -> [T::Vec3; 2] {
+        [
+            self.rotate_to_local((ray.origin - self.origin) * self.inverse_unit),
+            self.rotate_to_local(ray.direction),
+        ]
+    }
+
+    /// Returns a, b and c of a t² − 2 b t + c = 0 for o + t·d.
+    fn equation(&self, o: T::Vec3, d: T::Vec3) -> [T; 3] {
+        let z = |v: T::Vec3| v.to_array()[2];
+        let two = T::one() + T::one();
+        [
+            (self.q * d).dot(d),
+            -((self.q * d).dot(o) + self.g * z(d)),
+            (self.q * o).dot(o) + two * self.g * z(o) + self.k,
+        ]
+    }
+
+    fn is_within_ends(&self, point: T::Vec3) -> bool {
+        let [_, _, z] = point.to_array();
+        self.ends.is_none_or(|[low, high]| z >= low && z <= high)
+    }
+}
+
+impl<T: Real> Primitive<T> for Quadric<T> {
+    /// The origin of the ray is first moved to its point closest to the local origin, which keeps the terms
+    /// that are squared and subtracted small.
+    fn intersect(&self, ray: &Ray<T>, policy: &impl RayEpsilonPolicy<T>) -> Option<T> {
+        let [far, d] = self.localize(ray);
+        let ahead = -far.dot(d) / d.dot(d);
+        let o = far + d * ahead;
+        let [a, b, c] = self.equation(o, d);
+        let disc = b * b - a * c;
+        if disc.is_nan() || disc < T::zero() {
+            return None;
+        }
+        let t_min = policy.t_min(ray.from.is_some());
+        roots(a, b, c, disc).into_iter().find_map(|t| {
+            let local = o + d * t;
+            let t = (ahead + t) * self.unit;
+            (t > t_min && t.is_finite() && self.is_within_ends(local)).then_some(t)
+        })
+    }
+
+    /// One root is 0, so the other is 2 b/a.
+    fn intersect_own(&self, ray: &Ray<T>, policy: &impl RayEpsilonPolicy<T>) -> Option<T> {
+        let [o, d] = self.localize(ray);
+        let [a, b, _] = self.equation(o, d);
+        let own = (b + b) / a;
+        let t = own * self.unit;
+        (t > policy.t_min(true) && t.is_finite() && self.is_within_ends(o + d * own)).then_some(t)
+    }
+
+    fn surface(&self, ray: &Ray<T>, t: T) -> [T::Vec3; 2] {
+        let point = ray.origin + ray.direction * t;
+        let local = self.rotate_to_local((point - self.origin) * self.inverse_unit);
+        let gradient = self.q * local + T::Vec3::new(T::zero(), T::zero(), self.g);
+        let normal = self.rotate_to_scene(gradient).normalize();
+        let open = self.ends.is_some();
+        let away = open && normal.dot(ray.direction) > T::zero();
+        [point, if away { -normal } else { normal }]
+    }
+}
+
+/// An infinite plane.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Plane<T: Real> {
+    point: T::Vec3,
+    /// Of unit length.
+    normal: T::Vec3,
+}
+
+impl<T: Real> Plane<T> {
+    fn new(point: [f64; 3], normal: [f64; 3]) -> Self {
+        Self {
+            point: T::Vec3::from_f64(point),
+            normal: T::Vec3::from_f64(normal),
+        }
+    }
+}
+
+impl<T: Real> Primitive<T> for Plane<T> {
+    fn intersect(&self, ray: &Ray<T>, policy: &impl RayEpsilonPolicy<T>) -> Option<T> {
+        let t = self.normal.dot(self.point - ray.origin) / self.normal.dot(ray.direction);
+        // A ray parallel to the plane divides by 0: t is infinite or NaN.
+        (t > policy.t_min(ray.from.is_some()) && t.is_finite()).then_some(t)
+    }
+
+    fn intersect_own(&self, _: &Ray<T>, _: &impl RayEpsilonPolicy<T>) -> Option<T> {
+        None
+    }
+
+    fn surface(&self, ray: &Ray<T>, t: T) -> [T::Vec3; 2] {
+        let point = ray.origin + ray.direction * t;
+        let facing = self.normal.dot(ray.direction) < T::zero();
+        [point, if facing { self.normal } else { -self.normal }]
+    }
 }

@@ -1,51 +1,57 @@
-//! Rays side by side, and what they find.
+//! Packets of rays that are tested together against one sphere after the other, and their hits.
 
-use super::super::lanes::MOST_LANES;
-use super::super::ray::{First, Ray};
-use super::super::real::{Real, Vector};
-use super::NONE;
+use smallvec::SmallVec;
 
-/// How many rays are in a packet: those of 8×8 pixels.
-pub(in super::super) const PACKET: usize = 64;
+use super::block::{Block, Reach, Slab, Slabs};
+use super::single_ray::push_sorted;
+use super::tree::{Child, Node};
+use super::{BLOCK_SIZE, NO_SURFACE, Roots, Spheres, discriminant, other_root};
+use crate::lanes::{Kernel, Lanes, MAX_LANES, Wide, Wide3};
+use crate::ray::{FirstHit, Ray};
+use crate::real::{Real, Vector};
 
-/// A number of each ray.
-pub(super) type Each<T> = [T; PACKET];
+/// Number of rays in a packet: those of 8×8 pixels.
+pub(in super::super) const PACKET_RAYS: usize = 64;
 
-/// Rays side by side.
+/// One number per ray.
+pub(super) type Each<T> = [T; PACKET_RAYS];
+
+/// A packet of rays as a structure of arrays.
 #[derive(Debug)]
 #[repr(align(64))]
 pub(in super::super) struct Packet<T> {
     pub(in super::super) origins: Origins<T>,
     pub(in super::super) directions: [Each<T>; 3],
-    /// The surface that each starts on, if it is not to meet it there; none of them starts on any where this is none.
+    /// The surface on which each ray starts and which it must not hit there; `None` if no ray starts on a
+    /// surface.
     pub(super) from: Option<Each<T>>,
-    /// Hits must lie beyond this t.
+    /// Exclusive lower bound for t of hits.
     pub(super) t_min: T,
-    /// Only the first so many are looked at: a multiple of the number of lanes.
+    /// Number of rays in use: a multiple of the number of lanes.
     pub(super) count: usize,
 }
 
 impl<T: Real> Packet<T> {
-    /// As many rays as there are places, which start on no surface.
+    /// Creates a full packet of rays that start on no surface.
     pub(in super::super) fn full(origins: Origins<T>, directions: [Each<T>; 3]) -> Self {
         Self {
             origins,
             directions,
             from: None,
             t_min: T::zero(),
-            count: PACKET,
+            count: PACKET_RAYS,
         }
     }
 
-    /// At least one ray and at most [`PACKET`], which start on those surfaces: for spheres without a tree. In the places that are
-    /// left is the last one again.
-    pub(in super::super) fn some<'a>(
+    /// Creates a packet of one to [`PACKET_RAYS`] rays with the surfaces on which they start, for spheres
+    /// without a tree. Unused slots repeat the last ray.
+    pub(in super::super) fn partial<'a>(
         rays: impl Iterator<Item = (&'a Ray<T>, Option<usize>)>,
         t_min: T,
     ) -> Self {
-        let mut origins = [[T::zero(); PACKET]; 3];
+        let mut origins = [[T::zero(); PACKET_RAYS]; 3];
         let mut directions = origins;
-        let mut from = [T::tag(NONE); PACKET];
+        let mut from = [T::tag(NO_SURFACE); PACKET_RAYS];
         let mut put = |at: usize, [origin, direction]: [[T; 3]; 2]| {
             for axis in 0..3 {
                 (origins[axis][at], directions[axis][at]) = (origin[axis], direction[axis]);
@@ -56,10 +62,10 @@ impl<T: Real> Packet<T> {
         for (ray, surface) in rays {
             last = [ray.origin.to_array(), ray.direction.to_array()];
             put(count, last);
-            from[count] = T::tag(surface.map_or(NONE, |surface| surface as u32));
+            from[count] = T::tag(surface.map_or(NO_SURFACE, |surface| surface as u32));
             count += 1;
         }
-        let padded = count.next_multiple_of(MOST_LANES);
+        let padded = count.next_multiple_of(MAX_LANES);
         (count..padded).for_each(|at| put(at, last));
         Self {
             origins: Origins::Each(origins),
@@ -70,13 +76,13 @@ impl<T: Real> Packet<T> {
         }
     }
 
-    /// One of its rays.
+    /// Returns one ray.
     #[inline]
     pub(in super::super) fn ray(&self, at: usize) -> Ray<T> {
         let of = |components: &[Each<T>; 3]| T::Vec3::from_array([0, 1, 2].map(|axis| components[axis][at]));
         Ray {
             origin: match &self.origins {
-                Origins::One(origin) => T::Vec3::from_array(*origin),
+                Origins::Shared(origin) => T::Vec3::from_array(*origin),
                 Origins::Each(origins) => of(origins),
             },
             direction: of(&self.directions),
@@ -85,53 +91,338 @@ impl<T: Real> Packet<T> {
     }
 }
 
-/// Where rays start.
+/// Origins of rays.
 #[derive(Debug)]
 pub(in super::super) enum Origins<T> {
-    /// All in one point.
-    One([T; 3]),
+    /// All rays start at the same point.
+    Shared([T; 3]),
     Each([Each<T>; 3]),
 }
 
-/// What the rays of a packet found.
+/// The nearest hits of the rays of a packet.
 #[derive(Debug)]
 #[repr(align(64))]
-pub(in super::super) struct Found<T> {
-    /// Infinite where nothing is met.
+pub(in super::super) struct PacketHits<T> {
+    /// Infinite if there is no hit.
     pub(super) t: Each<T>,
-    /// The number of the sphere, as [`Real::tag`] hides it.
+    /// The index of the sphere, encoded by [`Real::tag`].
     pub(super) tags: Each<T>,
 }
 
-impl<T: Real> Found<T> {
-    /// Nothing so far.
-    pub(in super::super) fn nothing() -> Self {
+impl<T: Real> PacketHits<T> {
+    /// No hits.
+    pub(in super::super) fn none() -> Self {
         Self {
-            t: [T::infinity(); PACKET],
-            tags: [T::tag(NONE); PACKET],
+            t: [T::infinity(); PACKET_RAYS],
+            tags: [T::tag(NO_SURFACE); PACKET_RAYS],
         }
     }
 
-    /// Nothing so far, and nothing is to be found at these t's or beyond.
+    /// No hits, with an exclusive upper bound of t for each ray.
     pub(in super::super) fn before(limits: impl Iterator<Item = T>) -> Self {
         let mut found = Self {
-            t: [T::zero(); PACKET],
-            // No number is smaller, so that nothing takes this one's place at the same t.
-            tags: [T::tag(0); PACKET],
+            t: [T::zero(); PACKET_RAYS],
+            // No index is smaller, so that no hit at the bound replaces it.
+            tags: [T::tag(0); PACKET_RAYS],
         };
         found.t.iter_mut().zip(limits).for_each(|(t, limit)| *t = limit);
         found
     }
 
-    /// Whether one ray found anything before that t.
+    /// Returns whether a ray has a hit before `limit`.
     #[inline]
     pub(in super::super) fn is_before(&self, ray: usize, limit: T) -> bool {
         self.t[ray] < limit
     }
 
-    /// What one ray found.
+    /// Returns the first hit of a ray.
     #[inline]
-    pub(in super::super) fn of(&self, ray: usize) -> First<T> {
-        First::new(self.t[ray], self.tags[ray].untag())
+    pub(in super::super) fn get(&self, ray: usize) -> FirstHit<T> {
+        FirstHit::new(self.t[ray], self.tags[ray].untag())
+    }
+}
+
+pub(super) struct Nearest<'a, T> {
+    pub(super) spheres: &'a Spheres<T>,
+    pub(super) packet: &'a Packet<T>,
+    pub(super) found: &'a mut PacketHits<T>,
+}
+
+impl<T: Real> Kernel<T> for Nearest<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Lanes<T>>(self, simd: S) {
+        let Self {
+            spheres,
+            packet,
+            found,
+        } = self;
+        let mut rays = PacketTraversal::new(simd, packet, found);
+        if spheres.tree.nodes.is_empty() {
+            for (block, reach) in spheres.tree.blocks.iter().zip(&spheres.tree.reaches) {
+                rays.intersect_block(block, reach);
+            }
+            return;
+        }
+        let mut stack: SmallVec<[(T, Child); 64]> = SmallVec::new();
+        let mut next = Child::ROOT;
+        loop {
+            match next.get() {
+                Ok(node) => rays.visit_node(&spheres.tree.nodes[node], &mut stack),
+                Err(block) => rays.intersect_block(&spheres.tree.blocks[block], &spheres.tree.reaches[block]),
+            }
+            next = loop {
+                match stack.pop() {
+                    None => return,
+                    Some((near, _)) if near > rays.limit => {}
+                    Some((_, child)) => break child,
+                }
+            };
+        }
+    }
+}
+
+/// Traversal of the spheres by a packet.
+struct PacketTraversal<'a, T, S: Lanes<T>> {
+    simd: S,
+    packet: &'a Packet<T>,
+    a: Each<T>,
+    inverse_a: Each<T>,
+    slabs: Slabs<T, S::Eight>,
+    found: &'a mut PacketHits<T>,
+    /// The largest t of the hits so far.
+    limit: T,
+}
+
+/// Returns the smallest and the largest number, or the full range of the type if any number is not finite.
+#[inline(always)]
+fn range<T: Real, S: Lanes<T>>(simd: S, numbers: &[T]) -> [T; 2] {
+    let mut low = Wide::load(simd, numbers);
+    let zero = Wide::splat(simd, T::zero());
+    // NaN if any number is NaN or infinite.
+    let (mut high, mut not_finite) = (low, low * zero);
+    let mut at = S::COUNT;
+    while at < numbers.len() {
+        let more = Wide::load(simd, &numbers[at..]);
+        (low, high, not_finite) = (low.min(more), high.max(more), not_finite + more * zero);
+        at += S::COUNT;
+    }
+    let not_finite = not_finite.reduce_sum();
+    if not_finite == T::zero() {
+        [low.reduce_min(), high.reduce_max()]
+    } else {
+        [T::min_value(), T::max_value()]
+    }
+}
+
+/// Returns the largest number; none may be NaN.
+#[inline(always)]
+fn largest<T: Real, S: Lanes<T>>(simd: S, numbers: &[T]) -> T {
+    let mut high = Wide::load(simd, numbers);
+    let mut at = S::COUNT;
+    while at < numbers.len() {
+        high = high.max(Wide::load(simd, &numbers[at..]));
+        at += S::COUNT;
+    }
+    high.reduce_max()
+}
+
+impl<'a, T: Real, S: Lanes<T>> PacketTraversal<'a, T, S> {
+    #[inline(always)]
+    fn new(simd: S, packet: &'a Packet<T>, found: &'a mut PacketHits<T>) -> Self {
+        let (mut a, mut inverse_a) = ([T::zero(); PACKET_RAYS], [T::zero(); PACKET_RAYS]);
+        let mut at = 0;
+        while at < packet.count {
+            let d = Wide3::load(simd, &packet.directions, at);
+            d.dot(d).store(&mut a[at..]);
+            (Wide::splat(simd, T::one()) / d.dot(d)).store(&mut inverse_a[at..]);
+            at += S::COUNT;
+        }
+        Self {
+            simd,
+            packet,
+            a,
+            inverse_a,
+            slabs: Slabs(
+                Self::slab(simd, packet, 0),
+                Self::slab(simd, packet, 1),
+                Self::slab(simd, packet, 2),
+            ),
+            limit: largest(simd, &found.t[..packet.count]),
+            found,
+        }
+    }
+
+    #[inline(always)]
+    fn slab(simd: S, packet: &Packet<T>, axis: usize) -> Slab<T, S::Eight> {
+        let origins = match &packet.origins {
+            Origins::Shared(origin) => [origin[axis]; 2],
+            Origins::Each(origins) => range(simd, &origins[axis][..packet.count]),
+        };
+        let directions = range(simd, &packet.directions[axis][..packet.count]);
+        Slab::new(simd.eight(), origins, directions)
+    }
+
+    /// Intersects all rays with those spheres of a block that any ray may hit.
+    #[inline(always)]
+    fn intersect_block(&mut self, block: &Block<T>, reaches: &Reach<T>) {
+        let mut hits = (1 << reaches.count) - 1;
+        // Rays that start on surfaces are incoherent, and a ray must not miss its own sphere when rounding
+        // has put its origin outside of the bounds.
+        if self.packet.from.is_none() {
+            hits &= !self.misses(block, reaches);
+        }
+        let mut is_changed = false;
+        while hits != 0 {
+            let at = hits.trailing_zeros() as usize % BLOCK_SIZE;
+            hits &= hits - 1;
+            is_changed |= self.intersect_sphere(block, at);
+        }
+        if is_changed {
+            self.limit = largest(self.simd, &self.found.t[..self.packet.count]);
+        }
+    }
+
+    /// Returns a mask of the spheres of a block that no ray can hit.
+    #[inline(always)]
+    fn misses(&self, block: &Block<T>, reaches: &Reach<T>) -> u32 {
+        let simd = self.simd.eight();
+        let mut misses = 0;
+        let mut at = 0;
+        while at < BLOCK_SIZE {
+            let reach = Wide::load(simd, &reaches.reach[at..]);
+            let Wide3(x, y, z) = Wide3::load(simd, &block.center, at);
+            let limit = Wide::splat(simd, self.limit);
+            let lows = [x - reach, y - reach, z - reach];
+            let (missed, _) = self
+                .slabs
+                .misses(simd, lows, [x + reach, y + reach, z + reach], limit);
+            misses |= missed << at;
+            at += S::Eight::COUNT;
+        }
+        misses
+    }
+
+    /// Intersects all rays with one sphere. Returns whether any t decreased.
+    #[inline(always)]
+    fn intersect_sphere(&mut self, block: &Block<T>, slot: usize) -> bool {
+        let simd = self.simd;
+        let [cx, cy, cz] = &block.center;
+        let center = Wide3::splat(simd, [cx[slot], cy[slot], cz[slot]]);
+        let inverse_unit = Wide::splat(simd, block.inverse_unit[slot]);
+        let radius2 = Wide::splat(simd, block.radius2[slot]);
+        let mut is_changed = false;
+        match &self.packet.origins {
+            Origins::Shared(origin) => {
+                let f = (Wide3::splat(simd, *origin) - center) * inverse_unit;
+                let c = f.dot(f) - radius2;
+                let mut at = 0;
+                while at < self.packet.count {
+                    is_changed |= self.intersect_lanes(at, block, slot, f, c, radius2);
+                    at += S::COUNT;
+                }
+            }
+            Origins::Each(origins) => {
+                let mut at = 0;
+                while at < self.packet.count {
+                    let f = (Wide3::load(simd, origins, at) - center) * inverse_unit;
+                    let c = f.dot(f) - radius2;
+                    is_changed |= self.intersect_lanes(at, block, slot, f, c, radius2);
+                    at += S::COUNT;
+                }
+            }
+        }
+        is_changed
+    }
+
+    /// Intersects one ray per lane, from index `at` on.
+    #[inline(always)]
+    fn intersect_lanes(
+        &mut self,
+        at: usize,
+        block: &Block<T>,
+        slot: usize,
+        f: Wide3<T, S>,
+        c: Wide<T, S>,
+        radius2: Wide<T, S>,
+    ) -> bool {
+        let simd = self.simd;
+        let d = Wide3::load(simd, &self.packet.directions, at);
+        let [along, mut disc] = discriminant(f, d, Wide::load(simd, &self.inverse_a[at..]), radius2);
+        let [zero, t_min, infinity] =
+            [T::zero(), self.packet.t_min, T::infinity()].map(|number| Wide::splat(simd, number));
+        let number = block.numbers[slot];
+        let tag = Wide::splat(simd, T::tag(number));
+        let own = self
+            .packet
+            .from
+            .as_ref()
+            .map(|from| Wide::load(simd, &from[at..]).equal(tag));
+        if let Some(own) = own {
+            // It may be negative for a ray tangent to the surface.
+            disc = zero.select(own, disc);
+        }
+        let may_hit = zero.less_or_equal(disc);
+        if simd.bits(may_hit) == 0 {
+            return false;
+        }
+        let a = Wide::load(simd, &self.a[at..]);
+        let unit = Wide::splat(simd, block.inverse_unit[slot].recip());
+        let roots = Roots {
+            along,
+            disc,
+            a,
+            c,
+            unit,
+        };
+        let mut t = roots.beyond(simd, t_min).select(may_hit, infinity);
+        if let Some(own) = own {
+            t = other_root(simd, along, a, unit).select(own, t);
+        }
+        let t = t.select(t_min.less(t), infinity);
+        let before = Wide::load(simd, &self.found.t[at..]);
+        let nearer = t.less(before);
+        let nearer_bits = simd.bits(nearer);
+        let mut ties = simd.bits(t.less_or_equal(before)) & !nearer_bits & simd.bits(t.less(infinity));
+        if nearer_bits != 0 {
+            let tags = Wide::load(simd, &self.found.tags[at..]);
+            t.select(nearer, before).store(&mut self.found.t[at..]);
+            tag.select(nearer, tags).store(&mut self.found.tags[at..]);
+        }
+        while ties != 0 {
+            let ray = at + ties.trailing_zeros() as usize;
+            ties &= ties - 1;
+            if number < self.found.tags[ray].untag() {
+                self.found.tags[ray] = T::tag(number);
+            }
+        }
+        nearer_bits != 0
+    }
+
+    /// Pushes the children that any ray may reach.
+    #[inline(always)]
+    fn visit_node(&self, node: &Node<T>, stack: &mut SmallVec<[(T, Child); 64]>) {
+        let simd = self.simd.eight();
+        let mut nears = [T::zero(); BLOCK_SIZE];
+        let mut misses = 0;
+        let mut at = 0;
+        while at < BLOCK_SIZE {
+            let Wide3(low_x, low_y, low_z) = Wide3::load(simd, &node.low, at);
+            let Wide3(high_x, high_y, high_z) = Wide3::load(simd, &node.high, at);
+            let (lows, highs) = ([low_x, low_y, low_z], [high_x, high_y, high_z]);
+            let limit = Wide::splat(simd, self.limit);
+            let (missed, near) = self.slabs.misses(simd, lows, highs, limit);
+            near.store(&mut nears[at..]);
+            misses |= missed << at;
+            at += S::Eight::COUNT;
+        }
+        let mut hits = !misses & ((1 << node.count) - 1);
+        let base = stack.len();
+        while hits != 0 {
+            let at = hits.trailing_zeros() as usize % BLOCK_SIZE;
+            hits &= hits - 1;
+            push_sorted(stack, base, (nears[at], node.children[at]));
+        }
     }
 }

@@ -1,24 +1,24 @@
-//! However spheres are looked for, the answer is that of one ray and one sphere after the other, to the bit.
+//! All queries give the bits of testing one ray against one sphere after the other.
 
 use glam::DVec3;
 use toyproof_image::pcg;
-use toyproof_scene::unit as between_0_and_1;
+use toyproof_scene::unit as unit_interval;
 
-use super::super::lanes::Level;
-use super::super::ray::Ray;
-use super::super::real::{Real, Vector};
 use super::*;
+use crate::lanes::Level;
+use crate::ray::Ray;
+use crate::real::{Real, Vector};
 
-/// Numbers drawn by hashing, the same in every run.
+/// Reproducible random numbers, by hashing.
 struct Random(u32);
 
 impl Random {
     fn between(&mut self, low: f64, high: f64) -> f64 {
         self.0 = pcg(self.0);
-        low + (high - low) * between_0_and_1(self.0)
+        low + (high - low) * unit_interval(self.0)
     }
 
-    /// 0, 1, … below a number.
+    /// Returns an integer in 0 … number − 1.
     fn below(&mut self, number: u32) -> u32 {
         self.between(0.0, f64::from(number)) as u32
     }
@@ -37,7 +37,7 @@ impl Random {
     }
 }
 
-/// Spheres of one scene: far apart, overlapping, one in another, twice the same, one as large as a world.
+/// Spheres of a scene: separate, overlapping, nested, duplicated, and one very large one.
 fn scene(random: &mut Random, count: u32, scale: f64) -> Vec<(DVec3, f64)> {
     let size = 10.0 * scale;
     let mut spheres: Vec<(DVec3, f64)> = Vec::new();
@@ -54,7 +54,8 @@ fn scene(random: &mut Random, count: u32, scale: f64) -> Vec<(DVec3, f64)> {
     spheres
 }
 
-/// Where a ray of a packet that starts in `origin` goes: anywhere, along an axis, or closely by an edge of a sphere.
+/// Chooses a target for a ray from `origin`: in any direction, along an axis, or near the silhouette of a
+/// sphere.
 fn target(random: &mut Random, spheres: &[(DVec3, f64)], origin: DVec3) -> DVec3 {
     let (center, radius) = spheres[random.below(spheres.len() as u32) as usize];
     let toward = center - origin;
@@ -72,19 +73,19 @@ fn rounded<T: Real>(v: DVec3) -> [T; 3] {
 }
 
 fn toward<T: Real>(origin: DVec3, target: DVec3) -> [T; 3] {
-    // Scaled first, as no square of the smallest numbers is.
+    // Scale first: squares of the smallest numbers underflow.
     let away = target - origin;
     rounded((away / away.abs().max_element()).normalize_or(DVec3::NEG_Z))
 }
 
-/// One after the other; the ray starts on the sphere `own`.
-fn oracle<T: Real>(spheres: &[Numbered<T>], query: &Query<T>, own: u32) -> Option<(T, u32)> {
+/// Tests one sphere after the other; the ray starts on the sphere `own`.
+fn oracle<T: Real>(spheres: &[NumberedSphere<T>], query: &Query<T>, own: u32) -> Option<(T, u32)> {
     let mut nearest: Option<(T, u32)> = None;
     for sphere in spheres
         .iter()
-        .filter(|sphere| !query.but.contains(&sphere.number))
+        .filter(|sphere| !query.excluded.contains(&sphere.number))
     {
-        let meet = Meet {
+        let kernel = IntersectSphere {
             origin: query.origin,
             direction: query.direction,
             center: sphere.center,
@@ -92,7 +93,7 @@ fn oracle<T: Real>(spheres: &[Numbered<T>], query: &Query<T>, own: u32) -> Optio
             t_min: query.t_min,
             is_own: sphere.number == own,
         };
-        if let Some(t) = T::run(Level::Base, meet)
+        if let Some(t) = T::run(Level::Base, kernel)
             && t < query.t_max
             && nearest.is_none_or(|(before, _)| t < before)
         {
@@ -102,14 +103,14 @@ fn oracle<T: Real>(spheres: &[Numbered<T>], query: &Query<T>, own: u32) -> Optio
     nearest
 }
 
-fn of<T: Real>(found: &Found<T>, ray: usize) -> Option<(T, u32)> {
-    found.of(ray).get().map(|(t, surface)| (t, surface as u32))
+fn hit_of<T: Real>(found: &PacketHits<T>, ray: usize) -> Option<(T, u32)> {
+    found.get(ray).get().map(|(t, surface)| (t, surface as u32))
 }
 
-fn numbered<T: Real>(described: &[(DVec3, f64)], number: impl Fn(u32) -> u32) -> Vec<Numbered<T>> {
+fn numbered<T: Real>(described: &[(DVec3, f64)], number: impl Fn(u32) -> u32) -> Vec<NumberedSphere<T>> {
     (0..)
         .zip(described)
-        .map(|(at, &(center, radius))| Numbered {
+        .map(|(at, &(center, radius))| NumberedSphere {
             center: rounded(center),
             radius: T::from_f64(radius),
             number: number(at),
@@ -117,16 +118,16 @@ fn numbered<T: Real>(described: &[(DVec3, f64)], number: impl Fn(u32) -> u32) ->
         .collect()
 }
 
-/// How many rays were compared, and how many of them met something. The scene's size has an exponent between those, the rays
-/// start up to ten to the `away` times that from its middle.
+/// Compares all query paths and returns the number of rays and of hits. The size of the scene is
+/// 10^±`exponents`; rays start at up to 10^`away` times the size from its center.
 fn compare<T: Real>(seeds: u32, exponents: f64, away: f64) -> [u32; 2] {
-    let mut told = [0; 2];
+    let mut counts = [0; 2];
     for seed in 0..seeds {
         let random = &mut Random(seed);
         let scale = 10f64.powf(random.between(-exponents, exponents));
         let count = [1, 3, 8, 9, 20, 150][random.below(6) as usize];
         let described = scene(random, count, scale);
-        // Not in the order of the places.
+        // Indices not in storage order.
         let spheres = numbered::<T>(&described, |number| number ^ 1);
         let mut sorted = spheres.clone();
         sorted.sort_by_key(|sphere| sphere.number);
@@ -134,7 +135,7 @@ fn compare<T: Real>(seeds: u32, exponents: f64, away: f64) -> [u32; 2] {
         let eye = random.place(distance);
         let is_narrow = random.below(2) == 0;
         let aim = target(random, &described, eye);
-        let rays: [_; PACKET] = std::array::from_fn(|_| {
+        let rays: [_; PACKET_RAYS] = std::array::from_fn(|_| {
             let target = if is_narrow {
                 aim + random.place(0.1 * scale)
             } else {
@@ -148,70 +149,71 @@ fn compare<T: Real>(seeds: u32, exponents: f64, away: f64) -> [u32; 2] {
             direction: rays[at].1,
             t_min: T::zero(),
             t_max: T::infinity(),
-            but: [NONE; 2],
+            excluded: [NO_SURFACE; 2],
         };
         let directions = [0, 1, 2].map(|axis| std::array::from_fn(|at| rays[at].1[axis]));
         let packets = [
-            Packet::full(Origins::One(rounded(eye)), directions),
+            Packet::full(Origins::Shared(rounded(eye)), directions),
             Packet::full(
                 Origins::Each([0, 1, 2].map(|axis| std::array::from_fn(|at| rounded::<T>(rays[at].0)[axis]))),
                 directions,
             ),
         ];
         let expected = [0, 1].map(|kind| {
-            [(); PACKET]
+            [(); PACKET_RAYS]
                 .iter()
                 .enumerate()
                 .map(|(at, ())| {
                     let origin = if kind == 0 { eye } else { rays[at].0 };
-                    oracle(&sorted, &query(at, origin), NONE)
+                    oracle(&sorted, &query(at, origin), NO_SURFACE)
                 })
                 .collect::<Vec<_>>()
         });
         for (level, tree) in Level::all().flat_map(|level| [(level, false), (level, true)]) {
-            let way = format!("seed {seed}, {level:?}, tree: {tree}");
+            let case = format!("seed {seed}, {level:?}, tree: {tree}");
             let all = Spheres::new(&spheres, tree, level);
             for (packet, expected) in packets.iter().zip(&expected) {
-                let mut found = Found::nothing();
+                let mut found = PacketHits::none();
                 all.nearest_of_packet(packet, &mut found);
                 for (at, expected) in expected.iter().enumerate() {
-                    assert_eq!(of(&found, at), *expected, "{way}, ray {at} of a packet");
+                    assert_eq!(hit_of(&found, at), *expected, "{case}, ray {at} of a packet");
                 }
             }
             for (at, &expected) in expected[1].iter().enumerate() {
-                let (start, _, but) = rays[at];
+                let (start, _, excluded) = rays[at];
                 let mut query = query(at, start);
-                assert_eq!(all.nearest(&query), expected, "{way}, ray {at}");
-                assert_eq!(all.any(&query), expected.is_some(), "{way}, ray {at}");
-                told[0] += 1;
+                assert_eq!(all.nearest(&query), expected, "{case}, ray {at}");
+                assert_eq!(all.any(&query), expected.is_some(), "{case}, ray {at}");
+                counts[0] += 1;
                 let Some((t, number)) = expected else { continue };
-                told[1] += 1;
-                // Up to a hit, it is not there; without the sphere, or beyond its t, another may be.
+                counts[1] += 1;
+                // No hit before t; another hit may remain without the sphere, or beyond its t.
                 query.t_max = t;
-                assert!(!all.any(&query), "{way}, ray {at}");
+                assert!(!all.any(&query), "{case}, ray {at}");
                 query.t_max = T::infinity();
-                query.but = [but, number];
+                query.excluded = [excluded, number];
                 assert_eq!(
                     all.nearest(&query),
-                    oracle(&sorted, &query, NONE),
-                    "{way}, ray {at}"
+                    oracle(&sorted, &query, NO_SURFACE),
+                    "{case}, ray {at}"
                 );
-                query.but = [NONE; 2];
+                query.excluded = [NO_SURFACE; 2];
                 query.t_min = t;
                 assert_eq!(
                     all.nearest(&query),
-                    oracle(&sorted, &query, NONE),
-                    "{way}, ray {at}"
+                    oracle(&sorted, &query, NO_SURFACE),
+                    "{case}, ray {at}"
                 );
             }
         }
     }
-    told
+    counts
 }
 
-/// The same of rays that leave spheres, beyond some t, and of what lies before another t: as many as the numbers told.
+/// Compares rays that start on spheres, with a lower bound of t, and occlusion up to a given t. Returns the
+/// number of rays and of hits of their own sphere.
 fn compare_secondary<T: Real>(seeds: u32, exponents: f64) -> [u32; 2] {
-    let mut told = [0; 2];
+    let mut counts = [0; 2];
     for seed in 0..seeds {
         let random = &mut Random(seed);
         let scale = 10f64.powf(random.between(-exponents, exponents));
@@ -219,7 +221,7 @@ fn compare_secondary<T: Real>(seeds: u32, exponents: f64) -> [u32; 2] {
         let described = scene(random, count, scale);
         let spheres = numbered::<T>(&described, |number| number);
         let t_min = T::from_f64([0.0, scale * random.between(0.0, 1.0)][random.below(2) as usize]);
-        let rays: Vec<(Ray<T>, Option<u32>)> = (0..=random.below(PACKET as u32))
+        let rays: Vec<(Ray<T>, Option<u32>)> = (0..=random.below(PACKET_RAYS as u32))
             .map(|at| {
                 let own = random.below(count);
                 let (center, radius) = described[own as usize];
@@ -240,9 +242,9 @@ fn compare_secondary<T: Real>(seeds: u32, exponents: f64) -> [u32; 2] {
                     direction: ray.direction.to_array(),
                     t_min,
                     t_max: T::infinity(),
-                    but: [NONE; 2],
+                    excluded: [NO_SURFACE; 2],
                 };
-                oracle(&spheres, &query, own.unwrap_or(NONE))
+                oracle(&spheres, &query, own.unwrap_or(NO_SURFACE))
             })
             .collect();
         let factors = [0.5, 1.0, 1.5].map(T::from_f64);
@@ -250,27 +252,27 @@ fn compare_secondary<T: Real>(seeds: u32, exponents: f64) -> [u32; 2] {
             .map(|(at, expected)| expected.map_or(T::one(), |(t, _)| t) * factors[at % 3])
             .collect();
         let owned = rays.iter().map(|(ray, own)| (ray, own.map(|own| own as usize)));
-        let packet = Packet::some(owned, t_min);
+        let packet = Packet::partial(owned, t_min);
         for level in Level::all() {
             let all = Spheres::new(&spheres, false, level);
-            let (mut found, mut limited) = (Found::nothing(), Found::before(limits.iter().copied()));
+            let (mut found, mut limited) = (PacketHits::none(), PacketHits::before(limits.iter().copied()));
             all.nearest_of_packet(&packet, &mut found);
             all.nearest_of_packet(&packet, &mut limited);
             for (at, (&expected, &limit)) in expected.iter().zip(&limits).enumerate() {
-                let way = format!("seed {seed}, {level:?}, ray {at}");
-                assert_eq!(of(&found, at), expected, "{way}");
+                let case = format!("seed {seed}, {level:?}, ray {at}");
+                assert_eq!(hit_of(&found, at), expected, "{case}");
                 let is_before = expected.is_some_and(|(t, _)| t < limit);
-                assert_eq!(limited.is_before(at, limit), is_before, "{way}");
-                told[0] += 1;
-                told[1] += u32::from(expected.is_some_and(|(_, number)| Some(number) == rays[at].1));
+                assert_eq!(limited.is_before(at, limit), is_before, "{case}");
+                counts[0] += 1;
+                counts[1] += u32::from(expected.is_some_and(|(_, number)| Some(number) == rays[at].1));
             }
         }
     }
-    told
+    counts
 }
 
 #[test]
-fn rays_that_leave_spheres_find_the_same_together() {
+fn secondary_packets_match_single_rays() {
     for [rays, own] in [
         compare_secondary::<f32>(1500, 15.0),
         compare_secondary::<f64>(1500, 30.0),
@@ -296,18 +298,19 @@ fn every_way_gives_the_same_bits_at_every_size() {
     }
 }
 
-/// From so far away, rounding takes rays past spheres that they meet and into others: the margins of boxes are for that.
+/// At this distance, rounding moves rays past spheres that they hit and into others, which the margins of
+/// boxes must cover.
 #[test]
-fn every_way_gives_the_same_bits_from_far_away() {
+fn all_queries_give_the_same_bits_from_far_away() {
     for [_, hits] in [compare::<f32>(300, 3.0, 8.0), compare::<f64>(100, 3.0, 16.0)] {
         assert!(hits > 300, "{hits}");
     }
 }
 
 #[test]
-fn one_ray_that_is_no_number_leaves_the_others_alone() {
+fn nan_ray_does_not_affect_other_rays_of_a_packet() {
     let spheres: Vec<_> = (0..200u32)
-        .map(|number| Numbered {
+        .map(|number| NumberedSphere {
             center: [f64::from(number % 20) - 10.0, f64::from(number / 20) - 5.0, -20.0],
             radius: 0.4,
             number,
@@ -317,15 +320,15 @@ fn one_ray_that_is_no_number_leaves_the_others_alone() {
     let directions = [
         std::array::from_fn(|at| grid(at % 8)),
         std::array::from_fn(|at| grid(at / 8)),
-        [-20.0; PACKET],
+        [-20.0; PACKET_RAYS],
     ];
     for (level, tree) in Level::all().flat_map(|level| [(level, false), (level, true)]) {
         let all = Spheres::new(&spheres, tree, level);
         let found = |directions| {
-            let origins = Origins::One([0.0; 3]);
-            let mut found = Found::nothing();
+            let origins = Origins::Shared([0.0; 3]);
+            let mut found = PacketHits::none();
             all.nearest_of_packet(&Packet::full(origins, directions), &mut found);
-            (1..PACKET).map(|at| of(&found, at)).collect::<Vec<_>>()
+            (1..PACKET_RAYS).map(|at| hit_of(&found, at)).collect::<Vec<_>>()
         };
         let before = found(directions);
         assert!(before.iter().flatten().count() > 10);

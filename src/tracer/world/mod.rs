@@ -1,24 +1,23 @@
-//! The scene in the number type of the tracer, and what its rays meet.
+//! The scene in the tracer's number type, and ray queries.
 
 mod path;
-mod several;
-mod walk;
 mod whitted;
 
 use toyproof_scene::{Integrator, Object, Requirements, Scene, Shape};
-pub(super) use walk::Walk;
+pub(super) use whitted::PathState;
 
-use super::lanes::Level;
-use super::light::{Background, Light};
-use super::material::{Material, Model};
-use super::ray::{First, Hit, Ray};
-use super::real::{Real, Vector};
-use super::sampler::Draws;
-use super::shape::Primitive;
-use super::spheres::{Found, NONE, Numbered, Packet, Query, Spheres};
-use super::style::{Exact, Style};
+use crate::lanes::Level;
+use crate::light::{Background, Light};
+use crate::material::{Material, Model};
+use crate::ray::{FirstHit, Hit, Ray};
+use crate::ray_epsilon::{Exact, RayEpsilonPolicy};
+use crate::real::{Real, Vector};
+use crate::sampler::SampleStream;
+use crate::shape::Primitive;
+use crate::spheres::{NO_SURFACE, NumberedSphere, Packet, PacketHits, Query, Spheres};
 
-/// Surfaces and lights. `P` is the one shape that a scene requires, so that what is asked of each knows it.
+/// Surfaces and lights. `P` is the shape type of all surfaces: a single kind, where the scene has only that,
+/// for static dispatch.
 #[derive(Debug)]
 pub(super) struct World<T: Real, P> {
     pub(super) integrator: Integrator,
@@ -27,13 +26,13 @@ pub(super) struct World<T: Real, P> {
     pub(super) background: Background<T>,
     lights: Vec<Light<T>>,
     shapes: Vec<P>,
-    /// Those of them that are spheres, once more.
+    /// Copies of those shapes that are spheres.
     pub(super) spheres: Spheres<T>,
-    /// The numbers of the others.
+    /// Indices of the other shapes.
     others: Vec<usize>,
-    /// One for each shape.
+    /// One material per shape.
     materials: Vec<Material<T>>,
-    /// The spheres that shine.
+    /// The emissive spheres.
     emitters: Vec<Emitter<T>>,
     level: Level,
 }
@@ -46,11 +45,12 @@ struct Emitter<T: Real> {
 }
 
 impl<T: Real, P: Primitive<T>> World<T, P> {
-    /// `before`: the same scene's spheres at another moment, which their tree may serve again.
+    /// Creates a world. `previous` are the spheres of the same scene at a different moment, whose tree is
+    /// reused if possible.
     pub(super) fn new(
         scene: &Scene,
         level: Level,
-        before: Option<Spheres<T>>,
+        previous: Option<Spheres<T>>,
         shape: impl Fn(&Object) -> P,
     ) -> Self {
         let materials: Vec<_> = scene
@@ -62,7 +62,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         let spheres: Vec<_> = (0..)
             .zip(&scene.objects)
             .filter_map(|(number, object)| match object.shape {
-                Shape::Sphere { center, radius } => Some(Numbered {
+                Shape::Sphere { center, radius } => Some(NumberedSphere {
                     center: center.map(T::from_f64),
                     radius: T::from_f64(radius),
                     number,
@@ -82,8 +82,8 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
                 .map(|light| Light::new(light, &scene.objects))
                 .collect(),
             shapes: scene.objects.iter().map(shape).collect(),
-            spheres: match before {
-                Some(before) => before.moved(&spheres),
+            spheres: match previous {
+                Some(previous) => previous.moved(&spheres),
                 None => Spheres::new(&spheres, Requirements::of(scene).many_spheres, level),
             },
             others: (0..scene.objects.len())
@@ -106,8 +106,8 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         }
     }
 
-    /// Whether there are lights, and whether any of them has a surface.
-    pub(super) fn lights_and_surfaces(&self) -> [bool; 2] {
+    /// Returns whether shadow rays are traced to lights, and whether any of these has a surface.
+    pub(super) fn has_lights_and_surfaces(&self) -> [bool; 2] {
         let lit = self.integrator == Integrator::Whitted && !self.lights.is_empty();
         [
             lit,
@@ -115,56 +115,58 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         ]
     }
 
-    /// How many lights are looked for, and from how many surfaces one after the other a ray may go on.
-    pub(super) fn lights_and_bounces(&self) -> [u32; 2] {
+    /// Returns the number of lights with shadow rays and the largest number of consecutive surfaces from
+    /// which a ray continues.
+    pub(super) fn acne_dimensions(&self) -> [u32; 2] {
         let lights = match self.integrator {
             Integrator::Whitted => self.lights.iter().filter(|light| light.shadow).count(),
             Integrator::Path => usize::from(self.has_emitters()),
         };
-        let goes_on = |material: &Material<T>| matches!(material.model, Model::Mirror | Model::Glass(_));
-        let goes_on = self.integrator == Integrator::Whitted && self.materials.iter().any(goes_on);
-        [lights as u32, if goes_on { self.max_depth - 1 } else { 0 }]
+        let is_specular = |material: &Material<T>| matches!(material.model, Model::Mirror | Model::Glass(_));
+        let is_specular = self.integrator == Integrator::Whitted && self.materials.iter().any(is_specular);
+        [lights as u32, if is_specular { self.max_depth - 1 } else { 0 }]
     }
 
-    /// Whether any surface shines.
+    /// Returns whether any surface is emissive.
     pub(super) fn has_emitters(&self) -> bool {
         !self.emitters.is_empty()
     }
 
-    /// The radiance along a camera ray, which meets that first.
+    /// Computes the radiance along a camera ray with the given first hit.
     pub(super) fn radiance(
         &self,
         ray: Ray<T>,
-        first: First<T>,
-        draws: Draws,
-        style: &impl Style<T>,
+        first: FirstHit<T>,
+        stream: SampleStream,
+        policy: &impl RayEpsilonPolicy<T>,
     ) -> T::Vec3 {
-        let mut walk = [Walk::new(ray, first, draws)];
-        self.walk(&mut walk, style);
-        walk[0].sum
+        let mut path = [PathState::new(ray, first, stream)];
+        self.trace(&mut path, policy);
+        path[0].sum
     }
 
-    /// Sums the radiance along several, no more than a packet has.
-    pub(super) fn walk(&self, walks: &mut [Walk<T>], style: &impl Style<T>) {
+    /// Adds up the radiance along several camera rays, at most [`PACKET_RAYS`](crate::spheres::PACKET_RAYS).
+    pub(super) fn trace(&self, paths: &mut [PathState<T>], policy: &impl RayEpsilonPolicy<T>) {
         match self.integrator {
-            Integrator::Whitted => self.whitted(walks, style),
+            Integrator::Whitted => self.whitted(paths, policy),
             Integrator::Path => {
-                for walk in walks {
-                    walk.sum = self.path(walk.branch.ray, walk.first, &mut walk.draws, style);
+                for path in paths {
+                    path.sum = self.path(path.branch.ray, path.first, &mut path.stream, policy);
                 }
             }
         }
     }
 
-    /// The surface that a ray starts on, if it is not to meet it where it starts: off its surface, it starts on none.
-    fn own(ray: &Ray<T>, style: &impl Style<T>) -> Option<usize> {
-        ray.from.filter(|_| style.is_on_surface())
+    /// Returns the surface on which a ray starts and which it must not hit there. A ray with an offset origin
+    /// has none.
+    fn own_surface(ray: &Ray<T>, policy: &impl RayEpsilonPolicy<T>) -> Option<usize> {
+        ray.from.filter(|_| policy.starts_on_surface())
     }
 
-    /// What the ray looks for among the spheres; its own surface is looked at apart.
+    /// Creates the query for the spheres. The ray's own surface is excluded and tested separately.
     fn query(
         ray: &Ray<T>,
-        style: &impl Style<T>,
+        policy: &impl RayEpsilonPolicy<T>,
         own: Option<usize>,
         light: Option<usize>,
         t_max: T,
@@ -172,54 +174,54 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         Query {
             origin: ray.origin.to_array(),
             direction: ray.direction.to_array(),
-            t_min: style.t_min(ray.from.is_some()),
+            t_min: policy.t_min(ray.from.is_some()),
             t_max,
-            but: [own, light].map(|surface| surface.map_or(NONE, |surface| surface as u32)),
+            excluded: [own, light].map(|surface| surface.map_or(NO_SURFACE, |surface| surface as u32)),
         }
     }
 
-    /// The surface that a ray meets first; where several have the same t, the one with the smallest number.
-    pub(super) fn nearest(&self, ray: &Ray<T>, style: &impl Style<T>) -> First<T> {
-        let own = Self::own(ray, style);
-        let query = Self::query(ray, style, own, None, T::infinity());
+    /// Finds the nearest surface along a ray; at equal t, the one with the smallest index.
+    pub(super) fn nearest(&self, ray: &Ray<T>, policy: &impl RayEpsilonPolicy<T>) -> FirstHit<T> {
+        let own = Self::own_surface(ray, policy);
+        let query = Self::query(ray, policy, own, None, T::infinity());
         let first = self.spheres.nearest(&query);
-        let mut first = first.map_or_else(First::nothing, |(t, number)| First::new(t, number));
+        let mut first = first.map_or_else(FirstHit::none, |(t, number)| FirstHit::new(t, number));
         if let Some(own) = own {
-            first.take(self.shapes[own].intersect_own(ray, style), own);
+            first.update(self.shapes[own].intersect_own(ray, policy), own);
         }
-        self.nearest_other(ray, &mut first, style);
+        self.nearest_other(ray, &mut first, policy);
         first
     }
 
-    /// Looks among those that are no spheres, but not at the ray's own.
-    fn nearest_other(&self, ray: &Ray<T>, first: &mut First<T>, style: &impl Style<T>) {
-        let own = Self::own(ray, style);
+    /// Updates `first` by the shapes that are not spheres, except the ray's own surface.
+    fn nearest_other(&self, ray: &Ray<T>, first: &mut FirstHit<T>, policy: &impl RayEpsilonPolicy<T>) {
+        let own = Self::own_surface(ray, policy);
         for &other in &self.others {
             if own != Some(other) {
-                first.take(self.shapes[other].intersect(ray, style), other);
+                first.update(self.shapes[other].intersect(ray, policy), other);
             }
         }
     }
 
-    /// The surface that one of the rays of a packet meets first, which found those spheres.
+    /// Finds the first hit of one ray of a packet from the spheres that the packet hit and all other shapes.
     #[inline]
-    pub(super) fn first(&self, packet: &Packet<T>, found: &Found<T>, at: usize) -> First<T> {
-        let first = found.of(at);
+    pub(super) fn first_hit(&self, packet: &Packet<T>, found: &PacketHits<T>, at: usize) -> FirstHit<T> {
+        let first = found.get(at);
         if self.others.is_empty() {
             return first;
         }
         self.nearest_with_others(&packet.ray(at), first)
     }
 
-    /// Apart, so that who has no others keeps what is first in registers.
+    /// Out of line, so that scenes of spheres only keep `first` in registers.
     #[inline(never)]
-    fn nearest_with_others(&self, ray: &Ray<T>, mut first: First<T>) -> First<T> {
+    fn nearest_with_others(&self, ray: &Ray<T>, mut first: FirstHit<T>) -> FirstHit<T> {
         self.nearest_other(ray, &mut first, &Exact);
         first
     }
 
-    /// The point where a ray meets a surface first.
-    fn hit(&self, ray: &Ray<T>, first: First<T>) -> Option<Hit<T>> {
+    /// Computes the surface point of a first hit.
+    fn hit(&self, ray: &Ray<T>, first: FirstHit<T>) -> Option<Hit<T>> {
         let (t, surface) = first.get()?;
         let [point, normal] = self.shapes[surface].surface(ray, t);
         Some(Hit {
@@ -229,40 +231,46 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         })
     }
 
-    /// Whether anything but the surface `light` lies strictly between the ray's origin and `distance`, or the ray misses that surface,
-    /// where the style says that it must not.
-    fn occluded(&self, ray: &Ray<T>, distance: T, light: Option<usize>, style: &impl Style<T>) -> bool {
+    /// Returns whether anything except the surface `light` lies strictly between the origin of the ray and
+    /// `distance`. Also true if the ray misses that surface and the policy requires a hit.
+    fn occluded(
+        &self,
+        ray: &Ray<T>,
+        distance: T,
+        light: Option<usize>,
+        policy: &impl RayEpsilonPolicy<T>,
+    ) -> bool {
         if let Some(light) = light
-            && style.lamp().must_be_met
-            && self.shapes[light].intersect(ray, style).is_none()
+            && policy.light_policy().requires_hit
+            && self.shapes[light].intersect(ray, policy).is_none()
         {
             return true;
         }
-        let own = Self::own(ray, style);
-        let own_hides = |own: usize| {
-            let t = self.shapes[own].intersect_own(ray, style);
+        let own = Self::own_surface(ray, policy);
+        let is_self_occluded = |own: usize| {
+            let t = self.shapes[own].intersect_own(ray, policy);
             light != Some(own) && t.is_some_and(|t| t < distance)
         };
         let own_sphere = own.filter(|&own| self.shapes[own].sphere().is_some());
-        own_sphere.is_some_and(own_hides)
-            || self.spheres.any(&Self::query(ray, style, own, light, distance))
-            || self.occluded_by_other(ray, distance, light, style)
+        own_sphere.is_some_and(is_self_occluded)
+            || self.spheres.any(&Self::query(ray, policy, own, light, distance))
+            || self.occluded_by_other(ray, distance, light, policy)
     }
 
-    /// The same of those that are no spheres.
+    /// Like [`World::occluded`], for shapes that are not spheres only.
     fn occluded_by_other(
         &self,
         ray: &Ray<T>,
         distance: T,
         light: Option<usize>,
-        style: &impl Style<T>,
+        policy: &impl RayEpsilonPolicy<T>,
     ) -> bool {
-        let own = Self::own(ray, style);
+        let own = Self::own_surface(ray, policy);
         self.others.iter().any(|&other| {
             let t = if own == Some(other) {
-                self.shapes[other].intersect_own(ray, style)
+                self.shapes[other].intersect_own(ray, policy)
             } else {
-                self.shapes[other].intersect(ray, style)
+                self.shapes[other].intersect(ray, policy)
             };
             light != Some(other) && t.is_some_and(|t| t < distance)
         })

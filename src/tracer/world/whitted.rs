@@ -1,34 +1,101 @@
-//! Light from the lights, by way of mirrors and glass: T. Whitted, “An Improved Illumination Model for Shaded
-//! Display”, CACM 23(6), 1980. Each sample follows its rays one after the other, what glass mirrors before what it lets
-//! through; several samples do so side by side.
+//! Whitted ray tracing: direct light, mirrors and glass; T. Whitted, “An Improved Illumination Model for
+//! Shaded Display”, CACM 23(6), 1980. Each sample follows its rays in depth-first order, reflection before
+//! refraction; several samples do so side by side.
 
 use smallvec::SmallVec;
 
-use super::super::lanes::{Columns, MOST_LANES};
-use super::super::light::{Cone, Light, Toward, Ways};
-use super::super::material::{Brdf, Frame, Glass, Meeting, Model};
-use super::super::ray::{Hit, Ray};
-use super::super::real::{Real, Vector};
-use super::super::shape::Primitive;
-use super::super::spheres::PACKET;
-use super::super::style::Style;
 use super::World;
-use super::walk::{Aside, Branch, Walk};
+use crate::glass::{Glass, GlassRays};
+use crate::lanes::{Columns, Level, MAX_LANES};
+use crate::light::{Cone, Light, LightDirections, ToPointLight};
+use crate::material::{Brdf, Frame, Model};
+use crate::ray::{FirstHit, Hit, Ray};
+use crate::ray_epsilon::RayEpsilonPolicy;
+use crate::real::{Real, Vector};
+use crate::sampler::SampleStream;
+use crate::shape::{Primitive, Surfaces};
+use crate::spheres::{PACKET_RAYS, Packet, PacketHits};
 
-/// A point that is lit.
-struct Lit<'w, T: Real> {
-    walk: usize,
+/// A ray to trace; its radiance is multiplied by its throughput.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Branch<T: Real> {
+    pub(super) ray: Ray<T>,
+    pub(super) throughput: T::Vec3,
+    /// Number of segments from the camera to the end of the ray.
+    pub(super) segments: u32,
+}
+
+/// State of one sample: its current ray and the radiance so far.
+#[derive(Debug)]
+pub(crate) struct PathState<T: Real> {
+    pub(super) branch: Branch<T>,
+    /// First hit of the current ray.
+    pub(super) first: FirstHit<T>,
+    /// Index of the sample's last deferred branch on the stack.
+    top: Option<usize>,
+    pub(super) stream: SampleStream,
+    /// Radiance so far.
+    pub(crate) sum: T::Vec3,
+}
+
+/// Append-only list of the deferred branches of all samples. Those of one sample form a stack: each has the
+/// index of the previous one.
+pub(super) type BranchStack<T> = Vec<(Branch<T>, Option<usize>)>;
+
+impl<T: Real> PathState<T> {
+    /// Creates the state for a camera ray with the given first hit.
+    #[inline]
+    pub(crate) fn new(ray: Ray<T>, first: FirstHit<T>, stream: SampleStream) -> Self {
+        Self {
+            branch: Branch {
+                ray,
+                throughput: T::Vec3::from_f64([1.0; 3]),
+                segments: 1,
+            },
+            first,
+            top: None,
+            stream,
+            sum: T::Vec3::ZERO,
+        }
+    }
+
+    /// Adds the radiance that arrives along the current ray.
+    #[inline]
+    pub(super) fn add_light(&mut self, light: T::Vec3) {
+        self.sum = self.sum + self.branch.throughput * light;
+    }
+
+    /// Defers a branch.
+    pub(super) fn push_branch(&mut self, branch: Branch<T>, stack: &mut BranchStack<T>) {
+        stack.push((branch, self.top));
+        self.top = Some(stack.len() - 1);
+    }
+
+    /// Continues with the branch that was deferred last. Returns whether there was one.
+    #[inline]
+    pub(super) fn pop_branch(&mut self, stack: &BranchStack<T>) -> bool {
+        let Some(last) = self.top else {
+            return false;
+        };
+        (self.branch, self.top) = stack[last];
+        true
+    }
+}
+
+/// A surface point with a BRDF, to be lit by the lights.
+struct LitPoint<'w, T: Real> {
+    path: usize,
     hit: Hit<T>,
     brdf: &'w Brdf<T>,
     color: T::Vec3,
-    /// To where the ray came from.
+    /// Direction towards the origin of the ray.
     view: T::Vec3,
     light: T::Vec3,
 }
 
-/// A point of glass.
-struct Parting<'w, T: Real> {
-    walk: usize,
+/// A point on glass.
+struct GlassPoint<'w, T: Real> {
+    path: usize,
     hit: Hit<T>,
     glass: &'w Glass<T>,
     color: T::Vec3,
@@ -36,19 +103,25 @@ struct Parting<'w, T: Real> {
     facing: T,
 }
 
-/// Where rays ended that bring nothing yet: at most [`PACKET`].
-struct Ends<'w, T: Real> {
-    lit: SmallVec<[Lit<'w, T>; PACKET]>,
-    parting: SmallVec<[Parting<'w, T>; PACKET]>,
-    /// Those samples that go on, by way of mirrors or with a ray that was put aside.
-    going: SmallVec<[usize; PACKET]>,
+/// Points whose radiance is not yet known: at most [`PACKET_RAYS`].
+struct PendingPoints<'w, T: Real> {
+    lit: SmallVec<[LitPoint<'w, T>; PACKET_RAYS]>,
+    glass_points: SmallVec<[GlassPoint<'w, T>; PACKET_RAYS]>,
+    /// Samples that continue, by reflection or with a deferred branch.
+    continuing: SmallVec<[usize; PACKET_RAYS]>,
 }
 
 impl<T: Real> Branch<T> {
-    /// The ray that goes on from a point of that colour.
-    fn follow(&self, hit: &Hit<T>, direction: T::Vec3, color: T::Vec3, style: &impl Style<T>) -> Self {
+    /// Creates the branch that continues from a point of the given color.
+    fn follow(
+        &self,
+        hit: &Hit<T>,
+        direction: T::Vec3,
+        color: T::Vec3,
+        policy: &impl RayEpsilonPolicy<T>,
+    ) -> Self {
         Self {
-            ray: hit.leave(direction, style),
+            ray: hit.spawn_ray(direction, policy),
             throughput: self.throughput * color,
             segments: self.segments + 1,
         }
@@ -60,64 +133,64 @@ fn reflect<T: Real>(direction: T::Vec3, normal: T::Vec3, facing: T) -> T::Vec3 {
 }
 
 impl<T: Real, P: Primitive<T>> World<T, P> {
-    /// Follows all rays of samples, at most [`PACKET`].
-    pub(super) fn whitted(&self, walks: &mut [Walk<T>], style: &impl Style<T>) {
-        let mut active: SmallVec<[usize; PACKET]> = (0..walks.len()).collect();
-        let mut aside = Aside::new();
+    /// Traces all rays of at most [`PACKET_RAYS`] samples.
+    pub(super) fn whitted(&self, paths: &mut [PathState<T>], policy: &impl RayEpsilonPolicy<T>) {
+        let mut active: SmallVec<[usize; PACKET_RAYS]> = (0..paths.len()).collect();
+        let mut stack = BranchStack::new();
         let mut surfaces = [(); 2].map(|()| Columns::splat([T::zero(); 3]));
-        let mut ends = Ends {
+        let mut pending = PendingPoints {
             lit: SmallVec::new(),
-            parting: SmallVec::new(),
-            going: SmallVec::new(),
+            glass_points: SmallVec::new(),
+            continuing: SmallVec::new(),
         };
         while !active.is_empty() {
-            for some in active.chunks(MOST_LANES) {
-                let is_one = some.len() == 1;
+            for indices in active.chunks(MAX_LANES) {
+                let is_one = indices.len() == 1;
                 if !is_one {
-                    self.put_surfaces(walks, some, &mut surfaces);
+                    self.compute_surfaces(paths, indices, &mut surfaces);
                 }
-                for (lane, &at) in some.iter().enumerate() {
-                    let walk = &mut walks[at];
+                for (lane, &at) in indices.iter().enumerate() {
+                    let path = &mut paths[at];
                     let hit = if is_one {
-                        self.hit(&walk.branch.ray, walk.first)
+                        self.hit(&path.branch.ray, path.first)
                     } else {
-                        self.hit_among(&surfaces, lane, walk)
+                        self.hit_in_lane(&surfaces, lane, path)
                     };
-                    self.scatter(at, walk, hit, &aside, &mut ends, style);
+                    self.scatter(at, path, hit, &stack, &mut pending, policy);
                 }
             }
-            for some in ends.parting.chunks(MOST_LANES) {
-                self.part(walks, some, &mut aside, style);
-                ends.going.extend(some.iter().map(|point| point.walk));
+            for points in pending.glass_points.chunks(MAX_LANES) {
+                self.split_at_glass(paths, points, &mut stack, policy);
+                pending.continuing.extend(points.iter().map(|point| point.path));
             }
-            self.light(walks, &mut ends.lit, style);
-            for point in &ends.lit {
-                let walk = &mut walks[point.walk];
-                walk.bring(point.light);
-                if walk.turn(&aside) {
-                    ends.going.push(point.walk);
+            self.add_direct_light(paths, &mut pending.lit, policy);
+            for point in &pending.lit {
+                let path = &mut paths[point.path];
+                path.add_light(point.light);
+                if path.pop_branch(&stack) {
+                    pending.continuing.push(point.path);
                 }
             }
-            ends.lit.clear();
-            ends.parting.clear();
+            pending.lit.clear();
+            pending.glass_points.clear();
             active.clear();
-            std::mem::swap(&mut active, &mut ends.going);
-            self.look(walks, &active, style);
+            std::mem::swap(&mut active, &mut pending.continuing);
+            self.find_first_hits(paths, &active, policy);
         }
     }
 
-    /// What comes of a ray that ends there.
+    /// Handles the end of a ray: adds its radiance, or records a point for later.
     fn scatter<'w>(
         &'w self,
         at: usize,
-        walk: &mut Walk<T>,
+        path: &mut PathState<T>,
         hit: Option<Hit<T>>,
-        aside: &Aside<T>,
-        ends: &mut Ends<'w, T>,
-        style: &impl Style<T>,
+        stack: &BranchStack<T>,
+        pending: &mut PendingPoints<'w, T>,
+        policy: &impl RayEpsilonPolicy<T>,
     ) {
-        let Branch { ray, segments, .. } = walk.branch;
-        let brought = if let Some(hit) = hit {
+        let Branch { ray, segments, .. } = path.branch;
+        let light = if let Some(hit) = hit {
             let material = &self.materials[hit.surface];
             let color = material.color(hit.point);
             let facing = ray.direction.dot(hit.normal);
@@ -125,8 +198,8 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
                 Model::Facing => color * facing.abs(),
                 Model::Emitter => color,
                 Model::Reflective(brdf) => {
-                    ends.lit.push(Lit {
-                        walk: at,
+                    pending.lit.push(LitPoint {
+                        path: at,
                         hit,
                         brdf,
                         color,
@@ -138,13 +211,13 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
                 Model::Mirror | Model::Glass(_) if segments == self.max_depth => T::Vec3::ZERO,
                 Model::Mirror => {
                     let direction = reflect(ray.direction, hit.normal, facing);
-                    walk.branch = walk.branch.follow(&hit, direction, color, style);
-                    ends.going.push(at);
+                    path.branch = path.branch.follow(&hit, direction, color, policy);
+                    pending.continuing.push(at);
                     return;
                 }
                 Model::Glass(glass) => {
-                    ends.parting.push(Parting {
-                        walk: at,
+                    pending.glass_points.push(GlassPoint {
+                        path: at,
                         hit,
                         glass,
                         color,
@@ -156,77 +229,89 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         } else {
             self.background.color(ray.direction)
         };
-        walk.bring(brought);
-        if walk.turn(aside) {
-            ends.going.push(at);
+        path.add_light(light);
+        if path.pop_branch(stack) {
+            pending.continuing.push(at);
         }
     }
 
-    /// Rays part at points of glass, at most [`MOST_LANES`]: what is mirrored is followed, what is refracted is put aside.
-    fn part(
+    /// Splits rays at up to [`MAX_LANES`] glass points: the reflected ray is next, the refracted ray is
+    /// deferred.
+    fn split_at_glass(
         &self,
-        walks: &mut [Walk<T>],
-        points: &[Parting<T>],
-        aside: &mut Aside<T>,
-        style: &impl Style<T>,
+        paths: &mut [PathState<T>],
+        points: &[GlassPoint<T>],
+        stack: &mut BranchStack<T>,
+        policy: &impl RayEpsilonPolicy<T>,
     ) {
-        let mut meeting = Meeting::none();
+        let mut glass_rays = GlassRays::none();
         for point in points {
-            let direction = walks[point.walk].branch.ray.direction;
-            meeting.add(point.glass, direction, point.hit.normal, point.facing);
+            let direction = paths[point.path].branch.ray.direction;
+            glass_rays.push(point.glass, direction, point.hit.normal, point.facing);
         }
-        let parted = T::run(self.level(points.len()), &meeting);
+        let refraction = T::run(self.level_for(points.len()), &glass_rays);
         for (at, point) in points.iter().enumerate() {
-            let walk = &mut walks[point.walk];
-            let (branch, share) = (walk.branch, parted.shares[at]);
-            let color = |share: T| point.color * share;
-            if let Some(refracted) = parted.refracted(at) {
-                let branch = branch.follow(&point.hit, refracted, color(T::one() - share), style);
-                walk.put_aside(branch, aside);
+            let path = &mut paths[point.path];
+            let (branch, reflectance) = (path.branch, refraction.reflectances[at]);
+            let color = |weight: T| point.color * weight;
+            if let Some(refracted) = refraction.refracted(at) {
+                let branch = branch.follow(&point.hit, refracted, color(T::one() - reflectance), policy);
+                path.push_branch(branch, stack);
             }
             let mirrored = reflect(branch.ray.direction, point.hit.normal, point.facing);
-            walk.branch = branch.follow(&point.hit, mirrored, color(share), style);
+            path.branch = branch.follow(&point.hit, mirrored, color(reflectance), policy);
         }
     }
 
-    /// Adds the light of every light that is seen from points, at most [`PACKET`].
-    fn light(&self, walks: &mut [Walk<T>], points: &mut [Lit<T>], style: &impl Style<T>) {
-        let style = &style.of_light_rays();
+    /// Adds direct light from all visible lights to at most [`PACKET_RAYS`] points.
+    fn add_direct_light(
+        &self,
+        paths: &mut [PathState<T>],
+        points: &mut [LitPoint<T>],
+        policy: &impl RayEpsilonPolicy<T>,
+    ) {
+        let policy = &policy.for_shadow_rays();
         for (number, light) in self.lights.iter().enumerate() {
-            // Those that face it: which, the direction to it and the cosine, and the way there.
-            let mut facing: SmallVec<[(usize, T::Vec3, T); PACKET]> = SmallVec::new();
-            let mut rays: SmallVec<[(Ray<T>, T); PACKET]> = SmallVec::new();
-            let mut take = |at: usize, direction: T::Vec3, cosine: T, way: (Ray<T>, T)| {
+            // Points that face the light: index, direction to the light and cosine. `rays` holds their shadow
+            // rays.
+            let mut facing: SmallVec<[(usize, T::Vec3, T); PACKET_RAYS]> = SmallVec::new();
+            let mut rays: SmallVec<[(Ray<T>, T); PACKET_RAYS]> = SmallVec::new();
+            let mut push = |at: usize, direction: T::Vec3, cosine: T, shadow_ray: (Ray<T>, T)| {
                 if cosine > T::zero() {
                     facing.push((at, direction, cosine));
-                    rays.push(way);
+                    rays.push(shadow_ray);
                 }
             };
             if light.radius > T::zero() {
                 for (at, point) in points.iter().enumerate() {
-                    let cone = Cone::new(light.position, light.radius, point.hit.lit_from(style));
-                    let (direction, distance) = cone.draw(walks[point.walk].draws.polar());
+                    let cone = Cone::new(light.position, light.radius, point.hit.light_ray_origin(policy));
+                    let (direction, distance) = cone.sample(paths[point.path].stream.next_disk());
                     let cosine = point.hit.normal.dot(direction);
-                    let way = (point.hit.leave(direction, style), distance - style.along());
-                    take(at, direction, cosine, way);
+                    let shadow_ray = (point.hit.spawn_ray(direction, policy), distance - policy.along());
+                    push(at, direction, cosine, shadow_ray);
                 }
             } else {
-                for (chunk, some) in points.chunks(MOST_LANES).enumerate() {
-                    self.toward(some, light, style, |at, direction, cosine, way| {
-                        take(chunk * MOST_LANES + at, direction, cosine, way);
-                    });
+                for (chunk, chunk_points) in points.chunks(MAX_LANES).enumerate() {
+                    self.point_light_rays(
+                        chunk_points,
+                        light,
+                        policy,
+                        |at, direction, cosine, shadow_ray| {
+                            push(chunk * MAX_LANES + at, direction, cosine, shadow_ray);
+                        },
+                    );
                 }
             }
-            let hidden = if style.acne().hidden_lights >> number.min(31) & 1 != 0 {
+            let hidden = if policy.acne().shadowed_lights >> number.min(31) & 1 != 0 {
                 u64::MAX
             } else if light.shadow {
-                self.occluded_of(&rays, light.surface, style)
+                self.occlusion_mask(&rays, light.surface, policy)
             } else {
                 0
             };
             for (at, &(point, direction, cosine)) in facing.iter().enumerate() {
                 if hidden >> at & 1 == 0 {
-                    let Lit {
+                    let LitPoint {
                         hit,
                         brdf,
                         color,
@@ -244,44 +329,189 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         }
     }
 
-    /// The ways from points, at most [`MOST_LANES`], to a light that is a point: the direction, its cosine to the normal, the shadow
-    /// ray and how far it goes.
-    fn toward(
+    /// Computes, for at most [`MAX_LANES`] points and a point light, the direction, its cosine to the normal,
+    /// the shadow ray and its length.
+    fn point_light_rays(
         &self,
-        from: &[Lit<T>],
+        from: &[LitPoint<T>],
         light: &Light<T>,
-        style: &impl Style<T>,
-        mut take: impl FnMut(usize, T::Vec3, T, (Ray<T>, T)),
+        policy: &impl RayEpsilonPolicy<T>,
+        mut push: impl FnMut(usize, T::Vec3, T, (Ray<T>, T)),
     ) {
         let [mut points, mut normals] = [(); 2].map(|()| Columns::splat([T::zero(); 3]));
         for (at, point) in from.iter().enumerate() {
             points.set(at, point.hit.point.to_array());
             normals.set(at, point.hit.normal.to_array());
         }
-        let mut ways = Ways::nowhere();
-        let toward = Toward {
+        let mut output = LightDirections::zero();
+        let kernel = ToPointLight {
             count: from.len(),
             points: &points,
             normals: &normals,
             light: light.position.to_array(),
-            offset: style.offset(),
-            ways: &mut ways,
+            offset: policy.offset(),
+            output: &mut output,
         };
-        T::run(self.level(from.len()), toward);
+        T::run(self.level_for(from.len()), kernel);
         for (at, point) in from.iter().enumerate() {
             let mut ray = Ray {
-                origin: T::Vec3::from_array(ways.rays[0].get(at)),
-                direction: T::Vec3::from_array(ways.rays[1].get(at)),
+                origin: T::Vec3::from_array(output.shadow_rays[0].get(at)),
+                direction: T::Vec3::from_array(output.shadow_rays[1].get(at)),
                 from: Some(point.hit.surface),
             };
             let (mut direction, mut cosine) =
-                (T::Vec3::from_array(ways.directions.get(at)), ways.cosines[at]);
-            if style.lamp().from_start {
+                (T::Vec3::from_array(output.directions.get(at)), output.cosines[at]);
+            if policy.light_policy().from_ray_origin {
                 direction = ray.direction;
                 cosine = point.hit.normal.dot(direction);
             }
-            ray.origin = ray.origin + ray.direction * style.along();
-            take(at, direction, cosine, (ray, ways.distances[at] - style.along()));
+            ray.origin = ray.origin + ray.direction * policy.along();
+            push(
+                at,
+                direction,
+                cosine,
+                (ray, output.distances[at] - policy.along()),
+            );
         }
     }
 }
+
+/// Smallest number of secondary rays that are traced as a packet. Fewer rays are traced one by one, each
+/// against eight spheres at a time.
+const MIN_PACKET_RAYS: usize = 8;
+
+impl<T: Real, P: Primitive<T>> World<T, P> {
+    /// Returns the instruction set for `count` elements; a single one needs no vectors.
+    pub(super) fn level_for(&self, count: usize) -> Level {
+        if count == 1 { Level::Base } else { self.level }
+    }
+
+    fn uses_packet(&self, count: usize) -> bool {
+        count >= MIN_PACKET_RAYS && !self.spheres.has_tree()
+    }
+
+    /// Finds the first hits of the secondary rays of some samples, at most [`PACKET_RAYS`].
+    pub(super) fn find_first_hits(
+        &self,
+        paths: &mut [PathState<T>],
+        indices: &[usize],
+        policy: &impl RayEpsilonPolicy<T>,
+    ) {
+        if !self.uses_packet(indices.len()) {
+            let self_hit_bounces = policy.acne().self_hit_bounces;
+            for &at in indices {
+                let Branch { ray, segments, .. } = &paths[at].branch;
+                paths[at].first = match ray.from {
+                    Some(own)
+                        if self_hit_bounces != 0 && self_hit_bounces >> (segments - 2).min(31) & 1 != 0 =>
+                    {
+                        FirstHit::new(T::zero(), own as u32)
+                    }
+                    _ => self.nearest(ray, policy),
+                };
+            }
+            return;
+        }
+        let rays = indices.iter().map(|&at| &paths[at].branch.ray);
+        let packet = Packet::partial(
+            rays.map(|ray| (ray, Self::own_surface(ray, policy))),
+            policy.t_min(true),
+        );
+        let mut found = PacketHits::none();
+        self.spheres.nearest_of_packet(&packet, &mut found);
+        for (ray, &at) in indices.iter().enumerate() {
+            paths[at].first = found.get(ray);
+        }
+        if self.others.is_empty() {
+            return;
+        }
+        for &at in indices {
+            let path = &mut paths[at];
+            let ray = &path.branch.ray;
+            let own = Self::own_surface(ray, policy).filter(|&own| self.shapes[own].sphere().is_none());
+            if let Some(own) = own {
+                path.first
+                    .update(self.shapes[own].intersect_own(ray, policy), own);
+            }
+            self.nearest_other(ray, &mut path.first, policy);
+        }
+    }
+
+    /// Evaluates [`World::occluded`] for at most [`PACKET_RAYS`] shadow rays with their lengths; `light` is
+    /// the surface of the light, if any. Bit i is set if ray i is occluded.
+    pub(super) fn occlusion_mask(
+        &self,
+        rays: &[(Ray<T>, T)],
+        light: Option<usize>,
+        policy: &impl RayEpsilonPolicy<T>,
+    ) -> u64 {
+        let mut hidden = 0;
+        if !self.uses_packet(rays.len()) || light.is_some() {
+            for (at, (ray, distance)) in rays.iter().enumerate() {
+                hidden |= u64::from(self.occluded(ray, *distance, light, policy)) << at;
+            }
+            return hidden;
+        }
+        let owned_rays = rays.iter().map(|(ray, _)| (ray, Self::own_surface(ray, policy)));
+        let packet = Packet::partial(owned_rays, policy.t_min(true));
+        let mut found = PacketHits::before(rays.iter().map(|&(_, distance)| distance));
+        self.spheres.nearest_of_packet(&packet, &mut found);
+        for (at, (ray, distance)) in rays.iter().enumerate() {
+            let is_hidden =
+                found.is_before(at, *distance) || self.occluded_by_other(ray, *distance, None, policy);
+            hidden |= u64::from(is_hidden) << at;
+        }
+        hidden
+    }
+
+    /// Computes the points and normals where the rays of some samples hit spheres, at most [`MAX_LANES`].
+    pub(super) fn compute_surfaces(
+        &self,
+        paths: &[PathState<T>],
+        indices: &[usize],
+        surfaces: &mut [Columns<T>; 2],
+    ) {
+        let [mut origins, mut directions, mut centers] = [(); 3].map(|()| Columns::splat([T::zero(); 3]));
+        let mut ts = [T::zero(); MAX_LANES];
+        for (lane, &at) in indices.iter().enumerate() {
+            let PathState { branch, first, .. } = &paths[at];
+            let Some((t, surface)) = first.get() else { continue };
+            if let Some(sphere) = self.shapes[surface].sphere() {
+                origins.set(lane, branch.ray.origin.to_array());
+                directions.set(lane, branch.ray.direction.to_array());
+                centers.set(lane, sphere.center.to_array());
+                ts[lane] = t;
+            }
+        }
+        let surfaces = Surfaces {
+            count: indices.len(),
+            origins: &origins,
+            directions: &directions,
+            t: &ts,
+            centers: &centers,
+            out: surfaces,
+        };
+        T::run(self.level, surfaces);
+    }
+
+    /// Like [`World::hit`], with the point and the normal of a sphere taken from a lane of `surfaces`.
+    #[inline]
+    pub(super) fn hit_in_lane(
+        &self,
+        [points, normals]: &[Columns<T>; 2],
+        lane: usize,
+        path: &PathState<T>,
+    ) -> Option<Hit<T>> {
+        let (_, surface) = path.first.get()?;
+        if self.shapes[surface].sphere().is_none() {
+            return self.hit(&path.branch.ray, path.first);
+        }
+        Some(Hit {
+            point: T::Vec3::from_array(points.get(lane)),
+            normal: T::Vec3::from_array(normals.get(lane)),
+            surface,
+        })
+    }
+}
+
+const _: () = assert!(PACKET_RAYS == u64::BITS as usize);

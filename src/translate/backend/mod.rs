@@ -1,15 +1,14 @@
-//! From a valid module to the languages that hosts take.
+//! Writes valid modules in the languages that hosts accept.
 
-mod glsl;
-mod hlsl;
-mod msl;
-pub mod reread;
+pub mod roundtrip;
 pub mod spirv;
-mod wgsl;
 
+use std::collections::HashSet;
 use std::fmt;
 use std::path::Path;
 
+use naga::back::{glsl, hlsl, msl, wgsl};
+use naga::{Expression, SampleLevel, ShaderStage};
 use serde::{Deserialize, Serialize};
 
 use crate::naga_ir::ValidModule;
@@ -19,13 +18,13 @@ use crate::naga_ir::ValidModule;
 pub enum Target {
     /// WebGPU Shading Language.
     Wgsl,
-    /// SPIR-V 1.0 for Vulkan, little-endian words.
+    /// SPIR-V 1.0 for Vulkan, as little-endian words.
     Spirv,
     /// Metal Shading Language 2.0.
     Msl,
     /// HLSL, shader model 5.1.
     Hlsl,
-    /// GLSL ES 3.00, as WebGL2 takes it.
+    /// GLSL ES 3.00 for WebGL2.
     Glsl,
 }
 
@@ -33,7 +32,7 @@ impl Target {
     /// Every target.
     pub const ALL: [Self; 5] = [Self::Wgsl, Self::Spirv, Self::Msl, Self::Hlsl, Self::Glsl];
 
-    /// The name that `--to` takes.
+    /// The value of `--to`.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -45,7 +44,7 @@ impl Target {
         }
     }
 
-    /// The ending of files in this language, without the dot.
+    /// The extension of files in this language, without the dot.
     #[must_use]
     pub fn extension(self) -> &'static str {
         match self {
@@ -54,7 +53,7 @@ impl Target {
         }
     }
 
-    /// The target whose files end as `path` does.
+    /// The target whose file extension `path` has.
     #[must_use]
     pub fn of(path: &Path) -> Option<Self> {
         let extension = path.extension()?.to_str()?.to_ascii_lowercase();
@@ -74,24 +73,24 @@ impl fmt::Display for Target {
     }
 }
 
-/// The shader in that language, as the bytes of a file.
+/// Writes the shader in a language, as the bytes of a file.
 ///
 /// # Errors
-/// naga's words, where it cannot write the module in that language.
+/// naga's message, if it cannot write the module in that language.
 pub fn emit(module: &ValidModule, target: Target) -> Result<Vec<u8>, String> {
     match target {
-        Target::Wgsl => wgsl::write(module).map(String::into_bytes),
+        Target::Wgsl => write_wgsl(module).map(String::into_bytes),
         Target::Spirv => Ok(spirv::bytes(&spirv::words(module)?)),
-        Target::Msl => msl::write(module).map(String::into_bytes),
-        Target::Hlsl => hlsl::write(module).map(String::into_bytes),
-        Target::Glsl => glsl::write(module).map(String::into_bytes),
+        Target::Msl => write_msl(module).map(String::into_bytes),
+        Target::Hlsl => write_hlsl(module).map(String::into_bytes),
+        Target::Glsl => write_glsl(module).map(String::into_bytes),
     }
 }
 
-/// The entry point's name in what naga's GLSL front end makes.
+/// The name of the entry point that naga's GLSL front end generates.
 const ENTRY_POINT: &str = "main";
 
-/// Out-of-range indices are clamped everywhere: without a policy the drivers differ, and some crash.
+/// Clamps out-of-range indices everywhere: without a policy drivers differ, and some crash.
 const BOUNDS: naga::proc::BoundsCheckPolicies = {
     use naga::proc::BoundsCheckPolicy::Restrict;
     naga::proc::BoundsCheckPolicies {
@@ -102,7 +101,7 @@ const BOUNDS: naga::proc::BoundsCheckPolicies = {
     }
 };
 
-/// The bindings that a module uses, with the class that register-based languages sort them by.
+/// The bindings that a module uses, with their classes in register-based languages.
 fn bindings(module: &ValidModule) -> impl Iterator<Item = (naga::ResourceBinding, Class)> {
     let naga = module.module();
     naga.global_variables.iter().filter_map(|(_, global)| {
@@ -120,4 +119,196 @@ enum Class {
     Block,
     Texture,
     Sampler,
+}
+
+/// WGSL refuses derivatives and implicit levels of detail in non-uniform control flow; GLSL allows them with
+/// undefined values. This directive keeps GLSL's semantics.
+const DERIVATIVES: &str = "diagnostic(off, derivative_uniformity);\n";
+
+fn write_wgsl(module: &ValidModule) -> Result<String, String> {
+    let text = wgsl::write_string(module.module(), module.info(), wgsl::WriterFlags::empty())
+        .map_err(|error| error.to_string())?;
+    Ok(if uses_derivatives(module) {
+        DERIVATIVES.to_owned() + &text
+    } else {
+        text
+    })
+}
+
+fn uses_derivatives(module: &ValidModule) -> bool {
+    let naga = module.module();
+    let functions = naga.functions.iter().map(|(_, function)| function);
+    functions
+        .chain(naga.entry_points.iter().map(|entry| &entry.function))
+        .flat_map(|function| function.expressions.iter())
+        .any(|(_, expression)| {
+            matches!(
+                expression,
+                Expression::Derivative { .. }
+                    | Expression::ImageSample {
+                        level: SampleLevel::Auto | SampleLevel::Bias(_),
+                        ..
+                    }
+            )
+        })
+}
+
+/// Writes Metal Shading Language: binding K becomes `buffer(K)`, `texture(K)` or `sampler(K)`.
+fn write_msl(module: &ValidModule) -> Result<String, String> {
+    let mut resources = msl::EntryPointResources::default();
+    for (binding, class) in bindings(module) {
+        let slot = u8::try_from(binding.binding).map_err(|error| error.to_string())?;
+        let mut target = msl::BindTarget::default();
+        match class {
+            Class::Block => target.buffer = Some(slot),
+            Class::Texture => target.texture = Some(slot),
+            Class::Sampler => target.sampler = Some(msl::BindSamplerTarget::Resource(slot)),
+        }
+        resources.resources.insert(binding, target);
+    }
+    let options = msl::Options {
+        lang_version: (2, 0),
+        per_entry_point_map: [(ENTRY_POINT.to_owned(), resources)].into(),
+        fake_missing_bindings: false,
+        bounds_check_policies: BOUNDS,
+        force_loop_bounding: false,
+        ..msl::Options::default()
+    };
+    msl::write_string(
+        module.module(),
+        module.info(),
+        &options,
+        &msl::PipelineOptions::default(),
+    )
+    .map(|(text, _)| text)
+    .map_err(|error| error.to_string())
+}
+
+/// Writes GLSL ES 3.00 for WebGL2 hosts; naga combines textures with their samplers.
+fn write_glsl(module: &ValidModule) -> Result<String, String> {
+    let options = glsl::Options {
+        version: glsl::Version::new_gles(300),
+        writer_flags: glsl::WriterFlags::empty(),
+        ..glsl::Options::default()
+    };
+    let pipeline = glsl::PipelineOptions {
+        shader_stage: ShaderStage::Fragment,
+        entry_point: ENTRY_POINT.to_owned(),
+        multiview: None,
+    };
+    let mut text = String::new();
+    glsl::Writer::new(
+        &mut text,
+        module.module(),
+        module.info(),
+        &options,
+        &pipeline,
+        BOUNDS,
+    )
+    .and_then(|mut writer| writer.write())
+    .map_err(|error| error.to_string())?;
+    Ok(text)
+}
+
+/// Writes HLSL: the block at `b0`, the texture of binding K at `tK`, the sampler of binding K at `sK`.
+fn write_hlsl(module: &ValidModule) -> Result<String, String> {
+    let binding_map = bindings(module)
+        .map(|(binding, _)| {
+            let target = hlsl::BindTarget {
+                register: binding.binding,
+                ..hlsl::BindTarget::default()
+            };
+            (binding, target)
+        })
+        .collect();
+    let options = hlsl::Options {
+        binding_map,
+        force_loop_bounding: false,
+        ..hlsl::Options::default()
+    };
+    let pipeline = hlsl::PipelineOptions::default();
+    let mut text = String::new();
+    let named = without_reserved_names(module.module());
+    hlsl::Writer::new(&mut text, &options, &pipeline)
+        .write(&named, module.info(), None)
+        .map_err(|error| error.to_string())?;
+    Ok(with_separate_samplers(&text))
+}
+
+/// Renames items whose names clash with the constructors that naga generates but does not reserve.
+fn without_reserved_names(module: &naga::Module) -> naga::Module {
+    let mut module = module.clone();
+    let free = |name: &mut Option<String>| {
+        if let Some(rest) = name.as_deref().and_then(|name| name.strip_prefix("Construct")) {
+            *name = Some(format!("construct{rest}"));
+        }
+    };
+    let of_function = |function: &mut naga::Function| {
+        free(&mut function.name);
+        function
+            .arguments
+            .iter_mut()
+            .for_each(|argument| free(&mut argument.name));
+        function
+            .local_variables
+            .iter_mut()
+            .for_each(|(_, local)| free(&mut local.name));
+    };
+    module
+        .functions
+        .iter_mut()
+        .for_each(|(_, function)| of_function(function));
+    module
+        .entry_points
+        .iter_mut()
+        .for_each(|entry| of_function(&mut entry.function));
+    module
+        .constants
+        .iter_mut()
+        .for_each(|(_, constant)| free(&mut constant.name));
+    module
+        .global_variables
+        .iter_mut()
+        .for_each(|(_, global)| free(&mut global.name));
+    let types: Vec<_> = module
+        .types
+        .iter()
+        .map(|(handle, ty)| (handle, ty.clone()))
+        .collect();
+    let mut names: HashSet<_> = types.iter().filter_map(|(_, ty)| ty.name.clone()).collect();
+    for (handle, ty) in types {
+        let mut name = ty.name.clone();
+        free(&mut name);
+        if name == ty.name {
+            continue;
+        }
+        // Types that are otherwise equal must have distinct names.
+        while let Some(name) = name.as_mut().filter(|name| names.contains(*name)) {
+            name.push('n');
+        }
+        names.extend(name.clone());
+        module.types.replace(handle, naga::Type { name, ..ty });
+    }
+    module
+}
+
+/// Replaces naga's sampler heap, which it accesses through a buffer, by separate sampler bindings, which are
+/// simpler for hosts of a single shader.
+fn with_separate_samplers(text: &str) -> String {
+    let is_heap = |line: &&str| {
+        line.starts_with("SamplerState nagaSamplerHeap[")
+            || line.starts_with("SamplerComparisonState nagaComparisonSamplerHeap[")
+            || line.starts_with("StructuredBuffer<uint> nagaGroup0SamplerIndexArray ")
+    };
+    let lines = text.lines().filter(|line| !is_heap(line)).map(|line| {
+        let sampler = line.strip_prefix("static const SamplerState ").and_then(|rest| {
+            rest.strip_suffix("]];")?
+                .split_once(" = nagaSamplerHeap[nagaGroup0SamplerIndexArray[")
+        });
+        match sampler {
+            Some((name, register)) => format!("SamplerState {name} : register(s{register});\n"),
+            None => format!("{line}\n"),
+        }
+    });
+    lines.collect()
 }

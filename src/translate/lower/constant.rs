@@ -1,34 +1,36 @@
-//! Constant expressions that naga cannot evaluate: infinities and NaNs (`1./0.`, `log(0.)`), shifts that overflow (`1 << 31`),
-//! shifts by more bits than there are, integer quotients that there are not, `clamp` with crossed bounds, `smoothstep` with equal ones.
+//! Constant expressions that naga cannot evaluate: infinities and NaNs (`1./0.`, `log(0.)`), overflowing
+//! shifts (`1 << 31`), shifts by 32 bits or more, undefined integer quotients, `clamp` with crossed bounds,
+//! `smoothstep` with equal edges.
 //!
-//! naga evaluates every expression of literals and refuses these results; so do WGSL compilers. An operand that goes
-//! through a function of our own, which gives it back as it is, is evaluated when the shader runs. `(a, 31)` and `(i = 31)`, which are no
-//! constant expressions (§4.3.3), naga takes for 31: what follows from such values is unknown here, so that all of them go that way.
+//! naga evaluates every expression of literals and refuses these results; so do WGSL compilers. An operand
+//! passed through a helper function that returns it unchanged is evaluated at run time instead. naga also
+//! takes `(a, 31)` and `(i = 31)`, which are not constant expressions (§4.3.3), for 31. This pass does not
+//! track the values that follow from them, so it makes all of them opaque.
 
 use toyproof_glsl::tree::{
     BinaryOp, BuiltIn, Constant, Constructor, ExprId, ExprKind, Scalar, Tree, Type, Value,
 };
 
-use super::draft::Draft;
-use super::helper::Helper;
+use crate::lower::builtin::Helper;
+use crate::lower::context::LoweringContext;
 
-pub(super) fn run(draft: &mut Draft) {
-    draft.operands_first(|draft, id| {
-        draft.tree.keep_value(id);
-        for value in passed_on(&draft.tree, id) {
-            postpone(draft, value);
+pub(super) fn run(cx: &mut LoweringContext) {
+    cx.each_expression_postorder(|cx, id| {
+        cx.tree.keep_value(id);
+        for value in forwarded_constants(&cx.tree, id) {
+            make_opaque(cx, value);
         }
-        let remedy = remedy(&draft.tree, id);
-        match remedy {
-            Some(Remedy::Spell(value)) => {
-                let node = spell(draft, &value, id);
-                draft.tree[id] = draft.tree[node].clone();
-                // What stands around it asks: naga evaluates on from here.
-                draft.tree[id].constant = true;
+        let rewrite = rewrite(&cx.tree, id);
+        match rewrite {
+            Some(Rewrite::Fold(value)) => {
+                let node = constant_expression(cx, &value, id);
+                cx.tree[id] = cx.tree[node].clone();
+                // Enclosing expressions check this flag: naga continues to evaluate from here.
+                cx.tree[id].constant = true;
             }
-            Some(Remedy::Postpone(operand)) => postpone(draft, operand),
-            Some(Remedy::Bits(bits)) => {
-                let mut build = draft.build_at(id);
+            Some(Rewrite::MakeOpaque(operand)) => make_opaque(cx, operand),
+            Some(Rewrite::Bits(bits)) => {
+                let mut build = cx.build_at(id);
                 let bits = build.literal(Value::Uint(bits));
                 let arguments = vec![bits];
                 build.tree[id].kind = ExprKind::BuiltIn {
@@ -36,9 +38,9 @@ pub(super) fn run(draft: &mut Draft) {
                     arguments,
                 };
             }
-            Some(Remedy::Infinity) => {
-                // The literal is infinite itself: 1.0 over a zero that nobody knows.
-                let mut build = draft.build_at(id);
+            Some(Rewrite::Infinity) => {
+                // The literal itself overflows: it becomes 1.0 divided by an opaque zero.
+                let mut build = cx.build_at(id);
                 let left = build.literal(Value::Float(1.0));
                 let right = build.literal(Value::Float(0.0));
                 build.tree[id].kind = ExprKind::Binary {
@@ -46,15 +48,15 @@ pub(super) fn run(draft: &mut Draft) {
                     left,
                     right,
                 };
-                postpone(draft, right);
+                make_opaque(cx, right);
             }
             None => {}
         }
     });
 }
 
-/// The constants that an operation computes with by way of sequences and assignments.
-fn passed_on(tree: &Tree, id: ExprId) -> Vec<ExprId> {
+/// The constants that an operation receives through sequences and assignments.
+fn forwarded_constants(tree: &Tree, id: ExprId) -> Vec<ExprId> {
     let mut found = Vec::new();
     if matches!(
         tree[id].kind,
@@ -80,80 +82,80 @@ fn passed_on(tree: &Tree, id: ExprId) -> Vec<ExprId> {
     found
 }
 
-enum Remedy {
-    /// Integers are exact: the value stands for the expression.
-    Spell(Constant),
-    /// That operand is known when the shader runs.
-    Postpone(ExprId),
-    /// A literal that is too large for a float.
+enum Rewrite {
+    /// Replace the expression by its value: integers are exact.
+    Fold(Constant),
+    /// Hide that operand's value until run time.
+    MakeOpaque(ExprId),
+    /// A literal beyond the range of 32-bit floats.
     Infinity,
-    /// The largest float, which naga writes as a decimal that is larger still.
+    /// The largest float, given as bits: naga rounds its decimal form up.
     Bits(u32),
 }
 
-fn remedy(tree: &Tree, id: ExprId) -> Option<Remedy> {
+fn rewrite(tree: &Tree, id: ExprId) -> Option<Rewrite> {
     match &tree[id].kind {
         ExprKind::Literal(literal) => match literal.value {
             Value::Float(value) if (value as f32).to_bits() == f32::MAX.to_bits() => {
-                Some(Remedy::Bits(f32::MAX.to_bits()))
+                Some(Rewrite::Bits(f32::MAX.to_bits()))
             }
-            value => is_beyond(value).then_some(Remedy::Infinity),
+            value => is_not_finite(value).then_some(Rewrite::Infinity),
         },
         &ExprKind::Binary { op, left, right } => match op {
-            BinaryOp::ShiftLeft | BinaryOp::ShiftRight if shifts_too_far(tree, right) => {
-                Some(Remedy::Postpone(right))
+            BinaryOp::ShiftLeft | BinaryOp::ShiftRight if shift_exceeds_width(tree, right) => {
+                Some(Rewrite::MakeOpaque(right))
             }
-            BinaryOp::ShiftLeft if tree[id].constant => tree.value(id).map(Remedy::Spell),
+            BinaryOp::ShiftLeft if tree[id].constant => tree.value(id).map(Rewrite::Fold),
             BinaryOp::Divide | BinaryOp::Remainder if has_no_quotient(tree, left, right) => {
-                Some(Remedy::Postpone(right))
+                Some(Rewrite::MakeOpaque(right))
             }
-            BinaryOp::Divide => overflows(tree, id).then_some(Remedy::Postpone(right)),
-            _ => overflows(tree, id).then_some(Remedy::Postpone(left)),
+            BinaryOp::Divide => overflows(tree, id).then_some(Rewrite::MakeOpaque(right)),
+            _ => overflows(tree, id).then_some(Rewrite::MakeOpaque(left)),
         },
         ExprKind::Assign {
             op: Some(BinaryOp::ShiftLeft | BinaryOp::ShiftRight),
             value,
             ..
-        } if shifts_too_far(tree, *value) => Some(Remedy::Postpone(*value)),
+        } if shift_exceeds_width(tree, *value) => Some(Rewrite::MakeOpaque(*value)),
         ExprKind::BuiltIn { function, arguments } => {
             let &first = arguments.first()?;
             let crossed = match (function, arguments.as_slice()) {
                 (BuiltIn::Clamp, &[_, low, high]) => {
-                    crosses(tree, low, high, |low, high| low > high).then_some(low)
+                    any_bounds(tree, low, high, |low, high| low > high).then_some(low)
                 }
                 (BuiltIn::Smoothstep, &[low, high, _]) => {
-                    crosses(tree, low, high, |low, high| low.total_cmp(&high).is_eq()).then_some(low)
+                    any_bounds(tree, low, high, |low, high| low.total_cmp(&high).is_eq()).then_some(low)
                 }
                 _ => None,
             };
             crossed
                 .or_else(|| overflows(tree, id).then_some(first))
-                .map(Remedy::Postpone)
+                .map(Rewrite::MakeOpaque)
         }
         _ => None,
     }
 }
 
-/// Whether naga meets a value here that is no finite 32-bit float, and did not below.
+/// Whether the value is not a finite 32-bit float while those of all operands are.
 fn overflows(tree: &Tree, id: ExprId) -> bool {
-    let beyond = |id: ExprId| {
+    let not_finite = |id: ExprId| {
         tree[id].constant
             && tree
                 .value(id)
-                .is_some_and(|value| value.components().iter().copied().any(is_beyond))
+                .is_some_and(|value| value.components().iter().copied().any(is_not_finite))
     };
     let mut below = false;
     tree[id].kind.for_each_operand(|operand| {
-        below |= tree[operand].ty.scalar() == Some(Scalar::Float) && beyond(operand);
+        below |= tree[operand].ty.scalar() == Some(Scalar::Float) && not_finite(operand);
     });
-    tree[id].ty.scalar() == Some(Scalar::Float) && beyond(id) && !below
+    tree[id].ty.scalar() == Some(Scalar::Float) && not_finite(id) && !below
 }
 
-fn is_beyond(value: Value) -> bool {
+fn is_not_finite(value: Value) -> bool {
     matches!(value, Value::Float(value) if !(value as f32).is_finite())
 }
 
-/// Integer division by zero, or of the least integer by -1.
+/// Whether a quotient is undefined: division by zero, or of the least integer by -1.
 fn has_no_quotient(tree: &Tree, dividend: ExprId, divisor: ExprId) -> bool {
     any_scalar(tree, divisor, |value| {
         matches!(value, Value::Int(0) | Value::Uint(0))
@@ -161,21 +163,21 @@ fn has_no_quotient(tree: &Tree, dividend: ExprId, divisor: ExprId) -> bool {
         && any_scalar(tree, divisor, |value| matches!(value, Value::Int(-1)))
 }
 
-fn shifts_too_far(tree: &Tree, amount: ExprId) -> bool {
+fn shift_exceeds_width(tree: &Tree, amount: ExprId) -> bool {
     any_scalar(tree, amount, |value| {
         !matches!(value, Value::Int(0..32) | Value::Uint(0..32))
     })
 }
 
-/// Whether an expression is constant and such a scalar is in it.
-fn any_scalar(tree: &Tree, id: ExprId, is_such: impl Fn(Value) -> bool) -> bool {
+/// Whether an expression is constant and any of its components satisfies a predicate.
+fn any_scalar(tree: &Tree, id: ExprId, predicate: impl Fn(Value) -> bool) -> bool {
     tree[id].constant
         && tree
             .value(id)
-            .is_some_and(|value| value.components().iter().copied().any(is_such))
+            .is_some_and(|value| value.components().iter().copied().any(predicate))
 }
 
-fn crosses(tree: &Tree, low: ExprId, high: ExprId, crossed: impl Fn(f64, f64) -> bool) -> bool {
+fn any_bounds(tree: &Tree, low: ExprId, high: ExprId, crossed: impl Fn(f64, f64) -> bool) -> bool {
     let values = |id: ExprId| tree[id].constant.then(|| tree.value(id)).flatten();
     let number = |value: &Value| match *value {
         Value::Float(value) => value,
@@ -193,22 +195,22 @@ fn crosses(tree: &Tree, low: ExprId, high: ExprId, crossed: impl Fn(f64, f64) ->
     }
 }
 
-/// Hides the value of an operand until the shader runs.
-fn postpone(draft: &mut Draft, operand: ExprId) {
-    let (ty, at) = (draft.tree[operand].ty, draft.tree[operand].at);
-    let function = draft.helper(Helper::Runtime, (ty, Type::Void), at);
-    let value = draft.build(at).detach(operand);
-    draft.tree[operand].kind = ExprKind::Call {
+/// Hides the value of an operand until run time.
+fn make_opaque(cx: &mut LoweringContext, operand: ExprId) {
+    let (ty, at) = (cx.tree[operand].ty, cx.tree[operand].at);
+    let function = cx.helper(Helper::Runtime, (ty, Type::Void), at);
+    let value = cx.build(at).detach(operand);
+    cx.tree[operand].kind = ExprKind::Call {
         function,
         arguments: vec![value],
     };
-    draft.tree[operand].constant = false;
+    cx.tree[operand].constant = false;
 }
 
-/// A value as an expression, where another stands.
-pub(super) fn spell(draft: &mut Draft, value: &Constant, place: ExprId) -> ExprId {
+/// Builds the expression of a constant value at the place of another expression.
+pub(super) fn constant_expression(cx: &mut LoweringContext, value: &Constant, place: ExprId) -> ExprId {
     let ty = value.ty;
-    let mut build = draft.build_at(place);
+    let mut build = cx.build_at(place);
     let scalars: Vec<ExprId> = value
         .components()
         .iter()

@@ -1,10 +1,10 @@
-//! Members of structures that are arrays of anything narrower than 16 bytes or of truths, or matrices of two
-//! rows, or arrays of such.
+//! Narrow members of structures: arrays with elements narrower than 16 bytes or of booleans, two-row
+//! matrices, and arrays of such.
 //!
-//! naga lays every structure out as if it stood in a uniform block: such arrays get a stride of 16 there,
-//! which makes them another type than the same array elsewhere, and matrices of two rows are refused
-//! (gfx-rs/wgpu #4375). So the matrices become arrays of columns, in an array each as the one member of a
-//! structure, and the arrays are copied element by element.
+//! naga lays out every structure as if it were in a uniform block. There such arrays get a stride of 16
+//! bytes, which makes their type differ from that of the same array elsewhere, and two-row matrices are
+//! refused (gfx-rs/wgpu #4375). So these matrices become arrays of columns (an array of matrices becomes an
+//! array of structures with one such member), and narrow arrays are copied element by element.
 
 use std::collections::{HashMap, HashSet};
 
@@ -13,38 +13,38 @@ use toyproof_glsl::tree::{
     StatementKind, StepOp, Struct, StructId, Tree, Type, Value, VariableId, walk,
 };
 
-use super::draft::Draft;
-use super::helper::Helper;
-use super::lvalue::{self, Fix};
+use crate::lower::builtin::Helper;
+use crate::lower::context::LoweringContext;
+use crate::lower::lvalue::{self, Hoist};
 
-pub(super) fn run(draft: &mut Draft) {
-    let matrices = split_matrices(draft);
-    draft.each_expression(name_columns);
-    let discarded = draft.discarded();
-    draft.each_expression(|draft, id| spell_out(draft, id, discarded.contains(&id)));
-    let (elements, targets) = element_accesses(&draft.tree);
-    draft.operands_first(|draft, id| match draft.tree[id].kind {
+pub(super) fn run(cx: &mut LoweringContext) {
+    let matrices = split_matrices(cx);
+    cx.each_expression(access_columns);
+    let discarded = cx.discarded_values();
+    cx.each_expression(|cx, id| expand_compound(cx, id, discarded.contains(&id)));
+    let (elements, targets) = element_accesses(&cx.tree);
+    cx.each_expression_postorder(|cx, id| match cx.tree[id].kind {
         ExprKind::Member { .. } | ExprKind::Index { .. }
             if !elements.contains(&id) && !targets.contains(&id) =>
         {
-            read(draft, id);
+            read(cx, id);
         }
         ExprKind::Assign {
             op: None,
             target,
             value,
-        } if narrow(&draft.tree, target).is_some() => {
-            write(draft, id, target, value, discarded.contains(&id));
+        } if narrow(&cx.tree, target).is_some() => {
+            write(cx, id, target, value, discarded.contains(&id));
         }
         ExprKind::Construct {
             constructor: Constructor::Struct,
             ..
-        } => make(draft, id, &matrices),
+        } => replace_constructor(cx, id, &matrices),
         _ => {}
     });
 }
 
-/// Whether a member of that type is of another type within its structure.
+/// Whether a member of this type has a different type within its structure.
 fn is_narrow(tree: &Tree, ty: Type) -> bool {
     match ty {
         Type::Array(id) => !matches!(
@@ -57,12 +57,12 @@ fn is_narrow(tree: &Tree, ty: Type) -> bool {
     }
 }
 
-/// Whether a structure cannot be made by its constructor.
+/// Whether a structure has narrow members and cannot be built by its constructor.
 pub(super) fn has_narrow(tree: &Tree, id: StructId) -> bool {
     tree[id].members.iter().any(|member| is_narrow(tree, member.ty))
 }
 
-/// The type of a member, or of an element of one, as it lies in its structure.
+/// The type that a member, or an element of one, has within its structure.
 fn type_within(tree: &Tree, id: ExprId) -> Option<Type> {
     match tree[id].kind {
         ExprKind::Member { structure, member } => match tree[structure].ty {
@@ -77,7 +77,7 @@ fn type_within(tree: &Tree, id: ExprId) -> Option<Type> {
     }
 }
 
-/// How many elements the narrow array has that an expression names: a member, or an element of one.
+/// The number of elements of the narrow array that an expression denotes: a member, or an element of one.
 fn narrow(tree: &Tree, id: ExprId) -> Option<u32> {
     match type_within(tree, id)? {
         ty @ Type::Array(array) if is_narrow(tree, ty) => Some(tree.array(array).size),
@@ -85,22 +85,22 @@ fn narrow(tree: &Tree, id: ExprId) -> Option<u32> {
     }
 }
 
-/// Lets matrices of two rows be arrays of columns, and arrays of them arrays of structures that hold those;
-/// gives what they were.
-fn split_matrices(draft: &mut Draft) -> HashMap<(StructId, usize), Type> {
+/// Turns two-row matrices into arrays of columns, and arrays of such matrices into arrays of structures that
+/// hold them. Returns the original types.
+fn split_matrices(cx: &mut LoweringContext) -> HashMap<(StructId, usize), Type> {
     let mut matrices = HashMap::new();
     let mut holders = HashMap::new();
-    let structs: Vec<_> = draft.tree.structs.ids().collect();
+    let structs: Vec<_> = cx.tree.structs.ids().collect();
     for id in structs {
-        let at = draft.tree[id].at;
-        for member in 0..draft.tree[id].members.len() {
-            let ty = draft.tree[id].members[member].ty;
+        let at = cx.tree[id].at;
+        for member in 0..cx.tree[id].members.len() {
+            let ty = cx.tree[id].members[member].ty;
             let split = match ty {
-                Type::Matrix { columns, rows: 2 } => Some(columns_of(draft, columns)),
-                _ => held(draft, &mut holders, ty, at),
+                Type::Matrix { columns, rows: 2 } => Some(columns_of(cx, columns)),
+                _ => holder_array(cx, &mut holders, ty, at),
             };
             if let Some(split) = split {
-                draft.tree[id].members[member].ty = split;
+                cx.tree[id].members[member].ty = split;
                 matrices.insert((id, member), ty);
             }
         }
@@ -108,29 +108,32 @@ fn split_matrices(draft: &mut Draft) -> HashMap<(StructId, usize), Type> {
     matrices
 }
 
-/// The columns of a matrix of two rows as an array.
-fn columns_of(draft: &mut Draft, columns: u8) -> Type {
-    draft
-        .tree
-        .array_of(Type::vector(Scalar::Float, 2), columns.into())
+/// The array type that holds the columns of a two-row matrix.
+fn columns_of(cx: &mut LoweringContext, columns: u8) -> Type {
+    cx.tree.array_of(Type::vector(Scalar::Float, 2), columns.into())
 }
 
-/// An array of structures in place of one of matrices of two rows, one structure for each number of columns;
-/// none for other types.
-fn held(draft: &mut Draft, holders: &mut HashMap<u8, StructId>, ty: Type, at: Place) -> Option<Type> {
+/// The array of structures that replaces an array of two-row matrices, one structure type for each number of
+/// columns; `None` for other types.
+fn holder_array(
+    cx: &mut LoweringContext,
+    holders: &mut HashMap<u8, StructId>,
+    ty: Type,
+    at: Place,
+) -> Option<Type> {
     let Type::Array(array) = ty else {
         return None;
     };
-    let array = draft.tree.array(array);
+    let array = cx.tree.array(array);
     let element = match array.element {
         Type::Matrix { columns, rows: 2 } => {
             let id = *holders.entry(columns).or_insert_with(|| {
                 let member = Member {
                     name: "columns".to_owned(),
-                    ty: columns_of(draft, columns),
+                    ty: columns_of(cx, columns),
                     at,
                 };
-                draft.tree.structs.push(Struct {
+                cx.tree.structs.push(Struct {
                     name: format!("toyproof_mat{columns}x2"),
                     members: vec![member],
                     at,
@@ -138,26 +141,27 @@ fn held(draft: &mut Draft, holders: &mut HashMap<u8, StructId>, ty: Type, at: Pl
             });
             Type::Struct(id)
         }
-        inner => held(draft, holders, inner, at)?,
+        inner => holder_array(cx, holders, inner, at)?,
     };
-    Some(draft.tree.array_of(element, array.size))
+    Some(cx.tree.array_of(element, array.size))
 }
 
-/// `s.m[i]` is `s.m[i].columns` if it is a matrix that became a structure.
-fn name_columns(draft: &mut Draft, id: ExprId) {
-    if matches!(draft.tree[id].kind, ExprKind::Index { .. })
-        && matches!(draft.tree[id].ty, Type::Matrix { .. })
-        && let Some(holder @ Type::Struct(_)) = type_within(&draft.tree, id)
+/// Rewrites `s.m[i]` as `s.m[i].columns` if it is a matrix that became a structure.
+fn access_columns(cx: &mut LoweringContext, id: ExprId) {
+    if matches!(cx.tree[id].kind, ExprKind::Index { .. })
+        && matches!(cx.tree[id].ty, Type::Matrix { .. })
+        && let Some(holder @ Type::Struct(_)) = type_within(&cx.tree, id)
     {
-        let structure = draft.build_at(id).detach(id);
-        draft.tree[structure].ty = holder;
-        draft.tree[id].kind = ExprKind::Member { structure, member: 0 };
+        let structure = cx.build_at(id).detach(id);
+        cx.tree[structure].ty = holder;
+        cx.tree[id].kind = ExprKind::Member { structure, member: 0 };
     }
 }
 
-/// `s.m *= x` is `s.m = s.m * x`, and so is `s.m++`: what stands in indices is evaluated once already.
-fn spell_out(draft: &mut Draft, id: ExprId, discarded: bool) {
-    let (op, target, value) = match draft.tree[id].kind {
+/// Rewrites `s.m *= x` as `s.m = s.m * x`, and `s.m++` likewise; the indices have no side effects at this
+/// point.
+fn expand_compound(cx: &mut LoweringContext, id: ExprId, discarded: bool) {
+    let (op, target, value) = match cx.tree[id].kind {
         ExprKind::Assign {
             op: Some(op),
             target,
@@ -172,16 +176,16 @@ fn spell_out(draft: &mut Draft, id: ExprId, discarded: bool) {
         }
         _ => return,
     };
-    if narrow(&draft.tree, target).is_none() {
+    if narrow(&cx.tree, target).is_none() {
         return;
     }
-    let ty = draft.tree[target].ty;
-    let keeps_old = !discarded && matches!(draft.tree[id].kind, ExprKind::Step { postfix: true, .. });
-    let mut build = draft.build_at(id);
+    let ty = cx.tree[target].ty;
+    let keeps_old = !discarded && matches!(cx.tree[id].kind, ExprKind::Step { postfix: true, .. });
+    let mut build = cx.build_at(id);
     let left = build.copy(target);
-    let old = keeps_old.then(|| lvalue::set_aside(draft, left, "old"));
-    let mut build = draft.build_at(id);
-    let value = value.unwrap_or_else(|| build.small(Scalar::Float, true));
+    let old = keeps_old.then(|| lvalue::move_to_temporary(cx, left, "old"));
+    let mut build = cx.build_at(id);
+    let value = value.unwrap_or_else(|| build.zero_or_one(Scalar::Float, true));
     let value = build.binary(op, left, value, ty);
     let assign = ExprKind::Assign {
         op: None,
@@ -191,13 +195,13 @@ fn spell_out(draft: &mut Draft, id: ExprId, discarded: bool) {
     match old {
         Some(old) => {
             let (set, last) = (build.push(assign, ty), build.copy(left));
-            lvalue::replace(draft, id, vec![old, set], Some(last));
+            lvalue::replace_with_sequence(cx, id, vec![old, set], Some(last));
         }
-        None => draft.tree[id].kind = assign,
+        None => cx.tree[id].kind = assign,
     }
 }
 
-/// The expressions that only an element is asked of, and those that are written whole.
+/// The expressions that are only indexed or measured, and those that are assigned as a whole.
 fn element_accesses(tree: &Tree) -> (HashSet<ExprId>, HashSet<ExprId>) {
     let (mut elements, mut targets) = (HashSet::new(), HashSet::new());
     for (_, expr) in tree.exprs.iter() {
@@ -215,43 +219,43 @@ fn element_accesses(tree: &Tree) -> (HashSet<ExprId>, HashSet<ExprId>) {
 }
 
 /// `path[number]`
-fn element(draft: &mut Draft, path: ExprId, number: u32, at: Place) -> ExprId {
-    let mut build = draft.build(at);
+fn element(cx: &mut LoweringContext, path: ExprId, number: u32, at: Place) -> ExprId {
+    let mut build = cx.build(at);
     let base = build.copy(path);
     let index = build.literal(Value::Int(number.cast_signed()));
     let element = build.index(base, index);
-    name_columns(draft, element);
+    access_columns(cx, element);
     element
 }
 
-/// The whole of a narrow array is made of its elements.
-fn read(draft: &mut Draft, id: ExprId) {
-    if narrow(&draft.tree, id).is_none() {
+/// Builds the value of a narrow array from its elements.
+fn read(cx: &mut LoweringContext, id: ExprId) {
+    if narrow(&cx.tree, id).is_none() {
         return;
     }
     let mut steps = Vec::new();
-    // It stands there once for each element.
-    let path = lvalue::path(&draft.tree, id);
+    // The path is repeated for each element.
+    let path = lvalue::path_nodes(&cx.tree, id);
     if let Some(&root) = path.last()
-        && walk::acts(&draft.tree, root)
+        && walk::acts(&cx.tree, root)
     {
-        steps.push(lvalue::set_aside(draft, root, "structure"));
+        steps.push(lvalue::move_to_temporary(cx, root, "structure"));
     }
-    lvalue::fix_indices(draft, id, Fix::Acting, &mut steps);
-    let whole = whole(draft, id);
-    lvalue::replace(draft, id, steps, Some(whole));
+    lvalue::hoist_indices(cx, id, Hoist::Effectful, &mut steps);
+    let whole = read_elements(cx, id);
+    lvalue::replace_with_sequence(cx, id, steps, Some(whole));
 }
 
-/// The value of an array or an element, made of its elements if it is narrow.
-fn whole(draft: &mut Draft, path: ExprId) -> ExprId {
-    let Some(size) = narrow(&draft.tree, path) else {
+/// The value of an array or an element, built from its elements if it is narrow.
+fn read_elements(cx: &mut LoweringContext, path: ExprId) -> ExprId {
+    let Some(size) = narrow(&cx.tree, path) else {
         return path;
     };
-    let (ty, at) = (draft.tree[path].ty, draft.tree[path].at);
+    let (ty, at) = (cx.tree[path].ty, cx.tree[path].at);
     let arguments = (0..size)
         .map(|number| {
-            let element = element(draft, path, number, at);
-            whole(draft, element)
+            let element = element(cx, path, number, at);
+            read_elements(cx, element)
         })
         .collect();
     let constructor = if matches!(ty, Type::Matrix { .. }) {
@@ -259,69 +263,69 @@ fn whole(draft: &mut Draft, path: ExprId) -> ExprId {
     } else {
         Constructor::Array
     };
-    draft.build(at).construct(constructor, arguments, ty)
+    cx.build(at).construct(constructor, arguments, ty)
 }
 
-/// A narrow array is written element by element.
-fn write(draft: &mut Draft, id: ExprId, target: ExprId, value: ExprId, discarded: bool) {
+/// Writes a narrow array element by element.
+fn write(cx: &mut LoweringContext, id: ExprId, target: ExprId, value: ExprId, discarded: bool) {
     let mut steps = Vec::new();
-    let fix = if walk::acts(&draft.tree, value) {
-        Fix::Changing
+    let hoist = if walk::acts(&cx.tree, value) {
+        Hoist::NonConstant
     } else {
-        Fix::Acting
+        Hoist::Effectful
     };
-    lvalue::fix_indices(draft, target, fix, &mut steps);
-    if !matches!(draft.tree[value].kind, ExprKind::Variable(_)) {
-        steps.push(lvalue::set_aside(draft, value, "value"));
+    lvalue::hoist_indices(cx, target, hoist, &mut steps);
+    if !matches!(cx.tree[value].kind, ExprKind::Variable(_)) {
+        steps.push(lvalue::move_to_temporary(cx, value, "value"));
     }
-    copies(draft, target, value, draft.tree[id].at, &mut steps);
-    let last = (!discarded).then(|| draft.build_at(id).copy(value));
-    lvalue::replace(draft, id, steps, last);
+    copy_elements(cx, target, value, cx.tree[id].at, &mut steps);
+    let last = (!discarded).then(|| cx.build_at(id).copy(value));
+    lvalue::replace_with_sequence(cx, id, steps, last);
 }
 
-/// `target[k] = value[k]` for each k, and so on for narrow elements.
-fn copies(draft: &mut Draft, target: ExprId, value: ExprId, at: Place, out: &mut Vec<ExprId>) {
-    let Some(size) = narrow(&draft.tree, target) else {
-        out.push(draft.build(at).assign(target, value));
+/// `target[k] = value[k]` for each k, recursively for narrow elements.
+fn copy_elements(cx: &mut LoweringContext, target: ExprId, value: ExprId, at: Place, out: &mut Vec<ExprId>) {
+    let Some(size) = narrow(&cx.tree, target) else {
+        out.push(cx.build(at).assign(target, value));
         return;
     };
     for number in 0..size {
-        let [target, value] = [target, value].map(|path| element(draft, path, number, at));
-        copies(draft, target, value, at, out);
+        let [target, value] = [target, value].map(|path| element(cx, path, number, at));
+        copy_elements(cx, target, value, at, out);
     }
 }
 
-/// A function stands for the constructor.
-fn make(draft: &mut Draft, id: ExprId, matrices: &HashMap<(StructId, usize), Type>) {
-    let (ty, at) = (draft.tree[id].ty, draft.tree[id].at);
-    let (Type::Struct(structure), ExprKind::Construct { arguments, .. }) = (ty, draft.tree[id].kind.clone())
+/// Replaces a constructor by a call of a function.
+fn replace_constructor(cx: &mut LoweringContext, id: ExprId, matrices: &HashMap<(StructId, usize), Type>) {
+    let (ty, at) = (cx.tree[id].ty, cx.tree[id].at);
+    let (Type::Struct(structure), ExprKind::Construct { arguments, .. }) = (ty, cx.tree[id].kind.clone())
     else {
         return;
     };
-    if !has_narrow(&draft.tree, structure) {
+    if !has_narrow(&cx.tree, structure) {
         return;
     }
-    let function = draft.helper(Helper::Make, (ty, Type::Void), at);
-    // The matrices are passed as such.
-    for (member, parameter) in draft.tree[function].parameters.clone().into_iter().enumerate() {
+    let function = cx.helper(Helper::Make, (ty, Type::Void), at);
+    // The parameters keep the matrix types.
+    for (member, parameter) in cx.tree[function].parameters.clone().into_iter().enumerate() {
         if let Some(&matrix) = matrices.get(&(structure, member)) {
-            draft.tree[parameter].ty = matrix;
+            cx.tree[parameter].ty = matrix;
         }
     }
-    if draft.tree[function].body.is_none() {
-        let body = body(draft, function, structure, at);
-        draft.tree[function].body = Some(body);
+    if cx.tree[function].body.is_none() {
+        let body = constructor_body(cx, function, structure, at);
+        cx.tree[function].body = Some(body);
     }
-    draft.tree[id].kind = ExprKind::Call { function, arguments };
+    cx.tree[id].kind = ExprKind::Call { function, arguments };
 }
 
 /// `S s; s.a = a; s.b[0] = b[0]; … return s;`
-fn body(draft: &mut Draft, function: FunctionId, structure: StructId, at: Place) -> Block {
-    let made = draft.local("made", Type::Struct(structure), at);
+fn constructor_body(cx: &mut LoweringContext, function: FunctionId, structure: StructId, at: Place) -> Block {
+    let made = cx.local("made", Type::Struct(structure), at);
     let mut sets = Vec::new();
-    let parameters: Vec<VariableId> = draft.tree[function].parameters.clone();
+    let parameters: Vec<VariableId> = cx.tree[function].parameters.clone();
     for (member, parameter) in parameters.into_iter().enumerate() {
-        let mut build = draft.build(at);
+        let mut build = cx.build(at);
         let whole = build.variable(made);
         let value = build.variable(parameter);
         let ty = build.tree[parameter].ty;
@@ -332,10 +336,10 @@ fn body(draft: &mut Draft, function: FunctionId, structure: StructId, at: Place)
             },
             ty,
         );
-        copies(draft, target, value, at, &mut sets);
+        copy_elements(cx, target, value, at, &mut sets);
     }
     let statement = |kind| Statement { kind, at };
-    let result = draft.build(at).variable(made);
+    let result = cx.build(at).variable(made);
     std::iter::once(StatementKind::Declare(made))
         .chain(sets.into_iter().map(StatementKind::Expression))
         .chain([StatementKind::Return(Some(result))])

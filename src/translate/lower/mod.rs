@@ -1,86 +1,191 @@
-//! From a checked tree to one that naga's GLSL front end reads rightly: a pass for each construct that it refuses or gets
-//! wrong, each in a file named for the construct, whose header says what naga does.
+//! Rewrites a checked tree into one that naga's GLSL front end translates correctly.
 //!
-//! Most passes rewrite single expressions where they stand; what needs several steps becomes a sequence `a, b`, which naga
-//! evaluates in order. The passes after them rewrite statements; `sequence` then makes statements of sequences.
+//! There is one pass for each construct that naga refuses or translates wrongly; its comment states what naga
+//! does. Most passes rewrite expressions in place; where several steps are needed they become a sequence `a,
+//! b`, which naga evaluates in order. Later passes rewrite statements; finally `sequence` turns sequences
+//! into statements.
 
-mod boolean;
-mod build;
-mod compound;
+mod branch;
+mod builtin;
 mod constant;
-mod dead_code;
-mod depth;
-mod do_while;
-mod draft;
-mod elementary;
-mod else_if;
-mod equality;
-mod for_step;
-mod geometric;
-mod global;
-mod helper;
-mod index;
-mod inequality;
-mod is_nan;
-mod loop_head;
-mod loop_void;
+mod context;
+#[cfg(test)]
+mod expression_tests;
+mod flatten;
+mod initializer;
+mod loops;
 mod lvalue;
-mod matrix;
 mod member;
-mod missing;
-mod missing_return;
-mod negation;
 mod nesting;
-mod out_argument;
-mod pass;
-mod remainder;
-mod sampler;
+mod operator;
+mod polyfill;
 mod sequence;
-mod short_circuit;
-mod spelled;
-mod surroundings;
-mod switch;
-mod swizzle;
-mod texel;
-mod uninitialised;
-mod zero;
+mod stage_io;
+#[cfg(test)]
+mod tests;
 
-pub(crate) use draft::Draft;
-pub use pass::{Pass, Passes};
+pub(crate) use context::LoweringContext;
 use toyproof_diagnostic::{Deadline, Overdue};
 use toyproof_glsl::Checked;
 
 use crate::print::{Lowered, print};
 
-/// Lowers a shader and prints what naga is fed.
+/// Lowers a shader and prints it as GLSL for naga.
 #[must_use]
 pub fn lower(checked: &Checked) -> Lowered {
     lower_with(checked, Passes::all())
 }
 
-/// The same for a shader whose every operation is to have the same bits on every driver: what drivers differ in is spelled
-/// in operations that they agree on ([`toyproof_math`]).
+/// Lowers a shader whose operations must have the same bits on every driver: operations that drivers compute
+/// differently are expanded into ones that they compute alike ([`toyproof_math`]).
 #[must_use]
 pub fn lower_strict(checked: &Checked) -> Lowered {
     lower_with(checked, Passes::strict())
 }
 
-/// The same by some passes only, to see what naga makes of the rest.
+/// Lowers a shader by a subset of the passes, to see how naga translates it without the others.
 #[must_use]
 pub fn lower_with(checked: &Checked, passes: Passes) -> Lowered {
-    // Without a deadline there is no failure.
+    // This cannot fail without a deadline.
     lower_within(checked, passes, &Deadline::default()).unwrap_or_default()
 }
 
-/// The same within a deadline.
+/// Lowers a shader by a subset of the passes, within a deadline.
 ///
 /// # Errors
-/// If it passes.
+/// If the deadline passes.
 pub fn lower_within(checked: &Checked, passes: Passes, deadline: &Deadline) -> Result<Lowered, Overdue> {
-    let mut draft = Draft::new(checked.tree.clone(), checked.main_image);
-    passes.run(&mut draft, deadline)?;
-    print(&draft, deadline)
+    let mut cx = LoweringContext::new(checked.tree.clone(), checked.main_image);
+    passes.run(&mut cx, deadline)?;
+    print(&cx, deadline)
 }
 
-#[cfg(test)]
-mod tests;
+macro_rules! passes {
+    ($($(#[$doc:meta])* $variant:ident = $run:path,)*) => {
+        /// A construct that naga's GLSL front end translates wrongly; in the order in which they are lowered.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum Pass {
+            $($(#[$doc])* $variant,)*
+        }
+
+        impl Pass {
+            /// Every pass, in order.
+            pub const ALL: &[Self] = &[$(Self::$variant),*];
+
+            fn run(self, cx: &mut LoweringContext) {
+                match self {
+                    $(Self::$variant => $run(cx),)*
+                }
+            }
+        }
+    };
+}
+
+passes! {
+    /// Sampler parameters.
+    Samplers = stage_io::specialize_samplers,
+    /// Built-in variables and uniforms that naga lacks or that are not set.
+    StageIo = stage_io::lower_stage_io,
+    /// `&&` and `||` with an effect on the right.
+    ShortCircuit = operator::lower_short_circuit,
+    /// Built-in functions whose last bits depend on the driver; for strict shaders only.
+    Elementary = polyfill::lower_functions,
+    /// `modf`, `matrixCompMult`, `outerProduct`, `inverse`.
+    MissingBuiltIns = builtin::lower_missing,
+    /// `dot` and other geometric functions of scalars.
+    Geometric = builtin::lower_geometric,
+    /// `isnan` and `isinf`.
+    IsNan = builtin::lower_is_nan,
+    /// Offsets of texture lookups.
+    Texels = stage_io::lower_texel_offsets,
+    /// Matrix constructors.
+    Matrices = operator::lower_matrix_constructors,
+    /// Conversions of `bool` to vectors and numbers.
+    Booleans = operator::lower_boolean_conversions,
+    /// Swizzles of swizzles and of matrix columns as targets.
+    Swizzles = lvalue::lower_swizzles,
+    /// Indices with side effects, evaluated once.
+    Indices = lvalue::lower_indices,
+    /// Compound assignments whose right side changes their target.
+    Compounds = lvalue::lower_compound_assignments,
+    /// Matrix products, whose sums are ordered by the driver; for strict shaders only.
+    Products = polyfill::lower_products,
+    /// `-x` of unsigned integers.
+    Negations = operator::lower_negation,
+    /// `%`.
+    Remainders = operator::lower_remainder,
+    /// `out` and `inout` arguments that are parts of variables.
+    OutArguments = lvalue::lower_out_arguments,
+    /// `==` of structures and arrays.
+    Equality = operator::lower_equality,
+    /// `!=` of floats.
+    Inequality = operator::lower_inequality,
+    /// Members of structures whose layout naga changes.
+    Members = member::run,
+    /// Infinities and other constants that naga cannot evaluate.
+    Constants = constant::run,
+    /// Chains of thousands of operators.
+    Depth = operator::split_operator_chains,
+    /// Global initializers and constant arrays.
+    Globals = initializer::lower_globals,
+    /// Variables without an initializer.
+    Uninitialized = initializer::zero_uninitialized,
+    /// Steps of `for` that Mesa executes once too often.
+    Steps = loops::move_steps,
+    /// Declarations in loop heads.
+    LoopHeads = loops::hoist_loop_heads,
+    /// `continue` in `do … while`.
+    DoWhile = loops::lower_do_while,
+    /// Calls of `void` functions in loop heads.
+    LoopVoids = loops::lower_void_calls,
+    /// Chains of hundreds of `else if`.
+    ElseIfs = branch::split_else_if,
+    /// Unreachable statements.
+    DeadCode = branch::remove_dead_code,
+    /// Fall-through in `switch`.
+    Switches = branch::lower_switches,
+    /// Statements nested deeper than lavapipe supports.
+    Nesting = nesting::run,
+    /// Sequences as statements.
+    Sequences = sequence::run,
+    /// Functions that may end without a `return`.
+    MissingReturns = initializer::add_missing_returns,
+}
+
+/// A set of passes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Passes(u64);
+
+impl Passes {
+    /// Every pass that naga and the drivers need.
+    #[must_use]
+    pub fn all() -> Self {
+        Self::strict().without(Pass::Elementary).without(Pass::Products)
+    }
+
+    /// All passes, including those that make a shader's bits the same on every driver.
+    #[must_use]
+    pub fn strict() -> Self {
+        Self(u64::MAX)
+    }
+
+    /// This set without one pass.
+    #[must_use]
+    pub fn without(self, pass: Pass) -> Self {
+        Self(self.0 & !(1 << pass as u32))
+    }
+
+    /// Whether the set contains a pass.
+    #[must_use]
+    pub fn contains(self, pass: Pass) -> bool {
+        self.0 & (1 << pass as u32) != 0
+    }
+
+    pub(crate) fn run(self, cx: &mut LoweringContext, deadline: &Deadline) -> Result<(), Overdue> {
+        for pass in Pass::ALL.iter().filter(|pass| self.contains(**pass)) {
+            deadline.check()?;
+            pass.run(cx);
+        }
+        Ok(())
+    }
+}

@@ -1,5 +1,5 @@
-//! Sequences of expressions, `a, b`, and what runs for its effect only: statements of their own, so that lowered text reads
-//! well. Temporaries are declared where they are first assigned.
+//! Turns sequences of expressions, `a, b`, and conditionals with side effects into statements, for
+//! readability. Temporaries are declared at their first assignment.
 //!
 //! naga refuses calls of `void` functions within sequences and `?:`.
 
@@ -9,45 +9,45 @@ use toyproof_glsl::tree::{
     Arm, Block, ExprId, ExprKind, Place, Statement, StatementKind, Tree, VariableId, VariableKind, walk,
 };
 
-use super::draft::Draft;
+use crate::lower::context::LoweringContext;
 
-pub(super) fn run(draft: &mut Draft) {
+pub(super) fn run(cx: &mut LoweringContext) {
     let mut declared = HashSet::new();
-    draft.each_statement(|draft, statement, out| {
+    cx.each_statement(|cx, statement, out| {
         let mut statements = Block::new();
-        split(draft, statement, &mut statements);
-        declare(draft, statements, &mut declared, out);
+        split(cx, statement, &mut statements);
+        declare(cx, statements, &mut declared, out);
     });
 }
 
-/// A statement as several, each with one effect.
-fn split(draft: &mut Draft, statement: Statement, out: &mut Block) {
+/// Splits a statement into several, each with one effect.
+fn split(cx: &mut LoweringContext, statement: Statement, out: &mut Block) {
     let first = match &statement.kind {
-        StatementKind::Expression(expr) => return effects(draft, *expr, out),
-        StatementKind::Declare(variable) => draft.tree[*variable].initialiser,
+        StatementKind::Expression(expr) => return emit_effects(cx, *expr, out),
+        StatementKind::Declare(variable) => cx.tree[*variable].initializer,
         StatementKind::Return(value) => *value,
         StatementKind::If { arms, .. } => arms.first().map(|arm| arm.condition),
         StatementKind::Switch { selector, .. } => Some(*selector),
         _ => None,
     };
     if let Some(first) = first {
-        lead(draft, first, out);
+        hoist_leading(cx, first, out);
     }
     out.push(statement);
 }
 
-/// The statements that an expression comes to whose value nobody asks for.
-fn effects(draft: &mut Draft, root: ExprId, out: &mut Block) {
+/// Emits the statements for an expression whose value is not used.
+fn emit_effects(cx: &mut LoweringContext, root: ExprId, out: &mut Block) {
     let mut pending = vec![root];
     while let Some(id) = pending.pop() {
-        let at = draft.tree[id].at;
-        match draft.tree[id].kind {
+        let at = cx.tree[id].at;
+        match cx.tree[id].kind {
             ExprKind::Sequence { first, second } => pending.extend([second, first]),
-            ExprKind::Conditional { condition, yes, no } if walk::acts(&draft.tree, id) => {
-                lead(draft, condition, out);
+            ExprKind::Conditional { condition, yes, no } if walk::acts(&cx.tree, id) => {
+                hoist_leading(cx, condition, out);
                 let [body, otherwise] = [yes, no].map(|branch| {
                     let mut body = Block::new();
-                    effects(draft, branch, &mut body);
+                    emit_effects(cx, branch, &mut body);
                     body
                 });
                 let otherwise = (!otherwise.is_empty()).then_some(otherwise);
@@ -57,8 +57,8 @@ fn effects(draft: &mut Draft, root: ExprId, out: &mut Block) {
                     at,
                 });
             }
-            _ if walk::acts(&draft.tree, id) => {
-                lead(draft, id, out);
+            _ if walk::acts(&cx.tree, id) => {
+                hoist_leading(cx, id, out);
                 out.push(Statement {
                     kind: StatementKind::Expression(id),
                     at,
@@ -69,18 +69,18 @@ fn effects(draft: &mut Draft, root: ExprId, out: &mut Block) {
     }
 }
 
-/// Takes out of an expression what runs before anything else in it.
-fn lead(draft: &mut Draft, root: ExprId, out: &mut Block) {
-    while let Some((sequence, first, second)) = leading(&draft.tree, root) {
-        effects(draft, first, out);
-        draft.tree[sequence] = draft.tree[second].clone();
+/// Moves leading sequences of an expression to statements before it.
+fn hoist_leading(cx: &mut LoweringContext, root: ExprId, out: &mut Block) {
+    while let Some((sequence, first, second)) = leading_sequence(&cx.tree, root) {
+        emit_effects(cx, first, out);
+        cx.tree[sequence] = cx.tree[second].clone();
     }
 }
 
-/// The first sequence that is certainly evaluated, if nothing before it in the expression minds when it runs.
-fn leading(tree: &Tree, root: ExprId) -> Option<(ExprId, ExprId, ExprId)> {
+/// The first sequence that is always evaluated, unless it affects an expression evaluated before it.
+fn leading_sequence(tree: &Tree, root: ExprId) -> Option<(ExprId, ExprId, ExprId)> {
     let mut before = Vec::new();
-    let (sequence, first, second) = strict(tree, root).into_iter().find_map(|id| {
+    let (sequence, first, second) = always_evaluated(tree, root).into_iter().find_map(|id| {
         if let ExprKind::Sequence { first, second } = tree[id].kind {
             return Some((id, first, second));
         }
@@ -88,15 +88,15 @@ fn leading(tree: &Tree, root: ExprId) -> Option<(ExprId, ExprId, ExprId)> {
         None
     })?;
     let inside: HashSet<ExprId> = tree.postorder(sequence).into_iter().collect();
-    let minds = before
+    let affected = before
         .into_iter()
         .filter(|id| !inside.contains(id))
-        .any(|id| minds(tree, id, first));
-    (!minds).then_some((sequence, first, second))
+        .any(|id| is_affected(tree, id, first));
+    (!affected).then_some((sequence, first, second))
 }
 
-/// The nodes that are evaluated whatever the others give, operands before users.
-fn strict(tree: &Tree, root: ExprId) -> Vec<ExprId> {
+/// The nodes that are always evaluated, operands before users.
+fn always_evaluated(tree: &Tree, root: ExprId) -> Vec<ExprId> {
     let mut order = Vec::new();
     let mut pending = vec![(root, false)];
     while let Some((id, done)) = pending.pop() {
@@ -116,7 +116,7 @@ fn strict(tree: &Tree, root: ExprId) -> Vec<ExprId> {
             } if matches!(tree[target].kind, ExprKind::Variable(_)) => {
                 operands.push(value);
             }
-            // What a sequence ends with stands where the sequence stood.
+            // The last operand of a sequence takes the sequence's place.
             &ExprKind::Sequence { first, .. } => operands.push(first),
             kind => kind.for_each_operand(|operand| operands.push(operand)),
         }
@@ -125,8 +125,8 @@ fn strict(tree: &Tree, root: ExprId) -> Vec<ExprId> {
     order
 }
 
-/// Whether a node, evaluated already, would be another if `effect` had run before it.
-fn minds(tree: &Tree, id: ExprId, effect: ExprId) -> bool {
+/// Whether a node's value could differ if `effect` ran before it.
+fn is_affected(tree: &Tree, id: ExprId, effect: ExprId) -> bool {
     match tree[id].kind {
         ExprKind::Variable(variable) => {
             let foreign = !matches!(
@@ -140,36 +140,36 @@ fn minds(tree: &Tree, id: ExprId, effect: ExprId) -> bool {
         ExprKind::Conditional { yes, no, .. } => {
             let branches = [yes, no].into_iter().flat_map(|branch| tree.postorder(branch));
             let leaves = branches.filter(|&id| !matches!(tree[id].kind, ExprKind::Conditional { .. }));
-            leaves.into_iter().any(|id| minds(tree, id, effect))
+            leaves.into_iter().any(|id| is_affected(tree, id, effect))
         }
         _ => false,
     }
 }
 
-/// Declares the temporaries of those statements, in the block that they stand in.
-fn declare(draft: &mut Draft, statements: Block, declared: &mut HashSet<VariableId>, out: &mut Block) {
-    if draft.temporaries.is_empty() {
+/// Declares the temporaries of the statements in their block.
+fn declare(cx: &mut LoweringContext, statements: Block, declared: &mut HashSet<VariableId>, out: &mut Block) {
+    if cx.temporaries.is_empty() {
         out.extend(statements);
         return;
     }
     let mut rest = Block::new();
     let mut late = HashSet::new();
     for mut statement in statements {
-        if let Some((variable, value)) = first_assignment(draft, &statement, declared, &late) {
-            mark(draft, &statement, declared, &mut late, out);
-            draft.tree[variable].initialiser = Some(value);
+        if let Some((variable, value)) = first_assignment(cx, &statement, declared, &late) {
+            declare_temporaries(cx, &statement, declared, &mut late, out);
+            cx.tree[variable].initializer = Some(value);
             statement.kind = StatementKind::Declare(variable);
         } else {
-            mark(draft, &statement, declared, &mut late, out);
+            declare_temporaries(cx, &statement, declared, &mut late, out);
         }
         rest.push(statement);
     }
     out.append(&mut rest);
 }
 
-/// `t = value;` of a temporary that nothing has named before.
+/// `t = value;` of a temporary that no earlier statement names.
 fn first_assignment(
-    draft: &Draft,
+    cx: &LoweringContext,
     statement: &Statement,
     declared: &HashSet<VariableId>,
     late: &HashSet<VariableId>,
@@ -181,37 +181,37 @@ fn first_assignment(
         op: None,
         target,
         value,
-    } = draft.tree[expr].kind
+    } = cx.tree[expr].kind
     else {
         return None;
     };
-    let ExprKind::Variable(variable) = draft.tree[target].kind else {
+    let ExprKind::Variable(variable) = cx.tree[target].kind else {
         return None;
     };
     let new =
-        draft.temporaries.contains(&variable) && !declared.contains(&variable) && !late.contains(&variable);
-    (new && !walk::mentions(&draft.tree, value, variable)).then_some((variable, value))
+        cx.temporaries.contains(&variable) && !declared.contains(&variable) && !late.contains(&variable);
+    (new && !walk::mentions(&cx.tree, value, variable)).then_some((variable, value))
 }
 
-/// Declares the temporaries of a statement that no declaration of their own precedes.
-fn mark(
-    draft: &Draft,
+/// Declares those temporaries of a statement that are not declared by their first assignment.
+fn declare_temporaries(
+    cx: &LoweringContext,
     statement: &Statement,
     declared: &mut HashSet<VariableId>,
     late: &mut HashSet<VariableId>,
     out: &mut Block,
 ) {
-    let first = first_assignment(draft, statement, declared, late).map(|(variable, _)| variable);
+    let first = first_assignment(cx, statement, declared, late).map(|(variable, _)| variable);
     let mut roots = Vec::new();
     walk::each(std::slice::from_ref(statement), &mut |inner| {
-        roots.extend(walk::own_expressions(&draft.tree, inner));
+        roots.extend(walk::own_expressions(&cx.tree, inner));
     });
     for root in roots {
-        for id in draft.tree.postorder(root) {
-            let ExprKind::Variable(variable) = draft.tree[id].kind else {
+        for id in cx.tree.postorder(root) {
+            let ExprKind::Variable(variable) = cx.tree[id].kind else {
                 continue;
             };
-            if draft.temporaries.contains(&variable) && declared.insert(variable) && Some(variable) != first {
+            if cx.temporaries.contains(&variable) && declared.insert(variable) && Some(variable) != first {
                 late.insert(variable);
                 out.push(declaration(variable, statement.at));
             }

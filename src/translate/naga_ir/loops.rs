@@ -1,7 +1,7 @@
-//! Loops that a driver ends by force.
+//! Loops that drivers terminate or translate wrongly.
 //!
-//! Mesa's llvmpipe before version 23 leaves every loop of an invocation after 65,535 iterations in total, and
-//! says nothing. A [`Probe`] makes that visible in the picture's alpha.
+//! Mesa's llvmpipe before version 23 silently leaves every loop of an invocation after 65,535 iterations in
+//! total. A [`Probe`] makes that visible in the image's alpha.
 
 use std::num::NonZeroU32;
 
@@ -10,31 +10,33 @@ use naga::{
     Scalar, ScalarKind, Span, Statement, Type, TypeInner,
 };
 
-/// What the alpha of a probed shader tells.
+use super::ValidModule;
+
+/// The value that a probe writes to alpha.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Probe {
-    /// One more than the iterations that the pixel's loops ran in total. It costs little. Where a driver sees that a
-    /// loop never ends, it takes what follows for unreachable, and alpha may be anything: most often 0.
+    /// One more than the total iterations of the pixel's loops. It is cheap. If a driver detects that a loop
+    /// never ends, it treats the code after it as unreachable, and alpha may be anything, mostly 0.
     Iterations,
-    /// 1 where every loop was left by its own means, 0 where one was not. A counter goes up before each loop
-    /// and down on each way out that the shader itself takes.
+    /// 1 if every loop ended by itself, 0 if one did not. A counter is incremented before each loop and
+    /// decremented at each exit in the shader.
     ///
-    /// An optimiser takes for granted that a loop is left by its own ways out, and would fold such a counter to
-    /// zero. So the counter is the element of an array, under an index that is always 0 but not known to be;
-    /// and drivers do not unroll loops with code beside their `break`: this probe is slow.
+    /// An optimizer assumes that loops end at their own exits, and would fold such a counter to zero. So the
+    /// counter is an array element under an index that is always 0 but opaque. Drivers do not unroll loops
+    /// with code next to their `break`, so this probe is slow.
     OpenLoops,
 }
 
-/// Whether any function holds a loop.
-pub(super) fn any(module: &Module) -> bool {
+/// Whether any function contains a loop.
+pub(super) fn has_loop(module: &Module) -> bool {
     bodies(module).any(|body| visit(body, &mut |statement| matches!(statement, Statement::Loop { .. })))
 }
 
-/// Whether there is a loop without any way out: what follows it is never reached.
-pub(super) fn any_endless(module: &Module) -> bool {
+/// Whether any loop has no exit, so that the code after it is unreachable.
+pub(super) fn has_infinite_loop(module: &Module) -> bool {
     bodies(module).any(|body| {
         visit(body, &mut |statement| match statement {
-            Statement::Loop { body, break_if, .. } => break_if.is_none() && !is_left(body),
+            Statement::Loop { body, break_if, .. } => break_if.is_none() && !has_exit(body),
             _ => false,
         })
     })
@@ -61,9 +63,9 @@ fn visit(block: &Block, found: &mut impl FnMut(&Statement) -> bool) -> bool {
     })
 }
 
-/// Whether a loop's body has a statement that leaves the loop. A `break` of an inner loop or switch counts too:
-/// then the loop is taken to end, which the other probe finds out.
-fn is_left(body: &Block) -> bool {
+/// Whether a loop's body has a statement that leaves the loop. This includes a `break` of an inner loop or
+/// switch: then the loop is assumed to end, and the other probe detects the error.
+fn has_exit(body: &Block) -> bool {
     visit(body, &mut |statement| {
         matches!(
             statement,
@@ -72,14 +74,14 @@ fn is_left(body: &Block) -> bool {
     })
 }
 
-/// Adds a probe: the entry point's alpha becomes what it tells.
+/// Adds a probe: the entry point's alpha becomes its value.
 pub(super) fn probe(module: &mut Module, probe: Probe) {
     let counter = Counter::declare(module, probe);
     for (_, function) in module.functions.iter_mut() {
-        Rewriter::over(function, probe, counter);
+        Rewriter::rewrite(function, probe, counter);
     }
     for entry in &mut module.entry_points {
-        Rewriter::over(&mut entry.function, probe, counter);
+        Rewriter::rewrite(&mut entry.function, probe, counter);
         if let Some(index) = counter.index {
             hide_zero(&mut entry.function, index);
         }
@@ -87,12 +89,12 @@ pub(super) fn probe(module: &mut Module, probe: Probe) {
     }
 }
 
-/// A private number that starts at 0.
+/// A private counter, initially 0.
 #[derive(Clone, Copy)]
 struct Counter {
-    /// The number; an array of two where there is an index.
+    /// The counter; an array of two if there is an index.
     variable: Handle<GlobalVariable>,
-    /// The number's index, always 0.
+    /// The counter's index, always 0.
     index: Option<Handle<GlobalVariable>>,
 }
 
@@ -120,7 +122,7 @@ impl Counter {
         }
     }
 
-    /// Appends what loads the counter; gives its pointer, its value, and what must be emitted.
+    /// Appends a load of the counter. Returns its pointer, its value and the range to emit.
     fn load(
         self,
         expressions: &mut Arena<Expression>,
@@ -163,15 +165,16 @@ struct Rewriter<'a> {
     counter: Counter,
 }
 
-/// What a `break` leaves, and how many loops a `return` leaves.
+/// The loops and switches around a statement: the number of loops that a `return` leaves, and whether a
+/// `break` leaves a switch.
 #[derive(Clone, Copy)]
-struct Within {
+struct Enclosing {
     loops: u32,
     switch: bool,
 }
 
 impl Rewriter<'_> {
-    fn over(function: &mut Function, probe: Probe, counter: Counter) {
+    fn rewrite(function: &mut Function, probe: Probe, counter: Counter) {
         let body = std::mem::take(&mut function.body);
         let mut rewriter = Rewriter {
             function,
@@ -181,7 +184,7 @@ impl Rewriter<'_> {
         let body = rewriter.block(
             body,
             Block::new(),
-            Within {
+            Enclosing {
                 loops: 0,
                 switch: false,
             },
@@ -189,8 +192,8 @@ impl Rewriter<'_> {
         function.body = body;
     }
 
-    /// `block` rewritten, behind what `out` holds already.
-    fn block(&mut self, block: Block, mut out: Block, within: Within) -> Block {
+    /// Appends the rewritten block to `out`.
+    fn block(&mut self, block: Block, mut out: Block, within: Enclosing) -> Block {
         for (statement, span) in block.span_into_iter() {
             match statement {
                 Statement::Loop {
@@ -198,7 +201,7 @@ impl Rewriter<'_> {
                     continuing,
                     break_if,
                 } => {
-                    let inside = Within {
+                    let inside = Enclosing {
                         loops: within.loops + 1,
                         switch: false,
                     };
@@ -211,7 +214,7 @@ impl Rewriter<'_> {
                     let mut continuing = self.block(continuing, Block::new(), inside);
                     if let Some(condition) = break_if {
                         let mut accept = Block::new();
-                        self.close(1, &mut accept);
+                        self.count_exits(1, &mut accept);
                         continuing.push(
                             Statement::If {
                                 condition,
@@ -231,11 +234,11 @@ impl Rewriter<'_> {
                     );
                 }
                 Statement::Break => {
-                    self.close(u32::from(!within.switch), &mut out);
+                    self.count_exits(u32::from(!within.switch), &mut out);
                     out.push(Statement::Break, span);
                 }
                 Statement::Return { value } => {
-                    self.close(within.loops, &mut out);
+                    self.count_exits(within.loops, &mut out);
                     out.push(Statement::Return { value }, span);
                 }
                 Statement::Block(inner) => {
@@ -264,7 +267,7 @@ impl Rewriter<'_> {
                         case.body = self.block(
                             body,
                             Block::new(),
-                            Within {
+                            Enclosing {
                                 switch: true,
                                 ..within
                             },
@@ -278,7 +281,7 @@ impl Rewriter<'_> {
         out
     }
 
-    fn close(&mut self, loops: u32, out: &mut Block) {
+    fn count_exits(&mut self, loops: u32, out: &mut Block) {
         if self.probe == Probe::OpenLoops && loops > 0 {
             self.update(BinaryOperator::Subtract, loops, out);
         }
@@ -303,7 +306,8 @@ impl Rewriter<'_> {
     }
 }
 
-/// Sets the index at the entry point's start: the position's x is below 2¹⁶, which no driver knows.
+/// Sets the index at the start of the entry point to the position's x shifted right by 16: always 0, but
+/// unknown to drivers.
 fn hide_zero(entry: &mut Function, index: Handle<GlobalVariable>) {
     let Some(position) = entry.arguments.iter().position(|argument| {
         matches!(
@@ -334,16 +338,16 @@ fn hide_zero(entry: &mut Function, index: Handle<GlobalVariable>) {
     entry.body.splice(0..0, start);
 }
 
-/// Sets the alpha that the entry point is about to return. naga's GLSL front end gives it the form: call the
-/// author's `main`, load each output from its private variable, return a struct of them.
+/// Sets the alpha that the entry point returns. naga's GLSL front end generates the form: call the author's
+/// `main`, load each output from its private variable, return a structure of them.
 fn report(entry: &mut Function, probe: Probe, counter: Counter) {
-    let Some(colour) = returned_variable(entry) else {
+    let Some(color) = returned_variable(entry) else {
         return;
     };
     let expressions = &mut entry.expressions;
     let (_, count, load) = counter.load(expressions);
     let mut append = |expression| expressions.append(expression, Span::UNDEFINED);
-    let base = append(Expression::GlobalVariable(colour));
+    let base = append(Expression::GlobalVariable(color));
     let [cut, whole] = [0.0, 1.0].map(|alpha| append(Expression::Literal(Literal::F32(alpha))));
     let none = append(Expression::Literal(Literal::U32(0)));
     let pointer = append(Expression::AccessIndex { base, index: 3 });
@@ -403,5 +407,111 @@ fn returned_variable(entry: &Function) -> Option<Handle<GlobalVariable>> {
     match entry.expressions[pointer] {
         Expression::GlobalVariable(variable) => Some(variable),
         _ => None,
+    }
+}
+
+impl ValidModule {
+    /// Returns the same module with the steps of its loops at the end of their bodies, as
+    /// `lower::loops::move_steps` does for GLSL.
+    ///
+    /// Mesa 22.3 executes the step in SPIR-V's continue construct once too often if nothing continues the
+    /// loop and the stepped variable is initialized with a constant vector. The move changes nothing else.
+    ///
+    /// # Errors
+    /// naga's message, if it refuses the result.
+    pub fn with_steps_last(&self) -> Result<Self, String> {
+        let mut module = self.module.clone();
+        for (_, function) in module.functions.iter_mut() {
+            move_steps(&mut function.body);
+        }
+        for entry in &mut module.entry_points {
+            move_steps(&mut entry.function.body);
+        }
+        Self::validate(module).map_err(|error| super::chain(error.as_inner()))
+    }
+}
+
+fn move_steps(block: &mut Block) {
+    for statement in block.iter_mut() {
+        match statement {
+            Statement::Block(block) => move_steps(block),
+            Statement::If { accept, reject, .. } => {
+                move_steps(accept);
+                move_steps(reject);
+            }
+            Statement::Switch { cases, .. } => cases.iter_mut().for_each(|case| move_steps(&mut case.body)),
+            Statement::Loop {
+                body,
+                continuing,
+                break_if: None,
+            } => {
+                move_steps(body);
+                if !continues(body) && !always_jumps(body) {
+                    for (step, span) in std::mem::take(continuing).span_into_iter() {
+                        body.push(step, span);
+                    }
+                }
+            }
+            Statement::Loop { body, .. } => move_steps(body),
+            _ => {}
+        }
+    }
+}
+
+/// Whether the loop's body contains a `continue` of this loop.
+fn continues(block: &Block) -> bool {
+    block.iter().any(|statement| match statement {
+        Statement::Continue => true,
+        Statement::Block(block) => continues(block),
+        Statement::If { accept, reject, .. } => continues(accept) || continues(reject),
+        Statement::Switch { cases, .. } => cases.iter().any(|case| continues(&case.body)),
+        _ => false,
+    })
+}
+
+/// Whether the end of a block is never reached.
+fn always_jumps(block: &Block) -> bool {
+    block.last().is_some_and(|last| match last {
+        Statement::Return { .. } | Statement::Kill | Statement::Break | Statement::Continue => true,
+        Statement::Block(block) => always_jumps(block),
+        _ => false,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_move_to_the_end_of_bodies_without_continue() {
+        let text = |more: &str| {
+            format!(
+                "@fragment fn main() -> @location(0) vec4f {{
+                    var sum = 0.0;
+                    for (var i = 0; i < 3; i++) {{ {more} sum += 1.0; }}
+                    return vec4f(sum);
+                }}"
+            )
+        };
+        let steps = |more: &str| {
+            let module = ValidModule::of_wgsl(&text(more))
+                .unwrap()
+                .with_steps_last()
+                .unwrap();
+            let body = &module.module().entry_points[0].function.body;
+            let find = |statement: &Statement| match statement {
+                Statement::Loop { continuing, .. } => Some(continuing.len()),
+                _ => None,
+            };
+            let nested = body.iter().find_map(|statement| match statement {
+                Statement::Block(block) => block.iter().find_map(find),
+                other => find(other),
+            });
+            nested.unwrap()
+        };
+        assert_eq!(steps(""), 0);
+        assert!(steps("if i == 1 { continue; }") > 0);
+        assert!(steps("if i == 1 { return vec4f(); }") == 0);
+        assert!(steps("for (var j = 0; j < 3; j++) { if j == 1 { continue; } }") == 0);
     }
 }

@@ -1,9 +1,7 @@
-//! naga's module: parsed from what `glsl` lowered, and validated.
+//! naga's modules, parsed from lowered GLSL or from WGSL, and validated.
 
-pub(crate) mod library;
+pub(crate) mod expand;
 mod loops;
-mod spell;
-mod step;
 
 pub use loops::Probe;
 use naga::front::glsl::{Frontend, Options};
@@ -17,15 +15,15 @@ use crate::Lowered;
 /// The shape of a texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Shape {
-    /// Flat.
+    /// Two-dimensional.
     D2,
-    /// A volume.
+    /// Three-dimensional.
     D3,
-    /// Six faces.
+    /// A cube map.
     Cube,
 }
 
-/// A module that naga has validated: the only thing that later stages take.
+/// A module that naga has validated, as all later stages require.
 #[derive(Debug, Clone)]
 pub struct ValidModule {
     module: Module,
@@ -39,16 +37,16 @@ impl ValidModule {
         &self.module
     }
 
-    /// What naga's validator found out about it.
+    /// The results of naga's validator.
     #[must_use]
     pub fn info(&self) -> &ModuleInfo {
         &self.info
     }
 
-    /// Parses and validates a lowered shader; what it does not use is dropped.
+    /// Parses and validates a lowered shader and removes unused items.
     ///
     /// # Errors
-    /// naga's complaint, on the author's own lines.
+    /// naga's message, at the author's source lines.
     pub fn parse(lowered: &Lowered) -> Result<Self, Vec<Diagnostic>> {
         let mut module = Frontend::default()
             .parse(&Options::from(ShaderStage::Fragment), lowered.text())
@@ -56,7 +54,7 @@ impl ValidModule {
                 errors
                     .errors
                     .iter()
-                    .map(|error| complaint("E0900", &error.kind.to_string(), error.meta, lowered))
+                    .map(|error| naga_diagnostic("E0900", &error.kind.to_string(), error.meta, lowered))
                     .collect::<Vec<_>>()
             })?;
         naga::compact::compact(&mut module, naga::compact::KeepUnused::No);
@@ -65,14 +63,14 @@ impl ValidModule {
                 .spans()
                 .next()
                 .map_or(naga::Span::UNDEFINED, |(span, _)| *span);
-            vec![complaint("E0901", &chain(error.as_inner()), span, lowered)]
+            vec![naga_diagnostic("E0901", &chain(error.as_inner()), span, lowered)]
         })
     }
 
-    /// Parses and validates a shader in WGSL.
+    /// Parses and validates a WGSL shader.
     ///
     /// # Errors
-    /// naga's complaint, with the line.
+    /// naga's message, with the line.
     pub fn of_wgsl(text: &str) -> Result<Self, String> {
         let module = naga::front::wgsl::parse_str(text).map_err(|error| {
             let line = error.location(text).map_or(0, |location| location.line_number);
@@ -90,7 +88,7 @@ impl ValidModule {
         Ok(Self { module, info })
     }
 
-    /// The shapes of the textures that channels 0 to 3 read; where one is not read, any will do.
+    /// The texture shapes of channels 0 to 3; unused channels have any shape.
     #[must_use]
     pub fn channels(&self) -> [Shape; 4] {
         let mut shapes = [Shape::D2; 4];
@@ -109,28 +107,28 @@ impl ValidModule {
         shapes
     }
 
-    /// Whether any function holds a loop.
+    /// Whether any function contains a loop.
     #[must_use]
     pub fn has_loops(&self) -> bool {
-        loops::any(&self.module)
+        loops::has_loop(&self.module)
     }
 
-    /// Whether any function holds a loop that has no way out.
+    /// Whether any function contains a loop without an exit.
     #[must_use]
     pub fn has_endless_loop(&self) -> bool {
-        loops::any_endless(&self.module)
+        loops::has_infinite_loop(&self.module)
     }
 
-    /// Whether a pixel may be left unpainted by `discard`.
+    /// Whether `discard` may skip a pixel.
     #[must_use]
     pub fn discards(&self) -> bool {
         (0..self.module.entry_points.len()).any(|entry| self.info.get_entry_point(entry).may_kill)
     }
 
-    /// The same shader, but its alpha tells what became of its loops.
+    /// Returns the same shader with a probe of its loops in alpha.
     ///
     /// # Errors
-    /// naga's words, should it refuse the result.
+    /// naga's message, if it refuses the result.
     pub fn probed(&self, probe: Probe) -> Result<Self, String> {
         let mut module = self.module.clone();
         loops::probe(&mut module, probe);
@@ -138,7 +136,7 @@ impl ValidModule {
     }
 }
 
-fn complaint(code: &'static str, message: &str, span: naga::Span, lowered: &Lowered) -> Diagnostic {
+fn naga_diagnostic(code: &'static str, message: &str, span: naga::Span, lowered: &Lowered) -> Diagnostic {
     let diagnostic = Diagnostic::error(code, format!("naga cannot translate this: {message}"));
     match span.to_range().and_then(|range| lowered.origin(range)) {
         Some(span) => diagnostic.at(span),
@@ -146,15 +144,15 @@ fn complaint(code: &'static str, message: &str, span: naga::Span, lowered: &Lowe
     }
 }
 
-/// An error with all of its causes, outermost first.
+/// Joins an error and all of its causes, outermost first.
 fn chain(error: &dyn std::error::Error) -> String {
-    let mut words = error.to_string();
+    let mut message = error.to_string();
     let mut source = error.source();
     while let Some(cause) = source {
-        words = format!("{words}: {cause}");
+        message = format!("{message}: {cause}");
         source = cause.source();
     }
-    words
+    message
 }
 
 #[cfg(test)]
@@ -174,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn only_inputs_that_are_used_stay() {
+    fn unused_inputs_are_removed() {
         let module = parse("void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel1, p); }").unwrap();
         let bindings: Vec<_> = module
             .module()
@@ -186,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn channels_have_the_shapes_that_they_are_read_as() {
+    fn channels_have_the_shapes_of_their_lookups() {
         let text = "void mainImage(out vec4 c, in vec2 p) {
             c = texture(iChannel0, vec3(1.0)) + texture(iChannel3, p);
         }";
@@ -197,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn probes_are_valid_and_count_at_each_place() {
+    fn probes_are_valid_and_count_every_entry_and_exit() {
         let module = parse(
             "float f(float x) { for (int i = 0; i < 9; i++) { if (x > 4.0) return x; if (x > 3.0) break; x += 1.0; } return 0.0; }\n\
              void mainImage(out vec4 c, in vec2 p) {\n\
@@ -213,7 +211,8 @@ mod tests {
             naga::back::wgsl::write_string(probed.module(), probed.info(), flags).unwrap()
         };
         let open = text(Probe::OpenLoops);
-        // Two loops opened; left by a condition, a return and a break, and by a condition.
+        // Two loops are entered; one is left by its condition, a return and a break, the other by its
+        // condition.
         assert_eq!(open.matches("+ 1u").count(), 2, "{open}");
         assert_eq!(open.matches("- 1u").count(), 4, "{open}");
         assert!(open.contains("select(0f, 1f,"), "{open}");
@@ -223,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn loops_are_seen_wherever_they_stand() {
+    fn loops_are_found_at_any_depth() {
         let with = "float f() { float x = 0.0; if (true) { while (x < 3.0) x += 1.0; } return x; }\n\
                     void mainImage(out vec4 c, in vec2 p) { c = vec4(f()); }";
         assert!(parse(with).unwrap().has_loops() && !parse(with).unwrap().has_endless_loop());

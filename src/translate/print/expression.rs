@@ -1,5 +1,5 @@
-//! Expressions: as few parentheses as keep their meaning. A stack of what is left to print keeps chains of any length
-//! off the machine's stack.
+//! Prints expressions with the fewest parentheses that preserve their meaning. An explicit stack keeps chains
+//! of any length off the call stack.
 
 use std::borrow::Cow;
 
@@ -7,85 +7,89 @@ use toyproof_glsl::tree::{
     BinaryOp, ExprId, ExprKind, Literal, Place, Type, UnaryOp, Value, VariableId, VariableKind,
 };
 
-use super::printer::Printer;
+use super::Printer;
 
-/// How tightly an expression holds together; those of binary operators lie between.
+/// Precedence levels; those of binary operators lie between.
 mod level {
     pub(super) const SEQUENCE: u8 = 0;
     pub(super) const ASSIGN: u8 = 1;
     pub(super) const CONDITIONAL: u8 = 2;
-    /// To be added to the operator's own, 1 to 11.
+    /// The offset of the operator's own precedence, 1 to 11.
     pub(super) const BINARY: u8 = 2;
     pub(super) const UNARY: u8 = 14;
     pub(super) const POSTFIX: u8 = 15;
 }
 
-enum Todo<'a> {
-    /// An expression that must hold together as tightly as that.
+enum Pending<'a> {
+    /// An expression, in parentheses if its precedence is below the level.
     Print(ExprId, u8),
-    Word(Cow<'a, str>, Place),
+    Token(Cow<'a, str>, Place),
 }
 
 impl<'a> Printer<'a> {
-    /// An expression that stands alone.
+    /// Prints an expression that stands alone.
     pub(super) fn expression(&mut self, id: ExprId) {
         self.operand(id, level::SEQUENCE);
     }
 
-    /// An expression between commas.
+    /// Prints an expression between commas.
     pub(super) fn argument(&mut self, id: ExprId) {
         self.operand(id, level::ASSIGN);
     }
 
     fn operand(&mut self, id: ExprId, at_least: u8) {
-        let mut todo = vec![Todo::Print(id, at_least)];
-        while let Some(next) = todo.pop() {
+        let mut pending = vec![Pending::Print(id, at_least)];
+        while let Some(next) = pending.pop() {
             match next {
-                Todo::Word(text, at) => self.word(&text, at),
-                Todo::Print(id, at_least) => {
-                    let at = self.draft.tree[id].at;
+                Pending::Token(text, at) => self.token(&text, at),
+                Pending::Print(id, at_least) => {
+                    let at = self.cx.tree[id].at;
                     let mut parts = Vec::new();
                     let level = self.parts(id, &mut parts);
                     if level < at_least {
-                        self.word("(", at);
-                        parts.push(Todo::Word(")".into(), at));
+                        self.token("(", at);
+                        parts.push(Pending::Token(")".into(), at));
                     }
-                    todo.extend(parts.into_iter().rev());
+                    pending.extend(parts.into_iter().rev());
                 }
             }
         }
     }
 
-    /// What an expression is made of, from left to right, and how tightly it holds together.
-    fn parts(&self, id: ExprId, parts: &mut Vec<Todo<'a>>) -> u8 {
-        let tree = &self.draft.tree;
+    /// Collects the parts of an expression from left to right. Returns its precedence level.
+    fn parts(&self, id: ExprId, parts: &mut Vec<Pending<'a>>) -> u8 {
+        let tree = &self.cx.tree;
         let at = tree[id].at;
-        let word = |text: &'a str| Todo::Word(text.into(), at);
+        let token = |text: &'a str| Pending::Token(text.into(), at);
         match tree[id].kind {
             ExprKind::Unary {
                 op: UnaryOp::Plus,
                 operand,
             } => {
-                parts.push(Todo::Print(operand, level::UNARY));
+                parts.push(Pending::Print(operand, level::UNARY));
                 level::UNARY
             }
             ExprKind::Unary { op, operand } => {
                 // `- -x` without the space is another operator.
-                parts.extend([word(op.symbol()), Todo::Print(operand, level::POSTFIX)]);
+                parts.extend([token(op.symbol()), Pending::Print(operand, level::POSTFIX)]);
                 level::UNARY
             }
             ExprKind::Binary { op, left, right } => {
                 let level = op.precedence() + level::BINARY;
-                let symbol = Todo::Word(format!(" {} ", op.symbol()).into(), at);
-                parts.extend([Todo::Print(left, level), symbol, Todo::Print(right, level + 1)]);
+                let symbol = Pending::Token(format!(" {} ", op.symbol()).into(), at);
+                parts.extend([
+                    Pending::Print(left, level),
+                    symbol,
+                    Pending::Print(right, level + 1),
+                ]);
                 level
             }
             ExprKind::Assign { op, target, value } => {
-                let symbol = Todo::Word(format!(" {}= ", op.map_or("", BinaryOp::symbol)).into(), at);
+                let symbol = Pending::Token(format!(" {}= ", op.map_or("", BinaryOp::symbol)).into(), at);
                 parts.extend([
-                    Todo::Print(target, level::UNARY),
+                    Pending::Print(target, level::UNARY),
                     symbol,
-                    Todo::Print(value, level::ASSIGN),
+                    Pending::Print(value, level::ASSIGN),
                 ]);
                 level::ASSIGN
             }
@@ -94,41 +98,41 @@ impl<'a> Printer<'a> {
                 postfix: false,
                 target,
             } => {
-                parts.extend([word(op.symbol()), Todo::Print(target, level::UNARY)]);
+                parts.extend([token(op.symbol()), Pending::Print(target, level::UNARY)]);
                 level::UNARY
             }
             ExprKind::Conditional { condition, yes, no } => {
-                parts.extend([Todo::Print(condition, level::CONDITIONAL + 1), word(" ? ")]);
-                parts.extend([Todo::Print(yes, level::ASSIGN), word(" : ")]);
-                parts.push(Todo::Print(no, level::CONDITIONAL));
+                parts.extend([Pending::Print(condition, level::CONDITIONAL + 1), token(" ? ")]);
+                parts.extend([Pending::Print(yes, level::ASSIGN), token(" : ")]);
+                parts.push(Pending::Print(no, level::CONDITIONAL));
                 level::CONDITIONAL
             }
             ExprKind::Sequence { first, second } => {
                 parts.extend([
-                    Todo::Print(first, level::SEQUENCE),
-                    word(", "),
-                    Todo::Print(second, level::ASSIGN),
+                    Pending::Print(first, level::SEQUENCE),
+                    token(", "),
+                    Pending::Print(second, level::ASSIGN),
                 ]);
                 level::SEQUENCE
             }
             _ => {
                 self.postfix_parts(id, parts);
                 match parts.as_slice() {
-                    [Todo::Word(literal, _)] if literal.starts_with('-') => level::UNARY,
+                    [Pending::Token(literal, _)] if literal.starts_with('-') => level::UNARY,
                     _ => level::POSTFIX,
                 }
             }
         }
     }
 
-    /// The same of an expression that no operator on its left takes apart.
-    fn postfix_parts(&self, id: ExprId, parts: &mut Vec<Todo<'a>>) {
-        let tree = &self.draft.tree;
+    /// Collects the parts of a postfix or primary expression.
+    fn postfix_parts(&self, id: ExprId, parts: &mut Vec<Pending<'a>>) {
+        let tree = &self.cx.tree;
         let at = tree[id].at;
-        let word = |text: &'a str| Todo::Word(text.into(), at);
+        let token = |text: &'a str| Pending::Token(text.into(), at);
         match &tree[id].kind {
-            ExprKind::Literal(literal) => parts.push(Todo::Word(spell(literal), at)),
-            ExprKind::Variable(variable) => parts.push(Todo::Word(self.lookup(*variable), at)),
+            ExprKind::Literal(literal) => parts.push(Pending::Token(literal_text(literal), at)),
+            ExprKind::Variable(variable) => parts.push(Pending::Token(self.variable_text(*variable), at)),
             ExprKind::Call { function, arguments } => {
                 call(self.function(*function).into(), arguments, at, parts);
             }
@@ -137,12 +141,12 @@ impl<'a> Printer<'a> {
                 call(self.type_name(tree[id].ty).into(), arguments, at, parts);
             }
             &ExprKind::Step { op, target, .. } => {
-                parts.extend([Todo::Print(target, level::POSTFIX), word(op.symbol())]);
+                parts.extend([Pending::Print(target, level::POSTFIX), token(op.symbol())]);
             }
             &ExprKind::Swizzle { vector, components } => {
                 parts.extend([
-                    Todo::Print(vector, level::POSTFIX),
-                    Todo::Word(format!(".{}", components.name()).into(), at),
+                    Pending::Print(vector, level::POSTFIX),
+                    Pending::Token(format!(".{}", components.name()).into(), at),
                 ]);
             }
             &ExprKind::Member { structure, member } => {
@@ -150,28 +154,33 @@ impl<'a> Printer<'a> {
                     Type::Struct(id) => self.names.members.get(&(id, member)).map_or("", String::as_str),
                     _ => "",
                 };
-                parts.extend([Todo::Print(structure, level::POSTFIX), word("."), word(name)]);
+                parts.extend([Pending::Print(structure, level::POSTFIX), token("."), token(name)]);
             }
             &ExprKind::Index { base, index } => {
-                let base = Todo::Print(base, level::POSTFIX);
-                parts.extend([base, word("["), Todo::Print(index, level::SEQUENCE), word("]")]);
+                let base = Pending::Print(base, level::POSTFIX);
+                parts.extend([
+                    base,
+                    token("["),
+                    Pending::Print(index, level::SEQUENCE),
+                    token("]"),
+                ]);
             }
             ExprKind::Length { array } => {
                 let size = match tree[*array].ty {
                     Type::Array(array) => tree.array(array).size,
                     _ => 0,
                 };
-                parts.push(Todo::Word(size.to_string().into(), at));
+                parts.push(Pending::Token(size.to_string().into(), at));
             }
-            // The operators are told apart before.
+            // [`Self::parts`] handles the operators.
             _ => {}
         }
     }
 
-    /// A variable where it is read; a channel is a texture with its sampler.
-    fn lookup(&self, id: VariableId) -> Cow<'a, str> {
+    /// The text of a variable that is read; a channel is combined with its sampler.
+    fn variable_text(&self, id: VariableId) -> Cow<'a, str> {
         let name = self.variable(id);
-        match (self.draft.tree[id].ty, self.draft.tree[id].kind) {
+        match (self.cx.tree[id].ty, self.cx.tree[id].kind) {
             (Type::Sampler(sampler), VariableKind::Input(_)) => {
                 format!("{}({name}, {name}_sampler)", sampler.name()).into()
             }
@@ -180,10 +189,10 @@ impl<'a> Printer<'a> {
     }
 }
 
-/// A literal as written, if naga reads it so; else its value.
-fn spell(literal: &Literal) -> Cow<'_, str> {
+/// The text of a literal as written, or of its value where naga would misread it.
+fn literal_text(literal: &Literal) -> Cow<'_, str> {
     match literal.value {
-        // naga reads integers of 64 bits and keeps 32.
+        // naga parses 64-bit integers and truncates them to 32.
         Value::Int(value) if literal.text.len() > 11 => value.to_string().into(),
         Value::Uint(value) if literal.text.len() > 12 => format!("{value}u").into(),
         _ => (&*literal.text).into(),
@@ -191,13 +200,13 @@ fn spell(literal: &Literal) -> Cow<'_, str> {
 }
 
 /// `name(a, b)`
-fn call<'a>(name: Cow<'a, str>, arguments: &[ExprId], at: Place, parts: &mut Vec<Todo<'a>>) {
-    parts.extend([Todo::Word(name, at), Todo::Word("(".into(), at)]);
+fn call<'a>(name: Cow<'a, str>, arguments: &[ExprId], at: Place, parts: &mut Vec<Pending<'a>>) {
+    parts.extend([Pending::Token(name, at), Pending::Token("(".into(), at)]);
     for (position, &argument) in arguments.iter().enumerate() {
         if position > 0 {
-            parts.push(Todo::Word(", ".into(), at));
+            parts.push(Pending::Token(", ".into(), at));
         }
-        parts.push(Todo::Print(argument, level::ASSIGN));
+        parts.push(Pending::Print(argument, level::ASSIGN));
     }
-    parts.push(Todo::Word(")".into(), at));
+    parts.push(Pending::Token(")".into(), at));
 }

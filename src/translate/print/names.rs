@@ -1,15 +1,16 @@
-//! What everything is called: as the author called it, wherever naga takes that.
+//! Names of all items: the author's names wherever naga accepts them.
 //!
-//! naga knows one scope for types and looks for a type first, whatever the name stands for (`ray ray;`); words that are
-//! free in ES 3.00 are keywords in 450 (`sample`, `buffer`); what lowering moved may meet another of its name.
+//! naga has one scope for types and looks for a type first, whatever the name denotes (`ray ray;`);
+//! identifiers of ES 3.00 are keywords in 450 (`sample`, `buffer`); and declarations moved by lowering may
+//! clash with others of the same name.
 
 use std::collections::{HashMap, HashSet};
 
 use toyproof_glsl::tree::{BuiltInVariable, ExprKind, FunctionId, Item, StructId, Type, VariableId, walk};
 
 use super::order::Order;
-use super::word;
-use crate::lower::Draft;
+use crate::lower::LoweringContext;
+use crate::print::keyword;
 
 /// The members of the uniform block, in order, with their types in it.
 pub(super) const BLOCK: [(&str, &str); 10] = [
@@ -25,18 +26,19 @@ pub(super) const BLOCK: [(&str, &str); 10] = [
     ("float", "iSampleRate"),
 ];
 
-/// What the shader's output, its colour in `main` and its block are called. naga takes a name for a type wherever there is such a type.
-const SURROUNDINGS: [&str; 3] = ["toyproof_colour", "toyproof_painted", "ToyproofFrame"];
+/// The names of the shader's output, of its color in `main` and of its block. naga takes a name for a type
+/// wherever a type of that name exists.
+const GENERATED_NAMES: [&str; 3] = ["toyproof_colour", "toyproof_painted", "ToyproofFrame"];
 
-/// How names begin that lowering gives.
-const OWN: &str = "toyproof_";
+/// The prefix of generated names.
+const GENERATED_PREFIX: &str = "toyproof_";
 
-/// Whether naga knows that variable under its own name.
-pub(super) fn is_known(variable: BuiltInVariable) -> bool {
+/// Whether naga has the variable under the same name.
+pub(super) fn is_native(variable: BuiltInVariable) -> bool {
     variable == BuiltInVariable::FragCoord
 }
 
-/// The names of a draft's things.
+/// The names of a shader's items.
 #[derive(Default)]
 pub(super) struct Names {
     pub(super) variables: HashMap<VariableId, String>,
@@ -46,20 +48,20 @@ pub(super) struct Names {
 }
 
 impl Names {
-    pub(super) fn of(draft: &Draft, order: &Order) -> Self {
+    pub(super) fn of(cx: &LoweringContext, order: &Order) -> Self {
         let mut names = Self::default();
         let mut types = HashSet::new();
-        // What stands at global scope, and cannot be called twice.
+        // Names at global scope, which must be unique.
         let mut taken: HashSet<String> = BLOCK.iter().map(|&(_, name)| name.to_owned()).collect();
         for channel in 0..4 {
             taken.extend([format!("iChannel{channel}"), format!("iChannel{channel}_sampler")]);
         }
-        taken.extend(SURROUNDINGS.map(str::to_owned));
+        taken.extend(GENERATED_NAMES.map(str::to_owned));
         let mut surroundings = taken.clone();
         for &input in &order.inputs {
-            names.variables.insert(input, draft.tree[input].name.clone());
+            names.variables.insert(input, cx.tree[input].name.clone());
         }
-        let tree = &draft.tree;
+        let tree = &cx.tree;
         let mut numbering = Numbering::default();
         for item in &order.items {
             if let Item::Struct(id) = *item {
@@ -68,75 +70,78 @@ impl Names {
                 } else {
                     &tree[id].name
                 };
-                let is_taken = |name: &str| word::is_reserved(name) || taken.contains(name);
-                let name = numbering.free(&word::mended(name), is_taken);
+                let is_taken = |name: &str| keyword::is_reserved(name) || taken.contains(name);
+                let name = numbering.free(&keyword::with_free_stem(name), is_taken);
                 types.insert(name.clone());
                 taken.insert(name.clone());
                 names.structs.insert(id, name);
-                names.name_members(draft, id);
+                names.name_members(cx, id);
             }
         }
-        let mut authors: HashMap<&str, usize> = HashMap::new();
+        let mut counts: HashMap<&str, usize> = HashMap::new();
         for (_, variable) in tree.variables.iter() {
-            *authors.entry(variable.name.as_str()).or_default() += 1;
+            *counts.entry(variable.name.as_str()).or_default() += 1;
         }
         for item in &order.items {
             if let Item::Variable(id) = *item {
-                // What was moved out of a function meets every local that it is used among.
-                let moved = draft.moved.contains(&id);
+                // A variable moved out of a function may clash with any local.
+                let moved = cx.moved.contains(&id);
                 let own = tree[id].name.as_str();
-                let name = numbering.free(&word::mended(own), |name| {
-                    word::is_reserved(name)
-                        || word::is_function(name)
+                let name = numbering.free(&keyword::with_free_stem(own), |name| {
+                    keyword::is_reserved(name)
+                        || keyword::is_function(name)
                         || taken.contains(name)
-                        || (moved && name != own && authors.contains_key(name))
-                        || (moved && name == own && authors.get(name).is_some_and(|&count| count > 1))
+                        || (moved && name != own && counts.contains_key(name))
+                        || (moved && name == own && counts.get(name).is_some_and(|&count| count > 1))
                 });
                 taken.insert(name.clone());
                 names.variables.insert(id, name);
             }
         }
-        names.name_functions(draft, order, &taken);
-        let own = names.functions.values().filter(|name| name.starts_with(OWN));
+        names.name_functions(cx, order, &taken);
+        let own = names
+            .functions
+            .values()
+            .filter(|name| name.starts_with(GENERATED_PREFIX));
         surroundings.extend(own.cloned());
         for item in &order.items {
             if let Item::Function(id) = *item {
-                names.name_locals(draft, id, &types, &surroundings);
+                names.name_locals(cx, id, &types, &surroundings);
             }
         }
         names
     }
 
-    fn name_members(&mut self, draft: &Draft, id: StructId) {
+    fn name_members(&mut self, cx: &LoweringContext, id: StructId) {
         let mut taken = HashSet::new();
-        for (at, member) in draft.tree[id].members.iter().enumerate() {
+        for (at, member) in cx.tree[id].members.iter().enumerate() {
             let name = free(&member.name, |name| {
-                word::is_reserved(name) || taken.contains(name)
+                keyword::is_reserved(name) || taken.contains(name)
             });
             taken.insert(name.clone());
             self.members.insert((id, at), name);
         }
     }
 
-    /// Overloads keep one name, unless lowering took away what told them apart, or naga does not see it.
-    fn name_functions(&mut self, draft: &Draft, order: &Order, taken: &HashSet<String>) {
-        let alike = self.structs_alike(draft, order);
+    /// Overloads share a name unless lowering or naga makes their parameters equal.
+    fn name_functions(&mut self, cx: &LoweringContext, order: &Order, taken: &HashSet<String>) {
+        let firsts = self.equal_structs(cx, order);
         let mut defined: HashSet<(String, Vec<Type>)> = HashSet::new();
         for item in &order.items {
             let Item::Function(id) = *item else {
                 continue;
             };
-            let types: Vec<Type> = draft.tree[id]
+            let types: Vec<Type> = cx.tree[id]
                 .parameters
                 .iter()
-                .map(|&id| match draft.tree[id].ty {
-                    Type::Struct(id) => Type::Struct(alike[&id]),
+                .map(|&id| match cx.tree[id].ty {
+                    Type::Struct(id) => Type::Struct(firsts[&id]),
                     ty => ty,
                 })
                 .collect();
-            let name = free(&draft.tree[id].name, |name| {
-                word::is_reserved(name)
-                    || word::is_function(name)
+            let name = free(&cx.tree[id].name, |name| {
+                keyword::is_reserved(name)
+                    || keyword::is_function(name)
                     || taken.contains(name)
                     || defined.contains(&(name.to_owned(), types.clone()))
             });
@@ -145,34 +150,36 @@ impl Names {
         }
     }
 
-    /// For each structure the first with the same members: naga cannot tell overloads by their names.
-    fn structs_alike(&self, draft: &Draft, order: &Order) -> HashMap<StructId, StructId> {
+    /// Maps each structure to the first with the same members: naga does not distinguish overloads by
+    /// structure names.
+    fn equal_structs(&self, cx: &LoweringContext, order: &Order) -> HashMap<StructId, StructId> {
+        let mut by_members = HashMap::new();
         let mut firsts = HashMap::new();
-        let mut alike = HashMap::new();
         for item in &order.items {
             let Item::Struct(id) = *item else {
                 continue;
             };
-            let members: Vec<(&str, Type)> = draft.tree[id]
+            let members: Vec<(&str, Type)> = cx.tree[id]
                 .members
                 .iter()
                 .enumerate()
                 .map(|(at, member)| (self.members[&(id, at)].as_str(), member.ty))
                 .collect();
-            alike.insert(id, *firsts.entry(members).or_insert(id));
+            firsts.insert(id, *by_members.entry(members).or_insert(id));
         }
-        alike
+        firsts
     }
 
-    /// No local may hide what lowering or the printer says within its scope: `surroundings`.
+    /// Names locals so that none shadows a name in `surroundings`, which lowering or the printer uses in its
+    /// scope.
     fn name_locals(
         &mut self,
-        draft: &Draft,
+        cx: &LoweringContext,
         function: FunctionId,
         types: &HashSet<String>,
         surroundings: &HashSet<String>,
     ) {
-        let tree = &draft.tree;
+        let tree = &cx.tree;
         let mut locals = tree[function].parameters.clone();
         let mut globals = HashSet::new();
         if let Some(body) = &tree[function].body {
@@ -187,7 +194,7 @@ impl Names {
             }
         }
         let clashes = |name: &str| {
-            word::is_reserved(name)
+            keyword::is_reserved(name)
                 || types.contains(name)
                 || globals.contains(name)
                 || surroundings.contains(name)
@@ -200,12 +207,12 @@ impl Names {
         let mut numbering = Numbering::default();
         for &id in &locals {
             let own = tree[id].name.as_str();
-            let meets = draft.moved.contains(&id) && counts.get(own).is_some_and(|&count| count > 1);
-            let name = if own.is_empty() || meets || clashes(own) {
+            let is_ambiguous = cx.moved.contains(&id) && counts.get(own).is_some_and(|&count| count > 1);
+            let name = if own.is_empty() || is_ambiguous || clashes(own) {
                 let stem = if own.is_empty() {
                     "unused".to_owned()
                 } else {
-                    word::mended(own)
+                    keyword::with_free_stem(own)
                 };
                 numbering.next(&stem, |name| clashes(name) || taken.contains(name))
             } else {
@@ -217,13 +224,13 @@ impl Names {
     }
 }
 
-/// Numbers names that are taken. It counts on for each: thousands of temporaries share one, and what was taken once is not free
-/// later.
+/// Appends numbers to names that are taken. Counters never restart: thousands of temporaries share a stem,
+/// and a name once taken is never free again.
 #[derive(Debug, Default)]
 pub(crate) struct Numbering(HashMap<String, usize>);
 
 impl Numbering {
-    /// The name itself, or the first free one that is made of it.
+    /// The name itself if it is free, or the next numbered one.
     pub(crate) fn free(&mut self, name: &str, is_taken: impl Fn(&str) -> bool) -> String {
         if is_taken(name) {
             self.next(name, is_taken)
@@ -232,7 +239,7 @@ impl Numbering {
         }
     }
 
-    /// The next free name that is made of it.
+    /// The next free numbered name.
     fn next(&mut self, name: &str, is_taken: impl Fn(&str) -> bool) -> String {
         let counter = self.0.entry(name.to_owned()).or_default();
         loop {
@@ -245,9 +252,9 @@ impl Numbering {
     }
 }
 
-/// The name itself, or the first free one that is made of it.
+/// The name itself if it is free, or the first numbered one.
 fn free(name: &str, is_taken: impl Fn(&str) -> bool) -> String {
-    let name = &word::mended(name);
+    let name = &keyword::with_free_stem(name);
     let numbered = (1_usize..).map(|number| format!("{name}_{number}"));
     std::iter::once(name.to_owned())
         .chain(numbered)

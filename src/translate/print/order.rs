@@ -1,7 +1,8 @@
-//! What is printed, and in which order: the author's, but nothing before what it uses, and nothing that is not used.
+//! The items to print and their order: the author's, except that definitions precede uses and unused items
+//! are omitted.
 //!
-//! naga reads from top to bottom, forgets what a prototype promised once another definition stands between, and takes
-//! time for functions that nobody calls.
+//! naga reads from top to bottom, forgets a prototype after another definition, and spends time on functions
+//! that are never called.
 
 use std::collections::HashSet;
 
@@ -9,9 +10,9 @@ use toyproof_glsl::tree::{
     ExprId, ExprKind, Function, Item, StatementKind, Type, VariableId, VariableKind, walk,
 };
 
-use crate::lower::Draft;
+use crate::lower::LoweringContext;
 
-/// Everything that a picture needs, definitions before uses.
+/// Everything that an image depends on, definitions before uses.
 pub(crate) struct Order {
     pub(crate) items: Vec<Item>,
     /// The inputs that are read.
@@ -19,52 +20,52 @@ pub(crate) struct Order {
 }
 
 impl Order {
-    /// Where labels of `case`s are printed as their values.
-    pub(crate) fn of(draft: &Draft) -> Self {
-        Self::found(draft, false)
+    /// The order if `case` labels are printed as values.
+    pub(crate) fn of(cx: &LoweringContext) -> Self {
+        Self::build(cx, false)
     }
 
-    /// Where they are printed as written, with the constants that they name.
-    pub(crate) fn with_labels(draft: &Draft) -> Self {
-        Self::found(draft, true)
+    /// The order if `case` labels are printed as written, with the constants that they name.
+    pub(crate) fn with_labels(cx: &LoweringContext) -> Self {
+        Self::build(cx, true)
     }
 
-    fn found(draft: &Draft, labels: bool) -> Self {
-        let mut finder = Finder {
-            draft,
+    fn build(cx: &LoweringContext, labels: bool) -> Self {
+        let mut collector = Collector {
+            cx,
             labels,
-            locals: locals(draft),
+            locals: locals(cx),
             inputs: Vec::new(),
         };
-        let roots: Vec<Item> = draft
-            .begin
+        let roots: Vec<Item> = cx
+            .startup_function
             .iter()
-            .chain([&draft.main_image])
+            .chain([&cx.main_image])
             .map(|&id| Item::Function(id))
             .collect();
         let mut used = HashSet::new();
         let mut reached = Vec::new();
         for &root in &roots {
-            finder.definitions_first(root, &mut used, &mut reached);
+            collector.push_postorder(root, &mut used, &mut reached);
         }
-        // The author's order first, so that only what must moves.
+        // Follow the author's order, so that only misplaced items move.
         let mut done = HashSet::new();
         let mut items = Vec::new();
-        let author = draft.tree.items.iter().filter(|item| used.contains(item));
+        let author = cx.tree.items.iter().filter(|item| used.contains(item));
         for &item in author.chain(&roots) {
-            finder.definitions_first(item, &mut done, &mut items);
+            collector.push_postorder(item, &mut done, &mut items);
         }
-        let mut inputs = finder.inputs;
+        let mut inputs = collector.inputs;
         inputs.sort_unstable();
         inputs.dedup();
         Self { items, inputs }
     }
 }
 
-/// The variables that functions declare, and their parameters.
-fn locals(draft: &Draft) -> HashSet<VariableId> {
+/// The parameters of functions and the variables that they declare.
+fn locals(cx: &LoweringContext) -> HashSet<VariableId> {
     let mut locals = HashSet::new();
-    for (_, function) in draft.tree.functions.iter() {
+    for (_, function) in cx.tree.functions.iter() {
         locals.extend(function.parameters.iter().copied());
         if let Some(body) = &function.body {
             walk::each(body, &mut |statement| locals.extend(walk::declared(statement)));
@@ -73,99 +74,99 @@ fn locals(draft: &Draft) -> HashSet<VariableId> {
     locals
 }
 
-struct Finder<'a> {
-    draft: &'a Draft,
-    /// Whether labels name things, too.
+struct Collector<'a> {
+    cx: &'a LoweringContext,
+    /// Whether items named by labels count as used.
     labels: bool,
     locals: HashSet<VariableId>,
     inputs: Vec<VariableId>,
 }
 
-impl Finder<'_> {
-    /// Appends an item to `out`, what it needs before it.
-    fn definitions_first(&mut self, root: Item, done: &mut HashSet<Item>, out: &mut Vec<Item>) {
+impl Collector<'_> {
+    /// Appends an item to `out`, after its dependencies.
+    fn push_postorder(&mut self, root: Item, done: &mut HashSet<Item>, out: &mut Vec<Item>) {
         let mut pending = vec![(root, false)];
-        while let Some((item, needs_done)) = pending.pop() {
-            if needs_done {
+        while let Some((item, dependencies_done)) = pending.pop() {
+            if dependencies_done {
                 out.push(item);
             } else if done.insert(item) {
                 pending.push((item, true));
-                let needs = self.needs(item);
+                let dependencies = self.dependencies(item);
                 pending.extend(
-                    needs
+                    dependencies
                         .into_iter()
                         .rev()
-                        .filter(|need| !done.contains(need))
-                        .map(|need| (need, false)),
+                        .filter(|dependency| !done.contains(dependency))
+                        .map(|dependency| (dependency, false)),
                 );
             }
         }
     }
 
-    /// What an item names.
-    fn needs(&mut self, item: Item) -> Vec<Item> {
-        let mut needs = Vec::new();
+    /// The items that an item names.
+    fn dependencies(&mut self, item: Item) -> Vec<Item> {
+        let mut dependencies = Vec::new();
         match item {
             Item::Struct(id) => {
-                for member in &self.draft.tree[id].members {
-                    self.of_type(member.ty, &mut needs);
+                for member in &self.cx.tree[id].members {
+                    self.add_type(member.ty, &mut dependencies);
                 }
             }
             Item::Variable(id) => {
-                let variable = &self.draft.tree[id];
-                self.of_type(variable.ty, &mut needs);
-                self.of_expressions(variable.initialiser, &mut needs);
+                let variable = &self.cx.tree[id];
+                self.add_type(variable.ty, &mut dependencies);
+                self.add_expressions(variable.initializer, &mut dependencies);
             }
             Item::Prototype(_) => {}
             Item::Function(id) => {
-                let draft = self.draft;
-                self.of_function(&draft.tree[id], &mut needs);
+                let cx = self.cx;
+                self.add_function(&cx.tree[id], &mut dependencies);
             }
         }
-        needs
+        dependencies
     }
 
-    fn of_type(&self, ty: Type, needs: &mut Vec<Item>) {
+    fn add_type(&self, ty: Type, dependencies: &mut Vec<Item>) {
         let mut ty = ty;
         while let Type::Array(id) = ty {
-            ty = self.draft.tree.array(id).element;
+            ty = self.cx.tree.array(id).element;
         }
         if let Type::Struct(id) = ty {
-            needs.push(Item::Struct(id));
+            dependencies.push(Item::Struct(id));
         }
     }
 
-    fn of_function(&mut self, function: &Function, needs: &mut Vec<Item>) {
-        let draft = self.draft;
-        self.of_type(function.return_type, needs);
+    fn add_function(&mut self, function: &Function, dependencies: &mut Vec<Item>) {
+        let cx = self.cx;
+        self.add_type(function.return_type, dependencies);
         for &parameter in &function.parameters {
-            self.of_type(draft.tree[parameter].ty, needs);
+            self.add_type(cx.tree[parameter].ty, dependencies);
         }
         if let Some(body) = &function.body {
             walk::each(body, &mut |statement| {
                 if let Some(variable) = walk::declared(statement) {
-                    self.of_type(draft.tree[variable].ty, needs);
+                    self.add_type(cx.tree[variable].ty, dependencies);
                 }
-                self.of_expressions(walk::own_expressions(&draft.tree, statement), needs);
+                self.add_expressions(walk::own_expressions(&cx.tree, statement), dependencies);
                 if let (true, StatementKind::Switch { cases, .. }) = (self.labels, &statement.kind) {
                     let labels = cases.iter().flat_map(|case| walk::values(&case.labels));
-                    self.of_expressions(labels, needs);
+                    self.add_expressions(labels, dependencies);
                 }
             });
         }
     }
 
-    fn of_expressions(&mut self, roots: impl IntoIterator<Item = ExprId>, needs: &mut Vec<Item>) {
-        let tree = &self.draft.tree;
+    fn add_expressions(&mut self, roots: impl IntoIterator<Item = ExprId>, dependencies: &mut Vec<Item>) {
+        let tree = &self.cx.tree;
         for id in roots.into_iter().flat_map(|root| tree.postorder(root)) {
             match tree[id].kind {
-                ExprKind::Call { function, .. } => needs.push(Item::Function(function)),
-                ExprKind::Construct { .. } => self.of_type(tree[id].ty, needs),
+                ExprKind::Call { function, .. } => dependencies.push(Item::Function(function)),
+                ExprKind::Construct { .. } => self.add_type(tree[id].ty, dependencies),
                 ExprKind::Variable(variable) => match tree[variable].kind {
                     VariableKind::Input(_) => self.inputs.push(variable),
-                    VariableKind::BuiltIn(built_in) if super::names::is_known(built_in) => {}
+                    VariableKind::BuiltIn(built_in) if super::names::is_native(built_in) => {}
                     _ if self.locals.contains(&variable) => {}
-                    _ => needs.push(Item::Variable(variable)),
+                    _ => dependencies.push(Item::Variable(variable)),
                 },
                 _ => {}
             }

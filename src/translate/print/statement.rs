@@ -1,14 +1,14 @@
-//! Statements and declarations, one to a line.
+//! Prints statements and declarations, one per line.
 
 use toyproof_glsl::tree::{
     Arm, Block, Case, Condition, Direction, ExprId, ExprKind, FunctionId, Item, Label, Place, Statement,
     StatementKind, StructId, Tree, Type, UnaryOp, VariableId, VariableKind,
 };
 
-use super::printer::Printer;
+use super::Printer;
 
 impl Printer<'_> {
-    /// A declaration at global scope.
+    /// Prints a declaration at global scope.
     pub(super) fn item(&mut self, item: Item) {
         match item {
             Item::Struct(id) => self.structure(id),
@@ -22,24 +22,24 @@ impl Printer<'_> {
     }
 
     fn structure(&mut self, id: StructId) {
-        let tree = &self.draft.tree;
+        let tree = &self.cx.tree;
         let name = self.names.structs.get(&id).cloned().unwrap_or_default();
-        self.word(&format!("struct {name} "), tree[id].at);
+        self.token(&format!("struct {name} "), tree[id].at);
         self.braces(|printer| {
             for (at, member) in tree[id].members.iter().enumerate() {
                 let name = printer.names.members.get(&(id, at)).cloned().unwrap_or_default();
                 printer.line();
-                printer.word(&format!("{} {name};\n", printer.type_name(member.ty)), member.at);
+                printer.token(&format!("{} {name};\n", printer.type_name(member.ty)), member.at);
             }
         });
         self.plain(";\n");
     }
 
     fn definition(&mut self, id: FunctionId) {
-        let function = &self.draft.tree[id];
+        let function = &self.cx.tree[id];
         let at = function.at;
         self.plain("\n");
-        self.word(
+        self.token(
             &format!("{} {}(", self.type_name(function.return_type), self.function(id)),
             at,
         );
@@ -47,7 +47,7 @@ impl Printer<'_> {
             if position > 0 {
                 self.plain(", ");
             }
-            let variable = &self.draft.tree[parameter];
+            let variable = &self.cx.tree[parameter];
             let direction = match variable.kind {
                 VariableKind::Parameter(Direction::Out) => "out ",
                 VariableKind::Parameter(Direction::InOut) => "inout ",
@@ -58,15 +58,15 @@ impl Printer<'_> {
                 self.type_name(variable.ty),
                 self.variable(parameter)
             );
-            self.word(&text, variable.at.unwrap_or(at));
+            self.token(&text, variable.at.unwrap_or(at));
         }
-        self.word(") ", at);
+        self.token(") ", at);
         self.braces(|printer| {
             if let Some(body) = &function.body {
                 printer.statements(body);
-            } else if let Some(text) = printer.draft.helpers.get(&id) {
+            } else if let Some(text) = printer.cx.helpers.get(&id) {
                 printer.line();
-                printer.word(text, at);
+                printer.token(text, at);
                 printer.plain("\n");
             }
         });
@@ -75,7 +75,7 @@ impl Printer<'_> {
 
     /// `const float a = 1.0`
     fn declaration(&mut self, id: VariableId) {
-        let variable = &self.draft.tree[id];
+        let variable = &self.cx.tree[id];
         let constant = if variable.kind == VariableKind::Const {
             "const "
         } else {
@@ -83,14 +83,14 @@ impl Printer<'_> {
         };
         let text = format!("{constant}{} {}", self.type_name(variable.ty), self.variable(id));
         self.spanned(&text, variable.at.map(|at| at.span));
-        if let Some(value) = variable.initialiser {
+        if let Some(value) = variable.initializer {
             self.plain(" = ");
             self.argument(value);
         }
     }
 
     fn statements(&mut self, block: &Block) {
-        // Structures stand at global scope.
+        // Structures are printed at global scope.
         for statement in block
             .iter()
             .filter(|statement| !matches!(statement.kind, StatementKind::Struct(_)))
@@ -126,7 +126,7 @@ impl Printer<'_> {
                 step,
                 body,
             } => {
-                self.word("for (", at);
+                self.token("for (", at);
                 self.init(init);
                 self.plain(";");
                 if let Some(Condition::Expression(condition)) = condition {
@@ -142,7 +142,7 @@ impl Printer<'_> {
                 self.block(body);
             }
             StatementKind::While { condition, body } => {
-                self.word("while (", at);
+                self.token("while (", at);
                 if let Condition::Expression(condition) = condition {
                     self.expression(*condition);
                 }
@@ -150,31 +150,31 @@ impl Printer<'_> {
                 self.block(body);
             }
             StatementKind::DoWhile { body, condition } => {
-                self.word("do ", at);
+                self.token("do ", at);
                 self.block(body);
-                self.word(" while (", at);
+                self.token(" while (", at);
                 self.expression(*condition);
                 self.plain(");");
             }
-            StatementKind::Break => self.word("break;", at),
-            StatementKind::Continue => self.word("continue;", at),
-            StatementKind::Discard => self.word("discard;", at),
-            StatementKind::Return(None) => self.word("return;", at),
+            StatementKind::Break => self.token("break;", at),
+            StatementKind::Continue => self.token("continue;", at),
+            StatementKind::Discard => self.token("discard;", at),
+            StatementKind::Return(None) => self.token("return;", at),
             StatementKind::Return(Some(value)) => {
-                self.word("return ", at);
+                self.token("return ", at);
                 self.expression(*value);
                 self.plain(";");
             }
         }
     }
 
-    /// The condition of a `for`: naga takes one that begins with a type for a declaration.
+    /// Prints the condition of a `for`; naga takes one that begins with a type for a declaration.
     fn condition(&mut self, condition: ExprId) {
         let mut first = condition;
         while let Some(operand) = self.leftmost(first) {
             first = operand;
         }
-        if matches!(self.draft.tree[first].kind, ExprKind::Construct { .. }) {
+        if matches!(self.cx.tree[first].kind, ExprKind::Construct { .. }) {
             self.plain("(");
             self.expression(condition);
             self.plain(")");
@@ -185,7 +185,7 @@ impl Printer<'_> {
 
     /// The operand that an expression begins with.
     fn leftmost(&self, id: ExprId) -> Option<ExprId> {
-        match self.draft.tree[id].kind {
+        match self.cx.tree[id].kind {
             ExprKind::Binary { left: first, .. }
             | ExprKind::Conditional { condition: first, .. }
             | ExprKind::Sequence { first, .. }
@@ -201,7 +201,7 @@ impl Printer<'_> {
         }
     }
 
-    /// `int i = 0, j = 1`: one type for all.
+    /// `int i = 0, j = 1`: all variables share a type.
     fn init(&mut self, init: &Block) {
         for (position, statement) in init.iter().enumerate() {
             match statement.kind {
@@ -209,8 +209,8 @@ impl Printer<'_> {
                 StatementKind::Declare(variable) => {
                     let name = self.variable(variable);
                     self.plain(", ");
-                    self.spanned(name, self.draft.tree[variable].at.map(|at| at.span));
-                    if let Some(value) = self.draft.tree[variable].initialiser {
+                    self.spanned(name, self.cx.tree[variable].at.map(|at| at.span));
+                    if let Some(value) = self.cx.tree[variable].initializer {
                         self.plain(" = ");
                         self.argument(value);
                     }
@@ -221,9 +221,10 @@ impl Printer<'_> {
         }
     }
 
-    /// An expression as a statement. naga takes `float[2](…)` there for a declaration, so it is hidden behind a parenthesis.
+    /// Prints an expression as a statement, in parentheses if it begins with `float[2](…)`, which naga would
+    /// take for a declaration.
     fn effect(&mut self, expr: ExprId) {
-        if begins_with_array(&self.draft.tree, expr) {
+        if begins_with_array(&self.cx.tree, expr) {
             self.plain("(");
             self.expression(expr);
             self.plain(")");
@@ -234,19 +235,19 @@ impl Printer<'_> {
 
     fn branches(&mut self, arms: &[Arm], otherwise: Option<&Block>, at: Place) {
         for (position, arm) in arms.iter().enumerate() {
-            self.word(if position == 0 { "if (" } else { " else if (" }, at);
+            self.token(if position == 0 { "if (" } else { " else if (" }, at);
             self.expression(arm.condition);
             self.plain(") ");
             self.block(&arm.body);
         }
         if let Some(body) = otherwise {
-            self.word(" else ", at);
+            self.token(" else ", at);
             self.block(body);
         }
     }
 
     fn switch(&mut self, selector: ExprId, cases: &[Case], at: Place) {
-        self.word("switch (", at);
+        self.token("switch (", at);
         self.expression(selector);
         self.plain(") ");
         self.braces(|printer| {
@@ -254,27 +255,27 @@ impl Printer<'_> {
                 for label in &case.labels {
                     printer.line();
                     match *label {
-                        Label::Default => printer.word("default", case.at),
+                        Label::Default => printer.token("default", case.at),
                         Label::Case { expr, value } => {
-                            let uint = printer.draft.tree[expr].ty.scalar()
-                                == Some(toyproof_glsl::tree::Scalar::Uint);
+                            let uint =
+                                printer.cx.tree[expr].ty.scalar() == Some(toyproof_glsl::tree::Scalar::Uint);
                             let text = if uint {
                                 format!("{value}u")
                             } else {
                                 value.cast_signed().to_string()
                             };
-                            printer.word(&format!("case {text}"), case.at);
+                            printer.token(&format!("case {text}"), case.at);
                         }
                     }
                     printer.plain(":\n");
                 }
-                printer.inset(|printer| printer.statements(&case.body));
+                printer.indented(|printer| printer.statements(&case.body));
             }
         });
     }
 }
 
-/// Whether an expression's first word is an array's constructor, unless a parenthesis comes first.
+/// Whether an expression's text begins with an array constructor.
 fn begins_with_array(tree: &Tree, expr: ExprId) -> bool {
     let mut first = expr;
     loop {

@@ -1,20 +1,22 @@
-//! Built-in functions: most have their name in WGSL, some are operators there, few are missing.
+//! Built-in functions: most have the same name in WGSL, some are operators there, few are missing.
 
-use toyproof_glsl::tree::{BinaryOp, BuiltIn, ExprId, Scalar, Type};
+use toyproof_glsl::tree::{
+    BinaryOp, BuiltIn, ExprId, ExprKind, Input, SamplerShape, Scalar, Type, VariableKind,
+};
 
 use super::Unprintable;
-use super::text::{Class, Printed, Text};
-use super::writer::Writer;
+use super::style::Style;
+use super::writer::{Class, Text, TextResult, Writer};
 
 impl Writer<'_> {
-    pub(super) fn built_in(&mut self, function: BuiltIn, arguments: &[ExprId], ty: Type) -> Printed {
+    pub(super) fn built_in(&mut self, function: BuiltIn, arguments: &[ExprId], ty: Type) -> TextResult {
         use BuiltIn as B;
         if function.is_texture() {
             return self.lookup(function, arguments, ty);
         }
         let types: Vec<Type> = arguments
             .iter()
-            .map(|&argument| self.draft.tree[argument].ty)
+            .map(|&argument| self.cx.tree[argument].ty)
             .collect();
         let outer = self.suffixed;
         let is_abstract = arguments.iter().all(|&argument| self.is_abstract(argument));
@@ -32,20 +34,20 @@ impl Writer<'_> {
             _ => None,
         };
         if let Some(op) = relation {
-            // Told as numbers: WGSL compares vectors component by component.
-            let words: Vec<_> = texts.into_iter().map(Text::term).collect();
+            // WGSL compares vectors component by component, like numbers.
+            let code: Vec<_> = texts.into_iter().map(Text::term).collect();
             return Ok(Text {
-                words: words.join(&format!(" {} ", op.symbol())),
+                code: code.join(&format!(" {} ", op.symbol())),
                 class: Class::Relation,
             });
         }
-        self.derives |= function.is_derivative();
+        self.uses_derivatives |= function.is_derivative();
         let name = match function {
             B::Mod => return self.modulo(texts, ty, types.last().copied().unwrap_or(ty)),
             B::Not => {
                 let operand = texts.pop().ok_or(Unprintable("a call"))?.operand();
                 return Ok(Text {
-                    words: format!("!{operand}"),
+                    code: format!("!{operand}"),
                     class: Class::Unary,
                 });
             }
@@ -57,7 +59,7 @@ impl Writer<'_> {
             B::DFdy if self.style.is_upside_down() => {
                 let operand = Self::list(texts);
                 return Ok(Text {
-                    words: format!("-dpdy({operand})"),
+                    code: format!("-dpdy({operand})"),
                     class: Class::Unary,
                 });
             }
@@ -78,7 +80,8 @@ impl Writer<'_> {
             }
             other => other.name(),
         };
-        // GLSL takes a number for a vector of it here, WGSL does not; but for the last of `mix`.
+        // GLSL accepts a scalar in place of a vector here; WGSL does not, except as the last argument of
+        // `mix`.
         let splats = matches!(
             function,
             B::Min | B::Max | B::Clamp | B::Step | B::Smoothstep | B::Mix
@@ -88,34 +91,34 @@ impl Writer<'_> {
             let last = texts.len() - 1;
             for (at, (text, from)) in texts.iter_mut().zip(&types).enumerate() {
                 if matches!(from, Type::Scalar(_)) && !(function == B::Mix && at == last) {
-                    *text = Text::primary(format!("{vector}({})", text.words));
+                    *text = Text::primary(format!("{vector}({})", text.code));
                 }
             }
         }
         Ok(Text::primary(format!("{name}({})", Self::list(texts))))
     }
 
-    /// `mod`, by a function of our own: WGSL's `%` rounds towards zero.
-    fn modulo(&mut self, texts: Vec<Text>, ty: Type, divisor: Type) -> Printed {
+    /// Prints `mod` as a call of a helper function: WGSL's `%` truncates.
+    fn modulo(&mut self, texts: Vec<Text>, ty: Type, divisor: Type) -> TextResult {
         let [x, mut y] = <[Text; 2]>::try_from(texts).map_err(|_| Unprintable("a call"))?;
         if self.indent == 0 {
-            // No function is called where constants begin.
+            // Module-scope initializers cannot call functions.
             let [x, y] = [x.operand(), y.operand()];
             return Ok(Text {
-                words: format!("{x} - {y} * floor({x} / {y})"),
+                code: format!("{x} - {y} * floor({x} / {y})"),
                 class: Class::Sum,
             });
         }
         let name = self.type_name(ty);
         if ty != divisor {
-            y = Text::primary(format!("{name}({})", y.words));
+            y = Text::primary(format!("{name}({})", y.code));
         }
         let stem = match ty {
             Type::Vector(..) => format!("modulo_{name}"),
             _ => "modulo".to_owned(),
         };
         let is_taken = |word: &str| self.names.all.contains(word);
-        let function = super::word::free(&stem, is_taken);
+        let function = super::names::free(&stem, is_taken);
         let call = format!("{function}({})", Self::list(vec![x, y]));
         self.helpers.insert(
             function.clone(),
@@ -125,5 +128,57 @@ impl Writer<'_> {
             ),
         );
         Ok(Text::primary(call))
+    }
+}
+
+// Texture lookups: a channel is a texture and a sampler.
+
+impl Writer<'_> {
+    pub(super) fn lookup(&mut self, function: BuiltIn, arguments: &[ExprId], ty: Type) -> TextResult {
+        use BuiltIn as B;
+        let (&sampler, rest) = arguments.split_first().ok_or(Unprintable("a call"))?;
+        let tree = &self.cx.tree;
+        let channel = match tree[sampler].kind {
+            ExprKind::Variable(id) => match (tree[id].kind, tree[id].ty) {
+                (VariableKind::Input(Input::Channel(channel)), Type::Sampler(sampler))
+                    if sampler.shape != SamplerShape::D2Array && !sampler.shadow =>
+                {
+                    channel
+                }
+                _ => return Err(Unprintable("that texture")),
+            },
+            _ => return Err(Unprintable("that texture")),
+        };
+        if function == B::TextureSize {
+            let level = self.value(rest.first().copied().ok_or(Unprintable("a call"))?)?;
+            let size = self.type_name(ty);
+            let texture = self.style.texture(channel);
+            return Ok(Text::primary(format!(
+                "{size}(textureDimensions({texture}, {}))",
+                level.code
+            )));
+        }
+        let list = Self::list(self.values(rest)?);
+        let texture = self.style.texture(channel);
+        let pair = format!("{texture}, {}", self.style.sampler(channel));
+        let code = match (function, rest.len()) {
+            // Compute shaders have no derivatives; the host's textures have one level.
+            (B::Texture, 1) if self.style == Style::ComputeToys => {
+                format!("textureSampleLevel({pair}, {list}, 0.0)")
+            }
+            (B::Texture, 1) => {
+                self.uses_derivatives = true;
+                format!("textureSample({pair}, {list})")
+            }
+            (B::Texture, 2) => {
+                self.uses_derivatives = true;
+                format!("textureSampleBias({pair}, {list})")
+            }
+            (B::TextureLod, 2) => format!("textureSampleLevel({pair}, {list})"),
+            (B::TextureGrad, 3) => format!("textureSampleGrad({pair}, {list})"),
+            (B::TexelFetch, 2) => format!("textureLoad({texture}, {list})"),
+            _ => return Err(Unprintable("that lookup of a texture")),
+        };
+        Ok(Text::primary(code))
     }
 }

@@ -1,44 +1,45 @@
-//! The author's comments and blank lines: those that stand directly above what is printed, and comments behind it.
+//! The author's comments and blank lines: comments directly above a place, and comments at the end of its
+//! line.
 
 use std::collections::HashSet;
 
 use toyproof_diagnostic::{FileId, Files, Span};
 use toyproof_glsl::tree::{Place, Swizzle};
 
-/// What is known of comments.
+/// Finds the author's comments and tracks which are printed.
 pub(super) struct Comments<'a> {
     files: &'a Files,
-    /// Lines, by the byte that they begin at, whose comments were printed, and blank ones that were.
-    told: HashSet<(FileId, usize)>,
+    /// Printed comment and blank lines, by the byte where they begin.
+    printed: HashSet<(FileId, usize)>,
 }
 
 impl<'a> Comments<'a> {
     pub(super) fn new(files: &'a Files) -> Self {
         Self {
             files,
-            told: HashSet::new(),
+            printed: HashSet::new(),
         }
     }
 
-    /// The comment lines directly above the line of a place, as `//` lines; each is given once.
+    /// Returns the comment lines directly above a place's line as `//` lines, each only once.
     pub(super) fn above(&mut self, at: Place) -> Vec<String> {
         let (lines, _) = self.lines_above(at);
         let fresh = lines
             .into_iter()
-            .take_while(|&(begin, _)| self.told.insert((at.span.file, begin)));
-        let mut words: Vec<String> = fresh.filter_map(|(_, line)| words(line)).collect();
-        words.reverse();
-        words
+            .take_while(|&(begin, _)| self.printed.insert((at.span.file, begin)));
+        let mut lines: Vec<String> = fresh.filter_map(|(_, line)| line_comment(line)).collect();
+        lines.reverse();
+        lines
     }
 
-    /// Whether a blank line stands above a place, or above the comment there; each is given once.
-    pub(super) fn is_apart(&mut self, at: Place) -> bool {
+    /// Whether a blank line is above a place, or above the comment there; reported only once.
+    pub(super) fn follows_blank_line(&mut self, at: Place) -> bool {
         let (_, blank) = self.lines_above(at);
-        blank.is_some_and(|begin| self.told.insert((at.span.file, begin)))
+        blank.is_some_and(|begin| self.printed.insert((at.span.file, begin)))
     }
 
-    /// The comment lines directly above the line of a place, the nearest first, by the byte that each begins at; and where the line above
-    /// them begins, if it is blank.
+    /// Returns the comment lines directly above a place's line, nearest first, with the bytes where they
+    /// begin; and where the line above them begins, if it is blank.
     fn lines_above(&self, at: Place) -> (Vec<(usize, &'a str)>, Option<usize>) {
         let text = self.files.get(at.span.file).text();
         let before = text.get(..at.span.start as usize).unwrap_or_default();
@@ -58,26 +59,26 @@ impl<'a> Comments<'a> {
             end = begin;
         }
         if in_block {
-            // What looked like a comment's end was none.
+            // The apparent end of a comment was not one.
             lines.clear();
         }
         (lines, None)
     }
 
-    /// The comment that ends the line of a place, if nothing but a `;` or `,` stands between; each is given once.
-    pub(super) fn behind(&mut self, at: Place) -> Option<String> {
+    /// Returns the comment that ends a place's line, if only `;` or `,` comes between; only once.
+    pub(super) fn trailing(&mut self, at: Place) -> Option<String> {
         let file = at.span.file;
         let text = self.files.get(file).text();
         let rest = text.get(at.span.end as usize..)?.lines().next()?.trim();
         let rest = rest.trim_start_matches([';', ',', ' ', '\t']);
         let is_comment =
             rest.starts_with("//") || (rest.starts_with("/*") && rest.find("*/") == Some(rest.len() - 2));
-        (is_comment && self.told.insert((file, at.span.end as usize)))
-            .then(|| words(rest))
+        (is_comment && self.printed.insert((file, at.span.end as usize)))
+            .then(|| line_comment(rest))
             .flatten()
     }
 
-    /// The comment that the file of a place begins with.
+    /// Returns the comment that the file of a place begins with.
     pub(super) fn first(&mut self, at: Place) -> Vec<String> {
         let file = at.span.file;
         let text = self.files.get(file).text();
@@ -103,14 +104,14 @@ impl<'a> Comments<'a> {
         if in_block {
             return Vec::new();
         }
-        self.told.extend(lines.iter().map(|&(begin, _)| (file, begin)));
-        lines.iter().filter_map(|(_, line)| words(line)).collect()
+        self.printed.extend(lines.iter().map(|&(begin, _)| (file, begin)));
+        lines.iter().filter_map(|(_, line)| line_comment(line)).collect()
     }
 }
 
-/// A line of a comment as one of WGSL; nothing if it held only the marks of a block.
-fn words(line: &str) -> Option<String> {
-    // What ends a line for WGSL (§3.1) would end the comment.
+/// Converts a line of a comment to a WGSL comment; `None` if it only has the delimiters of a block.
+fn line_comment(line: &str) -> Option<String> {
+    // WGSL's line breaks (§3.1) would end the comment.
     let line = line.replace(
         |c: char| c.is_control() || matches!(c, '\u{2028}' | '\u{2029}'),
         " ",
@@ -126,22 +127,22 @@ fn words(line: &str) -> Option<String> {
 }
 
 impl<'a> Comments<'a> {
-    /// Components by the letters of the author's: those of a colour where the author wrote these.
+    /// The letters of a swizzle: `rgba` where the author wrote these, `xyzw` otherwise.
     pub(super) fn letters(&self, components: Swizzle, at: Place) -> String {
-        let colour: String = components
+        let color: String = components
             .components()
             .iter()
             .map(|&c| char::from(b"rgba"[usize::from(c)]))
             .collect();
         let written = self.text(at.spelled).and_then(|text| text.rsplit('.').next());
-        if written.is_some_and(|written| written.trim() == colour) {
-            colour
+        if written.is_some_and(|written| written.trim() == color) {
+            color
         } else {
             components.name()
         }
     }
 
-    /// The author's words there.
+    /// The source text of a span.
     pub(super) fn text(&self, span: Span) -> Option<&'a str> {
         self.files
             .get(span.file)
@@ -149,7 +150,7 @@ impl<'a> Comments<'a> {
             .get(span.start as usize..span.end as usize)
     }
 
-    /// Whether the spelling of a place is all that `#define NAME` stands for.
+    /// Whether a place is the entire replacement text of `#define NAME`.
     pub(super) fn is_whole_macro(&self, name: &str, at: Place) -> bool {
         let text = self.files.get(at.spelled.file).text();
         let (Some(before), Some(after)) = (

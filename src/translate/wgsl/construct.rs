@@ -1,21 +1,25 @@
-//! Constructors. WGSL's take exactly what they need: components of one type, no more of them than there is room for, and of matrices
-//! either all numbers or all columns.
+//! Constructors. WGSL requires exact arguments: components of one type, no surplus, and for matrices either
+//! all scalars or all columns.
 
 use toyproof_glsl::tree::{Constructor, ExprId, Scalar, Type};
 
 use super::Unprintable;
-use super::text::{Class, Printed, Text};
-use super::writer::{Writer, scalar_name};
+use super::writer::{Class, Text, TextResult, Writer, scalar_name};
 
 impl Writer<'_> {
-    pub(super) fn construct(&mut self, constructor: Constructor, arguments: &[ExprId], ty: Type) -> Printed {
+    pub(super) fn construct(
+        &mut self,
+        constructor: Constructor,
+        arguments: &[ExprId],
+        ty: Type,
+    ) -> TextResult {
         let types: Vec<Type> = arguments
             .iter()
-            .map(|&argument| self.draft.tree[argument].ty)
+            .map(|&argument| self.cx.tree[argument].ty)
             .collect();
         let texts = self.values(arguments)?;
         let name = self.type_name(ty);
-        let words = match constructor {
+        let code = match constructor {
             Constructor::Struct | Constructor::Array => Self::list(texts),
             Constructor::Scalar => match (types.first(), texts.into_iter().next()) {
                 (Some(&from), Some(text)) => return as_scalar(text, from, ty),
@@ -24,7 +28,7 @@ impl Writer<'_> {
             Constructor::Splat => match (types.first(), texts.into_iter().next()) {
                 (Some(&from), Some(text)) => {
                     let scalar = Type::Scalar(ty.scalar().unwrap_or(Scalar::Float));
-                    as_scalar(text, from, scalar)?.words
+                    as_scalar(text, from, scalar)?.code
                 }
                 _ => return Err(Unprintable("a constructor of nothing")),
             },
@@ -41,25 +45,25 @@ impl Writer<'_> {
                     .ok_or(Unprintable("a constructor of nothing"))?;
                 let number = as_scalar(text, from, Type::FLOAT)?;
                 let is_short = number
-                    .words
+                    .code
                     .chars()
                     .all(|c| c.is_ascii_alphanumeric() || c == '.' || c == '_');
                 let number = if is_short {
                     number
                 } else {
-                    self.keep_as("diagonal", &number)
+                    self.bind_as("diagonal", &number)
                 }
-                .words;
+                .code;
                 let cells = (0..columns).flat_map(|column| (0..rows).map(move |row| column == row));
                 let cells = cells.map(|diagonal| if diagonal { number.as_str() } else { "0.0" });
                 cells.collect::<Vec<_>>().join(", ")
             }
             Constructor::Resize => self.resize(texts, &types, ty)?,
         };
-        Ok(Text::primary(format!("{name}({words})")))
+        Ok(Text::primary(format!("{name}({code})")))
     }
 
-    /// A whole value with components of another type; those beyond `room` are cut off.
+    /// Converts a value to another component type; components beyond `room` are cut off.
     fn converted(&self, text: Text, from: Type, scalar: Scalar, room: u8) -> Result<String, Unprintable> {
         match from {
             Type::Vector(own, size) => {
@@ -70,15 +74,15 @@ impl Writer<'_> {
                     (text, size)
                 };
                 if own == scalar {
-                    return Ok(text.words);
+                    return Ok(text.code);
                 }
                 Ok(format!(
                     "{}({})",
                     self.type_name(Type::vector(scalar, size)),
-                    text.words
+                    text.code
                 ))
             }
-            Type::Scalar(_) => Ok(as_scalar(text, from, Type::Scalar(scalar))?.words),
+            Type::Scalar(_) => Ok(as_scalar(text, from, Type::Scalar(scalar))?.code),
             _ => Err(Unprintable("a vector of a matrix")),
         }
     }
@@ -97,11 +101,11 @@ impl Writer<'_> {
             let class = text.class;
             let count = from.component_count().unwrap_or(1).min(room);
             // `vec3f(v)` converts by itself.
-            let words = match from {
-                Type::Vector(_, own) if single && own == size => text.words,
+            let code = match from {
+                Type::Vector(_, own) if single && own == size => text.code,
                 _ => self.converted(text, from, scalar, room)?,
             };
-            parts.push(Text { words, class });
+            parts.push(Text { code, class });
             room -= count;
         }
         Ok(Self::list(parts))
@@ -129,21 +133,21 @@ impl Writer<'_> {
                 Type::Vector(own, size) => {
                     let is_name = text.class == Class::Primary
                         && text
-                            .words
+                            .code
                             .chars()
                             .all(|c| c.is_ascii_alphanumeric() || c == '.' || c == '_');
                     let base = if is_name {
                         text
                     } else {
-                        self.keep_as("column", &text)
+                        self.bind_as("column", &text)
                     }
-                    .words;
+                    .code;
                     for letter in ["x", "y", "z", "w"].into_iter().take(size.into()) {
                         let cell = Text::primary(format!("{base}.{letter}"));
-                        cells.push(as_scalar(cell, Type::Scalar(own), Type::FLOAT)?.words);
+                        cells.push(as_scalar(cell, Type::Scalar(own), Type::FLOAT)?.code);
                     }
                 }
-                Type::Scalar(_) => cells.push(as_scalar(text, from, Type::FLOAT)?.words),
+                Type::Scalar(_) => cells.push(as_scalar(text, from, Type::FLOAT)?.code),
                 _ => return Err(Unprintable("a matrix of matrices")),
             }
         }
@@ -151,7 +155,7 @@ impl Writer<'_> {
         Ok(cells.join(", "))
     }
 
-    /// The components that the other matrix has, the identity's elsewhere.
+    /// Prints a resized matrix: the components of the other matrix, and those of the identity elsewhere.
     fn resize(&mut self, texts: Vec<Text>, types: &[Type], ty: Type) -> Result<String, Unprintable> {
         let (
             Type::Matrix { columns, rows },
@@ -167,12 +171,12 @@ impl Writer<'_> {
             .into_iter()
             .next()
             .ok_or(Unprintable("a constructor of nothing"))?;
-        let base = if text.class == Class::Primary && !text.words.contains('(') {
+        let base = if text.class == Class::Primary && !text.code.contains('(') {
             text
         } else {
-            self.keep_as("matrix", &text)
+            self.bind_as("matrix", &text)
         }
-        .words;
+        .code;
         let identity = |column: u8, row: u8| if column == row { "1.0" } else { "0.0" };
         let column = |column: u8| {
             if column >= has {
@@ -195,8 +199,8 @@ impl Writer<'_> {
     }
 }
 
-/// The first component of a value, as a scalar of another type.
-pub(super) fn as_scalar(text: Text, from: Type, to: Type) -> Printed {
+/// The first component of a value, converted to another scalar type.
+pub(super) fn as_scalar(text: Text, from: Type, to: Type) -> TextResult {
     let text = match from {
         Type::Vector(..) => Text::primary(format!("{}.x", text.operand())),
         Type::Matrix { .. } => Text::primary(format!("{}[0].x", text.operand())),
@@ -208,17 +212,17 @@ pub(super) fn as_scalar(text: Text, from: Type, to: Type) -> Printed {
     if from == scalar {
         return Ok(text);
     }
-    // A number of its own with the suffix of 32 bits, or without.
-    let suffixed = text.words.strip_suffix('i');
-    if let (Scalar::Int, Ok(number)) = (from, suffixed.unwrap_or(&text.words).parse::<i64>()) {
+    // A bare literal, with or without a suffix.
+    let suffixed = text.code.strip_suffix('i');
+    if let (Scalar::Int, Ok(number)) = (from, suffixed.unwrap_or(&text.code).parse::<i64>()) {
         match scalar {
             Scalar::Float if suffixed.is_none() => {
-                let words = format!("{number}.0");
-                return Ok(Text { words, ..text });
+                let code = format!("{number}.0");
+                return Ok(Text { code, ..text });
             }
             Scalar::Uint if number >= 0 => return Ok(Text::primary(format!("{number}u"))),
             _ => {}
         }
     }
-    Ok(Text::primary(format!("{}({})", scalar_name(scalar), text.words)))
+    Ok(Text::primary(format!("{}({})", scalar_name(scalar), text.code)))
 }

@@ -1,5 +1,5 @@
-//! Expressions as values, with the parentheses that WGSL asks for (§8.19): it mixes neither `&&` with `||` nor any of the
-//! bitwise operators with others.
+//! Expressions as values, with the parentheses that WGSL requires (§8.19): it mixes neither `&&` with `||`
+//! nor bitwise operators with others.
 
 use toyproof_glsl::tree::{
     BinaryOp, BuiltInVariable, Direction, ExprId, ExprKind, Scalar, Type, UnaryOp, VariableId, VariableKind,
@@ -8,11 +8,9 @@ use toyproof_glsl::tree::{
 
 use super::Unprintable;
 use super::construct::as_scalar;
-use super::facts::is_out;
-use super::text::{Class, Printed, Text};
-use super::writer::Writer;
+use super::writer::{Class, Text, TextResult, Writer, is_out};
 
-/// The comparison that holds of two scalars where another does not.
+/// The comparison of scalars that holds exactly if the given one does not.
 fn opposite(op: BinaryOp, scalar: Scalar) -> Option<BinaryOp> {
     Some(match op {
         BinaryOp::Equal => BinaryOp::NotEqual,
@@ -27,15 +25,15 @@ fn opposite(op: BinaryOp, scalar: Scalar) -> Option<BinaryOp> {
 }
 
 impl Writer<'_> {
-    /// The words for a value; lines for what it does are printed first.
-    pub(super) fn value(&mut self, id: ExprId) -> Printed {
-        self.in_time()?;
-        let tree = &self.draft.tree;
+    /// Returns the code of a value; lines for its side effects are printed first.
+    pub(super) fn value(&mut self, id: ExprId) -> TextResult {
+        self.check_deadline()?;
+        let tree = &self.cx.tree;
         let expr = &tree[id];
         match &expr.kind {
             ExprKind::Literal(literal) => {
-                let words = self.literal(literal, expr.at);
-                Ok(Text::primary(words))
+                let code = self.literal(literal, expr.at);
+                Ok(Text::primary(code))
             }
             &ExprKind::Variable(variable) => self.read(variable),
             &ExprKind::Unary { op, operand } => self.unary(op, operand),
@@ -48,10 +46,10 @@ impl Writer<'_> {
                 };
                 self.value(target)
             }
-            &ExprKind::Step { target, .. } if self.waiting.contains(&id) => self.value(target),
+            &ExprKind::Step { target, .. } if self.deferred_steps.contains(&id) => self.value(target),
             &ExprKind::Step { op, target, .. } => {
                 let before = self.value(target)?;
-                let before = self.keep(&before);
+                let before = self.bind(&before);
                 self.step(op, target)?;
                 Ok(before)
             }
@@ -90,14 +88,14 @@ impl Writer<'_> {
         }
     }
 
-    /// Several values, each as it is when its turn comes.
+    /// Prints several values, each as of its turn in the order of evaluation.
     pub(super) fn values(&mut self, ids: &[ExprId]) -> Result<Vec<Text>, Unprintable> {
         let mut texts: Vec<Text> = Vec::new();
         for &id in ids {
-            if self.hoists(id) && walk::acts(&self.draft.tree, id) {
+            if self.hoists(id) && walk::acts(&self.cx.tree, id) {
                 for (text, &earlier) in texts.iter_mut().zip(ids) {
-                    if !self.is_settled(earlier) {
-                        *text = self.keep(text);
+                    if !self.is_invariant(earlier) {
+                        *text = self.bind(text);
                     }
                 }
             }
@@ -107,33 +105,33 @@ impl Writer<'_> {
         Ok(texts)
     }
 
-    /// Values between commas. WGSL takes `a < b, c > d` for a list of types (§3.9).
+    /// Joins values by commas. WGSL parses `a < b, c > d` as a template list (§3.9).
     pub(super) fn list(texts: Vec<Text>) -> String {
         let is_relation = |text: &Text| text.class == Class::Relation;
         let has = |sign| {
             texts
                 .iter()
-                .any(|text| is_relation(text) && text.words.contains(sign))
+                .any(|text| is_relation(text) && text.code.contains(sign))
         };
         let is_list_of_types = has('<') && has('>');
-        let words = texts.into_iter().map(|text| {
+        let code = texts.into_iter().map(|text| {
             if is_list_of_types && is_relation(&text) {
-                format!("({})", text.words)
+                format!("({})", text.code)
             } else {
-                text.words
+                text.code
             }
         });
-        words.collect::<Vec<_>>().join(", ")
+        code.collect::<Vec<_>>().join(", ")
     }
 
-    /// Whether printing a value prints lines before it: found out by printing it.
+    /// Whether a value needs lines before it; determined by a trial print.
     pub(super) fn hoists(&mut self, id: ExprId) -> bool {
         if let Some(&known) = self.hoisting.get(&id) {
             return known;
         }
         let length = self.out.len();
         let temporaries = self.temporaries.clone();
-        // What cannot be printed is found out when it is printed.
+        // Errors are reported by the actual print.
         let printed = self.value(id);
         let hoists = printed.is_ok() && self.out.len() > length;
         self.out.truncate(length);
@@ -142,9 +140,9 @@ impl Writer<'_> {
         hoists
     }
 
-    /// Whether a value is the same before and after whatever else is done: it is made of what is never written.
-    pub(super) fn is_settled(&self, id: ExprId) -> bool {
-        let tree = &self.draft.tree;
+    /// Whether no side effect can change a value: it consists of variables that are never written.
+    pub(super) fn is_invariant(&self, id: ExprId) -> bool {
+        let tree = &self.cx.tree;
         let may_change = |kind: &ExprKind| match kind {
             ExprKind::Variable(variable) => match tree[*variable].kind {
                 VariableKind::Const | VariableKind::Input(_) => false,
@@ -165,40 +163,40 @@ impl Writer<'_> {
         tree[id].constant || !walk::any(tree, id, may_change)
     }
 
-    /// What a condition comes to if it does not hold. Comparisons of floats are turned round only where they ask whether both are equal: none
-    /// holds of what is no number.
+    /// Prints the negation of a condition. Of float comparisons only equality can be inverted: the others are
+    /// false for NaN.
     pub(super) fn negated(&mut self, id: ExprId) -> Result<String, Unprintable> {
-        let tree = &self.draft.tree;
+        let tree = &self.cx.tree;
         if let ExprKind::Binary { op, left, right } = tree[id].kind
             && let Type::Scalar(scalar) = tree[left].ty
             && let Some(other) = opposite(op, scalar)
         {
-            return Ok(self.binary(other, left, right)?.words);
+            return Ok(self.binary(other, left, right)?.code);
         }
         Ok(format!("!{}", self.value(id)?.operand()))
     }
 
-    /// A value under a name, as it is now.
-    pub(super) fn keep(&mut self, text: &Text) -> Text {
-        let name = text.words.trim_start_matches('*');
+    /// Binds a value to a name, to preserve its current value.
+    pub(super) fn bind(&mut self, text: &Text) -> Text {
+        let name = text.code.trim_start_matches('*');
         let stem = if self.names.all.contains(name) {
             format!("old_{name}")
         } else {
             "value".to_owned()
         };
-        self.keep_as(&stem, text)
+        self.bind_as(&stem, text)
     }
 
-    /// The same under a name like that.
-    pub(super) fn keep_as(&mut self, stem: &str, text: &Text) -> Text {
+    /// Binds a value to a name derived from `stem`.
+    pub(super) fn bind_as(&mut self, stem: &str, text: &Text) -> Text {
         let name = self.temporary(stem);
-        self.line(&format!("let {name} = {};", text.words));
+        self.line(&format!("let {name} = {};", text.code));
         Text::primary(name)
     }
 
-    /// A variable where it is read.
-    pub(super) fn read(&mut self, id: VariableId) -> Printed {
-        let variable = &self.draft.tree[id];
+    /// Prints a variable that is read.
+    pub(super) fn read(&mut self, id: VariableId) -> TextResult {
+        let variable = &self.cx.tree[id];
         match variable.kind {
             VariableKind::Input(input) => Ok(Text::primary(self.input(input)?)),
             VariableKind::BuiltIn(BuiltInVariable::FragCoord) => {
@@ -208,19 +206,19 @@ impl Writer<'_> {
             VariableKind::BuiltIn(_) | VariableKind::BuiltInConstant => {
                 Err(Unprintable("that built-in variable"))
             }
-            _ if is_out(self.draft, id) => Ok(Text {
-                words: format!("*{}", self.variable(id)),
+            _ if is_out(self.cx, id) => Ok(Text {
+                code: format!("*{}", self.variable(id)),
                 class: Class::Unary,
             }),
             _ => Ok(Text::primary(self.variable(id))),
         }
     }
 
-    fn unary(&mut self, op: UnaryOp, operand: ExprId) -> Printed {
-        if matches!(self.draft.tree[operand].ty, Type::Matrix { .. }) && op == UnaryOp::Minus {
+    fn unary(&mut self, op: UnaryOp, operand: ExprId) -> TextResult {
+        if matches!(self.cx.tree[operand].ty, Type::Matrix { .. }) && op == UnaryOp::Minus {
             let operand = self.value(operand)?.within(&[Class::Primary]);
             return Ok(Text {
-                words: format!("-1.0 * {operand}"),
+                code: format!("-1.0 * {operand}"),
                 class: Class::Product,
             });
         }
@@ -228,16 +226,16 @@ impl Writer<'_> {
         Ok(match op {
             UnaryOp::Plus => operand,
             _ => Text {
-                words: format!("{}{}", op.symbol(), operand.operand()),
+                code: format!("{}{}", op.symbol(), operand.operand()),
                 class: Class::Unary,
             },
         })
     }
 
-    pub(super) fn binary(&mut self, op: BinaryOp, left: ExprId, right: ExprId) -> Printed {
-        let tree = &self.draft.tree;
+    pub(super) fn binary(&mut self, op: BinaryOp, left: ExprId, right: ExprId) -> TextResult {
+        let tree = &self.cx.tree;
         if matches!(op, BinaryOp::And | BinaryOp::Or) && self.hoists(right) {
-            return self.either(op, left, right);
+            return self.short_circuit(op, left, right);
         }
         let types = [tree[left].ty, tree[right].ty];
         let outer = self.suffixed;
@@ -249,13 +247,13 @@ impl Writer<'_> {
         self.operation(op, (left, types[0]), (right, types[1]))
     }
 
-    /// An operator between words.
+    /// Prints an operator between values.
     pub(super) fn operation(
         &mut self,
         op: BinaryOp,
         (left, left_type): (Text, Type),
         (right, right_type): (Text, Type),
-    ) -> Printed {
+    ) -> TextResult {
         use Class::{Chain, Primary, Product, Relation, Sum, Unary};
         let is_matrix = |ty| matches!(ty, Type::Matrix { .. });
         let is_scalar = |ty| matches!(ty, Type::Scalar(_));
@@ -279,8 +277,8 @@ impl Writer<'_> {
             ),
             BinaryOp::ShiftLeft | BinaryOp::ShiftRight => {
                 let right = match right_type {
-                    Type::Scalar(Scalar::Int) => as_scalar(right, right_type, Type::UINT)?.words,
-                    Type::Vector(Scalar::Int, size) => format!("vec{size}u({})", right.words),
+                    Type::Scalar(Scalar::Int) => as_scalar(right, right_type, Type::UINT)?.code,
+                    Type::Vector(Scalar::Int, size) => format!("vec{size}u({})", right.code),
                     _ => right.within(&[Primary, Unary]),
                 };
                 let right = match (left_type, right_type) {
@@ -296,20 +294,20 @@ impl Writer<'_> {
             BinaryOp::Equal | BinaryOp::NotEqual | BinaryOp::Xor => {
                 let bare = [Primary, Unary, Product, Sum];
                 let symbol = if op == BinaryOp::Equal { "==" } else { "!=" };
-                let words = format!("{} {symbol} {}", left.within(&bare), right.within(&bare));
+                let code = format!("{} {symbol} {}", left.within(&bare), right.within(&bare));
                 return Ok(match left_type {
-                    Type::Vector(..) if op == BinaryOp::Equal => Text::primary(format!("all({words})")),
-                    Type::Vector(..) => Text::primary(format!("any({words})")),
+                    Type::Vector(..) if op == BinaryOp::Equal => Text::primary(format!("all({code})")),
+                    Type::Vector(..) => Text::primary(format!("any({code})")),
                     _ => Text {
-                        words,
+                        code,
                         class: Relation,
                     },
                 });
             }
             BinaryOp::BitAnd | BinaryOp::BitOr | BinaryOp::BitXor => {
-                let splat = |words: String, own: Type, other: Type| match other {
-                    Type::Vector(..) if is_scalar(own) => format!("{}({words})", self.type_name(other)),
-                    _ => words,
+                let splat = |code: String, own: Type, other: Type| match other {
+                    Type::Vector(..) if is_scalar(own) => format!("{}({code})", self.type_name(other)),
+                    _ => code,
                 };
                 let left = splat(left.within(&[Primary, Unary, Chain(op)]), left_type, right_type);
                 let right = splat(right.within(&[Primary, Unary]), right_type, left_type);
@@ -325,17 +323,17 @@ impl Writer<'_> {
             }
         };
         Ok(Text {
-            words: format!("{left} {} {right}", op.symbol()),
+            code: format!("{left} {} {right}", op.symbol()),
             class,
         })
     }
 
-    pub(super) fn index(&mut self, base: ExprId, index: ExprId) -> Printed {
-        let tree = &self.draft.tree;
+    pub(super) fn index(&mut self, base: ExprId, index: ExprId) -> TextResult {
+        let tree = &self.cx.tree;
         let in_memory = tree.root_variable(base).is_some() || matches!(tree[base].ty, Type::Vector(..));
         let constant = tree[index].constant;
         let [base, index] = if tree.root_variable(base).is_some() {
-            // A place, not a value: it is the same before and after what the index does.
+            // A place, not a value: side effects of the index do not change it.
             let index = self.value(index)?;
             [self.value(base)?, index]
         } else {
@@ -345,9 +343,136 @@ impl Writer<'_> {
             base.operand()
         } else {
             let name = self.temporary("indexed");
-            self.line(&format!("var {name} = {};", base.words));
+            self.line(&format!("var {name} = {};", base.code));
             name
         };
-        Ok(Text::primary(format!("{base}[{}]", index.words)))
+        Ok(Text::primary(format!("{base}[{}]", index.code)))
+    }
+}
+
+// `select` evaluates both branches, so `?:`, `&&` and `||` become `if`s where a branch has side effects.
+
+type PrintResult = Result<(), Unprintable>;
+
+impl Writer<'_> {
+    /// The condition and branches of a `?:` that must become an `if`.
+    pub(super) fn branch_operands(&mut self, id: ExprId) -> Option<[ExprId; 3]> {
+        let ExprKind::Conditional { condition, yes, no } = self.cx.tree[id].kind else {
+            return None;
+        };
+        let is_selection = self.is_selectable(yes) && self.is_selectable(no);
+        (!is_selection).then_some([condition, yes, no])
+    }
+
+    /// Prints such a `?:` as an `if`; `end` prints the use of either branch.
+    pub(super) fn print_if(
+        &mut self,
+        id: ExprId,
+        end: &mut dyn FnMut(&mut Self, ExprId) -> PrintResult,
+    ) -> PrintResult {
+        let mut word = "if";
+        let mut rest = id;
+        while let Some([condition, yes, no]) = self.branch_operands(rest)
+            && (rest == id || !self.hoists(condition))
+        {
+            let condition = self.value(condition)?;
+            self.line(&format!("{word} {} {{", condition.code));
+            self.indented(|writer| writer.print_branch(yes, end))?;
+            word = "} else if";
+            rest = no;
+        }
+        self.line("} else {");
+        self.indented(|writer| writer.print_branch(rest, end))?;
+        self.line("}");
+        Ok(())
+    }
+
+    fn print_branch(
+        &mut self,
+        id: ExprId,
+        end: &mut dyn FnMut(&mut Self, ExprId) -> PrintResult,
+    ) -> PrintResult {
+        if self.branch_operands(id).is_some() {
+            self.print_if(id, end)
+        } else {
+            end(self, id)
+        }
+    }
+
+    /// Assigns a value to the variable `name`, by an `if` where necessary.
+    pub(super) fn assign_value(&mut self, name: &str, id: ExprId) -> PrintResult {
+        self.print_branch(id, &mut |writer, id| {
+            let value = writer.value(id)?;
+            writer.line(&format!("{name} = {};", value.code));
+            Ok(())
+        })
+    }
+
+    /// Prints a `return` of a value, by `if`s where necessary.
+    pub(super) fn return_value(&mut self, id: ExprId) -> PrintResult {
+        if let Some([condition, yes, no]) = self.branch_operands(id) {
+            let condition = self.value(condition)?;
+            self.line(&format!("if {} {{", condition.code));
+            self.indented(|writer| writer.return_value(yes))?;
+            self.line("}");
+            return self.return_value(no);
+        }
+        let value = self.value(id)?;
+        self.line(&format!("return {};", value.code));
+        Ok(())
+    }
+
+    pub(super) fn conditional(&mut self, id: ExprId) -> TextResult {
+        if self.branch_operands(id).is_some() {
+            let name = self.temporary("chosen");
+            let ty = self.type_name(self.cx.tree[id].ty);
+            self.line(&format!("var {name}: {ty};"));
+            self.assign_value(&name, id)?;
+            return Ok(Text::primary(name));
+        }
+        let ExprKind::Conditional { condition, yes, no } = self.cx.tree[id].kind else {
+            return Err(Unprintable("a choice"));
+        };
+        let acts = walk::acts(&self.cx.tree, condition);
+        let condition = self.value(condition)?;
+        // `select` lists the branches before the condition, and evaluates them first.
+        let condition = if acts && !(self.is_invariant(yes) && self.is_invariant(no)) {
+            self.bind_as("condition", &condition)
+        } else {
+            condition
+        };
+        let [no, yes] = [self.value(no)?, self.value(yes)?];
+        Ok(Text::primary(format!(
+            "select({})",
+            Self::list(vec![no, yes, condition])
+        )))
+    }
+
+    /// Whether an expression is cheap and free of side effects, so that it may be evaluated unconditionally.
+    fn is_selectable(&mut self, id: ExprId) -> bool {
+        let tree = &self.cx.tree;
+        let is_plain = matches!(tree[id].ty, Type::Scalar(_) | Type::Vector(..))
+            && !walk::any(tree, id, |kind| match kind {
+                ExprKind::Call { .. } => true,
+                ExprKind::BuiltIn { function, .. } => function.is_texture(),
+                _ => false,
+            });
+        is_plain && !self.hoists(id)
+    }
+
+    /// Prints `&&` and `||` whose right side has side effects.
+    pub(super) fn short_circuit(&mut self, op: BinaryOp, left: ExprId, right: ExprId) -> TextResult {
+        let left = self.value(left)?;
+        let name = self.temporary("holds");
+        self.line(&format!("var {name} = {};", left.code));
+        let not = if op == BinaryOp::Or { "!" } else { "" };
+        self.line(&format!("if {not}{name} {{"));
+        self.indented(|writer| {
+            let right = writer.value(right)?;
+            writer.line(&format!("{name} = {};", right.code));
+            Ok(())
+        })?;
+        self.line("}");
+        Ok(Text::primary(name))
     }
 }

@@ -1,4 +1,4 @@
-//! Structures, globals and functions, in the author's order.
+//! Prints structures, globals and functions, in the author's order.
 
 use toyproof_diagnostic::{File, Files};
 use toyproof_glsl::tree::{
@@ -8,21 +8,20 @@ use toyproof_glsl::tree::{
 use toyproof_glsl::{self as glsl, Options};
 
 use super::Unprintable;
-use super::facts::{Facts, is_out};
 use super::names::Names;
-use super::writer::Writer;
-use crate::lower::Draft;
+use super::writer::{Facts, Writer, is_out};
+use crate::lower::LoweringContext;
 use crate::print::Order;
 
 impl Writer<'_> {
     pub(super) fn item(&mut self, item: Item) -> Result<(), Unprintable> {
-        self.in_time()?;
+        self.check_deadline()?;
         self.temporaries.clear();
         match item {
             Item::Struct(id) => self.structure(id),
             Item::Variable(id) => self.global(id),
             Item::Function(id) => {
-                if let Some(text) = self.draft.helpers.get(&id) {
+                if let Some(text) = self.cx.helpers.get(&id) {
                     return self.helper(id, text);
                 }
                 self.definition(id)
@@ -32,7 +31,7 @@ impl Writer<'_> {
     }
 
     fn structure(&mut self, id: StructId) -> Result<(), Unprintable> {
-        let tree = &self.draft.tree;
+        let tree = &self.cx.tree;
         self.line("");
         self.comment(tree[id].at);
         let name = self.names.structs.get(&id).cloned().unwrap_or_default();
@@ -43,11 +42,11 @@ impl Writer<'_> {
             }
             let name = self.names.members.get(&(id, at)).cloned().unwrap_or_default();
             let ty = self.type_name(member.ty);
-            self.inset(|writer| {
+            self.indented(|writer| {
                 writer.comment(member.at);
                 let from = writer.out.len();
                 writer.line(&format!("{name}: {ty},"));
-                writer.comment_behind(member.at, from);
+                writer.trailing_comment(member.at, from);
             });
         }
         self.line("}");
@@ -55,12 +54,12 @@ impl Writer<'_> {
     }
 
     fn global(&mut self, id: VariableId) -> Result<(), Unprintable> {
-        let variable = &self.draft.tree[id];
+        let variable = &self.cx.tree[id];
         if matches!(variable.ty, Type::Sampler(_)) {
             return Err(Unprintable("a sampler that nobody feeds"));
         }
-        let is_apart = variable.at.is_some_and(|at| self.comments.is_apart(at));
-        if is_apart || self.out.ends_with("}\n") {
+        let follows_blank_line = variable.at.is_some_and(|at| self.comments.follows_blank_line(at));
+        if follows_blank_line || self.out.ends_with("}\n") {
             self.line("");
         }
         if let Some(at) = variable.at {
@@ -72,22 +71,22 @@ impl Writer<'_> {
             VariableKind::Const => "const",
             _ => "var<private>",
         };
-        let line = match variable.initialiser {
-            Some(initialiser) => {
-                let value = self.value(initialiser)?;
-                self.typed(word, name, variable.ty, &value.words)
+        let line = match variable.initializer {
+            Some(initializer) => {
+                let value = self.value(initializer)?;
+                self.typed_declaration(word, name, variable.ty, &value.code)
             }
             None => format!("{word} {name}: {};", self.type_name(variable.ty)),
         };
         self.line(&line);
         if let Some(at) = variable.at {
-            self.comment_behind(at, from);
+            self.trailing_comment(at, from);
         }
         Ok(())
     }
 
     fn definition(&mut self, id: FunctionId) -> Result<(), Unprintable> {
-        let function = &self.draft.tree[id];
+        let function = &self.cx.tree[id];
         let Some(body) = &function.body else {
             return Err(Unprintable("a function without a body"));
         };
@@ -96,13 +95,13 @@ impl Writer<'_> {
         self.head(id)?;
         self.indent += 1;
         for &parameter in &function.parameters {
-            let variable = &self.draft.tree[parameter];
-            if is_out(self.draft, parameter) {
-                // Its caller's variable begins with zeros.
-                let is_new = id == self.draft.main_image && !self.facts.called.contains(&id);
+            let variable = &self.cx.tree[parameter];
+            if is_out(self.cx, parameter) {
+                // The variable in its only caller is zero-initialized.
+                let is_new = id == self.cx.main_image && !self.facts.called.contains(&id);
                 let is_read_first = !is_new
                     && variable.kind == VariableKind::Parameter(Direction::Out)
-                    && !self.is_set_first(body, parameter);
+                    && !self.is_written_first(body, parameter);
                 if is_read_first {
                     let zero = self.zero(variable.ty);
                     self.line(&format!("*{} = {zero};", self.variable(parameter)));
@@ -113,7 +112,7 @@ impl Writer<'_> {
             }
         }
         self.statements(body)?;
-        if function.return_type != Type::Void && self.may_end(body) {
+        if function.return_type != Type::Void && self.may_complete(body) {
             let zero = self.zero(function.return_type);
             self.line(&format!("return {zero};"));
         }
@@ -123,16 +122,16 @@ impl Writer<'_> {
     }
 
     fn head(&mut self, id: FunctionId) -> Result<(), Unprintable> {
-        let function = &self.draft.tree[id];
+        let function = &self.cx.tree[id];
         let mut parameters = Vec::new();
         for &parameter in &function.parameters {
-            let variable = &self.draft.tree[parameter];
+            let variable = &self.cx.tree[parameter];
             if matches!(variable.ty, Type::Sampler(_)) {
                 return Err(Unprintable("a sampler as a parameter"));
             }
             let ty = self.type_name(variable.ty);
             let own = self.variable(parameter);
-            parameters.push(if is_out(self.draft, parameter) {
+            parameters.push(if is_out(self.cx, parameter) {
                 format!("{own}: ptr<function, {ty}>")
             } else if self.facts.is_memory(parameter) {
                 format!(
@@ -155,9 +154,9 @@ impl Writer<'_> {
         Ok(())
     }
 
-    /// Whether an `out` parameter is written as a whole before anything else is done with it, on every way.
-    fn is_set_first(&self, body: &Block, parameter: VariableId) -> bool {
-        let tree = &self.draft.tree;
+    /// Whether an `out` parameter is written as a whole before any other use, on every path.
+    fn is_written_first(&self, body: &Block, parameter: VariableId) -> bool {
+        let tree = &self.cx.tree;
         for statement in body {
             if let StatementKind::Expression(expr) = statement.kind
                 && let ExprKind::Assign {
@@ -185,18 +184,18 @@ impl Writer<'_> {
         false
     }
 
-    /// A function of lowering's own, whose body is text: read as GLSL and printed as any other.
+    /// Prints a helper function of lowering, by parsing its text as GLSL.
     fn helper(&mut self, id: FunctionId, text: &str) -> Result<(), Unprintable> {
         const BROKEN: Unprintable = Unprintable("a function of lowering's own");
-        let tree = &self.draft.tree;
+        let tree = &self.cx.tree;
         let function = &tree[id];
         let parameters = function.parameters.iter().map(|&parameter| {
             let variable = &tree[parameter];
-            let direction = if is_out(self.draft, parameter) { "out " } else { "" };
+            let direction = if is_out(self.cx, parameter) { "out " } else { "" };
             format!("{direction}{} {}", tree.type_name(variable.ty), variable.name)
         });
         let parameters: Vec<_> = parameters.collect();
-        // What the name does not say.
+        // A comment for helpers whose names are not sufficient.
         let about = if function.name.ends_with("_remainder") {
             "// `a % b` of GLSL as Mesa and SwiftShader round it, down: WGSL's rounds towards zero.\n"
         } else {
@@ -211,8 +210,8 @@ impl Writer<'_> {
         let mut files = Files::default();
         let file = files.add(File::new("<helper>", source));
         let checked = glsl::check(&files, file, &Options::default()).map_err(|_| BROKEN)?;
-        let draft = Draft::new(checked.tree, checked.main_image);
-        let first = draft.tree.items.iter().find_map(|item| match item {
+        let cx = LoweringContext::new(checked.tree, checked.main_image);
+        let first = cx.tree.items.iter().find_map(|item| match item {
             Item::Function(id) => Some(*id),
             _ => None,
         });
@@ -221,12 +220,12 @@ impl Writer<'_> {
             items: vec![Item::Function(first)],
             inputs: Vec::new(),
         };
-        let mut names = Names::of(&draft, &order, self.style);
+        let mut names = Names::of(&cx, &order, self.style);
         names.functions.insert(first, self.function(id).to_owned());
-        let facts = Facts::of(&draft);
-        let mut writer = Writer::new(&draft, &names, &facts, self.style, &files, self.deadline);
+        let facts = Facts::of(&cx);
+        let mut writer = Writer::new(&cx, &names, &facts, self.style, &files, self.deadline);
         writer.definition(first)?;
-        self.derives |= writer.derives;
+        self.uses_derivatives |= writer.uses_derivatives;
         self.helpers.append(&mut writer.helpers);
         self.out.push_str(&writer.out);
         Ok(())

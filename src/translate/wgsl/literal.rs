@@ -1,14 +1,14 @@
-//! Numbers. WGSL computes what stands among numbers without suffix in 64 bits; GLSL in 32.
+//! Literals. WGSL evaluates expressions of unsuffixed literals in 64 bits, GLSL in 32.
 
 use toyproof_glsl::tree::{ExprId, ExprKind, Literal, Place, Type, UnaryOp, Value};
 
 use super::writer::Writer;
 
 impl Writer<'_> {
-    /// Whether an expression is made of numbers only, so that WGSL knows no width for it. Each is looked at once, and with a loop:
-    /// chains are asked about for each of their operators.
+    /// Whether an expression consists of literals only, so that WGSL gives it an abstract type. Results are
+    /// cached and found by iteration, since each operator of a chain checks its operands.
     pub(super) fn is_abstract(&mut self, root: ExprId) -> bool {
-        let tree = &self.draft.tree;
+        let tree = &self.cx.tree;
         let mut pending = vec![(root, false)];
         while let Some((id, operands_done)) = pending.pop() {
             if self.abstract_numbers.contains_key(&id) {
@@ -40,7 +40,7 @@ impl Writer<'_> {
         self.abstract_numbers[&root]
     }
 
-    /// A number as WGSL writes it.
+    /// Prints a literal, or the constant of the macro that it comes from.
     pub(super) fn literal(&mut self, literal: &Literal, at: Place) -> String {
         if let Some(name) = self.macro_of(literal, at) {
             return name;
@@ -72,7 +72,7 @@ impl Writer<'_> {
         }
     }
 
-    /// The macro that a number came of, if that is the whole of it; it is then a constant of that name.
+    /// The macro whose entire replacement is this literal; it is declared as a constant of the same name.
     fn macro_of(&mut self, literal: &Literal, at: Place) -> Option<String> {
         let name = self.macro_name(at)?;
         let ty = match literal.value {
@@ -88,13 +88,13 @@ impl Writer<'_> {
             .macros
             .entry(name.clone())
             .or_insert_with(|| declaration.clone());
-        // A name may be defined twice; the first keeps it.
+        // A macro may be redefined; its first definition keeps the name.
         (*known == declaration).then_some(name)
     }
 
-    /// Whether a number is printed as a name.
+    /// Whether a literal is printed as the name of a macro.
     fn is_macro(&self, id: ExprId) -> bool {
-        self.macro_name(self.draft.tree[id].at).is_some()
+        self.macro_name(self.cx.tree[id].at).is_some()
     }
 
     fn macro_name(&self, at: Place) -> Option<String> {
@@ -104,11 +104,11 @@ impl Writer<'_> {
         let text = self.comments.text(at.span)?;
         let is_name = text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
             && text.starts_with(|c: char| c.is_ascii_alphabetic());
-        let is_free = !super::word::is_taken(text) && !self.names.all.contains(text);
+        let is_free = !super::names::is_taken(text) && !self.names.all.contains(text);
         (is_name && is_free && self.comments.is_whole_macro(text, at)).then(|| text.to_owned())
     }
 
-    /// Zero of a type.
+    /// The zero value of a type.
     pub(super) fn zero(&self, ty: Type) -> String {
         match ty {
             Type::Scalar(scalar) => match scalar {
@@ -126,7 +126,8 @@ fn is_hexadecimal(text: &str) -> bool {
     text.starts_with("0x") || text.starts_with("0X")
 }
 
-/// A float as written, with digits on both sides of its point; by its value if WGSL reads the text otherwise.
+/// A float as written, with digits on both sides of its point; or its value, where WGSL does not accept the
+/// text.
 fn float(text: &str, value: f64) -> String {
     let text = text.trim_end_matches(['f', 'F']);
     let is_plain = text

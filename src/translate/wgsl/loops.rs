@@ -1,12 +1,12 @@
-//! Loops: `for` and `while` where WGSL's say the same, `loop` where the head does what stands in no head.
+//! Loops: `for` and `while` where WGSL has equivalents, `loop` where a head needs several statements.
 
 use toyproof_glsl::tree::{Block, ExprId, ExprKind, Literal, StatementKind, Type, Value, VariableId, walk};
 
 use super::Unprintable;
-use super::statement::leaves;
+use super::statement::has_break;
 use super::writer::Writer;
 
-type Done = Result<(), Unprintable>;
+type PrintResult = Result<(), Unprintable>;
 
 impl Writer<'_> {
     pub(super) fn for_loop(
@@ -15,52 +15,58 @@ impl Writer<'_> {
         condition: Option<ExprId>,
         step: Option<ExprId>,
         body: &Block,
-    ) -> Done {
+    ) -> PrintResult {
         if self.is_head(init) {
             let init = match init.first().map(|statement| &statement.kind) {
-                Some(StatementKind::Declare(variable)) => self.counter(*variable)?,
-                Some(StatementKind::Expression(expr)) => self.single(*expr)?,
+                Some(StatementKind::Declare(variable)) => self.loop_variable(*variable)?,
+                Some(StatementKind::Expression(expr)) => self.simple_statement(*expr)?,
                 _ => String::new(),
             };
-            return self.rounds(&init, condition, step, body);
+            return self.loop_with_init(&init, condition, step, body);
         }
-        // A scope of its own, so that what follows the loop does not see what its head declares.
+        // A scope of its own keeps the head's declarations from the following statements.
         self.line("{");
-        self.inset(|writer| {
+        self.indented(|writer| {
             writer.statements(init)?;
-            writer.rounds("", condition, step, body)
+            writer.loop_with_init("", condition, step, body)
         })?;
         self.line("}");
         Ok(())
     }
 
-    /// Whether what a loop begins with may stand in its head.
+    /// Whether the first statements of a loop fit into its head.
     fn is_head(&mut self, init: &Block) -> bool {
         match init.as_slice() {
             [] => true,
             [only] => match only.kind {
                 StatementKind::Declare(variable) => {
-                    let value = self.draft.tree[variable].initialiser;
+                    let value = self.cx.tree[variable].initializer;
                     value.is_none_or(|value| !self.hoists(value))
                 }
-                StatementKind::Expression(expr) => self.is_single(expr),
+                StatementKind::Expression(expr) => self.is_simple(expr),
                 _ => false,
             },
             _ => false,
         }
     }
 
-    /// A `for` that begins so.
-    fn rounds(&mut self, init: &str, condition: Option<ExprId>, step: Option<ExprId>, body: &Block) -> Done {
+    /// Prints a loop whose head begins with `init`.
+    fn loop_with_init(
+        &mut self,
+        init: &str,
+        condition: Option<ExprId>,
+        step: Option<ExprId>,
+        body: &Block,
+    ) -> PrintResult {
         let is_plain = condition.is_none_or(|condition| !self.hoists(condition))
-            && step.is_none_or(|step| self.is_single(step));
+            && step.is_none_or(|step| self.is_simple(step));
         if is_plain {
             let condition = match condition {
-                Some(condition) => self.value(condition)?.words,
+                Some(condition) => self.value(condition)?.code,
                 None => String::new(),
             };
             let step = match step {
-                Some(step) => self.single(step)?,
+                Some(step) => self.simple_statement(step)?,
                 None => String::new(),
             };
             let init = init.trim_end_matches(';');
@@ -80,16 +86,16 @@ impl Writer<'_> {
             self.line(init);
         }
         self.line("loop {");
-        self.inset(|writer| {
+        self.indented(|writer| {
             if let Some(condition) = condition {
-                writer.leave_unless(condition)?;
+                writer.break_unless(condition)?;
             }
             let Some(step) = step else {
                 return writer.statements(body);
             };
-            writer.round(body, step)?;
+            writer.loop_body(body, step)?;
             writer.line("continuing {");
-            writer.inset(|writer| writer.effect(step))?;
+            writer.indented(|writer| writer.effect(step))?;
             writer.line("}");
             Ok(())
         })?;
@@ -101,9 +107,10 @@ impl Writer<'_> {
         Ok(())
     }
 
-    /// What is done in a round, in a scope of its own if that declares a name by which `last`, which is evaluated after it, means something else.
-    fn round(&mut self, body: &Block, last: ExprId) -> Done {
-        if !self.hides(body, last) {
+    /// Prints a loop's body; in a scope of its own if it shadows a name in `last`, which is evaluated after
+    /// it.
+    fn loop_body(&mut self, body: &Block, last: ExprId) -> PrintResult {
+        if !self.shadows(body, last) {
             return self.statements(body);
         }
         self.line("{");
@@ -112,8 +119,8 @@ impl Writer<'_> {
         Ok(())
     }
 
-    fn hides(&self, body: &Block, last: ExprId) -> bool {
-        let tree = &self.draft.tree;
+    fn shadows(&self, body: &Block, last: ExprId) -> bool {
+        let tree = &self.cx.tree;
         let declared = body.iter().filter_map(walk::declared);
         let declared: Vec<&str> = declared.map(|id| self.variable(id)).collect();
         walk::any(tree, last, |kind| match kind {
@@ -123,8 +130,8 @@ impl Writer<'_> {
         })
     }
 
-    /// A declaration in a loop's head, which is a `var`.
-    fn counter(&mut self, id: VariableId) -> Result<String, Unprintable> {
+    /// Prints the declaration in a loop's head, always as a `var`.
+    fn loop_variable(&mut self, id: VariableId) -> Result<String, Unprintable> {
         let text = self.declaration(id)?;
         Ok(match text.strip_prefix("let ") {
             Some(rest) => format!("var {rest}"),
@@ -132,19 +139,19 @@ impl Writer<'_> {
         })
     }
 
-    pub(super) fn while_loop(&mut self, condition: ExprId, body: &Block) -> Done {
+    pub(super) fn while_loop(&mut self, condition: ExprId, body: &Block) -> PrintResult {
         if self.hoists(condition) {
             self.line("loop {");
-            self.inset(|writer| {
-                writer.leave_unless(condition)?;
+            self.indented(|writer| {
+                writer.break_unless(condition)?;
                 writer.statements(body)
             })?;
         } else {
-            if self.is_literally(condition, true) && leaves(body) {
+            if self.is_literally(condition, true) && has_break(body) {
                 self.line("loop {");
             } else {
                 let condition = self.value(condition)?;
-                self.line(&format!("while {} {{", condition.words));
+                self.line(&format!("while {} {{", condition.code));
             }
             self.block(body)?;
         }
@@ -152,17 +159,17 @@ impl Writer<'_> {
         Ok(())
     }
 
-    pub(super) fn do_while(&mut self, body: &Block, condition: ExprId) -> Done {
+    pub(super) fn do_while(&mut self, body: &Block, condition: ExprId) -> PrintResult {
         self.line("loop {");
-        self.inset(|writer| {
-            let comes_to_its_end = writer.may_end(body) && !body.last().is_some_and(walk::jumps);
-            if comes_to_its_end && !walk::continues(body) && !writer.hides(body, condition) {
+        self.indented(|writer| {
+            let may_complete = writer.may_complete(body) && !body.last().is_some_and(walk::jumps);
+            if may_complete && !walk::continues(body) && !writer.shadows(body, condition) {
                 writer.statements(body)?;
-                return writer.leave_unless(condition);
+                return writer.break_unless(condition);
             }
-            writer.round(body, condition)?;
+            writer.loop_body(body, condition)?;
             writer.line("continuing {");
-            writer.inset(|writer| {
+            writer.indented(|writer| {
                 let condition = writer.negated(condition)?;
                 writer.line(&format!("break if {condition};"));
                 Ok(())
@@ -175,24 +182,24 @@ impl Writer<'_> {
     }
 
     fn is_literally(&self, id: ExprId, value: bool) -> bool {
-        matches!(&self.draft.tree[id].kind, ExprKind::Literal(Literal { value: Value::Bool(own), .. }) if *own == value)
+        matches!(&self.cx.tree[id].kind, ExprKind::Literal(Literal { value: Value::Bool(own), .. }) if *own == value)
     }
 
-    fn leave_unless(&mut self, condition: ExprId) -> Done {
+    fn break_unless(&mut self, condition: ExprId) -> PrintResult {
         if self.is_literally(condition, false) {
             self.line("break;");
             return Ok(());
         }
         let condition = self.negated(condition)?;
         self.line(&format!("if {condition} {{"));
-        self.inset(|writer| writer.line("break;"));
+        self.indented(|writer| writer.line("break;"));
         self.line("}");
         Ok(())
     }
 
-    /// Whether an expression is one assignment, step or call, and so may stand in a loop's head.
-    fn is_single(&mut self, id: ExprId) -> bool {
-        let tree = &self.draft.tree;
+    /// Whether an expression is a single assignment, increment or call, which fits into a loop's head.
+    fn is_simple(&mut self, id: ExprId) -> bool {
+        let tree = &self.cx.tree;
         match &tree[id].kind {
             &ExprKind::Assign { target, value, .. } => {
                 let is_swizzle = matches!(tree[target].kind, ExprKind::Swizzle { components, .. } if components.size() > 1);
@@ -204,8 +211,8 @@ impl Writer<'_> {
         }
     }
 
-    /// What such an expression does, as one line without indentation.
-    fn single(&mut self, id: ExprId) -> Result<String, Unprintable> {
+    /// Prints such an expression as one line without indentation.
+    fn simple_statement(&mut self, id: ExprId) -> Result<String, Unprintable> {
         let outer = std::mem::take(&mut self.out);
         let done = self.effect(id);
         let text = std::mem::replace(&mut self.out, outer);

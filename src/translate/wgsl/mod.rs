@@ -1,49 +1,42 @@
-//! Prints a shader as WGSL that its author would know again: names, comments, loops and expressions as they were written.
+//! Prints a shader as WGSL that its author recognizes: with the original names, comments, loops and
+//! expressions.
 //!
-//! naga's own writer goes by way of its intermediate form, in which every expression has a number and every variable stands at
-//! the head of its function. What is printed here is the tree, after the few passes of lowering that WGSL needs as naga does. What cannot
-//! be said so ([`Unprintable`]) is left to naga's writer. Sections are those of the WGSL specification.
+//! naga's writer prints its intermediate representation, in which every expression has a number and every
+//! variable is declared at the head of its function. This writer prints the syntax tree, after the few
+//! lowering passes that WGSL also requires. Shaders that it does not support ([`Unprintable`]) are left to
+//! naga's writer. Section numbers are those of the WGSL specification.
 
-mod assign;
 mod builtin;
-mod call;
 mod comment;
-mod conditional;
 mod construct;
+mod effect;
 mod expression;
-mod facts;
-mod host;
 mod item;
-mod later;
 mod literal;
 mod loops;
 mod names;
 mod statement;
 mod style;
-mod text;
-mod texture;
-mod word;
 mod wrap;
 mod writer;
 
-pub use host::Hosted;
-pub use style::Style;
+pub use style::{Hosted, Style};
 use thiserror::Error;
 use toyproof_diagnostic::{Deadline, Files, Overdue};
 use toyproof_glsl::Checked;
 
-use crate::lower::{Draft, Pass, Passes};
+use crate::lower::{LoweringContext, Pass, Passes};
 use crate::print::Order;
 
-/// What this writer has no words for.
+/// A construct that this writer does not support.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{0}")]
 pub struct Unprintable(pub &'static str);
 
-/// Why there is no text.
+/// The reason why no text was printed.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum Failure {
-    /// This writer has no words for it.
+    /// An unsupported construct.
     #[error(transparent)]
     Unprintable(#[from] Unprintable),
     /// The deadline passed.
@@ -51,27 +44,27 @@ pub enum Failure {
     Overdue(#[from] Overdue),
 }
 
-/// A checked shader as WGSL for a kind of host; the author's comments are read from `files`.
+/// Prints a checked shader as WGSL for a kind of host; the author's comments are read from `files`.
 ///
 /// # Errors
-/// What cannot be said, or that the deadline passed.
+/// If a construct is not supported or the deadline passes.
 pub fn wgsl(checked: &Checked, files: &Files, style: Style, deadline: &Deadline) -> Result<String, Failure> {
-    let mut draft = Draft::new(checked.tree.clone(), checked.main_image);
-    passes().run(&mut draft, deadline)?;
-    let order = Order::with_labels(&draft);
+    let mut cx = LoweringContext::new(checked.tree.clone(), checked.main_image);
+    passes().run(&mut cx, deadline)?;
+    let order = Order::with_labels(&cx);
     deadline.check()?;
-    let names = names::Names::of(&draft, &order, style);
+    let names = names::Names::of(&cx, &order, style);
     deadline.check()?;
-    let facts = facts::Facts::of(&draft);
-    let writer = writer::Writer::new(&draft, &names, &facts, style, files, deadline);
+    let facts = writer::Facts::of(&cx);
+    let writer = writer::Writer::new(&cx, &names, &facts, style, files, deadline);
     let written = writer.write(&order);
-    // A writer that runs out of time gives up wherever it is.
+    // An expired deadline also makes the writer fail.
     deadline.check()?;
     Ok(written?)
 }
 
-/// What WGSL, as GLSL in naga's reading, does not have. Loops, `?:` and assignments are printed here instead, locals begin
-/// with zero in any case, and functions return where they must.
+/// The lowering passes for constructs that WGSL lacks too. This writer handles loops, `?:`, assignments and
+/// missing returns itself; WGSL zero-initializes locals anyway.
 fn passes() -> Passes {
     [
         Pass::ShortCircuit,
@@ -79,7 +72,7 @@ fn passes() -> Passes {
         Pass::Compounds,
         Pass::Inequality,
         Pass::Members,
-        Pass::Uninitialised,
+        Pass::Uninitialized,
         Pass::Steps,
         Pass::DoWhile,
         Pass::Nesting,

@@ -1,4 +1,4 @@
-//! Statements, one to a line.
+//! Prints statements, one per line.
 
 use toyproof_glsl::tree::{
     Arm, Block, Case, Condition, ExprId, ExprKind, Label, Scalar, Statement, StatementKind, Tree, Type,
@@ -8,17 +8,17 @@ use toyproof_glsl::tree::{
 use super::Unprintable;
 use super::writer::Writer;
 
-type Done = Result<(), Unprintable>;
+type PrintResult = Result<(), Unprintable>;
 
 impl Writer<'_> {
-    pub(super) fn statements(&mut self, block: &Block) -> Done {
+    pub(super) fn statements(&mut self, block: &Block) -> PrintResult {
         for (number, statement) in block.iter().enumerate() {
             if matches!(statement.kind, StatementKind::Struct(_)) {
                 continue;
             }
-            self.in_time()?;
+            self.check_deadline()?;
             let begin = self.out.len();
-            if self.comments.is_apart(statement.at) && number > 0 {
+            if self.comments.follows_blank_line(statement.at) && number > 0 {
                 self.line("");
             }
             self.comment(statement.at);
@@ -27,19 +27,19 @@ impl Writer<'_> {
             if self.out.len() == from {
                 self.out.truncate(begin);
             } else if !statement.kind.is_compound() {
-                self.comment_behind(statement.at, from);
+                self.trailing_comment(statement.at, from);
             }
         }
         Ok(())
     }
 
-    pub(super) fn block(&mut self, block: &Block) -> Done {
-        self.inset(|writer| writer.statements(block))
+    pub(super) fn block(&mut self, block: &Block) -> PrintResult {
+        self.indented(|writer| writer.statements(block))
     }
 
-    fn statement(&mut self, statement: &Statement) -> Done {
+    fn statement(&mut self, statement: &Statement) -> PrintResult {
         match &statement.kind {
-            StatementKind::Expression(expr) => self.stepping_later(*expr, |writer| writer.effect(*expr)),
+            StatementKind::Expression(expr) => self.with_deferred_steps(*expr, |writer| writer.effect(*expr)),
             StatementKind::Declare(variable) => self.declare(*variable),
             StatementKind::Struct(_) => Ok(()),
             StatementKind::Block(body) if is_switch(body) => self.statements(body),
@@ -86,86 +86,86 @@ impl Writer<'_> {
                 Ok(())
             }
             StatementKind::Return(Some(value)) => {
-                if self.draft.tree[*value].ty == Type::Void {
+                if self.cx.tree[*value].ty == Type::Void {
                     self.effect(*value)?;
                     self.line("return;");
                     return Ok(());
                 }
-                self.give_back(*value)
+                self.return_value(*value)
             }
         }
     }
 
-    /// `let a = 1.0;`, or `var` for what is written later.
+    /// Prints `let a = 1.0;`, or `var` for variables that are written later.
     pub(super) fn declaration(&mut self, id: VariableId) -> Result<String, Unprintable> {
-        let variable = &self.draft.tree[id];
+        let variable = &self.cx.tree[id];
         let name = self.variable(id);
-        let Some(initialiser) = variable.initialiser else {
+        let Some(initializer) = variable.initializer else {
             return Ok(format!("var {name}: {};", self.type_name(variable.ty)));
         };
-        let value = self.value(initialiser)?.words;
+        let value = self.value(initializer)?.code;
         let word = if self.facts.is_memory(id) { "var" } else { "let" };
-        if variable.kind == VariableKind::Const && variable.value.is_some() && is_constant(self, initialiser)
+        if variable.kind == VariableKind::Const && variable.value.is_some() && is_constant(self, initializer)
         {
-            return Ok(self.typed("const", name, variable.ty, &value));
+            return Ok(self.typed_declaration("const", name, variable.ty, &value));
         }
         Ok(format!("{word} {name} = {value};"))
     }
 
-    /// A declaration with its type, unless a constructor says it: a number alone would not.
-    pub(super) fn typed(&self, word: &str, name: &str, ty: Type, value: &str) -> String {
+    /// Prints a declaration with its type, unless a constructor implies it: a literal alone would not.
+    pub(super) fn typed_declaration(&self, word: &str, name: &str, ty: Type, value: &str) -> String {
         let ty = self.type_name(ty);
-        let says_it = value.strip_prefix(&ty).is_some_and(|rest| rest.starts_with('('));
-        if says_it {
+        let implies_type = value.strip_prefix(&ty).is_some_and(|rest| rest.starts_with('('));
+        if implies_type {
             format!("{word} {name} = {value};")
         } else {
             format!("{word} {name}: {ty} = {value};")
         }
     }
 
-    fn declare(&mut self, id: VariableId) -> Done {
+    fn declare(&mut self, id: VariableId) -> PrintResult {
         let name = self.variable(id);
-        let Some(initialiser) = self.draft.tree[id].initialiser else {
+        let Some(initializer) = self.cx.tree[id].initializer else {
             let text = self.declaration(id)?;
             self.line(&text);
             return Ok(());
         };
-        // The initialiser may mean another variable of that name, which is no longer in sight behind the declaration.
-        let meets = walk::any(&self.draft.tree, initialiser, |kind| match kind {
+        // The initializer may use another variable of that name, which the declaration would shadow.
+        let is_shadowed = walk::any(&self.cx.tree, initializer, |kind| match kind {
             ExprKind::Variable(other) => self.variable(*other) == name,
             _ => false,
         });
-        if !meets && self.branching(initialiser).is_some() {
-            let ty = self.type_name(self.draft.tree[id].ty);
+        if !is_shadowed && self.branch_operands(initializer).is_some() {
+            let ty = self.type_name(self.cx.tree[id].ty);
             self.line(&format!("var {name}: {ty};"));
-            return self.stepping_later(initialiser, |writer| writer.give(name, initialiser));
+            return self.with_deferred_steps(initializer, |writer| writer.assign_value(name, initializer));
         }
         let print = |writer: &mut Self| {
             let text = writer.declaration(id)?;
             writer.line(&text);
             Ok(())
         };
-        if meets {
+        if is_shadowed {
             print(self)
         } else {
-            self.stepping_later(initialiser, print)
+            self.with_deferred_steps(initializer, print)
         }
     }
 
-    fn branches(&mut self, arms: &[Arm], otherwise: Option<&Block>) -> Done {
+    fn branches(&mut self, arms: &[Arm], otherwise: Option<&Block>) -> PrintResult {
         let mut depth = 0;
         for (at, arm) in arms.iter().enumerate() {
             if at > 0 && self.hoists(arm.condition) {
-                // What the condition does is done only where the others did not hold.
+                // The side effects of the condition only happen if the previous conditions failed.
                 self.line("} else {");
                 self.indent += 1;
                 depth += 1;
                 let condition = self.value(arm.condition)?;
-                self.line(&format!("if {} {{", condition.words));
+                self.line(&format!("if {} {{", condition.code));
             } else {
                 let condition = self.value(arm.condition)?;
                 let word = if at == 0 { "if" } else { "} else if" };
-                self.line(&format!("{word} {} {{", condition.words));
+                self.line(&format!("{word} {} {{", condition.code));
             }
             self.block(&arm.body)?;
         }
@@ -181,7 +181,7 @@ impl Writer<'_> {
         Ok(())
     }
 
-    fn case(&mut self, head: &str, body: &Block) -> Done {
+    fn case(&mut self, head: &str, body: &Block) -> PrintResult {
         let from = self.out.len();
         self.line(&format!("{head}: {{"));
         let inner = self.out.len();
@@ -195,18 +195,16 @@ impl Writer<'_> {
         Ok(())
     }
 
-    /// Whether a label is a constant's name, or made of such.
+    /// Whether a label is a named constant or an expression of such.
     fn is_named(&self, label: ExprId) -> bool {
-        let names_something = walk::any(&self.draft.tree, label, |kind| {
-            matches!(kind, ExprKind::Variable(_))
-        });
+        let names_something = walk::any(&self.cx.tree, label, |kind| matches!(kind, ExprKind::Variable(_)));
         names_something && is_constant(self, label)
     }
 
-    fn switch(&mut self, selector: ExprId, cases: &[Case]) -> Done {
-        let unsigned = self.draft.tree[selector].ty.scalar() == Some(Scalar::Uint);
+    fn switch(&mut self, selector: ExprId, cases: &[Case]) -> PrintResult {
+        let unsigned = self.cx.tree[selector].ty.scalar() == Some(Scalar::Uint);
         let selector = self.value(selector)?;
-        self.line(&format!("switch {} {{", selector.words));
+        self.line(&format!("switch {} {{", selector.code));
         self.indent += 1;
         let mut has_default = false;
         for case in cases {
@@ -219,7 +217,7 @@ impl Writer<'_> {
                         "default".to_owned()
                     }
                     Label::Case { expr, .. } if self.is_named(expr) => match self.value(expr) {
-                        Ok(text) => text.words,
+                        Ok(text) => text.code,
                         Err(_) => String::new(),
                     },
                     Label::Case { value, .. } if unsigned => format!("{value}u"),
@@ -230,7 +228,7 @@ impl Writer<'_> {
                 [one] if one == "default" => "default".to_owned(),
                 _ => format!("case {}", labels.join(", ")),
             };
-            self.case(&head, &body_of(&self.draft.tree, case))?;
+            self.case(&head, &body_of(&self.cx.tree, case))?;
         }
         if !has_default {
             self.line("default: {}");
@@ -240,25 +238,25 @@ impl Writer<'_> {
         Ok(())
     }
 
-    /// Whether a block may come to its end, as WGSL's analysis of behaviours sees it (§9.7).
-    pub(super) fn may_end(&self, block: &Block) -> bool {
-        !block.iter().any(|statement| self.never_ends(statement))
+    /// Whether control may reach the end of a block, according to WGSL's behavior analysis (§9.7).
+    pub(super) fn may_complete(&self, block: &Block) -> bool {
+        !block.iter().any(|statement| self.never_completes(statement))
     }
 
-    fn never_ends(&self, statement: &Statement) -> bool {
+    fn never_completes(&self, statement: &Statement) -> bool {
         match &statement.kind {
             StatementKind::Return(_) => true,
-            StatementKind::Block(body) => !self.may_end(body),
+            StatementKind::Block(body) => !self.may_complete(body),
             StatementKind::If {
                 arms,
                 otherwise: Some(otherwise),
-            } => !self.may_end(otherwise) && arms.iter().all(|arm| !self.may_end(&arm.body)),
+            } => !self.may_complete(otherwise) && arms.iter().all(|arm| !self.may_complete(&arm.body)),
             StatementKind::Switch { cases, .. } => {
                 let has_default = cases.iter().any(|case| case.labels.contains(&Label::Default));
                 has_default
                     && cases.iter().all(|case| {
-                        let body = body_of(&self.draft.tree, case);
-                        !self.may_end(&body) && !leaves(&body)
+                        let body = body_of(&self.cx.tree, case);
+                        !self.may_complete(&body) && !has_break(&body)
                     })
             }
             _ => false,
@@ -266,12 +264,13 @@ impl Writer<'_> {
     }
 }
 
-/// Whether a block is a `switch` that lowering gave a scope.
+/// Whether a block only adds a scope to a lowered `switch`.
 fn is_switch(block: &Block) -> bool {
     matches!(block.as_slice(), [only] if matches!(only.kind, StatementKind::Switch { .. }))
 }
 
-/// What a case does: WGSL's ends by itself, and a jump at its end needs no `if (true)` round it, as naga's GLSL does.
+/// The body of a case: in WGSL it ends by itself, and a jump at its end does not need the `if (true)` for
+/// naga's GLSL.
 fn body_of(tree: &Tree, case: &Case) -> Block {
     let mut body = case.body.clone();
     body.pop_if(|last| matches!(last.kind, StatementKind::Break));
@@ -292,34 +291,35 @@ fn body_of(tree: &Tree, case: &Case) -> Block {
     body
 }
 
-/// Whether a `break` of the block's own stands in it.
-pub(super) fn leaves(block: &Block) -> bool {
+/// Whether a block contains a `break` that leaves it.
+pub(super) fn has_break(block: &Block) -> bool {
     block.iter().any(|statement| match &statement.kind {
         StatementKind::Break => true,
         StatementKind::For { .. }
         | StatementKind::While { .. }
         | StatementKind::DoWhile { .. }
         | StatementKind::Switch { .. } => false,
-        _ => walk::inner(statement).into_iter().any(leaves),
+        _ => walk::inner(statement).into_iter().any(has_break),
     })
 }
 
-/// Whether WGSL, too, takes an initialiser for constant: numbers, operators and constants, no calls, no arrays.
+/// Whether WGSL also treats an initializer as constant: literals, operators and constants, but no calls and
+/// no arrays.
 fn is_constant(writer: &Writer<'_>, id: ExprId) -> bool {
-    let tree = &writer.draft.tree;
+    let tree = &writer.cx.tree;
     !walk::any(tree, id, |kind| match kind {
         ExprKind::Literal(_)
         | ExprKind::Unary { .. }
         | ExprKind::Binary { .. }
         | ExprKind::Swizzle { .. }
         | ExprKind::Construct { .. } => false,
-        // One of another that is computed by a call is printed with `let`.
+        // A constant that depends on a computed one is printed with `let`.
         ExprKind::Variable(variable) => {
             let variable = &tree[*variable];
             variable.kind != VariableKind::Const
                 || variable.value.is_none()
                 || variable
-                    .initialiser
+                    .initializer
                     .is_none_or(|value| !is_constant(writer, value))
         }
         _ => true,

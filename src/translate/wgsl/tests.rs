@@ -2,12 +2,11 @@ use expect_test::{Expect, expect};
 use toyproof_diagnostic::{Deadline, File, Files};
 use toyproof_glsl::{Options, check};
 
-use super::facts::Facts;
 use super::names::Names;
-use super::writer::Writer;
-use super::{Draft, Failure, Order, Style, wgsl};
+use super::writer::{Facts, Writer};
+use super::{Failure, LoweringContext, Order, Style, wgsl};
 
-fn printed(shader: &str, style: Style) -> String {
+fn print(shader: &str, style: Style) -> String {
     let mut files = Files::default();
     let file = files.add(File::new("shader", shader));
     let checked = check(&files, file, &Options::default()).unwrap();
@@ -15,7 +14,7 @@ fn printed(shader: &str, style: Style) -> String {
 }
 
 #[test]
-fn a_deadline_ends_the_printing_at_its_next_value() {
+fn printing_stops_after_the_deadline() {
     let mut files = Files::default();
     let shader = "void mainImage(out vec4 c, in vec2 p) { c = vec4(p, p); }";
     let file = files.add(File::new("shader", shader));
@@ -24,12 +23,12 @@ fn a_deadline_ends_the_printing_at_its_next_value() {
     let late = wgsl(&checked, &files, Style::Plain, &over);
     assert!(matches!(late, Err(Failure::Overdue(_))), "{late:?}");
 
-    // Each value, statement and item asks for itself.
-    let draft = Draft::new(checked.tree.clone(), checked.main_image);
-    let order = Order::with_labels(&draft);
-    let names = Names::of(&draft, &order, Style::Plain);
-    let facts = Facts::of(&draft);
-    let mut writer = Writer::new(&draft, &names, &facts, Style::Plain, &files, &over);
+    // Each value, statement and item checks the deadline.
+    let cx = LoweringContext::new(checked.tree.clone(), checked.main_image);
+    let order = Order::with_labels(&cx);
+    let names = Names::of(&cx, &order, Style::Plain);
+    let facts = Facts::of(&cx);
+    let mut writer = Writer::new(&cx, &names, &facts, Style::Plain, &files, &over);
     let body = checked.tree[checked.main_image].body.as_ref().unwrap();
     let value = checked.tree.exprs.ids().next().unwrap();
     assert!(writer.value(value).is_err());
@@ -37,10 +36,10 @@ fn a_deadline_ends_the_printing_at_its_next_value() {
     assert!(writer.item(order.items[0]).is_err());
 }
 
-/// The function `f` of a shader that calls it.
+/// Checks the function `f` of a shader that calls it.
 fn function(text: &str, expected: &Expect) {
     let shader = format!("{text}\nvoid mainImage(out vec4 c, in vec2 p) {{ c = vec4(f(p)); }}");
-    let whole = printed(&shader, Style::Plain);
+    let whole = print(&shader, Style::Plain);
     let from = whole.find("fn f(").unwrap_or_else(|| panic!("{whole}"));
     let to = whole[from..].find("\n}\n").unwrap() + from;
     expected.assert_eq(&format!("{}\n}}\n", &whole[from..to]));
@@ -93,11 +92,11 @@ void mainImage(out vec4 fragColor, in vec2 fragCoord) {
             return vec4f(color.xyz, 1.0);
         }
     "]]
-    .assert_eq(&printed(shader, Style::Plain));
+    .assert_eq(&print(shader, Style::Plain));
 }
 
 #[test]
-fn effects_stand_before_what_they_are_part_of() {
+fn side_effects_precede_their_statement() {
     function(
         "float f(vec2 p) { int i = 0; float a; a = (p.yx *= 2.0, p.x) + float(i++); return i > 0 ? a : p.y; }",
         &expect![[r"
@@ -116,7 +115,7 @@ fn effects_stand_before_what_they_are_part_of() {
 }
 
 #[test]
-fn loops_are_those_of_the_author_where_wgsl_has_them() {
+fn loops_keep_their_form_where_wgsl_has_it() {
     function(
         "float f(vec2 p) {
             float s = 0.1 * 0.2;
@@ -158,7 +157,7 @@ fn loops_are_those_of_the_author_where_wgsl_has_them() {
 }
 
 #[test]
-fn what_is_never_written_is_not_kept_and_conditions_are_turned_round() {
+fn unwritten_variables_are_not_bound_and_conditions_are_inverted() {
     function(
         "float f(vec2 p) {
             const int most = max(3, 4), last = most - 1;
@@ -192,7 +191,7 @@ fn what_is_never_written_is_not_kept_and_conditions_are_turned_round() {
 }
 
 #[test]
-fn words_of_wgsl_and_overloads_get_other_names() {
+fn reserved_words_and_overloads_are_renamed() {
     function(
         "float loop(float fn) { return fn; }
         float loop(vec2 fn) { return fn.x; }
@@ -207,26 +206,26 @@ fn words_of_wgsl_and_overloads_get_other_names() {
 }
 
 #[test]
-fn what_a_host_does_not_have_is_refused() {
+fn unsupported_inputs_and_derivatives_are_refused() {
     let shader = "void mainImage(out vec4 c, in vec2 p) { c = iMouse + dFdx(p.x); }";
     let refused = "an input that the host does not have";
-    assert_eq!(printed(shader, Style::Bevy), refused);
+    assert_eq!(print(shader, Style::Bevy), refused);
     let derives = shader.replace("iMouse", "vec4(0.0)");
     let refused = "a derivative in a compute shader";
-    assert_eq!(printed(&derives, Style::ComputeToys), refused);
+    assert_eq!(print(&derives, Style::ComputeToys), refused);
 }
 
 #[test]
-fn y_points_down_where_the_host_has_it_so() {
+fn dfdy_is_negated_where_y_points_down() {
     let shader = "void mainImage(out vec4 c, in vec2 p) { c = vec4(dFdy(p.y)); }";
-    assert!(printed(shader, Style::Plain).contains("vec4f(dpdy(p.y))"));
+    assert!(print(shader, Style::Plain).contains("vec4f(dpdy(p.y))"));
     for style in [Style::WgpuShadertoy, Style::Bevy] {
-        assert!(printed(shader, style).contains("vec4f(-dpdy(p.y))"));
+        assert!(print(shader, style).contains("vec4f(-dpdy(p.y))"));
     }
 }
 
 #[test]
-fn steps_wait_where_nobody_looks_and_choices_are_ifs_only_where_a_side_acts() {
+fn unobserved_steps_are_deferred_and_only_effectful_conditionals_become_ifs() {
     function(
         "float g(float x) { return x * 2.0; }
         float pick(vec2 p, int i) { return i > 2 ? g(p.x) : i > 1 ? g(p.y) : p.x; }
@@ -271,7 +270,7 @@ fn steps_wait_where_nobody_looks_and_choices_are_ifs_only_where_a_side_acts() {
 }
 
 #[test]
-fn cases_keep_their_names_and_fall_through() {
+fn cases_keep_named_labels_and_fall_through() {
     function(
         "const int NEAR = 0, MIDDLE = 1;
         const int FAR = 2;
@@ -305,7 +304,7 @@ fn cases_keep_their_names_and_fall_through() {
 }
 
 #[test]
-fn letters_bits_blank_lines_and_comments_are_the_author_s() {
+fn letters_bits_blank_lines_and_comments_are_preserved() {
     function(
         "float f(vec2 p) {
             vec4 colour = vec4(p, 0.0, 1.0); // red and green
@@ -340,7 +339,7 @@ fn letters_bits_blank_lines_and_comments_are_the_author_s() {
 }
 
 #[test]
-fn a_call_that_may_change_what_it_is_added_to_comes_first() {
+fn a_call_that_may_change_the_target_comes_first() {
     function(
         "float seed;
         float next() { return seed += 1.0; }

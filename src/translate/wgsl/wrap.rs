@@ -1,15 +1,15 @@
-//! Lines that are too long, broken as a formatter would: what stands in brackets item by item, or else before operators.
+//! Breaks long lines like a formatter: within brackets item by item, or before operators.
 
-/// Columns that a line may have.
+/// Maximum line width in columns.
 const WIDTH: usize = 110;
 
-/// Operators by how loosely they bind: a line is broken at the loosest.
+/// Operators by precedence, lowest first; a line breaks at the lowest.
 const OPERATORS: [&[&str]; 4] = [&["||"], &["&&"], &["+", "-"], &["*", "/"]];
 
-/// Appends a line of code, in several if it is too long.
-pub(super) fn put(out: &mut String, text: &str, indent: usize) {
+/// Appends a line of code, broken into several if it is too long.
+pub(super) fn write_line(out: &mut String, text: &str, indent: usize) {
     let is_short = 4 * indent + text.len() <= WIDTH;
-    // The parts of a loop's head stay together.
+    // The parts of a loop's head stay on one line.
     if is_short || text.starts_with("//") || text.starts_with("for (") {
         return whole(out, text, indent);
     }
@@ -33,7 +33,7 @@ fn whole(out: &mut String, text: &str, indent: usize) {
     out.push('\n');
 }
 
-/// Whether a line ends in a call with most of its text, so that it is better broken in there than before it.
+/// Whether a line ends in a call with most of its text; it then breaks within the call.
 fn ends_in_a_call(text: &str) -> bool {
     let depths = depths(text);
     let end = text.trim_end_matches([';', ',', ' ', '{']);
@@ -47,7 +47,7 @@ fn ends_in_a_call(text: &str) -> bool {
         })
 }
 
-/// Breaks a line before operators that stand in no brackets.
+/// Breaks a line before operators outside of brackets.
 fn by_operators(out: &mut String, text: &str, indent: usize) -> bool {
     let depths = depths(text);
     let places = |operators: &[&str]| -> Vec<usize> {
@@ -80,23 +80,24 @@ fn by_operators(out: &mut String, text: &str, indent: usize) -> bool {
     for (number, &place) in places.iter().enumerate() {
         let next = places.get(number + 1).copied().unwrap_or(text.len());
         if 4 * depth + (next - from) > WIDTH {
-            put(out, text[from..place].trim_start(), depth);
+            write_line(out, text[from..place].trim_start(), depth);
             (from, depth) = (place, indent + 1);
         }
     }
-    // What does not fit though it begins with the only operator is broken in its brackets.
+    // If no break is possible, the caller breaks within brackets instead.
     let rest = text[from..].trim_start();
     if from == 0 {
         return false;
     }
-    put(out, rest, depth);
+    write_line(out, rest, depth);
     if opens {
         whole(out, "{", indent);
     }
     true
 }
 
-/// Breaks a line in the longest of its outermost brackets; in those inside, if they hold nothing but another call.
+/// Breaks a line within the longest of its outermost brackets, or within nested ones if they contain only
+/// another call.
 fn by_items(out: &mut String, text: &str, indent: usize) -> bool {
     let depths = depths(text);
     let groups: Vec<(usize, usize)> = text
@@ -135,7 +136,7 @@ fn by_items(out: &mut String, text: &str, indent: usize) -> bool {
     let mut line = String::new();
     for item in items {
         if !line.is_empty() && (!are_short || 4 * indent + 4 + line.len() + item.len() + 2 > WIDTH) {
-            put(out, &line, indent + 1);
+            write_line(out, &line, indent + 1);
             line.clear();
         }
         if !line.is_empty() {
@@ -146,19 +147,20 @@ fn by_items(out: &mut String, text: &str, indent: usize) -> bool {
             line.push(',');
         }
     }
-    put(out, &line, indent + 1);
+    write_line(out, &line, indent + 1);
     whole(out, &text[close..], indent);
     true
 }
 
-/// Whether a call with these brackets is all that stands between those.
+/// Whether a call with the first pair of brackets is the entire content of the second pair.
 fn is_all_of(text: &str, (open, close): (usize, usize), (outer, end): (usize, usize)) -> bool {
     let name = text.get(outer + 1..open).unwrap_or("(");
     let is_name = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
     is_name && !name.is_empty() && close + 1 == end
 }
 
-/// How many brackets are open at each byte, those of types (`array<f32, 3>`) among them; brackets themselves count as outside.
+/// The bracket depth at each byte, including those of types (`array<f32, 3>`); a bracket has the depth
+/// outside of it.
 fn depths(text: &str) -> Vec<usize> {
     let mut depth = 0_usize;
     let mut types = 0_usize;
@@ -188,12 +190,12 @@ fn depths(text: &str) -> Vec<usize> {
 mod tests {
     use expect_test::{Expect, expect};
 
-    use super::put;
+    use super::write_line;
 
     fn broken(text: &str, expected: &Expect) {
-        // What is expected keeps its indentation beside a line without one.
+        // The first line keeps `expect!` from removing the indentation.
         let mut out = "{\n".to_owned();
-        put(&mut out, text, 1);
+        write_line(&mut out, text, 1);
         expected.assert_eq(&out);
     }
 

@@ -1,22 +1,23 @@
-//! The state of printing: lines, names, types. An expression that does something is printed as lines before the statement that it
-//! stands in, so that what is left of it is a value.
+//! The state of printing: lines, names, types, and facts about variables. The side effects of an expression
+//! are printed as lines before its statement, which leaves a pure value.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use toyproof_diagnostic::{Deadline, Files};
-use toyproof_glsl::tree::{ExprId, FunctionId, Place, Scalar, Type, VariableId};
+use toyproof_glsl::tree::{
+    BinaryOp, Direction, ExprId, ExprKind, FunctionId, Place, Scalar, Type, VariableId, VariableKind, walk,
+};
 
 use super::comment::Comments;
-use super::facts::Facts;
 use super::names::Names;
 use super::style::Style;
 use super::{Unprintable, wrap};
-use crate::lower::Draft;
+use crate::lower::LoweringContext;
 use crate::print::Order;
 
-/// Prints a draft.
+/// Prints a lowered shader.
 pub(super) struct Writer<'a> {
-    pub(super) draft: &'a Draft,
+    pub(super) cx: &'a LoweringContext,
     pub(super) names: &'a Names,
     pub(super) facts: &'a Facts,
     pub(super) style: Style,
@@ -24,29 +25,29 @@ pub(super) struct Writer<'a> {
     pub(super) deadline: &'a Deadline,
     pub(super) out: String,
     pub(super) indent: usize,
-    /// Names of our own that are in use in this function.
+    /// Generated names in use in this function.
     pub(super) temporaries: HashSet<String>,
-    /// Every number gets its suffix: what stands among numbers only is computed in 32 bits, too.
+    /// Whether literals get suffixes, so that WGSL evaluates expressions of literals in 32 bits too.
     pub(super) suffixed: bool,
-    /// Which expressions are made of numbers only, as far as it was found out.
+    /// Whether expressions consist of literals only, as far as determined.
     pub(super) abstract_numbers: HashMap<ExprId, bool>,
-    /// Steps that are done at the end of their statement.
-    pub(super) waiting: HashSet<ExprId>,
-    /// Which expressions print lines before their value, as far as it was found out.
+    /// Increments that are deferred to the end of their statement.
+    pub(super) deferred_steps: HashSet<ExprId>,
+    /// Whether expressions need lines before their value, as far as determined.
     pub(super) hoisting: HashMap<ExprId, bool>,
-    /// Macros that stand for a number, by name, with what they are declared as.
+    /// The constant declarations for macros that stand for a literal, by name.
     pub(super) macros: BTreeMap<String, String>,
-    /// Functions of our own that are called, by name.
+    /// Helper functions that are called, by name.
     pub(super) helpers: BTreeMap<String, String>,
-    /// Whether something compares with the pixel's neighbours.
-    pub(super) derives: bool,
-    /// Whether `gl_FragCoord` is read elsewhere than by `mainImage`'s caller.
+    /// Whether derivatives are used, explicitly or for implicit levels of detail.
+    pub(super) uses_derivatives: bool,
+    /// Whether `gl_FragCoord` is read other than by `mainImage`'s caller.
     pub(super) reads_position: bool,
 }
 
 impl<'a> Writer<'a> {
     pub(super) fn new(
-        draft: &'a Draft,
+        cx: &'a LoweringContext,
         names: &'a Names,
         facts: &'a Facts,
         style: Style,
@@ -54,7 +55,7 @@ impl<'a> Writer<'a> {
         deadline: &'a Deadline,
     ) -> Self {
         Self {
-            draft,
+            cx,
             names,
             facts,
             style,
@@ -65,46 +66,47 @@ impl<'a> Writer<'a> {
             temporaries: HashSet::new(),
             abstract_numbers: HashMap::new(),
             suffixed: false,
-            waiting: HashSet::new(),
+            deferred_steps: HashSet::new(),
             hoisting: HashMap::new(),
             macros: BTreeMap::new(),
             helpers: BTreeMap::new(),
-            derives: false,
+            uses_derivatives: false,
             reads_position: false,
         }
     }
 
-    /// Fails if the time is over, to be told as such by whoever asked for the text.
-    pub(super) fn in_time(&self) -> Result<(), Unprintable> {
+    /// Fails if the deadline has passed; [`super::wgsl`] then reports that instead.
+    pub(super) fn check_deadline(&self) -> Result<(), Unprintable> {
         if self.deadline.is_over() {
             return Err(Unprintable("what takes too long"));
         }
         Ok(())
     }
 
-    /// A line at the present depth.
+    /// Prints a line at the current indentation.
     pub(super) fn line(&mut self, text: &str) {
-        wrap::put(&mut self.out, text, self.indent);
+        wrap::write_line(&mut self.out, text, self.indent);
     }
 
-    /// Lines one step further in.
-    pub(super) fn inset<T>(&mut self, inside: impl FnOnce(&mut Self) -> T) -> T {
+    /// Prints lines indented by one more level.
+    pub(super) fn indented<T>(&mut self, inside: impl FnOnce(&mut Self) -> T) -> T {
         self.indent += 1;
         let value = inside(self);
         self.indent -= 1;
         value
     }
 
-    /// The comment lines above a place, if they were not printed yet.
+    /// Prints the comment lines above a place, unless printed already.
     pub(super) fn comment(&mut self, at: Place) {
         for line in self.comments.above(at) {
             self.line(&line);
         }
     }
 
-    /// Puts the comment that the author has behind a place behind the line that was printed from there on, or above several.
-    pub(super) fn comment_behind(&mut self, at: Place, from: usize) {
-        let Some(comment) = self.comments.behind(at) else {
+    /// Prints the author's comment at the end of a place's line: after the line printed since `from`, or
+    /// above it if there are several.
+    pub(super) fn trailing_comment(&mut self, at: Place, from: usize) {
+        let Some(comment) = self.comments.trailing(at) else {
             return;
         };
         let is_one_line = self.out[from..].matches('\n').count() == 1;
@@ -120,33 +122,33 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// A name of our own that nothing has.
+    /// Returns a generated name that is not in use.
     pub(super) fn temporary(&mut self, stem: &str) -> String {
         let is_taken = |name: &str| {
-            super::word::is_taken(name) || self.names.all.contains(name) || self.temporaries.contains(name)
+            super::names::is_taken(name) || self.names.all.contains(name) || self.temporaries.contains(name)
         };
-        let name = super::word::free(stem, is_taken);
+        let name = super::names::free(stem, is_taken);
         self.temporaries.insert(name.clone());
         name
     }
 
     pub(super) fn variable(&self, id: VariableId) -> &'a str {
-        self.names.variables.get(&id).unwrap_or(&self.draft.tree[id].name)
+        self.names.variables.get(&id).unwrap_or(&self.cx.tree[id].name)
     }
 
     pub(super) fn function(&self, id: FunctionId) -> &'a str {
-        self.names.functions.get(&id).unwrap_or(&self.draft.tree[id].name)
+        self.names.functions.get(&id).unwrap_or(&self.cx.tree[id].name)
     }
 
     pub(super) fn type_name(&self, ty: Type) -> String {
-        type_name(self.draft, self.names, ty)
+        type_name(self.cx, self.names, ty)
     }
 
-    /// The whole text: the author's first comment, the style's head, the items, the style's end.
+    /// Prints the whole text: the author's first comment, the style's head, the items and the entry point.
     pub(super) fn write(mut self, order: &Order) -> Result<String, Unprintable> {
         let mut first = self
             .comments
-            .first(self.draft.tree[self.draft.main_image].at)
+            .first(self.cx.tree[self.cx.main_image].at)
             .join("\n");
         if !first.is_empty() {
             first.push_str("\n\n");
@@ -176,8 +178,8 @@ impl<'a> Writer<'a> {
     }
 }
 
-/// A type as WGSL calls it.
-pub(super) fn type_name(draft: &Draft, names: &Names, ty: Type) -> String {
+/// The WGSL name of a type.
+pub(super) fn type_name(cx: &LoweringContext, names: &Names, ty: Type) -> String {
     let suffix = |scalar| match scalar {
         Scalar::Float => Some('f'),
         Scalar::Int => Some('i'),
@@ -193,18 +195,14 @@ pub(super) fn type_name(draft: &Draft, names: &Names, ty: Type) -> String {
         Type::Matrix { columns, rows } => format!("mat{columns}x{rows}f"),
         Type::Struct(id) => names.structs.get(&id).cloned().unwrap_or_default(),
         Type::Array(id) => {
-            let array = draft.tree.array(id);
-            format!(
-                "array<{}, {}>",
-                type_name(draft, names, array.element),
-                array.size
-            )
+            let array = cx.tree.array(id);
+            format!("array<{}, {}>", type_name(cx, names, array.element), array.size)
         }
         Type::Void | Type::Sampler(_) | Type::Error => String::new(),
     }
 }
 
-/// A scalar type as WGSL calls it.
+/// The WGSL name of a scalar type.
 pub(super) fn scalar_name(scalar: Scalar) -> &'static str {
     match scalar {
         Scalar::Bool => "bool",
@@ -212,4 +210,147 @@ pub(super) fn scalar_name(scalar: Scalar) -> &'static str {
         Scalar::Uint => "u32",
         Scalar::Float => "f32",
     }
+}
+
+/// The syntactic class of an expression, which determines where it needs parentheses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Class {
+    Primary,
+    Unary,
+    Product,
+    Sum,
+    Relation,
+    /// An operator that needs no parentheses only in chains of itself.
+    Chain(BinaryOp),
+}
+
+/// The code of a value.
+#[derive(Debug, Clone)]
+pub(super) struct Text {
+    pub(super) code: String,
+    pub(super) class: Class,
+}
+
+pub(super) type TextResult = Result<Text, Unprintable>;
+
+impl Text {
+    pub(super) fn primary(code: impl Into<String>) -> Self {
+        Self {
+            code: code.into(),
+            class: Class::Primary,
+        }
+    }
+
+    /// Returns the code, in parentheses unless its class is among `bare`.
+    pub(super) fn within(self, bare: &[Class]) -> String {
+        if bare.contains(&self.class) {
+            self.code
+        } else {
+            format!("({})", self.code)
+        }
+    }
+
+    /// Returns the code as a side of a comparison.
+    pub(super) fn term(self) -> String {
+        self.within(&[Class::Primary, Class::Unary, Class::Product, Class::Sum])
+    }
+
+    /// Returns the code as the operand of `.`, `[` or a unary operator.
+    pub(super) fn operand(self) -> String {
+        self.within(&[Class::Primary])
+    }
+}
+
+/// Facts about the variables and functions of a shader.
+#[derive(Default)]
+pub(super) struct Facts {
+    /// Variables written after their initialization, in whole or in part: they must be `var`s.
+    pub(super) written: HashSet<VariableId>,
+    /// Variables with a dynamic index: an array or matrix must then be in memory.
+    pub(super) indexed: HashSet<VariableId>,
+    /// Functions that are called.
+    pub(super) called: HashSet<FunctionId>,
+    /// The globals that each function names.
+    pub(super) globals: HashMap<FunctionId, HashSet<VariableId>>,
+}
+
+impl Facts {
+    pub(super) fn of(cx: &LoweringContext) -> Self {
+        let tree = &cx.tree;
+        let mut facts = Self::default();
+        let write = |written: &mut HashSet<VariableId>, target: ExprId| {
+            written.extend(tree.root_variable(target));
+        };
+        for id in printed_expressions(cx) {
+            match &tree[id].kind {
+                ExprKind::Assign { target, .. } | ExprKind::Step { target, .. } => {
+                    write(&mut facts.written, *target);
+                }
+                ExprKind::Call { function, arguments } => {
+                    facts.called.insert(*function);
+                    for (argument, parameter) in arguments.iter().zip(&tree[*function].parameters) {
+                        if is_out(cx, *parameter) {
+                            write(&mut facts.written, *argument);
+                        }
+                    }
+                }
+                ExprKind::BuiltIn { function, arguments } => {
+                    if let Some(&argument) = function.out_parameter().and_then(|at| arguments.get(at)) {
+                        write(&mut facts.written, argument);
+                    }
+                }
+                &ExprKind::Index { base, index }
+                    if !tree[index].constant
+                        && matches!(tree[base].ty, Type::Array(_) | Type::Matrix { .. }) =>
+                {
+                    facts.indexed.extend(tree.root_variable(base));
+                }
+                _ => {}
+            }
+        }
+        for (id, function) in tree.functions.iter() {
+            let named = facts.globals.entry(id).or_default();
+            for root in function.body.iter().flat_map(|body| walk::roots(tree, body)) {
+                for expr in tree.postorder(root) {
+                    if let ExprKind::Variable(variable) = tree[expr].kind
+                        && matches!(tree[variable].kind, VariableKind::Global | VariableKind::Const)
+                    {
+                        named.insert(variable);
+                    }
+                }
+            }
+        }
+        facts
+    }
+
+    /// Whether a local or parameter must be in memory.
+    pub(super) fn is_memory(&self, variable: VariableId) -> bool {
+        self.written.contains(&variable) || self.indexed.contains(&variable)
+    }
+}
+
+/// The expressions that are printed: lowering leaves others in the tree.
+fn printed_expressions(cx: &LoweringContext) -> Vec<ExprId> {
+    let tree = &cx.tree;
+    let bodies = tree
+        .functions
+        .iter()
+        .filter_map(|(_, function)| function.body.as_ref());
+    let roots = bodies.flat_map(|body| walk::roots(tree, body));
+    let globals = tree
+        .variables
+        .iter()
+        .filter_map(|(_, variable)| variable.initializer);
+    roots
+        .chain(globals)
+        .flat_map(|root| tree.postorder(root))
+        .collect()
+}
+
+/// Whether a parameter is passed by pointer.
+pub(super) fn is_out(cx: &LoweringContext, parameter: VariableId) -> bool {
+    matches!(
+        cx.tree[parameter].kind,
+        VariableKind::Parameter(Direction::Out | Direction::InOut)
+    )
 }

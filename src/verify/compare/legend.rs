@@ -1,125 +1,135 @@
-//! The difference of two pictures as a picture: a colour for each decade, and a legend of the scale.
+//! The difference image: a color for each decade of the difference, and a legend of the scale.
 
 use font8x8::{BASIC_FONTS, UnicodeFonts};
-use toyproof_image::{Shown, quantise};
+use toyproof_image::{Rgb8Image, quantize};
 
-/// Colours of the decades below the tolerance, from 1e−7 up: rounding, in cool colours.
+use crate::compare::TOLERANCE;
+
+/// Cool colors of the decades below the tolerance, from 1e−7 up: rounding errors.
 const COOL: [[f32; 3]; 4] = [
     [0.05, 0.05, 0.2],
     [0.08, 0.12, 0.4],
     [0.1, 0.25, 0.6],
     [0.15, 0.45, 0.75],
 ];
-/// Colours above it, up to 1: differences that are seen, in warm colours.
+/// Warm colors of the decades above it, up to 1: visible differences.
 const WARM: [[f32; 3]; 3] = [[0.75, 0.55, 0.1], [0.95, 0.35, 0.1], [1.0, 0.1, 0.1]];
-/// A pixel that differs, and might not if its operations were rounded another way.
+/// The color of an ill-conditioned pixel: it differs, but might not with another rounding of its operations.
 const UNDECIDED: [f32; 3] = [0.8, 0.35, 1.0];
-/// A pixel that is left out, because the shader does there what GLSL leaves undefined.
+/// The color of an excluded pixel, which depends on undefined behavior.
 const UNDEFINED: [f32; 3] = [0.3, 0.3, 0.3];
-const INK: [f32; 3] = [0.85, 0.85, 0.85];
-const GLYPH: u32 = 8;
+const TEXT_COLOR: [f32; 3] = [0.85, 0.85, 0.85];
+const GLYPH_SIZE: u32 = 8;
 
-/// The smallest decade that a difference is told of, as a power of ten; the largest is 0.1 to 1.
-const LOWEST: i32 = -10;
+/// The smallest decade that is distinguished, as a power of ten; the largest is 0.1 to 1.
+const LOWEST_DECADE: i32 = -10;
 
-/// How a pixel of the difference picture is shown. Small, since there are millions of them.
+/// The level of a pixel of the difference image. Small, since there are millions of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Mark(u8);
+pub struct DiffLevel(u8);
 
-impl Mark {
-    /// As one that differs, but hangs by a hair.
+impl DiffLevel {
+    /// Ill-conditioned.
     pub const UNDECIDED: Self = Self(u8::MAX);
-    /// As one that is left out.
+    /// Excluded.
     pub const UNDEFINED: Self = Self(u8::MAX - 1);
 
-    /// By the size of its difference, ≥ 0; NaN counts as 1.
+    /// The level of a difference ≥ 0; NaN counts as 1.
     #[must_use]
     pub fn by(difference: f32) -> Self {
         let difference = if difference.is_nan() { 1.0 } else { difference };
-        let exceeded = (LOWEST..0).take_while(|&decade| difference > 10f32.powi(decade));
+        let exceeded = (LOWEST_DECADE..0).take_while(|&decade| difference > 10f32.powi(decade));
         Self(exceeded.count() as u8)
     }
 
     /// Whether the difference is larger than that power of ten.
-    fn is_beyond(self, decade: i32) -> bool {
-        i32::from(self.0) > decade - LOWEST
+    fn exceeds(self, decade: i32) -> bool {
+        i32::from(self.0) > decade - LOWEST_DECADE
     }
 }
 
-/// What the legend tells.
+/// The scale of a difference image.
 #[derive(Debug, Clone, Copy)]
 pub struct Legend {
-    /// Differences up to this are shown in cool colours; a power of ten in [1e−6, 1e−3].
+    /// Differences up to this are shown in cool colors; a power of ten in [1e−6, 1e−3].
     pub tolerance: f32,
 }
 
-/// The difference picture of `size`, one mark a pixel (bottom row first), with the legend in a strip below
-/// it. The picture is at least as wide as the legend needs.
+/// The scale of visible differences: those above rounding stand out.
+pub const SEEN_BY_EYE: Legend = Legend {
+    tolerance: TOLERANCE as f32,
+};
+
+/// The scale of bit-exact comparisons: all differences above the last bits stand out.
+pub const IN_BITS: Legend = Legend { tolerance: 1e-6 };
+
+/// Renders the difference image of `size` from one level per pixel (bottom row first), with the legend in a
+/// strip below it. The image is at least as wide as the legend requires.
 #[must_use]
-pub fn difference(size: [u32; 2], marks: &[Mark], legend: Legend) -> Shown {
+pub fn difference(size: [u32; 2], marks: &[DiffLevel], legend: Legend) -> Rgb8Image {
     let entries = legend.entries();
     let columns = entries
         .iter()
-        .map(|(words, _)| words.len() as u32 + 3)
+        .map(|(text, _)| text.len() as u32 + 3)
         .max()
         .unwrap_or(0);
-    let cell = columns * GLYPH;
+    let entry_width = columns * GLYPH_SIZE;
     let [width, height] = size;
-    let wide = width.max(cell);
-    let per_row = (wide / cell).max(1);
+    let total_width = width.max(entry_width);
+    let per_row = (total_width / entry_width).max(1);
     let rows = (entries.len() as u32).div_ceil(per_row);
-    let line = GLYPH + 4;
-    let strip = rows * line + 4;
-    let mut canvas = Canvas::new(wide, height + strip);
-    let colours: [_; 256] = std::array::from_fn(|byte| legend.colour(Mark(byte as u8)).map(quantise));
+    let line_height = GLYPH_SIZE + 4;
+    let strip = rows * line_height + 4;
+    let mut canvas = Canvas::new(total_width, height + strip);
+    let colors: [_; 256] = std::array::from_fn(|byte| legend.color(DiffLevel(byte as u8)).map(quantize));
     for (row, y) in marks.chunks(width as usize).zip(strip..) {
-        for (mark, x) in row.iter().zip(0..) {
-            canvas.set(x, y, colours[usize::from(mark.0)]);
+        for (level, x) in row.iter().zip(0..) {
+            canvas.set(x, y, colors[usize::from(level.0)]);
         }
     }
-    for (index, (words, colour)) in entries.iter().enumerate() {
+    for (index, (text, color)) in entries.iter().enumerate() {
         let index = index as u32;
-        let x = (index % per_row) * cell + 4;
-        let top = strip - 4 - (index / per_row) * line;
-        canvas.fill(x, top - GLYPH, GLYPH, colour.map(quantise));
-        canvas.write(x + GLYPH + 4, top, words);
+        let x = (index % per_row) * entry_width + 4;
+        let top = strip - 4 - (index / per_row) * line_height;
+        canvas.fill(x, top - GLYPH_SIZE, GLYPH_SIZE, color.map(quantize));
+        canvas.write(x + GLYPH_SIZE + 4, top, text);
     }
     canvas.finish()
 }
 
 impl Legend {
-    /// What a mark is shown as.
-    fn colour(self, mark: Mark) -> [f32; 3] {
-        match mark {
-            Mark::UNDECIDED => UNDECIDED,
-            Mark::UNDEFINED => UNDEFINED,
+    /// The color of a level.
+    fn color(self, level: DiffLevel) -> [f32; 3] {
+        match level {
+            DiffLevel::UNDECIDED => UNDECIDED,
+            DiffLevel::UNDEFINED => UNDEFINED,
             _ => {
-                let mut reached = self.decades().rev().filter(|&(decade, _)| mark.is_beyond(decade));
-                reached.next().map_or([0.0; 3], |(_, colour)| colour)
+                let mut exceeded = self.decades().rev().filter(|&(decade, _)| level.exceeds(decade));
+                exceeded.next().map_or([0.0; 3], |(_, color)| color)
             }
         }
     }
 
-    /// The lower bound of each decade, as a power of ten, and its colour; upwards.
+    /// The lower bound of each decade, as a power of ten, and its color, in ascending order.
     fn decades(self) -> impl DoubleEndedIterator<Item = (i32, [f32; 3])> {
         let decades = self.tolerance.log10().round() as i32;
         let cool = COOL
             .into_iter()
             .enumerate()
-            .map(move |(i, colour)| (decades - 4 + i as i32, colour));
+            .map(move |(i, color)| (decades - 4 + i as i32, color));
         let warm = WARM
             .into_iter()
             .enumerate()
-            .map(move |(i, colour)| (decades + i as i32, colour));
+            .map(move |(i, color)| (decades + i as i32, color));
         cool.chain(warm)
     }
 
-    /// What stands beside the picture: words, and their colour; sizes upwards.
+    /// The texts of the legend and their colors; differences in ascending order.
     #[must_use]
     pub fn entries(self) -> Vec<(String, [f32; 3])> {
         let mut entries: Vec<_> = self
             .decades()
-            .map(|(decade, colour)| (format!("> 1e{decade}"), colour))
+            .map(|(decade, color)| (format!("> 1e{decade}"), color))
             .collect();
         entries.push(("undecided".to_owned(), UNDECIDED));
         entries.push(("undefined".to_owned(), UNDEFINED));
@@ -127,7 +137,7 @@ impl Legend {
     }
 }
 
-/// A picture that is being drawn; y upwards.
+/// An image under construction; y upwards.
 struct Canvas {
     width: u32,
     height: u32,
@@ -144,39 +154,39 @@ impl Canvas {
         }
     }
 
-    fn set(&mut self, x: u32, y: u32, colour: [u8; 3]) {
+    fn set(&mut self, x: u32, y: u32, color: [u8; 3]) {
         if x < self.width && y < self.height {
-            self.pixels[y as usize * self.width as usize + x as usize] = colour;
+            self.pixels[y as usize * self.width as usize + x as usize] = color;
         }
     }
 
-    /// A square with its lower left corner at (x, y).
-    fn fill(&mut self, x: u32, y: u32, side: u32, colour: [u8; 3]) {
+    /// Fills a square with its lower left corner at (x, y).
+    fn fill(&mut self, x: u32, y: u32, side: u32, color: [u8; 3]) {
         for dy in 0..side {
             for dx in 0..side {
-                self.set(x + dx, y + dy, colour);
+                self.set(x + dx, y + dy, color);
             }
         }
     }
 
-    /// Words with their upper edge at `top`.
-    fn write(&mut self, x: u32, top: u32, words: &str) {
-        for (column, character) in words.chars().enumerate() {
+    /// Writes text with its upper edge at `top`.
+    fn write(&mut self, x: u32, top: u32, text: &str) {
+        for (column, character) in text.chars().enumerate() {
             let rows = BASIC_FONTS.get(character).unwrap_or_default();
             for (row, bits) in rows.iter().enumerate() {
-                for bit in (0..GLYPH).filter(|bit| bits & (1 << bit) != 0) {
+                for bit in (0..GLYPH_SIZE).filter(|bit| bits & (1 << bit) != 0) {
                     self.set(
-                        x + column as u32 * GLYPH + bit,
+                        x + column as u32 * GLYPH_SIZE + bit,
                         top - 1 - row as u32,
-                        INK.map(quantise),
+                        TEXT_COLOR.map(quantize),
                     );
                 }
             }
         }
     }
 
-    fn finish(self) -> Shown {
-        Shown::new(self.width, self.height, self.pixels)
+    fn finish(self) -> Rgb8Image {
+        Rgb8Image::new(self.width, self.height, self.pixels)
     }
 }
 
@@ -187,34 +197,37 @@ mod tests {
     const LEGEND: Legend = Legend { tolerance: 1e-3 };
 
     #[test]
-    fn each_decade_has_its_colour_and_equal_pixels_are_black() {
-        let colour = |difference| LEGEND.colour(Mark::by(difference));
-        assert_eq!(colour(0.0), [0.0; 3]);
-        assert_eq!(colour(1e-7), [0.0; 3]);
-        assert_eq!(colour(1.1e-7), COOL[0]);
-        assert_eq!(colour(1e-3), COOL[3], "what is the tolerance agrees");
-        assert_eq!(colour(1.1e-3), WARM[0]);
-        assert_eq!(colour(0.5), WARM[2]);
-        assert_eq!(colour(7.0), WARM[2]);
-        assert_eq!(colour(f32::NAN), WARM[2]);
-        assert_eq!(LEGEND.colour(Mark::UNDECIDED), UNDECIDED);
-        let in_bits = Legend { tolerance: 1e-6 };
-        assert_eq!(in_bits.colour(Mark::by(1.1e-10)), COOL[0]);
-        assert_eq!(in_bits.colour(Mark::by(1.0)), WARM[2]);
+    fn each_decade_has_its_color_and_equal_pixels_are_black() {
+        let color = |difference| LEGEND.color(DiffLevel::by(difference));
+        assert_eq!(color(0.0), [0.0; 3]);
+        assert_eq!(color(1e-7), [0.0; 3]);
+        assert_eq!(color(1.1e-7), COOL[0]);
+        assert_eq!(color(1e-3), COOL[3], "a difference equal to the tolerance agrees");
+        assert_eq!(color(1.1e-3), WARM[0]);
+        assert_eq!(color(0.5), WARM[2]);
+        assert_eq!(color(7.0), WARM[2]);
+        assert_eq!(color(f32::NAN), WARM[2]);
+        assert_eq!(LEGEND.color(DiffLevel::UNDECIDED), UNDECIDED);
+        let bit_exact = Legend { tolerance: 1e-6 };
+        assert_eq!(bit_exact.color(DiffLevel::by(1.1e-10)), COOL[0]);
+        assert_eq!(bit_exact.color(DiffLevel::by(1.0)), WARM[2]);
     }
 
     #[test]
-    fn the_picture_stands_above_a_legend_that_names_the_scale() {
-        let marks = vec![Mark::by(1.0); 4];
-        let picture = difference([2, 2], &marks, LEGEND);
-        let [width, height] = picture.size();
-        assert!(width >= 64 && height > 2 + GLYPH);
+    fn the_image_is_above_a_legend_of_the_scale() {
+        let marks = vec![DiffLevel::by(1.0); 4];
+        let image = difference([2, 2], &marks, LEGEND);
+        let [width, height] = image.size();
+        assert!(width >= 64 && height > 2 + GLYPH_SIZE);
         assert_eq!(
-            picture.get(0, height - 1),
-            WARM[2].map(quantise),
+            image.get(0, height - 1),
+            WARM[2].map(quantize),
             "the upper left pixel"
         );
-        assert!(picture.pixels().contains(&INK.map(quantise)), "words are written");
+        assert!(
+            image.pixels().contains(&TEXT_COLOR.map(quantize)),
+            "text is written"
+        );
         let names: Vec<_> = LEGEND.entries().into_iter().map(|(name, _)| name).collect();
         assert!(names.contains(&"> 1e-3".to_owned()), "{names:?}");
     }

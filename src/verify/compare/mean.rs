@@ -1,135 +1,145 @@
-//! Two pictures that were drawn by chance, by their means.
+//! Tests whether two images with different random numbers have the same mean.
 //!
-//! A pixel of a renderer that draws its samples is a mean of few of them. Another renderer that draws other ones paints another
-//! colour there, and the same on the average. Of each pixel the tracer tells its mean and its variance; what is left of a shader's pixel without
-//! that mean is noise, if both paint the same. Two facts tell noise from a mistake: noise of many pixels sums up to little,
-//! and that of a pixel says nothing of its neighbour's. How strong it is, is the shader's own business. Sums are judged by the sum of their terms' squares,
-//! which asks nothing of the distribution but that it is as good as symmetric over many pixels.
+//! A pixel of a stochastic renderer is the sample mean of a few samples. A renderer with other random numbers
+//! has another color there, with the same expectation. The tracer estimates the mean and the variance of each
+//! pixel. If both renderers have the same mean, a shader's pixel minus that mean is noise. Two facts separate
+//! noise from a bias: the noise of many pixels averages out, and the noise of a pixel is independent of its
+//! neighbor's. The shader may have any noise level. The variance of a sum is estimated by the sum of its
+//! squared terms, which only assumes that the distribution over many pixels is nearly symmetric.
 
-/// A pixel that hangs on what is drawn. Components of colours lie in [0, 1].
+/// A pixel whose color depends on random numbers. Color components are in [0, 1].
 #[derive(Debug, Clone, Copy)]
-pub struct DrawnPixel {
-    /// Where, x and y from the bottom left.
+pub struct RandomPixel {
+    /// x and y, from the bottom left.
     pub at: [u32; 2],
-    /// What the shader paints.
-    pub painted: [f64; 3],
-    /// What the scene's own draws make of it.
+    /// The shader's color.
+    pub rendered: [f64; 3],
+    /// The reference's color, with the scene's own random numbers.
     pub reference: [f64; 3],
-    /// What the tracer paints on the average.
+    /// The tracer's mean over several sets of random numbers.
     pub mean: [f64; 3],
-    /// The variance of what it paints once, told from other drawings: what a pixel counts must hang on nothing that it is compared with.
-    pub spread: [f64; 3],
-    /// How much brighter it is if its samples are all of the drawings': a tone curve makes a mean another one.
-    pub gain: [f64; 3],
+    /// The variance of the tracer's color with one set of random numbers, estimated from other sets: the
+    /// weight of a pixel must be independent of the values that are compared.
+    pub variance: [f64; 3],
+    /// How much brighter the pixel is if the samples of all sets are averaged before the tone map: a
+    /// nonlinear tone map changes the mean.
+    pub tone_map_bias: [f64; 3],
 }
 
-/// What the means of two pictures say.
+/// The result of comparing the means of two images.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Means {
-    /// They are the same, as far as can be seen: this much apart at most, on the average over all pixels.
+pub enum MeanTest {
+    /// No significant difference; the upper bound of the difference, averaged over all pixels.
     Same(f64),
-    /// They are not, most of all around this pixel.
-    Apart([u32; 2]),
-    /// There is too much noise, or there are too few pixels, to see whether they are.
-    Unseen,
-    /// They may be the same or not: neighbouring pixels draw the same numbers, so that their sums tell little.
-    Repeated,
+    /// A significant difference, most significant around this pixel.
+    Different([u32; 2]),
+    /// The noise is too strong or the pixels are too few to detect a difference.
+    Underpowered,
+    /// Undetermined: neighboring pixels use the same random numbers, so the variance of sums is unknown.
+    Correlated,
 }
 
-/// So many standard deviations are no chance. Some 200 sums are looked at, so that one picture in 700 would be held to be another
-/// if they were normal.
-const NO_CHANCE: f64 = 4.5;
+/// The significance threshold, in standard deviations. Some 200 sums are tested, so for normal sums one image
+/// in 700 would be a false positive.
+const SIGMA_LIMIT: f64 = 4.5;
 
-/// Means that are this much apart are the same: as far as two right formulas may be, for a picture and for its mean.
-const SAME: f64 = 2.0 * super::EXACT_TOLERANCE;
+/// The difference of means that two correct formulas may have: twice the tolerance, once for the image and
+/// once for its mean.
+const MEAN_TOLERANCE: f64 = 2.0 * super::EXACT_TOLERANCE;
 
-/// A pixel counts as if its noise were at least this, or those in which eight drawings have met a sliver by chance not once would count for nearly all.
-const LEAST_NOISE: f64 = 0.01;
+/// The lower bound of a pixel's standard deviation in weights. Without it, pixels in which all eight sets
+/// happen to miss a small feature would have nearly all the weight.
+const MIN_STANDARD_DEVIATION: f64 = 0.01;
 
-/// Nothing is said where means that are this much apart, two and a half levels of 8 bits, might not be seen.
-const FINEST: f64 = 0.01;
+/// The largest undetected difference of means, two and a half 8-bit levels; above it the test is
+/// underpowered.
+const MAX_BIAS_BOUND: f64 = 0.01;
 
-/// Neighbouring pixels may draw the same numbers if the variance of what their noise has not in common is below this share of that of their
-/// noise: it is 1 if each pixel draws its own.
-const REPEATED: f64 = 0.75;
+/// Neighboring pixels share random numbers if the variance of their difference is below this share of the sum
+/// of their variances. The ratio is 1 for independent pixels.
+const MIN_INDEPENDENT_VARIANCE: f64 = 0.75;
 
-/// What neighbours have in common is no noise if it is more than so many times the variance of the scene's.
-const BEYOND_NOISE: f64 = 4.0;
+/// The covariance of neighbors cannot come from noise if it exceeds this multiple of the variance of the
+/// scene's noise.
+const MAX_COVARIANCE: f64 = 4.0;
 
-/// The shader draws the scene's numbers if its noise and the reference's are correlated more than this. It is 0.1 if they have only the mean in common
-/// which both are told from.
-const THE_SCENES: f64 = 0.5;
+/// The shader uses the scene's random numbers if the correlation of its noise with the reference's exceeds
+/// this. Independent noise has a correlation of 0.1, because the same mean is subtracted from both.
+const MIN_SHARED_CORRELATION: f64 = 0.5;
 
-/// The picture is looked at whole, and in so many columns and rows.
+/// The number of columns and of rows of blocks that are tested, besides the whole image.
 const BLOCKS: u32 = 8;
 
-/// Fewer pixels of a block make no sum.
-const FEWEST: usize = 64;
+/// The smallest number of pixels of a block that is tested.
+const MIN_BLOCK_PIXELS: usize = 64;
 
-/// Fewer pixels of a picture say nothing: a mistake in a part of them would not be seen.
-const FEWEST_OF_ALL: usize = 4000;
+/// The smallest number of pixels of an image: with fewer, a mistake in some of them is not detected.
+const MIN_PIXELS: usize = 4000;
 
-/// Whether the shader draws the scene's numbers: its noise is the reference's, and its pixels are to be those of the scene.
+/// Whether the shader uses the scene's random numbers, so that its pixels must be the reference's.
 #[must_use]
-pub fn follows_scene(pairs: &[[DrawnPixel; 2]]) -> bool {
-    correlation(pairs) > THE_SCENES
+pub fn uses_scene_numbers(pairs: &[[RandomPixel; 2]]) -> bool {
+    correlation(pairs) > MIN_SHARED_CORRELATION
 }
 
-/// Compares a shader with the tracer where chance decides: pairs of neighbouring pixels of a picture of that size.
+/// Compares the means of a shader and of the tracer, given pairs of neighboring pixels of an image of that
+/// size.
 #[must_use]
-pub fn means(pairs: &[[DrawnPixel; 2]], size: [u32; 2]) -> Means {
+pub fn means(pairs: &[[RandomPixel; 2]], size: [u32; 2]) -> MeanTest {
     let blocks = (0..BLOCKS * BLOCKS).map(|block| {
-        let of = |pixel: &&DrawnPixel| {
+        let of = |pixel: &&RandomPixel| {
             let [column, row] = [0, 1].map(|i| pixel.at[i] * BLOCKS / size[i]);
             row * BLOCKS + column == block
         };
-        Sum::of(pairs.iter().flatten().filter(of))
+        WeightedSum::of(pairs.iter().flatten().filter(of))
     });
-    let whole = Sum::of(pairs.iter().flatten());
-    let sums = blocks.filter(|block| block.pixels >= FEWEST).chain([whole]);
-    let farthest = sums.max_by(|a, b| a.deviations().total_cmp(&b.deviations()));
-    let farthest = farthest.unwrap_or(whole);
-    let within = whole.within();
-    if farthest.deviations().max(common(pairs)) > NO_CHANCE {
-        if own_noise(pairs) < REPEATED && !is_beyond_noise(pairs) {
-            Means::Repeated
+    let whole = WeightedSum::of(pairs.iter().flatten());
+    let sums = blocks
+        .filter(|block| block.pixels >= MIN_BLOCK_PIXELS)
+        .chain([whole]);
+    let most_significant = sums.max_by(|a, b| a.z_score().total_cmp(&b.z_score()));
+    let most_significant = most_significant.unwrap_or(whole);
+    let bias_bound = whole.bias_bound();
+    if most_significant.z_score().max(neighbor_covariance(pairs)) > SIGMA_LIMIT {
+        if independent_variance(pairs) < MIN_INDEPENDENT_VARIANCE && !exceeds_scene_noise(pairs) {
+            MeanTest::Correlated
         } else {
-            Means::Apart(farthest.middle())
+            MeanTest::Different(most_significant.centroid())
         }
-    } else if within > FINEST || whole.pixels < FEWEST_OF_ALL {
-        Means::Unseen
+    } else if bias_bound > MAX_BIAS_BOUND || whole.pixels < MIN_PIXELS {
+        MeanTest::Underpowered
     } else {
-        Means::Same(within)
+        MeanTest::Same(bias_bound)
     }
 }
 
-impl DrawnPixel {
-    /// What is left of it without its mean, in each component.
+impl RandomPixel {
+    /// The shader's deviation from the mean in component `i`.
     fn noise(&self, i: usize) -> f64 {
-        self.painted[i] - self.mean[i]
+        self.rendered[i] - self.mean[i]
     }
 
-    /// What it counts in a sum.
+    /// The weight of component `i` in sums: its inverse variance.
     fn weight(&self, i: usize) -> f64 {
-        1.0 / (self.spread[i] + LEAST_NOISE * LEAST_NOISE)
+        1.0 / (self.variance[i] + MIN_STANDARD_DEVIATION * MIN_STANDARD_DEVIATION)
     }
 }
 
-/// Terms of a sum, and how far it is from what it should be.
+/// A sum of random terms with its estimated variance.
 #[derive(Clone, Copy, Default)]
-struct Score {
+struct RandomSum {
     sum: f64,
     squares: f64,
 }
 
-impl Score {
+impl RandomSum {
     fn add(&mut self, term: f64) {
         self.sum += term;
         self.squares += term * term;
     }
 
-    /// By how many standard deviations `excess`, of it or beyond what it may be, is more than nothing.
-    fn deviations(self, excess: f64) -> f64 {
+    /// The number of standard deviations of the sum that `excess` is.
+    fn z_score(self, excess: f64) -> f64 {
         if self.squares == 0.0 {
             0.0
         } else {
@@ -138,12 +148,13 @@ impl Score {
     }
 }
 
-/// The variance of what the noise of neighbours has not in common, as a share of the shader's own. Only pixels with much noise are asked: in
-/// others, who draws nothing has none.
-fn own_noise(pairs: &[[DrawnPixel; 2]]) -> f64 {
+/// The variance of the difference of neighbors' noise as a share of the sum of their variances. Only pixels
+/// with much noise count: in others, a shader without randomness has none.
+fn independent_variance(pairs: &[[RandomPixel; 2]]) -> f64 {
     let (mut own, mut all) = (0.0, 0.0);
     for [a, b] in pairs {
-        let noisy = (0..3).filter(|&i| a.spread[i].max(b.spread[i]) > LEAST_NOISE * LEAST_NOISE);
+        let noisy = (0..3)
+            .filter(|&i| a.variance[i].max(b.variance[i]) > MIN_STANDARD_DEVIATION * MIN_STANDARD_DEVIATION);
         for i in noisy {
             let weight = (a.weight(i) * b.weight(i)).sqrt();
             own += weight * (a.noise(i) - b.noise(i)).powi(2);
@@ -153,64 +164,67 @@ fn own_noise(pairs: &[[DrawnPixel; 2]]) -> f64 {
     if all == 0.0 { 1.0 } else { own / all }
 }
 
-/// Whether what neighbours have in common is more than all noise that the scene has, whoever shares it.
-fn is_beyond_noise(pairs: &[[DrawnPixel; 2]]) -> bool {
-    let (mut common, mut noise) = (0.0, 0.0);
+/// Whether the covariance of neighbors exceeds what the scene's noise can explain, even if neighbors share
+/// it.
+fn exceeds_scene_noise(pairs: &[[RandomPixel; 2]]) -> bool {
+    let (mut covariance, mut noise) = (0.0, 0.0);
     for [a, b] in pairs {
         for i in 0..3 {
             let weight = (a.weight(i) * b.weight(i)).sqrt();
-            common += weight * a.noise(i) * b.noise(i);
-            noise += weight * f64::midpoint(a.spread[i], b.spread[i]);
+            covariance += weight * a.noise(i) * b.noise(i);
+            noise += weight * f64::midpoint(a.variance[i], b.variance[i]);
         }
     }
-    common > BEYOND_NOISE * noise
+    covariance > MAX_COVARIANCE * noise
 }
 
-/// The correlation of the shader's noise and the reference's.
-fn correlation(pairs: &[[DrawnPixel; 2]]) -> f64 {
-    let [mut own, mut both, mut reference] = [0.0; 3];
+/// The correlation of the shader's noise with the reference's.
+fn correlation(pairs: &[[RandomPixel; 2]]) -> f64 {
+    let [mut own, mut covariance, mut reference] = [0.0; 3];
     for pixel in pairs.iter().flatten() {
         for i in 0..3 {
             let [a, b] = [pixel.noise(i), pixel.reference[i] - pixel.mean[i]];
             let weight = pixel.weight(i);
             own += weight * a * a;
-            both += weight * a * b;
+            covariance += weight * a * b;
             reference += weight * b * b;
         }
     }
-    if both <= 0.0 {
+    if covariance <= 0.0 {
         0.0
     } else {
-        both / (own * reference).sqrt()
+        covariance / (own * reference).sqrt()
     }
 }
 
-/// The covariance of the noise of neighbours in its standard deviations: it has none, if nothing but chance decides.
-fn common(pairs: &[[DrawnPixel; 2]]) -> f64 {
-    let mut products = Score::default();
-    let mut may_be = 0.0;
+/// The covariance of neighbors' noise in standard deviations. Its expectation is 0 without a bias.
+fn neighbor_covariance(pairs: &[[RandomPixel; 2]]) -> f64 {
+    let mut products = RandomSum::default();
+    let mut allowed = 0.0;
     for [a, b] in pairs {
         let weight = |i| (a.weight(i) * b.weight(i)).sqrt();
         products.add((0..3).map(|i| weight(i) * a.noise(i) * b.noise(i)).sum());
-        let gain = |i: usize| (SAME + a.gain[i].abs()) * (SAME + b.gain[i].abs());
-        may_be += (0..3).map(|i| weight(i) * gain(i)).sum::<f64>();
+        let allowed_product = |i: usize| {
+            (MEAN_TOLERANCE + a.tone_map_bias[i].abs()) * (MEAN_TOLERANCE + b.tone_map_bias[i].abs())
+        };
+        allowed += (0..3).map(|i| weight(i) * allowed_product(i)).sum::<f64>();
     }
-    products.deviations(products.sum - may_be)
+    products.z_score(products.sum - allowed)
 }
 
-/// The noise of some pixels together.
+/// The weighted sum of the noise of some pixels.
 #[derive(Clone, Copy, Default)]
-struct Sum {
+struct WeightedSum {
     pixels: usize,
-    /// Of x and y.
+    /// The sums of x and of y.
     places: [u64; 2],
-    noise: [Score; 3],
+    noise: [RandomSum; 3],
     weight: [f64; 3],
-    gain: [f64; 3],
+    tone_map_bias: [f64; 3],
 }
 
-impl Sum {
-    fn of<'a>(pixels: impl Iterator<Item = &'a DrawnPixel>) -> Self {
+impl WeightedSum {
+    fn of<'a>(pixels: impl Iterator<Item = &'a RandomPixel>) -> Self {
         let mut sum = Self::default();
         for pixel in pixels {
             sum.pixels += 1;
@@ -221,36 +235,37 @@ impl Sum {
                 let weight = pixel.weight(i);
                 sum.noise[i].add(weight * pixel.noise(i));
                 sum.weight[i] += weight;
-                sum.gain[i] += weight * pixel.gain[i];
+                sum.tone_map_bias[i] += weight * pixel.tone_map_bias[i];
             }
         }
         sum
     }
 
-    /// How far the means are apart in the component in which they are farthest, in standard deviations, beyond what they may be.
-    fn deviations(&self) -> f64 {
+    /// The difference of the means beyond the allowed one, in standard deviations; the largest of the
+    /// components.
+    fn z_score(&self) -> f64 {
         let of = |i: usize| {
-            let may_be = SAME * self.weight[i] + self.gain[i].abs();
-            self.noise[i].deviations(self.noise[i].sum.abs() - may_be)
+            let allowed = MEAN_TOLERANCE * self.weight[i] + self.tone_map_bias[i].abs();
+            self.noise[i].z_score(self.noise[i].sum.abs() - allowed)
         };
         of(0).max(of(1)).max(of(2))
     }
 
-    /// How far they may be apart.
-    fn within(&self) -> f64 {
+    /// The upper bound of the difference of the means.
+    fn bias_bound(&self) -> f64 {
         let of = |i: usize| {
-            let Score { sum, squares } = self.noise[i];
-            sum.abs().max(NO_CHANCE * squares.sqrt()) / self.weight[i]
+            let RandomSum { sum, squares } = self.noise[i];
+            sum.abs().max(SIGMA_LIMIT * squares.sqrt()) / self.weight[i]
         };
         if self.pixels == 0 {
             1.0
         } else {
-            SAME + of(0).max(of(1)).max(of(2))
+            MEAN_TOLERANCE + of(0).max(of(1)).max(of(2))
         }
     }
 
-    /// The middle of its pixels.
-    fn middle(&self) -> [u32; 2] {
+    /// The centroid of the pixels.
+    fn centroid(&self) -> [u32; 2] {
         self.places.map(|place| (place / self.pixels as u64) as u32)
     }
 }
@@ -261,24 +276,25 @@ mod tests {
 
     use super::*;
 
-    /// A picture of 64×64 whose colours rise from left to right; `noise` is of a pixel, as many standard deviations of 0.05.
-    fn pairs(noise: impl Fn([u32; 2]) -> f64, mistake: f64) -> Vec<[DrawnPixel; 2]> {
+    /// An image of 64×64 pixels whose colors rise from left to right. `noise` of a pixel is in standard
+    /// deviations of 0.05.
+    fn pairs(noise: impl Fn([u32; 2]) -> f64, mistake: f64) -> Vec<[RandomPixel; 2]> {
         let pixel = |at: [u32; 2]| {
             let mean = 0.25 + f64::from(at[0]) / 128.0;
-            DrawnPixel {
+            RandomPixel {
                 at,
-                painted: [mean + mistake + 0.05 * noise(at); 3],
+                rendered: [mean + mistake + 0.05 * noise(at); 3],
                 reference: [mean + 0.05 * normal(at[1] * 64 + at[0] + 4096); 3],
                 mean: [mean; 3],
-                spread: [0.0025; 3],
-                gain: [0.0; 3],
+                variance: [0.0025; 3],
+                tone_map_bias: [0.0; 3],
             }
         };
         let places = (0..32 * 64).map(|at| [2 * (at % 32), at / 32]);
         places.map(|[x, y]| [pixel([x, y]), pixel([x + 1, y])]).collect()
     }
 
-    /// Twelve uniform numbers, less six: variance 1, about normal.
+    /// The sum of twelve uniform numbers minus six: nearly normal, with variance 1.
     fn normal(of: u32) -> f64 {
         let uniform = |i| f64::from(pcg(pcg(of) ^ i)) / f64::from(u32::MAX);
         (0..12).map(uniform).sum::<f64>() - 6.0
@@ -288,33 +304,36 @@ mod tests {
         normal(y * 64 + x)
     }
 
-    fn of(pairs: &[[DrawnPixel; 2]]) -> Means {
+    fn of(pairs: &[[RandomPixel; 2]]) -> MeanTest {
         means(pairs, [64, 64])
     }
 
     #[test]
-    fn noise_of_the_same_mean_is_the_same() {
-        let Means::Same(within) = of(&pairs(own, 0.0)) else {
+    fn noise_with_the_same_mean_is_not_significant() {
+        let MeanTest::Same(bias_bound) = of(&pairs(own, 0.0)) else {
             panic!();
         };
-        // 4.5 · 0.05 / √4096, and what is the same.
-        assert!((0.0035..0.0040).contains(&within), "{within}");
+        // 4.5 · 0.05 / √4096, plus the tolerance.
+        assert!((0.0035..0.0040).contains(&bias_bound), "{bias_bound}");
         assert!(
-            matches!(of(&pairs(|at| 0.5 * own(at), 0.0)), Means::Same(_)),
+            matches!(of(&pairs(|at| 0.5 * own(at), 0.0)), MeanTest::Same(_)),
             "less noise"
         );
-        assert!(matches!(of(&pairs(own, SAME)), Means::Same(_)));
+        assert!(matches!(of(&pairs(own, MEAN_TOLERANCE)), MeanTest::Same(_)));
     }
 
     #[test]
-    fn a_mistake_is_seen_through_the_noise() {
+    fn a_bias_below_the_noise_level_is_detected() {
         for mistake in [0.005, -0.005] {
-            assert!(matches!(of(&pairs(own, mistake)), Means::Apart(_)), "{mistake}");
+            assert!(
+                matches!(of(&pairs(own, mistake)), MeanTest::Different(_)),
+                "{mistake}"
+            );
         }
-        // As a shadow that is too wide: brighter and darker by turns, so that nothing is left of the sum.
+        // Like a shadow that is too wide: alternately brighter and darker, so that the sum is near 0.
         let waves = |at: [u32; 2]| own(at) + if at[1] % 8 < 4 { 0.4 } else { -0.4 };
-        assert!(matches!(of(&pairs(waves, 0.0)), Means::Apart(_)));
-        let Means::Apart([x, y]) = of(&pairs(
+        assert!(matches!(of(&pairs(waves, 0.0)), MeanTest::Different(_)));
+        let MeanTest::Different([x, y]) = of(&pairs(
             |at| own(at) + f64::from(u8::from(at[0] > 55 && at[1] < 8)),
             0.0,
         )) else {
@@ -324,34 +343,37 @@ mod tests {
     }
 
     #[test]
-    fn the_same_noise_everywhere_is_no_mistake() {
-        assert_eq!(of(&pairs(|_| 1.0, 0.0)), Means::Repeated);
+    fn shared_noise_is_not_a_bias() {
+        assert_eq!(of(&pairs(|_| 1.0, 0.0)), MeanTest::Correlated);
         let shared = |at: [u32; 2]| 0.9 + 0.43 * own(at);
-        assert_eq!(of(&pairs(shared, 0.0)), Means::Repeated);
+        assert_eq!(of(&pairs(shared, 0.0)), MeanTest::Correlated);
     }
 
     #[test]
-    fn who_draws_the_scenes_numbers_is_not_judged_by_the_mean() {
+    fn a_shader_with_the_scenes_random_numbers_is_recognized() {
         let scenes = |[x, y]: [u32; 2]| normal(y * 64 + x + 4096);
-        assert!(follows_scene(&pairs(scenes, 0.0)));
-        assert!(follows_scene(&pairs(|at| 0.8 * scenes(at) + 0.6 * own(at), 0.02)));
-        assert!(!follows_scene(&pairs(own, 0.0)));
+        assert!(uses_scene_numbers(&pairs(scenes, 0.0)));
+        assert!(uses_scene_numbers(&pairs(
+            |at| 0.8 * scenes(at) + 0.6 * own(at),
+            0.02
+        )));
+        assert!(!uses_scene_numbers(&pairs(own, 0.0)));
     }
 
     #[test]
-    fn too_little_is_no_verdict() {
+    fn few_pixels_or_strong_noise_are_underpowered() {
         let some = pairs(own, 0.0);
-        assert_eq!(of(&some[..1999]), Means::Unseen);
-        assert!(matches!(of(&some[..2000]), Means::Same(_)));
-        assert_eq!(of(&[]), Means::Unseen);
+        assert_eq!(of(&some[..1999]), MeanTest::Underpowered);
+        assert!(matches!(of(&some[..2000]), MeanTest::Same(_)));
+        assert_eq!(of(&[]), MeanTest::Underpowered);
         let coarse = some.iter().map(|pair| {
-            pair.map(|pixel| DrawnPixel {
-                painted: pixel.painted.map(|part| part + 4.0 * (part - pixel.mean[0])),
-                spread: [25.0 * 0.0025; 3],
+            pair.map(|pixel| RandomPixel {
+                rendered: pixel.rendered.map(|part| part + 4.0 * (part - pixel.mean[0])),
+                variance: [25.0 * 0.0025; 3],
                 ..pixel
             })
         });
         let coarse: Vec<_> = coarse.collect();
-        assert_eq!(of(&coarse), Means::Unseen, "as of one sample");
+        assert_eq!(of(&coarse), MeanTest::Underpowered, "noise of a single sample");
     }
 }

@@ -1,33 +1,28 @@
-//! Two pictures, pixel by pixel, and what their difference means: the three questions.
+//! Compares two images pixel by pixel; the three checks, and the verdict.
 //!
-//! | question | expected | actual | a difference means |
+//! | check | expected | actual | a difference means |
 //! |---|---|---|---|
-//! | [`maths`] | the tracer in f64 | the shader in f64 | the algorithm is wrong |
-//! | [`rounding`] | the shader in f64 | the GPU in f32 | float32 is not enough here |
+//! | [`algorithm`] | the tracer in f64 | the shader in f64 | the algorithm is wrong |
+//! | [`precision`] | the shader in f64 | the GPU in f32 | float32 is not enough here |
 //! | [`toolchain`] | the shader in f32 on the CPU | the GPU in f32 | naga, toyproof or the driver broke it |
 
-mod answer;
-mod fit;
-mod judge;
+mod algorithm;
+mod check;
+mod images;
 mod legend;
-mod maths;
 mod mean;
-mod picture;
 mod replicate;
-mod rounding;
-mod tolerance;
-mod toolchain;
+mod verdict;
 
-pub use answer::{Answer, Standing, marks};
-pub use judge::{
-    Answers, MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABLE, Verdict, differing, grouped, judge, magnitude,
+pub use algorithm::{Mixed, PERTURBATIONS, Reference, algorithm};
+pub use check::{Answer, EXACT_TOLERANCE, PixelStatus, SEEN, TOLERANCE, marks, precision, toolchain};
+pub use images::{Comparison, Pixel, compare};
+pub use legend::{DiffLevel, IN_BITS, Legend, SEEN_BY_EYE, difference};
+pub use mean::{MeanTest, RandomPixel, means, uses_scene_numbers};
+pub use replicate::{
+    RARE_EVENT_VARIANCE_RATIO, REPLICATES, ReplicateTest, ReplicatedPixel, compare_replicates,
+};
+pub use verdict::{
+    Answers, MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABLE, Verdict, decide, differing, grouped, magnitude,
     plural,
 };
-pub use legend::{Legend, Mark, difference};
-pub use maths::{Mixed, Reference, SHAKES, maths};
-pub use mean::{DrawnPixel, Means, follows_scene, means};
-pub use picture::{Comparison, Pixel, compare};
-pub use replicate::{RARE_EVENTS, REPLICATES, Replicated, ReplicatedPixel, replicated};
-pub use rounding::{SEEN, rounding};
-pub use tolerance::{EXACT_TOLERANCE, IN_BITS, SEEN_BY_EYE, TOLERANCE};
-pub use toolchain::toolchain;

@@ -1,82 +1,91 @@
-//! A stochastic shader with several sets of random numbers beside the tracer with several sets of its own.
+//! Tests whether a stochastic shader has the tracer's mean, from several replicates of each.
 //!
-//! One picture of a shader cannot tell its noise from its mistakes; several pictures with other random numbers can. What they have in common
-//! beyond the tracer's mean is bias. Four facts of them are asked for:
+//! One image of a shader cannot separate its noise from its errors; several replicates, each with other
+//! random numbers, can. What they have in common beyond the tracer's mean is bias. Four statistics are
+//! computed:
 //!
-//! - *sums*: the difference of the means over parts of the picture, against their standard deviation by both sides' own variances;
-//! - *squares*: the product of two differences that have no random number in common is the bias squared on the average, whatever its
-//!   sign and its pattern;
+//! - *sums*: the difference of the means over blocks of the image, relative to its standard deviation by the
+//!   variances of both sides;
+//! - *squares*: the product of two differences from disjoint sets of random numbers, whose expectation is the
+//!   squared bias, whatever its sign and its pattern;
 //! - *correlation*: whether neighbors use the same random numbers;
-//! - *variance*: how many times that of the tracer's.
+//! - *variance*: the ratio of the shader's variance to the tracer's.
 
 use super::EXACT_TOLERANCE;
 
-/// So many pictures of a shader are compared, each with other random numbers; the first is the shader's own.
+/// The number of replicates of a shader that are compared, each with other random numbers; the first is the
+/// shader's own image.
 pub const REPLICATES: usize = 8;
 
-/// A pixel that is random in the scene or in the shader, in the means of samples times the slope of what develops them: as far as
-/// colors differ little, differences are those of colors.
+/// A pixel that is random in the scene or in the shader. Values are means of samples times the slope of the
+/// tone map, so that small differences are differences of colors.
 #[derive(Debug, Clone)]
 pub struct ReplicatedPixel {
-    /// Where, x and y from the bottom left.
+    /// x and y, from the bottom left.
     pub at: [u32; 2],
-    /// What it counts, by variances that none of what follows was used for.
+    /// The weight, from variances estimated without any of the values below.
     pub weight: [f64; 3],
-    /// The tracer's mean over each of two halves of its pictures.
+    /// The tracer's mean over each half of its sets of random numbers.
     pub reference: [[f64; 3]; 2],
     /// The variance of the mean of both halves.
     pub reference_variance: [f64; 3],
-    /// The variance of a single picture of the tracer's.
+    /// The variance of the tracer with one set of random numbers.
     pub single_variance: [f64; 3],
-    /// What the shader makes of it.
+    /// The shader's values, one for each replicate.
     pub own: [[f64; 3]; REPLICATES],
 }
 
-/// What the pictures say.
+/// The result of comparing the replicates of a shader with the tracer.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Replicated {
-    /// By how many standard deviations the means differ where they differ most, and around which pixel.
+pub struct ReplicateTest {
+    /// The most significant difference of the means, in standard deviations, and the centroid of the pixels
+    /// of that block.
     pub bias: (f64, [u32; 2]),
-    /// Whether that is more than chance.
+    /// Whether the difference is significant.
     pub is_biased: bool,
-    /// How far the means may be apart over the whole picture.
+    /// The upper bound of the difference of the means over the whole image.
     pub within: f64,
     /// Whether neighboring pixels use the same random numbers.
-    pub is_repeated: bool,
-    /// How many times the variance of the tracer's noise the shader's is.
+    pub is_correlated: bool,
+    /// The ratio of the variance of the shader's noise to that of the tracer's.
     pub variance: f64,
-    /// Whether it is the same number of times in all parts of the picture, as of a smaller number of samples.
+    /// Whether this ratio is the same in all parts of the image, as it is for a smaller number of samples.
     pub is_uniform: bool,
 }
 
-/// So many standard deviations are no chance: some hundred sums are looked at.
+/// The significance threshold in standard deviations; some hundred sums are tested.
 const SIGMA_LIMIT: f64 = 5.0;
 
-/// The same where neighbors use the same random numbers, so that the variance of sums is told from eight pictures alone: Student's t of
-/// seven degrees of freedom exceeds this once in 50,000 times.
-const REPEATED_LIMIT: f64 = 10.0;
+/// The same where neighbors use the same random numbers, so that the variance of sums is estimated from the
+/// eight replicates alone: Student's t with seven degrees of freedom exceeds it with a probability of
+/// 1/50,000.
+const CORRELATED_SIGMA_LIMIT: f64 = 10.0;
 
-/// Means of eight pictures are not apart by more than so many times the variance of one, whoever shares its random numbers.
-const BEYOND_NOISE: f64 = 4.0;
+/// The largest mean squared difference of the means of eight replicates that noise can explain, as a multiple
+/// of the variance of one, even if all pixels share their random numbers.
+const MAX_SQUARED_DIFFERENCE: f64 = 4.0;
 
-/// Means that are this much apart are the same, as far as two right formulas may be.
-const SAME: f64 = 2.0 * EXACT_TOLERANCE;
+/// The difference of means that two correct formulas may have.
+const MEAN_TOLERANCE: f64 = 2.0 * EXACT_TOLERANCE;
 
-/// Neighbors use the same numbers if their noise is correlated more than this in some direction; it is 0 where each has its own.
-const CORRELATED: f64 = 0.25;
+/// Neighbors use the same random numbers if the correlation of their noise exceeds this in some direction; it
+/// is 0 for independent pixels.
+const MIN_CORRELATION: f64 = 0.25;
 
-/// The picture is looked at whole, and in so many columns and rows, and in so many.
+/// The numbers of columns and of rows of blocks that are tested.
 const BLOCKS: [u32; 3] = [1, 4, 16];
 
-/// Fewer pixels make no sum.
-const FEWEST: usize = 48;
+/// The smallest number of pixels of a block that is tested.
+const MIN_BLOCK_PIXELS: usize = 48;
 
-/// The ratio of variances is the same everywhere if that of parts of the picture differs by less than this share of it, root mean square.
-const UNIFORM: f64 = 0.15;
+/// The ratio of variances is uniform if the relative root mean square deviation of its values in parts of the
+/// image is below this.
+const MAX_RATIO_DEVIATION: f64 = 0.15;
 
-/// Noise of more than so many times the variance of the tracer's may be that of rare events: of an event of the same mean that is k times as
-/// rare, the variance is k times as large. With less, the tracer's own variance tells what a pixel has not met.
-pub const RARE_EVENTS: f64 = 4.0;
+/// The ratio of variances above which the noise may come from rare events: an event with the same mean that
+/// is k times rarer has k times the variance. Below it, the tracer's own variance accounts for events that
+/// did not occur in a pixel.
+pub const RARE_EVENT_VARIANCE_RATIO: f64 = 4.0;
 
 impl ReplicatedPixel {
     fn mean(&self, i: usize, sets: std::ops::Range<usize>) -> f64 {
@@ -84,26 +93,26 @@ impl ReplicatedPixel {
         self.own[sets].iter().map(|own| own[i]).sum::<f64>() / count
     }
 
-    /// The unbiased variance of what the shader makes of it.
+    /// The unbiased sample variance of the shader's values.
     fn variance(&self, i: usize) -> f64 {
         let mean = self.mean(i, 0..REPLICATES);
         let squares = self.own.iter().map(|own| (own[i] - mean).powi(2));
         squares.sum::<f64>() / (REPLICATES - 1) as f64
     }
 
-    /// The difference of the means.
+    /// The difference between the shader's mean and the tracer's.
     fn difference(&self, i: usize) -> f64 {
         self.mean(i, 0..REPLICATES) - f64::midpoint(self.reference[0][i], self.reference[1][i])
     }
 }
 
-/// Compares the two; `size` is the picture's.
+/// Compares the shader's replicates with the tracer's means; `size` is the image's.
 #[must_use]
-pub fn replicated(pixels: &[ReplicatedPixel], size: [u32; 2]) -> Replicated {
-    let is_repeated = is_repeated(pixels);
-    let (variance, is_uniform) = variances(pixels, size);
-    let events = if variance > RARE_EVENTS {
-        largest_events(pixels)
+pub fn compare_replicates(pixels: &[ReplicatedPixel], size: [u32; 2]) -> ReplicateTest {
+    let is_correlated = is_correlated(pixels);
+    let (variance, is_uniform) = variance_ratio(pixels, size);
+    let events = if variance > RARE_EVENT_VARIANCE_RATIO {
+        largest_deviations(pixels)
     } else {
         [0.0; 3]
     };
@@ -114,12 +123,12 @@ pub fn replicated(pixels: &[ReplicatedPixel], size: [u32; 2]) -> Replicated {
             let [column, row] = [0, 1].map(|i| pixel.at[i] * blocks / size[i]);
             parts[(row * blocks + column) as usize].push(pixel);
         }
-        for part in parts.into_iter().filter(|part| part.len() >= FEWEST) {
-            let sums = sum(&part, is_repeated, events);
-            let most = if is_repeated {
+        for part in parts.into_iter().filter(|part| part.len() >= MIN_BLOCK_PIXELS) {
+            let sums = sum_z_score(&part, is_correlated, events);
+            let most = if is_correlated {
                 sums
             } else {
-                sums.max(squares(&part, events))
+                sums.max(squared_bias_z_score(&part, events))
             };
             if most > bias.0 {
                 let places = part.iter().fold([0u64; 2], |sum, pixel| {
@@ -129,20 +138,24 @@ pub fn replicated(pixels: &[ReplicatedPixel], size: [u32; 2]) -> Replicated {
             }
         }
     }
-    let limit = if is_repeated { REPEATED_LIMIT } else { SIGMA_LIMIT };
-    Replicated {
+    let limit = if is_correlated {
+        CORRELATED_SIGMA_LIMIT
+    } else {
+        SIGMA_LIMIT
+    };
+    ReplicateTest {
         bias,
-        is_biased: bias.0 > limit || (is_repeated && is_beyond_noise(pixels)),
-        within: within(pixels, limit, events),
-        is_repeated,
+        is_biased: bias.0 > limit || (is_correlated && exceeds_scene_noise(pixels)),
+        within: bias_bound(pixels, limit, events),
+        is_correlated,
         variance,
         is_uniform,
     }
 }
 
-/// The largest deviation of a picture from the mean of its pixel, in each component: the size of the rare events that other pixels may
-/// not have met yet.
-fn largest_events<'a>(pixels: impl IntoIterator<Item = &'a ReplicatedPixel>) -> [f64; 3] {
+/// The largest deviation of a replicate from the mean of its pixel, in each component: the magnitude of the
+/// rare events that may not have occurred in other pixels yet.
+fn largest_deviations<'a>(pixels: impl IntoIterator<Item = &'a ReplicatedPixel>) -> [f64; 3] {
     let mut largest = [0.0f64; 3];
     for pixel in pixels {
         for (i, largest) in largest.iter_mut().enumerate() {
@@ -153,59 +166,61 @@ fn largest_events<'a>(pixels: impl IntoIterator<Item = &'a ReplicatedPixel>) -> 
     largest
 }
 
-/// A weighted sum of the differences in one component.
-struct Sum {
+/// The weighted sum of the differences in one component.
+struct DifferenceSum {
     differences: f64,
     variance: f64,
     weight: f64,
 }
 
-impl Sum {
-    /// Variances are those of the pixels, and of events of the size `event` that were not met: the mean of n pictures is short by d where
-    /// n·d/event of them are missing. Their number has Poisson's distribution, so that the mean has the variance d·event/n.
+impl DifferenceSum {
+    /// Sums the pixels' variances, plus that of events of magnitude `event` that did not occur: if the mean
+    /// of n replicates is too small by d, n·d/event of them are missing. Their number has a Poisson
+    /// distribution, so the mean has the additional variance d·event/n.
     fn of<'a>(pixels: impl IntoIterator<Item = &'a ReplicatedPixel>, i: usize, event: f64) -> Self {
         let sets = REPLICATES as f64;
-        let [mut sum, mut variance, mut short, mut all] = [0.0; 4];
+        let [mut sum, mut variance, mut shortfall, mut all] = [0.0; 4];
         for pixel in pixels {
             let weight = pixel.weight[i];
             let difference = pixel.difference(i);
             sum += weight * difference;
             variance += weight * weight * (pixel.variance(i) / sets + pixel.reference_variance[i]);
-            // With its sign, so that noise cancels.
-            short -= weight * weight * difference;
+            // Signed, so that noise cancels.
+            shortfall -= weight * weight * difference;
             all += weight;
         }
         Self {
             differences: sum,
-            variance: variance + short.max(0.0) * event / sets,
+            variance: variance + shortfall.max(0.0) * event / sets,
             weight: all,
         }
     }
 }
 
-/// How far the means may be apart, in the component in which they may be farthest; infinite where there is nothing to tell it from.
-fn within(pixels: &[ReplicatedPixel], limit: f64, events: [f64; 3]) -> f64 {
+/// The upper bound of the difference of the means, the largest of the components; infinite without any
+/// weight.
+fn bias_bound(pixels: &[ReplicatedPixel], limit: f64, events: [f64; 3]) -> f64 {
     let of = |i: usize| {
-        let Sum {
+        let DifferenceSum {
             differences,
             variance,
             weight,
-        } = Sum::of(pixels, i, events[i]);
-        SAME + differences.abs().max(limit * variance.sqrt()) / weight
+        } = DifferenceSum::of(pixels, i, events[i]);
+        MEAN_TOLERANCE + differences.abs().max(limit * variance.sqrt()) / weight
     };
     let most = of(0).max(of(1)).max(of(2));
     if most.is_nan() { f64::INFINITY } else { most }
 }
 
-/// By how many standard deviations the sum of differences is too large, in the component in which it is largest.
-fn sum(pixels: &[&ReplicatedPixel], is_repeated: bool, events: [f64; 3]) -> f64 {
+/// The sum of differences beyond the allowed one, in standard deviations; the largest of the components.
+fn sum_z_score(pixels: &[&ReplicatedPixel], is_correlated: bool, events: [f64; 3]) -> f64 {
     let of = |i: usize| {
-        let Sum {
+        let DifferenceSum {
             differences,
             mut variance,
             weight,
-        } = Sum::of(pixels.iter().copied(), i, events[i]);
-        if is_repeated {
+        } = DifferenceSum::of(pixels.iter().copied(), i, events[i]);
+        if is_correlated {
             let of_set = |set: usize| -> f64 {
                 pixels
                     .iter()
@@ -217,49 +232,50 @@ fn sum(pixels: &[&ReplicatedPixel], is_repeated: bool, events: [f64; 3]) -> f64 
             let squares = of_each.iter().map(|each| (each - mean).powi(2)).sum::<f64>();
             variance = variance.max(squares / ((REPLICATES - 1) * REPLICATES) as f64);
         }
-        deviations(differences.abs() - SAME * weight, variance)
+        z_score(differences.abs() - MEAN_TOLERANCE * weight, variance)
     };
     of(0).max(of(1)).max(of(2))
 }
 
-/// By how many standard deviations the sum of squared biases is too large.
-fn squares(pixels: &[&ReplicatedPixel], events: [f64; 3]) -> f64 {
+/// The sum of squared biases, in standard deviations.
+fn squared_bias_z_score(pixels: &[&ReplicatedPixel], events: [f64; 3]) -> f64 {
     const HALF: usize = REPLICATES / 2;
-    let [mut sum, mut variance, mut unmet] = [0.0; 3];
+    let [mut sum, mut variance, mut missing_events] = [0.0; 3];
     for pixel in pixels {
         let mut of_pixel = 0.0;
         for (i, event) in events.iter().enumerate() {
             let one = pixel.mean(i, 0..HALF) - pixel.reference[0][i];
             let other = pixel.mean(i, HALF..REPLICATES) - pixel.reference[1][i];
-            of_pixel += pixel.weight[i] * (one * other - SAME * SAME);
+            of_pixel += pixel.weight[i] * (one * other - MEAN_TOLERANCE * MEAN_TOLERANCE);
             if one + other < 0.0 {
-                // The product of the variances of two means that are short, for three components that go together.
-                unmet += 3.0 * one * other * (pixel.weight[i] * event / HALF as f64).powi(2);
+                // The product of the variances of two means that are too small; the three components are
+                // fully correlated.
+                missing_events += 3.0 * one * other * (pixel.weight[i] * event / HALF as f64).powi(2);
             }
         }
         sum += of_pixel;
         variance += of_pixel * of_pixel;
     }
-    deviations(sum, variance + unmet.max(0.0))
+    z_score(sum, variance + missing_events.max(0.0))
 }
 
-fn deviations(excess: f64, variance: f64) -> f64 {
+fn z_score(excess: f64, variance: f64) -> f64 {
     if excess <= 0.0 {
         0.0
     } else if variance == 0.0 {
-        // Nothing random is left to explain it.
+        // Without variance, any excess is significant.
         f64::INFINITY
     } else {
         excess / variance.sqrt()
     }
 }
 
-/// Whether the noise of neighbors is correlated in some direction: what is left of a pixel without its own mean.
-fn is_repeated(pixels: &[ReplicatedPixel]) -> bool {
+/// Whether the noise of neighbors, their deviation from their own means, is correlated in some direction.
+fn is_correlated(pixels: &[ReplicatedPixel]) -> bool {
     let places: std::collections::HashMap<[u32; 2], &ReplicatedPixel> =
         pixels.iter().map(|pixel| (pixel.at, pixel)).collect();
     let correlation = |[dx, dy]: [i32; 2]| {
-        let [mut own, mut both, mut other] = [0.0; 3];
+        let [mut own, mut covariance, mut other] = [0.0; 3];
         for pixel in pixels {
             let at = [
                 pixel.at[0].wrapping_add_signed(dx),
@@ -274,21 +290,21 @@ fn is_repeated(pixels: &[ReplicatedPixel]) -> bool {
                 for (a, b) in pixel.own.iter().zip(&neighbor.own) {
                     let [a, b] = [a[i] - means[0], b[i] - means[1]];
                     own += weight * a * a;
-                    both += weight * a * b;
+                    covariance += weight * a * b;
                     other += weight * b * b;
                 }
             }
         }
-        both / (own * other).sqrt().max(f64::MIN_POSITIVE)
+        covariance / (own * other).sqrt().max(f64::MIN_POSITIVE)
     };
     let directions = [[1, 0], [0, 1], [1, 1], [1, -1]];
     directions
         .into_iter()
-        .any(|direction| correlation(direction) > CORRELATED)
+        .any(|direction| correlation(direction) > MIN_CORRELATION)
 }
 
-/// Whether the means are farther apart than any noise of the scene would have them.
-fn is_beyond_noise(pixels: &[ReplicatedPixel]) -> bool {
+/// Whether the difference of the means exceeds what the scene's noise can explain, even if pixels share it.
+fn exceeds_scene_noise(pixels: &[ReplicatedPixel]) -> bool {
     let (mut squares, mut noise) = (0.0, 0.0);
     for pixel in pixels {
         for i in 0..3 {
@@ -296,16 +312,16 @@ fn is_beyond_noise(pixels: &[ReplicatedPixel]) -> bool {
             noise += pixel.weight[i] * pixel.single_variance[i];
         }
     }
-    squares > BEYOND_NOISE * noise
+    squares > MAX_SQUARED_DIFFERENCE * noise
 }
 
-/// How many times the tracer's variance the shader's is, and whether it is so everywhere.
-fn variances(pixels: &[ReplicatedPixel], size: [u32; 2]) -> (f64, bool) {
-    const SIDE: u32 = 4;
-    let mut parts = vec![[0.0; 2]; (SIDE * SIDE) as usize];
+/// The ratio of the shader's variance to the tracer's, and whether it is uniform.
+fn variance_ratio(pixels: &[ReplicatedPixel], size: [u32; 2]) -> (f64, bool) {
+    const PARTS: u32 = 4;
+    let mut parts = vec![[0.0; 2]; (PARTS * PARTS) as usize];
     for pixel in pixels {
-        let [column, row] = [0, 1].map(|i| pixel.at[i] * SIDE / size[i]);
-        let part = &mut parts[(row * SIDE + column) as usize];
+        let [column, row] = [0, 1].map(|i| pixel.at[i] * PARTS / size[i]);
+        let part = &mut parts[(row * PARTS + column) as usize];
         for i in 0..3 {
             part[0] += pixel.weight[i] * pixel.variance(i);
             part[1] += pixel.weight[i] * pixel.single_variance[i];
@@ -318,12 +334,12 @@ fn variances(pixels: &[ReplicatedPixel], size: [u32; 2]) -> (f64, bool) {
         return (f64::INFINITY, false);
     }
     let ratio = own / reference;
-    // Each part counts by the variance that it has.
-    let spread = parts.iter().filter(|part| part[1] > 0.0).map(|part| {
-        let off = part[0] / part[1] / ratio - 1.0;
-        part[1] / reference * off * off
+    // Each part is weighted by the tracer's variance in it.
+    let deviations = parts.iter().filter(|part| part[1] > 0.0).map(|part| {
+        let deviation = part[0] / part[1] / ratio - 1.0;
+        part[1] / reference * deviation * deviation
     });
-    (ratio, spread.sum::<f64>().sqrt() < UNIFORM)
+    (ratio, deviations.sum::<f64>().sqrt() < MAX_RATIO_DEVIATION)
 }
 
 #[cfg(test)]
@@ -334,13 +350,13 @@ mod tests {
 
     const SIZE: [u32; 2] = [64, 64];
 
-    /// Twelve uniform numbers, less six: variance 1, about normal.
+    /// The sum of twelve uniform numbers minus six: nearly normal, with variance 1.
     fn normal(of: u32) -> f64 {
         let uniform = |i| f64::from(pcg(pcg(of) ^ i)) / f64::from(u32::MAX);
         (0..12).map(uniform).sum::<f64>() - 6.0
     }
 
-    /// A gray picture with noise of 0.05; `own` is what the shader adds to it at a place in a set.
+    /// A gray image with noise of 0.05; `own` is what the shader adds to a pixel in a replicate.
     fn pixels(own: impl Fn([u32; 2], u32) -> f64) -> Vec<ReplicatedPixel> {
         let pixel = |at: [u32; 2]| {
             let number = at[1] * 64 + at[0];
@@ -362,53 +378,56 @@ mod tests {
     }
 
     #[test]
-    fn the_same_mean_is_no_bias_whatever_the_noise() {
+    fn the_same_mean_is_unbiased_at_any_noise_level() {
         for times in [0.2, 1.0, 3.0] {
-            let found = replicated(&pixels(|at, set| times * noise(at, set)), SIZE);
-            assert!(!found.is_biased && !found.is_repeated, "{times}: {found:?}");
+            let found = compare_replicates(&pixels(|at, set| times * noise(at, set)), SIZE);
+            assert!(!found.is_biased && !found.is_correlated, "{times}: {found:?}");
             assert!((found.variance / (times * times) - 1.0).abs() < 0.1, "{found:?}");
             assert!(found.is_uniform);
         }
         let uneven = |at: [u32; 2], set| noise(at, set) * if at[0] < 32 { 1.0 } else { 2.0 };
-        let found = replicated(&pixels(uneven), SIZE);
+        let found = compare_replicates(&pixels(uneven), SIZE);
         assert!(!found.is_biased && !found.is_uniform, "{found:?}");
     }
 
     #[test]
-    fn a_bias_of_any_pattern_is_found() {
+    fn a_bias_of_any_pattern_is_detected() {
         let checkers = |[x, y]: [u32; 2]| if (x + y) % 2 == 0 { 1.0 } else { -1.0 };
         for bias in [(|_| 0.003) as fn([u32; 2]) -> f64, |[x, _]| {
             if x > 56 { 0.02 } else { 0.0 }
         }] {
-            let found = replicated(&pixels(|at, set| noise(at, set) + bias(at)), SIZE);
+            let found = compare_replicates(&pixels(|at, set| noise(at, set) + bias(at)), SIZE);
             assert!(found.is_biased, "{found:?}");
         }
-        // No sum of it is anything, and neighbors have nothing in common.
-        let found = replicated(&pixels(|at, set| noise(at, set) + 0.02 * checkers(at)), SIZE);
-        assert!(found.is_biased && !found.is_repeated, "{found:?}");
+        // The sum over any block is near 0, and neighbors are not correlated.
+        let found = compare_replicates(&pixels(|at, set| noise(at, set) + 0.02 * checkers(at)), SIZE);
+        assert!(found.is_biased && !found.is_correlated, "{found:?}");
     }
 
     #[test]
-    fn rare_events_that_were_not_met_are_no_bias() {
-        // Two in each sixteenth of the image on the average, and none in some.
+    fn missing_rare_events_are_not_a_bias() {
+        // Two events on average in each sixteenth of the image, and none in some.
         let rare = |[x, y]: [u32; 2], set| {
-            let is_met = pcg((y * 64 + x) * 16 + set + 9_000_000) < u32::MAX / 1000;
-            if is_met { 10.0 - 0.01 } else { -0.01 }
+            let occurs = pcg((y * 64 + x) * 16 + set + 9_000_000) < u32::MAX / 1000;
+            if occurs { 10.0 - 0.01 } else { -0.01 }
         };
-        let found = replicated(&pixels(rare), SIZE);
-        assert!(!found.is_biased && found.variance > RARE_EVENTS, "{found:?}");
-        let found = replicated(&pixels(|at, set| rare(at, set) - 0.05), SIZE);
+        let found = compare_replicates(&pixels(rare), SIZE);
+        assert!(
+            !found.is_biased && found.variance > RARE_EVENT_VARIANCE_RATIO,
+            "{found:?}"
+        );
+        let found = compare_replicates(&pixels(|at, set| rare(at, set) - 0.05), SIZE);
         assert!(found.is_biased, "{found:?}");
     }
 
     #[test]
-    fn numbers_that_neighbors_share_are_seen_in_any_direction() {
+    fn shared_random_numbers_are_detected_in_any_direction() {
         let shared: [fn([u32; 2]) -> u32; 5] =
             [|_| 1, |[x, _]| x, |[_, y]| y, |[x, y]| x + y, |[x, y]| x + 64 - y];
         for (case, shared) in shared.into_iter().enumerate() {
             let own = |at, set| 0.05 * normal(shared(at) * 16 + set + 3_000_000);
-            let found = replicated(&pixels(own), SIZE);
-            assert!(found.is_repeated && !found.is_biased, "{case}: {found:?}");
+            let found = compare_replicates(&pixels(own), SIZE);
+            assert!(found.is_correlated && !found.is_biased, "{case}: {found:?}");
         }
     }
 }

@@ -1,84 +1,86 @@
-//! Mistakes in one number: whatever it is, it is found by bringing the picture as near as it comes.
+//! Mistakes in one number, whose value is found by minimizing the distance to the wrong image.
 
 use rayon::prelude::*;
 use toyproof_image::Image;
-use toyproof_scene::{Model, Moment, Projection, Scene, Shape};
+use toyproof_scene::{FrameTime, Model, Projection, Scene, Shape};
 
 use super::Named;
-use super::edit::edited;
-use super::look::{Looked, differs, left_over};
-use super::suspect::{Made, Suspect};
+use crate::mistake::mutant::edited;
+use crate::mistake::mutant::{Mutant, MutantSource};
+use crate::mistake::thumbnail::{WrongImage, differs, max_left_over};
 
-/// A number that may be another.
-struct Knob {
+/// A number that may be wrong.
+struct Parameter {
     name: &'static str,
-    /// What is said of a value.
+    /// Describes the mistake for a value.
     says: Box<dyn Fn(f64) -> String + Sync>,
-    /// What others are tried as multiples of.
-    usual: f64,
-    /// Whether that is what it should be.
-    is_right: bool,
-    made: Box<dyn Fn(f64) -> Option<Made> + Sync>,
+    /// The value whose multiples are tried.
+    default_value: f64,
+    /// Whether it is the correct value.
+    is_correct: bool,
+    source: Box<dyn Fn(f64) -> Option<MutantSource> + Sync>,
 }
 
-/// The multiples of the usual value between which the best one is looked for.
+/// The multiples of the default value between which the minimum is searched.
 const MULTIPLES: [f64; 11] = [0.0, 0.1, 0.25, 0.5, 0.75, 1.0, 1.35, 2.0, 4.0, 16.0, 64.0];
 
-/// Each step brings the ends nearer to each other by the golden ratio: 25 leave a hundred thousandth.
-const STEPS: usize = 25;
+/// The iterations of the golden-section search: 25 reduce the interval to a hundred thousandth.
+const SEARCH_ITERATIONS: usize = 25;
 
-/// A number that is nearer to the right one than this share of it is not said to be another.
-const OTHER: f64 = 0.01;
+/// The smallest relative difference from the correct value of a number that is reported as wrong.
+const MIN_RELATIVE_ERROR: f64 = 0.01;
 
-/// With more surfaces than this, their radii are left as they are.
+/// The largest number of surfaces whose radii are fitted.
 const MAX_OBJECTS: usize = 16;
 
-/// As many steps through a grid are tried.
+/// The largest number of steps through a grid that is tried.
 const MAX_STEPS: i32 = 16;
 
-/// All that explain a picture as well as one number can, each with the number that does it best.
-pub(super) fn suspects(
+/// Returns the mutants that explain an image as well as one number can, each with the best value of its
+/// number.
+pub(super) fn fitted_mutants(
     scene: &Scene,
-    moment: Moment,
+    frame_time: FrameTime,
     text: Option<&str>,
-    looked_at: &Looked,
-    right: &Image,
-) -> Vec<Suspect> {
-    let mut knobs = of_scene(scene, moment);
+    wrong_image: &WrongImage,
+    correct: &Image,
+) -> Vec<Mutant> {
+    let mut parameters = of_scene(scene, frame_time);
     if let Some(text) = text {
-        knobs.extend(of_shader(text));
+        parameters.extend(of_shader(text));
     }
-    let fitted = knobs.par_iter().filter_map(|knob| {
-        let value = best(knob, looked_at, right)?;
+    let fitted = parameters.par_iter().filter_map(|parameter| {
+        let value = best_value(parameter, wrong_image, correct)?;
         let named = Named {
-            name: knob.name,
-            says: (knob.says)(value).into(),
+            name: parameter.name,
+            says: (parameter.says)(value).into(),
         };
-        let is_other = !knob.is_right || (value - knob.usual).abs() > OTHER * knob.usual;
-        is_other
-            .then(|| (knob.made)(value))
+        let is_wrong = !parameter.is_correct
+            || (value - parameter.default_value).abs() > MIN_RELATIVE_ERROR * parameter.default_value;
+        is_wrong
+            .then(|| (parameter.source)(value))
             .flatten()
-            .map(|made| Suspect::new(vec![named], made))
+            .map(|source| Mutant::new(vec![named], source))
     });
-    let counted = text.into_iter().flat_map(counts);
+    let counted = text.into_iter().flat_map(step_count_mutants);
     fitted.collect::<Vec<_>>().into_iter().chain(counted).collect()
 }
 
-/// A loop over the cells of a grid that ends too early, at each number of steps.
-fn counts(text: &str) -> Vec<Suspect> {
-    let suspect = |steps: i32| {
+/// Mutants whose loop over the cells of a grid ends too early, one for each number of steps.
+fn step_count_mutants(text: &str) -> Vec<Mutant> {
+    let mutant = |steps: i32| {
         let to = format!("for (int i = 0; i < {steps}; i++) {{");
         let text = edited(text, &[("for (int i = 0; i < steps; i++) {", &to)])?;
         let named = Named {
             name: "too-few-steps",
             says: format!("goes through {steps} cells of the grid at most").into(),
         };
-        Some(Suspect::new(vec![named], Made::Shader(text)))
+        Some(Mutant::new(vec![named], MutantSource::Shader(text)))
     };
-    (2..=MAX_STEPS).filter_map(suspect).collect()
+    (2..=MAX_STEPS).filter_map(mutant).collect()
 }
 
-/// How far apart two pictures are, as they are shown.
+/// The distance of two images: the sum of absolute differences of components clamped to [0, 1].
 fn distance(one: &Image, other: &Image) -> f64 {
     let pairs = one.pixels().iter().zip(other.pixels());
     let parts = pairs.flat_map(|(one, other)| (0..3).map(|part| [one[part], other[part]]));
@@ -90,25 +92,26 @@ fn distance(one: &Image, other: &Image) -> f64 {
         .sum()
 }
 
-/// The value that comes nearest to the picture: among the multiples first, then between the neighbours of the best. None where the number has
-/// nothing to do with too many of the wrong pixels: none of the multiples changes them.
-fn best(knob: &Knob, looked_at: &Looked, right: &Image) -> Option<f64> {
-    let painted = |value| (knob.made)(value)?.paint(looked_at.view);
-    let values = MULTIPLES.map(|multiple| knob.usual * multiple);
-    let pictures = values.map(painted);
+/// Returns the value that minimizes the distance to the image: first among the multiples, then between the
+/// neighbors of the best. None where the number is unrelated to too many of the wrong pixels: none of the
+/// multiples changes them.
+fn best_value(parameter: &Parameter, wrong_image: &WrongImage, correct: &Image) -> Option<f64> {
+    let render = |value| (parameter.source)(value)?.render(wrong_image.view);
+    let values = MULTIPLES.map(|multiple| parameter.default_value * multiple);
+    let images = values.map(render);
     let is_out_of_reach = |&at: &usize| {
-        let mut pictures = pictures.iter().flatten();
-        differs(at, looked_at.small, right) && !pictures.any(|picture| differs(at, picture, right))
+        let mut images = images.iter().flatten();
+        differs(at, wrong_image.small, correct) && !images.any(|image| differs(at, image, correct))
     };
-    let pixels = right.pixels().len();
+    let pixels = correct.pixels().len();
     let out_of_reach = (0..pixels).filter(is_out_of_reach).count() as u64;
-    if out_of_reach > left_over(looked_at.differing, pixels) {
+    if out_of_reach > max_left_over(wrong_image.differing, pixels) {
         return None;
     }
-    let from = |picture: &Image| distance(picture, looked_at.small);
-    let tried = pictures.map(|picture| picture.as_ref().map_or(f64::INFINITY, from));
-    let distance = |value| Some(from(&painted(value)?));
-    let (at, _) = tried
+    let from = |image: &Image| distance(image, wrong_image.small);
+    let image_distances = images.map(|image| image.as_ref().map_or(f64::INFINITY, from));
+    let distance = |value| Some(from(&render(value)?));
+    let (at, _) = image_distances
         .iter()
         .enumerate()
         .min_by(|(_, one), (_, other)| one.total_cmp(other))?;
@@ -116,23 +119,27 @@ fn best(knob: &Knob, looked_at: &Looked, right: &Image) -> Option<f64> {
     let mut high = values[(at + 1).min(values.len() - 1)];
     let ratio = 0.5 * (5.0f64.sqrt() - 1.0);
     let mut inner = [high - ratio * (high - low), low + ratio * (high - low)];
-    let mut found = [distance(inner[0])?, distance(inner[1])?];
-    for _ in 0..STEPS {
-        if found[0] < found[1] {
+    let mut distances = [distance(inner[0])?, distance(inner[1])?];
+    for _ in 0..SEARCH_ITERATIONS {
+        if distances[0] < distances[1] {
             high = inner[1];
             inner = [high - ratio * (high - low), inner[0]];
-            found = [distance(inner[0])?, found[0]];
+            distances = [distance(inner[0])?, distances[0]];
         } else {
             low = inner[0];
             inner = [inner[1], low + ratio * (high - low)];
-            found = [found[1], distance(inner[1])?];
+            distances = [distances[1], distance(inner[1])?];
         }
     }
-    Some(if found[0] < found[1] { inner[0] } else { inner[1] })
+    Some(if distances[0] < distances[1] {
+        inner[0]
+    } else {
+        inner[1]
+    })
 }
 
-/// To three digits.
-fn told(value: f64) -> String {
+/// Formats a value with three digits.
+fn three_digits(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
@@ -144,13 +151,15 @@ fn told(value: f64) -> String {
     }
 }
 
-/// How a number is set in a scene.
+/// Sets a number in a scene.
 type Set = Box<dyn Fn(&mut Scene, f64) + Sync>;
 
-/// Numbers that the scene holds: a name, what they are called, what they are, and how they are set.
-fn of_scene(scene: &Scene, moment: Moment) -> Vec<Knob> {
+/// The numbers of the scene: the name of the mistake, what the number is called, its value, and how it is
+/// set.
+fn of_scene(scene: &Scene, frame_time: FrameTime) -> Vec<Parameter> {
     let mut numbers: Vec<(&'static str, String, f64, Set)> = Vec::new();
-    let mut add = |name, what: &str, usual, set: Set| numbers.push((name, what.to_owned(), usual, set));
+    let mut add =
+        |name, what: &str, default_value, set: Set| numbers.push((name, what.to_owned(), default_value, set));
     match scene.camera.projection {
         Projection::Pinhole { screen_distance } => {
             let set: Set = Box::new(|scene, screen_distance| {
@@ -224,26 +233,32 @@ fn of_scene(scene: &Scene, moment: Moment) -> Vec<Knob> {
             );
         }
     }
-    let knob = |(name, what, usual, set): (&'static str, String, f64, Set)| {
+    let parameter = |(name, what, default_value, set): (&'static str, String, f64, Set)| {
         let scene = scene.clone();
-        Knob {
+        Parameter {
             name,
-            says: Box::new(move |value| format!("has {} for {what}, which is {}", told(value), told(usual))),
-            usual,
-            is_right: true,
-            made: Box::new(move |value| {
+            says: Box::new(move |value| {
+                format!(
+                    "has {} for {what}, which is {}",
+                    three_digits(value),
+                    three_digits(default_value)
+                )
+            }),
+            default_value,
+            is_correct: true,
+            source: Box::new(move |value| {
                 let mut scene = scene.clone();
                 set(&mut scene, value);
                 scene.release_changed_scatters();
-                Some(Made::Scene(Box::new(scene), moment))
+                Some(MutantSource::Scene(Box::new(scene), frame_time))
             }),
         }
     };
-    numbers.into_iter().map(knob).collect()
+    numbers.into_iter().map(parameter).collect()
 }
 
-/// Numbers that the scene has not, and a shader may: where they come in.
-fn of_shader(text: &str) -> Vec<Knob> {
+/// Numbers that a shader may have but the scene does not, and where they are inserted.
+fn of_shader(text: &str) -> Vec<Parameter> {
     let fall = "sum += lights[i].color * … * cosine;";
     let falls = "sum += lights[i].color * … * cosine * NUMBER / dot(lights[i].position - hit.point, lights[i].position - hit.point);";
     let of_one = "throughput *= NUMBER;";
@@ -261,15 +276,19 @@ fn of_shader(text: &str) -> Vec<Knob> {
             0.5,
         ),
     ];
-    let knobs = all.into_iter().filter_map(|(name, says, edit, usual)| {
+    let parameters = all.into_iter().filter_map(|(name, says, edit, default_value)| {
         let text = edited(text, &[edit])?;
-        Some(Knob {
+        Some(Parameter {
             name,
-            says: Box::new(move |value| format!("{says} {}", told(value))),
-            usual,
-            is_right: false,
-            made: Box::new(move |value| Some(Made::Shader(text.replace("NUMBER", &format!("{value:?}"))))),
+            says: Box::new(move |value| format!("{says} {}", three_digits(value))),
+            default_value,
+            is_correct: false,
+            source: Box::new(move |value| {
+                Some(MutantSource::Shader(
+                    text.replace("NUMBER", &format!("{value:?}")),
+                ))
+            }),
         })
     });
-    knobs.collect()
+    parameters.collect()
 }

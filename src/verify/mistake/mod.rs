@@ -1,15 +1,14 @@
-//! What went wrong, by name: a wrong picture is compared with those of tracers that have one classic mistake in them, and with
-//! two at once where no single one explains it. Mistakes are edits of the shader that paints the scene, changes of the scene, or
-//! a number that is not the scene's.
+//! Names the mistake in a wrong image: the image is compared with those of mutants, tracers with one classic
+//! mistake, and with two at once where no single one explains it. Mistakes are edits of the shader that
+//! renders the scene, changes of the scene, or a wrong number.
 
 mod catalogue;
 mod change;
-mod edit;
 mod fit;
-mod look;
-mod noisy;
+mod mutant;
 mod pair;
-mod suspect;
+mod stochastic;
+mod thumbnail;
 
 use std::borrow::Cow;
 use std::sync::OnceLock;
@@ -17,32 +16,35 @@ use std::sync::OnceLock;
 use rayon::prelude::*;
 use toyproof_eval::{Places, Program};
 use toyproof_image::Frame;
-use toyproof_scene::{Moment, Scene, export};
+use toyproof_scene::{FrameTime, Scene, export};
 
-use self::look::{Glance, Looked, View, differing, left_over, pixels, work};
-pub use self::noisy::NoisyPixel;
-use self::suspect::{Made, Suspect, paint};
 use crate::compare::MAX_DIFFERING;
+use crate::mistake::mutant::{Mutant, MutantSource, render};
+pub use crate::mistake::stochastic::NoisyPixel;
+use crate::mistake::thumbnail::{Thumbnail, View, WrongImage, differing, max_left_over, pixels, work};
 
-/// What explains a wrong picture.
+/// A mistake that explains a wrong image.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Named {
-    /// The mistake.
+    /// The name of the mistake.
     pub name: &'static str,
-    /// What a tracer does that makes it, to stand after “a tracer that”.
+    /// What a tracer with this mistake does, to follow “a tracer that”.
     pub says: Cow<'static, str>,
 }
 
-/// What else may have led to a picture is told of so many mistakes at most.
-const TOLD: usize = 3;
+/// The largest number of alternative mistakes that are reported.
+const MAX_ALTERNATIVES: usize = 3;
 
 impl Named {
-    /// The same, with others that paint the same picture.
-    fn or(&self, others: &[&Suspect]) -> Self {
-        let others = others.iter().flat_map(|other| &other.mistakes).take(TOLD);
+    /// The same, with alternatives that render the same image.
+    fn or(&self, others: &[&Mutant]) -> Self {
+        let others = others
+            .iter()
+            .flat_map(|other| &other.mistakes)
+            .take(MAX_ALTERNATIVES);
         let mut says = vec![self.says.as_ref()];
         for other in others {
-            // A change of the scene may be what an edit of the shader is.
+            // A change of the scene may be equivalent to an edit of the shader.
             if !says.contains(&other.says.as_ref()) {
                 says.push(&other.says);
             }
@@ -54,214 +56,228 @@ impl Named {
     }
 }
 
-/// Pictures are first compared at so many pixels a side at most, and are no more work than this, so that hundreds of pictures take seconds.
-const SMALL: u32 = 96;
+/// The largest width and height, in pixels, and the largest work of the first comparison, so that hundreds of
+/// images take seconds.
+const SMALL_SIDE: u32 = 96;
 const SMALL_WORK: u64 = 100_000;
 
-/// What explains a small picture is looked at in one that may be so much work.
+/// The largest work of the image that confirms a mistake.
 const LARGE_WORK: u64 = 16 * SMALL_WORK;
 
-/// Fewer pixels than this tell nothing.
-const FEWEST: u32 = 256;
+/// The smallest number of pixels of an image that is compared.
+const MIN_VIEW_PIXELS: u32 = 256;
 
-/// Where fewer pixels are wrong, larger pictures are compared: more of them a side, and as much more work.
-const ENOUGH: u64 = 32;
-const FINER: u32 = 3;
+/// The number of wrong pixels below which larger images are compared, and the factor of their width and
+/// height.
+const MIN_WRONG_PIXELS_SMALL: u64 = 32;
+const FINE_FACTOR: u32 = 3;
 
-/// Fewer wrong pixels than this may be anything, even secondary rays of another style.
-const FEW: u64 = 8;
+/// The number of wrong pixels below which the cause may be anything, even other ray epsilons.
+const MIN_WRONG_PIXELS: u64 = 8;
 
-/// Of mistakes that paint the same picture the first is named; with more than so many others beside it, none: there are too many
-/// explanations.
-const MANY: usize = 3;
+/// The largest number of mistakes, besides the first, that render the same image; with more, there are too
+/// many explanations and none is named.
+const MAX_OTHER_MISTAKES: usize = 3;
 
-/// Fewer pixels are not explained by a mistake that explains them all, and of more than so many, so many are looked at.
-const FEWEST_EXPLAINED: usize = 4;
-const MOST_EXPLAINED: usize = 40;
+/// The smallest number of pixels that a mistake must explain, all of them, and the largest number that are
+/// compared.
+const MIN_EXPLAINED_PIXELS: usize = 4;
+const MAX_COMPARED_PIXELS: usize = 40;
 
-/// So many pairs of mistakes are painted before it is asked whether one of them explains the picture.
-const AT_ONCE: usize = 32;
+/// The number of pairs of mistakes that are rendered before they are compared.
+const PAIR_BATCH: usize = 32;
 
-/// The tracers that have a classic mistake in them. Their pictures are painted once, when they are first asked for.
+/// The mutants of a scene. Their images are rendered once, on first use.
 #[derive(Debug)]
-pub struct Suspects {
+pub struct Hypotheses {
     scene: Scene,
-    moment: Moment,
-    /// Of few pixels.
+    frame_time: FrameTime,
+    /// The view of the first comparison.
     small: View,
-    /// What paints the scene rightly: the tracer, and the shaders.
-    right: Vec<Suspect>,
-    /// What loses so much of the picture that many mistakes may have led to it.
-    general: Vec<Suspect>,
-    wrong: Vec<Suspect>,
-    /// The shader that paints the scene, as students write it, in each of the styles that matter.
-    styles: Vec<String>,
-    /// The same with larger pictures, made when they are needed; none if these are large.
-    finer: Option<OnceLock<Box<Suspects>>>,
+    /// The tracer and the shaders without a mistake.
+    correct: Vec<Mutant>,
+    /// Mutants that lose most of the image, so that many mistakes may be the cause.
+    general: Vec<Mutant>,
+    wrong: Vec<Mutant>,
+    /// The shader that renders the scene, as students write it, in each of the variants that matter.
+    shaders: Vec<String>,
+    /// The hypotheses for larger images, created when needed; none if these are large.
+    fine: Option<OnceLock<Box<Hypotheses>>>,
 }
 
-impl Suspects {
-    /// Of a scene, for pictures of that frame; none if it takes so long to paint that no picture worth comparing is small enough.
+impl Hypotheses {
+    /// Creates the hypotheses for images of a frame; none if the scene is so expensive that no image worth
+    /// comparing is small enough.
     #[must_use]
     pub fn of(scene: &Scene, frame: &Frame) -> Option<Self> {
-        let small = View::of(frame, SMALL, SMALL_WORK / work(scene));
-        let is_enough = small.pixels() >= u64::from(FEWEST).min(pixels(frame));
+        let small = View::of(frame, SMALL_SIDE, SMALL_WORK / work(scene));
+        let is_enough = small.pixels() >= u64::from(MIN_VIEW_PIXELS).min(pixels(frame));
         is_enough.then(|| Self::in_size(scene, small, Some(OnceLock::new())))
     }
 
-    fn in_size(scene: &Scene, small: View, finer: Option<OnceLock<Box<Self>>>) -> Self {
-        let moment = Moment {
+    fn in_size(scene: &Scene, small: View, fine: Option<OnceLock<Box<Self>>>) -> Self {
+        let frame_time = FrameTime {
             frame: small.frame.frame,
             time: f64::from(small.frame.time),
         };
-        let styles = export::shader(scene)
-            .map(|text| edit::styles(&text))
+        let shaders = export::shader(scene)
+            .map(|text| mutant::variants(&text))
             .unwrap_or_default();
-        let tracer = Made::Scene(Box::new(scene.clone()), moment);
-        let rights = [tracer]
+        let tracer = MutantSource::Scene(Box::new(scene.clone()), frame_time);
+        let correct_images = [tracer]
             .into_iter()
-            .chain(styles.iter().cloned().map(Made::Shader));
+            .chain(shaders.iter().cloned().map(MutantSource::Shader));
         let changed = |change: change::Change| {
-            Suspect::new(
+            Mutant::new(
                 vec![change.named],
-                Made::Scene(Box::new(change.scene), change.moment),
+                MutantSource::Scene(Box::new(change.scene), change.frame_time),
             )
         };
-        let edited = styles
+        let edited = shaders
             .iter()
-            .flat_map(|text| catalogue::all().filter_map(|mistake| Suspect::edited(text, mistake)));
-        let changes = change::all(scene, moment).into_iter().map(changed);
+            .flat_map(|text| catalogue::all().filter_map(|mistake| Mutant::edited(text, mistake)));
+        let changes = change::all(scene, frame_time).into_iter().map(changed);
         Self {
             scene: scene.clone(),
-            moment,
+            frame_time,
             small,
-            right: rights.map(|made| Suspect::new(Vec::new(), made)).collect(),
-            general: change::general(scene, moment).into_iter().map(changed).collect(),
+            correct: correct_images
+                .map(|source| Mutant::new(Vec::new(), source))
+                .collect(),
+            general: change::general(scene, frame_time)
+                .into_iter()
+                .map(changed)
+                .collect(),
             wrong: edited.chain(changes).collect(),
-            styles,
-            finer,
+            shaders,
+            fine,
         }
     }
 
-    /// The same for pictures large enough to tell one mistake from another where few pixels are wrong.
-    fn finer(&self, frame: &Frame) -> Option<&Self> {
-        let finer = self.finer.as_ref()?;
-        let work = u64::from(FINER * FINER) * SMALL_WORK / work(&self.scene);
-        let large = View::of(frame, FINER * SMALL, work);
-        let is_finer = large.pixels() > self.small.pixels();
-        is_finer.then(|| {
-            finer
-                .get_or_init(|| Box::new(Self::in_size(&self.scene, large, None)))
+    /// Returns the hypotheses for images large enough to distinguish mistakes where few pixels are wrong.
+    fn fine(&self, frame: &Frame) -> Option<&Self> {
+        let fine = self.fine.as_ref()?;
+        let work = u64::from(FINE_FACTOR * FINE_FACTOR) * SMALL_WORK / work(&self.scene);
+        let large = View::of(frame, FINE_FACTOR * SMALL_SIDE, work);
+        let has_more_pixels = large.pixels() > self.small.pixels();
+        has_more_pixels.then(|| {
+            fine.get_or_init(|| Box::new(Self::in_size(&self.scene, large, None)))
                 .as_ref()
         })
     }
 
-    /// The mistake, or the two, that paint what the `student`'s shader does in that frame, in f64. Where no single one
-    /// does, two at once are looked for, `pairs` of them at most: the same whatever else the machine does.
+    /// Returns the mistake, or the two, that render the `student`'s image of that frame, in f64. Where no
+    /// single one does, at most `pairs` pairs are searched; the result does not depend on the machine's load.
     #[must_use]
-    pub fn recognise(&self, student: &Program, frame: &Frame, pairs: usize) -> Option<Vec<Named>> {
-        let small = paint(student, &self.small)?;
+    pub fn recognize(&self, student: &Program, frame: &Frame, pairs: usize) -> Option<Vec<Named>> {
+        let small = render(student, &self.small)?;
         let pixels = small.pixels().len();
-        let rights = self.right.iter().filter_map(|right| right.picture(&self.small));
-        let (differing, right) = rights
-            .map(|right| (look::differing(&small, right), right))
+        let correct_images = self
+            .correct
+            .iter()
+            .filter_map(|correct| correct.image(&self.small));
+        let (differing, correct) = correct_images
+            .map(|correct| (thumbnail::differing(&small, correct), correct))
             .min_by_key(|&(differing, _)| differing)?;
-        if differing < ENOUGH
-            && let Some(finer) = self.finer(frame)
+        if differing < MIN_WRONG_PIXELS_SMALL
+            && let Some(fine) = self.fine(frame)
         {
-            return finer.recognise(student, frame, pairs);
+            return fine.recognize(student, frame, pairs);
         }
-        if differing < FEW || differing as f64 <= pixels as f64 * MAX_DIFFERING {
+        if differing < MIN_WRONG_PIXELS || differing as f64 <= pixels as f64 * MAX_DIFFERING {
             return None;
         }
-        let looked_at = Looked {
+        let wrong_image = WrongImage {
             differing,
             small: &small,
             view: &self.small,
         };
-        let confirmed = |suspect: &Suspect, others: &[&Suspect]| {
-            let mut named = self.confirm(suspect, student, frame)?;
+        let confirmed = |mutant: &Mutant, others: &[&Mutant]| {
+            let mut named = self.confirm(mutant, student, frame)?;
             if let [single] = &mut named[..] {
                 *single = single.or(others);
             }
             Some(named)
         };
-        let generals = looked_at.matching(&self.general);
-        let singles = looked_at.matching(&self.wrong);
-        if let Some(general) = generals.first() {
-            return match singles[..] {
+        let general_matches = wrong_image.matching(&self.general);
+        let single_matches = wrong_image.matching(&self.wrong);
+        if let Some(general) = general_matches.first() {
+            return match single_matches[..] {
                 [single] => confirmed(single, &[]),
-                _ => confirmed(general, &singles),
+                _ => confirmed(general, &single_matches),
             };
         }
-        if let Some((first, others)) = singles.split_first() {
-            return (others.len() <= MANY).then(|| confirmed(first, others)).flatten();
+        if let Some((first, others)) = single_matches.split_first() {
+            return (others.len() <= MAX_OTHER_MISTAKES)
+                .then(|| confirmed(first, others))
+                .flatten();
         }
-        // Some number takes all colour out of any picture, and so do many pairs: of one colour nothing more can be told.
+        // Some numbers remove all color from any image, and so do many pairs: an image of one color allows no
+        // further conclusion.
         if small.pixels().windows(2).all(|pair| pair[0] == pair[1]) {
             return None;
         }
-        let text = self.styles.first().map(String::as_str);
-        let fitted = fit::suspects(&self.scene, self.moment, text, &looked_at, right);
-        if let Some(suspect) = looked_at.matching(&fitted).first() {
-            return confirmed(suspect, &[]);
+        let text = self.shaders.first().map(String::as_str);
+        let fitted = fit::fitted_mutants(&self.scene, self.frame_time, text, &wrong_image, correct);
+        if let Some(mutant) = wrong_image.matching(&fitted).first() {
+            return confirmed(mutant, &[]);
         }
-        let near = looked_at.near(self.general.iter().chain(&self.wrong));
-        let restyled: Vec<Suspect> = near
+        let near_misses = wrong_image.near_misses(self.general.iter().chain(&self.wrong));
+        let with_other_epsilons: Vec<Mutant> = near_misses
             .iter()
-            .flat_map(|suspect| suspect.in_other_styles(self.moment, self.scene.max_offset))
+            .flat_map(|mutant| mutant.with_other_epsilons(self.frame_time, self.scene.max_offset))
             .collect();
-        if let Some(suspect) = looked_at.matching(&restyled).first() {
-            return confirmed(suspect, &[]);
+        if let Some(mutant) = wrong_image.matching(&with_other_epsilons).first() {
+            return confirmed(mutant, &[]);
         }
         if pairs == 0 {
             return None;
         }
-        // What is general comes first: of what paints the same picture, it says least that may not be so.
-        let glance = Glance::at(student, &self.right, &self.small)?;
-        let mut likely = pair::likely(self.general.iter().chain(&self.wrong), &looked_at, right);
+        // General mistakes first: of those that render the same image, they claim least.
+        let thumbnail = Thumbnail::at(student, &self.correct, &self.small)?;
+        let mut likely = pair::likely(self.general.iter().chain(&self.wrong), &wrong_image, correct);
         likely.truncate(pairs);
-        likely.chunks(AT_ONCE).find_map(|pairs| {
-            let painted: Vec<Suspect> = pairs
+        likely.chunks(PAIR_BATCH).find_map(|pairs| {
+            let rendered: Vec<Mutant> = pairs
                 .par_iter()
-                .filter_map(|&pair| pair::both(pair, self.moment))
-                .filter(|pair| glance.is_worth_a_look(pair) && looked_at.left(pair).is_some())
+                .filter_map(|&pair| pair::both(pair, self.frame_time))
+                .filter(|pair| thumbnail.may_explain(pair) && wrong_image.left_over(pair).is_some())
                 .collect();
-            looked_at
-                .matching(&painted)
+            wrong_image
+                .matching(&rendered)
                 .first()
                 .and_then(|pair| confirmed(pair, &[]))
         })
     }
 
-    /// The names, if a larger picture is explained as well, perhaps in another style of secondary rays.
-    fn confirm(&self, suspect: &Suspect, student: &Program, frame: &Frame) -> Option<Vec<Named>> {
+    /// Returns the mistakes if they explain a larger image as well, perhaps with other ray epsilons.
+    fn confirm(&self, mutant: &Mutant, student: &Program, frame: &Frame) -> Option<Vec<Named>> {
         let large = View::of(frame, u32::MAX, LARGE_WORK / work(&self.scene));
-        let wrong = paint(student, &large)?;
-        let right = self.right.first()?.made.paint(&large)?;
-        let all = differing(&wrong, &right);
-        let limit = left_over(all, wrong.pixels().len());
-        drop(right);
-        let explains = |suspect: &Suspect| {
-            let picture = suspect.made.paint(&large);
-            picture.is_some_and(|picture| differing(&wrong, &picture) <= limit)
+        let wrong = render(student, &large)?;
+        let correct = self.correct.first()?.source.render(&large)?;
+        let all = differing(&wrong, &correct);
+        let limit = max_left_over(all, wrong.pixels().len());
+        drop(correct);
+        let explains = |mutant: &Mutant| {
+            let image = mutant.source.render(&large);
+            image.is_some_and(|image| differing(&wrong, &image) <= limit)
         };
-        let in_any_style = || {
-            let others = suspect.in_other_styles(self.moment, self.scene.max_offset);
+        let explains_with_other_epsilons = || {
+            let others = mutant.with_other_epsilons(self.frame_time, self.scene.max_offset);
             others.par_iter().any(explains)
         };
-        (explains(suspect) || in_any_style()).then(|| suspect.mistakes.clone())
+        (explains(mutant) || explains_with_other_epsilons()).then(|| mutant.mistakes.clone())
     }
 
-    /// The mistake that explains a few pixels in which the `student`'s shader is another color than it should be, and all that are not: it
-    /// shows in nothing else. None with fewer than `FEWEST_EXPLAINED` pixels.
+    /// Returns the mistake that explains a few pixels in which the `student`'s shader has a wrong color, and
+    /// no others; none with fewer than `MIN_EXPLAINED_PIXELS` pixels.
     #[must_use]
     pub fn explaining(&self, student: &Program, pixels: &[[u32; 2]]) -> Option<Named> {
-        if pixels.len() < FEWEST_EXPLAINED {
+        if pixels.len() < MIN_EXPLAINED_PIXELS {
             return None;
         }
-        let step = pixels.len().div_ceil(MOST_EXPLAINED);
-        let along = |axis: usize| {
+        let step = pixels.len().div_ceil(MAX_COMPARED_PIXELS);
+        let coordinates = |axis: usize| {
             let places = pixels.iter().step_by(step).map(|pixel| pixel[axis]);
             let places: std::collections::BTreeSet<u32> = places.collect();
             places.into_iter().map(|place| f64::from(place) + 0.5).collect()
@@ -269,22 +285,22 @@ impl Suspects {
         let view = View {
             frame: self.small.frame.clone(),
             places: Places {
-                columns: along(0),
-                rows: along(1),
+                columns: coordinates(0),
+                rows: coordinates(1),
             },
         };
-        let own = paint(student, &view)?;
-        let right = self.right.first()?.made.paint(&view)?;
-        let wrong = differing(&own, &right);
-        let explains = |suspect: &&Suspect| {
-            let picture = suspect.made.paint(&view);
-            picture.is_some_and(|picture| differing(&own, &picture) == 0)
+        let own = render(student, &view)?;
+        let correct = self.correct.first()?.source.render(&view)?;
+        let wrong = differing(&own, &correct);
+        let explains = |mutant: &&Mutant| {
+            let image = mutant.source.render(&view);
+            image.is_some_and(|image| differing(&own, &image) == 0)
         };
-        if wrong < FEWEST_EXPLAINED as u64 {
+        if wrong < MIN_EXPLAINED_PIXELS as u64 {
             return None;
         }
-        let explaining: Vec<&Suspect> = self.wrong.par_iter().filter(explains).collect();
+        let explaining: Vec<&Mutant> = self.wrong.par_iter().filter(explains).collect();
         let (first, others) = explaining.split_first()?;
-        (others.len() <= MANY).then(|| first.mistakes[0].or(others))
+        (others.len() <= MAX_OTHER_MISTAKES).then(|| first.mistakes[0].or(others))
     }
 }

@@ -1,29 +1,30 @@
-//! Two mistakes at once: those of all pairs that are worth painting. A pixel that one of them does not change by itself is, most likely,
-//! what the other makes of it; so where that is not what the wrong picture shows, the pair is contradicted, and nothing need be painted to see it.
+//! Pairs of mistakes that are worth rendering. A pixel that one of them alone does not change most likely has
+//! the color that the other alone gives it; where the wrong image has another color, the pair is contradicted
+//! without rendering it.
 
 use toyproof_image::Image;
-use toyproof_scene::Moment;
+use toyproof_scene::FrameTime;
 
-use super::look::{Looked, differs};
-use super::suspect::{Made, Suspect};
+use crate::mistake::mutant::{Mutant, MutantSource};
+use crate::mistake::thumbnail::{WrongImage, differs};
 
-/// So many pairs are looked at, those first that fewest pixels contradict.
-const MOST: usize = 256;
+/// The largest number of pairs that are rendered: those with the fewest contradicting pixels.
+const MAX_RANKED_PAIRS: usize = 256;
 
-/// Where a mistake moves the picture, what another does shows elsewhere, and seems to contradict it. So the mistakes that come nearest by
-/// themselves are looked at with all others: so many.
-const PROMISING: usize = 6;
+/// The number of mistakes, nearest to the wrong image by themselves, that are combined with all others: where
+/// a mistake shifts the image, the effect of the other is elsewhere and seems to contradict the pair.
+const NEAREST_MISTAKES: usize = 6;
 
-/// Any other pair that more than this share of the wrong pixels contradicts is not painted: one mistake may hide what the other does, or bring it
-/// to light, but seldom more than that.
-const CONTRADICTED: f64 = 0.5;
+/// The largest share of the wrong pixels that may contradict another pair: one mistake may hide or reveal the
+/// effect of the other, but seldom in more pixels.
+const MAX_CONTRADICTED_SHARE: f64 = 0.5;
 
-/// Pixels of a picture, a bit for each.
+/// A set of pixels of an image, as bits.
 #[derive(Debug)]
-struct Pixels(Vec<u64>);
+struct PixelSet(Vec<u64>);
 
-impl Pixels {
-    /// Those in which two pictures differ.
+impl PixelSet {
+    /// The pixels in which two images differ.
     fn differing(one: &Image, other: &Image) -> Self {
         let mut words = vec![0; one.pixels().len().div_ceil(64)];
         for at in 0..one.pixels().len() {
@@ -32,8 +33,8 @@ impl Pixels {
         Self(words)
     }
 
-    /// How many are among these and not among the others.
-    fn without(&self, others: &Self) -> u64 {
+    /// The number of pixels of this set that are not in the other.
+    fn difference_count(&self, others: &Self) -> u64 {
         let pairs = self.0.iter().zip(&others.0);
         pairs
             .map(|(own, other)| u64::from((own & !other).count_ones()))
@@ -45,43 +46,43 @@ impl Pixels {
     }
 }
 
-/// What a mistake does by itself.
-struct Alone<'a> {
-    suspect: &'a Suspect,
-    /// Where the picture is not the right one.
-    changed: Pixels,
-    /// Where it is not the one that is looked at.
-    unexplained: Pixels,
+/// The effect of a single mistake.
+struct SingleEffect<'a> {
+    mutant: &'a Mutant,
+    /// Where its image differs from the correct one.
+    changed: PixelSet,
+    /// Where its image differs from the wrong one.
+    unexplained: PixelSet,
 }
 
-impl<'a> Alone<'a> {
-    fn of(suspect: &'a Suspect, looked_at: &Looked, right: &Image) -> Option<Self> {
-        let picture = suspect.picture(looked_at.view)?;
+impl<'a> SingleEffect<'a> {
+    fn of(mutant: &'a Mutant, wrong_image: &WrongImage, correct: &Image) -> Option<Self> {
+        let image = mutant.image(wrong_image.view)?;
         Some(Self {
-            suspect,
-            changed: Pixels::differing(picture, right),
-            unexplained: Pixels::differing(picture, looked_at.small),
+            mutant,
+            changed: PixelSet::differing(image, correct),
+            unexplained: PixelSet::differing(image, wrong_image.small),
         })
     }
 
-    /// How many pixels say that it is not these two.
+    /// The number of pixels that contradict this pair.
     fn contradicted(&self, other: &Self) -> u64 {
-        self.unexplained.without(&other.changed) + other.unexplained.without(&self.changed)
+        self.unexplained.difference_count(&other.changed) + other.unexplained.difference_count(&self.changed)
     }
 }
 
-/// Pairs of mistakes, without their pictures: the most likely first.
+/// Returns the pairs of mistakes that are worth rendering, the most likely first.
 pub(super) fn likely<'a>(
-    suspects: impl Iterator<Item = &'a Suspect>,
-    looked_at: &Looked,
-    right: &Image,
-) -> Vec<[&'a Suspect; 2]> {
-    let all: Vec<Alone> = suspects
-        .filter_map(|suspect| Alone::of(suspect, looked_at, right))
+    mutants: impl Iterator<Item = &'a Mutant>,
+    wrong_image: &WrongImage,
+    correct: &Image,
+) -> Vec<[&'a Mutant; 2]> {
+    let all: Vec<SingleEffect> = mutants
+        .filter_map(|mutant| SingleEffect::of(mutant, wrong_image, correct))
         .collect();
     let pairs = (0..all.len()).flat_map(|second| (0..second).map(move |first| [first, second]));
     let pairs = pairs.filter(|pair| {
-        let [first, second] = pair.map(|at| all[at].suspect);
+        let [first, second] = pair.map(|at| all[at].mutant);
         first.names().ne(second.names())
     });
     let mut pairs: Vec<([usize; 2], u64)> = pairs
@@ -90,25 +91,25 @@ pub(super) fn likely<'a>(
     pairs.sort_by_key(|&(pair, contradicted)| (contradicted, pair));
     let mut nearest: Vec<usize> = (0..all.len()).collect();
     nearest.sort_by_key(|&at| all[at].unexplained.count());
-    nearest.truncate(PROMISING);
-    let limit = (looked_at.differing as f64 * CONTRADICTED) as u64;
+    nearest.truncate(NEAREST_MISTAKES);
+    let limit = (wrong_image.differing as f64 * MAX_CONTRADICTED_SHARE) as u64;
     let is_likely = |&(rank, (pair, contradicted)): &(usize, ([usize; 2], u64))| {
-        (rank < MOST && contradicted <= limit) || pair.iter().any(|at| nearest.contains(at))
+        (rank < MAX_RANKED_PAIRS && contradicted <= limit) || pair.iter().any(|at| nearest.contains(at))
     };
     let likely = pairs.into_iter().enumerate().filter(is_likely);
     likely
-        .map(|(_, (pair, _))| pair.map(|at| all[at].suspect))
+        .map(|(_, (pair, _))| pair.map(|at| all[at].mutant))
         .collect()
 }
 
-/// A tracer with both mistakes; none where they touch the same words, or both are of the scene.
-pub(super) fn both(pair: [&Suspect; 2], moment: Moment) -> Option<Suspect> {
+/// Returns a mutant with both mistakes; none where they edit the same text, or both change the scene.
+pub(super) fn both(pair: [&Mutant; 2], frame_time: FrameTime) -> Option<Mutant> {
     let [one, other] = pair;
     [[one, other], [other, one]]
         .into_iter()
         .find_map(|[first, second]| {
-            let text = second.edit?.made_in(&first.text(moment)?)?;
-            // What is said of changes is longer, and comes last.
+            let text = second.edit?.apply(&first.text(frame_time)?)?;
+            // Descriptions of changes are longer, and come last.
             let order = if first.edit.is_none() {
                 [second, first]
             } else {
@@ -116,7 +117,7 @@ pub(super) fn both(pair: [&Suspect; 2], moment: Moment) -> Option<Suspect> {
             };
             let mistakes = order
                 .into_iter()
-                .flat_map(|suspect| suspect.mistakes.iter().cloned());
-            Some(Suspect::new(mistakes.collect(), Made::Shader(text)))
+                .flat_map(|mutant| mutant.mistakes.iter().cloned());
+            Some(Mutant::new(mistakes.collect(), MutantSource::Shader(text)))
         })
 }

@@ -1,4 +1,4 @@
-//! Functions that the generator needs for its own sake: taming floats, and making one number of all that a variable holds.
+//! Helper functions of generated programs: reducing floats to a range, and hashing the value of a variable.
 
 use std::fmt::Write;
 
@@ -7,7 +7,7 @@ use super::types::{Base, Scalar, Type};
 use super::{Generator, Mode, dimension};
 
 impl Generator<'_> {
-    /// The expression with floats that a variable may hold.
+    /// Reduces the floats of an expression to the range of variables.
     pub(super) fn tamed(&mut self, ty: Type, value: Expr) -> Expr {
         const WILD: Range = Range::new(f64::INFINITY, i32::MAX);
         if !ty.is_float() || value.range.fits(Range::VARIABLE) {
@@ -38,7 +38,7 @@ impl Generator<'_> {
         Expr::call("tame", &[value], Range::VARIABLE)
     }
 
-    /// A `uint` that tells two values of that type apart.
+    /// An expression of type `uint` that distinguishes values of that type.
     pub(super) fn digest(&mut self, ty: Type, value: &str) -> String {
         let parts: Vec<String> = match (ty.length, ty.base) {
             (Some(length), base) => (0..length)
@@ -80,7 +80,7 @@ impl Generator<'_> {
     }
 }
 
-/// A scalar that a variable may hold, as a `uint`.
+/// Converts a scalar in the range of variables to `uint`.
 fn number(scalar: Scalar, value: &str) -> String {
     match scalar {
         Scalar::Float => format!("uint(int({value} * 16.0))"),

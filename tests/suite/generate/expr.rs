@@ -1,8 +1,8 @@
-//! An expression's text, how tightly it binds, and what its floats can be.
+//! An expression's text, its precedence, and the range of its floats.
 
 use super::types::{Scalar, Type};
 
-/// How tightly operators bind, loosest first, as the grammar of GLSL has it (§5.1).
+/// Operator precedence, loosest first, as in the grammar of GLSL (§5.1).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Level {
     Sequence,
@@ -24,7 +24,7 @@ pub(crate) enum Level {
 }
 
 impl Level {
-    /// The next that binds more tightly.
+    /// The next tighter level.
     pub(crate) fn above(self) -> Self {
         const ALL: [Level; 16] = [
             Level::Sequence,
@@ -48,7 +48,8 @@ impl Level {
     }
 }
 
-/// What floats can be: multiples of 2^-`grain` of at most `size`. While both fit 23 bits, arithmetic is exact in any order.
+/// The range of floats: multiples of 2^-`grain` of at most `size`. While both fit 23 bits, arithmetic is
+/// exact in any order.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Range {
     pub(crate) size: f64,
@@ -56,29 +57,29 @@ pub(crate) struct Range {
 }
 
 impl Range {
-    /// What a variable may hold.
+    /// The range of variables.
     pub(crate) const VARIABLE: Self = Self { size: 64.0, grain: 4 };
 
     pub(crate) const fn new(size: f64, grain: i32) -> Self {
         Self { size, grain }
     }
 
-    /// Whether all of it lies in the other.
+    /// Returns whether it is contained in the other.
     pub(crate) fn fits(self, other: Self) -> bool {
         self.size <= other.size && self.grain <= other.grain
     }
 
-    /// Whether such floats are exact in 32 bits.
+    /// Returns whether such floats are exact in 32 bits.
     pub(crate) fn is_exact(self) -> bool {
         self.size.log2() + f64::from(self.grain) <= 23.0
     }
 
-    /// Sums of these and those.
+    /// The range of sums.
     pub(crate) fn sum(self, other: Self) -> Self {
         Self::new(self.size + other.size, self.grain.max(other.grain))
     }
 
-    /// Sums of `count` products.
+    /// The range of sums of `count` products.
     pub(crate) fn products(self, other: Self, count: u8) -> Self {
         Self::new(
             self.size * other.size * f64::from(count),
@@ -86,7 +87,7 @@ impl Range {
         )
     }
 
-    /// Either.
+    /// The union of both ranges.
     pub(crate) fn or(self, other: Self) -> Self {
         Self::new(self.size.max(other.size), self.grain.max(other.grain))
     }
@@ -97,7 +98,7 @@ impl Range {
 pub(crate) struct Expr {
     pub(crate) text: String,
     pub(crate) level: Level,
-    /// Of the floats in it, if there are any.
+    /// The range of its floats, if there are any.
     pub(crate) range: Range,
 }
 
@@ -115,12 +116,12 @@ impl Expr {
         Self::new(text, Level::Primary, range)
     }
 
-    /// One without floats in it, or with those of a variable.
+    /// An expression without floats, or with floats in the range of variables.
     pub(crate) fn plain(text: impl Into<String>, level: Level) -> Self {
         Self::new(text, level, Range::VARIABLE)
     }
 
-    /// The text where something binds this tightly.
+    /// The text as an operand at this level, in parentheses if needed.
     pub(crate) fn at(&self, level: Level) -> String {
         if self.level < level {
             format!("({})", self.text)
@@ -138,7 +139,7 @@ impl Expr {
     /// `op operand`.
     pub(crate) fn unary(op: &str, operand: &Self) -> Self {
         let operand_text = operand.at(Level::Unary);
-        // `- -x` is no `--x`.
+        // `- -x` is not `--x`.
         let gap = if operand_text.starts_with(op) { " " } else { "" };
         Self::new(format!("{op}{gap}{operand_text}"), Level::Unary, operand.range)
     }
@@ -152,7 +153,7 @@ impl Expr {
         Self::primary(format!("{name}({})", arguments.join(", ")), range)
     }
 
-    /// `MACRO(arguments)`: commas outside of round brackets would part them.
+    /// `MACRO(arguments)`: commas outside of parentheses would separate arguments.
     pub(crate) fn expanded(name: &str, arguments: &[Self], range: Range) -> Self {
         let arguments: Vec<_> = arguments
             .iter()
@@ -168,7 +169,7 @@ impl Expr {
     }
 }
 
-/// Whether a comma stands outside of round brackets.
+/// Returns whether a comma is outside of parentheses.
 fn has_open_comma(text: &str) -> bool {
     let mut depth = 0;
     text.chars().any(|c| {
@@ -181,7 +182,7 @@ fn has_open_comma(text: &str) -> bool {
     })
 }
 
-/// The digits of a literal of that type.
+/// A literal of that type.
 pub(crate) fn literal(ty: Type, number: usize, style: usize) -> Expr {
     let text = match ty.base.scalar() {
         Some(Scalar::Float) => {

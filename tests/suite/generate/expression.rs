@@ -1,19 +1,19 @@
-//! Expressions of any type: what holds of all types. What operators and built-in functions give is in `value`.
+//! Expressions that exist for every type. Operators and built-in functions are in `value`.
 
 use super::expr::{Expr, Level, Range};
 use super::types::{BOOL, Base, Scalar, Type};
-use super::{Effects, Function, Generator, MOST_OPERANDS, MOST_WORK, Mode, Passing};
+use super::{Effects, Function, Generator, MAX_OPERANDS, MAX_WORK, Mode, Passing};
 
-/// How deep operands nest.
-const DEEPEST: usize = 5;
+/// The maximum nesting depth of operands.
+const MAX_DEPTH: usize = 5;
 
-/// One step into a value.
+/// An access to a part of a value.
 #[derive(Debug, Clone, Copy)]
 enum Part {
     Field(&'static str),
-    /// Of so many elements, columns or components.
+    /// An index below this number of elements, columns or components.
     Element(u8),
-    /// Of so many components.
+    /// A swizzle of this number of components.
     Swizzle(u8),
 }
 
@@ -22,8 +22,8 @@ impl Generator<'_> {
     pub(super) fn expr(&mut self, ty: Type) -> Expr {
         self.depth += 1;
         self.operands += 1;
-        let deepest = if self.mode == Mode::Constant { 2 } else { DEEPEST };
-        let ends = self.depth > deepest || self.operands > MOST_OPERANDS || self.choices.is_over();
+        let deepest = if self.mode == Mode::Constant { 2 } else { MAX_DEPTH };
+        let ends = self.depth > deepest || self.operands > MAX_OPERANDS || self.choices.is_over();
         let expr = if ends || !self.choices.chance(190) {
             self.leaf(ty)
         } else {
@@ -36,13 +36,13 @@ impl Generator<'_> {
         expr
     }
 
-    /// One whose floats a variable may hold.
+    /// An expression whose floats are in the range of variables.
     pub(super) fn storable(&mut self, ty: Type) -> Expr {
         let expr = self.expr(ty);
         self.tamed(ty, expr)
     }
 
-    /// What there is for every type: calls, choices, assignments, sequences.
+    /// Expressions of every type: calls, conditionals, assignments, sequences.
     fn general(&mut self, ty: Type) -> Option<Expr> {
         match self.choices.below(16) {
             0 | 1 => self.called(Some(ty)),
@@ -70,7 +70,7 @@ impl Generator<'_> {
                 Some(Expr::new(text, Level::Sequence, second.range))
             }
             5 if ty.length.is_none() => {
-                // Indexing what is no variable.
+                // Indexing a value that is not a variable.
                 let length = 2 + self.choices.below(3) as u8;
                 let parts: Vec<_> = (0..length).map(|_| self.storable(ty)).collect();
                 let array = Type {
@@ -86,7 +86,7 @@ impl Generator<'_> {
         }
     }
 
-    /// A part of that type of a value of any form: a member, an element, a column, a component or a swizzle.
+    /// A part with that type of any value: a member, an element, a column, a component or a swizzle.
     fn part(&mut self, ty: Type) -> Option<Expr> {
         let mut wholes = Vec::new();
         for (number, structure) in (0..).zip(&self.structs) {
@@ -138,7 +138,7 @@ impl Generator<'_> {
         let fitting: Vec<_> = self
             .functions
             .iter()
-            .filter(|function| function.result == result && function.work * self.runs <= MOST_WORK)
+            .filter(|function| function.result == result && function.work * self.runs <= MAX_WORK)
             .cloned()
             .collect();
         if fitting.is_empty() {
@@ -148,7 +148,7 @@ impl Generator<'_> {
         self.call(&fitting[index])
     }
 
-    /// A call of that function; none if there is nothing for it to write.
+    /// A call of that function; none if it has no variable to write to.
     pub(super) fn call(&mut self, function: &Function) -> Option<Expr> {
         let hands_out = function
             .parameters
@@ -174,7 +174,7 @@ impl Generator<'_> {
         Some(Expr::call(&function.name, &arguments, Range::VARIABLE))
     }
 
-    /// All parts of a structure or an array.
+    /// A constructor of a structure or an array.
     pub(super) fn constructed(&mut self, ty: Type) -> Expr {
         let (name, parts): (_, Vec<Type>) = match (ty.length, ty.base) {
             (Some(length), base) => {

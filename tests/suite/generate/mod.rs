@@ -1,12 +1,11 @@
-//! Valid programs from bytes: every type and statement of the language, without undefined behaviour and with exact arithmetic,
-//! so that all who run one must paint the same picture to the bit.
+//! Generates valid programs from bytes: every type and statement of the language, without undefined behavior
+//! and with exact arithmetic, so that all implementations must render the same image to the bit.
 //!
-//! Operands with effects are meant to be evaluated from left to right; a compound assignment reads its target
-//! after its right side, but evaluates the target's indices before it; a function's `inout` arguments are
-//! copied in when all arguments are evaluated. [`Effects`] says where such operands may stand. Indices are
-//! masked, divisors positive, shifts below 32, loops bounded. A float in a variable is a multiple of 1/16 of
-//! at most 64 ([`Range::VARIABLE`]); where an expression could leave what 24 bits hold, `tame` brings it
-//! back.
+//! Operands with side effects are evaluated from left to right; a compound assignment reads its target after
+//! its right side, but evaluates the target's indices before it; a function's `inout` arguments are copied in
+//! when all arguments are evaluated. [`Effects`] states where such operands may occur. Indices are masked,
+//! divisors positive, shifts below 32, loops bounded. A float in a variable is a multiple of 1/16 of at most
+//! 64 ([`Range::VARIABLE`]); where an expression could exceed 24 bits, `tame` reduces it.
 
 mod choices;
 mod digest;
@@ -23,19 +22,19 @@ use choices::Choices;
 use expr::Range;
 use types::{Base, FLOAT, INT, SCALARS, Scalar, Struct, Type};
 
-/// How often the most deeply nested statement of a program may run.
-const MOST_WORK: u32 = 2_000;
-/// How many expressions a statement may hold, roughly.
-const MOST_OPERANDS: u32 = 40;
+/// The maximum number of executions of a program's most deeply nested statement.
+const MAX_WORK: u32 = 2_000;
+/// The approximate maximum number of expressions in a statement.
+const MAX_OPERANDS: u32 = 40;
 
-/// A variable in reach.
+/// A variable in scope.
 #[derive(Debug, Clone)]
 struct Variable {
     name: String,
     ty: Type,
     writable: bool,
     constant: bool,
-    /// Of its floats.
+    /// The range of its floats.
     range: Range,
 }
 
@@ -52,31 +51,31 @@ struct Function {
     name: String,
     parameters: Vec<(Passing, Type)>,
     result: Option<Type>,
-    /// How often its most deeply nested statement runs.
+    /// The number of executions of its most deeply nested statement.
     work: u32,
 }
 
-/// Where operands with effects may stand.
+/// Where operands with side effects may occur.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Effects {
-    /// Wherever the specification says what comes first: not beside an `out` argument.
+    /// Wherever the specification defines the order: not next to an `out` argument.
     Ordered,
     /// Anywhere; and several `out` arguments may be parts of one variable.
     Anywhere,
 }
 
-/// What may stand where an expression stands.
+/// The kind of expression that is allowed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Mode {
     /// Anything.
     Any,
-    /// Nothing with an effect.
+    /// Without side effects.
     Pure,
     /// A constant expression.
     Constant,
 }
 
-/// What a jump may leave.
+/// The enclosing constructs that a jump may leave.
 #[derive(Debug, Clone, Copy, Default)]
 struct Around {
     in_loop: bool,
@@ -91,25 +90,26 @@ struct Generator<'a> {
     functions: Vec<Function>,
     /// From the outermost to the innermost.
     scopes: Vec<Vec<Variable>>,
-    /// Functions that the program needs for its own sake, each behind those that it calls.
+    /// Helper functions, each after those that it calls.
     helpers: Vec<String>,
     mode: Mode,
     effects: Effects,
-    /// Whether places are the same however often they are evaluated.
+    /// Whether places must be the same each time they are evaluated.
     steady: bool,
     depth: usize,
     operands: u32,
-    /// How often the statement at hand runs, for each time that its function does.
+    /// The number of executions of the current statement per call of its function.
     runs: u32,
-    /// The most of any statement of the function at hand.
+    /// The maximum over all statements of the current function.
     work: u32,
-    /// What the function at hand gives.
+    /// The current function's result type.
     result: Option<Type>,
     in_main: bool,
     around: Around,
 }
 
-/// The program that these bytes decide: an eighth of them what is global, three eighths the functions, the others `mainImage`.
+/// Generates the program from bytes: an eighth of them decides the globals, three eighths the functions, the
+/// rest `mainImage`.
 pub(crate) fn program(bytes: &[u8], effects: Effects) -> String {
     let (globals, rest) = bytes.split_at(bytes.len() / 8);
     let (functions, main) = rest.split_at(bytes.len() * 3 / 8);
@@ -135,7 +135,7 @@ pub(crate) fn program(bytes: &[u8], effects: Effects) -> String {
     generator.program(functions, main)
 }
 
-/// What the surroundings offer.
+/// The inputs that ShaderToy provides.
 fn inputs() -> Vec<Variable> {
     let input = |name: &str, ty, range| Variable {
         name: name.into(),
@@ -198,7 +198,7 @@ impl<'a> Generator<'a> {
         self.structs.push(Struct { fields });
     }
 
-    /// Any type that there is.
+    /// Any type.
     fn ty(&mut self) -> Type {
         let base = match self.choices.below(8) {
             0 | 1 => Base::Scalar(self.choices.pick(&SCALARS)),
@@ -239,7 +239,7 @@ impl<'a> Generator<'a> {
         let _ = writeln!(self.text, "{:1$}{text}", "", 4 * self.indent);
     }
 
-    /// A name that nothing in the innermost scope has; more often than not one that hides another.
+    /// A name that is not used in the innermost scope; often one that shadows another.
     fn name(&mut self) -> String {
         const NAMES: [&str; 10] = ["a", "b", "c", "d", "e", "sin", "p", "x", "iDate", "over"];
         let scope = self.scopes.last().map_or(&[][..], Vec::as_slice);
@@ -253,7 +253,7 @@ impl<'a> Generator<'a> {
         name
     }
 
-    /// A place of that type to write whose indices are literals: naming it twice names the same.
+    /// A writable place of that type whose indices are literals, so that it can be repeated.
     fn steady_place(&mut self, ty: Type) -> Option<String> {
         self.steady = true;
         let place = self.place(ty, true, &[]);
@@ -282,7 +282,7 @@ fn declaration(number: usize, structure: &Struct) -> String {
     text + " };\n"
 }
 
-/// `[3]` behind an array's name.
+/// The dimension after an array's name, such as `[3]`.
 fn dimension(ty: Type) -> String {
     ty.length.map(|length| format!("[{length}]")).unwrap_or_default()
 }

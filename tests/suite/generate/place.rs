@@ -1,18 +1,18 @@
-//! What can be read and written: variables, and what lies in them.
+//! Places that can be read and written: variables and their parts.
 
 use super::expr::{Expr, Level, Range};
 use super::types::{Base, INT, Scalar, Type};
 use super::{Generator, Mode, Variable};
 
-/// One step into a variable.
+/// An access to a part of a variable.
 #[derive(Debug, Clone, Copy)]
 enum Step {
     Field(&'static str),
-    /// Of so many elements or columns.
+    /// An index below this number of elements or columns.
     Element(u8),
-    /// A component of so many.
+    /// One of this number of components.
     Component(u8),
-    /// So many components of so many.
+    /// A swizzle: the number of chosen components, and of all components.
     Swizzle {
         of: u8,
         to: u8,
@@ -20,7 +20,7 @@ enum Step {
 }
 
 impl Generator<'_> {
-    /// Something of that type: to be read, or else written. Its variable's name comes first.
+    /// A place of that type, to read or to write. The name of its variable comes first.
     pub(super) fn place(&mut self, ty: Type, write: bool, except: &[String]) -> Option<(String, Expr)> {
         let mut seen: Vec<&str> = Vec::new();
         let mut found = Vec::new();
@@ -104,7 +104,7 @@ impl Generator<'_> {
         text
     }
 
-    /// Letters that pick `to` components of `of`, each at most once if `distinct`.
+    /// Swizzle letters that pick `to` components of `of`, each at most once if `distinct`.
     pub(super) fn swizzle(&mut self, of: u8, to: u8, distinct: bool) -> String {
         let set = self.choices.pick(&["xyzw", "rgba", "stpq"]).as_bytes();
         let mut left: Vec<u8> = set[..usize::from(of)].to_vec();
@@ -120,7 +120,7 @@ impl Generator<'_> {
             .collect()
     }
 
-    /// A number from 0 to below `length`.
+    /// An index from 0 to below `length`.
     pub(super) fn index(&mut self, length: u8) -> String {
         if self.mode == Mode::Constant || self.steady || !self.choices.chance(120) {
             return self.choices.below(usize::from(length)).to_string();
@@ -142,11 +142,11 @@ impl Generator<'_> {
         {
             return place;
         }
-        self.spelled(ty)
+        self.literal_value(ty)
     }
 
-    /// A value that is written out.
-    fn spelled(&mut self, ty: Type) -> Expr {
+    /// A literal value.
+    fn literal_value(&mut self, ty: Type) -> Expr {
         if let Base::Scalar(_) = ty.base
             && ty.length.is_none()
         {
@@ -169,7 +169,7 @@ impl Generator<'_> {
         let parts: Vec<_> = parts
             .into_iter()
             .map(|part| {
-                let part = self.spelled(part);
+                let part = self.literal_value(part);
                 range = range.or(part.range);
                 part
             })

@@ -2,17 +2,17 @@
 
 use super::expr::{Expr, Level, Range};
 use super::types::{BOOL, Base, FLOAT, INT, Scalar, Type, UINT};
-use super::{Around, Function, Generator, MOST_WORK, Mode, Passing, Variable, dimension};
+use super::{Around, Function, Generator, MAX_WORK, Mode, Passing, Variable, dimension};
 
-/// How deep statements nest.
-const DEEPEST: usize = 4;
+/// The maximum nesting depth of statements.
+const MAX_DEPTH: usize = 4;
 
 impl Generator<'_> {
     /// A global variable or constant.
     pub(super) fn global(&mut self) {
         let ty = self.ty();
         let constant = self.choices.chance(100);
-        // Globals may not bear the names of built-in functions and inputs.
+        // Globals must not have the names of built-in functions and inputs.
         let name = format!("g{}", self.scopes.last().map_or(0, Vec::len));
         self.operands = 0;
         let value = self.within(Mode::Constant, |this| this.storable(ty));
@@ -62,7 +62,7 @@ impl Generator<'_> {
             self.variable(name, ty, word != "const in ");
             parameters.push((passing, ty));
         }
-        // Functions whose parameters differ in type share a name.
+        // Overloads share a name.
         let types =
             |function: &Function| -> Vec<Type> { function.parameters.iter().map(|&(_, ty)| ty).collect() };
         let own: Vec<Type> = parameters.iter().map(|&(_, ty)| ty).collect();
@@ -109,7 +109,7 @@ impl Generator<'_> {
         });
     }
 
-    /// Without reading anything that is not written yet.
+    /// The initial value, which reads no variable that is not initialized yet.
     fn first_value(&mut self, ty: Type) -> String {
         self.operands = 0;
         let value = self.within(Mode::Constant, |this| this.storable(ty));
@@ -161,7 +161,7 @@ impl Generator<'_> {
         }
     }
 
-    /// Statements in braces. They may share their scope with what stands before the brace.
+    /// Statements in braces. They may share the scope of the text before the brace.
     fn block(&mut self, before: &str, after: &str, shared: bool) {
         self.line(&format!("{before}{{"));
         if !shared {
@@ -178,7 +178,7 @@ impl Generator<'_> {
 
     fn statement(&mut self) {
         self.operands = 0;
-        let nested = self.indent > DEEPEST;
+        let nested = self.indent > MAX_DEPTH;
         match self.choices.below(20) {
             0..=3 => self.declaration(),
             4..=7 => self.assignment(),
@@ -243,7 +243,7 @@ impl Generator<'_> {
         self.line(&format!("{} = {};", place.text, value.at(Level::Assignment)));
     }
 
-    /// A compound assignment of floats, brought back at once: so neither side may have effects.
+    /// A compound assignment of floats, reduced to range immediately: so neither side may have side effects.
     fn compound(&mut self) {
         let ty = self.ty();
         let ty = if ty.is_float() { ty } else { FLOAT };
@@ -274,8 +274,8 @@ impl Generator<'_> {
         self.line(&format!("{place} = {};", back.text));
     }
 
-    /// A compound assignment of any part of a float variable, all of which is brought back at once: both
-    /// sides may have effects.
+    /// A compound assignment of any part of a float variable, which is then reduced to range completely: both
+    /// sides may have side effects.
     fn compound_anywhere(&mut self, ty: Type) {
         let Some((name, place)) = self.place(ty, true, &[]) else {
             return;
@@ -312,7 +312,7 @@ impl Generator<'_> {
         }
     }
 
-    /// What is written inside runs so many times more often.
+    /// Generates statements that run `count` times as often.
     fn times(&mut self, count: u32, work: impl FnOnce(&mut Self)) {
         let (runs, around) = (self.runs, self.around);
         self.runs = runs * count;
@@ -325,10 +325,10 @@ impl Generator<'_> {
         (self.runs, self.around) = (runs, around);
     }
 
-    /// `for`, counting; the body's scope is that of its head.
+    /// A counting `for`; the body shares the scope of its header.
     fn counted(&mut self) {
         let count = 1 + self.choices.below(4) as u32;
-        if self.runs * (count + 1) > MOST_WORK {
+        if self.runs * (count + 1) > MAX_WORK {
             return;
         }
         self.scopes.push(Vec::new());
@@ -364,10 +364,10 @@ impl Generator<'_> {
         self.scopes.pop();
     }
 
-    /// `while`, `do` and a `for` without a condition, each with a counter of its own.
+    /// `while`, `do` and a `for` without a condition, each with its own counter.
     fn repeated(&mut self) {
         let count = 1 + self.choices.below(4) as u32;
-        if self.runs * (count + 1) > MOST_WORK {
+        if self.runs * (count + 1) > MAX_WORK {
             return;
         }
         self.line("{");
@@ -458,7 +458,7 @@ impl Generator<'_> {
     }
 }
 
-/// Both ways to declare an array.
+/// Declares an array in either syntax.
 fn declarator(ty: Type, name: &str) -> String {
     match ty.length {
         Some(_) if name.len().is_multiple_of(2) => format!("{} {name}", ty.name()),
@@ -466,7 +466,7 @@ fn declarator(ty: Type, name: &str) -> String {
     }
 }
 
-/// Whether a name stands in a text.
+/// Returns whether a text contains a name.
 fn names(text: &str, name: &str) -> bool {
     text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_')
         .any(|word| word == name)

@@ -1,6 +1,6 @@
 //! The types of generated programs.
 
-/// What a component holds.
+/// The type of a component.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Scalar {
     Int,
@@ -11,7 +11,7 @@ pub(crate) enum Scalar {
 
 pub(crate) const SCALARS: [Scalar; 4] = [Scalar::Int, Scalar::Float, Scalar::Uint, Scalar::Bool];
 
-/// A type that is no array.
+/// A type that is not an array.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Base {
     Scalar(Scalar),
@@ -19,7 +19,7 @@ pub(crate) enum Base {
     Vector(Scalar, u8),
     /// Columns, rows.
     Matrix(u8, u8),
-    /// The program's structure of that number.
+    /// The index of one of the program's structures.
     Struct(u8),
 }
 
@@ -42,7 +42,7 @@ pub(crate) const FLOAT: Type = Type::of(Base::Scalar(Scalar::Float));
 pub(crate) const BOOL: Type = Type::of(Base::Scalar(Scalar::Bool));
 
 impl Base {
-    /// As it is written.
+    /// Its GLSL name.
     pub(crate) fn name(self) -> String {
         match self {
             Self::Scalar(Scalar::Float) => "float".into(),
@@ -64,7 +64,7 @@ impl Base {
         }
     }
 
-    /// What its components hold; none of a structure.
+    /// The type of its components; none for a structure.
     pub(crate) fn scalar(self) -> Option<Scalar> {
         match self {
             Self::Scalar(scalar) | Self::Vector(scalar, _) => Some(scalar),
@@ -82,7 +82,7 @@ impl Base {
         }
     }
 
-    /// How many components a scalar or vector has.
+    /// The number of components of a scalar or vector.
     pub(crate) fn size(self) -> u8 {
         match self {
             Self::Vector(_, size) => size,
@@ -96,7 +96,7 @@ impl Type {
         Self { base, length: None }
     }
 
-    /// As a constructor, or before a name.
+    /// Its GLSL name, as a constructor or in a declaration.
     pub(crate) fn name(self) -> String {
         match self.length {
             Some(length) => format!("{}[{length}]", self.base.name()),
@@ -109,12 +109,12 @@ impl Type {
         Self::of(self.base)
     }
 
-    /// Whether operators other than `=`, `==` and `!=` take it.
+    /// Returns whether it is an operand of operators other than `=`, `==` and `!=`.
     pub(crate) fn is_basic(self) -> bool {
         self.length.is_none() && !matches!(self.base, Base::Struct(_))
     }
 
-    /// Whether it is a float, or a vector or matrix of them.
+    /// Returns whether it is a float, or a vector or matrix of floats.
     pub(crate) fn is_float(self) -> bool {
         self.length.is_none() && self.base.scalar() == Some(Scalar::Float)
     }

@@ -1,11 +1,11 @@
-//! What operators, constructors and built-in functions give.
+//! Values of operators, constructors and built-in functions.
 
 use super::expr::{Expr, Level, Range};
 use super::types::{BOOL, Base, FLOAT, INT, SCALARS, Scalar, Type, UINT};
 use super::{Generator, Mode};
 
 impl Generator<'_> {
-    /// An operation that gives that type.
+    /// An operation with that result type.
     pub(super) fn value(&mut self, ty: Type) -> Expr {
         match (ty.length, ty.base) {
             (Some(_), _) | (None, Base::Struct(_)) => self.constructed(ty),
@@ -23,7 +23,7 @@ impl Generator<'_> {
         }
     }
 
-    /// An operand beside one of this type: of the same, or a scalar.
+    /// The other operand for one of this type: of the same type, or a scalar.
     fn beside(&mut self, ty: Type) -> Expr {
         let scalar = ty.base.scalar().unwrap_or(Scalar::Float);
         if self.choices.chance(60) {
@@ -33,7 +33,7 @@ impl Generator<'_> {
         }
     }
 
-    /// Two operands of which one has the type, in either order.
+    /// Two operands, one of which has the type, in either order.
     fn operands(&mut self, ty: Type) -> (Expr, Expr) {
         if self.choices.chance(40) {
             let left = self.beside(ty);
@@ -59,7 +59,7 @@ impl Generator<'_> {
             return Expr::call(&base.name(), &parts, Range::VARIABLE);
         }
         let from = self.choices.pick(&SCALARS);
-        // A longer vector may be cut, a scalar repeated.
+        // A longer vector may be truncated, a scalar repeated.
         let from_size = if self.choices.chance(128) || size == 1 {
             size.max(self.choices.pick(&[1, 2, 3, 4]))
         } else {
@@ -69,13 +69,13 @@ impl Generator<'_> {
         let mut operand = self.expr(source);
         let mut range = Range::new(1.0, 0);
         match (from, scalar) {
-            // Exact in a float, at home in a variable.
+            // Exact in a float, and in the range of variables.
             (Scalar::Int | Scalar::Uint, Scalar::Float) => {
                 let mask = if from == Scalar::Uint { "63u" } else { "63" };
                 operand = Expr::plain(format!("{} & {mask}", operand.at(Level::And)), Level::And);
                 range = Range::new(64.0, 0);
             }
-            // Negative floats have no unsigned integer.
+            // Converting a negative float to an unsigned integer is undefined.
             (Scalar::Float, Scalar::Uint) => operand = Expr::call("abs", &[operand], Range::VARIABLE),
             (Scalar::Float, Scalar::Float) => range = operand.range,
             _ => {}
@@ -159,7 +159,7 @@ impl Generator<'_> {
                 Expr::call("cross", &[left, right], range)
             }
             13 if base.size() > 1 && self.mode != Mode::Constant => {
-                // The matrix has as many columns as the vector beside it has components.
+                // The matrix has as many columns as the vector has components.
                 let other = self.size();
                 let vector = Type::of(Base::Vector(Scalar::Float, other));
                 let (matrix, left) = if self.choices.chance(128) {
@@ -186,7 +186,7 @@ impl Generator<'_> {
         }
     }
 
-    /// `++` and `--` of floats: the variable is brought back before anything else happens.
+    /// `++` and `--` of floats: the variable is reduced to range before anything else happens.
     fn stepped(&mut self, ty: Type) -> Expr {
         let Some(place) = self.steady_place(ty) else {
             return self.leaf(ty);
@@ -239,7 +239,7 @@ impl Generator<'_> {
                 }
             }
             7 => {
-                // The amount is of either kind, and a scalar if it likes.
+                // The shift amount is signed or unsigned, and a vector or a scalar.
                 let left = self.expr(ty);
                 let kind = self.choices.pick(&[Scalar::Int, Scalar::Uint]);
                 let size = if self.choices.chance(100) {
@@ -279,7 +279,7 @@ impl Generator<'_> {
             }
             15 if self.mode != Mode::Constant => {
                 let operand = self.storable(Type::of(Base::sized(Scalar::Float, ty.base.size())));
-                // A negative zero may be a positive one.
+                // The sign of a zero may differ.
                 let operand = Expr::plain(format!("{} + 0.5", operand.at(Level::Sum)), Level::Sum);
                 let name = if unsigned {
                     "floatBitsToUint"
@@ -303,7 +303,7 @@ impl Generator<'_> {
         }
     }
 
-    /// Operands of which the left has the type.
+    /// Two operands, the left of which has the type.
     fn operands_first(&mut self, ty: Type) -> (Expr, Expr) {
         let left = self.expr(ty);
         (left, self.beside(ty))

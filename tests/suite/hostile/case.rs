@@ -1,4 +1,4 @@
-//! A shader that means harm, and what is to be said of it.
+//! A malicious shader and its expected verdict.
 
 use std::iter::repeat_n;
 
@@ -7,19 +7,19 @@ use std::iter::repeat_n;
 pub(crate) struct Case {
     pub(crate) name: &'static str,
     pub(crate) text: Vec<u8>,
-    /// The verdict; several where the machine decides: what one does not finish in time, a faster one may.
+    /// The verdict; several where it depends on the speed of the machine.
     pub(crate) verdicts: &'static [&'static str],
 }
 
 pub(crate) const INVALID: &[&str] = &["invalid"];
 pub(crate) const OK: &[&str] = &["ok"];
 pub(crate) const TIMEOUT: &[&str] = &["timeout"];
-/// A legal shader that takes long.
+/// A legal but slow shader.
 pub(crate) const SLOW: &[&str] = &["ok", "timeout"];
 
 const MAIN: &str = "void mainImage(out vec4 c, in vec2 p)";
 
-/// A text as it is.
+/// A case with this text.
 pub(crate) fn text(name: &'static str, verdicts: &'static [&'static str], text: impl Into<Vec<u8>>) -> Case {
     Case {
         name,
@@ -28,12 +28,12 @@ pub(crate) fn text(name: &'static str, verdicts: &'static [&'static str], text: 
     }
 }
 
-/// Statements in `mainImage`, where `c` is the colour and `p` the pixel.
+/// A case with statements in `mainImage`, where `c` is the color and `p` the pixel.
 pub(crate) fn body(name: &'static str, verdicts: &'static [&'static str], body: &str) -> Case {
     within(name, verdicts, "", body)
 }
 
-/// Declarations, and statements in `mainImage`.
+/// A case with declarations, and statements in `mainImage`.
 pub(crate) fn within(
     name: &'static str,
     verdicts: &'static [&'static str],
@@ -43,12 +43,12 @@ pub(crate) fn within(
     text(name, verdicts, format!("{before}\n{MAIN} {{\n{body}\n}}\n"))
 }
 
-/// So many lines, each made of its number.
+/// Generates `count` lines from their numbers.
 pub(crate) fn lines(count: usize, line: impl Fn(usize) -> String) -> String {
     (0..count).map(|at| line(at) + "\n").collect()
 }
 
-/// What stands in the middle, between so many of these.
+/// Wraps `middle` in `count` pairs of `open` and `close`.
 pub(crate) fn nested(count: usize, open: &str, middle: &str, close: &str) -> String {
     let parts = repeat_n(open, count)
         .chain([middle])

@@ -1,4 +1,4 @@
-//! What compilers and processors stumble over.
+//! Shaders that are hard for compilers and processors.
 
 use super::case::{Case, OK, SLOW, TIMEOUT, body, lines, within};
 

@@ -1,4 +1,4 @@
-//! Loops that never end, or not while anybody waits.
+//! Loops that never end, or not within the time limit.
 
 use super::case::{Case, SLOW, TIMEOUT, body, nested, within};
 

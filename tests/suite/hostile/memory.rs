@@ -1,4 +1,4 @@
-//! Memory, and what lies outside of it.
+//! Large memory, and accesses out of bounds.
 
 use super::case::{Case, INVALID, OK, SLOW, body, lines, within};
 

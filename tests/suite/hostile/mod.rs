@@ -1,6 +1,6 @@
-//! Shaders that mean harm, of our own writing. Each ends in time with the right verdict, the program and its worker together take no more
-//! memory than they may, no file is touched but those in `--out`, and no process is left. `cargo test hostile -- --nocapture` prints the
-//! table.
+//! Malicious shaders. Each ends in time with the right verdict, the program and its worker together stay
+//! within their memory limit, no file outside of `--out` is touched, and no process is left. `cargo test
+//! hostile -- --nocapture` prints the table.
 
 mod case;
 mod driver;
@@ -27,15 +27,15 @@ use self::watch::{Seen, files, left, watch};
 use crate::program::{command, has_driver};
 use crate::support::SPHERE;
 
-/// How long a picture may take of a shader that is expected not to be done in time, and of one that is.
-const SHORT: &str = "1s";
-const LONG: &str = "20s";
-/// In so many seconds each shader has its verdict: eight deadlines, and what a loaded machine needs to start.
-const LONGEST: Duration = Duration::from_secs(30);
-/// So many bytes do the program, which paints with two threads, and its worker take at the most, both together.
-const MOST_BYTES: u64 = 1536 << 20;
-/// And so many do all reports of one shader.
-const MOST_WRITTEN: usize = 4 << 20;
+/// The time limit of an image: for a shader that is expected to exceed it, and for one that is not.
+const SHORT_TIME_LIMIT: &str = "1s";
+const LONG_TIME_LIMIT: &str = "20s";
+/// The maximum time until a verdict: eight time limits, and the start on a loaded machine.
+const MAX_CASE_TIME: Duration = Duration::from_secs(30);
+/// The maximum memory of the program, which renders with two threads, and its worker together, in bytes.
+const MAX_MEMORY_BYTES: u64 = 1536 << 20;
+/// The maximum size of all reports of one shader, in bytes.
+const MAX_REPORT_BYTES: usize = 4 << 20;
 
 fn cases() -> Vec<Case> {
     let groups = [
@@ -49,7 +49,7 @@ fn cases() -> Vec<Case> {
     groups.into_iter().flatten().collect()
 }
 
-/// `check`, in a folder that it has for itself: all files that programs usually write would be seen in it.
+/// Runs `check` in its own folder, where all files that programs usually write would be found.
 fn check(folder: &Path, arguments: &[&str]) -> Command {
     let home = folder.join("home");
     fs::create_dir(&home).unwrap();
@@ -58,11 +58,11 @@ fn check(folder: &Path, arguments: &[&str]) -> Command {
     for name in ["HOME", "TMPDIR", "XDG_CACHE_HOME", "XDG_RUNTIME_DIR"] {
         check.env(name, &home);
     }
-    // The driver's own cache is the only thing that is written elsewhere.
+    // Only the driver's own cache is written elsewhere.
     check.env("MESA_SHADER_CACHE_DISABLE", "true");
-    // Unoptimised builds load the validation layer where it is installed, which keeps a cache too.
+    // Unoptimized builds load the validation layer where it is installed, which keeps a cache too.
     check.env("VK_LOADER_LAYERS_DISABLE", "~all~");
-    // Each thread that paints has registers for itself.
+    // Each render thread has its own registers.
     check.env("RAYON_NUM_THREADS", "2");
     check.stdin(Stdio::null());
     check
@@ -73,29 +73,29 @@ fn verdicts(folder: &Path) -> Vec<(String, String)> {
     let text = fs::read_to_string(folder.join("out/verdict.json")).unwrap_or_default();
     let report: Value = serde_json::from_str(&text).unwrap_or_default();
     let shaders = report["shaders"].as_array().cloned().unwrap_or_default();
-    let told = |shader: &Value, field: &str| shader[field].as_str().unwrap_or_default().to_owned();
+    let text_of = |shader: &Value, field: &str| shader[field].as_str().unwrap_or_default().to_owned();
     shaders
         .iter()
-        .map(|shader| (told(shader, "shader"), told(shader, "verdict")))
+        .map(|shader| (text_of(shader, "shader"), text_of(shader, "verdict")))
         .collect()
 }
 
-/// What is wrong with how a case ended, and its line of the table.
+/// Describes what is wrong with the result of a case, and formats its line of the table.
 fn judge(case: &Case) -> (Vec<String>, String) {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     fs::create_dir(folder.join("hw")).unwrap();
     fs::write(folder.join("hw/s.glsl"), &case.text).unwrap();
     let timeout = if case.verdicts.contains(&"timeout") {
-        SHORT
+        SHORT_TIME_LIMIT
     } else {
-        LONG
+        LONG_TIME_LIMIT
     };
     let mut check = check(folder, &["--size", "64x36", "--timeout", timeout]);
     let words = fs::File::create(folder.join("words")).unwrap();
     check.stdout(words.try_clone().unwrap()).stderr(words);
     let before = files(folder);
-    let Seen { code, seconds, bytes } = watch(check.spawn().unwrap(), LONGEST);
+    let Seen { code, seconds, bytes } = watch(check.spawn().unwrap(), MAX_CASE_TIME);
     let mut wrong = Vec::new();
     let verdict = match verdicts(folder).as_slice() {
         [(_, verdict)] => verdict.clone(),
@@ -107,14 +107,14 @@ fn judge(case: &Case) -> (Vec<String>, String) {
     if code != Some(i32::from(verdict != "ok")) {
         wrong.push(format!("ends with {code:?}"));
     }
-    if bytes > MOST_BYTES {
+    if bytes > MAX_MEMORY_BYTES {
         wrong.push(format!("takes {} MB", bytes >> 20));
     }
     let mut written = 0;
     for (path, now) in files(folder) {
         if path.starts_with(folder.join("out")) || path == folder.join("words") {
             written += now.len();
-            // What an #include would have read.
+            // The file that an #include would have read.
             if String::from_utf8_lossy(&now).contains("root:") {
                 wrong.push(format!("{} tells of the system's files", path.display()));
             }
@@ -122,7 +122,7 @@ fn judge(case: &Case) -> (Vec<String>, String) {
             wrong.push(format!("touches {}", path.display()));
         }
     }
-    if written > MOST_WRITTEN {
+    if written > MAX_REPORT_BYTES {
         wrong.push(format!("writes {written} bytes"));
     }
     if fs::read_to_string(folder.join("words"))
@@ -145,27 +145,27 @@ fn judge(case: &Case) -> (Vec<String>, String) {
 }
 
 #[test]
-fn each_ends_in_time_with_the_right_verdict_and_leaves_nothing() {
+fn each_case_ends_in_time_with_its_verdict_and_leaves_nothing() {
     if !has_driver() {
         return;
     }
     let cases = cases();
     assert!(cases.len() >= 100, "{}", cases.len());
     let next = AtomicUsize::new(0);
-    let judged = Mutex::new(Vec::new());
+    let check_exercise = Mutex::new(Vec::new());
     thread::scope(|scope| {
         for _ in 0..2 {
             scope.spawn(|| {
                 while let Some(case) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
                     let (wrong, line) = judge(case);
                     eprintln!("{line} {}", if wrong.is_empty() { "" } else { "WRONG" });
-                    judged.lock().unwrap().push((case.name, wrong));
+                    check_exercise.lock().unwrap().push((case.name, wrong));
                 }
             });
         }
     });
     let mut words = String::new();
-    for (name, wrong) in judged.into_inner().unwrap() {
+    for (name, wrong) in check_exercise.into_inner().unwrap() {
         for wrong in wrong {
             writeln!(words, "{name}: {wrong}").unwrap();
         }
@@ -173,9 +173,9 @@ fn each_ends_in_time_with_the_right_verdict_and_leaves_nothing() {
     assert!(words.is_empty(), "\n{words}");
 }
 
-/// In one command, each between good ones, which must not suffer.
+/// Runs all cases in one command, each between valid shaders, which must not be affected.
 #[test]
-fn none_takes_another_with_it() {
+fn no_case_affects_others() {
     if !has_driver() {
         return;
     }
@@ -215,9 +215,9 @@ fn none_takes_another_with_it() {
     ];
     let mut check = check(folder, &arguments);
     check.stdout(Stdio::null()).stderr(Stdio::null());
-    let Seen { code, bytes, .. } = watch(check.spawn().unwrap(), 4 * LONGEST);
+    let Seen { code, bytes, .. } = watch(check.spawn().unwrap(), 4 * MAX_CASE_TIME);
     assert_eq!(code, Some(1));
-    assert!(bytes < 2 * MOST_BYTES, "{} MB", bytes >> 20);
+    assert!(bytes < 2 * MAX_MEMORY_BYTES, "{} MB", bytes >> 20);
     let verdicts = verdicts(folder);
     assert_eq!(verdicts.len(), 2 * names.len());
     for (shader, verdict) in verdicts {

@@ -1,4 +1,4 @@
-//! Nesting, recursion, and too much of everything.
+//! Nesting, recursion, and excessive sizes.
 
 use super::case::{Case, INVALID, OK, SLOW, body, lines, nested, within};
 

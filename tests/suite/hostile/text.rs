@@ -1,4 +1,4 @@
-//! What is hardly a text.
+//! Malformed texts.
 
 use super::case::{Case, INVALID, OK, body, lines, text, within};
 

@@ -1,4 +1,5 @@
-//! What a program does to the machine: how much memory it and all it starts take, what they write, and whether they all end.
+//! Watches a program's use of the machine: the memory of it and its child processes, the files that they
+//! write, and whether they all end.
 
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
@@ -8,17 +9,17 @@ use std::process::Child;
 use std::time::{Duration, Instant};
 use std::{fs, thread};
 
-/// What was seen until it ended.
+/// The observations until it ended.
 #[derive(Debug)]
 pub(super) struct Seen {
     /// None if it had to be killed.
     pub(super) code: Option<i32>,
     pub(super) seconds: f64,
-    /// The most memory at once, in bytes.
+    /// The peak memory in bytes.
     pub(super) bytes: u64,
 }
 
-/// Follows a program to its end, or kills it when the time is up.
+/// Watches a program until it ends, or kills it at the time limit.
 pub(super) fn watch(mut child: Child, longest: Duration) -> Seen {
     let start = Instant::now();
     let mut bytes = 0;
@@ -42,7 +43,7 @@ pub(super) fn watch(mut child: Child, longest: Duration) -> Seen {
     }
 }
 
-/// What a process and those that it started hold in memory, in bytes.
+/// The resident memory of a process and its descendants, in bytes.
 fn resident(pid: u32) -> u64 {
     let status = fs::read_to_string(format!("/proc/{pid}/status")).unwrap_or_default();
     let held = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
@@ -59,7 +60,7 @@ fn resident(pid: u32) -> u64 {
     held.map_or(0, |held| held << 10) + children.map(resident).sum::<u64>()
 }
 
-/// The processes in whose environment that word stands, once they have had time to end.
+/// The processes whose environment contains `word`, after giving them time to end.
 pub(super) fn left(word: &OsStr) -> Vec<String> {
     let start = Instant::now();
     loop {
@@ -79,7 +80,7 @@ pub(super) fn left(word: &OsStr) -> Vec<String> {
     }
 }
 
-/// All files below a folder, with what they hold.
+/// All files below a folder, with their contents.
 pub(super) fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut files = BTreeMap::new();
     for entry in fs::read_dir(folder).unwrap().flatten() {

@@ -1,4 +1,4 @@
-//! A headless Chromium with one page open, told what to do over a pipe by the `DevTools` protocol.
+//! A headless Chromium with one open page, controlled over a pipe by the `DevTools` protocol.
 
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
@@ -12,8 +12,8 @@ use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-/// How long the browser may take for one thing, its own start included.
-const PATIENCE: Duration = Duration::from_secs(90);
+/// The time limit of one browser operation, including its start.
+const TIME_LIMIT: Duration = Duration::from_secs(90);
 
 /// One page of a browser.
 #[derive(Debug)]
@@ -23,25 +23,25 @@ pub(crate) struct Page {
     told: Receiver<Value>,
     session: Option<String>,
     last: u64,
-    /// What happened so far.
+    /// The events so far.
     events: Vec<Value>,
     _profile: TempDir,
 }
 
 impl Page {
-    /// A page that shows nothing yet, in a browser without a GPU.
+    /// Opens an empty page in a browser without a GPU.
     pub(crate) fn new(program: &Path) -> Self {
         Self::with(program, &["--disable-gpu"])
     }
 
-    /// A page that shows nothing yet, in a browser with those switches.
+    /// Opens an empty page in a browser with these switches.
     pub(crate) fn with(program: &Path, switches: &[&str]) -> Self {
         let profile = tempfile::tempdir().unwrap();
         let mut browser = Command::new("sh")
-            // The protocol is spoken on descriptors 3 and 4.
+            // The protocol uses file descriptors 3 and 4.
             .args(["-c", "exec \"$0\" \"$@\" 3<&0 4>&1 0</dev/null 1>/dev/null"])
             .arg(program)
-            // Chromium's own sandbox does not run as root; the page is ours.
+            // Chromium's sandbox does not run as root; the page is trusted.
             .args([
                 "--headless=new",
                 "--no-sandbox",
@@ -87,7 +87,7 @@ impl Page {
         page
     }
 
-    /// Asks for something and waits for the answer.
+    /// Calls a method and waits for the reply.
     pub(crate) fn call(&mut self, method: &str, parameters: &Value) -> Value {
         self.last += 1;
         let mut order = json!({ "id": self.last, "method": method, "params": parameters });
@@ -97,7 +97,7 @@ impl Page {
         write!(self.orders, "{order}\0").unwrap();
         self.orders.flush().unwrap();
         loop {
-            let message = self.told.recv_timeout(PATIENCE).expect(method);
+            let message = self.told.recv_timeout(TIME_LIMIT).expect(method);
             if message["id"] == self.last {
                 assert!(message["error"].is_null(), "{method}: {}", message["error"]);
                 return message["result"].clone();
@@ -106,7 +106,7 @@ impl Page {
         }
     }
 
-    /// Goes to a file and waits until it has been read; gives how long that took.
+    /// Opens a file and waits until it is loaded; returns the time taken.
     pub(crate) fn open(&mut self, file: &Path) -> Duration {
         let start = Instant::now();
         self.events.clear();
@@ -117,13 +117,13 @@ impl Page {
             .iter()
             .any(|event| event["method"] == "Page.loadEventFired")
         {
-            let event = self.told.recv_timeout(PATIENCE).expect("the page loads");
+            let event = self.told.recv_timeout(TIME_LIMIT).expect("the page loads");
             self.events.push(event);
         }
         start.elapsed()
     }
 
-    /// The value of an expression of JavaScript, awaited.
+    /// Evaluates a JavaScript expression, awaiting promises.
     pub(crate) fn value(&mut self, script: &str) -> Value {
         let asked = json!({ "expression": script, "awaitPromise": true, "returnByValue": true });
         let result = self.call("Runtime.evaluate", &asked);
@@ -135,14 +135,14 @@ impl Page {
     pub(crate) fn until(&mut self, script: &str) {
         let start = Instant::now();
         while self.value(script) != true {
-            assert!(start.elapsed() < PATIENCE, "never: {script}");
+            assert!(start.elapsed() < TIME_LIMIT, "never: {script}");
             thread::sleep(Duration::from_millis(20));
         }
     }
 
-    /// Presses and lets go of a key.
+    /// Presses and releases a key.
     pub(crate) fn press(&mut self, key: &str) {
-        // Some do their work by number, or by what they would write.
+        // Some keys need their code, or the text that they produce.
         let (number, text) = match key {
             "Tab" => (9, ""),
             "Enter" => (13, "\r"),
@@ -154,7 +154,7 @@ impl Page {
         }
     }
 
-    /// A window of that size in pixels, in the dark or by day.
+    /// Sets the window's size in pixels, and the dark or light color scheme.
     pub(crate) fn window(&mut self, [width, height]: [u32; 2], dark: bool) {
         let metrics = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
         self.call("Emulation.setDeviceMetricsOverride", &metrics);
@@ -169,9 +169,9 @@ impl Page {
         STANDARD.decode(shot["data"].as_str().unwrap()).unwrap()
     }
 
-    /// What happened by that name since the page was opened.
+    /// Takes the events with this name since the page was opened.
     pub(crate) fn events(&mut self, method: &str) -> Vec<Value> {
-        // Whatever was on its way is there once this is answered.
+        // Pending events have arrived once this call returns.
         self.value("0");
         let events = self.events.iter().filter(|event| event["method"] == method);
         events.map(|event| event["params"].clone()).collect()
@@ -180,7 +180,7 @@ impl Page {
 
 impl Drop for Page {
     fn drop(&mut self) {
-        // Its children end with it.
+        // Its child processes end with it.
         let _ = self.browser.kill();
         let _ = self.browser.wait();
     }

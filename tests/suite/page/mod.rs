@@ -1,4 +1,4 @@
-//! `report.html` in a real browser. `TOYPROOF_SCREENSHOTS` names a folder for pictures of it.
+//! `report.html` in a real browser. `TOYPROOF_SCREENSHOTS` names a folder for screenshots.
 
 pub(crate) mod devtools;
 
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 use serde_json::{Value, json};
-use toyproof::image::{self, Image, quantise};
+use toyproof::image::{self, Image, quantize};
 use toyproof::report::{Exhibit, Gallery, Record, Report, Seconds, html};
 use toyproof::verify::compare::Verdict;
 
@@ -16,7 +16,7 @@ use crate::support::SPHERE;
 
 const HOSTILE: &str = "<img src=x onerror=hacked=1>.glsl";
 
-/// A folder with the report of some homework: right, wrong, hostile, warned of, and endless.
+/// Creates the report of a folder of shaders: correct, wrong, hostile, with warnings, and endless.
 fn report(folder: &Path, rest: &[&str]) -> Vec<Value> {
     let write = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
     fs::create_dir(folder.join("hw")).unwrap();
@@ -65,7 +65,7 @@ fn page() -> Option<Page> {
     Some(Page::new(&program))
 }
 
-/// Where the shader of that name is among all.
+/// The index of the shader with this name.
 fn place(records: &[Value], name: &str) -> usize {
     let named = |record: &Value| {
         record["shader"]
@@ -82,7 +82,7 @@ fn shot(page: &mut Page, name: &str) {
     }
 }
 
-/// Nothing went wrong in the page, and it fetched nothing.
+/// Asserts that the page reported no error and fetched nothing.
 fn is_quiet(page: &mut Page) {
     for trouble in [
         "Runtime.exceptionThrown",
@@ -100,9 +100,9 @@ fn is_quiet(page: &mut Page) {
     }
 }
 
-/// A pixel's colour as the inspector writes it.
-fn levels(picture: &Image, x: u32, y: u32) -> String {
-    let [r, g, b, _] = picture.get(x, y).map(quantise);
+/// A pixel's color in the inspector's format.
+fn levels(pixels: &Image, x: u32, y: u32) -> String {
+    let [r, g, b, _] = pixels.get(x, y).map(quantize);
     format!("{r}, {g}, {b} of 255")
 }
 
@@ -111,7 +111,7 @@ const NAMES: &str = "[...document.querySelectorAll('#shaders tbody tr')].filter(
                      .map(row => row.cells[0].textContent)";
 const INSPECTED: &str = "Object.fromEntries([...document.querySelectorAll('article.open dt')]\
                          .map(dt => [dt.textContent, dt.nextSibling.textContent]))";
-/// The colour of the canvas where the inspector is.
+/// The color of the canvas at the inspected pixel.
 const CANVAS: &str = "(() => { const c = document.querySelector('article.open canvas'); \
                       const [x, y] = ['x', 'y'].map(n => Number(document.querySelector(`article.open [name=${n}]`).value)); \
                       const copy = new OffscreenCanvas(1, 1).getContext('2d', { willReadFrequently: true }); \
@@ -119,21 +119,21 @@ const CANVAS: &str = "(() => { const c = document.querySelector('article.open ca
                       return [...copy.getImageData(0, 0, 1, 1).data.slice(0, 3)].join(', ') + ' of 255' })()";
 
 #[test]
-fn the_table_sorts_and_filters_and_nothing_of_a_shader_runs() {
+fn the_table_sorts_and_filters_and_no_shader_text_runs() {
     let Some(mut page) = page() else { return };
     let folder = tempfile::tempdir().unwrap();
     let records = report(folder.path(), &["--size", "64x36"]);
     page.window([1400, 900], false);
     page.open(&folder.path().join("out/report.html"));
-    let told: Vec<_> = records.iter().map(|record| record["shader"].clone()).collect();
-    assert_eq!(page.value(NAMES), json!(told), "as they came");
+    let reported: Vec<_> = records.iter().map(|record| record["shader"].clone()).collect();
+    assert_eq!(page.value(NAMES), json!(reported), "as they came");
 
     let click = |name: &str| {
         format!(
             "[...document.querySelectorAll('#shaders thead button')].find(b => b.textContent === '{name}').click()"
         )
     };
-    let mut sorted: Vec<_> = told
+    let mut sorted: Vec<_> = reported
         .iter()
         .map(|name| name.as_str().unwrap().to_owned())
         .collect();
@@ -196,13 +196,13 @@ fn the_table_sorts_and_filters_and_nothing_of_a_shader_runs() {
 }
 
 #[test]
-fn the_inspector_tells_what_the_pictures_hold() {
+fn the_inspector_shows_the_image_values() {
     let Some(mut page) = page() else { return };
     let folder = tempfile::tempdir().unwrap();
     let records = report(folder.path(), &["--size", "320x180"]);
     let bob = place(&records, "bob.glsl");
-    let picture = |end: &str| image::read(&folder.path().join(format!("out/bob-{end}.png"))).unwrap();
-    let (reference, actual) = (picture("reference"), picture("actual"));
+    let read_image = |end: &str| image::read(&folder.path().join(format!("out/bob-{end}.png"))).unwrap();
+    let (reference, actual) = (read_image("reference"), read_image("actual"));
     page.window([1400, 900], false);
     page.open(&folder.path().join("out/report.html"));
     shot(&mut page, "table");
@@ -211,16 +211,19 @@ fn the_inspector_tells_what_the_pictures_hold() {
 
     let worst = &records[bob]["maths"]["worst"];
     let [x, y] = ["x", "y"].map(|name| worst[name].as_u64().unwrap() as u32);
-    let told = page.value(INSPECTED);
-    assert_eq!(told["expected"], levels(&reference, x, y));
-    assert_eq!(told["actual"], levels(&actual, x, y));
+    let reported = page.value(INSPECTED);
+    assert_eq!(reported["expected"], levels(&reference, x, y));
+    assert_eq!(reported["actual"], levels(&actual, x, y));
     assert!(
-        told["maths"].as_str().unwrap().starts_with("another by > 1e-"),
-        "{told}"
+        reported["maths"]
+            .as_str()
+            .unwrap()
+            .starts_with("another by > 1e-"),
+        "{reported}"
     );
-    assert_eq!(told["toolchain"], "not asked", "no GPU painted");
+    assert_eq!(reported["toolchain"], "not asked", "no GPU painted");
     let floats = worst["expected"].as_array().unwrap();
-    let first: f64 = told["maths: expected"]
+    let first: f64 = reported["maths: expected"]
         .as_str()
         .unwrap()
         .split(", ")
@@ -228,14 +231,14 @@ fn the_inspector_tells_what_the_pictures_hold() {
         .unwrap()
         .parse()
         .unwrap();
-    assert!((first - floats[0].as_f64().unwrap()).abs() < 1e-6, "{told}");
+    assert!((first - floats[0].as_f64().unwrap()).abs() < 1e-6, "{reported}");
 
     page.value("document.querySelector('article.open canvas').focus()");
     page.press("ArrowRight");
     page.press("ArrowUp");
-    let told = page.value(INSPECTED);
-    assert_eq!(told["expected"], levels(&reference, x + 1, y + 1));
-    assert_eq!(told["actual"], levels(&actual, x + 1, y + 1));
+    let reported = page.value(INSPECTED);
+    assert_eq!(reported["expected"], levels(&reference, x + 1, y + 1));
+    assert_eq!(reported["actual"], levels(&actual, x + 1, y + 1));
     assert_eq!(
         page.value("document.querySelector('article.open [name=y]').value"),
         (y + 1).to_string()
@@ -257,9 +260,9 @@ fn the_inspector_tells_what_the_pictures_hold() {
     };
     page.value(&field("x", x));
     page.value(&field("y", y));
-    for (value, picture) in [(1000, &reference), (0, &actual)] {
+    for (value, actual_image) in [(1000, &reference), (0, &actual)] {
         page.value(&slide(value));
-        assert_eq!(page.value(CANVAS), levels(picture, x, y), "{value}");
+        assert_eq!(page.value(CANVAS), levels(actual_image, x, y), "{value}");
     }
     page.value(&slide(500));
     shot(&mut page, "wrong");
@@ -280,7 +283,7 @@ fn the_inspector_tells_what_the_pictures_hold() {
     is_quiet(&mut page);
 }
 
-/// What a screen reader names: what one can use, and what one jumps to.
+/// The roles for which a screen reader needs a name: controls and landmarks.
 const NAMED: [&str; 14] = [
     "button",
     "link",
@@ -298,10 +301,10 @@ const NAMED: [&str; 14] = [
     "article",
 ];
 
-/// The roles and names of all that a screen reader tells, and of those in [`NAMED`] the ones that have no name.
+/// The roles and names of all elements that a screen reader reads, and those of [`NAMED`] without a name.
 fn heard(page: &mut Page) -> (Vec<(String, String)>, Vec<String>) {
-    let told = page.call("Accessibility.getFullAXTree", &json!({}));
-    let nodes = told["nodes"].as_array().unwrap().iter();
+    let reported = page.call("Accessibility.getFullAXTree", &json!({}));
+    let nodes = reported["nodes"].as_array().unwrap().iter();
     let heard: Vec<(String, String)> = nodes
         .filter(|node| node["ignored"] == false)
         .map(|node| ["role", "name"].map(|what| node[what]["value"].as_str().unwrap_or_default().to_owned()))
@@ -314,11 +317,11 @@ fn heard(page: &mut Page) -> (Vec<(String, String)>, Vec<String>) {
     (heard, unnamed)
 }
 
-/// What has the focus, and whether that can be seen.
+/// The focused element, and whether its focus is visible.
 const FOCUS: &str = "(() => { const e = document.activeElement; \
                      return [e.name || e.textContent.trim() || e.tagName, getComputedStyle(e).outlineStyle !== 'none'] })()";
 
-/// Presses the tabulator until it is out of the page, and tells what had the focus in turn.
+/// Presses Tab until the focus leaves the page; returns the focused elements in order.
 fn tabbed(page: &mut Page) -> Vec<String> {
     let mut all = Vec::new();
     loop {
@@ -333,7 +336,7 @@ fn tabbed(page: &mut Page) -> Vec<String> {
 }
 
 #[test]
-fn keys_reach_everything_and_everything_has_a_name() {
+fn all_controls_have_a_name_and_keyboard_access() {
     let Some(mut page) = page() else { return };
     let folder = tempfile::tempdir().unwrap();
     let records = report(folder.path(), &["--size", "64x36"]);
@@ -345,7 +348,9 @@ fn keys_reach_everything_and_everything_has_a_name() {
         assert_eq!(unnamed, [""; 0], "{heard_first:?}");
         let has = |heard: &[(String, String)], role: &str, name: &str| {
             assert!(
-                heard.iter().any(|(own, told)| own == role && told == name),
+                heard
+                    .iter()
+                    .any(|(own, reported)| own == role && reported == name),
                 "no {role} “{name}”: {heard:?}"
             );
         };
@@ -403,20 +408,22 @@ fn without_scripts_there_are_still_the_table_and_the_messages() {
     shot(&mut page, "without-script");
 }
 
-/// A page of 500 shaders takes less than a second of its thread to be read and laid out, whatever else the machine does.
+/// The maximum processor time in seconds of the page's thread for loading and laying out 500 shaders,
+/// independent of the machine's load.
 const OPENS: f64 = 1.0;
 
-/// How long a page takes.
+/// The times of opening a page.
 struct Opening {
-    /// Seconds of its thread's processor time, until all is read and laid out.
+    /// Processor time of its thread in seconds, until the page is loaded and laid out.
     opened: f64,
-    /// The same from there until the picture of its first shader that is `ok` is shown.
+    /// The same from there until the image of its first `ok` shader is shown.
     shown: f64,
-    /// Milliseconds by the clock from the navigation to the first paint of contents, and to the end of the load event.
+    /// Wall-clock milliseconds from navigation to the first contentful paint, and to the end of the load
+    /// event.
     clock: [f64; 2],
 }
 
-/// By the browser's own clock.
+/// Reads the browser's own clock.
 const CLOCK: &str = "(async () => { \
     const paint = () => performance.getEntriesByName('first-contentful-paint')[0]; \
     while (!paint()) await new Promise(done => setTimeout(done, 10)); \
@@ -424,8 +431,8 @@ const CLOCK: &str = "(async () => { \
 
 fn opening(page: &mut Page, file: &Path) -> Opening {
     let spent = |page: &mut Page| {
-        let told = page.call("Performance.getMetrics", &json!({}));
-        let metrics = told["metrics"].as_array().unwrap();
+        let reported = page.call("Performance.getMetrics", &json!({}));
+        let metrics = reported["metrics"].as_array().unwrap();
         let task = metrics.iter().find(|metric| metric["name"] == "TaskDuration");
         task.unwrap()["value"].as_f64().unwrap()
     };
@@ -444,7 +451,7 @@ fn opening(page: &mut Page, file: &Path) -> Opening {
     }
 }
 
-/// Noise, which no PNG makes smaller.
+/// Noise, which PNG cannot compress.
 fn noise(seed: u32, width: u32, height: u32) -> Image {
     let pixel = |at: u32| {
         let level = |part: u32| {
@@ -457,13 +464,13 @@ fn noise(seed: u32, width: u32, height: u32) -> Image {
 }
 
 #[test]
-fn a_page_of_500_shaders_opens_at_once() {
+fn a_page_of_500_shaders_opens_quickly() {
     let Some(mut page) = page() else { return };
     let mut gallery = Gallery::new(5);
     let records = (0..500).map(|at| {
         let png = image::encode(&noise(at, 124, 69), Path::new("a.png")).unwrap();
-        let actual = Some(gallery.hang(png));
-        gallery.show(Exhibit {
+        let actual = Some(gallery.add_image(png));
+        gallery.add_exhibit(Exhibit {
             source: Some(SPHERE.shader.to_owned()),
             actual,
             ..Exhibit::default()
@@ -473,8 +480,8 @@ fn a_page_of_500_shaders_opens_at_once() {
             scene: None,
             verdict: Verdict::Ok,
             reason: "the shader paints".to_owned(),
-            maths: None,
-            rounding: None,
+            algorithm: None,
+            precision: None,
             toolchain: None,
             picture: None,
             mistake: None,
@@ -498,7 +505,7 @@ fn a_page_of_500_shaders_opens_at_once() {
     is_quiet(&mut page);
 }
 
-/// Any page, which `TOYPROOF_PAGE` names.
+/// Measures the page that `TOYPROOF_PAGE` names.
 #[test]
 #[ignore = "measures a page that TOYPROOF_PAGE names"]
 fn a_page_is_measured() {
@@ -507,9 +514,9 @@ fn a_page_is_measured() {
     let file = fs::canonicalize(file).unwrap();
     for _ in 0..5 {
         let Opening { opened, shown, clock } = opening(&mut page, &file);
-        let [painted, loaded] = clock;
+        let [rendered, loaded] = clock;
         eprintln!(
-            "by the clock {painted:.0} ms until contents are painted, {loaded:.0} ms until all is loaded; {opened:.2} s of the thread to open, \
+            "by the clock {rendered:.0} ms until contents are painted, {loaded:.0} ms until all is loaded; {opened:.2} s of the thread to open, \
              {shown:.2} s to show a picture"
         );
     }

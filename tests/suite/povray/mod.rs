@@ -1,4 +1,4 @@
-//! The reference tracer beside POV-Ray 3.7, which shares no code with it.
+//! Compares the reference tracer with POV-Ray 3.7, which shares no code with it.
 
 mod words;
 
@@ -8,26 +8,26 @@ use std::process::{Command, Stdio};
 
 use toyproof::diagnostic::{File, Files};
 use toyproof::image::{self, Image};
-use toyproof::scene::{self, Moment, Sampler, Scene, ToneMap};
+use toyproof::scene::{self, FrameTime, Sampler, Scene, ToneMap};
 use toyproof::tracer::Tracer;
 
 const SIZE: [u32; 2] = [320, 180];
 
-/// POV-Ray's pictures have 16 bits, and so are off by half of 1/65535 at most, 7.6e-6. Mirrored in a mirror that is
-/// mirrored in others, its "tolerances" of 1e-3 and less show: 5.8e-5 at most in a pixel of `quadrics`.
+/// POV-Ray's images have 16 bits, and so an error of at most half of 1/65535, 7.6e-6. In repeated mirror
+/// reflections, its "tolerances" of up to 1e-3 show: at most 5.8e-5 in a pixel of `quadrics`.
 const TOLERANCE: f32 = 1e-4;
-/// A grey level.
+/// One 8-bit level.
 const VISIBLE: f32 = 1.0 / 255.0;
-/// Pixels of a picture in which the two may see different surfaces.
-const MOST_EDGES: usize = 2;
+/// The number of pixels per image in which the two may see different surfaces.
+const MAX_EDGE_PIXELS: usize = 2;
 
-/// A scene that both paint.
+/// A scene that both render.
 struct Case {
     name: &'static str,
     scene: &'static str,
-    /// What POV-Ray has no words for, and what stands in its place.
+    /// Edits that replace features that POV-Ray lacks.
     edits: &'static [(&'static str, &'static str)],
-    moment: Moment,
+    moment: FrameTime,
 }
 
 macro_rules! case {
@@ -36,29 +36,29 @@ macro_rules! case {
             name: $name,
             scene: include_str!(concat!($folder, $name, ".toml")),
             edits: &[],
-            moment: Moment { frame: 0, time: 0.0 },
+            moment: FrameTime { frame: 0, time: 0.0 },
         }
     };
 }
 
-/// The course's scenes that POV-Ray has words for, and some of our own.
+/// The course's scenes that POV-Ray can express, and some of our own.
 static CASES: [Case; 15] = [
     case!("../../../glsl/", "02-sphere"),
     case!("../../../glsl/", "03-shading"),
     case!("../../../glsl/", "04-many-objects"),
     Case {
-        moment: Moment { frame: 10, time: 0.0 },
+        moment: FrameTime { frame: 10, time: 0.0 },
         ..case!("../../../glsl/", "05-complex-scene")
     },
     case!("../../../glsl/", "06-reflections"),
     case!("../../../glsl/", "07-diffuse"),
     case!("../../../glsl/", "10-quadrics"),
     Case {
-        moment: Moment { frame: 37, time: 1.3 },
+        moment: FrameTime { frame: 37, time: 1.3 },
         ..case!("../../../glsl/", "11-animation")
     },
     Case {
-        // What tinted glass lets through is another product there.
+        // POV-Ray computes the transmission of tinted glass differently.
         edits: &[("color = [0.95, 1.0, 0.95], ior", "color = [1, 1, 1], ior")],
         ..case!("../../../glsl/", "12-whitted")
     },
@@ -70,7 +70,7 @@ static CASES: [Case; 15] = [
     case!("", "quadrics"),
 ];
 
-/// Whether it is installed.
+/// Returns whether POV-Ray is installed.
 fn is_here() -> bool {
     let found = Command::new("povray")
         .arg("--version")
@@ -84,7 +84,7 @@ fn is_here() -> bool {
     found
 }
 
-/// The scene where it is at that moment, one sample in the middle of each pixel, as linear light.
+/// The scene at its frame time, with one sample in the center of each pixel, in linear light.
 fn scene(case: &Case) -> Scene {
     let mut text = case.scene.to_owned();
     for (from, to) in case.edits {
@@ -102,9 +102,9 @@ fn scene(case: &Case) -> Scene {
     scene
 }
 
-/// What POV-Ray paints, in linear light of 16 bits.
+/// Renders with POV-Ray, in linear light with 16 bits.
 fn painted(scene: &Scene, name: &str, folder: &Path) -> Image {
-    let (source, picture) = (
+    let (source, image_file) = (
         folder.join(format!("{name}.pov")),
         folder.join(format!("{name}.png")),
     );
@@ -113,18 +113,18 @@ fn painted(scene: &Scene, name: &str, folder: &Path) -> Image {
     let output = Command::new("povray")
         .args([format!("+W{width}"), format!("+H{height}")])
         .arg(format!("+I{}", source.display()))
-        .arg(format!("+O{}", picture.display()))
+        .arg(format!("+O{}", image_file.display()))
         .args(["-A", "-D", "+FN16", "File_Gamma=1", "Dither=off", "+WT1"])
         .output()
         .unwrap();
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{name}: {told}");
-    image::read(&picture).unwrap()
+    let reported = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{name}: {reported}");
+    image::read(&image_file).unwrap()
 }
 
-/// What a comparison found.
+/// The differences of two images.
 #[derive(Debug, Default)]
-struct Apart {
+struct Differences {
     /// Pixels that differ by more than 1/255.
     visible: usize,
     /// Pixels that differ by more than the tolerance and lie at an edge.
@@ -133,7 +133,7 @@ struct Apart {
     most: f32,
 }
 
-impl Apart {
+impl Differences {
     fn new(scene: &Scene, theirs: &Image) -> Self {
         let tracer = Tracer::<f64>::new(scene);
         let moved = [[1e-3, 0.0], [-1e-3, 0.0], [0.0, 1e-3], [0.0, -1e-3]].map(|[x, y]| {
@@ -146,9 +146,10 @@ impl Apart {
         let mut apart = Self::default();
         for y in 0..scene.film.size[1] {
             for x in 0..scene.film.size[0] {
-                let [at, beside] = [&ours, theirs].map(|picture| picture.get(x, y));
+                let [at, beside] = [&ours, theirs].map(|image| image.get(x, y));
                 let difference = difference(at, beside);
-                // The eye a thousandth to the side, as far as POV-Ray's own tolerances reach, sees another surface there.
+                // Moving the eye by a thousandth, the magnitude of POV-Ray's own tolerances, shows a
+                // different surface there.
                 let is_edge = || {
                     moved.iter().any(|tracer| {
                         let [r, g, b] = tracer.pixel(x, y).map(|c| c as f32);
@@ -167,7 +168,7 @@ impl Apart {
     }
 }
 
-/// Of colours clamped to [0, 1], by the component that differs most.
+/// The largest difference of a component, of colors clamped to [0, 1].
 fn difference(a: [f32; 4], b: [f32; 4]) -> f32 {
     (0..3).fold(0.0, |most, i| {
         most.max((a[i].clamp(0.0, 1.0) - b[i].clamp(0.0, 1.0)).abs())
@@ -175,7 +176,7 @@ fn difference(a: [f32; 4], b: [f32; 4]) -> f32 {
 }
 
 #[test]
-fn povray_paints_the_same() {
+fn povray_renders_the_same() {
     if !is_here() {
         return;
     }
@@ -185,10 +186,10 @@ fn povray_paints_the_same() {
     for case in &CASES {
         let scene = scene(case);
         let theirs = painted(&scene, case.name, folder.path());
-        let apart = Apart::new(&scene, &theirs);
+        let apart = Differences::new(&scene, &theirs);
         eprintln!("{}: {apart:?}", case.name);
         largest = largest.max(apart.most);
-        if apart.most > TOLERANCE || apart.edges > MOST_EDGES {
+        if apart.most > TOLERANCE || apart.edges > MAX_EDGE_PIXELS {
             failed.push(format!("{}: {apart:?}", case.name));
         }
     }
@@ -200,7 +201,7 @@ fn povray_paints_the_same() {
 }
 
 #[test]
-fn another_scene_is_told_apart() {
+fn different_scenes_are_distinguished() {
     if !is_here() {
         return;
     }
@@ -209,6 +210,6 @@ fn another_scene_is_told_apart() {
     let mut moved = scene.clone();
     moved.lights[0].position[0] += 0.1;
     let theirs = painted(&moved, "moved", folder.path());
-    let apart = Apart::new(&scene, &theirs);
+    let apart = Differences::new(&scene, &theirs);
     assert!(apart.most > 10.0 * TOLERANCE, "{apart:?}");
 }

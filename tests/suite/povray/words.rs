@@ -1,4 +1,4 @@
-//! A scene in POV-Ray's own words: what its model and ours both have.
+//! Writes a scene in POV-Ray's scene language, as far as both models agree.
 
 use std::fmt::Write as _;
 
@@ -7,10 +7,10 @@ use toyproof::scene::{
     QuadricKind, Scene, Shape,
 };
 
-/// The scene at one sample in the middle of each pixel, without tone map and gamma.
+/// Writes the scene for one sample in the center of each pixel, without tone map and gamma.
 ///
 /// # Panics
-/// If POV-Ray 3.7 has no words for anything in the scene.
+/// If POV-Ray 3.7 cannot express something in the scene.
 pub(super) fn words(scene: &Scene) -> String {
     assert!(scene.film.integrator == Integrator::Whitted && scene.figures.is_empty());
     let mut text = format!(
@@ -59,7 +59,7 @@ fn camera(scene: &Scene) -> String {
 fn background(background: &Background) -> String {
     match *background {
         Background::Uniform(color) => format!("background {{ rgb {} }}\n", vector(color)),
-        // The gradient's value is y of the unit direction, brought from −1 … 1 to 0 … 1.
+        // The gradient's value is y of the unit direction, mapped from −1 … 1 to 0 … 1.
         Background::Gradient { bottom, top } => format!(
             "sky_sphere {{ pigment {{ gradient y color_map {{ [0 rgb {}] [1 rgb {}] }} scale 2 translate -y }} }}\n",
             vector(bottom),
@@ -75,7 +75,7 @@ fn light(light: &Light) -> String {
     format!("light_source {{ {position} rgb {color} {shadow}}}\n")
 }
 
-/// A surface, with a shadow as black as ours where it is of glass: an opaque double casts it, which nothing sees.
+/// A surface; for glass, an invisible opaque duplicate casts a shadow as black as ours.
 fn object(object: &Object, scene: &Scene) -> String {
     let Object {
         shape,
@@ -93,7 +93,7 @@ fn object(object: &Object, scene: &Scene) -> String {
             );
             with(&glass) + &with("pigment { rgb 0 } no_image no_reflection")
         }
-        // As if lit from the eye alone.
+        // As if lit only from the eye.
         Model::Facing => {
             assert!(scene.film.max_depth == 1);
             let eye = scene.camera.eye;
@@ -125,7 +125,7 @@ fn object(object: &Object, scene: &Scene) -> String {
 fn finish(material: &Material, ambient: Color, diffuse: f64) -> String {
     let color = vector(material.color);
     let pigment = material.checker.map_or(format!("rgb {color}"), |checker| {
-        // POV-Ray's squares are cubes: here as high as the world.
+        // POV-Ray's checker consists of cubes: here as high as the scene.
         let (side, other) = (checker.size, vector(checker.color));
         format!(
             "checker rgb {color}, rgb {other} scale {} translate -5e5*y",
@@ -149,7 +149,7 @@ fn shape_with(shape: &Shape, look: &str) -> String {
     text
 }
 
-/// In its own coordinates, then moved.
+/// A quadric in its own coordinates, then translated.
 fn quadric(Quadric { kind, origin, axes }: &Quadric) -> String {
     let open = "open";
     let own = match *kind {

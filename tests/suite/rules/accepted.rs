@@ -1,4 +1,4 @@
-//! Who keeps a rule is accepted, and paints what the rule says.
+//! Programs that follow a rule are accepted, and render its result.
 
 use toyproof::diagnostic::{Diagnostic, File, Files, short};
 use toyproof::eval::{self, Settings};
@@ -32,7 +32,7 @@ fn told(errors: &[Diagnostic], files: &Files) -> String {
     lines.join("\n    ")
 }
 
-fn paint(worker: &mut Worker, program: &Program) -> Result<(), String> {
+fn render(worker: &mut Worker, program: &Program) -> Result<(), String> {
     let lowered = lowered(program, &Options::default())?;
     let text = lowered.text().to_owned();
     let drawn = worker
@@ -44,10 +44,10 @@ fn paint(worker: &mut Worker, program: &Program) -> Result<(), String> {
 fn evaluate(program: &Program) -> Result<(), String> {
     let (checked, _) = checked(program, &Options::default())?;
     let evaluator = eval::Program::new(&checked).map_err(|refusal| refusal.to_string())?;
-    let painted = evaluator
-        .paint::<f32>(&frame(), &Settings::default())
+    let rendered = evaluator
+        .render::<f32>(&frame(), &Settings::default())
         .map_err(|failure| failure.to_string())?;
-    is_red(&painted.painting.image())
+    is_red(&rendered.framebuffer.image())
 }
 
 fn is_red(image: &Image) -> Result<(), String> {
@@ -57,7 +57,7 @@ fn is_red(image: &Image) -> Result<(), String> {
     }
 }
 
-/// All that hold and fail at it.
+/// The messages of all `holds` programs that fail the attempt.
 fn failures(mut attempt: impl FnMut(&Program) -> Result<(), String>) -> String {
     let failures: Vec<_> = programs()
         .iter()
@@ -71,14 +71,14 @@ fn failures(mut attempt: impl FnMut(&Program) -> Result<(), String>) -> String {
 }
 
 #[test]
-fn each_passes_naga_alone() {
+fn naga_accepts_each_program() {
     let failures = failures(|program| lowered(program, &Options::default()).map(drop));
     assert!(failures.is_empty(), "\n{failures}");
 }
 
-/// `--lenient` takes liberties and takes none away.
+/// `--lenient` accepts everything that the default accepts.
 #[test]
-fn each_is_accepted_leniently() {
+fn each_program_is_accepted_leniently() {
     let lenient = Options {
         lenient: true,
         ..Options::default()
@@ -88,16 +88,16 @@ fn each_is_accepted_leniently() {
 }
 
 #[test]
-fn each_holds_in_the_evaluator() {
+fn each_program_holds_in_the_evaluator() {
     let failures = failures(evaluate);
     assert!(failures.is_empty(), "\n{failures}");
 }
 
 #[test]
-fn each_holds_on_the_gpu() {
+fn each_program_holds_on_the_gpu() {
     let Some(mut worker) = crate::support::worker() else {
         return;
     };
-    let failures = failures(|program| paint(&mut worker, program));
+    let failures = failures(|program| render(&mut worker, program));
     assert!(failures.is_empty(), "\n{failures}");
 }

@@ -1,13 +1,15 @@
-//! The rules of GLSL ES 3.00, chapter by chapter, each from both sides: programs that break it, and programs that keep it and
-//! compute something that only holds if it was understood.
+//! The rules of GLSL ES 3.00, chapter by chapter, each from both sides: programs that break it, and programs
+//! that follow it and compute something that holds only if it was understood.
 //!
 //! `tests/rules/CHAPTER.glsl` holds many small programs. Each begins with a line `//# § VERDICT rule`:
 //!
-//! - `holds`: a program with a `bool holds()`, which is true in [`frame`]; or with a `mainImage` of its own, whose red is then 1.
-//! - `E0200`, or `error` where the specification leaves open which rule is broken first: a program that is refused with errors of
-//!   that code on each line that ends in `//!`, and on no other. Without such a line, the error is about the whole text.
+//! - `holds`: a program with a `bool holds()`, which is true in [`frame`]; or with its own `mainImage`, whose
+//!   red is then 1.
+//! - `E0200`, or `error` where the specification leaves open which rule is broken first: a program that is
+//!   rejected with errors of that code on each line that ends in `//!`, and on no other. Without such a line,
+//!   the error concerns the whole text.
 //!
-//! Where compilers differ, the line `//` below the header says how, and why we are on that side.
+//! Where compilers differ, the line `//` below the header states how, and the reason for our choice.
 
 mod accepted;
 mod refused;
@@ -16,32 +18,32 @@ use std::fs;
 
 use toyproof::image::{Frame, Image};
 
-/// What is to come of a program.
+/// The expected result of a program.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Expectation {
     /// Its red is 1.
     Holds,
-    /// It is refused, on these lines (from 1), with that code if one is clear.
+    /// It is rejected on these lines (from 1), with this code if one is specified.
     Refused { code: Option<String>, lines: Vec<usize> },
 }
 
 /// A program of the collection.
 #[derive(Debug, Clone)]
 pub(crate) struct Program {
-    /// Its place in the collection: file, line, section of the specification and rule.
+    /// Its position in the collection: file, line, section of the specification, and rule.
     pub(crate) name: String,
-    /// All of it, with its `mainImage`.
+    /// The complete text, with its `mainImage`.
     pub(crate) text: String,
     pub(crate) expectation: Expectation,
 }
 
-/// Called with each program's `holds`.
+/// The `mainImage` of programs with `holds`.
 const PAINTS_WHETHER_IT_HOLDS: &str = "void mainImage(out vec4 c, in vec2 p) { c = vec4(holds()); }\n";
 
-/// Beside what is broken.
+/// The `mainImage` of programs that break a rule.
 const PAINTS_NOTHING: &str = "void mainImage(out vec4 c, in vec2 p) { c = vec4(0.0); }\n";
 
-/// The whole collection.
+/// Reads the whole collection.
 pub(crate) fn programs() -> Vec<Program> {
     let mut paths: Vec<_> = fs::read_dir("tests/rules")
         .unwrap()
@@ -57,7 +59,8 @@ pub(crate) fn programs() -> Vec<Program> {
         .collect()
 }
 
-/// What every program of the collection sees: one pixel, two seconds, the fourth frame, and in channel 0 texels (x/4, y/4, 1/2, 1).
+/// The frame of every program of the collection: one pixel, two seconds, the fourth frame, and in channel 0
+/// texels (x/4, y/4, 1/2, 1).
 pub(crate) fn frame() -> Frame {
     let texels = (0..16).map(|at| [(at % 4) as f32 / 4.0, (at / 4) as f32 / 4.0, 0.5, 1.0]);
     Frame {
@@ -71,7 +74,7 @@ pub(crate) fn frame() -> Frame {
 }
 
 fn read(chapter: &str, text: &str) -> Vec<Program> {
-    // What stands before the first header is about the chapter.
+    // The text before the first header describes the chapter.
     let mut rest = text.split_inclusive('\n').zip(1..).peekable();
     while rest.next_if(|(line, _)| !line.starts_with("//# ")).is_some() {}
     let mut programs = Vec::new();
@@ -81,8 +84,8 @@ fn read(chapter: &str, text: &str) -> Vec<Program> {
             body.push_str(line);
         }
         let header = header["//# ".len()..].trim_end();
-        let (section, told) = header.split_once(' ').unwrap();
-        let (verdict, rule) = told.split_once(' ').unwrap();
+        let (section, reported) = header.split_once(' ').unwrap();
+        let (verdict, rule) = reported.split_once(' ').unwrap();
         let name = format!("tests/rules/{chapter}.glsl:{at}: §{section} {rule}");
         programs.push(program(name, verdict, body.trim_end()));
     }
@@ -133,7 +136,7 @@ fn programs_are_read_with_their_marks() {
     );
 }
 
-/// A collection that lost its files would pass every test.
+/// An empty collection would pass every test.
 #[test]
 fn the_collection_is_complete() {
     let programs = programs();

@@ -1,32 +1,32 @@
-//! Who breaks a rule is told on the line where it is broken, and nowhere else.
+//! Programs that break a rule have an error on the line where it is broken, and nowhere else.
 
 use toyproof::diagnostic::{File, Files, Severity, short};
 use toyproof::glsl::{Options, check};
 
 use super::{Expectation, Program, programs};
 
-/// What is not as expected.
+/// Describes how the errors differ from the expected ones.
 fn wrong(program: &Program, code: Option<&str>, lines: &[usize]) -> Option<String> {
     let mut files = Files::default();
     let file = files.add(File::new("s", program.text.as_str()));
-    let Err(mut told) = check(&files, file, &Options::default()) else {
+    let Err(mut reported) = check(&files, file, &Options::default()) else {
         return Some("is accepted".to_owned());
     };
-    told.retain(|diagnostic| diagnostic.severity == Severity::Error);
-    let mut found: Vec<_> = told
+    reported.retain(|diagnostic| diagnostic.severity == Severity::Error);
+    let mut found: Vec<_> = reported
         .iter()
         .filter_map(|error| error.span)
         .map(|span| files.position(span).line)
         .collect();
     found.dedup();
-    let placed = found == lines && (!lines.is_empty() || told.len() == 1);
-    let coded = code.is_none_or(|code| told.iter().all(|error| error.code == code));
-    let said: Vec<_> = told.iter().map(|error| short(error, &files)).collect();
-    (!placed || !coded).then(|| said.join("\n    "))
+    let placed = found == lines && (!lines.is_empty() || reported.len() == 1);
+    let coded = code.is_none_or(|code| reported.iter().all(|error| error.code == code));
+    let output: Vec<_> = reported.iter().map(|error| short(error, &files)).collect();
+    (!placed || !coded).then(|| output.join("\n    "))
 }
 
 #[test]
-fn each_is_refused_on_its_line() {
+fn each_error_is_on_its_line() {
     let mut failures = Vec::new();
     for program in programs() {
         if let Expectation::Refused { code, lines } = &program.expectation

@@ -1,107 +1,100 @@
-//! Loads become the values that were stored, and what was computed before is not computed again.
+//! Global value numbering: loads are replaced by stored values, and common subexpressions are computed once.
 //!
-//! Along each way through the code it is known what cells hold; where ways meet, what holds on all of them. Whatever a loop stores is
-//! unknown in it and after it, unless the same value was known before and is stored again. Words that are known decide branches, name
-//! elements, and tell how often a loop runs.
+//! The content of cells is tracked along each control flow path; where paths join, facts that hold on all of
+//! them remain. The content of cells that a loop stores is unknown in and after it, unless the stored value
+//! is the known one. Known words decide branches, select elements, and give the trip counts of loops.
 
-mod change;
-mod exit;
+mod control;
 mod log;
-mod repeat;
-mod unroll;
-mod value;
 
-use self::change::Changes;
-use self::exit::Exit;
-use self::log::Log;
-use self::repeat::Open;
-use self::unroll::Room;
-use crate::ir::alias::Groups;
-use crate::ir::function::{Block, Cell, Cells, Flow, NONE, Node, Origin, Value};
+use self::control::{OpenLoop, OpenScope, UnrollBudget};
+use self::log::{Changes, RollbackMap};
+use crate::ir::{AliasGroups, Block, Cell, Cells, Function, NONE, Node, Operation, Value, ValueDef};
 use crate::observe::Predicate;
+use crate::ops::fold;
 
-/// Groups of more cells than this are not followed cell by cell.
-const MAX_FOLLOWED: u32 = 256;
+/// Alias groups of more cells are not tracked cell by cell.
+const MAX_TRACKED_CELLS: u32 = 256;
 
-/// Rewrites a program. Values of a story may be replaced while it runs: there, what is computed twice is not one value.
-pub(crate) fn forward(flow: &mut Flow, story: bool) {
-    let groups = Groups::of(flow);
-    let body = std::mem::take(&mut flow.body);
-    let templates = std::mem::take(&mut flow.origins);
-    let scopes = std::mem::take(&mut flow.scopes);
-    let mut pass = Forward {
+/// Rewrites a function. A traced run may replace values, so that common subexpressions are not merged then.
+pub(crate) fn number_values(function: &mut Function, traced: bool) {
+    let groups = AliasGroups::of(function);
+    let body = std::mem::take(&mut function.body);
+    let templates = std::mem::take(&mut function.defs);
+    let scopes = std::mem::take(&mut function.scopes);
+    let mut pass = ValueNumbering {
         epochs: vec![0; groups.ranges().len()],
         groups,
-        alias: vec![NONE; templates.len()],
+        replacements: vec![NONE; templates.len()],
         templates,
-        changes: Changes::of(&body, scopes, flow.loops.len()),
-        constant: Vec::new(),
-        words: Log::default(),
-        flow,
-        story,
-        known: Log::default(),
-        computed: Log::default(),
-        exits: Vec::new(),
+        changes: Changes::of(&body, scopes, function.loops.len()),
+        is_constant: Vec::new(),
+        words: RollbackMap::default(),
+        function,
+        traced,
+        cell_values: RollbackMap::default(),
+        available: RollbackMap::default(),
+        open_scopes: Vec::new(),
         depths: vec![0; scopes as usize],
-        loops: Vec::new(),
-        live: true,
-        room: Room::default(),
-        kept: exit::MAX_KEPT,
+        open_loops: Vec::new(),
+        reachable: true,
+        budget: UnrollBudget::default(),
+        path_budget: control::MAX_PATH_CHANGES,
     };
-    pass.take_over();
+    pass.import_constants();
     let body = pass.block(&body);
-    let output = pass.flow.output.map(|value| pass.output(value));
-    flow.body = body;
-    flow.output = output;
+    let output = pass.function.output.map(|value| pass.output(value));
+    function.body = body;
+    function.output = output;
 }
 
-struct Forward<'a> {
-    /// What is written.
-    flow: &'a mut Flow,
-    groups: Groups,
-    /// How often each group was stored to.
+struct ValueNumbering<'a> {
+    /// The function that is written.
+    function: &'a mut Function,
+    groups: AliasGroups,
+    /// The number of stores to each group so far.
     epochs: Vec<u32>,
-    /// The values of the program that is read.
-    templates: Vec<Origin>,
-    /// What stands for each of them: of a loop that is written out, in the round that was last.
-    alias: Vec<Value>,
-    /// What the loops and scopes of that program change.
+    /// The definitions of the function that is read.
+    templates: Vec<ValueDef>,
+    /// The new value of each; in an unrolled loop, that of the latest iteration.
+    replacements: Vec<Value>,
+    /// The changes made by the loops and scopes of the function that is read.
     changes: Changes,
-    /// Which values are made of inputs of the frame and numbers alone.
-    constant: Vec<bool>,
-    /// The values that are words.
-    words: Log<u32, Value>,
-    story: bool,
-    known: Log<Cell, Value>,
-    computed: Log<(Origin, u32), Value>,
+    /// Which values depend on inputs of the frame and constants only.
+    is_constant: Vec<bool>,
+    /// The values of word constants.
+    words: RollbackMap<u32, Value>,
+    traced: bool,
+    cell_values: RollbackMap<Cell, Value>,
+    available: RollbackMap<(ValueDef, u32), Value>,
     /// The open scopes.
-    exits: Vec<Exit>,
-    /// Where among them each scope of the program that is read is.
+    open_scopes: Vec<OpenScope>,
+    /// The index among them of each scope of the function that is read.
     depths: Vec<usize>,
     /// The open loops.
-    loops: Vec<Open>,
-    /// Whether anything comes here.
-    live: bool,
-    room: Room,
-    /// How much may still be kept of ways that leave scopes.
-    kept: usize,
+    open_loops: Vec<OpenLoop>,
+    /// Whether control flow reaches this point.
+    reachable: bool,
+    budget: UnrollBudget,
+    /// How many changes may still be stored for paths that leave scopes.
+    path_budget: usize,
 }
 
-impl Forward<'_> {
+impl ValueNumbering<'_> {
     fn block(&mut self, block: &[Node]) -> Block {
-        let computed = self.computed.mark();
+        let available = self.available.mark();
         let mut out = Block::with_capacity(block.len());
         self.nodes(block, &mut out);
-        self.computed.back_to(computed);
+        self.available.roll_back(available);
         out
     }
 
     fn nodes(&mut self, block: &[Node], out: &mut Block) {
         for node in block {
-            if !self.live || self.room.is_full() {
+            if !self.reachable || self.budget.is_full() {
                 break;
             }
-            self.room.read();
+            self.budget.read();
             self.node(node, out);
         }
     }
@@ -110,7 +103,7 @@ impl Forward<'_> {
         match node {
             Node::Let(value) => out.extend(self.compute(*value).map(Node::Let)),
             Node::If { condition, yes, no } => {
-                let condition = self.alias[condition.0 as usize];
+                let condition = self.replacements[condition.0 as usize];
                 match self.known_word(condition) {
                     Some(word) => self.nodes(if word == 0 { no } else { yes }, out),
                     None => self.branch(condition, [yes, no], out),
@@ -118,20 +111,21 @@ impl Forward<'_> {
             }
             Node::Scope { scope, body } => self.scope(*scope, body, out),
             Node::Loop { id, body } => {
-                if let Some(nodes) = self.unrolled(body) {
+                if let Some(nodes) = self.unroll(body) {
                     out.extend(nodes);
                 } else {
                     self.repeat(*id, body, out);
                 }
             }
-            // Only what has nothing inside is copied: what nobody comes to costs nothing, however often it is passed by.
+            // Only nodes without blocks are cloned: unreachable blocks cost nothing, however often they are
+            // skipped.
             _ => self.single(node.clone(), out),
         }
     }
 
-    /// A node without others in it.
+    /// Rewrites a node without child blocks.
     fn single(&mut self, mut node: Node, out: &mut Block) {
-        node.for_each_value_mut(|value| *value = self.alias[value.0 as usize]);
+        node.for_each_value_mut(|value| *value = self.replacements[value.0 as usize]);
         match node {
             Node::Store { cell, value } => self.store(cell, value, out),
             Node::StoreAt {
@@ -141,26 +135,26 @@ impl Forward<'_> {
                 value,
             } => {
                 if let Some(index) = self.known_word(index) {
-                    self.store(cells.held(offset, index), value, out);
+                    self.store(cells.clamped(offset, index), value, out);
                 } else {
                     self.forget(cells);
                     out.push(node);
                 }
             }
-            Node::Leave(scope) => self.leave(scope, out),
-            Node::LeaveIf {
+            Node::Break(scope) => self.leave(scope, out),
+            Node::BreakIf {
                 scope,
                 condition,
                 when,
             } => {
                 if let Some(word) = self.known_word(condition) {
-                    self.room.decide(self.depths[scope.0 as usize]);
+                    self.budget.decide(self.depths[scope.0 as usize]);
                     if (word != 0) == when {
                         self.leave(scope, out);
                     }
                 } else {
-                    let scope = self.note_way(scope);
-                    out.push(Node::LeaveIf {
+                    let scope = self.record_exit(scope);
+                    out.push(Node::BreakIf {
                         scope,
                         condition,
                         when,
@@ -176,46 +170,46 @@ impl Forward<'_> {
         }
     }
 
-    /// Whether a quotient may be zero by zero to a compiler that propagates constants.
+    /// Whether constant propagation in a compiler may see the quotient as zero by zero.
     fn may_be_folded(&self, [dividend, divisor]: [Value; 2]) -> bool {
-        let known = |value: Value| self.constant[value.0 as usize];
+        let known = |value: Value| self.is_constant[value.0 as usize];
         let is_number =
-            matches!(self.flow.origin(divisor), Origin::Float(number) if f64::from_bits(number) != 0.0);
+            matches!(self.function.def(divisor), ValueDef::Float(number) if f64::from_bits(number) != 0.0);
         known(dividend) && known(divisor) && !is_number
     }
 
     fn store(&mut self, cell: Cell, value: Value, out: &mut Block) {
-        if self.known.get(cell) != Some(value) {
-            self.stored(cell);
-            self.know(cell, value);
+        if self.cell_values.get(cell) != Some(value) {
+            self.bump_epoch(cell);
+            self.set_cell(cell, value);
             out.push(Node::Store { cell, value });
         }
     }
 
     fn branch(&mut self, condition: Value, branches: [&[Node]; 2], out: &mut Block) {
-        let mark = self.known.mark();
-        let mut ways = Vec::new();
+        let mark = self.cell_values.mark();
+        let mut paths = Vec::new();
         let [yes, no] = branches.map(|branch| {
-            self.live = true;
+            self.reachable = true;
             let branch = self.block(branch);
-            if self.live {
-                ways.push(self.known.since(mark));
+            if self.reachable {
+                paths.push(self.cell_values.changes_since(mark));
             }
-            self.known.back_to(mark);
+            self.cell_values.roll_back(mark);
             branch
         });
-        self.meet(ways);
+        self.merge_paths(paths);
         out.push(Node::If { condition, yes, no });
     }
 
-    fn know(&mut self, cell: Cell, value: Value) {
+    fn set_cell(&mut self, cell: Cell, value: Value) {
         let group = self.groups.find(cell);
-        if group.is_none_or(|group| self.groups.ranges()[group].count <= MAX_FOLLOWED) {
-            self.known.set(cell, Some(value));
+        if group.is_none_or(|group| self.groups.ranges()[group].count <= MAX_TRACKED_CELLS) {
+            self.cell_values.set(cell, Some(value));
         }
     }
 
-    fn stored(&mut self, cell: Cell) {
+    fn bump_epoch(&mut self, cell: Cell) {
         if let Some(group) = self.groups.find(cell) {
             self.epochs[group] += 1;
         }
@@ -226,10 +220,133 @@ impl Forward<'_> {
             return;
         };
         self.epochs[group] += 1;
-        if self.groups.ranges()[group].count <= MAX_FOLLOWED {
+        if self.groups.ranges()[group].count <= MAX_TRACKED_CELLS {
             for cell in cells.first..cells.first + cells.count {
-                self.known.set(Cell(cell), None);
+                self.cell_values.set(Cell(cell), None);
             }
         }
+    }
+}
+
+// Construction of values: common subexpressions are reused, and known words are folded.
+
+impl ValueNumbering<'_> {
+    /// Imports constants and inputs.
+    fn import_constants(&mut self) {
+        for at in 0..self.templates.len() {
+            let def = self.templates[at];
+            match def {
+                ValueDef::Word(word) => self.replacements[at] = self.word(word),
+                ValueDef::Float(_) | ValueDef::Input(..) | ValueDef::FragCoord(_) => {
+                    self.replacements[at] = self.push_value(def);
+                }
+                ValueDef::Operation(..)
+                | ValueDef::Load(_)
+                | ValueDef::LoadAt { .. }
+                | ValueDef::Texel { .. } => {}
+            }
+        }
+    }
+
+    fn push_value(&mut self, def: ValueDef) -> Value {
+        let mut constant = !matches!(
+            def,
+            ValueDef::FragCoord(_) | ValueDef::Load(_) | ValueDef::LoadAt { .. } | ValueDef::Texel { .. }
+        );
+        def.for_each_operand(|operand| constant &= self.is_constant[operand.0 as usize]);
+        if !constant {
+            self.budget.compute();
+        }
+        self.is_constant.push(constant);
+        self.function.defs.push(def);
+        Value(self.function.defs.len() as u32 - 1)
+    }
+
+    /// Returns the new value of an output; a load that is never executed if no pixel reaches the end.
+    fn output(&mut self, template: Value) -> Value {
+        match self.replacements[template.0 as usize] {
+            NONE => self.push_value(self.templates[template.0 as usize]),
+            value => value,
+        }
+    }
+
+    fn word(&mut self, word: u32) -> Value {
+        if let Some(value) = self.words.get(word) {
+            return value;
+        }
+        let value = self.push_value(ValueDef::Word(word));
+        self.words.set(word, Some(value));
+        value
+    }
+
+    /// Returns the constant of a value, if it is a word constant.
+    fn known_word(&self, value: Value) -> Option<u32> {
+        match self.function.def(value) {
+            ValueDef::Word(word) => Some(word),
+            _ => None,
+        }
+    }
+
+    /// Rewrites a value; returns the new one if it must be computed here.
+    fn compute(&mut self, template: Value) -> Option<Value> {
+        let at = template.0 as usize;
+        let replacements = &self.replacements;
+        let def = self.templates[at].map_operands(|operand| replacements[operand.0 as usize]);
+        let def = match def {
+            ValueDef::LoadAt {
+                cells, offset, index, ..
+            } => {
+                let index = self.known_word(index);
+                index.map_or(def, |index| ValueDef::Load(cells.clamped(offset, index)))
+            }
+            _ => def,
+        };
+        let key = (def, self.epoch(def));
+        let found = match def {
+            ValueDef::Word(_) | ValueDef::Float(_) | ValueDef::Input(..) | ValueDef::FragCoord(_) => {
+                Some(self.replacements[at])
+            }
+            ValueDef::Load(cell) => self.cell_values.get(cell),
+            ValueDef::Operation(operation, operands) => self.fold_operation(operation, operands),
+            _ => None,
+        };
+        let found = found.or_else(|| self.available.get(key).filter(|_| !self.traced));
+        if let Some(found) = found {
+            self.replacements[at] = found;
+            return None;
+        }
+        let value = self.push_value(def);
+        self.replacements[at] = value;
+        match def {
+            ValueDef::Load(cell) => self.set_cell(cell, value),
+            _ => self.available.set(key, Some(value)),
+        }
+        Some(value)
+    }
+
+    /// Folds an operation on known words, or a selection with a known condition.
+    fn fold_operation(&mut self, operation: Operation, operands: [Value; 3]) -> Option<Value> {
+        let words = operands.map(|value| {
+            if value == NONE {
+                Some(0)
+            } else {
+                self.known_word(value)
+            }
+        });
+        match (operation, words) {
+            (Operation::Select | Operation::SelectWord, [Some(word), ..]) => {
+                Some(operands[if word == 0 { 2 } else { 1 }])
+            }
+            (_, [Some(a), Some(b), Some(c)]) => fold(operation, [a, b, c]).map(|word| self.word(word)),
+            _ => None,
+        }
+    }
+
+    fn epoch(&self, def: ValueDef) -> u32 {
+        let ValueDef::LoadAt { cells, .. } = def else {
+            return 0;
+        };
+        let group = self.groups.find(Cell(cells.first));
+        group.map_or(0, |group| self.epochs[group])
     }
 }

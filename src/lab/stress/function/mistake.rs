@@ -1,92 +1,92 @@
-//! Classic mistakes in the intersection of a ray with a sphere, as formulas: which of them does a function follow?
+//! Common mistakes in ray–sphere intersection, as formulas, to recognize the one that a function makes.
 
 use glam::DVec3;
 use serde::Serialize;
 
-use super::super::axis::Shot;
-use super::super::tally::Outcome;
+use crate::stress::axis::RaySphere;
+use crate::stress::tally::Outcome;
 
-/// A mistake.
+/// A common mistake.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Mistake {
-    /// A word for it.
+    /// Its identifier.
     pub name: &'static str,
-    /// What the function does, to stand after its name.
+    /// What the function does, as text to follow its name.
     pub says: &'static str,
-    /// Whether it is right as long as its callers keep to something.
+    /// Whether the function is right for callers that keep to its precondition.
     pub excusable: bool,
 }
 
-/// How roots are chosen.
+/// The root that is returned.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Choice {
-    /// The nearer one that lies ahead.
+    /// The nearer positive one.
     Ahead,
-    /// The farther one, if it lies ahead.
+    /// The farther one, if positive.
     Farther,
-    /// The nearer one, if it lies ahead.
+    /// The nearer one, if positive.
     NearerAlone,
-    /// The nearer one, wherever it lies.
+    /// The nearer one, positive or not.
     Anywhere,
-    /// The nearer one if it lies ahead, else the farther one, wherever that lies.
+    /// The nearer one if positive, else the farther one, positive or not.
     FartherAnywhere,
-    /// Where the ray comes nearest to the centre.
+    /// The t at which the ray is nearest to the center.
     Middle,
 }
 
-/// a t² + b t + c = 0 with a = d·d, b = 2 f·d, c = f·f − r², as somebody may write it.
+/// a t² + b t + c = 0 with a = d·d, b = 2 f·d, c = f·f − r², with variations.
 #[derive(Debug, Clone, Copy)]
 #[expect(
     clippy::struct_excessive_bools,
     reason = "each is a thing that is done or not"
 )]
 struct Model {
-    /// What b is multiplied by.
+    /// The factor of b.
     b: f64,
-    /// The 4 of b² − 4ac.
+    /// The factor 4 of b² − 4ac.
     four: f64,
-    /// The 2 of 2a.
+    /// The factor 2 of 2a.
     two: f64,
     /// Whether roots are divided by a.
-    over_a: bool,
-    /// What is subtracted from f·f for a radius.
+    divides_by_a: bool,
+    /// The term subtracted from f·f, as a function of the radius.
     square: fn(f64) -> f64,
-    /// Whether the centre is subtracted from the origin.
-    centred: bool,
-    /// What is taken for the root of the discriminant.
+    /// Whether the center is subtracted from the origin.
+    subtracts_center: bool,
+    /// The function taken for the square root of the discriminant.
     root: fn(f64) -> f64,
     /// Whether a negative discriminant is a miss.
-    tested: bool,
+    tests_discriminant: bool,
     choice: Choice,
-    /// Whether a is 1.
+    /// Whether a is replaced by 1.
     unit: bool,
-    /// Whether t counts in lengths.
-    lengths: bool,
+    /// Whether t is measured in units of length instead of directions.
+    t_in_lengths: bool,
     /// Whether the discriminant is r² − |f − (f·d) d|².
-    recentred: bool,
+    recentered: bool,
 }
 
-const RIGHT: Model = Model {
+const CORRECT: Model = Model {
     b: 1.0,
     four: 4.0,
     two: 2.0,
-    over_a: true,
+    divides_by_a: true,
     square: |r| r * r,
-    centred: true,
+    subtracts_center: true,
     root: f64::sqrt,
-    tested: true,
+    tests_discriminant: true,
     choice: Choice::Ahead,
     unit: false,
-    lengths: false,
-    recentred: false,
+    t_in_lengths: false,
+    recentered: false,
 };
 
 macro_rules! mistakes {
     ($($name:literal: $says:literal, { $($field:ident: $value:expr),* };)*) => {
-        /// All of them that show with directions of length 1; the first that fits is named.
+        /// The mistakes that show with unit directions; the first that fits is reported.
         const MISTAKES: &[(Mistake, Model)] = &[$((
             Mistake { name: $name, says: $says, excusable: false },
-            Model { $($field: $value,)* ..RIGHT },
+            Model { $($field: $value,)* ..CORRECT },
         )),*];
     };
 }
@@ -107,11 +107,11 @@ mistakes! {
     "half-b-with-4": "keeps the 4 of b² − 4ac though its b is half of the textbook's", { four: 16.0, two: 4.0 };
     "discriminant-plus": "adds 4ac where it is to be subtracted", { four: -4.0 };
     "no-square-root": "does not take the root of the discriminant", { root: |disc| disc };
-    "discriminant-not-tested": "does not ask whether the discriminant is negative", { tested: false };
-    "centre-ignored": "does not subtract the centre from the origin", { centred: false };
+    "discriminant-not-tested": "does not ask whether the discriminant is negative", { tests_discriminant: false };
+    "centre-ignored": "does not subtract the centre from the origin", { subtracts_center: false };
 }
 
-/// How a mistake that shows only with directions of another length is called.
+/// Reported for mistakes that show only with directions that are not unit vectors.
 const UNIT: Mistake = Mistake {
     name: "direction-of-length-1",
     says: "takes a = 1: it is right only for directions of length 1",
@@ -129,25 +129,26 @@ const LENGTHS: Mistake = Mistake {
 };
 
 impl Model {
-    /// None for a miss.
-    fn t(&self, shot: &Shot) -> Option<f64> {
-        let [o, d, c] = [shot.o, shot.d, shot.c].map(|v| DVec3::from_array(v.map(f64::from)));
-        let f = if self.centred { o - c } else { o };
+    /// The t that the formula returns; `None` for a miss.
+    fn t(&self, ray_sphere: &RaySphere) -> Option<f64> {
+        let [o, d, c] =
+            [ray_sphere.o, ray_sphere.d, ray_sphere.c].map(|v| DVec3::from_array(v.map(f64::from)));
+        let f = if self.subtracts_center { o - c } else { o };
         let a = if self.unit { 1.0 } else { d.dot(d) };
         let b = 2.0 * self.b * f.dot(d);
-        let k = f.dot(f) - (self.square)(f64::from(shot.r));
+        let k = f.dot(f) - (self.square)(f64::from(ray_sphere.r));
         let closest = f - d * f.dot(d);
-        let disc = if self.recentred {
-            4.0 * ((self.square)(f64::from(shot.r)) - closest.dot(closest))
+        let disc = if self.recentered {
+            4.0 * ((self.square)(f64::from(ray_sphere.r)) - closest.dot(closest))
         } else {
             b * b - self.four * a * k
         };
-        if disc < 0.0 && self.tested {
+        if disc < 0.0 && self.tests_discriminant {
             return None;
         }
         let root = (self.root)(disc);
-        let below = self.two * if self.over_a { a } else { 1.0 };
-        let scale = if self.lengths { d.length() } else { 1.0 };
+        let below = self.two * if self.divides_by_a { a } else { 1.0 };
+        let scale = if self.t_in_lengths { d.length() } else { 1.0 };
         let [near, far, middle] = [-b - root, -b + root, -b].map(|t| t / below * scale);
         let ahead = |t: f64| (t > 0.0 || t.is_nan()).then_some(t);
         match self.choice {
@@ -160,54 +161,62 @@ impl Model {
         }
     }
 
-    /// Whether a function that says these things follows it; what lies behind is a miss to some.
-    fn fits(&self, told: &[(Shot, Outcome)], behind_is_miss: bool) -> bool {
-        let same = |(shot, outcome): &&(Shot, Outcome)| match (self.t(shot), *outcome) {
-            (Some(t), Outcome::Hit(told)) => (t - told).abs() <= 1e-5 * t.abs(),
+    /// Whether a function's outcomes fit this model. `behind_is_miss`: whether the function reports hits
+    /// behind the origin as misses.
+    fn fits(&self, outcomes: &[(RaySphere, Outcome)], behind_is_miss: bool) -> bool {
+        let same = |(ray_sphere, outcome): &&(RaySphere, Outcome)| match (self.t(ray_sphere), *outcome) {
+            (Some(t), Outcome::Hit(hit)) => (t - hit).abs() <= 1e-5 * t.abs(),
             (Some(t), Outcome::Nan) => t.is_nan(),
             (Some(t), Outcome::Miss) => behind_is_miss && t <= 0.0,
             (None, outcome) => outcome == Outcome::Miss,
         };
-        let fitting = told.iter().filter(same).count();
-        // A few may hang by an epsilon of the function's own.
-        !told.is_empty() && fitting * 100 >= told.len() * 99
+        let fitting = outcomes.iter().filter(same).count();
+        // A few cases may depend on an epsilon in the function.
+        !outcomes.is_empty() && fitting * 100 >= outcomes.len() * 99
     }
 }
 
-/// The mistake that a function follows which says these things of rays with directions of length 1, and those of other directions.
-pub(super) fn recognise(
-    unit: &[(Shot, Outcome)],
-    other: &[(Shot, Outcome)],
+/// Recognizes the mistake that explains a function's outcomes for unit directions (`unit`) and for directions
+/// of other lengths (`other`).
+pub(super) fn recognize(
+    unit: &[(RaySphere, Outcome)],
+    other: &[(RaySphere, Outcome)],
     behind_is_miss: bool,
 ) -> Option<Mistake> {
-    let fits = |model: &Model, told| model.fits(told, behind_is_miss);
-    if fits(&RIGHT, unit) {
+    let fits = |model: &Model, outcomes| model.fits(outcomes, behind_is_miss);
+    if fits(&CORRECT, unit) {
         let with = [
-            (UNIT, Model { unit: true, ..RIGHT }),
             (
                 UNIT,
                 Model {
                     unit: true,
-                    recentred: true,
-                    ..RIGHT
+                    ..CORRECT
+                },
+            ),
+            (
+                UNIT,
+                Model {
+                    unit: true,
+                    recentered: true,
+                    ..CORRECT
                 },
             ),
             (
                 DIVIDES_BY_TWO,
                 Model {
-                    over_a: false,
-                    ..RIGHT
+                    divides_by_a: false,
+                    ..CORRECT
                 },
             ),
             (
                 LENGTHS,
                 Model {
-                    lengths: true,
-                    ..RIGHT
+                    t_in_lengths: true,
+                    ..CORRECT
                 },
             ),
         ];
-        let mut with = with.into_iter().filter(|_| !fits(&RIGHT, other));
+        let mut with = with.into_iter().filter(|_| !fits(&CORRECT, other));
         return with
             .find(|(_, model)| fits(model, other))
             .map(|(mistake, _)| mistake);

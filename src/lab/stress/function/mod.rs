@@ -1,46 +1,44 @@
-//! An author's own function at the extremes: what it takes, how it says no, where it fails first, and by which mistake.
+//! A user's function at extreme arguments: its signature, how it reports a miss, where it fails first, and
+//! which mistake explains the failure.
 
-mod leaf;
 mod mistake;
-mod reading;
 mod replace;
 mod role;
-mod shrink;
 mod signature;
 
 use std::sync::atomic::AtomicBool;
 
+use serde::Serialize;
+use toyproof_eval::{Program, UndefinedPolicy};
+use toyproof_glsl as glsl;
+
 pub use mistake::Mistake;
-pub use reading::Answers;
-pub(super) use reading::clear_misses;
 pub use replace::replacements;
 pub use role::Role;
-use serde::Serialize;
-pub use signature::{Map, Signature};
-use toyproof_eval::{Program, Variant};
-use toyproof_glsl as glsl;
+pub(super) use signature::clear_misses;
+pub use signature::{Answers, Map, Signature};
 use toyproof_gpu::Worker;
 
-use super::axis::{Case, Kind, Shot, Step, axes};
-use super::cells::Cells;
+use super::axis::{Case, Kind, RaySphere, Step, axes};
+use super::case_sampler::Random;
+use super::cells::{Cells, Reference, reference_of};
 use super::formula::{Reading, Subject, main};
-use super::random::Random;
 use super::tally::Outcome;
-use super::{Failure, Report, Settings, paint, study};
+use super::{Failure, Report, Settings, case_frame, check_subject, exact, render_on_cpu, study};
 
-/// What is known of a function.
+/// The results for a function.
 #[derive(Debug, Clone)]
 pub struct Findings {
-    /// Where it fails, and where not.
+    /// Where it fails.
     pub report: Report,
-    /// The mistake that explains what it says of ordinary rays.
+    /// The mistake that explains its results for typical rays.
     pub mistake: Option<Mistake>,
-    /// The simplest ray that it is wrong about in f32.
+    /// The simplest ray with a wrong result in f32.
     pub example: Option<Example>,
 }
 
 impl Findings {
-    /// Everything that was found.
+    /// All results as JSON.
     #[must_use]
     pub fn json(&self) -> String {
         self.report
@@ -48,27 +46,27 @@ impl Findings {
     }
 }
 
-/// A ray that a function is wrong about.
+/// A ray with a wrong result.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Example {
-    /// Statements that give the function's parameters their values.
+    /// Statements that assign the ray and sphere to the function's parameters.
     pub paste: Vec<String>,
-    /// What is right.
+    /// The right result.
     pub expected: String,
-    /// What came.
+    /// The actual result.
     pub came: String,
-    /// Where it was met first.
+    /// The axis and step where it was found.
     pub at: String,
 }
 
-/// The shader that calls a function of `text` for each case.
+/// A shader that calls a function of `text` for each case.
 #[must_use]
 pub fn subject(text: &str, signature: &Signature, options: glsl::Options) -> Subject {
     let (steps, result) = signature.call();
     Subject {
         name: signature.name.clone(),
         kind: Kind::Spheres,
-        // The author's own main function stays, under another name.
+        // The user's own `mainImage` is kept under another name.
         text: format!(
             "#define mainImage tpMainImage\n{text}\n#undef mainImage\n{}",
             main(&steps, &result)
@@ -79,10 +77,11 @@ pub fn subject(text: &str, signature: &Signature, options: glsl::Options) -> Sub
     }
 }
 
-/// Puts a function to the test.
+/// Tests a function on all axes.
 ///
 /// # Errors
-/// Why it could not be done.
+///
+/// [`Failure`] if the function cannot be run.
 pub fn examine(
     subject: &Subject,
     signature: &Signature,
@@ -92,38 +91,39 @@ pub fn examine(
     done: impl Fn(),
 ) -> Result<Findings, Failure> {
     let report = study(std::slice::from_ref(subject), worker, settings, interrupt, done)?;
-    let checked = paint::checked(subject)?;
-    let program = Program::prepared(&checked, Variant::Plain).map_err(toyproof_eval::Failure::from)?;
-    let asked = Asked {
+    let checked = check_subject(subject)?;
+    let program =
+        Program::prepared(&checked, UndefinedPolicy::Plain).map_err(toyproof_eval::Failure::from)?;
+    let runner = FunctionRunner {
         program: &program,
         signature,
     };
-    let single = asked.answers::<f32>()?;
-    let double = asked.answers::<f64>()?;
+    let answers_f32 = runner.answers::<f32>()?;
+    let answers_f64 = runner.answers::<f64>()?;
     let [unit, other] = [true, false].map(|unit| {
-        let shots = ordinary(unit);
-        let told = asked.ask::<f64>(&shots, &double)?;
-        Ok::<_, Failure>(shots.into_iter().zip(told).collect::<Vec<_>>())
+        let ray_spheres = typical_cases(unit);
+        let outcomes = runner.outcomes::<f64>(&ray_spheres, &answers_f64)?;
+        Ok::<_, Failure>(ray_spheres.into_iter().zip(outcomes).collect::<Vec<_>>())
     });
-    let mistake = mistake::recognise(&unit?, &other?, double.behind_is_miss());
+    let mistake = mistake::recognize(&unit?, &other?, answers_f64.behind_is_miss());
     Ok(Findings {
-        example: asked.example(settings, &single, interrupt)?,
+        example: runner.example(settings, &answers_f32, interrupt)?,
         report,
         mistake,
     })
 }
 
-/// A function that can be asked.
-struct Asked<'a> {
+/// Evaluates a function on chosen cases.
+struct FunctionRunner<'a> {
     program: &'a Program,
     signature: &'a Signature,
 }
 
-impl Asked<'_> {
-    fn colors<N: toyproof_eval::Number>(&self, shots: &[Shot]) -> Result<Vec<[f64; 3]>, Failure> {
-        let cases: Vec<_> = shots.iter().copied().map(Case::Sphere).collect();
-        let mut colors = paint::on_cpu::<N>(self.program, &paint::frame(&cases))?;
-        colors.truncate(shots.len());
+impl FunctionRunner<'_> {
+    fn colors<N: toyproof_eval::Number>(&self, ray_spheres: &[RaySphere]) -> Result<Vec<[f64; 3]>, Failure> {
+        let cases: Vec<_> = ray_spheres.iter().copied().map(Case::Sphere).collect();
+        let mut colors = render_on_cpu::<N>(self.program, &case_frame(&cases))?;
+        colors.truncate(ray_spheres.len());
         Ok(colors)
     }
 
@@ -131,16 +131,16 @@ impl Asked<'_> {
         Ok(Answers::of(self.signature, &self.colors::<N>(&clear_misses())?))
     }
 
-    fn ask<N: toyproof_eval::Number>(
+    fn outcomes<N: toyproof_eval::Number>(
         &self,
-        shots: &[Shot],
+        ray_spheres: &[RaySphere],
         answers: &Answers,
     ) -> Result<Vec<Outcome>, Failure> {
-        let colors = self.colors::<N>(shots)?;
+        let colors = self.colors::<N>(ray_spheres)?;
         Ok(colors.into_iter().map(|color| answers.outcome(color)).collect())
     }
 
-    /// The simplest failing case, of the step that is the least extreme.
+    /// The simplest failing case of the least extreme step that fails.
     fn example(
         &self,
         settings: Settings,
@@ -148,41 +148,41 @@ impl Asked<'_> {
         interrupt: &AtomicBool,
     ) -> Result<Option<Example>, Failure> {
         let axes = axes();
-        let cells = Cells::draw(&axes, Kind::Spheres, settings.seed, settings.cases, interrupt);
+        let cells = Cells::sample(&axes, Kind::Spheres, settings.seed, settings.cases, interrupt);
         let cells = cells.ok_or(Failure::Interrupted)?;
         let mut order: Vec<_> = cells.steps.iter().collect();
         order.sort_by(|a, b| extremeness(a.axis, a.step).total_cmp(&extremeness(b.axis, b.step)));
         for cell in order {
-            let shots: Vec<Shot> = cells.cases[cell.range.clone()]
+            let ray_spheres: Vec<RaySphere> = cells.cases[cell.range.clone()]
                 .iter()
                 .filter_map(|case| match case {
-                    Case::Sphere(shot) => Some(*shot),
+                    Case::Sphere(ray_sphere) => Some(*ray_sphere),
                     _ => None,
                 })
                 .collect();
-            let told = self.ask::<f32>(&shots, answers)?;
-            let truths = &cells.exact[cell.range.clone()];
-            let wrong: Vec<Shot> = shots
+            let outcomes = self.outcomes::<f32>(&ray_spheres, answers)?;
+            let references = &cells.references[cell.range.clone()];
+            let wrong: Vec<RaySphere> = ray_spheres
                 .iter()
-                .zip(told.iter().zip(truths))
-                .filter(|(_, (told, truth))| !told.is_right(truth))
-                .map(|(shot, _)| *shot)
+                .zip(outcomes.iter().zip(references))
+                .filter(|(_, (outcome, reference))| !outcome.is_right(reference))
+                .map(|(ray_sphere, _)| *ray_sphere)
                 .collect();
-            // Now and then a ray hangs by a hair of the function's own.
-            if wrong.len() * 100 <= shots.len() {
+            // Up to 1 % of the rays may be ill-conditioned for the function's own epsilon.
+            if wrong.len() * 100 <= ray_spheres.len() {
                 continue;
             }
             let near = cell.axis == "origin";
-            let failing = |shots: &[Shot]| -> Result<Vec<bool>, Failure> {
-                let told = self.ask::<f32>(shots, answers)?;
-                let pairs = shots.iter().zip(told);
+            let failing = |ray_spheres: &[RaySphere]| -> Result<Vec<bool>, Failure> {
+                let outcomes = self.outcomes::<f32>(ray_spheres, answers)?;
+                let pairs = ray_spheres.iter().zip(outcomes);
                 Ok(pairs
-                    .map(|(shot, told)| shrink::is_wrong(shot, told, near))
+                    .map(|(ray_sphere, outcome)| is_wrong(ray_sphere, outcome, near))
                     .collect())
             };
-            if let Some(shot) = shrink::smallest(&wrong, failing)? {
-                return Ok(Some(self.tell(
-                    shot,
+            if let Some(ray_sphere) = simplest_failing(&wrong, failing)? {
+                return Ok(Some(self.describe_example(
+                    ray_sphere,
                     answers,
                     near,
                     format!("{} {}", cell.axis, cell.step),
@@ -192,13 +192,21 @@ impl Asked<'_> {
         Ok(None)
     }
 
-    fn tell(&self, shot: Shot, answers: &Answers, near: bool, at: String) -> Result<Example, Failure> {
-        let colors = self.colors::<f32>(&[shot])?;
+    fn describe_example(
+        &self,
+        ray_sphere: RaySphere,
+        answers: &Answers,
+        near: bool,
+        at: String,
+    ) -> Result<Example, Failure> {
+        let colors = self.colors::<f32>(&[ray_sphere])?;
         let came = answers.outcome(colors[0]);
-        let expected = shrink::truth(&shot, near);
+        let expected = reference(&ray_sphere, near);
         let number = |t: f64| format!("t = {t:?}");
         Ok(Example {
-            paste: self.signature.assignments(shot.o, shot.d, shot.c, shot.r),
+            paste: self
+                .signature
+                .assignments(ray_sphere.o, ray_sphere.d, ray_sphere.c, ray_sphere.r),
             expected: expected.t.map_or_else(|| "no hit".to_owned(), |t| number(t.high)),
             came: match came {
                 Outcome::Miss => format!("no hit ({})", f64::from(colors[0][0] as f32)),
@@ -210,26 +218,26 @@ impl Asked<'_> {
     }
 }
 
-/// How far a step is from what scenes are made of; what has no size comes last.
+/// How far a step is from typical scenes; named configurations come last.
 fn extremeness(axis: &str, step: Step) -> f64 {
     match (axis, step) {
         ("grazing", Step::Number(delta)) => 20.0 - libm::log10(delta.abs()),
         (_, Step::Number(number)) if number > 0.0 => libm::log10(number).abs(),
         (_, Step::Number(_)) => 0.0,
-        ("origin", Step::Word("the origin inside")) => 0.5,
-        ("origin", Step::Word(_)) => 10.0,
-        (_, Step::Word(_)) => 100.0,
+        ("origin", Step::Label("the origin inside")) => 0.5,
+        ("origin", Step::Label(_)) => 10.0,
+        (_, Step::Label(_)) => 100.0,
     }
 }
 
-/// Rays and spheres of ordinary size from all sides, and from inside; none close to an edge.
-fn ordinary(unit: bool) -> Vec<Shot> {
+/// Rays and spheres of typical size, from all sides and from inside; none is nearly tangent.
+fn typical_cases(unit: bool) -> Vec<RaySphere> {
     let random = &mut Random::new(1, &["ordinary"]);
-    let mut shots = Vec::new();
-    while shots.len() < 240 {
+    let mut ray_spheres = Vec::new();
+    while ray_spheres.len() < 240 {
         let r = random.between(0.4, 2.5);
         let c = random.direction() * random.between(0.5, 4.0);
-        let inside = random.number() < 0.25;
+        let inside = random.unit() < 0.25;
         let away = if inside {
             random.between(0.1, 0.8)
         } else {
@@ -239,19 +247,133 @@ fn ordinary(unit: bool) -> Vec<Shot> {
         let aside = ahead.cross(random.direction()).normalize_or(glam::DVec3::X);
         let o = c - ahead * (away * r);
         let target = c + aside * (r * random.between(0.0, 1.6));
-        let d = (target - o).normalize() * if random.number() < 0.2 { -1.0 } else { 1.0 };
+        let d = (target - o).normalize() * if random.unit() < 0.2 { -1.0 } else { 1.0 };
         let stretch = if unit { 1.0 } else { random.log_between(0.3, 4.0) };
-        let single = |v: glam::DVec3| v.to_array().map(|x| x as f32);
-        let shot = Shot {
-            o: single(o),
-            d: single(d * stretch),
-            c: single(c),
+        let to_f32 = |v: glam::DVec3| v.to_array().map(|x| x as f32);
+        let ray_sphere = RaySphere {
+            o: to_f32(o),
+            d: to_f32(d * stretch),
+            c: to_f32(c),
             r: r as f32,
         };
-        let met = super::exact::sphere(shot.o, shot.d, shot.c, shot.r);
-        if met.is_some_and(|met| met.discriminant.abs() > 0.02) {
-            shots.push(shot);
+        let intersection = exact::sphere(ray_sphere.o, ray_sphere.d, ray_sphere.c, ray_sphere.r);
+        if intersection.is_some_and(|intersection| intersection.discriminant.abs() > 0.02) {
+            ray_spheres.push(ray_sphere);
         }
     }
-    shots
+    ray_spheres
+}
+
+// Simplification of a failing case to few digits, zeros and ones.
+
+/// The minimum |δ| of an example: cases nearer to tangency are not instructive.
+const MIN_EXAMPLE_DELTA: f64 = 1e-12;
+
+/// The reference result of a case.
+fn reference(ray_sphere: &RaySphere, near: bool) -> Reference {
+    reference_of(&Case::Sphere(*ray_sphere), near).map_or(Reference::UNDEFINED, |(reference, _)| reference)
+}
+
+/// Whether an outcome is wrong for a case.
+fn is_wrong(ray_sphere: &RaySphere, outcome: Outcome, near: bool) -> bool {
+    match reference_of(&Case::Sphere(*ray_sphere), near) {
+        Some((_, discriminant)) if discriminant.abs() < MIN_EXAMPLE_DELTA => false,
+        Some((reference, _)) => !outcome.is_right(&reference),
+        None => !outcome.is_right(&Reference::UNDEFINED),
+    }
+}
+
+/// The simplest case derived from failing ones that still fails.
+fn simplest_failing(
+    wrong: &[RaySphere],
+    failing: impl Fn(&[RaySphere]) -> Result<Vec<bool>, Failure>,
+) -> Result<Option<RaySphere>, Failure> {
+    let mut best: Option<RaySphere> = None;
+    let mut candidates: Vec<RaySphere> = wrong.iter().take(200).flat_map(simpler_cases).collect();
+    candidates.extend(wrong);
+    for _ in 0..6 {
+        let fails = failing(&candidates)?;
+        let failed = candidates.iter().zip(fails).filter(|(_, fails)| *fails);
+        let simplest = failed.map(|(ray_sphere, _)| *ray_sphere).min_by_key(text_length);
+        match (simplest, best) {
+            (Some(found), Some(before)) if text_length(&found) >= text_length(&before) => break,
+            (None, _) => break,
+            (Some(found), _) => {
+                best = Some(found);
+                candidates = simpler_cases(&found);
+            }
+        }
+    }
+    Ok(best)
+}
+
+/// The length of its numbers as text.
+fn text_length(ray_sphere: &RaySphere) -> usize {
+    let numbers = ray_sphere
+        .o
+        .iter()
+        .chain(&ray_sphere.d)
+        .chain(&ray_sphere.c)
+        .chain([&ray_sphere.r]);
+    numbers
+        .map(|x| format!("{x:e}").len() + usize::from(*x != 0.0))
+        .sum()
+}
+
+/// Rounds to `digits` decimal digits after the first.
+fn round_digits(x: f32, digits: usize) -> f32 {
+    format!("{x:.digits$e}").parse().unwrap_or(x)
+}
+
+fn simpler_cases(ray_sphere: &RaySphere) -> Vec<RaySphere> {
+    let map = |f: &dyn Fn(f32) -> f32| RaySphere {
+        o: ray_sphere.o.map(f),
+        d: ray_sphere.d.map(f),
+        c: ray_sphere.c.map(f),
+        r: f(ray_sphere.r),
+    };
+    let mut all: Vec<RaySphere> = (0..7).map(|digits| map(&|x| round_digits(x, digits))).collect();
+    // With the sphere at the origin.
+    let moved = |ray_sphere: &RaySphere| RaySphere {
+        o: [0, 1, 2].map(|i| ray_sphere.o[i] - ray_sphere.c[i]),
+        c: [0.0; 3],
+        ..*ray_sphere
+    };
+    let more: Vec<RaySphere> = all.iter().map(moved).chain([moved(ray_sphere)]).collect();
+    all.extend(more);
+    // With one component set to 0, ±1, ±2, or fewer digits.
+    let bases: Vec<RaySphere> = all.iter().copied().chain([*ray_sphere]).collect();
+    for base in bases {
+        for i in 0..10 {
+            let part = |ray_sphere: &RaySphere| {
+                [ray_sphere.o, ray_sphere.d, ray_sphere.c]
+                    .concat()
+                    .get(i)
+                    .copied()
+                    .unwrap_or(ray_sphere.r)
+            };
+            let x = part(&base);
+            for value in [
+                0.0,
+                1.0,
+                -1.0,
+                2.0,
+                -2.0,
+                x.round(),
+                round_digits(x, 0),
+                round_digits(x, 1),
+            ] {
+                let mut changed = base;
+                match i {
+                    0..3 => changed.o[i] = value,
+                    3..6 => changed.d[i - 3] = value,
+                    6..9 => changed.c[i - 6] = value,
+                    _ if value > 0.0 => changed.r = value,
+                    _ => continue,
+                }
+                all.push(changed);
+            }
+        }
+    }
+    all
 }

@@ -1,22 +1,23 @@
-//! An author's shader with another formula in the place of its own.
+//! Replaces the ray–sphere intersection of a user's shader by other formulas.
 
 use std::ops::Range;
 
-use toyproof_eval::{self as eval, Program, Variant};
+use toyproof_eval::{self as eval, Program, UndefinedPolicy};
 use toyproof_glsl::tree::{Scalar, Type};
 use toyproof_glsl::{self as glsl, Checked};
 
-use super::super::axis::Shot;
-use super::super::formula::{FORMULAS, Formula, RECENTRED};
-use super::super::tally::Outcome;
-use super::super::{Failure, paint};
-use super::{Answers, Asked, Map, Role, Signature, subject};
+use super::{Answers, FunctionRunner, Map, Role, Signature, subject};
+use crate::stress::axis::RaySphere;
+use crate::stress::formula::{FORMULAS, Formula, RECENTERED};
+use crate::stress::tally::Outcome;
+use crate::stress::{Failure, check_subject};
 
-/// The shader with each of the formulas in the place of the one that it meets spheres with, under the formula's name; none of them where that
-/// function cannot be recognised, or answers ordinary rays otherwise than the formulas do.
+/// The shader with its ray–sphere function replaced by each of the formulas, with the formula's name; empty
+/// if that function is not recognized, or its results for typical rays differ from the formulas'.
 ///
 /// # Errors
-/// If the function cannot be asked how it says no.
+///
+/// [`Failure`] if the function cannot be run.
 pub fn replacements(
     text: &str,
     checked: &Checked,
@@ -30,64 +31,67 @@ pub fn replacements(
     let Some(body) = body(text, checked, &signature.name) else {
         return Ok(Vec::new());
     };
-    let asked = paint::checked(&subject(text, signature, options.clone()))?;
+    let checked_subject = check_subject(&subject(text, signature, options.clone()))?;
     let limit = options.deadline.left();
-    let program = Program::prepared_within(&asked, Variant::Plain, limit).map_err(eval::Failure::from)?;
-    let asked = Asked {
+    let program = Program::prepared_within(&checked_subject, UndefinedPolicy::Plain, limit)
+        .map_err(eval::Failure::from)?;
+    let runner = FunctionRunner {
         program: &program,
         signature,
     };
-    let Some(new) = asked.body()? else {
+    let Some(new_body) = runner.body()? else {
         return Ok(Vec::new());
     };
     let with = |formula: &Formula| {
-        let (function, helper) = (own_name(formula.function()), own_name("powerOfTwo"));
-        let words = formula
+        let (function, helper) = (reserved_name(formula.function()), reserved_name("powerOfTwo"));
+        let formula_text = formula
             .text
             .replace(formula.function(), &function)
             .replace("powerOfTwo", &helper);
         let (before, after) = (&text[..body.start], &text[body.end..]);
-        let new = new.replace("FORMULA", &function);
-        format!("{words}\n{before}{new}{after}")
+        let new_body = new_body.replace("FORMULA", &function);
+        format!("{formula_text}\n{before}{new_body}{after}")
     };
-    if !asked.agrees(&with(&RECENTRED), signature, options)? {
+    if !runner.agrees(&with(&RECENTERED), signature, options)? {
         return Ok(Vec::new());
     }
     let made = FORMULAS.iter().map(|formula| (formula.name, with(formula)));
     Ok(made.collect())
 }
 
-/// A name that no author uses.
-fn own_name(name: &str) -> String {
+/// A name that user code does not use.
+fn reserved_name(name: &str) -> String {
     format!("toyproof_{name}")
 }
 
-impl Asked<'_> {
-    /// Whether a shader's function of the same signature says the same of ordinary rays.
+impl FunctionRunner<'_> {
+    /// Whether a shader's function of the same signature returns the same results for typical rays.
     fn agrees(&self, text: &str, signature: &Signature, options: &glsl::Options) -> Result<bool, Failure> {
-        let Ok(checked) = paint::checked(&subject(text, signature, options.clone())) else {
+        let Ok(checked) = check_subject(&subject(text, signature, options.clone())) else {
             return Ok(false);
         };
         let limit = options.deadline.left();
         let program =
-            Program::prepared_within(&checked, Variant::Plain, limit).map_err(eval::Failure::from)?;
-        let other = Asked {
+            Program::prepared_within(&checked, UndefinedPolicy::Plain, limit).map_err(eval::Failure::from)?;
+        let other = FunctionRunner {
             program: &program,
             signature,
         };
-        let shots = super::ordinary(true);
-        let ours = self.ask::<f64>(&shots, &self.answers::<f64>()?)?;
-        let theirs = other.ask::<f64>(&shots, &other.answers::<f64>()?)?;
+        let ray_spheres = super::typical_cases(true);
+        let ours = self.outcomes::<f64>(&ray_spheres, &self.answers::<f64>()?)?;
+        let theirs = other.outcomes::<f64>(&ray_spheres, &other.answers::<f64>()?)?;
         let same = |(one, other): (&Outcome, &Outcome)| match (one, other) {
             (Outcome::Hit(one), Outcome::Hit(other)) => (one - other).abs() < 1e-6 * one.abs(),
             (one, other) => one == other,
         };
         let agreeing = ours.iter().zip(&theirs).filter(|pair| same(*pair)).count();
-        // The author's may be wrong in its own way about some: rays from inside, say, or spheres behind.
-        Ok(agreeing * 2 > shots.len())
+        // The user's function may be wrong for some rays, such as those from inside, or with the sphere
+        // behind.
+        Ok(agreeing * 2 > ray_spheres.len())
     }
 
-    /// The body that calls `FORMULA` and answers as the function does; none where that is not simple.
+    /// A body that calls `FORMULA` and returns its result in the function's own convention; `None` if that is
+    /// not simple.
     fn body(&self) -> Result<Option<String>, Failure> {
         let answers: Answers = self.answers::<f32>()?;
         let path = |role: Role| {
@@ -129,7 +133,8 @@ impl Asked<'_> {
                 vec![
                     format!("float toyproof_near = {};", call("-1.0e30")),
                     format!("float toyproof_far = {};", call("toyproof_near")),
-                    // What the formulas say of a miss; a ray that only touches a sphere behind it is none to anybody.
+                    // The formulas' results for a miss; a ray tangent to a sphere behind it, which has the
+                    // same results, is also a miss.
                     "bool toyproof_miss = toyproof_near == -1.0 && toyproof_far == -1.0;".to_owned(),
                     format!(
                         "return toyproof_miss ? vec2({}, {}) : vec2(toyproof_near, toyproof_far);",
@@ -142,16 +147,16 @@ impl Asked<'_> {
             | [(flag, Role::Flag, Type::BOOL), (t, Role::T, Type::FLOAT)]
                 if flag == "return" =>
             {
-                // What is 0 was most likely never written.
+                // A value of 0 most likely means that the parameter is not written.
                 let miss = answers.miss().map_or(0.0, |[t, ..]| t);
-                let otherwise = if miss == 0.0 {
+                let else_branch = if miss == 0.0 {
                     String::new()
                 } else {
                     format!(" else {t} = {};", number(miss))
                 };
                 vec![
                     format!("float toyproof_t = {};", call(&t_min)),
-                    format!("if (toyproof_t > {t_min}) {t} = toyproof_t;{otherwise}"),
+                    format!("if (toyproof_t > {t_min}) {t} = toyproof_t;{else_branch}"),
                     format!("return toyproof_t > {t_min};"),
                 ]
             }
@@ -160,26 +165,26 @@ impl Asked<'_> {
         Ok(Some(format!("{{\n    {}\n}}", statements.join("\n    "))))
     }
 
-    /// What t must be larger than to count, of 0 and 1, 2 and 5 times the powers of ten.
+    /// The minimum accepted t of the function: 0, or 1, 2 or 5 times a power of ten.
     fn smallest_t(&self, answers: &Answers) -> Result<f64, Failure> {
         let decades = (1..=8).rev().map(|decade| 10f64.powi(-decade));
         let steps: Vec<f64> = decades
             .flat_map(|ten| [1.0, 2.0, 5.0].map(|step| step * ten))
             .collect();
-        // A sphere so small that f32 tells where it begins to a hundredth of the smallest step.
+        // The sphere is so small that f32 resolves its surface to a hundredth of the smallest step.
         let r = 2f64.powi(-10);
-        let shots: Vec<Shot> = steps
+        let ray_spheres: Vec<RaySphere> = steps
             .iter()
-            .map(|step| Shot {
+            .map(|step| RaySphere {
                 o: [0.0; 3],
                 d: [0.0, 0.0, -1.0],
                 c: [0.0, 0.0, -(r + 1.01 * step) as f32],
                 r: r as f32,
             })
             .collect();
-        let told = self.ask::<f64>(&shots, answers)?;
-        let counts = |(step, told): (&f64, &Outcome)| matches!(told, Outcome::Hit(t) if (t - 1.01 * step).abs() < 0.01 * step);
-        let first = steps.iter().zip(&told).position(counts);
+        let outcomes = self.outcomes::<f64>(&ray_spheres, answers)?;
+        let counts = |(step, outcome): (&f64, &Outcome)| matches!(outcome, Outcome::Hit(t) if (t - 1.01 * step).abs() < 0.01 * step);
+        let first = steps.iter().zip(&outcomes).position(counts);
         Ok(match first {
             Some(0) | None => 0.0,
             Some(at) => steps[at],
@@ -187,7 +192,7 @@ impl Asked<'_> {
     }
 }
 
-/// A literal of float.
+/// A float literal.
 fn number(value: f64) -> String {
     let text = format!("{:?}", value as f32);
     if text.contains(['.', 'e']) {
@@ -197,7 +202,7 @@ fn number(value: f64) -> String {
     }
 }
 
-/// Where the body of a function stands, braces included.
+/// The byte range of a function's body, including its braces.
 fn body(text: &str, checked: &Checked, name: &str) -> Option<Range<usize>> {
     let functions = checked.tree.functions.iter();
     let mut named = functions.filter(|(_, function)| function.name == name && function.body.is_some());
@@ -237,9 +242,8 @@ fn body(text: &str, checked: &Checked, name: &str) -> Option<Range<usize>> {
 
 #[cfg(test)]
 mod tests {
-    use toyproof_diagnostic::{File, Files};
-
     use super::*;
+    use toyproof_diagnostic::{File, Files};
 
     fn checked(text: &str) -> Checked {
         let mut files = Files::default();
@@ -249,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn each_formula_takes_the_place_of_the_rungs_own() {
+    fn each_formula_replaces_that_of_an_exercise() {
         let text = include_str!("../../../../glsl/03-shading.glsl");
         let made = replacements(text, &checked(text), &glsl::Options::default()).unwrap();
         assert_eq!(made.len(), FORMULAS.len());
@@ -262,7 +266,7 @@ mod tests {
         }
     }
 
-    /// The ground of a shader that meets spheres by that function.
+    /// A shader that intersects a sphere by that function.
     fn shader(function: &str, call: &str) -> String {
         format!(
             "{function}\nvoid mainImage(out vec4 c, in vec2 p) {{\n    vec3 ro = vec3(0.0, 0.0, 2.0);\n    \
@@ -271,7 +275,7 @@ mod tests {
     }
 
     #[test]
-    fn both_roots_and_a_yes_with_a_t_are_replaced_too() {
+    fn root_pairs_and_flags_are_replaced() {
         let pair = shader(
             "vec2 sphere(vec3 ro, vec3 rd, vec3 center, float radius) {
                 vec3 oc = ro - center;
@@ -310,8 +314,8 @@ mod tests {
     }
 
     #[test]
-    fn what_answers_otherwise_is_left_alone() {
-        // It keeps what is nearer already, and nothing is in a fresh variable.
+    fn functions_with_different_results_are_kept() {
+        // It keeps a nearer earlier hit, and no hit is nearer than an unset variable.
         let text = shader(
             "bool sphere(vec3 ro, vec3 rd, vec3 center, float radius, inout float t) {
                 vec3 oc = ro - center;
@@ -330,7 +334,7 @@ mod tests {
     }
 
     #[test]
-    fn a_body_ends_where_its_brace_closes_and_comments_do_not_count() {
+    fn body_ends_at_its_closing_brace() {
         let text = "float f(float x) { // }\n if (x > 0.) { return 1.; } /* } */ return 2.; }\n\
                     void mainImage(out vec4 c, in vec2 p) { c = vec4(f(p.x)); }";
         let body = body(text, &checked(text), "f").unwrap();

@@ -1,33 +1,35 @@
-//! What values are to a function that meets spheres, and what people call them.
+//! The roles of a function's values in ray–sphere intersection, and their usual names.
 
-use toyproof_glsl::tree::{Scalar, Type};
+use toyproof_glsl::tree::{Function, Scalar, Tree, Type};
 
-/// What a value is to the intersection of a ray with a sphere.
+use super::signature::Map;
+
+/// The role of a value in ray–sphere intersection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Role {
-    /// Where the ray starts.
+    /// The origin of the ray.
     Origin,
-    /// Where it goes.
+    /// The direction of the ray.
     Direction,
-    /// The sphere's centre.
+    /// The center of the sphere.
     Center,
-    /// Its radius.
+    /// The radius of the sphere.
     Radius,
-    /// Centre and radius in one vec4.
+    /// Center and radius in one vec4.
     Sphere,
-    /// The smallest t that counts.
+    /// The minimum accepted t.
     TMin,
-    /// The largest.
+    /// The maximum accepted t.
     TMax,
-    /// The t that was found.
+    /// The t of the hit.
     T,
-    /// The second one.
+    /// The t of the second hit.
     Second,
-    /// Whether one was found.
+    /// Whether there is a hit.
     Flag,
 }
 
-/// Roles and the names that people give them, in small letters without underscores.
+/// Common names of roles, in lowercase without underscores.
 const NAMES: [(Role, &str); 10] = [
     (
         Role::Origin,
@@ -62,9 +64,9 @@ const NAMES: [(Role, &str); 10] = [
 ];
 
 impl Role {
-    /// The role that `--map` calls so.
+    /// The role with this name in `--map`.
     #[must_use]
-    pub fn named(word: &str) -> Option<Self> {
+    pub fn named(name: &str) -> Option<Self> {
         let roles = [
             ("origin", Self::Origin),
             ("direction", Self::Direction),
@@ -80,11 +82,11 @@ impl Role {
         ];
         roles
             .into_iter()
-            .find(|(name, _)| *name == word)
+            .find(|(candidate, _)| *candidate == name)
             .map(|(_, role)| role)
     }
 
-    pub(super) fn word(self) -> &'static str {
+    pub(super) fn description(self) -> &'static str {
         match self {
             Self::Origin => "the ray's origin",
             Self::Direction => "its direction",
@@ -99,12 +101,12 @@ impl Role {
         }
     }
 
-    /// Whether it is the sphere's, or a part of it.
+    /// Whether it is the sphere or part of it.
     pub(super) fn is_of_sphere(self) -> bool {
         matches!(self, Self::Center | Self::Radius | Self::Sphere)
     }
 
-    /// What a shader that reads a case passes for it.
+    /// The expression that a shader that reads a case passes for it.
     pub(super) fn input(self) -> Option<&'static str> {
         Some(match self {
             Self::Origin => "a.xyz",
@@ -128,9 +130,262 @@ impl Role {
         }
     }
 
-    /// Whether people call it so: a name in small letters without underscores.
-    pub(super) fn is_called(self, name: &str) -> bool {
+    /// Whether a name, in lowercase without underscores, is common for the role.
+    pub(super) fn has_name(self, name: &str) -> bool {
         let names = NAMES.iter().find(|(role, _)| *role == self);
         names.is_some_and(|(_, names)| names.split(' ').any(|one| one == name))
     }
+}
+
+// The inputs and outputs of a function, with roles assigned by type and name.
+
+/// An input or output: a parameter, the result, or a member of one.
+#[derive(Debug, Clone)]
+pub(super) struct Leaf {
+    pub(super) path: String,
+    ty: Type,
+    /// The name of the structure that contains it; empty if none does.
+    struct_name: String,
+}
+
+/// Parts of the names of functions and structures for other shapes, which also have centers and radii.
+const OTHER_SHAPES: [&str; 11] = [
+    "box", "capsule", "cone", "cyl", "disk", "ellips", "hyper", "parab", "plane", "quadric", "torus",
+];
+
+/// The scalars and vectors that a value consists of; arrays are skipped.
+pub(super) fn leaves(tree: &Tree, path: &str, ty: Type, struct_name: &str) -> Vec<Leaf> {
+    match ty {
+        Type::Struct(id) => {
+            let of = &tree[id];
+            let members = of.members.iter();
+            members
+                .flat_map(|member| leaves(tree, &format!("{path}.{}", member.name), member.ty, &of.name))
+                .collect()
+        }
+        Type::Scalar(_) | Type::Vector(..) => vec![Leaf {
+            path: path.to_owned(),
+            ty,
+            struct_name: struct_name.to_owned(),
+        }],
+        _ => Vec::new(),
+    }
+}
+
+impl Leaf {
+    /// The last name of its path, in lowercase without underscores.
+    fn normalized_name(&self) -> String {
+        let last = self.path.rsplit('.').next().unwrap_or_default();
+        last.to_lowercase().replace('_', "")
+    }
+
+    fn matches_name(&self, role: Role) -> bool {
+        role.fits(self.ty) && role.has_name(&self.normalized_name())
+    }
+
+    /// Whether it may be a position, and not a color or a normal.
+    fn is_spatial(&self) -> bool {
+        let normalized_name = self.normalized_name();
+        let other = [
+            "col", "albedo", "emi", "kd", "ks", "spec", "norm", "mat", "amb", "diff",
+        ];
+        self.ty == Type::vector(Scalar::Float, 3)
+            && !other.iter().any(|part| normalized_name.contains(part))
+            && normalized_name != "n"
+    }
+
+    /// Whether its name is that of a normal: planes and disks have one, spheres do not.
+    fn is_normal(&self) -> bool {
+        let normalized_name = self.normalized_name();
+        self.ty == Type::vector(Scalar::Float, 3)
+            && (normalized_name == "n" || normalized_name.contains("norm"))
+    }
+
+    fn is_in_struct(&self, part: &str) -> bool {
+        self.struct_name.to_lowercase().contains(part)
+    }
+}
+
+/// Checks the user's `--map` against a function's inputs and outputs.
+pub(super) fn check_map(
+    function: &Function,
+    input_leaves: &[Leaf],
+    output_leaves: &[Leaf],
+    map: &Map,
+) -> Result<(), String> {
+    let name = &function.name;
+    for (path, role) in map {
+        let (leaves, does) = if role.input().is_some() {
+            (input_leaves, "takes")
+        } else {
+            (output_leaves, "gives")
+        };
+        if leaves.iter().any(|leaf| leaf.path == *path && role.fits(leaf.ty)) {
+            continue;
+        }
+        let all = || input_leaves.iter().chain(output_leaves);
+        if !all().any(|leaf| leaf.path == *path) {
+            let mut paths: Vec<_> = all().map(|leaf| leaf.path.as_str()).collect();
+            paths.dedup();
+            return Err(format!(
+                "{name} has no parameter `{path}`; --map may speak of {}",
+                paths.join(", ")
+            ));
+        }
+        return Err(format!(
+            "--map says that `{path}` is {}, and no value that {name} {does} under that name can be that",
+            role.description()
+        ));
+    }
+    Ok(())
+}
+
+/// Whether a function's inputs besides the ray describe a sphere, judged by names and types. Other shapes
+/// have centers and radii too, and must not be tested as spheres.
+pub(super) fn is_sphere(
+    function: &Function,
+    input_leaves: &[Leaf],
+    inputs: &[(String, Role)],
+    map: &Map,
+) -> bool {
+    if map.values().any(|role| role.is_of_sphere()) {
+        return true;
+    }
+    let role = |leaf: &Leaf| {
+        let found = inputs.iter().find(|(path, _)| *path == leaf.path);
+        found.map(|(_, role)| *role)
+    };
+    let struct_names = input_leaves
+        .iter()
+        .filter(|leaf| role(leaf).is_some_and(Role::is_of_sphere))
+        .map(|leaf| leaf.struct_name.as_str());
+    let names: Vec<String> = struct_names
+        .chain([function.name.as_str()])
+        .map(str::to_lowercase)
+        .collect();
+    let any = |parts: &[&str]| {
+        let mut pairs = names
+            .iter()
+            .flat_map(|name| parts.iter().map(move |part| name.contains(part)));
+        pairs.any(|is| is)
+    };
+    if any(&["sph", "ball"]) {
+        return true;
+    }
+    // An additional position or normal belongs to another shape; so does an additional float if no input is
+    // named as a radius.
+    let rays: Vec<&str> = input_leaves
+        .iter()
+        .filter(|leaf| role(leaf) == Some(Role::Origin))
+        .map(|leaf| leaf.struct_name.as_str())
+        .collect();
+    let of_ray = |leaf: &Leaf| !leaf.struct_name.is_empty() && rays.contains(&leaf.struct_name.as_str());
+    let mut unknown = input_leaves
+        .iter()
+        .filter(|leaf| role(leaf).is_none() && !of_ray(leaf));
+    let guessed = input_leaves
+        .iter()
+        .any(|leaf| role(leaf) == Some(Role::Radius) && !leaf.matches_name(Role::Radius));
+    let is_others =
+        |leaf: &Leaf| leaf.is_spatial() || leaf.is_normal() || (guessed && leaf.ty == Type::FLOAT);
+    !any(&OTHER_SHAPES) && !unknown.any(is_others)
+}
+
+pub(super) fn assign_input_roles(input_leaves: &[Leaf], map: &Map) -> Vec<(String, Role)> {
+    let mut found: Vec<(String, Role)> = Vec::new();
+    for leaf in input_leaves {
+        if let Some(&role) = map.get(&leaf.path) {
+            found.push((leaf.path.clone(), role));
+        }
+    }
+    let give = |found: &mut Vec<(String, Role)>, leaf: &Leaf, role: Role| {
+        let taken = found
+            .iter()
+            .any(|(path, other)| *path == leaf.path || *other == role);
+        if !taken && !map.contains_key(&leaf.path) {
+            found.push((leaf.path.clone(), role));
+        }
+    };
+    let roles = [
+        Role::Origin,
+        Role::Direction,
+        Role::Center,
+        Role::Radius,
+        Role::Sphere,
+        Role::TMin,
+        Role::TMax,
+    ];
+    for role in roles {
+        for leaf in input_leaves.iter().filter(|leaf| leaf.matches_name(role)) {
+            give(&mut found, leaf, role);
+        }
+    }
+    // A generic name like `pos` takes its role from its structure, or from its position among the inputs.
+    let has = |found: &[(String, Role)], role: Role| found.iter().any(|(_, other)| *other == role);
+    for (struct_part, role) in [
+        ("ray", Role::Origin),
+        ("ray", Role::Direction),
+        ("sph", Role::Center),
+        ("ball", Role::Center),
+    ] {
+        for leaf in input_leaves
+            .iter()
+            .filter(|leaf| leaf.is_spatial() && leaf.is_in_struct(struct_part))
+        {
+            give(&mut found, leaf, role);
+        }
+    }
+    let whole = has(&found, Role::Sphere);
+    for role in [Role::Origin, Role::Direction, Role::Center] {
+        if !(whole && role == Role::Center) {
+            for leaf in input_leaves.iter().filter(|leaf| leaf.is_spatial()) {
+                give(&mut found, leaf, role);
+            }
+        }
+    }
+    if !whole {
+        for leaf in input_leaves.iter().filter(|leaf| leaf.ty == Type::FLOAT) {
+            give(&mut found, leaf, Role::Radius);
+        }
+    }
+    found
+}
+
+pub(super) fn assign_output_roles(output_leaves: &[Leaf], map: &Map) -> Vec<(String, Role, Type)> {
+    let mut found: Vec<(String, Role, Type)> = Vec::new();
+    let mut give = |leaf: &Leaf, role: Role| {
+        let taken = found
+            .iter()
+            .any(|(path, other, _)| *path == leaf.path || *other == role);
+        if !taken {
+            found.push((leaf.path.clone(), role, leaf.ty));
+        }
+    };
+    for leaf in output_leaves {
+        if let Some(&role) = map.get(&leaf.path) {
+            give(leaf, role);
+        }
+    }
+    // A scalar or vec2 result is t, or the hit flag.
+    for leaf in output_leaves.iter().filter(|leaf| leaf.path == "return") {
+        if Role::T.fits(leaf.ty) {
+            give(leaf, Role::T);
+        } else if Role::Flag.fits(leaf.ty) {
+            give(leaf, Role::Flag);
+        }
+    }
+    for role in [Role::T, Role::Second, Role::Flag] {
+        for leaf in output_leaves.iter().filter(|leaf| leaf.matches_name(role)) {
+            give(leaf, role);
+        }
+    }
+    // A function's only float output is t.
+    let floats: Vec<_> = output_leaves
+        .iter()
+        .filter(|leaf| leaf.ty == Type::FLOAT)
+        .collect();
+    if let [leaf] = floats[..] {
+        give(leaf, Role::T);
+    }
+    found
 }

@@ -1,4 +1,4 @@
-//! What an author's function takes and gives, recognised by types and names.
+//! The inputs and outputs of a user's function, recognized by type and name.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -6,33 +6,36 @@ use std::fmt::Write;
 use toyproof_glsl::Checked;
 use toyproof_glsl::tree::{Direction, Function, Tree, Type, VariableKind};
 
-use super::leaf::{agrees, inputs, is_sphere, leaves, outputs};
-use super::role::Role;
+use super::role::{Role, assign_input_roles, assign_output_roles, check_map, is_sphere, leaves};
+use crate::stress::axis::RaySphere;
+use crate::stress::case_sampler::Random;
+use crate::stress::tally::Outcome;
 
-/// What the user says about a function, where names do not: paths (`ray.origin`, `s`, `return`) and their roles.
+/// Roles that the user assigns, by path (`ray.origin`, `s`, `return`).
 pub type Map = BTreeMap<String, Role>;
 
-/// A function, and what its values are.
+/// A function, with the roles of its inputs and outputs.
 #[derive(Debug, Clone)]
 pub struct Signature {
     /// Its name.
     pub name: String,
-    /// The names of its parameters with their types.
+    /// The names and types of its parameters.
     parameters: Vec<(String, String)>,
-    /// The type of what it returns; none for nothing.
+    /// The return type; `None` for void.
     returns: Option<String>,
-    /// What it takes, by its path.
+    /// The inputs: paths and roles.
     pub(super) inputs: Vec<(String, Role)>,
-    /// What it gives, by its path.
+    /// The outputs: paths, roles and types.
     pub(super) outputs: Vec<(String, Role, Type)>,
 }
 
 impl Signature {
-    /// Of the function of that name.
+    /// Recognizes the function of that name.
     ///
     /// # Errors
-    /// What cannot be recognised, in a sentence.
-    pub fn recognise(checked: &Checked, name: &str, map: &Map) -> Result<Self, String> {
+    ///
+    /// A sentence that states what is not recognized.
+    pub fn recognize(checked: &Checked, name: &str, map: &Map) -> Result<Self, String> {
         let tree = &checked.tree;
         let mut why = None;
         for (_, function) in tree.functions.iter() {
@@ -50,7 +53,7 @@ impl Signature {
         }))
     }
 
-    /// All functions that can be recognised with no more help than that.
+    /// All functions that are recognized with this map.
     #[must_use]
     pub fn all(checked: &Checked, map: &Map) -> Vec<Self> {
         let functions = checked.tree.functions.iter();
@@ -60,18 +63,19 @@ impl Signature {
             .collect()
     }
 
-    /// The one function that can be recognised with no more help than that.
+    /// The only function that is recognized with this map.
     ///
     /// # Errors
-    /// That there is none, or which ones there are.
+    ///
+    /// A sentence that states that there is none, or lists several.
     pub fn only(checked: &Checked, map: &Map) -> Result<Self, String> {
         let mut all = Self::all(checked, map);
-        // Why the one function that was to be had is none with that map.
+        // If only the map prevents the recognition of the single candidate, report why.
         if all.is_empty()
             && !map.is_empty()
             && let Ok(one) = Self::only(checked, &Map::new())
         {
-            return Self::recognise(checked, &one.name, map);
+            return Self::recognize(checked, &one.name, map);
         }
         match (all.pop(), all.is_empty()) {
             (Some(one), true) => Ok(one),
@@ -88,9 +92,9 @@ impl Signature {
     }
 
     fn of(tree: &Tree, function: &Function, map: &Map) -> Result<Self, String> {
-        let mut takes = Vec::new();
-        let mut only_takes = Vec::new();
-        let mut gives = Vec::new();
+        let mut input_leaves = Vec::new();
+        let mut in_only_leaves = Vec::new();
+        let mut output_leaves = Vec::new();
         let mut parameters = Vec::new();
         for (index, &id) in function.parameters.iter().enumerate() {
             let variable = &tree[id];
@@ -105,19 +109,19 @@ impl Signature {
             };
             let leaves = leaves(tree, &name, variable.ty, "");
             if matches!(direction, Direction::Out | Direction::InOut) {
-                gives.extend(leaves.clone());
+                output_leaves.extend(leaves.clone());
             } else {
-                only_takes.extend(leaves.clone());
+                in_only_leaves.extend(leaves.clone());
             }
             if direction != Direction::Out {
-                takes.extend(leaves);
+                input_leaves.extend(leaves);
             }
         }
         let returns = (function.return_type != Type::Void).then(|| tree.type_name(function.return_type));
-        gives.extend(leaves(tree, "return", function.return_type, ""));
-        agrees(function, &takes, &gives, map)?;
-        let mut inputs = inputs(&takes, map);
-        if !is_sphere(function, &only_takes, &inputs, map) {
+        output_leaves.extend(leaves(tree, "return", function.return_type, ""));
+        check_map(function, &input_leaves, &output_leaves, map)?;
+        let mut inputs = assign_input_roles(&input_leaves, map);
+        if !is_sphere(function, &in_only_leaves, &inputs, map) {
             inputs.retain(|(path, role)| !role.is_of_sphere() || map.contains_key(path));
         }
         let has = |role| inputs.iter().any(|(_, found)| *found == role);
@@ -126,11 +130,11 @@ impl Signature {
         let missing: Vec<_> = wanted
             .into_iter()
             .filter(|role| !has(*role) && (!whole || matches!(role, Role::Origin | Role::Direction)))
-            .map(Role::word)
+            .map(Role::description)
             .collect();
         let name = &function.name;
         if !missing.is_empty() {
-            let paths: Vec<_> = takes.iter().map(|leaf| leaf.path.as_str()).collect();
+            let paths: Vec<_> = input_leaves.iter().map(|leaf| leaf.path.as_str()).collect();
             return Err(format!(
                 "of what {name} takes ({}), it is not clear what is {}; say so with --map, as in --map {}=origin",
                 paths.join(", "),
@@ -138,7 +142,7 @@ impl Signature {
                 paths.first().unwrap_or(&"p")
             ));
         }
-        let outputs = outputs(&gives, map);
+        let outputs = assign_output_roles(&output_leaves, map);
         if !outputs.iter().any(|(_, role, _)| *role == Role::T) {
             return Err(format!(
                 "it is not clear how {name} gives t: as a float, as a vec2 of both, in an out parameter or in a member; say so with --map, \
@@ -154,22 +158,22 @@ impl Signature {
         })
     }
 
-    /// Whether it gives both roots.
+    /// Whether the function returns both roots.
     #[must_use]
-    pub fn gives_two(&self) -> bool {
+    pub fn has_second_root(&self) -> bool {
         let two = |(_, role, ty): &(String, Role, Type)| {
             *role == Role::Second || (*role == Role::T && *ty != Type::FLOAT)
         };
         self.outputs.iter().any(two)
     }
 
-    /// Whether it tells apart from t whether there is one.
+    /// Whether the function has a separate flag for a hit.
     #[must_use]
-    pub fn gives_flag(&self) -> bool {
+    pub fn has_flag(&self) -> bool {
         self.outputs.iter().any(|(_, role, _)| *role == Role::Flag)
     }
 
-    /// Statements that call it for a case, and the colour of t, flag and second t.
+    /// Statements that call the function for a case, and the color expression with t, flag and second t.
     pub(super) fn call(&self) -> (String, String) {
         let mut text = String::new();
         let local = |path: &str| {
@@ -206,7 +210,7 @@ impl Signature {
         (text, result)
     }
 
-    /// Statements that give a function's parameters these values.
+    /// Statements that assign these values to the function's parameters.
     #[must_use]
     pub fn assignments(&self, o: [f32; 3], d: [f32; 3], c: [f32; 3], r: f32) -> Vec<String> {
         let number = |x: f32| {
@@ -226,8 +230,101 @@ impl Signature {
             Role::Sphere => Some(format!("vec4({}, {})", c.map(number).join(", "), number(r))),
             _ => None,
         };
-        let told = self.inputs.iter();
-        told.filter_map(|(path, role)| Some(format!("{path} = {};", value(*role)?)))
+        let inputs = self.inputs.iter();
+        inputs
+            .filter_map(|(path, role)| Some(format!("{path} = {};", value(*role)?)))
             .collect()
     }
+}
+
+// How a function reports a miss, determined by evaluating it.
+
+/// Rays that clearly miss a sphere: a result common to several of them is the function's way to report a
+/// miss.
+pub(in crate::stress) fn clear_misses() -> Vec<RaySphere> {
+    let random = &mut Random::new(0, &["clear misses"]);
+    let ray_spheres = (0..16).map(|_| {
+        let c = random.direction() * random.between(0.0, 3.0);
+        let r = random.between(0.5, 1.5);
+        let ahead = random.direction();
+        let aside = ahead.cross(random.direction()).normalize_or(glam::DVec3::X);
+        let o = c - ahead * random.between(3.0, 8.0) + aside * (r * random.between(2.0, 5.0));
+        RaySphere {
+            o: o.to_array().map(|x| x as f32),
+            d: ahead.to_array().map(|x| x as f32),
+            c: c.to_array().map(|x| x as f32),
+            r: r as f32,
+        }
+    });
+    ray_spheres.collect()
+}
+
+/// How to interpret the color of a function's call: t, flag and second t.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Answers {
+    two: bool,
+    flag: bool,
+    /// Results for clear misses: colors that occur more than once.
+    misses: Vec<[f64; 3]>,
+}
+
+impl Answers {
+    /// Derives the convention of a function from its colors for [`clear_misses`].
+    pub(in crate::stress) fn of(signature: &Signature, colors: &[[f64; 3]]) -> Self {
+        let same = |color: &&[f64; 3]| colors.iter().filter(|other| same_bits(other, color)).count() > 1;
+        let mut misses: Vec<[f64; 3]> = Vec::new();
+        for color in colors.iter().filter(same) {
+            if !misses.iter().any(|other| same_bits(other, color)) {
+                misses.push(*color);
+            }
+        }
+        Self {
+            two: signature.has_second_root(),
+            flag: signature.has_flag(),
+            misses,
+        }
+    }
+
+    /// Whether a negative t is a miss: unless the function has a flag, or reports misses by a positive
+    /// number.
+    pub(in crate::stress) fn behind_is_miss(&self) -> bool {
+        !self.flag && !self.misses.iter().any(|[t, ..]| *t > 0.0)
+    }
+
+    pub(in crate::stress) fn outcome(&self, color: [f64; 3]) -> Outcome {
+        let [t, flag, second] = color;
+        if self.flag {
+            // A function that is wrong enough never reports a miss.
+            let is_miss_flag = |miss: &[f64; 3]| miss[1] == flag;
+            if self.misses.iter().any(is_miss_flag) || (self.misses.is_empty() && flag <= 0.0) {
+                return Outcome::Miss;
+            }
+        } else if !t.is_nan() && self.misses.iter().any(|miss| same_bits(miss, &color)) {
+            return Outcome::Miss;
+        }
+        match (t, self.two) {
+            (t, _) if !t.is_finite() => Outcome::Nan,
+            (t, _) if t > 0.0 => Outcome::Hit(t),
+            (_, true) if second > 0.0 => Outcome::Hit(second),
+            (_, true) => Outcome::Miss,
+            _ if self.behind_is_miss() => Outcome::Miss,
+            (t, _) => Outcome::Hit(t),
+        }
+    }
+
+    /// The result for a miss: t, flag and second t.
+    pub(in crate::stress) fn miss(&self) -> Option<[f64; 3]> {
+        self.misses.first().copied()
+    }
+
+    /// The positive number that the function returns for a miss, if any.
+    #[must_use]
+    pub fn positive_miss(&self) -> Option<f64> {
+        let first = self.misses.first().map(|miss| miss[0]);
+        first.filter(|t| *t > 0.0)
+    }
+}
+
+fn same_bits(a: &[f64; 3], b: &[f64; 3]) -> bool {
+    a.map(f64::to_bits) == b.map(f64::to_bits)
 }

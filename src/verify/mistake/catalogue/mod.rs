@@ -1,26 +1,15 @@
-//! The mistakes that the course has seen, as edits of the shader that paints a scene: a file for each topic.
+//! The catalogue of mistakes that occurred in the course, as edits of the shader that renders a scene, by
+//! topic.
 
-mod background;
-mod camera;
-mod disney;
-mod figure;
-mod film;
-mod glass;
-mod grid;
-mod intersection;
-mod light;
-mod mirror;
-mod motion;
-mod normal;
-mod path;
-mod quadric;
-mod shadow;
-mod soft_light;
+mod geometry;
+mod image;
+mod shading;
+mod transport;
 
 use super::Named;
-use super::edit::{Edit, edited};
+use crate::mistake::mutant::{Edit, edited};
 
-/// A mistake.
+/// A mistake of the catalogue.
 #[derive(Debug)]
 pub(super) struct Mistake {
     name: &'static str,
@@ -29,8 +18,8 @@ pub(super) struct Mistake {
 }
 
 impl Mistake {
-    /// The shader with this mistake; none where it cannot be made.
-    pub(super) fn made_in(&self, text: &str) -> Option<String> {
+    /// Returns the shader with this mistake; none where its edits do not apply.
+    pub(super) fn apply(&self, text: &str) -> Option<String> {
         edited(text, self.edits)
     }
 
@@ -42,38 +31,38 @@ impl Mistake {
     }
 }
 
-/// All of them; of two that paint the same picture, the first is named.
+/// Returns all mistakes; of two that render the same image, the first is named.
 pub(super) fn all() -> impl Iterator<Item = &'static Mistake> {
     let topics: [&[Mistake]; 16] = [
-        shadow::MISTAKES,
-        intersection::MISTAKES,
-        quadric::MISTAKES,
-        grid::MISTAKES,
-        film::MISTAKES,
-        camera::MISTAKES,
-        normal::MISTAKES,
-        light::MISTAKES,
-        soft_light::MISTAKES,
-        mirror::MISTAKES,
-        glass::MISTAKES,
-        path::MISTAKES,
-        disney::MISTAKES,
-        motion::MISTAKES,
-        background::MISTAKES,
-        figure::MISTAKES,
+        shading::SHADOWS,
+        geometry::INTERSECTIONS,
+        geometry::QUADRICS,
+        geometry::GRIDS,
+        image::FILM,
+        image::CAMERA,
+        geometry::NORMALS,
+        shading::LIGHTS,
+        shading::SOFT_LIGHTS,
+        transport::MIRRORS,
+        transport::GLASS,
+        transport::PATHS,
+        shading::DISNEY,
+        geometry::MOTIONS,
+        image::BACKGROUND,
+        image::FIGURES,
     ];
     topics.into_iter().flatten()
 }
 
-/// `name: says, [edits];`, where several edits that have nothing to do with each other make one mistake in shaders of different
-/// words: `name: says, [edits], [other edits];`
+/// `name: says, [edits];`. A mistake that needs different edits in differently written shaders has several
+/// alternatives: `name: says, [edits], [other edits];`
 macro_rules! mistakes {
     ($($name:literal: $says:literal, $([$($edit:expr),* $(,)?]),+;)*) => {
-        pub(super) static MISTAKES: &[super::Mistake] = &[$($(super::Mistake {
+        &[$($($crate::mistake::catalogue::Mistake {
             name: $name,
             says: $says,
             edits: &[$($edit),*],
-        }),+),*];
+        }),+),*]
     };
 }
 
@@ -84,7 +73,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_mistake_is_explained() {
+    fn every_mistake_is_documented() {
         let pages = include_str!("../../../../docs/mistakes.md");
         for mistake in all() {
             let row = format!("| `{}` | {} |", mistake.name, mistake.says);

@@ -1,65 +1,61 @@
-//! Mistakes that are made in the scene: something stands elsewhere, is missing, or moves otherwise.
+//! Mistakes in the scene: an object is misplaced, missing, or moves differently.
 
-mod camera;
-mod figure;
-mod film;
-mod hierarchy;
-mod light;
+mod image;
 mod motion;
-mod object;
+mod objects;
 
 use std::borrow::Cow;
 
-use toyproof_scene::{Moment, Point, Scene};
+use toyproof_scene::{FrameTime, Point, Scene};
 
 use super::Named;
 
-/// A scene at a moment, with something changed.
+/// A scene at a time, with one change.
 pub(super) struct Change {
     pub(super) named: Named,
     pub(super) scene: Scene,
-    pub(super) moment: Moment,
+    pub(super) frame_time: FrameTime,
 }
 
-/// Gathers changes of one scene.
+/// Collects the changes of one scene.
 pub(super) struct Changes<'a> {
     scene: &'a Scene,
-    moment: Moment,
+    frame_time: FrameTime,
     all: Vec<Change>,
 }
 
-/// What a picture shows that has lost so much that many mistakes may have led to it; one of these is named, whatever else
-/// explains the picture as well.
-pub(super) fn general(scene: &Scene, moment: Moment) -> Vec<Change> {
-    let mut changes = Changes::new(scene, moment);
-    object::none(&mut changes);
-    light::none(&mut changes);
+/// Returns the changes that lose most of the image, so that many mistakes may be the cause; one of these is
+/// named even if others explain the image as well.
+pub(super) fn general(scene: &Scene, frame_time: FrameTime) -> Vec<Change> {
+    let mut changes = Changes::new(scene, frame_time);
+    objects::no_objects(&mut changes);
+    objects::no_lights(&mut changes);
     changes.all
 }
 
-/// All others; of two that paint the same picture, the first is named.
-pub(super) fn all(scene: &Scene, moment: Moment) -> Vec<Change> {
-    let mut changes = Changes::new(scene, moment);
-    film::changes(&mut changes);
-    camera::changes(&mut changes);
-    light::changes(&mut changes);
-    motion::changes(&mut changes);
-    object::changes(&mut changes);
-    hierarchy::changes(&mut changes);
-    figure::changes(&mut changes);
+/// Returns all other changes; of two that render the same image, the first is named.
+pub(super) fn all(scene: &Scene, frame_time: FrameTime) -> Vec<Change> {
+    let mut changes = Changes::new(scene, frame_time);
+    image::film(&mut changes);
+    image::camera(&mut changes);
+    objects::lights(&mut changes);
+    motion::motions(&mut changes);
+    objects::objects(&mut changes);
+    motion::hierarchy(&mut changes);
+    image::figures(&mut changes);
     changes.all
 }
 
 impl<'a> Changes<'a> {
-    fn new(scene: &'a Scene, moment: Moment) -> Self {
+    fn new(scene: &'a Scene, frame_time: FrameTime) -> Self {
         Self {
             scene,
-            moment,
+            frame_time,
             all: Vec::new(),
         }
     }
 
-    /// The scene after `edit`, if that changes anything.
+    /// Adds the scene after `edit`, if that changes anything.
     fn add(&mut self, name: &'static str, says: impl Into<Cow<'static, str>>, edit: impl FnOnce(&mut Scene)) {
         let mut scene = self.scene.clone();
         edit(&mut scene);
@@ -71,30 +67,30 @@ impl<'a> Changes<'a> {
                     says: says.into(),
                 },
                 scene,
-                moment: self.moment,
+                frame_time: self.frame_time,
             });
         }
     }
 
-    /// The scene at another moment.
-    fn add_moment(&mut self, name: &'static str, says: &'static str, moment: Moment) {
+    /// Adds the scene at another time.
+    fn add_at_time(&mut self, name: &'static str, says: &'static str, frame_time: FrameTime) {
         self.all.push(Change {
             named: Named {
                 name,
                 says: says.into(),
             },
             scene: self.scene.clone(),
-            moment,
+            frame_time,
         });
     }
 }
 
-/// A place, as people write it.
+/// Formats a point.
 fn place([x, y, z]: Point) -> String {
     format!("({x}, {y}, {z})")
 }
 
-/// “first”, “second”, …
+/// Formats an index as an ordinal number: “first”, “second”, …
 fn ordinal(index: usize) -> String {
     match index {
         0 => "first".to_owned(),
@@ -128,8 +124,8 @@ mod tests {
         scene::parse(&files, file).unwrap()
     }
 
-    /// In how many pixels of a small picture the exported shader is not what the tracer makes of a scene.
-    fn differing(scene: &Scene, moment: Moment) -> usize {
+    /// The number of pixels of a small image in which the exported shader differs from the tracer.
+    fn differing(scene: &Scene, frame_time: FrameTime) -> usize {
         let size = [24, 14];
         let text = export::shader(scene).unwrap_or_else(|why| panic!("{why}"));
         let mut files = Files::default();
@@ -137,26 +133,26 @@ mod tests {
         let checked = glsl::check(&files, file, &glsl::Options::default()).unwrap();
         let frame = Frame {
             size,
-            frame: moment.frame,
-            time: moment.time as f32,
+            frame: frame_time.frame,
+            time: frame_time.time as f32,
             ..Frame::default()
         };
         let program = Program::new(&checked).unwrap();
-        let painted = program
-            .paint(&frame, &Settings::<f64>::default())
+        let rendered = program
+            .render(&frame, &Settings::<f64>::default())
             .unwrap()
-            .painting
+            .framebuffer
             .image();
         let mut scene = scene.clone();
         scene.film.size = size;
-        let traced = Tracer::<f64>::at(&scene, moment).picture(|| ());
-        let pairs = painted.pixels().iter().zip(traced.pixels());
+        let traced = Tracer::<f64>::at(&scene, frame_time).picture(|| ());
+        let pairs = rendered.pixels().iter().zip(traced.pixels());
         let differs = |(a, b): &(&[f32; 4], &[f32; 4])| (0..3).any(|i| (a[i] - b[i]).abs() > 0.01);
         pairs.filter(differs).count()
     }
 
     #[test]
-    fn every_changed_scene_is_whole_and_its_shader_shows_it() {
+    fn every_changed_scene_is_consistent_with_its_exported_shader() {
         let grids = "[[light]]\nposition = [5.0, 5.0, 0.0]\ncolor = [1, 1, 1]\n\
                      [[sphere]]\ncenter = [0.0, 0.0, -9.0]\nradius = 0.5\nmaterial = { model = \"mirror\", color = [1, 1, 1] }\n\
                      [[scatter]]\ncorner = [-2.0, -1.0, -8.0]\ncells = [2, 2, 2]\nspacing = 1.0\nradius = [0.2, 0.4]\nseed = 7\n\
@@ -180,12 +176,19 @@ mod tests {
             "14-accelerator",
             "15-parallel-rays",
         ];
-        let moment = Moment { frame: 10, time: 1.3 };
+        let frame_time = FrameTime { frame: 10, time: 1.3 };
         for (name, text) in exercises.into_iter().chain([("two scatters", grids)]) {
             let scene = scene_of(text);
-            let own = differing(&scene, moment);
-            for change in general(&scene, moment).into_iter().chain(all(&scene, moment)) {
-                let Change { named, scene, moment } = change;
+            let own = differing(&scene, frame_time);
+            for change in general(&scene, frame_time)
+                .into_iter()
+                .chain(all(&scene, frame_time))
+            {
+                let Change {
+                    named,
+                    scene,
+                    frame_time,
+                } = change;
                 for scattered in &scene.scatters {
                     let objects = &scene.objects[scattered.objects.clone()];
                     assert!(
@@ -194,8 +197,8 @@ mod tests {
                         named.name
                     );
                 }
-                let differing = differing(&scene, moment);
-                // An edge may fall on a pixel's middle.
+                let differing = differing(&scene, frame_time);
+                // An edge may pass through a pixel's center.
                 assert!(differing <= own + 3, "{name}: {}: {differing} pixels", named.name);
             }
         }

@@ -1,19 +1,24 @@
-//! Another motion, or another moment.
+//! Changes of motions, of the moment, and of a hierarchy of spheres.
 
-use toyproof_scene::{Moment, Motion, Period, Requirements, Scene};
+use glam::DVec3;
+use toyproof_scene::{FrameTime, Motion, Object, Period, Requirements, Scene, Shape};
 
 use super::{Changes, ordinal};
 
-pub(super) fn changes(changes: &mut Changes) {
+pub(super) fn motions(changes: &mut Changes) {
     if !Requirements::of(changes.scene).motion {
         return;
     }
-    let moment = changes.moment;
-    let frame = |frame| Moment { frame, ..moment };
-    changes.add_moment("next-frame", "shows the next frame", frame(moment.frame + 1));
-    changes.add_moment("frame-before", "shows the frame before", frame(moment.frame - 1));
+    let frame_time = changes.frame_time;
+    let frame = |frame| FrameTime { frame, ..frame_time };
+    changes.add_at_time("next-frame", "shows the next frame", frame(frame_time.frame + 1));
+    changes.add_at_time(
+        "frame-before",
+        "shows the frame before",
+        frame(frame_time.frame - 1),
+    );
     let start = "shows the start, as if nothing moved";
-    changes.add_moment("nothing-moves", start, Moment::default());
+    changes.add_at_time("nothing-moves", start, FrameTime::default());
     let motions = changes.scene.motions.len();
     for index in 0..motions {
         let which = format!("the {} motion", ordinal(index));
@@ -77,7 +82,7 @@ fn scaled(period: Period, factor: f64) -> Period {
     }
 }
 
-/// What the motion moved goes with the one that this is within, if any.
+/// Stops a motion; what it moved follows the motion that contains it, if any.
 fn stop(scene: &mut Scene, motion: usize) {
     let within = scene.motions[motion].within;
     let lights = scene.lights.iter_mut().map(|light| &mut light.motion);
@@ -93,4 +98,132 @@ fn stop(scene: &mut Scene, motion: usize) {
             scattered.scatter.motion = within;
         }
     }
+}
+
+/// The smallest number of spheres on others of a hierarchy.
+const MIN_CHILDREN: usize = 4;
+
+/// A sphere of a hierarchy: spheres that touch a larger one, as in the course's complex scene.
+#[derive(Clone, Copy)]
+struct Node {
+    center: DVec3,
+    radius: f64,
+    color: DVec3,
+    /// The sphere that it touches; an earlier one.
+    parent: Option<usize>,
+    /// The number of its ancestors.
+    level: usize,
+    /// Its index among its parent's children.
+    number: usize,
+}
+
+pub(super) fn hierarchy(changes: &mut Changes) {
+    let Some(nodes) = nodes(&changes.scene.objects) else {
+        return;
+    };
+    let mut add = |name, says: &'static str, edit: &dyn Fn(&mut Scene)| changes.add(name, says, edit);
+    add(
+        "children-as-large-as-their-parents",
+        "has spheres as large as those that they sit on",
+        &|scene| rebuild(scene, &nodes, |parent, _| (parent, parent + parent)),
+    );
+    add(
+        "children-half-sunk",
+        "puts the centres of spheres on the surface of those that they sit on: one radius away, not the sum of both",
+        &|scene| rebuild(scene, &nodes, |parent, own| (own, parent)),
+    );
+    add(
+        "colours-not-mixed",
+        "gives spheres a colour of their own, not half of it that of the sphere which they sit on",
+        &|scene| {
+            for (object, node) in scene.objects.iter_mut().zip(&nodes) {
+                if let Some(parent) = node.parent {
+                    object.material.color = (2.0 * node.color - nodes[parent].color).to_array();
+                }
+            }
+        },
+    );
+    let deepest = nodes.iter().map(|node| node.level).max().unwrap_or(0);
+    add(
+        "smallest-missing",
+        "leaves out the smallest spheres, or lays them upon those that they should sit on",
+        &|scene| keep(scene, &nodes, |node| node.level < deepest),
+    );
+    let points_back = |node: &Node| {
+        node.parent
+            .is_some_and(|parent| (node.center - nodes[parent].center).min_element() < -1e-9)
+    };
+    add(
+        "one-side-only",
+        "puts spheres on one side of each axis only",
+        &|scene| {
+            keep(scene, &nodes, |node| !points_back(node));
+        },
+    );
+    let most = nodes.iter().map(|node| node.number + 1).max().unwrap_or(0);
+    for level in 1..=deepest {
+        for number in 0..most {
+            let says = "leaves out one of the spheres that sit on others: a loop begins or ends one off";
+            add("one-child-short", says, &|scene| {
+                keep(scene, &nodes, |node| node.level != level || node.number != number);
+            });
+        }
+    }
+}
+
+/// Recognizes the hierarchy by contact, if there is one.
+fn nodes(objects: &[Object]) -> Option<Vec<Node>> {
+    let mut nodes: Vec<Node> = Vec::new();
+    for object in objects {
+        let Shape::Sphere { center, radius } = object.shape else {
+            return None;
+        };
+        let center = DVec3::from_array(center);
+        let touches = |node: &Node| {
+            let gap = center.distance(node.center) - (radius + node.radius);
+            radius < node.radius && gap.abs() < 1e-9 * node.radius
+        };
+        let parent = nodes.iter().position(touches);
+        nodes.push(Node {
+            center,
+            radius,
+            color: DVec3::from_array(object.material.color),
+            parent,
+            level: parent.map_or(0, |parent| nodes[parent].level + 1),
+            number: nodes.iter().filter(|node| node.parent == parent).count(),
+        });
+    }
+    (nodes.iter().filter(|node| node.parent.is_some()).count() >= MIN_CHILDREN).then_some(nodes)
+}
+
+/// Rebuilds each sphere with another radius and at another distance from its parent, by a `rule` for the
+/// radii of both.
+fn rebuild(scene: &mut Scene, nodes: &[Node], rule: impl Fn(f64, f64) -> (f64, f64)) {
+    let mut built: Vec<(DVec3, f64)> = Vec::new();
+    for node in nodes {
+        built.push(match node.parent {
+            None => (node.center, node.radius),
+            Some(parent) => {
+                let direction = (node.center - nodes[parent].center).normalize();
+                let (center, around) = built[parent];
+                let (radius, distance) = rule(around, around * node.radius / nodes[parent].radius);
+                (center + distance * direction, radius)
+            }
+        });
+    }
+    for (object, (center, radius)) in scene.objects.iter_mut().zip(built) {
+        object.shape = Shape::Sphere {
+            center: center.to_array(),
+            radius,
+        };
+    }
+}
+
+/// Keeps the spheres that satisfy `stays`, without those whose ancestors are removed.
+fn keep(scene: &mut Scene, nodes: &[Node], stays: impl Fn(&Node) -> bool) {
+    let mut kept: Vec<bool> = Vec::new();
+    for node in nodes {
+        kept.push(stays(node) && node.parent.is_none_or(|parent| kept[parent]));
+    }
+    scene.retain_objects(|at| kept[at]);
 }

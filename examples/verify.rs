@@ -1,0 +1,47 @@
+//! Compares a shader with its scene, without a GPU:
+//! `cargo run --example verify -- glsl/02-sphere.glsl glsl/02-sphere.toml`
+
+#![expect(clippy::print_stdout, reason = "an example prints its result")]
+
+use std::error::Error;
+use std::time::Duration;
+
+use toyproof::diagnostic::{Deadline, File, Files, short};
+use toyproof::glsl::{Options, check};
+use toyproof::image::Frame;
+use toyproof::lint::lint;
+use toyproof::scene;
+use toyproof::translate::FloatMode;
+use toyproof::verify::{Case, Expected, verify};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let (Some(shader), Some(scene)) = (arguments.next(), arguments.next()) else {
+        return Err("usage: verify SHADER.glsl SCENE.toml".into());
+    };
+    let mut files = Files::default();
+    let shader = files.add(File::new(&shader, std::fs::read_to_string(&shader)?));
+    let scene = files.add(File::new(&scene, std::fs::read_to_string(&scene)?));
+    let checked = check(&files, shader, &Options::default()).map_err(|errors| short(&errors[0], &files))?;
+    let lints = lint(&files, &checked, &Deadline::default());
+    let scene = scene::parse(&files, scene).map_err(|errors| short(&errors[0], &files))?;
+
+    let frame = Frame {
+        size: scene.film.size,
+        ..Frame::default()
+    };
+    let case = Case {
+        checked: &checked,
+        lints: &lints,
+        expected: Some(&Expected::new(scene, &frame)),
+        suspects: None,
+        frame: &frame,
+        float: FloatMode::Strict,
+        timeout: Duration::from_secs(10),
+        pool: None,
+    };
+    // The first argument would be a `gpu::Worker`; without one the toolchain check is left out.
+    let findings = verify(None, &case)?;
+    println!("{}: {}", findings.verdict, findings.reason);
+    Ok(())
+}

@@ -1,0 +1,453 @@
+//! Checks one shader, from its text to its record and its images.
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::SystemTime;
+
+use rayon::ThreadPool;
+use sha2::{Digest, Sha256};
+use toyproof_diagnostic::{self as diagnostic, Deadline, Diagnostic, Files, Severity, path_name};
+use toyproof_eval as eval;
+use toyproof_glsl::{self as glsl, Code};
+use toyproof_gpu::{Failure, Worker};
+use toyproof_image as image;
+use toyproof_image::{Frame, output};
+use toyproof_scene::Scene;
+use toyproof_verify::compare::Verdict;
+use toyproof_verify::contain::{Part, contain};
+use toyproof_verify::{self as verify, Case, Findings, verify};
+
+use super::Args;
+use super::images::IMAGES;
+use super::loop_truncated;
+use super::reference::{Reference, References, SceneCache};
+use crate::cli::files::{Input, ReadError};
+use crate::cli::names::{Names, with_suffix};
+use crate::cli::run::failure_position;
+use crate::cli::shader::{Shader, Unusable, denied, is_invalid};
+use crate::cli::{Terminal, files, pool};
+use crate::report::{Mistake, Record};
+
+/// A shader to check.
+pub(super) struct Submission {
+    pub(super) input: Result<Input, ReadError>,
+    pub(super) name: String,
+    /// The path of its images without their suffixes; none without `--out`.
+    pub(super) output_stem: Option<PathBuf>,
+    /// A hash of everything that its record depends on; none if its files cannot be read.
+    pub(super) key: Option<String>,
+}
+
+impl Submission {
+    pub(super) fn new(
+        input: Result<Input, ReadError>,
+        args: &Args,
+        references: &References,
+        names: &mut Names,
+    ) -> Self {
+        let found = input.as_ref().ok();
+        let output_stem = match (&args.out, found) {
+            (Some(out), Some(found)) => Some(out.join(names.assign(found))),
+            _ => None,
+        };
+        Self {
+            name: found.map_or_else(String::new, Input::name),
+            key: found
+                .filter(|_| args.out.is_some())
+                .and_then(|found| key(found, args, references)),
+            output_stem,
+            input,
+        }
+    }
+}
+
+/// Identifies this build of the program: the size of its file, in bytes, and the time of its last change.
+fn build() -> Option<(u64, SystemTime)> {
+    let file = std::env::current_exe().and_then(std::fs::metadata).ok()?;
+    Some((file.len(), file.modified().ok()?))
+}
+
+/// Hashes everything that a record depends on: the build of toyproof, the shader, its scene, the flags, and
+/// the contents of the files that the flags name.
+fn key(found: &Input, args: &Args, references: &References) -> Option<String> {
+    let mut hash = Sha256::new();
+    let mut add = |part: &[u8]| {
+        hash.update((part.len() as u64).to_le_bytes());
+        hash.update(part);
+    };
+    let settings = (&args.frame, &args.language, &args.driver);
+    add(format!("{:?}", build()?).as_bytes());
+    add(format!("{settings:?} {:?} {}", args.scene, found.name()).as_bytes());
+    add(files::read(found).ok()?.text().as_bytes());
+    if let Some((_, scene)) = references.text(found) {
+        add(scene.ok()?.text().as_bytes());
+    }
+    for path in args.frame.files() {
+        add(&std::fs::read(path).ok()?);
+    }
+    let hash: [u8; 32] = hash.finalize().into();
+    let half = hash.first_chunk().copied().map(u128::from_be_bytes);
+    half.map(|half| format!("{half:032x}"))
+}
+
+/// The worker process and the thread pool that a thread owns.
+pub(super) struct WorkerContext {
+    /// None where the evaluator renders.
+    worker: Option<Worker>,
+    pool: Option<ThreadPool>,
+}
+
+impl WorkerContext {
+    /// Creates the context for one of `threads` threads.
+    pub(super) fn new(args: &Args, threads: usize) -> Self {
+        Self {
+            worker: new_worker(args),
+            pool: pool::thread_pool(threads),
+        }
+    }
+}
+
+/// Creates a worker; the arguments have been validated before.
+fn new_worker(args: &Args) -> Option<Worker> {
+    args.driver.worker().ok().flatten()
+}
+
+/// A message that waits for its shader's turn.
+pub(super) enum Message {
+    Diagnostics(Vec<Diagnostic>, Files),
+    Warning(String),
+    Error(String),
+    Detail(String),
+}
+
+impl Message {
+    pub(super) fn print(&self, terminal: &Terminal) {
+        match self {
+            Self::Diagnostics(diagnostics, files) => terminal.diagnostics(diagnostics, files),
+            Self::Warning(message) => terminal.warn(message),
+            Self::Error(message) => terminal.error(message),
+            Self::Detail(message) => terminal.detail(message),
+        }
+    }
+}
+
+/// The result of checking a shader: its record, and the messages to print.
+pub(super) struct Outcome {
+    pub(super) record: Record,
+    pub(super) messages: Vec<Message>,
+    pub(super) device: Option<String>,
+    /// Whether something failed that the verdict does not show.
+    pub(super) failed: bool,
+}
+
+impl Outcome {
+    /// A record without messages, such as one of an earlier run.
+    pub(super) fn known(record: Record) -> Self {
+        Self {
+            record,
+            messages: Vec::new(),
+            device: None,
+            failed: false,
+        }
+    }
+
+    fn report(&mut self, diagnostics: Vec<Diagnostic>, files: &Files) {
+        let json = diagnostics.iter().map(|one| diagnostic::json(one, files));
+        self.record.diagnostics.extend(json);
+        if !diagnostics.is_empty() {
+            self.messages
+                .push(Message::Diagnostics(diagnostics, files.clone()));
+        }
+    }
+
+    fn fail(&mut self, message: String) {
+        self.messages.push(Message::Error(message));
+        self.failed = true;
+    }
+}
+
+/// Checks shaders, on any thread.
+pub(super) struct Checker<'a> {
+    args: &'a Args,
+    references: &'a References,
+    frame: Frame,
+    /// Whether the missing driver has been reported.
+    fell_back: AtomicBool,
+    scenes: SceneCache,
+}
+
+impl<'a> Checker<'a> {
+    pub(super) fn new(args: &'a Args, references: &'a References, frame: Frame) -> Self {
+        Self {
+            args,
+            references,
+            frame,
+            fell_back: AtomicBool::new(false),
+            scenes: SceneCache::default(),
+        }
+    }
+
+    /// Checks a shader and writes its images. A panic costs only this shader's verdict, which is then
+    /// `error`.
+    pub(super) fn check(&self, context: &mut WorkerContext, submission: &Submission) -> Outcome {
+        contain(Part::Shader, || self.check_shader(context, submission)).unwrap_or_else(|panic| {
+            // The worker was interrupted in an unknown state.
+            context.worker = context.worker.take().and_then(|_| new_worker(self.args));
+            let mut outcome = Outcome::known(Record::new(submission.name.clone(), Verdict::Error));
+            outcome.record.reason = panic.to_string();
+            outcome
+        })
+    }
+
+    fn check_shader(&self, context: &mut WorkerContext, submission: &Submission) -> Outcome {
+        let shader = Shader::load(
+            &submission.input,
+            &self.args.language,
+            Deadline::after(self.args.driver.timeout()),
+        );
+        let found = submission.input.as_ref().ok();
+        let reference = found.and_then(|found| self.references.find(found));
+        let mut outcome = Outcome::known(Record::new(shader.name.clone(), Verdict::Ok));
+        outcome.record.scene = reference.as_ref().map(|reference| reference.name.clone());
+        let findings = self.verify(context, &mut outcome, shader, reference);
+        if let (Some(out), Some(stem)) = (&self.args.out, &submission.output_stem) {
+            keep(out, stem, findings.as_ref().ok(), &mut outcome);
+        }
+        match findings {
+            Ok(findings) => fill(&mut outcome, findings),
+            Err(aborted) => {
+                outcome.record.verdict = aborted.verdict;
+                // The shader's name is printed before the reason anyway.
+                let prefix = format!("{}: ", outcome.record.shader);
+                outcome.record.reason = match aborted.reason.strip_prefix(&prefix) {
+                    Some(reason) => reason.to_owned(),
+                    None => aborted.reason,
+                };
+                outcome.report(aborted.diagnostics, &aborted.files);
+            }
+        }
+        outcome
+    }
+
+    fn verify(
+        &self,
+        context: &mut WorkerContext,
+        outcome: &mut Outcome,
+        shader: Shader,
+        reference: Option<Reference>,
+    ) -> Result<Findings, Aborted> {
+        let Shader {
+            files,
+            checked,
+            lints,
+            ..
+        } = shader;
+        outcome.report(lints.warnings.clone(), &files);
+        let checked = match checked {
+            Ok(checked) => checked,
+            Err(unusable) => return Err(Aborted::unusable(unusable, files, Verdict::Invalid)),
+        };
+        let mut frame = self.frame.clone();
+        let scene = match reference.map(|reference| (reference.scene, reference.files)) {
+            None => None,
+            Some((Err(unusable), files)) => return Err(Aborted::unusable(unusable, files, Verdict::Error)),
+            Some((Ok(scene), _)) => Some(self.sized(scene, &mut frame)),
+        };
+        let cached = scene.map(|scene| self.scenes.get(scene, &frame));
+        let hypotheses = contain(Part::Mistake, || {
+            cached.as_ref().and_then(|cached| cached.hypotheses(&frame))
+        });
+        let hypotheses = hypotheses.unwrap_or_else(|panic| {
+            outcome.fail(format!("{}: {panic}", outcome.record.shader));
+            None
+        });
+        let case = Case {
+            checked: &checked,
+            lints: &lints,
+            expected: cached.as_ref().map(|cached| &cached.expected),
+            suspects: hypotheses,
+            frame: &frame,
+            float: self.args.driver.float(),
+            timeout: self.args.driver.timeout(),
+            pool: context.pool.as_ref(),
+        };
+        if self.fell_back.load(Ordering::Relaxed) {
+            context.worker = None;
+        }
+        let mut verified = verify(context.worker.as_mut(), &case);
+        if let Err(verify::Failure::Gpu(failure)) = &verified
+            && failure.is_without_driver()
+            && self.args.driver.may_fall_back()
+        {
+            if !self.fell_back.swap(true, Ordering::Relaxed) {
+                outcome.messages.push(Message::Warning(format!(
+                    "{failure}; shaders are evaluated on the CPU instead, without the toolchain check (`toyproof doctor` tests the drivers)"
+                )));
+            }
+            context.worker = None;
+            verified = verify(None, &case);
+        }
+        let mut findings = verified.map_err(|failure| Aborted::failure(failure, files.clone()))?;
+        if let (Verdict::Unstable, Some(cause)) = (findings.verdict, findings.cause) {
+            let at = files.position(cause);
+            let suffix = format!("; it is lost in line {}, column {}", at.line, at.column);
+            findings.reason.push_str(&suffix);
+        }
+        for panic in findings.panics.drain(..) {
+            outcome.fail(format!("{}: {panic}", outcome.record.shader));
+        }
+        let mut notes = std::mem::take(&mut findings.notes);
+        let denied = denied(&mut notes, self.args.language.denied());
+        outcome.report(notes, &files);
+        if denied.is_empty() {
+            Ok(findings)
+        } else {
+            let denied = Unusable::Invalid(denied);
+            Err(Aborted::unusable(denied, files, Verdict::Invalid))
+        }
+    }
+
+    /// Gives frame and scene one size: that of the arguments, else the scene's.
+    fn sized(&self, mut scene: Scene, frame: &mut Frame) -> Scene {
+        frame.size = self.args.frame.size.unwrap_or(scene.film.size);
+        scene.film.size = frame.size;
+        scene
+    }
+}
+
+/// Copies the findings into the record.
+fn fill(outcome: &mut Outcome, findings: Findings) {
+    let record = &mut outcome.record;
+    let seconds = &mut record.seconds;
+    seconds.eval = Some(findings.eval.as_secs_f64());
+    seconds.trace = findings.trace.map(|trace| trace.as_secs_f64());
+    if let Some(painter) = findings.painter {
+        seconds.translate = Some(painter.translate.as_secs_f64());
+        seconds.gpu = Some((painter.compile + painter.draw).as_secs_f64());
+        outcome.messages.push(Message::Detail(format!(
+            "{}: translated in {:.4} s, compiled in {:.3} s, painted in {:.3} s on {}",
+            record.shader,
+            painter.translate.as_secs_f64(),
+            painter.compile.as_secs_f64(),
+            painter.draw.as_secs_f64(),
+            painter.device
+        )));
+        outcome.device = Some(painter.device);
+    }
+    record.verdict = findings.verdict;
+    record.reason = findings.reason;
+    record.mistake = findings.mistake.as_deref().map(Mistake::new);
+    if let Some(mistake) = &record.mistake {
+        record.reason = format!("{}; {}", record.reason, mistake.says);
+    }
+    record.algorithm = findings.algorithm.map(|result| result.answer);
+    record.precision = findings.precision.map(|result| result.answer);
+    record.toolchain = findings.toolchain.map(|result| result.answer);
+    record.picture = findings.picture.map(|(comparison, _)| comparison);
+}
+
+/// Writes the images, and removes stale ones of an earlier run.
+fn keep(out: &Path, stem: &Path, findings: Option<&Findings>, outcome: &mut Outcome) {
+    for picture in IMAGES {
+        let path = with_suffix(stem, picture.suffix);
+        let encoded = contain(Part::Image, || {
+            let picture = findings.and_then(picture.make)?;
+            Some(image::encode_shown(&picture, &path))
+        });
+        let kept = match encoded {
+            Ok(Some(Ok(bytes))) => output::write_inside(out, &path, &bytes),
+            Ok(None) => output::remove_inside(out, &path),
+            Ok(Some(Err(error))) => Err(io::Error::other(error)),
+            Err(panic) => Err(io::Error::other(format!("{}: {panic}", path_name(&path)))),
+        };
+        if let Err(error) = kept {
+            outcome.fail(format!("cannot write {error}"));
+        }
+    }
+}
+
+/// Why checking a shader ended early.
+pub(super) struct Aborted {
+    pub(super) verdict: Verdict,
+    pub(super) reason: String,
+    pub(super) diagnostics: Vec<Diagnostic>,
+    pub(super) files: Files,
+}
+
+impl Aborted {
+    fn because(verdict: Verdict, reason: String) -> Self {
+        Self {
+            verdict,
+            reason,
+            diagnostics: Vec::new(),
+            files: Files::default(),
+        }
+    }
+
+    /// `verdict` applies if the text itself is invalid.
+    pub(super) fn unusable(unusable: Unusable, files: Files, verdict: Verdict) -> Self {
+        match unusable {
+            Unusable::Unreadable(error) => Self::because(Verdict::Error, error),
+            Unusable::Invalid(diagnostics) => Self::invalid(verdict, diagnostics, files),
+        }
+    }
+
+    fn invalid(verdict: Verdict, diagnostics: Vec<Diagnostic>, files: Files) -> Self {
+        let is_slow = |error: &Diagnostic| error.code == Code::TooSlow.as_str();
+        let verdict = if diagnostics.iter().any(is_slow) {
+            Verdict::Timeout
+        } else {
+            verdict
+        };
+        let error = diagnostics.iter().find(|one| one.severity == Severity::Error);
+        let reason = error.map_or_else(
+            || "it does not compile".to_owned(),
+            |first| match first.span.map(|span| files.position(span)) {
+                Some(at) => format!("{} (line {}, column {})", first.message, at.line, at.column),
+                None => first.message.clone(),
+            },
+        );
+        Self {
+            verdict,
+            reason,
+            diagnostics,
+            files,
+        }
+    }
+
+    pub(super) fn failure(failure: verify::Failure, files: Files) -> Self {
+        match failure {
+            verify::Failure::Gpu(failure) => Self::gpu(failure, files),
+            verify::Failure::LoopTruncated(pixels) => Self::because(Verdict::Timeout, loop_truncated(pixels)),
+            verify::Failure::Cpu(failure) => Self::cpu(&failure, &files),
+            verify::Failure::Overdue(overdue) => {
+                Self::invalid(Verdict::Timeout, vec![glsl::overdue(overdue)], files)
+            }
+        }
+    }
+
+    fn gpu(failure: Failure, files: Files) -> Self {
+        let verdict = match &failure {
+            failure if is_invalid(failure) => Verdict::Invalid,
+            Failure::Timeout { .. } => Verdict::Timeout,
+            _ => Verdict::Error,
+        };
+        match failure {
+            Failure::Invalid(diagnostics) | Failure::Refused(diagnostics) => {
+                Self::invalid(verdict, diagnostics, files)
+            }
+            failure => Self::because(verdict, failure.to_string()),
+        }
+    }
+
+    fn cpu(failure: &eval::Failure, files: &Files) -> Self {
+        use eval::Failure::{Interrupted, Refused, TimeUp, Timeout, TooOften};
+        let verdict = match failure {
+            Refused(_) | Interrupted => Verdict::Error,
+            TooOften { .. } | Timeout { .. } | TimeUp => Verdict::Timeout,
+        };
+        let position = failure_position(failure, files);
+        Self::because(verdict, format!("{failure}{position}"))
+    }
+}

@@ -1,0 +1,126 @@
+//! The images that `--out` keeps of a shader, and those that the report page shows.
+
+use std::borrow::Cow;
+use std::fs;
+use std::path::Path;
+
+use toyproof_image::{self as image, ImageError, Rgb8Image};
+use toyproof_verify::compare::{DiffLevel, IN_BITS, Legend, SEEN_BY_EYE};
+use toyproof_verify::{CheckResult, Findings};
+
+use super::checker::Submission;
+use crate::cli::files;
+use crate::cli::names::with_suffix;
+use crate::report::{Exhibit, Gallery, MAX_IMAGE_BYTES, subsample};
+
+/// A kind of image, which a shader may lack.
+pub(super) struct ImageKind {
+    /// The suffix of its file name.
+    pub(super) suffix: &'static str,
+    /// Creates the image, if the findings have it. Images are large, so each is made only when it is written.
+    pub(super) make: fn(&Findings) -> Option<Cow<'_, Rgb8Image>>,
+}
+
+/// The rendered image, the reference, their difference, and an image for each check that finds a difference.
+pub(super) const IMAGES: [ImageKind; 6] = [
+    ImageKind {
+        suffix: "-actual.png",
+        make: |findings| Some(Cow::Borrowed(&findings.actual)),
+    },
+    ImageKind {
+        suffix: "-reference.png",
+        make: |findings| findings.reference.as_ref().map(Cow::Borrowed),
+    },
+    ImageKind {
+        suffix: "-difference.png",
+        make: |findings| {
+            let (_, marks) = findings.picture.as_ref()?;
+            Some(difference(findings, marks, SEEN_BY_EYE))
+        },
+    },
+    ImageKind {
+        suffix: "-maths.png",
+        make: |findings| check(findings, findings.algorithm.as_ref(), SEEN_BY_EYE),
+    },
+    ImageKind {
+        suffix: "-rounding.png",
+        make: |findings| check(findings, findings.precision.as_ref(), SEEN_BY_EYE),
+    },
+    ImageKind {
+        suffix: "-toolchain.png",
+        make: |findings| check(findings, findings.toolchain.as_ref(), IN_BITS),
+    },
+];
+
+fn check<'a>(findings: &Findings, check: Option<&CheckResult>, legend: Legend) -> Option<Cow<'a, Rgb8Image>> {
+    let check = check.filter(|check| !check.answer.is_same())?;
+    Some(difference(findings, &check.marks, legend))
+}
+
+fn difference<'a>(findings: &Findings, marks: &[DiffLevel], legend: Legend) -> Cow<'a, Rgb8Image> {
+    Cow::Owned(toyproof_verify::compare::difference(
+        findings.actual.size(),
+        marks,
+        legend,
+    ))
+}
+
+// What the report page shows of each shader: its text, and the images that were written.
+
+/// Builds the gallery of all shaders, subsampling the images until it fits [`MAX_IMAGE_BYTES`].
+pub(super) fn gallery(submissions: &[&Submission]) -> Gallery {
+    let mut step = 1;
+    loop {
+        let gallery = subsampled_gallery(submissions, step);
+        if gallery.bytes() <= MAX_IMAGE_BYTES {
+            return gallery;
+        }
+        // The number of pixels falls with the square of the step.
+        let too_large = gallery.bytes() as f64 / MAX_IMAGE_BYTES as f64;
+        step = (step + 1).max((f64::from(step) * too_large.sqrt()) as u32);
+    }
+}
+
+fn subsampled_gallery(submissions: &[&Submission], step: u32) -> Gallery {
+    let mut gallery = Gallery::new(step);
+    for submission in submissions {
+        let exhibit = exhibit(submission, step, &mut gallery);
+        gallery.add_exhibit(exhibit);
+    }
+    gallery
+}
+
+/// Unreadable files are not shown: the record holds the reason.
+fn exhibit(submission: &Submission, step: u32, gallery: &mut Gallery) -> Exhibit {
+    let mut exhibit = Exhibit::default();
+    if let Ok(found) = &submission.input
+        && let Ok(file) = files::read(found)
+    {
+        exhibit.source = Some(file.text().to_owned());
+    }
+    let Some(stem) = &submission.output_stem else {
+        return exhibit;
+    };
+    let [actual, reference, _, checks @ ..] = IMAGES.map(|kind| with_suffix(stem, kind.suffix));
+    // The images of checks have a legend at the bottom, which the page does not show.
+    let size = if step == 1 {
+        None
+    } else {
+        image::read_shown(&actual).ok().map(|actual| actual.size())
+    };
+    let mut add = |path: &Path| {
+        let png = match size {
+            None => fs::read(path).ok(),
+            Some(size) => subsampled_png(path, step, size).ok(),
+        };
+        png.map(|png| gallery.add_image(png))
+    };
+    exhibit.actual = add(&actual);
+    exhibit.reference = add(&reference);
+    exhibit.checks = checks.map(|path| add(&path));
+    exhibit
+}
+
+fn subsampled_png(path: &Path, step: u32, size: [u32; 2]) -> Result<Vec<u8>, ImageError> {
+    image::encode_shown(&subsample(step, &image::read_shown(path)?, size), path)
+}

@@ -1,0 +1,558 @@
+//! The texts that a command line names: files, folders and standard input. Links are followed as long as they
+//! stay inside the searched folder.
+
+use std::collections::HashSet;
+use std::ffi::OsStr;
+use std::fmt;
+use std::fs::File as OsFile;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+use toyproof_diagnostic::{Diagnostic, File, Files, Span, path_name};
+use walkdir::{DirEntry, WalkDir};
+
+/// The extensions of shaders, by which folders are searched.
+pub(super) const EXTENSIONS: [&str; 4] = ["glsl", "frag", "fs", "shadertoy"];
+
+/// The maximum size of a text in bytes. ShaderToy's own editor takes 65,536 characters a tab.
+pub(super) const MAX_BYTES: u64 = 1 << 20;
+
+/// The source of an input's text.
+#[derive(Debug, Clone)]
+pub(crate) enum InputSource {
+    /// Standard input, or a pipe: it can be read only once.
+    Stream {
+        /// Its name in messages.
+        name: String,
+        /// The content.
+        bytes: Vec<u8>,
+    },
+    /// A file.
+    File(PathBuf),
+}
+
+/// An input: the source of its text, and the path of its outputs below an output folder.
+#[derive(Debug, Clone)]
+pub(crate) struct Input {
+    /// The source of the text.
+    pub source: InputSource,
+    /// The path relative to the folder argument; the file name for a file argument.
+    pub relative: PathBuf,
+    /// The folder argument that was searched; none for a file argument.
+    pub folder: Option<PathBuf>,
+}
+
+impl Input {
+    /// The path of the file; none for a stream.
+    #[must_use]
+    pub(crate) fn path(&self) -> Option<&Path> {
+        match &self.source {
+            InputSource::Stream { .. } => None,
+            InputSource::File(path) => Some(path),
+        }
+    }
+
+    /// The name in messages and reports: the path as the user typed it.
+    #[must_use]
+    pub(crate) fn name(&self) -> String {
+        match &self.source {
+            InputSource::Stream { name, .. } => name.clone(),
+            InputSource::File(path) => path_name(path),
+        }
+    }
+}
+
+/// The error of finding or reading an input.
+#[derive(Debug, Error)]
+pub(crate) enum ReadError {
+    /// No such file or folder.
+    #[error("{}: no such file or folder", path_name(.0))]
+    Missing(PathBuf),
+    /// A scene where a shader is required.
+    #[error(
+        "{name}: this is a scene, not a shader; `toyproof check SHADER --scene {name}` compares a shader with it, and \
+         `toyproof render {name} -o PICTURE` traces it",
+        name = path_name(.0)
+    )]
+    Scene(PathBuf),
+    /// A folder without any shader.
+    #[error(
+        "{}: no shader in this folder (looked for .glsl .frag .fs .shadertoy, also in the folders below)",
+        path_name(.0)
+    )]
+    NoShader(PathBuf),
+    /// An error of the operating system.
+    #[error("{name}: cannot be read: {error}")]
+    Unreadable {
+        /// The file or folder.
+        name: String,
+        /// The operating system's error.
+        error: io::Error,
+    },
+    /// More than [`MAX_BYTES`].
+    #[error("{name}: {TOO_LARGE}")]
+    TooLarge {
+        /// The file.
+        name: String,
+    },
+    /// Not UTF-8.
+    #[error("{}:{}:{}: {NOT_UTF8}", file.name(), file.position(*at).line, file.position(*at).column)]
+    NotUtf8 {
+        /// The file, with replacement characters for invalid bytes.
+        file: File,
+        /// The offset of the first invalid byte.
+        at: usize,
+    },
+}
+
+/// The message on a file that is too large.
+pub(crate) const TOO_LARGE: &str =
+    "the file is larger than 1 MiB, the most that a shader or a scene may have";
+const _: () = assert!(MAX_BYTES == 1 << 20);
+/// The message on a file that is not UTF-8.
+pub(crate) const NOT_UTF8: &str = "this is not UTF-8 text; save the file as UTF-8";
+
+/// Finds the shaders that one argument names; a folder yields those below it, sorted by name, without hidden
+/// files and without targets of links that lead out of it. Standard input and pipes are read.
+#[must_use]
+pub(crate) fn find(argument: &Path) -> Search {
+    let named = |source, name: &OsStr| Input {
+        source,
+        relative: PathBuf::from(name),
+        folder: None,
+    };
+    let only = |input| Search {
+        inputs: vec![input],
+        skipped: Vec::new(),
+    };
+    let stream = |bytes: Result<Vec<u8>, ReadError>, name: String, relative| {
+        bytes.map(|bytes| named(InputSource::Stream { name, bytes }, relative))
+    };
+    if argument == Path::new("-") {
+        let name = "<stdin>".to_owned();
+        let bytes = read_limited(io::stdin().lock(), &name);
+        return only(stream(bytes, name, OsStr::new("stdin")));
+    }
+    if !argument.is_dir() {
+        let name = argument.file_name().unwrap_or(argument.as_os_str());
+        return only(
+            if argument.extension() == Some(OsStr::new("toml")) && argument.exists() {
+                Err(ReadError::Scene(argument.to_owned()))
+            } else if argument.exists() && !argument.is_file() {
+                stream(read_file(argument), path_name(argument), name)
+            } else if argument.exists() {
+                Ok(named(InputSource::File(argument.to_owned()), name))
+            } else {
+                Err(ReadError::Missing(argument.to_owned()))
+            },
+        );
+    }
+    let mut search = search(argument);
+    if search.inputs.is_empty() {
+        search.inputs = vec![Err(ReadError::NoShader(argument.to_owned()))];
+    }
+    search
+}
+
+/// Returns whether a file has a shader's extension.
+#[must_use]
+pub(crate) fn is_shader(path: &Path) -> bool {
+    path.extension()
+        .and_then(OsStr::to_str)
+        .is_some_and(|extension| EXTENSIONS.contains(&extension))
+}
+
+/// Reads the text of an input, without a byte order mark.
+///
+/// # Errors
+/// Those of [`ReadError`]; no more than [`MAX_BYTES`] + 1 bytes are ever read.
+pub(crate) fn read(found: &Input) -> Result<File, ReadError> {
+    match &found.source {
+        InputSource::Stream { name, bytes } => decode(bytes.clone(), name.clone()),
+        InputSource::File(path) => read_text(path),
+    }
+}
+
+/// Reads the text of a file, without a byte order mark.
+///
+/// # Errors
+/// Those of [`ReadError`]; no more than [`MAX_BYTES`] + 1 bytes are ever read.
+pub(crate) fn read_text(path: &Path) -> Result<File, ReadError> {
+    decode(read_file(path)?, path_name(path))
+}
+
+fn read_file(path: &Path) -> Result<Vec<u8>, ReadError> {
+    let name = path_name(path);
+    match OsFile::open(path) {
+        Ok(file) => read_limited(file, &name),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Err(ReadError::Missing(path.to_owned())),
+        Err(error) => Err(ReadError::Unreadable { name, error }),
+    }
+}
+
+/// Reads all bytes, but at most one more than the maximum.
+fn read_limited(input: impl Read, name: &str) -> Result<Vec<u8>, ReadError> {
+    let mut bytes = Vec::new();
+    match input.take(MAX_BYTES + 1).read_to_end(&mut bytes) {
+        Ok(_) => Ok(bytes),
+        Err(error) => Err(ReadError::Unreadable {
+            name: name.to_owned(),
+            error,
+        }),
+    }
+}
+
+fn decode(bytes: Vec<u8>, name: String) -> Result<File, ReadError> {
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(ReadError::TooLarge { name });
+    }
+    match String::from_utf8(bytes) {
+        Ok(text) => Ok(File::new(name, text.strip_prefix('\u{feff}').unwrap_or(&text))),
+        Err(error) => Err(ReadError::NotUtf8 {
+            at: error.utf8_error().valid_up_to(),
+            file: File::new(name, String::from_utf8_lossy(error.as_bytes())),
+        }),
+    }
+}
+
+// The shaders below a folder.
+
+/// The maximum number of files and folders that a search visits: more is a mistake, as `check /` is.
+const MAX_ENTRIES: usize = 1_000_000;
+
+/// A link that is not followed, since it leads out of the searched folder.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Skipped {
+    /// The link.
+    pub link: PathBuf,
+    /// Its target.
+    pub target: PathBuf,
+    /// The searched folder.
+    pub folder: PathBuf,
+}
+
+impl fmt::Display for Skipped {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "skipped `{}`: it links to `{}`, outside `{}`; name the file itself if it is to be read",
+            path_name(&self.link),
+            path_name(&self.target),
+            path_name(&self.folder)
+        )
+    }
+}
+
+impl Skipped {
+    /// Returns the link if a path leads out of the folder that it lies in, through links of any kind.
+    #[must_use]
+    pub(crate) fn of(path: &Path, folder: &Path) -> Option<Self> {
+        let here = if folder == Path::new("") {
+            Path::new(".")
+        } else {
+            folder
+        };
+        let target = path.canonicalize().ok()?;
+        let leaves = !target.starts_with(here.canonicalize().ok()?);
+        leaves.then(|| Self {
+            link: path.to_owned(),
+            target,
+            folder: here.to_owned(),
+        })
+    }
+}
+
+/// The result of a search.
+#[derive(Debug, Default)]
+pub(crate) struct Search {
+    /// The shaders, sorted by name.
+    pub inputs: Vec<Result<Input, ReadError>>,
+    /// The links that were not followed.
+    pub skipped: Vec<Skipped>,
+}
+
+/// Searches a folder and its subfolders, except hidden ones. Each folder is searched once, however many links
+/// lead to it.
+pub(super) fn search(folder: &Path) -> Search {
+    let mut walk = Walk {
+        folder,
+        found: Vec::new(),
+        skipped: Vec::new(),
+        folders: HashSet::new(),
+        links: Vec::new(),
+        entries: 0,
+    };
+    walk.visit(folder);
+    // Links to folders come last: a folder already searched under its own name is not searched again.
+    let mut next = 0;
+    while let Some(link) = walk.links.get(next).cloned() {
+        next += 1;
+        if let Ok(target) = link.canonicalize()
+            && !walk.folders.contains(&target)
+        {
+            walk.visit(&link);
+        }
+    }
+    let mut found = walk.found;
+    found.sort_by(|(a, _), (b, _)| a.cmp(b));
+    Search {
+        inputs: found.into_iter().map(|(_, found)| found).collect(),
+        skipped: walk.skipped,
+    }
+}
+
+struct Walk<'a> {
+    folder: &'a Path,
+    /// The inputs, each with its path.
+    found: Vec<(PathBuf, Result<Input, ReadError>)>,
+    skipped: Vec<Skipped>,
+    /// The canonical paths of the searched folders.
+    folders: HashSet<PathBuf>,
+    /// Links to folders.
+    links: Vec<PathBuf>,
+    entries: usize,
+}
+
+impl Walk<'_> {
+    /// Searches a folder, which may be a link, and collects the links in it.
+    fn visit(&mut self, folder: &Path) {
+        let is_top = folder == self.folder;
+        let entries = WalkDir::new(folder)
+            .follow_root_links(true)
+            .sort_by_file_name()
+            .into_iter()
+            .filter_entry(|entry| is_top && entry.depth() == 0 || !is_hidden(entry.file_name()));
+        for entry in entries {
+            self.entries += 1;
+            if self.entries > MAX_ENTRIES {
+                let error =
+                    format!("there are more than {MAX_ENTRIES} files and folders in it; name a smaller one");
+                self.fail(self.folder.to_owned(), io::Error::other(error));
+                self.links.clear();
+                return;
+            }
+            match entry {
+                Ok(entry) => self.enter(entry),
+                Err(error) => {
+                    let path = error.path().unwrap_or(folder).to_owned();
+                    self.fail(path, error.into());
+                }
+            }
+        }
+    }
+
+    fn enter(&mut self, entry: DirEntry) {
+        let kind = entry.file_type();
+        if entry.path_is_symlink() && entry.depth() > 0 {
+            self.follow(entry.into_path());
+        } else if kind.is_dir() || entry.depth() == 0 {
+            self.folders.extend(entry.path().canonicalize());
+        } else if kind.is_file() && is_shader(entry.path()) {
+            self.add(entry.into_path());
+        }
+    }
+
+    fn follow(&mut self, link: PathBuf) {
+        let metadata = match link.metadata() {
+            Ok(metadata) => metadata,
+            Err(error) => return self.fail(link, error),
+        };
+        let matters = metadata.is_dir() || metadata.is_file() && is_shader(&link);
+        match Skipped::of(&link, self.folder) {
+            _ if !matters => {}
+            Some(skipped) => self.skipped.push(skipped),
+            None if metadata.is_dir() => self.links.push(link),
+            None => self.add(link),
+        }
+    }
+
+    fn add(&mut self, path: PathBuf) {
+        let found = Input {
+            relative: path.strip_prefix(self.folder).unwrap_or(&path).to_owned(),
+            folder: Some(self.folder.to_owned()),
+            source: InputSource::File(path.clone()),
+        };
+        self.found.push((path, Ok(found)));
+    }
+
+    fn fail(&mut self, path: PathBuf, error: io::Error) {
+        let name = path_name(&path);
+        self.found
+            .push((path, Err(ReadError::Unreadable { name, error })));
+    }
+}
+
+/// Returns whether a file or folder is hidden, as `.git` is, or is the `__MACOSX` folder that macOS adds to
+/// archives.
+fn is_hidden(name: &OsStr) -> bool {
+    name.as_encoded_bytes().starts_with(b".") || name == "__MACOSX"
+}
+
+// Errors in the content of a file, as diagnostics.
+
+/// Converts an error in a file's content to a diagnostic, and adds the file to `files` so that it can be
+/// shown.
+///
+/// # Errors
+/// The same error, if not the content but the path or the operating system is at fault.
+pub(crate) fn content_diagnostic(error: ReadError, files: &mut Files) -> Result<Diagnostic, ReadError> {
+    let (file, message, bytes) = match error {
+        ReadError::TooLarge { name } => (File::new(name, ""), TOO_LARGE, 0..0),
+        ReadError::NotUtf8 { file, at } => (file, NOT_UTF8, at..at + char::REPLACEMENT_CHARACTER.len_utf8()),
+        other => return Err(other),
+    };
+    let id = files.add(file);
+    Ok(Diagnostic::error("E0500", message).at(Span::new(id, bytes.start as u32, bytes.end as u32)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    #[test]
+    fn folders_yield_their_shaders_in_order_with_relative_paths() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::create_dir(folder.path().join("b")).unwrap();
+        for name in ["z.frag", "a.glsl", "b/c.fs", "notes.txt"] {
+            fs::write(folder.path().join(name), "").unwrap();
+        }
+        let relative: Vec<_> = find(folder.path())
+            .inputs
+            .into_iter()
+            .map(|found| found.unwrap().relative)
+            .collect();
+        assert_eq!(relative, ["a.glsl", "b/c.fs", "z.frag"].map(PathBuf::from));
+    }
+
+    #[test]
+    fn hidden_files_are_found_only_by_name() {
+        let folder = tempfile::tempdir().unwrap();
+        for below in [".git", "__MACOSX", "a"] {
+            fs::create_dir(folder.path().join(below)).unwrap();
+        }
+        for name in [".git/x.glsl", ".h.glsl", "__MACOSX/._a.glsl", "a/b.glsl"] {
+            fs::write(folder.path().join(name), "").unwrap();
+        }
+        let relative = |argument: &Path| -> Vec<PathBuf> {
+            let found = find(argument).inputs.into_iter();
+            found.map(|found| found.unwrap().relative).collect()
+        };
+        assert_eq!(relative(folder.path()), [Path::new("a/b.glsl")]);
+        assert_eq!(relative(&folder.path().join(".git")), [Path::new("x.glsl")]);
+        assert_eq!(relative(&folder.path().join(".h.glsl")), [Path::new(".h.glsl")]);
+    }
+
+    #[test]
+    fn endless_files_are_too_large_and_not_read_completely() {
+        let endless = read_limited(io::repeat(b' '), "x").unwrap();
+        assert_eq!(endless.len() as u64, MAX_BYTES + 1);
+        let endless = decode(endless, "x".to_owned());
+        assert!(matches!(endless, Err(ReadError::TooLarge { .. })));
+    }
+
+    #[test]
+    fn invalid_utf8_is_reported_by_line_and_column() {
+        let error = decode(b"ok\nab\xffc".to_vec(), "x".to_owned()).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "x:2:3: this is not UTF-8 text; save the file as UTF-8"
+        );
+    }
+
+    #[test]
+    fn a_byte_order_mark_is_not_part_of_the_text() {
+        let file = decode("\u{feff}void".into(), "x".to_owned()).unwrap();
+        assert_eq!(file.text(), "void");
+    }
+
+    #[test]
+    fn invalid_utf8_is_shown_as_a_replacement_character() {
+        let mut files = Files::default();
+        let error = ReadError::NotUtf8 {
+            file: File::new("x", "ok\nab\u{fffd}c"),
+            at: 5,
+        };
+        let diagnostic = content_diagnostic(error, &mut files).unwrap();
+        assert_eq!(files.text(diagnostic.span.unwrap()), "\u{fffd}");
+        assert!(content_diagnostic(ReadError::Missing("y".into()), &mut files).is_err());
+    }
+}
+
+#[cfg(all(test, unix))]
+mod link_tests {
+    use std::fs;
+    use std::os::unix::fs::symlink;
+
+    use super::*;
+
+    /// Creates a folder `in` with two visible shaders and a hidden one, and a shader outside of it.
+    fn folder() -> (tempfile::TempDir, PathBuf) {
+        let outer = tempfile::tempdir().unwrap();
+        let folder = outer.path().join("in");
+        fs::create_dir_all(folder.join("ann")).unwrap();
+        fs::create_dir_all(folder.join(".kept/new")).unwrap();
+        for name in ["in/ann/a.glsl", "in/b.glsl", "in/.kept/new/c.glsl", "secret.glsl"] {
+            fs::write(outer.path().join(name), "").unwrap();
+        }
+        (outer, folder)
+    }
+
+    fn relative(search: &Search) -> Vec<&Path> {
+        let found = search.inputs.iter();
+        found
+            .map(|found| found.as_ref().unwrap().relative.as_path())
+            .collect()
+    }
+
+    #[test]
+    fn links_out_of_the_folder_are_skipped_and_reported() {
+        let (outer, folder) = folder();
+        symlink("/", folder.join("root")).unwrap();
+        symlink(outer.path(), folder.join("ann/up")).unwrap();
+        symlink(outer.path().join("secret.glsl"), folder.join("leak.glsl")).unwrap();
+        symlink(outer.path().join("secret.glsl"), folder.join("notes.txt")).unwrap();
+        let search = search(&folder);
+        assert_eq!(relative(&search), ["ann/a.glsl", "b.glsl"].map(Path::new));
+        let links: Vec<_> = search
+            .skipped
+            .iter()
+            .map(|skipped| skipped.link.as_path())
+            .collect();
+        let wanted = ["ann/up", "leak.glsl", "root"].map(|name| folder.join(name));
+        assert_eq!(links, wanted);
+        let root = search.skipped[2].to_string();
+        assert!(root.contains("root`: it links to `/`, outside `"), "{root}");
+    }
+
+    #[test]
+    fn link_cycles_end_and_each_folder_is_searched_once() {
+        let (_outer, folder) = folder();
+        symlink("..", folder.join("ann/loop")).unwrap();
+        symlink("ann", folder.join("again")).unwrap();
+        symlink("../again", folder.join("ann/again")).unwrap();
+        symlink("here", folder.join("here")).unwrap();
+        symlink(".kept/new", folder.join("newest")).unwrap();
+        symlink(".kept/new", folder.join("latest")).unwrap();
+        symlink("b.glsl", folder.join("link.glsl")).unwrap();
+        let mut search = search(&folder);
+        assert!(search.skipped.is_empty(), "{:?}", search.skipped);
+        // A link to itself leads nowhere.
+        let nothing = search.inputs.iter().position(Result::is_err).unwrap();
+        let error = search.inputs.remove(nothing).unwrap_err().to_string();
+        assert!(error.contains("here: cannot be read"), "{error}");
+        let wanted = ["ann/a.glsl", "b.glsl", "latest/c.glsl", "link.glsl"];
+        assert_eq!(relative(&search), wanted.map(Path::new));
+    }
+
+    #[test]
+    fn a_linked_folder_is_searched() {
+        let (outer, folder) = folder();
+        let link = outer.path().join("link");
+        symlink(&folder, &link).unwrap();
+        let search = search(&link);
+        assert_eq!(relative(&search), ["ann/a.glsl", "b.glsl"].map(Path::new));
+        assert!(search.skipped.is_empty());
+    }
+}

@@ -1,0 +1,167 @@
+//! Escaping of untrusted text for display, and suggestions for misspelled names.
+//!
+//! The names and texts of submissions are written to terminals, reports and logs. A control character in them
+//! could move the cursor, color the screen or forge a line of output, and a bidirectional control could make
+//! a line read as a different one ("Trojan Source", CVE-2021-42574).
+
+use std::borrow::Cow;
+use std::path::Path;
+
+/// Whether a character affects the layout of the text around it: C0 and C1 controls, the Unicode line
+/// separators, and the bidirectional controls (Unicode Standard Annex 9, table 1).
+fn is_layout_control(character: char) -> bool {
+    character.is_control()
+        || matches!(character, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
+/// Escapes every control character (including line feeds) as in Rust: `\n`, `\u{202e}`.
+#[must_use]
+pub fn printable(text: &str) -> Cow<'_, str> {
+    escape(text, is_layout_control)
+}
+
+/// Like [`printable`] for a text of several lines: line feeds remain.
+#[must_use]
+pub fn printable_lines(text: &str) -> Cow<'_, str> {
+    escape(text, |character| {
+        is_layout_control(character) && character != '\n'
+    })
+}
+
+fn escape(text: &str, is_escaped: impl Fn(char) -> bool) -> Cow<'_, str> {
+    if !text.contains(&is_escaped) {
+        return Cow::Borrowed(text);
+    }
+    let mut escaped = String::with_capacity(text.len() + 16);
+    for character in text.chars() {
+        if is_escaped(character) {
+            escaped.extend(character.escape_default());
+        } else {
+            escaped.push(character);
+        }
+    }
+    Cow::Owned(escaped)
+}
+
+/// Formats a path for messages and reports.
+#[must_use]
+#[expect(
+    clippy::disallowed_methods,
+    reason = "the one place that formats paths for people"
+)]
+pub fn path_name(path: &Path) -> String {
+    printable(&path.display().to_string()).into_owned()
+}
+
+/// The placeholder for a control character in a displayed source line: printable and of the same length in
+/// UTF-8, so that columns are unchanged. Tabs and line ends are left to the renderer.
+fn placeholder(character: char) -> char {
+    match character.len_utf8() {
+        1 => '?',
+        2 => '\u{bf}',
+        _ => char::REPLACEMENT_CHARACTER,
+    }
+}
+
+/// Replaces the control characters of a source text with placeholders of the same length; none if it contains
+/// none.
+pub(super) fn mask_controls(text: &str) -> Option<String> {
+    let is_masked =
+        |character: char| is_layout_control(character) && !matches!(character, '\n' | '\r' | '\t');
+    let mask = |character: char| {
+        if is_masked(character) {
+            placeholder(character)
+        } else {
+            character
+        }
+    };
+    text.contains(is_masked).then(|| text.chars().map(mask).collect())
+}
+
+// Suggestions for misspelled names.
+
+/// The candidate of which a name is most likely a misspelling, if any is likely; the first of equally likely
+/// ones. The distance is the number of swapped, missing, added and changed letters, up to a third of the
+/// name. Case hardly counts: `smoothStep` is `smoothstep`.
+pub fn nearest<'c>(name: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
+    let length = name.chars().count();
+    // Such long names are not typed by hand, and the distance takes quadratic time.
+    if length > 64 {
+        return None;
+    }
+    let lower = name.to_lowercase();
+    let distance = |candidate: &str| match candidate {
+        _ if candidate == name || candidate.is_empty() => None,
+        // A different index is a different name: `p1` is not `p2`.
+        _ if length.abs_diff(candidate.len()) > length / 3 => None,
+        _ if candidate.eq_ignore_ascii_case(name) => Some(0),
+        _ => Some(strsim::osa_distance(&lower, &candidate.to_lowercase())),
+    };
+    candidates
+        .into_iter()
+        .filter_map(|candidate| Some((distance(candidate)?, candidate)))
+        .filter(|&(distance, _)| distance <= length / 3)
+        .min_by_key(|&(distance, _)| distance)
+        .map(|(_, candidate)| candidate)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HOSTILE: &str = "a\n\r\u{1b}[2J\u{7f}\u{85}\u{9b}31m\u{61c}\u{200f}\u{2028}\u{202e}\u{2066}z";
+
+    #[test]
+    fn control_characters_in_names_are_escaped() {
+        let shown = printable(HOSTILE);
+        assert_eq!(
+            shown,
+            "a\\n\\r\\u{1b}[2J\\u{7f}\\u{85}\\u{9b}31m\\u{61c}\\u{200f}\\u{2028}\\u{202e}\\u{2066}z"
+        );
+        assert!(!shown.contains(is_layout_control));
+        assert!(
+            matches!(printable("Grüße 你好 👩‍🎨.glsl"), Cow::Borrowed(_)),
+            "other scripts stay"
+        );
+        assert_eq!(printable_lines("a\nb\u{9b}"), "a\nb\\u{9b}");
+        assert_eq!(path_name(Path::new("x\ny")), "x\\ny");
+    }
+
+    #[test]
+    fn masking_preserves_columns() {
+        let masked = mask_controls(HOSTILE).unwrap();
+        assert_eq!(masked.len(), HOSTILE.len());
+        assert_eq!(masked.chars().count(), HOSTILE.chars().count());
+        assert!(!masked.contains(|c| is_layout_control(c) && c != '\n' && c != '\r'));
+        assert_eq!(super::mask_controls("a\tb\r\n"), None);
+    }
+
+    #[test]
+    fn misspellings_are_found_and_other_words_are_not() {
+        let names = [
+            "smoothstep",
+            "normalize",
+            "fract",
+            "dot",
+            "iResolution",
+            "x",
+            "mix",
+        ];
+        for (written, meant) in [
+            ("smoothStep", Some("smoothstep")),
+            ("normalise", Some("normalize")),
+            ("noramlize", Some("normalize")),
+            ("frac", Some("fract")),
+            ("dto", Some("dot")),
+            ("iresolution", Some("iResolution")),
+            ("y", None),
+            ("colour", None),
+            ("max", Some("mix")),
+            ("dot", None),
+            ("", None),
+        ] {
+            assert_eq!(nearest(written, names), meant, "{written}");
+        }
+        assert_eq!(nearest(&"x".repeat(100_000), names), None);
+    }
+}

@@ -1,0 +1,202 @@
+//! Observation of a run: checks for undefined operations, and the trace of one pixel.
+
+use std::marker::PhantomData;
+
+use super::{Handler, Instruction, Level, One, Row, Run, Sink, Source, for_each_chunk, handler};
+use crate::batch::{Batch, LANES, any};
+use crate::ir::Kind;
+use crate::number::Number;
+use crate::observe::{Predicate, SiteId};
+use crate::trace::{Recorder, TraceComponent};
+
+/// A predicate: whether one or two operands are at fault.
+trait Holds<N: Number, T> {
+    fn holds(a: T, b: T, limit: u32) -> bool;
+}
+
+macro_rules! holds {
+    ($($name:ident($a:ident, $b:ident, $limit:ident: $ty:ty) = $value:expr;)*) => {$(
+        struct $name;
+        impl<N: Number> Holds<N, $ty> for $name {
+            #[inline(always)]
+            fn holds($a: $ty, $b: $ty, $limit: u32) -> bool {
+                $value
+            }
+        }
+    )*};
+}
+
+holds! {
+    AtLeast(a, _b, limit: u32) = a >= limit;
+    Zero(a, _b, _limit: u32) = a == 0;
+    NotInt(a, _b, _limit: N) = !(a > N::from_f64(-2_147_483_649.0) && a < N::from_f64(2_147_483_648.0));
+    NotUint(a, _b, _limit: N) = !(a > N::from_f64(-1.0) && a < N::from_f64(4_294_967_296.0));
+    Unordered(a, b, _limit: N) = a.is_nan() || b.is_nan();
+    Equal(a, b, _limit: N) = a == b;
+    Greater(a, b, _limit: N) = a > b;
+    Negative(a, _b, _limit: N) = a < N::default();
+    NotPositive(a, _b, _limit: N) = a <= N::default();
+    BeyondOne(a, _b, _limit: N) = a.abs() > N::from_f64(1.0);
+    AtLeastOne(a, _b, _limit: N) = a.abs() >= N::from_f64(1.0);
+    BelowOne(a, _b, _limit: N) = a < N::from_f64(1.0);
+    BothZero(a, b, _limit: N) = a == N::default() && b == N::default();
+    PowUndefined(a, b, _limit: N) = a < N::default() || (a == N::default() && b <= N::default());
+}
+
+/// Checks the active pixels. `out` is the site, `to` the predicate's limit.
+struct Check<P, A, B, T>(std::marker::PhantomData<(P, A, B, T)>);
+
+impl<N: Number, P: Holds<N, T>, A: Source<N, T>, B: Source<N, T>, T: Copy> Run<N> for Check<P, A, B, T> {
+    #[inline(always)]
+    fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
+        let a = A::open(batch, instruction.operands[0]);
+        let b = B::open(batch, instruction.operands[1]);
+        let mask = batch.mask_row(instruction.mask);
+        for_each_chunk!(batch, instruction.mask, chunk => {
+            let (a, b, mask) = (A::chunk(a, chunk), B::chunk(b, chunk), mask[chunk].get());
+            let mut hit = [0; LANES];
+            for lane in 0..LANES {
+                hit[lane] = mask[lane] & u32::from(P::holds(a[lane], b[lane], instruction.to)).wrapping_neg();
+            }
+            if any(&hit) {
+                batch.notes.borrow_mut().add(SiteId(instruction.out), chunk, &hit);
+            }
+        });
+        at + 1
+    }
+}
+
+/// Finds quads in which only some pixels are active.
+struct PartialQuad;
+
+impl<N: Number> Run<N> for PartialQuad {
+    #[inline(always)]
+    fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
+        let active = batch.active[instruction.mask as usize].get();
+        if active.all {
+            return at + 1;
+        }
+        let mask = batch.mask_row(instruction.mask);
+        for_each_chunk!(batch, instruction.mask, chunk => {
+            let mask = mask[chunk].get();
+            let mut hit = [0; LANES];
+            for (hit, quad) in hit.chunks_exact_mut(4).zip(mask.chunks_exact(4)) {
+                if quad.contains(&0) {
+                    hit.copy_from_slice(quad);
+                }
+            }
+            if hit != [0; LANES] {
+                batch.notes.borrow_mut().add(SiteId(instruction.out), chunk, &hit);
+            }
+        });
+        at + 1
+    }
+}
+
+/// Returns the handler of a check; `rows` says which operands are rows.
+pub(crate) fn check<N: Number>(level: Level, predicate: Predicate, rows: [bool; 2]) -> Handler<N> {
+    macro_rules! forms {
+        ($name:ident, $ty:ty) => {
+            match rows {
+                [true, true] => handler::<N, Check<$name, Row, Row, $ty>>(level),
+                [true, false] => handler::<N, Check<$name, Row, One, $ty>>(level),
+                [false, true] => handler::<N, Check<$name, One, Row, $ty>>(level),
+                [false, false] => handler::<N, Check<$name, One, One, $ty>>(level),
+            }
+        };
+    }
+    match predicate {
+        Predicate::AtLeast(_) => forms!(AtLeast, u32),
+        Predicate::Zero => forms!(Zero, u32),
+        Predicate::NotInt => forms!(NotInt, N),
+        Predicate::NotUint => forms!(NotUint, N),
+        Predicate::Unordered => forms!(Unordered, N),
+        Predicate::Equal => forms!(Equal, N),
+        Predicate::Greater => forms!(Greater, N),
+        Predicate::Negative => forms!(Negative, N),
+        Predicate::NotPositive => forms!(NotPositive, N),
+        Predicate::BeyondOne => forms!(BeyondOne, N),
+        Predicate::AtLeastOne => forms!(AtLeastOne, N),
+        Predicate::BelowOne => forms!(BelowOne, N),
+        Predicate::BothZero | Predicate::ConstantZeros => forms!(BothZero, N),
+        Predicate::PowUndefined => forms!(PowUndefined, N),
+        Predicate::PartialQuad => handler::<N, PartialQuad>(level),
+    }
+}
+
+// The trace of one pixel.
+
+/// Records the row of operand 0 if the traced pixel is active, and writes back the forced value, if any.
+/// `out` is the event, `to` the component.
+struct Record<T>(PhantomData<T>);
+
+impl<N: Number, T: Sink<N> + TraceComponent> Run<N> for Record<T> {
+    fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
+        if let Some(recorder) = active_recorder(batch, instruction) {
+            let chunk = &T::row(batch, instruction.operands[0])[recorder.chunk()];
+            let mut lanes = chunk.get();
+            let value = &mut lanes[recorder.lane()];
+            let instead = recorder.record_component(instruction.out, instruction.to, value.to_trace());
+            if let Some(instead) = instead.and_then(T::from_trace) {
+                *value = instead;
+                chunk.set(lanes);
+            }
+        }
+        at + 1
+    }
+}
+
+/// Records a scalar. A forced value changes it for all pixels, but only the traced pixel's results are used.
+struct RecordScalar<T>(PhantomData<T>);
+
+impl<N: Number, T: Sink<N> + TraceComponent> Run<N> for RecordScalar<T> {
+    fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
+        if let Some(recorder) = active_recorder(batch, instruction) {
+            let scalar = T::scalar(batch, instruction.operands[0]);
+            let instead = recorder.record_component(instruction.out, instruction.to, scalar.get().to_trace());
+            if let Some(instead) = instead.and_then(T::from_trace) {
+                scalar.set(instead);
+            }
+        }
+        at + 1
+    }
+}
+
+/// Records an event without a value.
+struct RecordEvent;
+
+impl<N: Number> Run<N> for RecordEvent {
+    fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
+        if let Some(recorder) = active_recorder(batch, instruction) {
+            recorder.record_event(instruction.out);
+        }
+        at + 1
+    }
+}
+
+/// Returns the recorder, if the traced pixel is active.
+fn active_recorder<'a, N: Number>(
+    batch: &'a Batch<'_, N>,
+    instruction: &Instruction<N>,
+) -> Option<&'a Recorder<'a>> {
+    let recorder = batch.recorder.as_ref()?;
+    let chunk = recorder.chunk();
+    let mask = batch.mask_row(instruction.mask)[chunk].get();
+    let any = batch.active[instruction.mask as usize].get().chunks >> chunk & 1 != 0;
+    (any && mask[recorder.lane()] != 0).then_some(recorder)
+}
+
+/// Returns the handler that records a value in a row or a scalar.
+pub(crate) fn record<N: Number>(kind: Kind, row: bool) -> Handler<N> {
+    match (kind, row) {
+        (Kind::Float, true) => handler::<N, Record<N>>(Level::Base),
+        (Kind::Float, false) => handler::<N, RecordScalar<N>>(Level::Base),
+        (Kind::Word, true) => handler::<N, Record<u32>>(Level::Base),
+        (Kind::Word, false) => handler::<N, RecordScalar<u32>>(Level::Base),
+    }
+}
+
+/// Returns the handler that records an event without a value.
+pub(crate) fn record_event<N: Number>() -> Handler<N> {
+    handler::<N, RecordEvent>(Level::Base)
+}

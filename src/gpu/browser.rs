@@ -1,0 +1,369 @@
+//! Runs shaders in Chromium, with WebGPU or WebGL 2 on `SwiftShader`, its bundled software driver.
+//!
+//! The browser runs headless with a temporary profile and is controlled through a pipe: it listens on no
+//! port, and exits when its end of the pipe is closed, even if this process crashes. It has its own
+//! implementation of the built-in functions, whose last bits differ.
+
+use std::io::{BufRead, BufReader, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
+use std::time::{Duration, Instant};
+use std::{fs, thread};
+
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
+use serde_json::{Value, json};
+use tempfile::TempDir;
+use thiserror::Error;
+use toyproof_image::{Frame, Image};
+
+/// Why a browser rendered nothing.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum Failure {
+    /// It rejects the shader with this message.
+    #[error("Chromium refuses it: {0}")]
+    Refused(String),
+    /// It did not respond in time.
+    #[error("Chromium did not answer within {:.1} s", .0.as_secs_f64())]
+    Timeout(Duration),
+    /// It could not be started, or communication with it failed.
+    #[error("cannot run Chromium: {0}")]
+    Disconnected(String),
+}
+
+/// The text of a shader in a language that browsers support.
+#[derive(Debug, Clone, Copy)]
+pub enum Text<'a> {
+    /// GLSL ES 3.00 for WebGL 2: with `ShaderToy`'s inputs as uniforms, or converted.
+    Glsl(&'a str),
+    /// WGSL for WebGPU, converted.
+    Wgsl(&'a str),
+}
+
+/// A browser, started on first use and restarted after each failure.
+#[derive(Debug)]
+pub struct Chromium {
+    program: PathBuf,
+    timeout: Duration,
+    live: Option<BrowserConnection>,
+}
+
+/// Time limit for the start of the browser, in addition to that of a shader.
+const START_TIMEOUT: Duration = Duration::from_secs(60);
+const PAGE_HTML: &str = include_str!("browser.html");
+
+/// Finds an installed browser.
+#[must_use]
+pub fn find() -> Option<PathBuf> {
+    ["chromium", "chromium-browser", "google-chrome"]
+        .iter()
+        .flat_map(|name| {
+            ["/usr/bin", "/usr/local/bin", "/snap/bin"].map(|folder| Path::new(folder).join(name))
+        })
+        .find(|path| path.exists())
+}
+
+/// Wraps a shader in `ShaderToy`'s prologue and epilogue.
+#[must_use]
+pub fn as_shadertoy(shader: &str) -> String {
+    format!(
+        "#version 300 es
+#define HW_PERFORMANCE 1
+precision highp float;
+precision highp int;
+precision highp sampler2D;
+uniform vec3 iResolution;
+uniform float iTime, iTimeDelta, iFrameRate, iSampleRate;
+uniform int iFrame;
+uniform float iChannelTime[4];
+uniform vec3 iChannelResolution[4];
+uniform vec4 iMouse, iDate;
+uniform sampler2D iChannel0, iChannel1, iChannel2, iChannel3;
+out vec4 shadertoy_out_color;
+#line 1
+{shader}
+void main() {{
+    vec4 color = vec4(0.0, 0.0, 0.0, 1.0);
+    mainImage(color, gl_FragCoord.xy);
+    shadertoy_out_color = vec4(color.xyz, 1.0);
+}}
+"
+    )
+}
+
+impl Chromium {
+    /// Creates a browser with a time limit per shader.
+    #[must_use]
+    pub fn new(program: PathBuf, timeout: Duration) -> Self {
+        Self {
+            program,
+            timeout,
+            live: None,
+        }
+    }
+
+    /// Renders the frames of a shader. Channels with an image are two-dimensional.
+    ///
+    /// # Errors
+    /// Why there are no images.
+    pub fn render(&mut self, text: Text, frames: &[Frame]) -> Result<Vec<Image>, Failure> {
+        let (language, text) = match text {
+            Text::Glsl(text) => ("glsl", text),
+            Text::Wgsl(text) => ("wgsl", text),
+        };
+        let mut connection = match self.live.take() {
+            Some(connection) => connection,
+            None => BrowserConnection::launch(&self.program, PAGE_HTML, Instant::now() + START_TIMEOUT)?,
+        };
+        let frames_json: Vec<Value> = frames.iter().map(frame_json).collect();
+        let job = json!({"language": language, "text": text, "frames": frames_json});
+        let answer = connection.call(&format!("toyproof({job})"), self.timeout)?;
+        if let Some(reason) = answer["refused"].as_str() {
+            // A browser that lost its context cannot render any more.
+            if !reason.contains("context lost") {
+                self.live = Some(connection);
+            }
+            return Err(Failure::Refused(
+                reason.lines().next().unwrap_or_default().to_owned(),
+            ));
+        }
+        self.live = Some(connection);
+        let images_base64 = answer["pictures"].as_array().map_or(&[][..], Vec::as_slice);
+        let images: Option<Vec<Image>> = frames.iter().zip(images_base64).map(decode_image).collect();
+        images
+            .filter(|images| images.len() == frames.len())
+            .ok_or_else(|| Failure::Disconnected("it answers another question than was asked".to_owned()))
+    }
+
+    /// Returns the browser's name and version after it has rendered.
+    #[must_use]
+    pub fn name(&self) -> Option<&str> {
+        self.live.as_ref().map(BrowserConnection::product)
+    }
+}
+
+fn frame_json(frame: &Frame) -> Value {
+    let channels = frame.channels.iter().enumerate().filter_map(|(number, image)| {
+        let image = image.as_ref()?;
+        let [width, height] = image.size();
+        let pixels = BASE64_STANDARD.encode(bytemuck::cast_slice::<_, u8>(image.pixels()));
+        Some(json!({"number": number, "width": width, "height": height, "pixels": pixels}))
+    });
+    json!({
+        "width": frame.size[0],
+        "height": frame.size[1],
+        "block": BASE64_STANDARD.encode(frame.block()),
+        "channels": channels.collect::<Vec<_>>(),
+    })
+}
+
+fn decode_image((frame, image_base64): (&Frame, &Value)) -> Option<Image> {
+    let [width, height] = frame.size;
+    let bytes = BASE64_STANDARD.decode(image_base64.as_str()?).ok()?;
+    let pixels: Vec<[f32; 4]> = bytes.chunks_exact(16).map(bytemuck::pod_read_unaligned).collect();
+    (pixels.len() == width as usize * height as usize).then(|| Image::new(width, height, pixels))
+}
+
+// The browser process, and the Chrome `DevTools` protocol over its pipe: JSON messages, each terminated by a
+// zero byte.
+
+/// A browser process with our page open.
+#[derive(Debug)]
+struct BrowserConnection {
+    child: Child,
+    requests: Option<ChildStdin>,
+    messages: Receiver<Value>,
+    profile: Option<TempDir>,
+    /// Id of the last request.
+    last_id: u64,
+    session: Option<String>,
+    product: String,
+}
+
+/// Chromium communicates on file descriptors 3 and 4, which this shell script redirects.
+const LAUNCH_SCRIPT: &str = r#"exec "$0" "$@" 3<&0 4>&1 </dev/null >/dev/null 2>/dev/null"#;
+/// Time limit for removing the profile of a browser that has exited.
+const PROFILE_REMOVAL_TIMEOUT: Duration = Duration::from_secs(3);
+const POLL_INTERVAL: Duration = Duration::from_millis(10);
+
+impl BrowserConnection {
+    /// Starts the browser and opens the page.
+    fn launch(program: &Path, page: &str, deadline: Instant) -> Result<Self, Failure> {
+        let launch_error = |error: std::io::Error| Failure::Disconnected(error.to_string());
+        let profile = tempfile::Builder::new()
+            .prefix("toyproof-browser-")
+            .tempdir()
+            .map_err(launch_error)?;
+        // File URLs may use WebGPU; blank pages may not.
+        let file = profile.path().join("page.html");
+        fs::write(&file, page).map_err(launch_error)?;
+        let url = format!("file://{}", file.to_string_lossy());
+        let mut command = Command::new("sh");
+        command
+            .args(["-c", LAUNCH_SCRIPT])
+            .arg(program)
+            .args(["--headless=new", "--remote-debugging-pipe"])
+            .args([
+                "--no-first-run",
+                "--disable-extensions",
+                "--disable-background-networking",
+                "--disable-component-update",
+            ])
+            .args([
+                "--use-gl=angle",
+                "--use-angle=swiftshader",
+                "--enable-unsafe-swiftshader",
+            ])
+            .args([
+                "--enable-unsafe-webgpu",
+                "--use-webgpu-adapter=swiftshader",
+                "--enable-features=Vulkan",
+            ])
+            .arg(format!("--user-data-dir={}", profile.path().to_string_lossy()));
+        #[cfg(unix)]
+        if rustix::process::geteuid().is_root() {
+            // Chromium's sandbox does not work as root; the same shaders run on this machine anyway.
+            command.arg("--no-sandbox");
+        }
+        // Shield it from the terminal's interrupt, and allow killing it with all its children.
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        let mut child = command
+            .arg(&url)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .map_err(launch_error)?;
+        let requests = child.stdin.take();
+        let (sender, messages) = mpsc::channel();
+        if let Some(output) = child.stdout.take() {
+            thread::spawn(move || read_messages(output, &sender));
+        }
+        let mut connection = Self {
+            child,
+            requests,
+            messages,
+            profile: Some(profile),
+            last_id: 0,
+            session: None,
+            product: String::new(),
+        };
+        connection.attach(&url, deadline)?;
+        Ok(connection)
+    }
+
+    /// Returns the browser's name and version.
+    fn product(&self) -> &str {
+        &self.product
+    }
+
+    /// Evaluates an expression in the page, and awaits it if it is a promise.
+    fn call(&mut self, expression: &str, timeout: Duration) -> Result<Value, Failure> {
+        let deadline = Instant::now() + timeout;
+        let parameters = json!({"expression": expression, "awaitPromise": true, "returnByValue": true});
+        let answer = self.request("Runtime.evaluate", &parameters, deadline);
+        let mut answer = answer.map_err(|failure| match failure {
+            Failure::Timeout(_) => Failure::Timeout(timeout),
+            other => other,
+        })?;
+        Ok(answer["result"]["value"].take())
+    }
+
+    /// Waits for the page to load and attaches to it.
+    fn attach(&mut self, url: &str, deadline: Instant) -> Result<(), Failure> {
+        let version = self.request("Browser.getVersion", &json!({}), deadline)?;
+        version["product"]
+            .as_str()
+            .unwrap_or("Chromium")
+            .clone_into(&mut self.product);
+        let page = loop {
+            let targets = self.request("Target.getTargets", &json!({}), deadline)?;
+            let pages = targets["targetInfos"].as_array().map_or(&[][..], Vec::as_slice);
+            let ours = pages.iter().find(|page| page["url"] == url);
+            if let Some(page) = ours {
+                break page["targetId"].clone();
+            }
+            thread::sleep(POLL_INTERVAL);
+        };
+        let parameters = json!({"targetId": page, "flatten": true});
+        let session = self.request("Target.attachToTarget", &parameters, deadline)?;
+        self.session = session["sessionId"].as_str().map(str::to_owned);
+        loop {
+            let left = deadline.saturating_duration_since(Instant::now());
+            if self.call("typeof toyproof === 'function'", left)? == true {
+                return Ok(());
+            }
+            thread::sleep(POLL_INTERVAL);
+        }
+    }
+
+    /// Sends a request and returns the result of its response.
+    fn request(&mut self, method: &str, parameters: &Value, deadline: Instant) -> Result<Value, Failure> {
+        self.last_id += 1;
+        let mut message = json!({"id": self.last_id, "method": method, "params": parameters});
+        if let Some(session) = &self.session {
+            message["sessionId"] = json!(session);
+        }
+        let sent = self.requests.as_mut().map(|requests| {
+            let bytes = [message.to_string().as_bytes(), &[0]].concat();
+            requests.write_all(&bytes).and_then(|()| requests.flush())
+        });
+        if let Some(Err(error)) = sent {
+            return Err(Failure::Disconnected(error.to_string()));
+        }
+        let start = Instant::now();
+        loop {
+            let left = deadline.saturating_duration_since(Instant::now());
+            let mut answer = self.messages.recv_timeout(left).map_err(|error| match error {
+                RecvTimeoutError::Timeout => Failure::Timeout(start.elapsed()),
+                RecvTimeoutError::Disconnected => Failure::Disconnected("it ended".to_owned()),
+            })?;
+            // Other messages are events.
+            if answer["id"] == self.last_id {
+                return match answer["error"]["message"].as_str() {
+                    Some(reason) => Err(Failure::Disconnected(reason.to_owned())),
+                    None => Ok(answer["result"].take()),
+                };
+            }
+        }
+    }
+}
+
+impl Drop for BrowserConnection {
+    fn drop(&mut self) {
+        // There is no state to save, and a regular exit would take most of a second. Fails if the process has
+        // exited.
+        #[cfg(unix)]
+        if let Some(group) = rustix::process::Pid::from_raw(self.child.id().cast_signed()) {
+            let _ = rustix::process::kill_process_group(group, rustix::process::Signal::KILL);
+        }
+        let _ = self.child.wait();
+        // The last child processes may still be writing.
+        if let Some(profile) = self.profile.take() {
+            let path = profile.keep();
+            let deadline = Instant::now() + PROFILE_REMOVAL_TIMEOUT;
+            while fs::remove_dir_all(&path).is_err() && path.exists() && Instant::now() < deadline {
+                thread::sleep(POLL_INTERVAL);
+            }
+        }
+    }
+}
+
+fn read_messages(output: ChildStdout, messages: &mpsc::Sender<Value>) {
+    let mut output = BufReader::new(output);
+    loop {
+        let mut message = Vec::new();
+        match output.read_until(0, &mut message) {
+            Ok(1..) => message.truncate(message.len() - 1),
+            _ => break,
+        }
+        let Ok(message) = serde_json::from_slice(&message) else {
+            continue;
+        };
+        if messages.send(message).is_err() {
+            break;
+        }
+    }
+}

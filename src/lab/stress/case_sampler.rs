@@ -1,0 +1,442 @@
+//! Random cases for the steps of each axis: spheres, quadrics, and secondary rays.
+
+#![expect(
+    clippy::unnecessary_wraps,
+    reason = "all samplers have the same signature, and some never reject a sample"
+)]
+
+use glam::DVec3;
+
+use super::axis::{Case, MARGIN, RaySphere, Step, step_value, to_f32};
+use super::exact;
+
+pub(super) const SPHERE_ORIGINS: [&str; 4] = [
+    "the origin inside",
+    "the origin on the surface",
+    "the origin one ULP inside",
+    "the origin one ULP outside",
+];
+pub(super) const DEGENERATE_PARTS: [&str; 13] = [
+    "zero coordinates",
+    "zero direction",
+    "zero radius",
+    "negative radius",
+    "denormal scene",
+    "denormal direction",
+    "infinite origin",
+    "infinite direction",
+    "infinite centre",
+    "infinite radius",
+    "NaN origin",
+    "NaN direction",
+    "NaN radius",
+];
+
+/// A ray and a sphere of typical size, before rounding: the ray's line passes within 1.3 radii of the center;
+/// one ray of ten points away from it.
+struct TypicalCase {
+    o: DVec3,
+    d: DVec3,
+    c: DVec3,
+    r: f64,
+}
+
+impl TypicalCase {
+    fn new(random: &mut Random, [near, far]: [f64; 2]) -> Self {
+        let r = random.between(0.5, 2.0);
+        let c = random.direction() * random.between(0.0, 3.0);
+        let ahead = random.direction();
+        let distance = r * random.between(near, far);
+        let aside = ahead.cross(random.direction()).normalize_or(DVec3::X);
+        let o = c - ahead * distance;
+        let target = c + aside * (r * random.between(0.0, 1.3));
+        let d = (target - o).normalize();
+        let behind = random.unit() < 0.1;
+        Self {
+            o,
+            d: if behind { -d } else { d },
+            c,
+            r,
+        }
+    }
+
+    fn case(self) -> Case {
+        Case::Sphere(RaySphere {
+            o: to_f32(self.o),
+            d: to_f32(self.d),
+            c: to_f32(self.c),
+            r: self.r as f32,
+        })
+    }
+}
+
+const TYPICAL_DISTANCE_RADII: [f64; 2] = [3.0, 10.0];
+
+pub(super) fn scaled_sphere(random: &mut Random, step: Step) -> Option<Case> {
+    let TypicalCase { o, d, c, r } = TypicalCase::new(random, TYPICAL_DISTANCE_RADII);
+    let s = step_value(step);
+    Some(
+        TypicalCase {
+            o: o * s,
+            d,
+            c: c * s,
+            r: r * s,
+        }
+        .case(),
+    )
+}
+
+pub(super) fn stretched_direction(random: &mut Random, step: Step) -> Option<Case> {
+    let typical = TypicalCase::new(random, TYPICAL_DISTANCE_RADII);
+    let d = typical.d * step_value(step);
+    Some(TypicalCase { d, ..typical }.case())
+}
+
+pub(super) fn offset_sphere(random: &mut Random, step: Step) -> Option<Case> {
+    let typical = TypicalCase::new(random, TYPICAL_DISTANCE_RADII);
+    let shift = random.direction() * step_value(step);
+    let (o, c) = (typical.o + shift, typical.c + shift);
+    Some(TypicalCase { o, c, ..typical }.case())
+}
+
+/// Half of the rays are parallel to an axis: other f32 directions cannot be aimed accurately enough at a
+/// distant sphere.
+pub(super) fn distant_sphere(random: &mut Random, step: Step) -> Option<Case> {
+    let away = step_value(step);
+    let typical = TypicalCase::new(random, [1.05 * away, 2.0 * away]);
+    if random.unit() < 0.5 {
+        return Some(typical.case());
+    }
+    let TypicalCase { o, c, r, .. } = typical;
+    let (aside, turn) = (r * random.between(0.0, 1.5), random.rotation());
+    let (sine, cosine) = libm::sincos(random.between(0.0, 6.3));
+    let f = [aside * cosine, aside * sine, o.distance(c)];
+    Some(Case::Sphere(RaySphere {
+        o: turn(f).map(|x| x as f32),
+        d: turn([0.0, 0.0, -1.0]).map(|x| x as f32),
+        c: [0.0; 3],
+        r: r as f32,
+    }))
+}
+
+/// δ = (r² − h²)/r² is the step's value, where h is the distance of the ray's line from the center.
+pub(super) fn grazing_sphere(random: &mut Random, step: Step) -> Option<Case> {
+    let delta = step_value(step);
+    let r = f64::from(random.between(0.5, 2.0) as f32);
+    let far = f64::from((r * random.between(3.0, 10.0)) as f32);
+    let ray_sphere = if delta.abs() > 3e-6 && random.unit() < 0.5 {
+        // Any direction: the δ after rounding is checked below.
+        let d = random.direction();
+        let aside = d.cross(random.direction()).normalize_or(DVec3::X);
+        let c = random.direction() * random.between(0.0, 3.0);
+        RaySphere {
+            o: to_f32(c + aside * (r * (1.0 - delta).sqrt()) - d * far),
+            d: to_f32(d),
+            c: to_f32(c),
+            r: r as f32,
+        }
+    } else {
+        // Parallel to an axis: h² = x² + y², where x is a float slightly below h, and y is the remainder,
+        // split into two floats.
+        let steps = 1 + random.below(8) as u32;
+        let x = f64::from(f32::from_bits(
+            ((r * (1.0 - delta).sqrt()) as f32).to_bits() - steps,
+        ));
+        // Both squares have 48 bits and are close: the difference is exact.
+        let y = ((r * r - x * x) - delta * r * r).sqrt();
+        let high = f64::from(y as f32);
+        let turn = random.rotation();
+        let to_position = |v| turn(v).map(|x| x as f32);
+        RaySphere {
+            o: to_position([x, high, far]),
+            d: to_position([0.0, 0.0, -1.0]),
+            c: to_position([0.0, high - y, 0.0]),
+            r: r as f32,
+        }
+    };
+    let delta_ratio =
+        exact::sphere(ray_sphere.o, ray_sphere.d, ray_sphere.c, ray_sphere.r)?.discriminant / delta;
+    (delta_ratio > 0.3 && delta_ratio < 3.0).then_some(Case::Sphere(ray_sphere))
+}
+
+/// Origins near the surface. Points of it are exact: (1, 2, 2) has length 3.
+pub(super) fn origin_near_sphere(random: &mut Random, step: Step) -> Option<Case> {
+    let Step::Label(label) = step else { return None };
+    if label == SPHERE_ORIGINS[0] {
+        return Some(TypicalCase::new(random, [0.0, 0.9]).case());
+    }
+    let quantize = |x: f64| (x * 262_144.0).round() / 262_144.0;
+    let k = quantize(random.between(1.0, 4.0));
+    let f = random.rotation()([k, 2.0 * k, 2.0 * k]);
+    let c = random.direction().to_array().map(|x| quantize(x * 3.0));
+    let mut o = [0, 1, 2].map(|i| (c[i] + f[i]) as f32);
+    let normal = DVec3::from_array(f).normalize();
+    let i = random.below(3);
+    let outward = (f[i] > 0.0) == (o[i] > 0.0);
+    let bits = o[i].to_bits();
+    if o[i] == 0.0 {
+        return None;
+    }
+    o[i] = match label {
+        "the origin one ULP inside" => f32::from_bits(if outward { bits - 1 } else { bits + 1 }),
+        "the origin one ULP outside" => f32::from_bits(if outward { bits + 1 } else { bits - 1 }),
+        _ => o[i],
+    };
+    let d = random.direction();
+    (d.dot(normal).abs() > 0.05).then_some(Case::Sphere(RaySphere {
+        o,
+        d: to_f32(d),
+        c: c.map(|x| x as f32),
+        r: (3.0 * k) as f32,
+    }))
+}
+
+/// Origins on a concentric shell at a relative distance of the step's value from the sphere's surface.
+pub(super) fn concentric_shells(random: &mut Random, step: Step) -> Option<Case> {
+    let gap = step_value(step);
+    let r = random.between(0.5, 2.0);
+    let c = random.direction() * random.between(0.0, 3.0);
+    let (normal, d) = (random.direction(), random.direction());
+    let outside = random.unit() < 0.5;
+    let (away, toward) = if outside {
+        (1.0 + gap, -1.0)
+    } else {
+        (1.0 - gap, 1.0)
+    };
+    let d = if d.dot(normal) * toward < 0.0 { -d } else { d };
+    let typical = TypicalCase {
+        o: c + normal * (r * away),
+        d,
+        c,
+        r,
+    };
+    (d.dot(normal).abs() > 0.3).then(|| typical.case())
+}
+
+pub(super) fn degenerate_sphere(random: &mut Random, step: Step) -> Option<Case> {
+    let Step::Label(label) = step else { return None };
+    let Case::Sphere(mut ray_sphere) = TypicalCase::new(random, TYPICAL_DISTANCE_RADII).case() else {
+        return None;
+    };
+    let i = random.below(3);
+    let infinite = random.sign() as f32 * f32::INFINITY;
+    match label {
+        "zero coordinates" => {
+            let [z, h] = [ray_sphere.r * 4.0, ray_sphere.r * random.between(0.0, 1.3) as f32];
+            let turn = random.rotation();
+            let to_position = |v| turn(v).map(|x| x as f32);
+            ray_sphere.o = [0.0; 3];
+            ray_sphere.d = to_position([0.0, 0.0, -1.0]);
+            ray_sphere.c = to_position([f64::from(h), 0.0, f64::from(-z)]);
+        }
+        "zero direction" => ray_sphere.d = [0.0; 3],
+        "zero radius" => ray_sphere.r = 0.0,
+        "negative radius" => ray_sphere.r = -ray_sphere.r,
+        "denormal scene" => {
+            let small = |v: [f32; 3]| v.map(|x| (f64::from(x) * 1e-40) as f32);
+            (ray_sphere.o, ray_sphere.c, ray_sphere.r) = (
+                small(ray_sphere.o),
+                small(ray_sphere.c),
+                small([ray_sphere.r; 3])[0],
+            );
+        }
+        "denormal direction" => ray_sphere.d = ray_sphere.d.map(|x| (f64::from(x) * 1e-40) as f32),
+        "infinite origin" => ray_sphere.o[i] = infinite,
+        "infinite direction" => ray_sphere.d[i] = infinite,
+        "infinite centre" => ray_sphere.c[i] = infinite,
+        "infinite radius" => ray_sphere.r = f32::INFINITY,
+        "NaN origin" => ray_sphere.o[i] = f32::NAN,
+        "NaN direction" => ray_sphere.d[i] = f32::NAN,
+        _ => ray_sphere.r = f32::NAN,
+    }
+    let is_grazing = |intersection: exact::Intersection| intersection.discriminant.abs() < MARGIN;
+    let exact = exact::sphere(ray_sphere.o, ray_sphere.d, ray_sphere.c, ray_sphere.r);
+    let is_well_conditioned =
+        label.starts_with("zero ") && label != "zero coordinates" || !exact.is_some_and(is_grazing);
+    is_well_conditioned.then_some(Case::Sphere(ray_sphere))
+}
+
+// Rays and quadrics, each in its local coordinates.
+
+pub(super) const SPECIAL_QUADRIC_RAYS: [&str; 5] = [
+    "a ray along a cylinder",
+    "a ray along a cone's side",
+    "a ray along a paraboloid's axis",
+    "a ray through a cone's apex",
+    "a ray through a paraboloid's apex",
+];
+
+/// q, g and k.
+type Surface = ([f32; 3], f32, f32);
+
+const CYLINDER: Surface = ([1.0, 1.0, 0.0], 0.0, -1.0);
+const CONE: Surface = ([1.0, 1.0, -1.0], 0.0, 0.0);
+const HYPERBOLOID: Surface = ([1.0, 1.0, -1.0], 0.0, -1.0);
+const PARABOLOID: Surface = ([1.0, 1.0, 0.0], -0.5, 0.0);
+const ELLIPSOID: Surface = ([1.0, 0.25, 4.0], 0.0, -1.0);
+
+fn quadric_case((q, g, k): Surface, o: [f64; 3], d: [f64; 3]) -> Case {
+    let [o, d] = [o, d].map(|v| v.map(|x| x as f32));
+    Case::Quadric { o, d, q, g, k }
+}
+
+fn point_in_cube(random: &mut Random, size: f64) -> [f64; 3] {
+    [0; 3].map(|_| random.between(-size, size))
+}
+
+/// Directions for which the coefficient of t² is nearly 0.
+pub(super) fn nearly_linear_quadric(random: &mut Random, step: Step) -> Option<Case> {
+    let aside = random.sign() * step_value(step).sqrt();
+    let [x, y, z] = point_in_cube(random, 1.0);
+    let o = [x * 1.5, y * 1.5, z * 5.0];
+    Some(match random.below(4) {
+        0 => quadric_case(CYLINDER, o, [aside, 0.0, random.sign()]),
+        1 => quadric_case(PARABOLOID, o, [0.0, aside, random.sign()]),
+        2 => quadric_case(CONE, o, [1.0, aside, random.sign()]),
+        _ => quadric_case(HYPERBOLOID, o, [aside, 1.0, random.sign()]),
+    })
+}
+
+pub(super) fn distant_quadric(random: &mut Random, step: Step) -> Option<Case> {
+    let surface = [CYLINDER, CONE, HYPERBOLOID, PARABOLOID, ELLIPSOID][random.below(5)];
+    let o = random.direction() * (step_value(step) * random.between(2.0, 4.0));
+    let target = glam::DVec3::from_array(point_in_cube(random, 1.5));
+    let d = (target - o).normalize();
+    Some(quadric_case(surface, o.to_array(), d.to_array()))
+}
+
+pub(super) fn special_quadric_ray(random: &mut Random, step: Step) -> Option<Case> {
+    let Step::Label(label) = step else { return None };
+    let [x, y, z] = point_in_cube(random, 1.0);
+    let o = [x * 1.5, y * 1.5, z * 5.0];
+    let along = [0.0, 0.0, random.sign()];
+    // Multiples of 1/1024, so that sums of two are exact.
+    let coarse = |v: [f64; 3]| v.map(|x| (x * 1024.0).round() / 1024.0);
+    Some(match label {
+        "a ray along a cylinder" => quadric_case(CYLINDER, o, along),
+        "a ray along a cone's side" => quadric_case(CONE, o, [3.0, 4.0 * random.sign(), 5.0]),
+        "a ray along a paraboloid's axis" => quadric_case(PARABOLOID, o, along),
+        "a ray through a cone's apex" => {
+            let d = coarse([x, y, 2.0 * z]);
+            quadric_case(CONE, d.map(|x| -4.0 * x), d)
+        }
+        _ => {
+            let d = coarse([x, y, z]);
+            quadric_case(PARABOLOID, d.map(|x| -4.0 * x), d)
+        }
+    })
+}
+
+// Secondary rays that leave a sphere at the hit of a first ray.
+
+fn primary_ray(random: &mut Random, step: Step) -> Option<RaySphere> {
+    let Step::Label(label) = step else { return None };
+    let (scale, r) = match label {
+        "scale 1" => (1.0, random.between(0.5, 2.0)),
+        "scale 1e3" => (1e3, random.between(0.5, 2.0)),
+        _ => (1.0, 1000.0),
+    };
+    let (c, normal) = (random.direction() * (3.0 * r), random.direction());
+    let above = random.between(1.0, 10.0);
+    let (o, target) = if r < 100.0 {
+        let o = c + normal * (r + above);
+        (o, c + random.direction() * (r * 0.9))
+    } else {
+        // The viewer stands on the ground and looks down, steeply or at a shallow angle.
+        let o = c + normal * (r + above);
+        let aside = normal.cross(random.direction()) * (above * random.log_between(0.3, 10.0));
+        (o, c + normal * r + aside)
+    };
+    Some(RaySphere {
+        o: to_f32(o * scale),
+        d: to_f32((target - o).normalize()),
+        c: to_f32(c * scale),
+        r: (r * scale) as f32,
+    })
+}
+
+pub(super) fn mirrored_ray(random: &mut Random, step: Step) -> Option<Case> {
+    Some(Case::Secondary {
+        first: primary_ray(random, step)?,
+        cosine: 0.0,
+    })
+}
+
+/// Secondary rays between 0.1 and 6 degrees above the surface.
+pub(super) fn grazing_secondary_ray(random: &mut Random, step: Step) -> Option<Case> {
+    Some(Case::Secondary {
+        first: primary_ray(random, step)?,
+        cosine: random.log_between(2e-3, 0.1) as f32,
+    })
+}
+
+// Seeded random numbers.
+
+/// Steele, Lea and Flood's `SplitMix64`, “Fast splittable pseudorandom number generators” (OOPSLA 2014).
+#[derive(Debug, Clone)]
+pub(super) struct Random(u64);
+
+impl Random {
+    /// A stream of numbers for a seed and labels: independent of all other streams.
+    pub(super) fn new(seed: u64, labels: &[&str]) -> Self {
+        let mut random = Self(seed);
+        for byte in labels.iter().flat_map(|label| label.bytes().chain([0])) {
+            random.0 ^= u64::from(byte);
+            random.0 = random.next();
+        }
+        random
+    }
+
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// A number in [0, 1).
+    pub(super) fn unit(&mut self) -> f64 {
+        (self.next() >> 11) as f64 * 2f64.powi(-53)
+    }
+
+    pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+
+    /// A number with a uniformly distributed logarithm.
+    pub(super) fn log_between(&mut self, low: f64, high: f64) -> f64 {
+        self.between(low.ln(), high.ln()).exp()
+    }
+
+    /// An integer in [0, count).
+    pub(super) fn below(&mut self, count: usize) -> usize {
+        (self.unit() * count as f64) as usize
+    }
+
+    pub(super) fn sign(&mut self) -> f64 {
+        if self.next() >> 63 == 0 { 1.0 } else { -1.0 }
+    }
+
+    /// A uniformly distributed unit vector.
+    pub(super) fn direction(&mut self) -> glam::DVec3 {
+        let z = self.between(-1.0, 1.0);
+        let (sine, cosine) = (std::f64::consts::TAU * self.unit()).sin_cos();
+        let rho = (1.0 - z * z).sqrt();
+        glam::DVec3::new(rho * cosine, rho * sine, z)
+    }
+
+    /// A random permutation of the axes with random signs: an exact rotation or reflection.
+    pub(super) fn rotation(&mut self) -> impl Fn([f64; 3]) -> [f64; 3] + use<> {
+        let first = self.below(3);
+        let step = 1 + self.below(2);
+        let signs = [self.sign(), self.sign(), self.sign()];
+        move |v| {
+            let mut turned = [0.0; 3];
+            for (i, value) in v.into_iter().enumerate() {
+                turned[(first + i * step) % 3] = signs[i] * value;
+            }
+            turned
+        }
+    }
+}

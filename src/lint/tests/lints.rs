@@ -1,0 +1,212 @@
+//! Cases of the smaller lints.
+
+use super::*;
+
+#[test]
+fn randomness() {
+    cases(
+        "
+        W0005 c.x = fract(sin(f.x) * 43758.5453);
+        W0005 c.x = fract(sin(dot(f, vec2(12.9898, 78.233))) * 43758.5453);
+        W0005 c.xy = fract(vec2(sin(f.x), cos(f.y)) * 4375.8);
+        W0005 c.x = fract(4375.8 * -sin(f.x) + 0.5);
+        W0005 float s = sin(f.x), h = s * 1e4; c.x = fract(h);
+        W0005 vec2 p = f; p = sin(p) * 43758.5; c.xy = fract(p);
+        W0005 c.x = mod(cos(f.x) * 1e5, 1.0);
+        W0005 const float K = 43758.5; | c.x = fract(sin(f.x) * K);
+        W0005 float h(float x) { return fract(sin(x) * 43758.5); } | c.x = h(f.x);
+        -     float h(float x) { return fract(sin(x) * 43758.5); } |
+        -     c.x = fract(sin(f.x) * 3.0);
+        -     c.x = fract(f.x * 43758.5);
+        -     c.x = mod(sin(f.x) * 1e5, 3.0);
+        -     c.x = sin(f.x) * 43758.5;
+        ",
+    );
+}
+
+#[test]
+fn unused_results() {
+    cases(
+        "
+        W0010 vec3 d = vec3(f, 1.0); normalize(d);
+        W0010 f.x == 1.0;
+        W0010 f.x + 1.0;
+        W0010 float twice(float x) { return 2.0 * x; } | twice(f.x);
+        W0010 for (int i = 0; i < 3; i + 1) { if (f.x > 1.0) break; }
+        -     float n; float count() { return n++; } | count(); c.x = n;
+        -     float set(out float x) { x = 1.0; return x; } | float y; set(y); c.x = y;
+        -     float stop(float x) { if (x < 0.0) discard; return x; } | stop(f.x);
+        -     void nothing() { } | nothing();
+        -     int i = 0; for (i; i < 3; i++) c.x += 1.0;
+        -     c.x = 1.0, c.y = 2.0;
+        ",
+    );
+    assert!(
+        warned("#define SHOW(x) (x)\nvoid mainImage(out vec4 c, in vec2 f) { c = vec4(0.0); SHOW(f.x); }")
+            .is_empty()
+    );
+}
+
+#[test]
+fn equality_of_floats() {
+    cases(
+        "
+        W0011 vec2 p = f / iResolution.xy; float b = dot(p, p), disc = b * b - 4.0; if (disc == 0.0) c.x = 1.0;
+        W0011 for (float i = 0.0; i != 1.0; i += 0.1) c.x += i;
+        W0011 if (length(f) == 0.3) c.x = 1.0;
+        W0011 if (0.3 != f.x / iResolution.x) c.x = 1.0;
+        W0011 float a = length(f), b = length(f.yx); if (a == b) c.x = 1.0;
+        W0011 float half_of(float x) { return x / 3.0; } | if (half_of(f.x) == 0.3) c.x = 1.0;
+        W0011 if (sin(iTime) == 0.0) c.x = 1.0;
+        W0011 vec3 p = vec3(f, 1.0) * iTime + 0.1; if (p.y == 0.0) c.x = 1.0;
+        W0011 if (any(notEqual(f * iTime + 0.1, vec2(1.0)))) c.x = 1.0;
+        W0011 if (mod(iTime, 2.0) == 0.0) c.x = 1.0;
+        W0011 float x = f.x * 0.1 - f.y * 0.3, y = f.x * 0.7 + f.y; if (x == 0.0 && y == 0.5) c.x = 1.0;
+        -     float x = f.x * 0.1 - f.y * 0.3, y = f.x * 0.7 - f.y; if (x == 0.0 && y == 0.0) c.x = 1.0;
+        -     if (iTime == 0.0) c.x = 1.0;
+        -     if (mod(floor(f.x), 2.0) == 1.0) c.x = 1.0;
+        -     if (mod(f.x - 0.5, 2.0) == 0.0) c.x = 1.0;
+        -     for (float i = 0.0; i < 4.0; i++) { if (i == 2.0) c.x += i; }
+        -     for (float i = 0.0; i != 4.0; i += 0.25) c.x += i;
+        -     float t = 1e9; if (f.x > 1.0) t = length(f); if (t == 1e9) c.x = 1.0;
+        -     float t = -1.0; for (int i = 0; i < 3; i++) t = min(t, f.x * 0.1); if (t != -1.0) c.x = t;
+        -     float a = length(f), b = length(f - 1.0), d = min(a, b); if (d == a) c.x = 1.0;
+        -     vec2 near(vec2 a, vec2 b) { return a.x < b.x ? a : b; } | vec2 h = near(vec2(length(f), 1.0), vec2(2.0)); if (h.y == 1.0) c.x = 1.0;
+        -     vec2 p = f / iResolution.xy; float d = p.x - p.y; if (d == 0.0) d = 1.0; c.x = p.x / d;
+        -     vec2 p = f / iResolution.xy; p = floor(p); if (p.x + p.y == 1.0) c.x = 1.0;
+        -     float least(float a, float b) { return a < b ? a : b + 0.0; } | if (least(length(f), 0.3) == length(f)) c.x = 1.0;
+        -     float ease(float t) { return t == 1.0 ? t : t * 2.0; } | c.x = ease(iTime * 0.1);
+        -     float a = length(f), b = mix(a, 1.0, iTime); if (a == b) c.x = 1.0;
+        -     vec2 p = f / iResolution.xy - 1.0; if (dot(p, p) == 0.0) c.x = 1.0;
+        -     if (length(f) == 0.0) c.x = 1.0;
+        -     if (max(f.x * 0.1 - 2.0, 0.0) == 0.0) c.x = 1.0;
+        -     struct Hit { float t; }; | Hit h = Hit(-1.0); h.t = length(f); if (h.t == -1.0) c.x = 1.0;
+        -     if (texture(iChannel0, f).x == 1.0) c.x = 1.0;
+        -     if (float(int(f.x) * 3) == 9.0) c.x = 1.0;
+        -     int i = int(f.x); if (i == 3) c.x = 1.0;
+        ",
+    );
+}
+
+#[test]
+fn derivatives_in_divergent_control_flow() {
+    cases(
+        "
+        W0006 if (f.x > 9.0) c.x = fwidth(f.y);
+        W0006 if (f.x > 9.0) return; c.x = dFdx(f.y);
+        W0006 for (int i = 0; i < 9; i++) { c.x += dFdx(f.y); if (f.x > float(i)) break; }
+        W0006 for (int i = 0; i < int(f.x); i++) c.x += dFdx(f.y);
+        W0006 float w(float x) { return fwidth(x); } | if (f.x > 9.0) c.x = w(f.y);
+        W0006 bool near; void find(vec2 p) { near = p.x > 1.0; } | find(f); if (near) c.x = fwidth(f.y);
+        W0006 c.x = f.x > 9.0 ? fwidth(f.y) : 0.0;
+        W0006 if (f.x > 9.0 && fwidth(f.y) > 0.1) c.x = 1.0;
+        W0006 int n = 0; if (f.x > 1.0) n = 1; if (n == 1) c.x = fwidth(f.y);
+        W0006 switch (int(f.x)) { case 1: c.x = fwidth(f.y); }
+        W0006 bool hit(out float t, vec2 p) { t = p.x; return true; } | float t; hit(t, f); if (t > 1.0) c.x = fwidth(f.y);
+        W0007 float t = 0.0; for (int i = 0; i < 9; i++) { t += f.x; if (t > 1.0) break; } if (t > 1.0) c = texture(iChannel0, f * t);
+        W0007 for (int i = 0; i < 9; i++) { c += texture(iChannel0, f + float(i)); if (c.x > 1.0) break; }
+        W0007 float t(vec2 p) { for (int i = 0; i < 9; i++) if (p.x > float(i)) return p.y; return -1.0; } | float s = t(f); if (s > 0.0) { vec2 q = f * s; c = texture(iChannel0, q); }
+        W0007 vec4 look(vec2 p) { return texture(iChannel0, p); } | vec2 p = f; if (f.x > 1.0) p.x = 3.0; if (f.y > 1.0) c = look(p);
+        -     if (f.x > 9.0) c = texture(iChannel0, f);
+        -     if (f.x > 9.0) { vec2 uv = f / iResolution.xy; c = texture(iChannel0, uv); }
+        -     vec4 look(vec2 p) { vec2 q = p * 2.0; return texture(iChannel0, q); } | if (f.x > 9.0) c = look(f);
+        -     for (int i = 0; i < 9; i++) { c += texture(iChannel0, vec2(0.1, float(iFrame))); if (c.x > f.x) break; }
+        -     for (int i = 0; i < 9; i++) { c += texture(iChannel0, f + float(i), -100.0); if (c.x > 1.0) break; }
+        -     for (int i = 0; i < 9; i++) { c += texture(iChannel0, vec2(f.x + float(i), 0.25)); if (c.x > 1.0) break; }
+        -     c.x = fwidth(f.y); if (f.x > 9.0) c.x = 1.0;
+        -     if (iTime > 9.0) c.x = fwidth(f.y);
+        -     if (iTime > 9.0) return; c.x = dFdx(f.y);
+        -     for (int i = 0; i < 9; i++) { c.x += dFdx(f.y); if (iTime > float(i)) break; }
+        -     for (int i = 0; i < 9; i++) { if (f.x > float(i)) continue; c.y = 1.0; } c.x = fwidth(f.y);
+        -     for (int i = 0; i < 9; i++) { if (f.x > float(i)) break; } c.x = fwidth(f.y);
+        -     if (f.x > 9.0) c = textureLod(iChannel0, f, 0.0); c += texelFetch(iChannel0, ivec2(f), 0);
+        -     float twice(float x) { if (x > 1.0) return 1.0; return 2.0; } | c.x = twice(f.x) + fwidth(f.y);
+        -     float kind(float x) { float y = 1.0; y += x; return y; } | if (f.x > 1.0) c.y = kind(1.0); if (kind(iTime) > 3.0) c.x = fwidth(f.y);
+        -     float w(float x) { return fwidth(x); } | c.x = w(f.y);
+        ",
+    );
+}
+
+#[test]
+fn loops() {
+    cases(
+        "
+        W0008 for (int i = 0; i < 70000; i++) c.x += f.x;
+        W0008 for (int i = 0; i < 300; i++) for (int j = 0; j < 300; j++) c.x += f.x;
+        W0008 const int N = 400; | for (int i = 0; i < N; ++i) for (int j = N; j >= 0; j -= 2) c.x += f.x;
+        W0008 float far(vec2 p) { float d = 0.0; for (int i = 0; i < 300; i++) d += p.x; return d; } | for (int i = min(iFrame, 0); i < 300; i++) c.x += far(f);
+        W0008 for (int i = 0; i < 40000; i++) c.x += f.x; for (int i = 0; i < 40000; i++) c.x += f.x;
+        W0008 for (int i = 0; i < 9; i--) c.x += f.x;
+        W0008 for (float x = 0.0; x <= 100.0; x += 0.001) c.x += f.x;
+        W0009 while (true) c.x += f.x;
+        W0009 for (;;) { c.x += 1.0; }
+        W0009 do c.x += 1.0; while (1 < 2);
+        W0009 while (true) { for (int i = 0; i < 3; i++) { if (c.x > 1.0) break; } }
+        W0009 while (true) { switch (int(f.x)) { case 1: break; } }
+        W0009 float x = f.x; while (x < 9.0) { c.x += 1.0; }
+        W0009 for (int i = 0; i < int(f.x);) { c.x += 1.0; }
+        -     for (int i = 0; i < 65000; i++) c.x += f.x;
+        -     for (int i = 0; i < 300; i++) { if (i < 1) continue; } for (int j = 0; j < 300; j++) c.x += f.x;
+        -     if (f.x > 1.0) { for (int i = 0; i < 40000; i++) c.x += 1.0; } else { for (int i = 0; i < 40000; i++) c.x += 2.0; }
+        -     int n = int(f.x); for (int i = 0; i < n; i++) for (int j = 0; j < n; j++) c.x += 1.0;
+        -     while (true) { if (c.x > 1.0) break; c.x += f.x; }
+        -     while (true) { if (c.x > 1.0) return; c.x += f.x; }
+        -     float x = f.x; while (x < 9.0) { x += 1.0; }
+        -     bool more; void next() { more = false; } | while (more) { next(); }
+        -     while (false) c.x += 1.0;
+        ",
+    );
+}
+
+#[test]
+fn directions_that_are_never_normalized() {
+    let ray = "struct Ray { vec3 o, d; }; struct Ball { vec3 c; float r; };";
+    let half = "float hit(Ray ray, Ball ball) { vec3 f = ray.o - ball.c; float b = dot(f, ray.d); \
+                float c = dot(f, f) - ball.r * ball.r; float disc = b * b - c; return disc > 0.0 ? -b - sqrt(disc) : -1.0; }";
+    let full = "float hit(Ray ray, Ball ball) { vec3 f = ray.o - ball.c; float b = 2.0 * dot(ray.d, f); \
+                float c = dot(f, f) - ball.r * ball.r; float disc = b * b - 4.0 * c; return disc > 0.0 ? -b - sqrt(disc) : -1.0; }";
+    let inline = "float hit(Ray ray, Ball ball) { float b = dot(ray.d, ray.o - ball.c); \
+                  return b * b - dot(ray.o - ball.c, ray.o - ball.c) + ball.r * ball.r; }";
+    let general = "float hit(Ray ray, Ball ball) { vec3 f = ray.o - ball.c; float a = dot(ray.d, ray.d); float b = dot(f, ray.d); \
+                   float c = dot(f, f) - ball.r * ball.r; float disc = b * b - a * c; return disc > 0.0 ? (-b - sqrt(disc)) / a : -1.0; }";
+    let found = |formula: &str, direction: &str| {
+        let call = format!("c.x = hit(Ray(vec3(0), {direction}), Ball(vec3(0, 0, -6), 1.5));");
+        warned(&shader(&format!("{ray} {formula}"), &call)).join(" ")
+    };
+    for formula in [half, full, inline] {
+        for direction in [
+            "vec3(f / iResolution.xy - 0.5, -2.0)",
+            "mat3(2.0) * vec3(f, -2.0)",
+            "-vec3(f.x, f.y, 1.0)",
+            "f.x * normalize(vec3(1, 2, 3)) + f.y * vec3(0, 1, 0)",
+            "iMouse.x > 1.0 ? vec3(f, 1) : vec3(f, 2)",
+        ] {
+            assert_eq!(found(formula, direction), "W0012:1", "{formula} {direction}");
+        }
+        for direction in [
+            "normalize(vec3(f, -2.0))",
+            "vec3(0.0, 0.0, -1.0)",
+            "vec3(f, -2.0) / length(vec3(f, -2.0))",
+            "vec3(sin(f.x), 0.0, cos(f.x))",
+            "iMouse.x > 1.0 ? normalize(vec3(f, 1)) : vec3(f, 2)",
+            "reflect(normalize(vec3(f, -2.0)), vec3(0, 1, 0))",
+        ] {
+            assert_eq!(found(formula, direction), "", "{formula} {direction}");
+        }
+    }
+    assert_eq!(found(general, "vec3(f, -2.0)"), "");
+    // Normalized on one of two paths into the structure.
+    let call =
+        "Ray r = Ray(vec3(0), vec3(f, -2)); r.d = normalize(r.d); c.x = hit(r, Ball(vec3(0, 0, -6), 1.5));";
+    assert!(warned(&shader(&format!("{ray} {half}"), call)).is_empty());
+    let call = "vec3 d = vec3(f, -2); d.xy *= mat2(0, 1, -1, 0); d /= length(d); c.x = hit(Ray(vec3(0), d), Ball(vec3(0, 0, -6), 1.5));";
+    assert!(warned(&shader(&format!("{ray} {half}"), call)).is_empty());
+    // Quaternions and similar expressions.
+    assert!(
+        warned(&shader(
+            "",
+            "vec4 q = vec4(f, f); c.x = q.x * q.x - q.y * q.y - dot(f, f);"
+        ))
+        .is_empty()
+    );
+}

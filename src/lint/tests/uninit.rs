@@ -1,0 +1,157 @@
+//! Uninitialized reads, and functions that end without a `return`.
+
+use super::*;
+
+#[test]
+fn uninitialized_reads() {
+    cases(
+        "
+        W0003 float a; c.x = a;
+        W0003 vec3 sum; for (int i = 0; i < 3; i++) sum += vec3(f, i);  c.xyz = sum;
+        W0003 vec3 v; v.x = 1.0; c.x = v.y;
+        W0003 vec3 v; v.xy = f; c.xyz = v;
+        W0003 struct Ray { vec3 o, d; }; | Ray r; r.o = vec3(0); c.xyz = r.d;
+        W0003 struct Ray { vec3 o, d; }; vec3 at(Ray r) { return r.o + r.d; } | Ray r; c.xyz = at(r);
+        W0003 mat2 m; m[0] = f; c.xy = m[1];
+        W0003 float a[2]; c.x = a[1];
+        W0003 void add(out float x) { x += 1.0; } | add(c.x);
+        W0003 void add(inout float x) { x += 1.0; } | float a; add(a); c.x = a;
+        W0003 float a; if (a > 0.0) c.x = 1.0;
+        W0003 struct S { float a; }; S s[2]; | c.x = s[0].a;
+        W0003 float g; void set() { g = 1.0; } | c.x = g;
+        W0003 struct S { float a, b; }; S s; | s.a = 1.0; c.x = s.b;
+        W0003 float a; for (int i = 0; i < 3; i++) { a += f.x; } a = 2.0; c.x = a;
+        W0003 float a; if (f.x > 0.0) c.x = a; else a = 1.0;
+        W0004 float pdf; if (f.x > 0.0) pdf = 1.0; c.x = pdf;
+        W0004 float a; if (f.x > 0.0) a = 1.0; else if (f.x > -1.0) a = 2.0; c.x = a;
+        W0004 float a; for (int i = 0; i < 3; i++) { if (f.x > float(i)) { a = 1.0; break; } } c.x = a;
+        W0004 float a; for (int i = 0; i < 3; i++) { if (f.x > float(i)) continue; a = 1.0; } c.x = a;
+        W0004 float a; switch (int(f.x)) { case 1: a = 1.0; break; case 2: a = 2.0; } c.x = a;
+        W0004 float a; bool b = f.x > 0.0 && (a = 1.0) > 0.5; c.x = a;
+        W0004 float a; f.x > 0.0 ? a = 1.0 : 0.0; c.x = a;
+        W0004 float a; bool hit = false; if (f.x > 0.0) { a = 1.0; hit = true; } if (!hit) c.x = a;
+        W0004 float a; if (f.x > 0.0) a = 1.0; if (f.y > 0.0) c.x = a;
+        W0004 bool p = f.x > 1.0, q = f.y > 1.0; float a; if (p && q) a = 1.0; else if (p && !q) a = 2.0; else if (!p && q) a = 3.0; c.x = a;
+        W0004 float a, b, t = f.x; if (f.y > 0.0) { a = 1.0; t = 9.0; } if (min(t, f.y) < f.x) c.x = a;
+        W0004 vec4 find(vec2 p) { vec2 n; float t = -1.0; for (int i = 0; i < 9; i++) { if (p.x < t) { n = p; break; } t += 1.0; } return vec4(t, n, 0); } | c = find(f);
+        W0004 float far; void set() { far = 9.0; } | far = f.y; float a; if (f.x < far) a = 1.0; set(); if (f.x < far) c.x = a;
+        -     float a; a = 1.0; c.x = a;
+        -     float a; if (f.x > 0.0) a = 1.0; else a = 2.0; c.x = a;
+        -     float a; if (f.x > 0.0) { a = 1.0; } else { return; } c.x = a;
+        -     vec3 v; v.xy = f; v.z = 1.0; c.xyz = v;
+        -     vec3 v; v.xy = f; c.x = v.x;
+        -     vec3 v; for (int i = 0; i < 3; i++) v[i] = f.x; c.xyz = v;
+        -     float flat_of(vec3 v) { return v.x; } | vec3 v; v.x = f.x; c.x = flat_of(v);
+        -     struct Ray { vec3 o, d; float t; }; vec3 at(Ray r) { return r.o + r.d; } | Ray r; r.o = vec3(0); r.d = vec3(1); c.xyz = at(r);
+        -     struct Ray { vec3 o, d; float t; }; | Ray r, s; r.o = vec3(0); s = r; c.xyz = s.o;
+        -     float a[2]; for (int i = 0; i < 2; i++) a[i] = 1.0; c.x = a[1];
+        -     void set(out float x) { x = 1.0; } | float a; set(a); c.x = a;
+        -     void set(inout vec3 v) { v = vec3(1); v += 1.0; } | vec3 v; set(v); c.xyz = v;
+        -     bool find(out float t) { if (iTime > 1.0) return false; t = 1.0; return true; } | float t; if (find(t)) c.x = t;
+        -     float a; for (int i = 0; i < 3; i++) a = float(i); c.x = a;
+        -     int n = int(f.x); float a; for (int i = 0; i < n; i++) a = float(i); c.x = a;
+        -     float a; for (int i = min(iFrame, 0); i < 3; i++) a = float(i); c.x = a;
+        -     float a; bool hit = false; if (f.x > 0.0) { a = 1.0; hit = true; } if (hit) c.x = a;
+        -     float a, t = 1e9; for (int i = 0; i < 3; i++) { float d = f.x * float(i); if (d < t) { t = d; a = 1.0; } } if (t < 1e9) c.x = a;
+        -     float a; int id = -1; if (f.x > 0.0) { a = 1.0; id = 3; } if (id >= 0) c.x = a;
+        -     float a; if (f.x > 0.0) a = 1.0; if (f.x > 0.0) c.x = a;
+        -     float a; if (f.x > 0.0) a = 1.0; if (f.x <= 0.0) a = 2.0; c.x = a;
+        -     float a; if (f.x > 0.0 && f.y > 0.0) a = 1.0; if (f.y > 0.0 && f.x > 0.0) c.x = a;
+        -     float a; bool hit = f.x > 0.0; if (hit) a = 1.0; c.x = hit ? a : 0.0;
+        -     float a; bool hit = f.x > 0.0; if (hit) a = 1.0; if (hit && a > 1.0) c.x = 1.0;
+        -     float a; switch (int(f.x)) { case 1: a = 1.0; break; default: a = 2.0; } c.x = a;
+        -     float a; do { a = f.x; } while (a > 1.0); c.x = a;
+        -     float a; int n = 0; while (true) { a = f.x; if (n++ > 3) break; } c.x = a;
+        -     struct S { float a; }; S s[2]; void make() { s[0].a = 1.0; } | make(); c.x = s[1].a;
+        -     float never() { float a; return a; } |
+        -     float a, least = 8.0; for (int i = 0; i < 3; i++) { float d = f.x * float(i); if (d < least) { least = d; a = 1.0; } } c.x = a;
+        -     float a; int i = int(f.x); if (i == 0) a = 1.0; else if (i == 1) a = 2.0; c.x = a;
+        -     float a, far = f.y, t = far, s = f.x; if (f.y > 0.0) { a = 1.0; t = 9.0; } if (min(t, s) < far) { if (t < s) c.x = a; }
+        -     float a, s = f.x, t = f.y; if (min(s, t) < 9.0) { if (s < t) a = 1.0; else if (t < 9.0) a = 2.0; c.x = a; }
+        -     vec3 s; float h = f.x; if (f.y > 0.0) s = vec3(f, 1.0); else s.y = h; if (abs(s.y) < h) c.x = s.x;
+        -     float far; void nothing() { } | far = f.y; float a; if (f.x < far) a = 1.0; nothing(); if (f.x < far) c.x = a;
+        -     vec4 find(vec2 p) { vec2 n; float t = -1.0; if (p.x > 0.0) { n = p; t = 1.0; } return vec4(t, n, 0); } | c = find(f);
+        -     float at[3]; | float a; for (int i = 0; i < 2; i++) if (f.x >= at[i] && f.x < at[i + 1]) { a = 1.0; break; } c.x = a; at[0] = 1.0;
+        -     vec3 v; for (int i = 0; i < 2; i++) { if (i == 0) v.xy = f; if (i == 1) v.z = 1.0; } c.xyz = v;
+        -     float a, id = f.x; if (id < 1.5) a = 1.0; else if (id < 2.5) a = 2.0; c.x = a;
+        -     | float a; int i = int(f.x); if (i == 0 || i == 2) a = 1.0; else if (i == 1) a = 2.0; c.x = a;
+        -     float a; switch (int(f.x)) { case 0: a = 1.0; break; case 1: a = 2.0; break; case 2: a = 3.0; } c.x = a;
+        -     float a; bool found = false; for (int i = 0; i < 9; i++) { if (f.x > float(i)) { found = true; a = 1.0; } } if (found) c.x = a;
+        -     float a; for (int i = 0; i++ < 9 && f.x > float(i);) a = 1.0; c.x = a;
+        -     bool hit(float x, out float t) { t = x; return x > 1.0; } | float t; if (f.x > 0.0 && hit(f.y, t) && t > 1.0) c.x = 1.0;
+        -     | bool p = f.x > 1.0, q = f.y > 1.0; if (p || q) { float a; if (p && q) a = 1.0; else if (p && !q) a = 2.0; else if (!p && q) a = 3.0; c.x = a; }
+        -     float a = 1.0; c.x = a;
+        -     float a; const float b = 1.0; a = b; c.x = a;
+        ",
+    );
+    let color = |body: &str| warned(&format!("void mainImage(out vec4 c, in vec2 f) {{ {body} }}")).join(" ");
+    assert_eq!(color(""), "W0003:1");
+    assert_eq!(color("if (f.x > 1.0) c = vec4(1.0);"), "W0004:1");
+    assert_eq!(color("c.rgb = vec3(1.0);"), "");
+    assert_eq!(
+        color("if (f.x > 1.0) { c = vec4(1.0); return; } c.xyz = vec3(0.0);"),
+        ""
+    );
+    assert_eq!(color("c -= c;"), "W0003:1");
+    // The image's alpha is always 1, whatever is written.
+    assert_eq!(color("float t; if (f.x > 1.0) t = 1.0; c = vec4(f, f.x, t);"), "");
+}
+
+#[test]
+fn functions_without_final_return() {
+    cases(
+        "
+        W0016 float pick(float x) { if (x > 1.0) return 2.0; } | c.x = pick(f.x);
+        W0016 float march(float x) { for (int i = 0; i < 9; i++) { if (x > float(i)) return x; } } | c.x = march(f.x);
+        W0016 float pick(int i) { switch (i) { case 0: return 1.0; case 1: break; default: return 2.0; } } | c.x = pick(int(f.x));
+        W0016 float pick(float x) { if (x > 1.0) { if (x > 2.0) return 2.0; } else return 1.0; } | c.x = pick(f.x);
+        -     float pick(float x) { if (x > 1.0) return 2.0; return 1.0; } | c.x = pick(f.x);
+        -     float pick(float x) { if (x > 1.0) return 2.0; else return 1.0; } | c.x = pick(f.x);
+        -     float pick(float x) { if (x > 1.0) return 2.0; if (x <= 1.0) return 1.0; } | c.x = pick(f.x);
+        -     float pick(float x) { if (x == 1.5) return 2.0; else if (x < 1.5) return 1.0; else if (x > 1.5) return 0.0; } | c.x = pick(floor(f.x));
+        -     float pick(int i) { if (i == 0) return 2.0; if (i == 1) return 1.0; } | c.x = pick(int(f.x));
+        -     float pick(int i) { switch (i) { case 0: return 1.0; default: return 2.0; } } | c.x = pick(int(f.x));
+        -     float march(float x) { while (true) { if (x > 9.0) return x; x += 1.0; } } | c.x = march(f.x);
+        -     float march(float x) { for (;;) { if (x > 9.0) return x; x += 1.0; } } | c.x = march(f.x);
+        -     float pick(float x) { if (x > 1.0) return 2.0; discard; } | c.x = pick(f.x);
+        -     float pick(float x) { if (x > 1.0) return 2.0; } |
+        ",
+    );
+    assert_eq!(
+        message(
+            "float pick(float x) { if (x > 1.0) return 2.0; }",
+            "c.x = pick(f.x);"
+        ),
+        "`pick` ends without a `return` when `x > 1.0` is false (line 1)"
+    );
+}
+
+#[test]
+fn messages_describe_the_path_to_a_read() {
+    assert_eq!(
+        message("", "float pdf;\nif (f.x > 0.) pdf = 1.0;\nc.x = pdf;"),
+        "`pdf` is read here but never written when `f.x > 0.` is false (line 4)"
+    );
+    assert_eq!(
+        message("", "vec3 v; v.x = 1.0;\nif (f.x > 0.) v.yz = f;\nc.xyz = v;"),
+        "`v.yz` is read here but never written when `f.x > 0.` is false (line 4)"
+    );
+    assert_eq!(
+        message(
+            "",
+            "float a; float b = 1.0;\nif (f.x > 0.) a = b;\nif (f.y > 3.) b = 2.0;\nif (f.y > 0.) a = b;\nc.x = a;"
+        ),
+        "`a` is read here but never written when `f.x > 0.` is false (line 4) and `f.y > 0.` is false (line 6)"
+    );
+    // Variables left uninitialized by the same decision share one report.
+    let (found, _) = diagnostics(&shader(
+        "",
+        "float a, b, d;\nif (f.x > 0.) { a = 1.0; b = 2.0; d = 3.0; }\nc.x = a + b + d;",
+    ));
+    assert_eq!(found.len(), 1, "{found:#?}");
+    assert_eq!(found[0].notes[0], "so it is with `b` and `d`");
+    assert_eq!(
+        message("struct Ray { vec3 o, d; };", "Ray r; c.xyz = r.d;"),
+        "`r.d` is read here before it is written"
+    );
+}

@@ -1,0 +1,154 @@
+//! Parts of variables: components and members as bits, so that `v.x = 1.0;` leaves `v.y` uninitialized.
+
+use std::collections::HashMap;
+
+use toyproof_glsl::tree::{ExprId, ExprKind, StructId, Tree, Type, VariableId};
+
+/// A set of parts of one variable. All elements of an array share the same bits; a type with more than 64
+/// parts has a single bit.
+pub(super) type Parts = u64;
+
+/// The parts that an lvalue names.
+#[derive(Debug, Clone)]
+pub(super) struct Part {
+    pub(super) variable: VariableId,
+    pub(super) parts: Parts,
+    /// Whether a dynamic index selects among the parts: one of them is accessed, not all.
+    pub(super) one_of: bool,
+}
+
+/// The number of parts of each type.
+pub(super) struct Layout<'a> {
+    tree: &'a Tree,
+    structs: HashMap<StructId, u32>,
+}
+
+impl<'a> Layout<'a> {
+    pub(super) fn new(tree: &'a Tree) -> Self {
+        // Members have types declared earlier, so one pass over the arena suffices at any nesting.
+        let mut layout = Self {
+            tree,
+            structs: HashMap::new(),
+        };
+        for id in tree.structs.ids() {
+            let count: u32 = tree[id]
+                .members
+                .iter()
+                .map(|member| layout.count(member.ty))
+                .sum();
+            layout
+                .structs
+                .insert(id, if count > Parts::BITS { 1 } else { count });
+        }
+        layout
+    }
+
+    fn count(&self, mut ty: Type) -> u32 {
+        while let Type::Array(id) = ty {
+            ty = self.tree.array(id).element;
+        }
+        match ty {
+            Type::Struct(id) => self.structs.get(&id).copied().unwrap_or(1),
+            ty => u32::from(ty.component_count().unwrap_or(1)),
+        }
+    }
+
+    /// All parts of a type.
+    pub(super) fn whole(&self, ty: Type) -> Parts {
+        Parts::MAX >> (Parts::BITS - self.count(ty))
+    }
+
+    /// The parts that an expression names, if it is a variable or part of one.
+    pub(super) fn part(&self, expr: ExprId) -> Option<Part> {
+        let tree = self.tree;
+        let mut chain = Vec::new();
+        let mut root = expr;
+        let variable = loop {
+            root = match tree[root].kind {
+                ExprKind::Variable(variable) => break variable,
+                ExprKind::Swizzle { vector: base, .. }
+                | ExprKind::Member { structure: base, .. }
+                | ExprKind::Index { base, .. } => {
+                    chain.push(root);
+                    base
+                }
+                _ => return None,
+            };
+        };
+        let mut ty = tree[variable].ty;
+        let mut bits: Vec<u32> = (0..self.count(ty)).collect();
+        let mut one_of = false;
+        for &step in chain.iter().rev() {
+            match &tree[step].kind {
+                // A single bit stands for the whole variable.
+                _ if bits.len() == 1 => {}
+                ExprKind::Swizzle { components, .. } => {
+                    bits = components
+                        .components()
+                        .iter()
+                        .map(|&c| bits[usize::from(c)])
+                        .collect();
+                }
+                ExprKind::Member { member, .. } => {
+                    if let Type::Struct(id) = ty {
+                        let counts = tree[id]
+                            .members
+                            .iter()
+                            .map(|member| self.count(member.ty) as usize);
+                        let start: usize = counts.clone().take(*member).sum();
+                        let count = counts.clone().nth(*member).unwrap_or(0);
+                        bits = bits[start..start + count].to_vec();
+                    }
+                }
+                ExprKind::Index { index, .. } => {
+                    let size = match ty {
+                        Type::Vector(..) => 1,
+                        Type::Matrix { rows, .. } => usize::from(rows),
+                        _ => 0,
+                    };
+                    let constant = tree.value(*index).and_then(|index| index.integer());
+                    match constant.and_then(|index| usize::try_from(index).ok()) {
+                        Some(index) if size > 0 => {
+                            bits = bits.iter().copied().skip(index * size).take(size).collect();
+                        }
+                        _ => one_of |= size > 0,
+                    }
+                }
+                _ => {}
+            }
+            ty = tree[step].ty;
+        }
+        let parts = bits.iter().fold(0, |parts, bit| parts | 1 << bit);
+        Some(Part {
+            variable,
+            parts,
+            one_of,
+        })
+    }
+
+    /// The name of these parts in source code: `v.yz`, `hit.normal`.
+    pub(super) fn name(&self, variable: VariableId, parts: Parts) -> String {
+        let tree = self.tree;
+        let name = &tree[variable].name;
+        let ty = tree[variable].ty;
+        if parts & self.whole(ty) == self.whole(ty) {
+            return name.clone();
+        }
+        match ty {
+            Type::Vector(..) => {
+                let letters = "xyzw".chars().enumerate().filter(|(at, _)| parts >> at & 1 == 1);
+                format!("{name}.{}", letters.map(|(_, letter)| letter).collect::<String>())
+            }
+            Type::Struct(id) if self.count(ty) > 1 => {
+                let mut start = 0;
+                let touched = tree[id].members.iter().find(|member| {
+                    let own = self.whole(member.ty) << start;
+                    start += self.count(member.ty);
+                    own & parts != 0
+                });
+                touched.map_or_else(|| name.clone(), |member| format!("{name}.{}", member.name))
+            }
+            _ => name.clone(),
+        }
+    }
+}

@@ -1,0 +1,496 @@
+//! The trace of a pixel, as text and as JSON.
+
+use std::fmt::Write;
+
+use serde::{Serialize, Serializer};
+use toyproof_diagnostic::{Files, Span};
+use toyproof_eval::{Event, TraceSchema, TraceValue, What};
+use toyproof_glsl::tree::{Scalar, Tree, Type};
+use toyproof_verify::compare::grouped;
+use toyproof_verify::debug::{Explanation, Step, digits};
+
+/// The trace of a pixel in f32 and in f64, in terms of the source text.
+#[derive(Debug, Serialize)]
+pub struct PixelTrace {
+    version: u32,
+    shader: String,
+    /// From the left and from the bottom, in pixels.
+    pixel: [u32; 2],
+    size: [u32; 2],
+    /// The final colors; null if the pixel is discarded.
+    f32: Option<[Component; 3]>,
+    f64: Option<[Component; 3]>,
+    /// The index of the first step where the two differ; null if none does.
+    parts_at: Option<usize>,
+    /// The index of the step that causes a visible difference of the colors; null if there is none.
+    cause_at: Option<usize>,
+    /// The index of the first step with a NaN in f32, or with an infinity if the color is infinite; null if
+    /// there is none.
+    not_finite_at: Option<usize>,
+    /// Whether the last steps are missing because there were too many.
+    cut: bool,
+    steps: Vec<Line>,
+}
+
+/// One step.
+#[derive(Debug, Serialize)]
+#[expect(clippy::struct_field_names, reason = "the names are those of the JSON")]
+struct Line {
+    /// `stored`, `part`, `branch`, `round`, `returned` or `ran`.
+    what: &'static str,
+    line: usize,
+    column: usize,
+    /// The whole line.
+    #[serde(skip)]
+    source: String,
+    /// The source text of the expression.
+    text: String,
+    /// The variable, or its component, that is assigned.
+    name: Option<String>,
+    /// The function that contains it.
+    function: String,
+    /// The lines of the enclosing calls, outermost first.
+    calls: Vec<usize>,
+    /// The iteration of each enclosing loop, outermost first, from 1.
+    rounds: Vec<u32>,
+    /// The accessors of the components, as appended to the variable's name: `.x`.
+    components: Vec<String>,
+    /// The values in f32; null if the step did not run in f32.
+    f32: Option<Vec<Component>>,
+    f64: Option<Vec<Component>>,
+    /// The index of the component that differs most.
+    #[serde(skip)]
+    worst: Option<usize>,
+    /// The largest difference in units in the last place of f32; null if not both values are floats, or if it
+    /// is infinite.
+    ulp: Option<f64>,
+}
+
+/// The pixel that is traced.
+#[derive(Debug, Clone, Copy)]
+pub struct Subject<'a> {
+    /// The shader's name.
+    pub shader: &'a str,
+    /// Its source files.
+    pub files: &'a Files,
+    /// Its tree.
+    pub tree: &'a Tree,
+    /// Pixels from the left and from the bottom.
+    pub pixel: [u32; 2],
+    /// The size of the frame in pixels.
+    pub size: [u32; 2],
+}
+
+impl PixelTrace {
+    /// Resolves the positions and names of an explanation.
+    #[must_use]
+    pub fn new(subject: &Subject<'_>, explanation: &Explanation<'_>) -> Self {
+        let schema = explanation.plot;
+        let lines = explanation
+            .steps
+            .iter()
+            .map(|step| Line::new(subject, schema, step));
+        let color = |color: [f64; 3]| color.map(Component::Float);
+        Self {
+            version: 1,
+            shader: subject.shader.to_owned(),
+            pixel: subject.pixel,
+            size: subject.size,
+            f32: explanation.single.map(color),
+            f64: explanation.double.map(color),
+            parts_at: explanation.parting,
+            cause_at: explanation.cause,
+            not_finite_at: explanation.not_finite,
+            cut: explanation.is_cut,
+            steps: lines.collect(),
+        }
+    }
+
+    /// Formats the trace as JSON.
+    #[must_use]
+    pub fn json(&self) -> String {
+        // Strings, numbers and options always serialize.
+        serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
+    }
+}
+
+impl Line {
+    fn new(subject: &Subject<'_>, schema: &TraceSchema, step: &Step) -> Self {
+        let Subject { files, tree, .. } = *subject;
+        let event = schema.event(step.event);
+        let at = files.position(event.at.span);
+        let name = match event.what {
+            What::Stored(target) => Some(one_line(files.text(target.span))),
+            _ => None,
+        };
+        let (function, calls) = calls(subject, schema, event);
+        let ty = event.ty;
+        let values = |values: &Option<Vec<TraceValue>>| {
+            values.as_ref().map(|values| typed_components(tree, ty, values))
+        };
+        let (single, double) = (values(&step.single), values(&step.double));
+        let count = single.as_ref().or(double.as_ref()).map_or(0, Vec::len);
+        Self {
+            what: match event.what {
+                What::Stored(_) => "stored",
+                What::Part => "part",
+                What::Branch => "branch",
+                What::LoopHeader => "round",
+                What::Returned => "returned",
+                What::Ran => "ran",
+            },
+            line: at.line,
+            column: at.column,
+            source: whole_line(files, event.at.span),
+            text: one_line(files.text(event.at.span)),
+            name,
+            function,
+            calls,
+            rounds: step.rounds(),
+            components: if count == 0 {
+                Vec::new()
+            } else {
+                components(tree, ty)
+            },
+            f32: single,
+            f64: double,
+            worst: step.worst().map(|(at, ..)| at),
+            ulp: step.ulps().filter(|ulps| ulps.is_finite()),
+        }
+    }
+}
+
+/// The function that contains an event, and the lines of the calls that lead to it.
+fn calls(subject: &Subject<'_>, schema: &TraceSchema, event: &Event) -> (String, Vec<usize>) {
+    let mut lines = Vec::new();
+    let mut next = event.call;
+    while let Some(id) = next {
+        let call = schema.call(id);
+        lines.push(subject.files.position(call.at.span).line);
+        next = call.parent;
+    }
+    lines.reverse();
+    let function = event
+        .call
+        .map_or("mainImage", |id| &subject.tree[schema.call(id).function].name);
+    (function.to_owned(), lines)
+}
+
+/// The line that a span starts in.
+fn whole_line(files: &Files, span: Span) -> String {
+    let text = files.get(span.file).text();
+    let (before, after) = text.split_at(span.start as usize);
+    let start = before.rfind('\n').map_or(0, |at| at + 1);
+    let end = after.find('\n').map_or(text.len(), |at| before.len() + at);
+    one_line(&text[start..end])
+}
+
+/// Joins a text to one line, truncated to `MAX_CHARS`.
+fn one_line(text: &str) -> String {
+    const MAX_CHARS: usize = 100;
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    if text.chars().count() <= MAX_CHARS {
+        return text;
+    }
+    text.chars().take(MAX_CHARS - 1).chain(['…']).collect()
+}
+
+// Scalar components of values.
+
+/// A scalar component with its type.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Component {
+    Float(f64),
+    Int(i32),
+    Uint(u32),
+    Bool(bool),
+}
+
+impl Serialize for Component {
+    /// Writes a number or a boolean; NaN and infinities are written as strings.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match *self {
+            Self::Float(value) if value.is_finite() => serializer.serialize_f64(value),
+            Self::Float(value) => serializer.serialize_str(&digits(value, false)),
+            Self::Int(value) => serializer.serialize_i32(value),
+            Self::Uint(value) => serializer.serialize_u32(value),
+            Self::Bool(value) => serializer.serialize_bool(value),
+        }
+    }
+}
+
+impl Component {
+    /// Formats the value: an f32 with enough digits to identify it, an f64 with ten.
+    fn digits(self, single: bool) -> String {
+        match self {
+            Self::Float(value) => digits(value, single),
+            Self::Int(value) => value.to_string(),
+            Self::Uint(value) => format!("{value}u"),
+            Self::Bool(value) => value.to_string(),
+        }
+    }
+}
+
+/// Converts a value to typed components.
+fn typed_components(tree: &Tree, ty: Type, values: &[TraceValue]) -> Vec<Component> {
+    let mut scalars = tree.scalars(ty).into_iter();
+    let each = values.iter().map(|&values| match (values, scalars.next()) {
+        (TraceValue::Float(value), _) => Component::Float(value),
+        (TraceValue::Word(word), Some(Scalar::Bool)) => Component::Bool(word != 0),
+        (TraceValue::Word(word), Some(Scalar::Uint)) => Component::Uint(word),
+        (TraceValue::Word(word), _) => Component::Int(word.cast_signed()),
+    });
+    each.collect()
+}
+
+/// The accessors of a type's components, as appended to a variable's name: `.x`, `[2].center.y`, or an empty
+/// string for a scalar.
+fn components(tree: &Tree, ty: Type) -> Vec<String> {
+    let within = |name: String, ty: Type| {
+        let inner = components(tree, ty).into_iter();
+        inner.map(move |component| format!("{name}{component}"))
+    };
+    match ty {
+        Type::Scalar(_) => vec![String::new()],
+        Type::Vector(_, size) => ["x", "y", "z", "w"][..usize::from(size)]
+            .iter()
+            .map(|name| format!(".{name}"))
+            .collect(),
+        Type::Matrix { columns, rows } => (0..columns)
+            .flat_map(|column| within(format!("[{column}]"), Type::vector(Scalar::Float, rows)))
+            .collect(),
+        Type::Struct(id) => {
+            let members = tree[id].members.iter();
+            members
+                .flat_map(|member| within(format!(".{}", member.name), member.ty))
+                .collect()
+        }
+        Type::Array(id) => {
+            let array = tree.array(id);
+            (0..array.size)
+                .flat_map(|at| within(format!("[{at}]"), array.element))
+                .collect()
+        }
+        Type::Void | Type::Sampler(_) | Type::Error => Vec::new(),
+    }
+}
+
+// The trace as text for a terminal.
+
+/// The number of steps of a long trace that are shown around each marked step, at the start and at the end.
+const CONTEXT_STEPS: usize = 40;
+
+/// The column widths of names and of numbers, in characters.
+const NAME_WIDTH: usize = 26;
+const NUMBER_WIDTH: usize = 20;
+
+impl PixelTrace {
+    /// Formats the trace line by line: the values that each line stores and the branches that it takes. A
+    /// long trace is reduced to its start, its end and the steps around the marked ones, unless `whole`.
+    #[must_use]
+    pub fn human(&self, whole: bool) -> String {
+        let [x, y] = self.pixel;
+        let [width, height] = self.size;
+        let mut text = format!("{}, pixel ({x}, {y}) of {width}x{height}\n", self.shader);
+        for (name, color, single) in [("f32", self.f32, true), ("f64", self.f64, false)] {
+            let _ = match color {
+                Some(color) => {
+                    let parts = color.map(|part| part.digits(single));
+                    writeln!(text, "  {name} paints ({})", parts.join(", "))
+                }
+                None => writeln!(text, "  {name} discards it"),
+            };
+        }
+        text.push_str(&self.headline());
+        text.push('\n');
+        let mut writer = Writer { text, last: None };
+        let mut skipped = 0;
+        for (index, line) in self.steps.iter().enumerate() {
+            let mark = self.mark(index);
+            if line.what == "part" && !whole && mark.is_none() {
+                continue;
+            }
+            if !whole && !self.is_near(index) {
+                skipped += 1;
+                continue;
+            }
+            writer.gap(std::mem::take(&mut skipped));
+            writer.line(line, mark.unwrap_or_default());
+        }
+        writer.gap(skipped);
+        if self.cut {
+            writer
+                .text
+                .push_str("  … and so on: the rest was too long to be kept\n");
+        }
+        writer.text
+    }
+
+    fn is_near(&self, index: usize) -> bool {
+        let from_end = self.steps.len() - index;
+        let marked = [self.parts_at, self.cause_at, self.not_finite_at];
+        let near = |step: usize| step.abs_diff(index) <= CONTEXT_STEPS;
+        index < CONTEXT_STEPS || from_end <= CONTEXT_STEPS || marked.into_iter().flatten().any(near)
+    }
+
+    /// Summarizes where the two first differ, and the cause of a visible difference.
+    fn headline(&self) -> String {
+        let mut text = String::new();
+        match self.parts_at {
+            None => text.push_str("  they never part: float32 is enough here\n"),
+            Some(at) => {
+                let _ = writeln!(text, "  they first part in {}", self.steps[at].difference());
+            }
+        }
+        if let Some(at) = self.cause_at {
+            let _ = match self.parts_at {
+                Some(first) if first == at => writeln!(text, "  and that is what is seen"),
+                _ => writeln!(text, "  what is seen comes of {}", self.steps[at].difference()),
+            };
+        }
+        if let Some(at) = self.not_finite_at {
+            let Line {
+                line,
+                column,
+                text: source,
+                ..
+            } = &self.steps[at];
+            let _ = writeln!(
+                text,
+                "  what is not finite comes of line {line}, column {column}: `{source}`"
+            );
+        }
+        text
+    }
+
+    /// The mark of a step, if it has one.
+    fn mark(&self, index: usize) -> Option<&'static str> {
+        let is = |step: Option<usize>| step == Some(index);
+        match () {
+            () if is(self.cause_at) => Some("  <- what is seen comes of this"),
+            () if is(self.parts_at) => Some("  <- here they part"),
+            () if is(self.not_finite_at) => Some("  <- no longer finite"),
+            () => None,
+        }
+    }
+}
+
+impl Line {
+    /// Describes how the two differ at this step.
+    fn difference(&self) -> String {
+        let place = format!("line {}, column {}", self.line, self.column);
+        let (Some(single), Some(double)) = (&self.f32, &self.f64) else {
+            let only = if self.f32.is_some() { "f32" } else { "f64" };
+            return format!("{place}: only {only} comes to `{}`", self.text);
+        };
+        let Some(worst) = self.worst else {
+            return place;
+        };
+        let (single, double) = (&single[worst], &double[worst]);
+        let component = &self.components[worst];
+        let (single, double) = (single.digits(true), double.digits(false));
+        let what = match &self.name {
+            Some(name) => format!("{name}{component}"),
+            None => format!("`{}`{component}", self.text),
+        };
+        format!("{place}: {what} is {single} in f32 and {double} in f64")
+    }
+}
+
+struct Writer {
+    text: String,
+    /// The line, the calls and the iterations of the last heading.
+    last: Option<(usize, Vec<usize>, Vec<u32>)>,
+}
+
+impl Writer {
+    fn gap(&mut self, skipped: usize) {
+        if skipped > 0 {
+            let _ = writeln!(self.text, "        … {} steps …", grouped(skipped as u64));
+            self.last = None;
+        }
+    }
+
+    fn line(&mut self, line: &Line, mark: &str) {
+        self.heading(line);
+        let indent = "  ".repeat(line.calls.len() + 1);
+        let only = match (&line.f32, &line.f64) {
+            (Some(_), None) => "  only in f32",
+            (None, Some(_)) => "  only in f64",
+            _ => "",
+        };
+        let count = line.components.len();
+        if count == 0 {
+            if !mark.is_empty() || !only.is_empty() {
+                let _ = writeln!(self.text, "      {indent}{}{only}{mark}", line.what);
+            }
+            return;
+        }
+        let name = match line.what {
+            "branch" => "?",
+            "returned" => "return",
+            "part" => &line.text,
+            _ => line.name.as_deref().unwrap_or_default(),
+        };
+        for (at, component) in line.components.iter().enumerate() {
+            let digits = |values: &Option<Vec<Component>>, single| {
+                let value = values.as_ref().and_then(|values| values.get(at));
+                value.map_or_else(|| "-".to_owned(), |value| value.digits(single))
+            };
+            let (single, double) = (digits(&line.f32, true), digits(&line.f64, false));
+            let pair =
+                |values: &Option<Vec<Component>>| values.as_ref().and_then(|values| values.get(at).copied());
+            let distance = match (pair(&line.f32), pair(&line.f64)) {
+                (Some(Component::Float(single)), Some(Component::Float(double))) => {
+                    in_ulps(toyproof_verify::debug::ulps(single, double))
+                }
+                _ => String::new(),
+            };
+            let end = if at + 1 == count { mark } else { "" };
+            let width = NAME_WIDTH.saturating_sub(indent.len());
+            let row = format!(
+                "      {indent}{:width$} {single:>NUMBER_WIDTH$} {double:>NUMBER_WIDTH$} {distance:>12}{only}{end}",
+                format!("{name}{component}"),
+            );
+            self.text.push_str(row.trim_end());
+            self.text.push('\n');
+        }
+    }
+
+    /// Writes the source line, if it differs from the previous heading.
+    fn heading(&mut self, line: &Line) {
+        let here = (line.line, line.calls.clone(), line.rounds.clone());
+        if self.last.as_ref() == Some(&here) {
+            return;
+        }
+        let indent = "  ".repeat(line.calls.len());
+        let calls_before = self.last.as_ref().map(|(_, calls, _)| calls);
+        if calls_before != Some(&line.calls)
+            && let Some(from) = line.calls.last()
+        {
+            let _ = writeln!(
+                self.text,
+                "     {indent}in {}, called in line {from}:",
+                line.function
+            );
+        }
+        let round = match line.rounds.last() {
+            Some(round) if line.what == "round" => format!("   (round {round})"),
+            _ => String::new(),
+        };
+        let _ = writeln!(self.text, "{:>5} {indent}{}{round}", line.line, line.source);
+        self.last = Some(here);
+    }
+}
+
+/// Formats a distance: `0.4 ULP`, `2,104,000 ULP`.
+fn in_ulps(ulps: f64) -> String {
+    match ulps {
+        0.0 => "same".to_owned(),
+        _ if !ulps.is_finite() => "apart".to_owned(),
+        _ if ulps < 0.05 => "<0.1 ULP".to_owned(),
+        _ if ulps < 9.95 => format!("{ulps:.1} ULP"),
+        _ if ulps < 1e9 => format!("{} ULP", grouped(ulps.round() as u64)),
+        _ => format!("{ulps:.0e} ULP"),
+    }
+}

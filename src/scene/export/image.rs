@@ -1,0 +1,225 @@
+//! The image: samples and their mean, tone map, camera, figures, background, and random numbers.
+
+use std::fmt::Write;
+
+use super::{Parts, number, vector};
+use crate::{Background, Color, Figure, Outline, Projection, Sampler, Scene, ToneMap};
+
+impl Parts<'_> {
+    pub(super) fn main(&self, scene: &Scene) -> String {
+        let film = &scene.film;
+        let multisampled = film.samples > 1;
+        let (indent, index) = if multisampled {
+            ("        ", "i")
+        } else {
+            ("    ", "0")
+        };
+        let start = match film.sampler {
+            Sampler::Independent => format!("{indent}startSample(fragCoord, {index});\n"),
+            _ => String::new(),
+        };
+        let sample = if film.sampler == Sampler::Center {
+            format!("{indent}color += look(fragCoord);\n")
+        } else {
+            format!(
+                "{start}{indent}float x = fragCoord.x + random() - 0.5;\n{indent}float y = fragCoord.y + random() - 0.5;\n\
+                 {indent}color += look(vec2(x, y));\n"
+            )
+        };
+        let samples = if multisampled {
+            format!(
+                "    for (int i = 0; i < SAMPLES; i++) {{\n{sample}    }}\n    color /= float(SAMPLES);\n"
+            )
+        } else {
+            sample
+        };
+        let scene_made = if self.models.is_empty() {
+            ""
+        } else {
+            "    makeScene();\n"
+        };
+        let seed = match film.sampler {
+            Sampler::SineHash => "    seed = 0.0;\n",
+            _ => "",
+        };
+        format!(
+            "void mainImage(out vec4 fragColor, in vec2 fragCoord) {{\n{scene_made}{seed}    vec3 color = vec3(0.0);\n\
+             {samples}{}    fragColor = vec4(color, 1.0);\n}}\n",
+            post_process(scene)
+        )
+    }
+}
+
+fn post_process(scene: &Scene) -> String {
+    let mut text = String::new();
+    if scene.film.tone_map == ToneMap::Reinhard {
+        text.push_str("    color = color / (color + 1.0);\n");
+    }
+    if scene.film.gamma != 1.0 {
+        let _ = writeln!(
+            text,
+            "    color = pow(color, vec3(1.0 / {}));",
+            number(scene.film.gamma)
+        );
+    }
+    text
+}
+
+// The camera.
+
+/// Returns `look`, the color at a point of the image: a figure on the screen, or the color along the ray.
+pub(super) fn camera_function(scene: &Scene) -> String {
+    let eye = vector(scene.camera.eye);
+    let ray = match scene.camera.projection {
+        Projection::Pinhole { screen_distance } => {
+            format!(
+                "trace({eye}, normalize(vec3(x, y, {})))",
+                number(-screen_distance)
+            )
+        }
+        Projection::Parallel { width } => format!(
+            "trace({eye} + {} * vec3(x, y, 0.0), vec3(0.0, 0.0, -1.0))",
+            number(0.5 * width)
+        ),
+    };
+    let figures = figure_tests(&scene.figures);
+    format!(
+        "vec3 look(vec2 fragCoord) {{\n    float aspect = iResolution.x / iResolution.y;\n    \
+         float x = fragCoord.x / iResolution.x * 2.0 - 1.0;\n    \
+         float y = (fragCoord.y / iResolution.y * 2.0 - 1.0) / aspect;\n{figures}    return {ray};\n}}\n"
+    )
+}
+
+// Figures on the screen.
+
+fn pair([x, y]: [f64; 2]) -> String {
+    format!("vec2({}, {})", number(x), number(y))
+}
+
+/// Returns the implicit function of an outline, and its call at p.
+fn function(outline: &Outline) -> (&'static str, String) {
+    match *outline {
+        Outline::Disk { center, radius } => (DISK, format!("disk(p, {}, {})", pair(center), number(radius))),
+        Outline::Wave {
+            height,
+            amplitude,
+            frequency,
+        } => {
+            let [height, amplitude, frequency] = [height, amplitude, frequency].map(number);
+            (WAVE, format!("wave(p, {height}, {amplitude}, {frequency})"))
+        }
+        Outline::Heart { center, size } => (HEART, format!("heart(p, {}, {})", pair(center), number(size))),
+    }
+}
+
+/// Returns the implicit functions in use, negative inside.
+pub(super) fn figure_functions(figures: &[Figure]) -> Vec<String> {
+    let mut pieces: Vec<String> = Vec::new();
+    for figure in figures {
+        let (text, _) = function(&figure.outline);
+        if !pieces.iter().any(|piece| piece == text) {
+            pieces.push(text.to_owned());
+        }
+    }
+    pieces
+}
+
+/// Returns code that returns the color of the topmost figure that covers (x, y).
+pub(super) fn figure_tests(figures: &[Figure]) -> String {
+    if figures.is_empty() {
+        return String::new();
+    }
+    let tests = figures.iter().rev().map(|figure| {
+        let (_, call) = function(&figure.outline);
+        format!(
+            "    if ({call} < 0.0) {{\n        return {};\n    }}\n",
+            vector(figure.color)
+        )
+    });
+    "    vec2 p = vec2(x, y);\n".to_owned() + &tests.collect::<String>()
+}
+
+const DISK: &str = "float disk(vec2 p, vec2 center, float radius) {
+    vec2 d = p - center;
+    return dot(d, d) - radius * radius;
+}
+";
+
+const WAVE: &str = "// Below a sine wave.
+float wave(vec2 p, float height, float amplitude, float frequency) {
+    return p.y - height - amplitude * sin(frequency * p.x);
+}
+";
+
+const HEART: &str = "float heart(vec2 p, vec2 center, float size) {
+    vec2 q = (p - center) / size;
+    float ring = dot(q, q) - 1.0;
+    return ring * ring * ring - q.x * q.x * q.y * q.y * q.y;
+}
+";
+
+// The background.
+
+pub(super) fn background_function(background: &Background) -> String {
+    let body = match *background {
+        Background::Uniform(color) => format!("    return {};\n", vector(color)),
+        Background::Gradient { bottom, top } => gradient(bottom, top),
+    };
+    format!("vec3 background(vec3 direction) {{\n{body}}}\n")
+}
+
+fn gradient(bottom: Color, top: Color) -> String {
+    format!(
+        "    return mix({}, {}, 0.5 * (1.0 + direction.y));\n",
+        vector(bottom),
+        vector(top)
+    )
+}
+
+// Random numbers.
+
+pub(super) fn random_functions(sampler: Sampler) -> String {
+    if sampler == Sampler::SineHash {
+        SINE_HASH.to_owned()
+    } else {
+        format!("{PCG}\n{INDEPENDENT}")
+    }
+}
+
+const SINE_HASH: &str = "float seed;
+
+float random() {
+    return fract(sin(seed++) * 43758.5453123);
+}
+";
+
+pub(super) const PCG: &str = "// The integer hash pcg (Jarzynski and Olano 2020).
+uint pcg(uint v) {
+    uint s = v * 747796405u + 2891336453u;
+    uint word = ((s >> ((s >> 28u) + 4u)) ^ s) * 277803737u;
+    return (word >> 22u) ^ word;
+}
+";
+
+const INDEPENDENT: &str = "uint state;
+
+float random() {
+    state = pcg(state);
+    return float(state >> 8u) / 16777216.0;
+}
+
+void startSample(vec2 fragCoord, int i) {
+    state = pcg(uint(fragCoord.x) + pcg(uint(fragCoord.y) + pcg(uint(i))));
+}
+";
+
+pub(super) const AROUND: &str = "// The direction at an angle to w, given by its cosine, turned about w.
+vec3 around(vec3 w, float cosine, float turn) {
+    vec3 up = abs(w.y) > 0.9 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
+    vec3 a = normalize(cross(up, w));
+    vec3 b = cross(w, a);
+    float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
+    float phi = 6.28318530718 * turn;
+    return sine * cos(phi) * a + sine * sin(phi) * b + cosine * w;
+}
+";

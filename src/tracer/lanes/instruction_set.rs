@@ -1,0 +1,248 @@
+//! Instruction sets, based on pulp, which encapsulates their unsafe code.
+
+use pulp::{Scalar, Simd};
+
+use super::Lanes;
+
+/// An instruction set: the operations that pulp's trait lacks.
+pub trait InstructionSet: Simd {
+    /// The same instruction set with at most eight f32 lanes.
+    type Eight32: InstructionSet;
+    /// The same instruction set with at most eight f64 lanes.
+    type Eight64: InstructionSet;
+    /// Returns the same instruction set with at most eight f32 lanes.
+    fn eight32(self) -> Self::Eight32;
+    /// Returns the same instruction set with at most eight f64 lanes.
+    fn eight64(self) -> Self::Eight64;
+    /// Converts a mask of f32 lanes to bits: bit i is lane i.
+    fn bits32(self, mask: Self::m32s) -> u32;
+    /// Converts a mask of f64 lanes to bits: bit i is lane i.
+    fn bits64(self, mask: Self::m64s) -> u32;
+}
+
+impl InstructionSet for Scalar {
+    type Eight32 = Self;
+    type Eight64 = Self;
+    #[inline(always)]
+    fn eight32(self) -> Self {
+        self
+    }
+    #[inline(always)]
+    fn eight64(self) -> Self {
+        self
+    }
+    #[inline(always)]
+    fn bits32(self, mask: bool) -> u32 {
+        u32::from(mask)
+    }
+    #[inline(always)]
+    fn bits64(self, mask: bool) -> u32 {
+        u32::from(mask)
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+mod x86 {
+    use pulp::x86::{V3, V4};
+    use pulp::{b8, b16, cast, m32x8, m64x4};
+
+    use super::InstructionSet;
+
+    impl InstructionSet for V3 {
+        type Eight32 = Self;
+        type Eight64 = Self;
+        #[inline(always)]
+        fn eight32(self) -> Self {
+            self
+        }
+        #[inline(always)]
+        fn eight64(self) -> Self {
+            self
+        }
+        #[inline(always)]
+        fn bits32(self, mask: m32x8) -> u32 {
+            self.avx._mm256_movemask_ps(cast(mask)).cast_unsigned()
+        }
+        #[inline(always)]
+        fn bits64(self, mask: m64x4) -> u32 {
+            self.avx._mm256_movemask_pd(cast(mask)).cast_unsigned()
+        }
+    }
+
+    impl InstructionSet for V4 {
+        type Eight32 = V3;
+        type Eight64 = Self;
+        #[inline(always)]
+        fn eight32(self) -> V3 {
+            *self
+        }
+        #[inline(always)]
+        fn eight64(self) -> Self {
+            self
+        }
+        #[inline(always)]
+        fn bits32(self, mask: b16) -> u32 {
+            u32::from(mask.0)
+        }
+        #[inline(always)]
+        fn bits64(self, mask: b8) -> u32 {
+            u32::from(mask.0)
+        }
+    }
+}
+
+#[cfg(target_arch = "aarch64")]
+mod aarch64 {
+    use pulp::aarch64::Neon;
+    use pulp::{cast, m32x4, m64x2};
+
+    use super::InstructionSet;
+
+    impl InstructionSet for Neon {
+        type Eight32 = Self;
+        type Eight64 = Self;
+        #[inline(always)]
+        fn eight32(self) -> Self {
+            self
+        }
+        #[inline(always)]
+        fn eight64(self) -> Self {
+            self
+        }
+        #[inline(always)]
+        fn bits32(self, mask: m32x4) -> u32 {
+            let lanes: [u32; 4] = cast(mask);
+            (lanes[0] & 1) | (lanes[1] & 2) | (lanes[2] & 4) | (lanes[3] & 8)
+        }
+        #[inline(always)]
+        fn bits64(self, mask: m64x2) -> u32 {
+            let lanes: [u64; 2] = cast(mask);
+            ((lanes[0] & 1) | (lanes[1] & 2)) as u32
+        }
+    }
+}
+
+macro_rules! lanes {
+    ($number:ty, $numbers:ident, $mask:ident, $count:ident, $eight_type:ident, $eight:ident, $bits:ident,
+     $splat:ident, $load:ident, $store:ident, $add:ident, $sub:ident, $mul:ident, $div:ident, $neg:ident,
+     $sqrt:ident, $and:ident, $or:ident, $min:ident, $max:ident, $less:ident, $less_or_equal:ident, $equal:ident, $select:ident,
+     $reduce_min:ident, $reduce_max:ident, $reduce_sum:ident) => {
+        impl<S: InstructionSet> Lanes<$number> for S {
+            type Numbers = S::$numbers;
+            type Mask = S::$mask;
+            type Eight = S::$eight_type;
+            const COUNT: usize = S::$count;
+            #[inline(always)]
+            fn eight(self) -> S::$eight_type {
+                InstructionSet::$eight(self)
+            }
+            #[inline(always)]
+            fn splat(self, value: $number) -> S::$numbers {
+                Simd::$splat(self, value)
+            }
+            #[inline(always)]
+            fn load(self, from: &[$number]) -> S::$numbers {
+                S::$load(&from[..S::$count]).0[0]
+            }
+            #[inline(always)]
+            fn store(self, numbers: S::$numbers, to: &mut [$number]) {
+                S::$store(&mut to[..S::$count]).0[0] = numbers;
+            }
+            lanes!(binary $numbers, add $add, sub $sub, mul $mul, div $div, and $and, or $or, min $min, max $max);
+            lanes!(unary $numbers, neg $neg, sqrt $sqrt);
+            lanes!(reduction $number, $numbers, reduce_min $reduce_min, reduce_max $reduce_max, reduce_sum $reduce_sum);
+            lanes!(comparison $numbers, $mask, less $less, less_or_equal $less_or_equal, equal $equal);
+            #[inline(always)]
+            fn select(self, mask: S::$mask, yes: S::$numbers, no: S::$numbers) -> S::$numbers {
+                Simd::$select(self, mask, yes, no)
+            }
+            #[inline(always)]
+            fn bits(self, mask: S::$mask) -> u32 {
+                InstructionSet::$bits(self, mask)
+            }
+        }
+    };
+    (binary $numbers:ident, $($name:ident $pulp_name:ident),*) => {
+        $(#[inline(always)]
+        fn $name(self, a: S::$numbers, b: S::$numbers) -> S::$numbers {
+            Simd::$pulp_name(self, a, b)
+        })*
+    };
+    (comparison $numbers:ident, $mask:ident, $($name:ident $pulp_name:ident),*) => {
+        $(#[inline(always)]
+        fn $name(self, a: S::$numbers, b: S::$numbers) -> S::$mask {
+            Simd::$pulp_name(self, a, b)
+        })*
+    };
+    (reduction $number:ty, $numbers:ident, $($name:ident $pulp_name:ident),*) => {
+        $(#[inline(always)]
+        fn $name(self, a: S::$numbers) -> $number {
+            Simd::$pulp_name(self, a)
+        })*
+    };
+    (unary $numbers:ident, $($name:ident $pulp_name:ident),*) => {
+        $(#[inline(always)]
+        fn $name(self, a: S::$numbers) -> S::$numbers {
+            Simd::$pulp_name(self, a)
+        })*
+    };
+}
+
+lanes!(
+    f32,
+    f32s,
+    m32s,
+    F32_LANES,
+    Eight32,
+    eight32,
+    bits32,
+    splat_f32s,
+    as_simd_f32s,
+    as_mut_simd_f32s,
+    add_f32s,
+    sub_f32s,
+    mul_f32s,
+    div_f32s,
+    neg_f32s,
+    sqrt_f32s,
+    and_f32s,
+    or_f32s,
+    min_f32s,
+    max_f32s,
+    less_than_f32s,
+    less_than_or_equal_f32s,
+    equal_f32s,
+    select_f32s,
+    reduce_min_f32s,
+    reduce_max_f32s,
+    reduce_sum_f32s
+);
+lanes!(
+    f64,
+    f64s,
+    m64s,
+    F64_LANES,
+    Eight64,
+    eight64,
+    bits64,
+    splat_f64s,
+    as_simd_f64s,
+    as_mut_simd_f64s,
+    add_f64s,
+    sub_f64s,
+    mul_f64s,
+    div_f64s,
+    neg_f64s,
+    sqrt_f64s,
+    and_f64s,
+    or_f64s,
+    min_f64s,
+    max_f64s,
+    less_than_f64s,
+    less_than_or_equal_f64s,
+    equal_f64s,
+    select_f64s,
+    reduce_min_f64s,
+    reduce_max_f64s,
+    reduce_sum_f64s
+);

@@ -1,0 +1,211 @@
+//! Adapts written text so that other tools can read it again: substitutes for the host that it was written
+//! for.
+
+use std::fmt::Write as _;
+
+use crate::backend::Target;
+
+/// Adapts a text for glslang with Vulkan semantics, including our bindings; `None` if glslang does not
+/// support the language.
+///
+/// GLSL ES 3.00 has neither descriptor sets nor textures apart from samplers, and 3.10 is the first version
+/// that compiles to SPIR-V. For HLSL, glslang packs blocks like D3D with one exception: D3D places a scalar
+/// in the last row of a preceding array, which naga pads for that. glslang also refuses `(T[N])0` as an array
+/// of zeros.
+#[must_use]
+pub fn for_glslang(target: Target, text: &str) -> Option<String> {
+    match target {
+        Target::Glsl => {
+            let mut adapted = String::new();
+            let own = unused_prefix(text);
+            for line in text.lines() {
+                let _ = match classify(line) {
+                    Line::Version => writeln!(adapted, "#version 310 es"),
+                    Line::Block(rest) => {
+                        writeln!(adapted, "layout(std140, set = 0, binding = 0) uniform {rest}")
+                    }
+                    Line::Channel(shape, binding, name) => writeln!(
+                        adapted,
+                        "layout(set = 0, binding = {binding}) uniform highp texture{shape} {own}_t{binding};\n\
+                         layout(set = 0, binding = {}) uniform highp sampler {own}_s{binding};\n\
+                         #define {name} sampler{shape}({own}_t{binding}, {own}_s{binding})",
+                        binding + 1
+                    ),
+                    Line::Precision | Line::Output(_) | Line::Main | Line::Other => {
+                        writeln!(adapted, "{line}")
+                    }
+                };
+            }
+            Some(adapted)
+        }
+        Target::Hlsl => {
+            let lines = text.lines().filter(|line| *line != "    int _pad7_0;");
+            Some(lines.map(with_expanded_zeros).collect::<Vec<_>>().join("\n"))
+        }
+        Target::Wgsl | Target::Spirv | Target::Msl => None,
+    }
+}
+
+/// Larger arrays are not expanded.
+const MAX_EXPANDED_ELEMENTS: usize = 1 << 12;
+
+/// Expands the array of zeros in an HLSL declaration element by element.
+fn with_expanded_zeros(line: &str) -> String {
+    let expanded = || {
+        let (declared, zeros) = line.split_once(" = (")?;
+        let (ty, size) = zeros.strip_suffix("])0;")?.split_once('[')?;
+        let size = size
+            .parse()
+            .ok()
+            .filter(|&size: &usize| size <= MAX_EXPANDED_ELEMENTS)?;
+        Some(format!(
+            "{declared} = {{ {} }};",
+            vec![format!("({ty})0"); size].join(", ")
+        ))
+    };
+    expanded().unwrap_or_else(|| line.to_owned())
+}
+
+/// Converts written GLSL to a `ShaderToy` shader: its block and channels become `ShaderToy`'s inputs again.
+#[must_use]
+pub fn as_shadertoy(text: &str) -> String {
+    let own = unused_prefix(text);
+    // The text already has a `mainImage`, which `main` calls.
+    let text = text.replace("mainImage", &format!("{own}_image"));
+    let mut adapted = String::new();
+    let mut before = String::new();
+    let mut after = String::new();
+    for line in text.lines() {
+        let _ = match classify(line) {
+            Line::Version | Line::Precision => Ok(()),
+            Line::Block(rest) => {
+                let member = rest.split_once('{').and_then(|(_, rest)| rest.split_once('}'));
+                let member = member.map_or("", |(member, _)| member.trim());
+                let name = member
+                    .trim_end_matches(';')
+                    .rsplit(' ')
+                    .next()
+                    .unwrap_or_default();
+                let _ = writeln!(before, "    {name} = {BLOCK};");
+                writeln!(adapted, "{member}")
+            }
+            Line::Channel(_, binding, name) => writeln!(adapted, "#define {name} iChannel{}", binding / 2),
+            Line::Output(rest) => {
+                let name = rest.trim_end_matches(';').rsplit(' ').next().unwrap_or_default();
+                let _ = writeln!(after, "    {own}_color = {name};");
+                writeln!(adapted, "{rest}")
+            }
+            Line::Main => writeln!(adapted, "void {own}_main() {{"),
+            Line::Other => writeln!(adapted, "{line}"),
+        };
+    }
+    let _ = writeln!(
+        adapted,
+        "void mainImage(out vec4 {own}_color, in vec2 {own}_at) {{\n{before}    {own}_main();\n{after}}}"
+    );
+    adapted
+}
+
+/// A prefix that does not occur in the text.
+fn unused_prefix(text: &str) -> String {
+    let mut prefix = "written".to_owned();
+    while text.contains(&prefix) {
+        prefix.push('n');
+    }
+    prefix
+}
+
+const BLOCK: &str = "ToyproofFrame(iResolution, iTime, iTimeDelta, iFrame, iFrameRate, \
+    vec4[4](vec4(iChannelTime[0]), vec4(iChannelTime[1]), vec4(iChannelTime[2]), vec4(iChannelTime[3])), \
+    iChannelResolution, iMouse, iDate, iSampleRate)";
+
+/// The role of a line in naga's GLSL.
+enum Line<'a> {
+    Version,
+    Precision,
+    /// The uniform block, with the text after `uniform`.
+    Block(&'a str),
+    /// A channel: its shape, the binding of its texture, and its name.
+    Channel(&'a str, u32, &'a str),
+    /// The output color, with the text after the layout.
+    Output(&'a str),
+    Main,
+    Other,
+}
+
+fn classify(line: &str) -> Line<'_> {
+    if line.starts_with("#version ") {
+        return Line::Version;
+    }
+    if line.starts_with("precision ") {
+        return Line::Precision;
+    }
+    if line == "void main() {" {
+        return Line::Main;
+    }
+    if let Some(rest) = line.strip_prefix("layout(std140) uniform ") {
+        return Line::Block(rest);
+    }
+    if let Some(rest) = line.strip_prefix("layout(location = 0) out ") {
+        return Line::Output(rest);
+    }
+    let channel = || {
+        let (shape, name) = line
+            .strip_prefix("uniform highp sampler")?
+            .strip_suffix(';')?
+            .split_once(' ')?;
+        let binding = name
+            .strip_prefix("_group_0_binding_")?
+            .strip_suffix("_fs")?
+            .parse()
+            .ok()?;
+        Some(Line::Channel(shape, binding, name))
+    };
+    channel().unwrap_or(Line::Other)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_arrays_of_zeros_are_expanded() {
+        assert_eq!(
+            with_expanded_zeros("static Ray rays[2] = (Ray[2])0;"),
+            "static Ray rays[2] = { (Ray)0, (Ray)0 };"
+        );
+        for line in [
+            "    float x = (1.0);",
+            "float y[9999999] = (float[9999999])0;",
+            "x = (a[2])0",
+        ] {
+            assert_eq!(with_expanded_zeros(line), line);
+        }
+    }
+
+    #[test]
+    fn inputs_become_those_of_shadertoy() {
+        let text = "#version 300 es\nprecision highp float;\n\
+            layout(std140) uniform B_block_0Fragment { B _group_0_binding_0_fs; };\n\
+            uniform highp sampler2D _group_0_binding_5_fs;\n\
+            layout(location = 0) out vec4 _fs2p_location0;\n\
+            void mainImage(inout vec4 c) {}\nvoid main() {\n}\n";
+        let again = as_shadertoy(text);
+        for expected in [
+            "B _group_0_binding_0_fs;\n",
+            "#define _group_0_binding_5_fs iChannel2\n",
+            "vec4 _fs2p_location0;\n",
+            "void written_image(inout vec4 c) {}",
+            "    written_color = _fs2p_location0;\n",
+        ] {
+            assert!(again.contains(expected), "{again}");
+        }
+        let vulkan = for_glslang(Target::Glsl, text).unwrap();
+        assert!(
+            vulkan.contains("binding = 6) uniform highp sampler written_s5;"),
+            "{vulkan}"
+        );
+        let named = as_shadertoy(&text.replace("void main()", "float written_main, writtenn;\nvoid main()"));
+        assert!(named.contains("    writtennn_main();\n"), "{named}");
+    }
+}

@@ -1,0 +1,541 @@
+//! Expansion of the functions whose last bits depend on the driver, into operations that all drivers compute
+//! alike: for strict shaders only.
+//!
+//! Each is generated once (`toyproof_math`); a function of vectors calls that of their components. Matrix
+//! products are expanded late, when the indices of targets have no side effects any more.
+
+use std::collections::{BTreeMap, HashSet};
+use std::fmt::Write as _;
+
+use toyproof_glsl::tree::{
+    BinaryOp, BuiltIn, Constructor, Direction, ExprId, ExprKind, FunctionId, Item, Place, Scalar, Statement,
+    StatementKind, Swizzle, Type, VariableId, VariableKind, walk,
+};
+use toyproof_math::{self as math, Binary, ExprGraph, FloatTerm, Kind, Matrix, Step, StepId, Unary};
+
+use crate::lower::context::LoweringContext;
+
+/// An operation to expand, instantiated for the types of its arguments.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Expansion {
+    /// A built-in function.
+    Function(BuiltIn),
+    /// `*` of matrices and vectors.
+    Product,
+    /// The conversion of a `uint` to the nearest float.
+    FloatOfUint,
+}
+
+pub(super) fn lower_functions(cx: &mut LoweringContext) {
+    cx.each_expression(|cx, id| match &cx.tree[id].kind {
+        ExprKind::BuiltIn { function, arguments }
+            if is_expanded(*function) && !is_selection(cx, arguments) =>
+        {
+            let (function, arguments) = (Expansion::Function(*function), arguments.clone());
+            call(cx, id, function, arguments);
+        }
+        ExprKind::Construct { arguments, .. } if cx.tree[id].ty.scalar() == Some(Scalar::Float) => {
+            for argument in arguments.clone() {
+                let ty = cx.tree[argument].ty;
+                if let (Some(Scalar::Uint), Some(float)) = (ty.scalar(), ty.with_scalar(Scalar::Float)) {
+                    let value = cx.build_at(argument).detach(argument);
+                    cx.tree[argument].ty = float;
+                    call(cx, argument, Expansion::FloatOfUint, vec![value]);
+                }
+            }
+        }
+        _ => {}
+    });
+    demote_constants(cx);
+}
+
+/// Whether the last argument is boolean: such a `mix` selects.
+fn is_selection(cx: &LoweringContext, arguments: &[ExprId]) -> bool {
+    let scalar = |id: &ExprId| cx.tree[*id].ty.scalar();
+    arguments.last().and_then(scalar) == Some(Scalar::Bool)
+}
+
+/// Expands `*` of matrices and vectors.
+pub(super) fn lower_products(cx: &mut LoweringContext) {
+    cx.each_expression(|cx, id| match cx.tree[id].kind {
+        ExprKind::Binary {
+            op: BinaryOp::Multiply,
+            left,
+            right,
+        } if is_product(cx, left, right) => call(cx, id, Expansion::Product, vec![left, right]),
+        ExprKind::Assign {
+            op: Some(BinaryOp::Multiply),
+            target,
+            value,
+        } if is_product(cx, target, value) => {
+            let ty = cx.tree[target].ty;
+            let mut build = cx.build_at(id);
+            let left = build.copy(target);
+            let product = build.binary(BinaryOp::Multiply, left, value, ty);
+            build.tree[id].kind = ExprKind::Assign {
+                op: None,
+                target,
+                value: product,
+            };
+            call(cx, product, Expansion::Product, vec![left, value]);
+        }
+        _ => {}
+    });
+    demote_constants(cx);
+}
+
+fn is_product(cx: &LoweringContext, left: ExprId, right: ExprId) -> bool {
+    let is_matrix = |ty| matches!(ty, Type::Matrix { .. });
+    let is_vector = |ty| matches!(ty, Type::Vector(..));
+    let [left, right] = [left, right].map(|id| cx.tree[id].ty);
+    is_matrix(left) && (is_matrix(right) || is_vector(right)) || is_vector(left) && is_matrix(right)
+}
+
+/// Makes local constants whose initializers now contain calls plain variables: only toyproof treats them as
+/// constant.
+fn demote_constants(cx: &mut LoweringContext) {
+    let global: HashSet<VariableId> = cx
+        .tree
+        .items
+        .iter()
+        .filter_map(|item| match *item {
+            Item::Variable(variable) => Some(variable),
+            _ => None,
+        })
+        .collect();
+    for id in cx.tree.variables.ids() {
+        let variable = &cx.tree[id];
+        let calls = |root| walk::any(&cx.tree, root, |kind| matches!(kind, ExprKind::Call { .. }));
+        if variable.kind == VariableKind::Const
+            && !global.contains(&id)
+            && variable.initializer.is_some_and(calls)
+        {
+            cx.tree[id].kind = VariableKind::Local;
+        }
+    }
+}
+
+fn call(cx: &mut LoweringContext, id: ExprId, expansion: Expansion, arguments: Vec<ExprId>) {
+    let types: Vec<Type> = arguments.iter().map(|&argument| cx.tree[argument].ty).collect();
+    let (ty, at) = (cx.tree[id].ty, cx.tree[id].at);
+    let function = function(cx, expansion, types, ty, at);
+    cx.tree[id].kind = ExprKind::Call { function, arguments };
+    cx.tree[id].constant = false;
+}
+
+/// Returns the generated function for the given types and adds it on first use.
+fn function(
+    cx: &mut LoweringContext,
+    expansion: Expansion,
+    types: Vec<Type>,
+    ty: Type,
+    at: Place,
+) -> FunctionId {
+    let key = (expansion, types);
+    if let Some(&id) = cx.expansions.get(&key) {
+        return id;
+    }
+    let (expansion, types) = &key;
+    let id = if is_componentwise(*expansion) && matches!(ty, Type::Vector(..)) {
+        componentwise_function(cx, *expansion, types, ty, at)
+    } else {
+        let id = declare(cx, *expansion, types, ty, at);
+        let body = helper_body(cx, *expansion, types, ty);
+        cx.helpers.insert(id, body);
+        id
+    };
+    cx.expansions.insert(key, id);
+    id
+}
+
+const PARAMETER_NAMES: [&str; 3] = ["toyproof_a", "toyproof_b", "toyproof_c"];
+
+fn declare(
+    cx: &mut LoweringContext,
+    expansion: Expansion,
+    types: &[Type],
+    ty: Type,
+    at: Place,
+) -> FunctionId {
+    let name = match expansion {
+        Expansion::Function(function) => function.name(),
+        Expansion::Product => "product",
+        Expansion::FloatOfUint => "float",
+    };
+    let parameters: Vec<_> = types
+        .iter()
+        .zip(PARAMETER_NAMES)
+        .map(|(&ty, name)| (Direction::In, ty, name))
+        .collect();
+    cx.function(format!("toyproof_{name}"), &parameters, ty, at)
+}
+
+/// Adds a function of vectors that calls the function of their components.
+fn componentwise_function(
+    cx: &mut LoweringContext,
+    expansion: Expansion,
+    types: &[Type],
+    ty: Type,
+    at: Place,
+) -> FunctionId {
+    let id = declare(cx, expansion, types, ty, at);
+    let scalar = |ty: Type| ty.scalar().map_or(ty, Type::Scalar);
+    let scalar_function = function(
+        cx,
+        expansion,
+        types.iter().map(|&ty| scalar(ty)).collect(),
+        scalar(ty),
+        at,
+    );
+    let parameters = cx.tree[id].parameters.clone();
+    let mut build = cx.build(at);
+    let components: Vec<ExprId> = (0..ty.component_count().unwrap_or(1))
+        .map(|component| {
+            let arguments = parameters.iter().map(|&parameter| {
+                let whole = build.variable(parameter);
+                match (build.tree[whole].ty, Swizzle::new(&[component])) {
+                    (Type::Vector(..), Some(one)) => build.swizzle(whole, one),
+                    _ => whole,
+                }
+            });
+            let arguments = arguments.collect();
+            build.call(scalar_function, arguments)
+        })
+        .collect();
+    let value = build.construct(Constructor::Vector, components, ty);
+    cx.tree[id].body = Some(vec![Statement {
+        kind: StatementKind::Return(Some(value)),
+        at,
+    }]);
+    id
+}
+
+/// Whether drivers may compute a function differently; exact functions stay built-in.
+fn is_expanded(function: BuiltIn) -> bool {
+    is_componentwise_builtin(function) || is_vector_builtin(function)
+}
+
+fn is_componentwise(expansion: Expansion) -> bool {
+    match expansion {
+        Expansion::Function(function) => is_componentwise_builtin(function),
+        Expansion::FloatOfUint => true,
+        Expansion::Product => false,
+    }
+}
+
+fn is_componentwise_builtin(function: BuiltIn) -> bool {
+    use BuiltIn as B;
+    matches!(
+        function,
+        B::Radians
+            | B::Degrees
+            | B::Sin
+            | B::Cos
+            | B::Tan
+            | B::Asin
+            | B::Acos
+            | B::Atan
+            | B::Sinh
+            | B::Cosh
+            | B::Tanh
+            | B::Asinh
+            | B::Acosh
+            | B::Atanh
+            | B::Pow
+            | B::Exp
+            | B::Log
+            | B::Exp2
+            | B::Log2
+            | B::InverseSqrt
+            | B::Fract
+            | B::Mod
+            | B::Mix
+            | B::Step
+            | B::Smoothstep
+    )
+}
+
+fn is_vector_builtin(function: BuiltIn) -> bool {
+    use BuiltIn as B;
+    matches!(
+        function,
+        B::Length
+            | B::Distance
+            | B::Dot
+            | B::Cross
+            | B::Normalize
+            | B::Faceforward
+            | B::Reflect
+            | B::Refract
+            | B::Determinant
+            | B::Inverse
+            | B::UnpackSnorm2x16
+            | B::UnpackUnorm2x16
+            | B::UnpackHalf2x16
+    )
+}
+
+/// The body of a generated function.
+fn helper_body(cx: &LoweringContext, expansion: Expansion, types: &[Type], ty: Type) -> String {
+    const A: &str = PARAMETER_NAMES[0];
+    match expansion {
+        // Both halves are exact, so that only their sum is rounded.
+        Expansion::FloatOfUint => {
+            return format!("return float(int({A} >> 16u)) * 65536.0 + float(int({A} & 65535u));");
+        }
+        Expansion::Function(BuiltIn::UnpackUnorm2x16) => {
+            return format!(
+                "return vec2(float(int({A} & 65535u)) / 65535.0, float(int({A} >> 16u)) / 65535.0);"
+            );
+        }
+        Expansion::Function(BuiltIn::UnpackSnorm2x16) => {
+            return format!(
+                "return vec2(max(float(int({A} << 16u) >> 16u) / 32767.0, -1.0), \
+                 max(float(int({A}) >> 16u) / 32767.0, -1.0));"
+            );
+        }
+        // Mesa 22.3 takes the upper half of a constant for zero.
+        Expansion::Function(BuiltIn::UnpackHalf2x16) => {
+            return format!("return vec2(unpackHalf2x16({A}).x, unpackHalf2x16({A} >> 16u).x);");
+        }
+        Expansion::Function(_) | Expansion::Product => {}
+    }
+    let graph = ExprGraph::default();
+    let mut names = Vec::new();
+    let mut arguments = Vec::new();
+    for (&ty, name) in types.iter().zip(PARAMETER_NAMES) {
+        let components = components(ty, name);
+        let first = names.len();
+        names.extend(components);
+        arguments.push((first..names.len()).map(|index| graph.argument(index)).collect());
+    }
+    let results = match expansion {
+        Expansion::Function(function) => apply(function, &arguments),
+        _ => product(&arguments, types),
+    };
+    let results: Vec<_> = results.into_iter().map(FloatTerm::id).collect();
+    function_body(&graph, &results, &names, &cx.tree.type_name(ty))
+}
+
+/// The components of an argument, in column order.
+fn components(ty: Type, name: &str) -> Vec<String> {
+    const LETTERS: [&str; 4] = ["x", "y", "z", "w"];
+    let of = |size: u8| LETTERS.into_iter().take(size.into());
+    match ty {
+        Type::Vector(_, size) => of(size).map(|letter| format!("{name}.{letter}")).collect(),
+        Type::Matrix { columns, rows } => (0..columns)
+            .flat_map(|column| of(rows).map(move |letter| format!("{name}[{column}].{letter}")))
+            .collect(),
+        _ => vec![name.to_owned()],
+    }
+}
+
+/// The result of a function, as components; empty if the function is not expanded.
+fn apply<'a>(function: BuiltIn, arguments: &[Vec<FloatTerm<'a>>]) -> Vec<FloatTerm<'a>> {
+    use BuiltIn as B;
+    let one = |value| vec![value];
+    match (function, arguments) {
+        (B::Length, [v]) => one(math::length(v)),
+        (B::Distance, [a, b]) => one(math::distance(a, b)),
+        (B::Dot, [a, b]) => one(math::dot(a, b)),
+        (B::Cross, [a, b]) => match (&a[..], &b[..]) {
+            (&[a, b, c], &[x, y, z]) => math::cross([a, b, c], [x, y, z]).to_vec(),
+            _ => Vec::new(),
+        },
+        (B::Normalize, [v]) => math::normalize(v),
+        (B::Faceforward, [n, i, reference]) => math::faceforward(n, i, reference),
+        (B::Reflect, [i, n]) => math::reflect(i, n),
+        (B::Refract, [i, n, eta]) => math::refract(i, n, eta[0]),
+        (B::Determinant, [m]) => one(math::determinant(&Matrix::new(m, m.len().isqrt()))),
+        (B::Inverse, [m]) => math::inverse(&Matrix::new(m, m.len().isqrt())).components(),
+        (_, [x]) => apply_unary(function, x[0]).into_iter().collect(),
+        (B::Atan, [y, x]) => one(math::atan2(y[0], x[0])),
+        (B::Pow, [x, y]) => one(math::pow(x[0], y[0])),
+        (B::Mod, [x, y]) => one(math::modulo(x[0], y[0])),
+        (B::Step, [edge, x]) => one(math::step(edge[0], x[0])),
+        (B::Mix, [a, b, t]) => one(math::mix(a[0], b[0], t[0])),
+        (B::Smoothstep, [low, high, x]) => one(math::smoothstep(low[0], high[0], x[0])),
+        _ => Vec::new(),
+    }
+}
+
+fn apply_unary(function: BuiltIn, x: FloatTerm<'_>) -> Option<FloatTerm<'_>> {
+    use BuiltIn as B;
+    Some(match function {
+        B::Radians => math::radians(x),
+        B::Degrees => math::degrees(x),
+        B::Sin => math::sin(x),
+        B::Cos => math::cos(x),
+        B::Tan => math::tan(x),
+        B::Asin => math::asin(x),
+        B::Acos => math::acos(x),
+        B::Atan => math::atan(x),
+        B::Sinh => math::sinh(x),
+        B::Cosh => math::cosh(x),
+        B::Tanh => math::tanh(x),
+        B::Asinh => math::asinh(x),
+        B::Acosh => math::acosh(x),
+        B::Atanh => math::atanh(x),
+        B::Exp => math::exp(x),
+        B::Log => math::log(x),
+        B::Exp2 => math::exp2(x),
+        B::Log2 => math::log2(x),
+        B::InverseSqrt => math::inverse_sqrt(x),
+        B::Fract => math::fract(x),
+        _ => return None,
+    })
+}
+
+/// `a·b` of a matrix and a matrix or vector.
+fn product<'a>(arguments: &[Vec<FloatTerm<'a>>], types: &[Type]) -> Vec<FloatTerm<'a>> {
+    match (arguments, types) {
+        ([a, b], [Type::Matrix { rows, .. }, Type::Vector(..)]) => {
+            Matrix::new(a, (*rows).into()).times_vector(b)
+        }
+        ([a, b], [Type::Vector(..), Type::Matrix { rows, .. }]) => {
+            Matrix::new(b, (*rows).into()).vector_times(a)
+        }
+        ([a, b], [Type::Matrix { rows, .. }, Type::Matrix { rows: inner, .. }]) => {
+            let product = Matrix::new(a, (*rows).into()).times(&Matrix::new(b, (*inner).into()));
+            product.components()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// Prints the GLSL body of a function that returns `results`; several results are combined into a value of
+/// type `ty`.
+fn function_body(graph: &ExprGraph, results: &[StepId], arguments: &[String], ty: &str) -> String {
+    let mut writer = Writer {
+        graph,
+        arguments,
+        uses: uses(graph, results),
+        lines: String::new(),
+    };
+    let shared: Vec<StepId> = writer
+        .uses
+        .iter()
+        .filter(|&(_, &uses)| uses > 1)
+        .map(|(&id, _)| id)
+        .collect();
+    for id in shared {
+        writer.declare(id);
+    }
+    let results: Vec<String> = results.iter().map(|&id| writer.operand(id)).collect();
+    match &results[..] {
+        [only] => format!("{}return {only};", writer.lines),
+        several => format!("{}return {ty}({});", writer.lines, several.join(", ")),
+    }
+}
+
+/// The number of uses of each step.
+fn uses(graph: &ExprGraph, results: &[StepId]) -> BTreeMap<StepId, usize> {
+    let mut uses = BTreeMap::new();
+    let mut pending = results.to_vec();
+    while let Some(id) = pending.pop() {
+        let count = uses.entry(id).or_insert(0);
+        *count += 1;
+        if *count == 1 {
+            pending.extend(graph.step(id).0.operands());
+        }
+    }
+    uses
+}
+
+struct Writer<'a> {
+    graph: &'a ExprGraph,
+    arguments: &'a [String],
+    uses: BTreeMap<StepId, usize>,
+    lines: String,
+}
+
+impl Writer<'_> {
+    /// Declares a variable for a step with several uses.
+    fn declare(&mut self, id: StepId) {
+        let (step, kind) = self.graph.step(id);
+        if is_leaf(step) {
+            return;
+        }
+        let ty = match kind {
+            Kind::Float => "float",
+            Kind::Bits => "uint",
+            Kind::Truth => "bool",
+        };
+        let value = self.expression(step);
+        let _ = write!(self.lines, "{ty} {} = {value};\n    ", name(id));
+    }
+
+    /// A step as an operand of another.
+    fn operand(&self, id: StepId) -> String {
+        let (step, _) = self.graph.step(id);
+        if self.uses[&id] > 1 && !is_leaf(step) {
+            name(id)
+        } else {
+            self.expression(step)
+        }
+    }
+
+    fn expression(&self, step: Step) -> String {
+        match step {
+            Step::Argument(index) => self.arguments[index].clone(),
+            Step::Float(bits) => literal(f32::from_bits(bits)),
+            Step::Bits(bits) => format!("{bits}u"),
+            Step::Unary(operation, a) => {
+                let a = self.operand(a);
+                match operation {
+                    Unary::Negate => format!("(-{a})"),
+                    Unary::Sqrt => format!("sqrt({a})"),
+                    Unary::Abs => format!("abs({a})"),
+                    Unary::Floor => format!("floor({a})"),
+                    Unary::ToBits => format!("floatBitsToUint({a})"),
+                    Unary::FromBits => format!("uintBitsToFloat({a})"),
+                    Unary::FromSigned => format!("float(int({a}))"),
+                    Unary::Not => format!("(!{a})"),
+                }
+            }
+            Step::Binary(operation, a, b) => {
+                let is_bool = self.graph.step(a).1 == Kind::Truth;
+                let symbol = match operation {
+                    Binary::Add => "+",
+                    Binary::Subtract => "-",
+                    Binary::Multiply => "*",
+                    Binary::Divide => "/",
+                    Binary::Less => "<",
+                    Binary::And if is_bool => "&&",
+                    Binary::And => "&",
+                    Binary::Or if is_bool => "||",
+                    Binary::Or => "|",
+                    Binary::Left => "<<",
+                    Binary::Right => ">>",
+                };
+                format!("({} {symbol} {})", self.operand(a), self.operand(b))
+            }
+            // `?:` would become branches.
+            Step::Select(condition, yes, no) => {
+                let [condition, yes, no] = [condition, yes, no].map(|id| self.operand(id));
+                format!("mix({no}, {yes}, {condition})")
+            }
+        }
+    }
+}
+
+fn is_leaf(step: Step) -> bool {
+    matches!(step, Step::Argument(_) | Step::Float(_) | Step::Bits(_))
+}
+
+fn name(id: StepId) -> String {
+    format!("toyproof_{id}")
+}
+
+/// A literal that naga parses to exactly this float.
+fn literal(value: f32) -> String {
+    if !value.is_finite() || value.abs() == f32::MAX {
+        return format!("uintBitsToFloat({}u)", value.to_bits());
+    }
+    let text = format!("{value:?}");
+    if value.is_sign_negative() {
+        format!("({text})")
+    } else {
+        text
+    }
+}

@@ -1,0 +1,397 @@
+//! Executes one pixel in f32 and in f64, side by side, and finds where the two diverge.
+
+use std::time::Instant;
+
+use toyproof_eval::{
+    EventId, ExecutionTrace, Failure, ForcedPrefix, Number, PixelDebugger, Program, Settings, TraceEvent,
+    TraceSchema, TraceValue, What,
+};
+use toyproof_image::Frame;
+
+use crate::compare::SEEN;
+
+/// The execution traces of a pixel in f32 and in f64.
+#[derive(Debug, Clone)]
+pub struct Explanation<'a> {
+    /// The schema of the events.
+    pub plot: &'a TraceSchema,
+    /// The pixel's color in f32; none if it is discarded.
+    pub single: Option<[f64; 3]>,
+    /// The same in f64.
+    pub double: Option<[f64; 3]>,
+    /// The events in order of execution; an event of only one of the two traces is at its position in the
+    /// other.
+    pub steps: Vec<Step>,
+    /// The first step where the two diverge by more than [`BOUND`].
+    pub parting: Option<usize>,
+    /// The step that causes a visible difference of the colors.
+    pub cause: Option<usize>,
+    /// The step in which f32 first has a NaN, or, where the color is infinite, an infinity.
+    pub not_finite: Option<usize>,
+    /// Whether the traces were too long and are truncated.
+    pub is_cut: bool,
+}
+
+/// Executes a pixel of a frame, y upwards from the bottom, in f32 and in f64.
+///
+/// # Errors
+/// Fails if the shader is too large, or exceeds the deadline.
+pub fn explain<'a>(
+    program: &'a Program,
+    frame: &'a Frame,
+    pixel: [u32; 2],
+    deadline: Option<Instant>,
+) -> Result<Explanation<'a>, Failure> {
+    let singles = program.teller(frame, settings::<f32>(deadline))?;
+    let doubles = program.teller(frame, settings::<f64>(deadline))?;
+    let schema = doubles.plot();
+    let single = singles.story(pixel, None)?;
+    let double = doubles.story(pixel, None)?;
+    let cause = find_cause(&doubles, pixel, &single, &double)?;
+    let steps = merge(schema, &single, &double);
+    let infinite = single
+        .color
+        .is_some_and(|color| color.iter().any(|part| part.is_infinite()));
+    let has_value = |step: &Step, is_bad: fn(f64) -> bool| {
+        let value = step.single.iter().flatten();
+        value
+            .into_iter()
+            .any(|value| matches!(value, TraceValue::Float(value) if is_bad(*value)))
+    };
+    let first = |is_bad| steps.iter().position(|step| has_value(step, is_bad));
+    Ok(Explanation {
+        plot: schema,
+        single: single.color,
+        double: double.color,
+        parting: first_divergence(schema, &steps, false),
+        cause: cause.and_then(|position| steps.iter().position(|step| step.position == position)),
+        not_finite: first(f64::is_nan).or_else(|| first(f64::is_infinite).filter(|_| infinite)),
+        is_cut: single.is_cut || double.is_cut,
+        steps,
+    })
+}
+
+fn settings<'a, N: Number>(deadline: Option<Instant>) -> Settings<'a, N> {
+    Settings {
+        deadline,
+        ..Settings::default()
+    }
+}
+
+/// An event of one trace or of both.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step {
+    /// The event.
+    pub event: EventId,
+    /// Its position in the execution.
+    position: TracePosition,
+    /// Its values in f32; none if it did not occur there.
+    pub single: Option<Vec<TraceValue>>,
+    /// Its values in f64; none if it did not occur there.
+    pub double: Option<Vec<TraceValue>>,
+}
+
+impl Step {
+    /// The iteration of each enclosing loop, the outermost first, from 1.
+    #[must_use]
+    pub fn rounds(&self) -> Vec<u32> {
+        let rounds = self.position.iter().map(|&(_, iteration)| iteration);
+        rounds.filter(|&iteration| iteration > 0).collect()
+    }
+
+    /// The values of both, component by component, if it occurred in both.
+    pub fn pairs(&self) -> impl Iterator<Item = (TraceValue, TraceValue)> {
+        let both = self.single.iter().flatten().zip(self.double.iter().flatten());
+        both.map(|(&single, &double)| (single, double))
+    }
+
+    /// The component that differs most: its index, and its values in f32 and in f64; none if the event
+    /// occurred in one trace only.
+    #[must_use]
+    pub fn worst(&self) -> Option<(usize, TraceValue, TraceValue)> {
+        let distance = |pair: (TraceValue, TraceValue)| match pair {
+            (TraceValue::Float(single), TraceValue::Float(double)) => distance(single, double),
+            (single, double) => f64::from(u8::from(single != double)),
+        };
+        let pairs = self.pairs().enumerate();
+        let worst = pairs.reduce(|a, b| if distance(b.1) > distance(a.1) { b } else { a });
+        worst.map(|(at, (single, double))| (at, single, double))
+    }
+
+    /// The largest distance of a float from its f64, in units in the last place of f32; none without floats
+    /// in both.
+    #[must_use]
+    pub fn ulps(&self) -> Option<f64> {
+        let distances = self.pairs().filter_map(|pair| match pair {
+            (TraceValue::Float(single), TraceValue::Float(double)) => Some(ulps(single, double)),
+            _ => None,
+        });
+        distances.reduce(|a, b| if a >= b { a } else { b })
+    }
+}
+
+/// The distance of two numbers; infinite if exactly one is NaN or infinite.
+fn distance(single: f64, double: f64) -> f64 {
+    if single == double || (single.is_nan() && double.is_nan()) {
+        return 0.0;
+    }
+    let distance = (single - double).abs();
+    if distance.is_finite() {
+        distance
+    } else {
+        f64::INFINITY
+    }
+}
+
+/// The distance of an f32 from an f64, in units in the last place that f32 has at that f64; infinite if
+/// exactly one is NaN or infinite.
+#[must_use]
+pub fn ulps(single: f64, double: f64) -> f64 {
+    // For denormals, which are flushed, the unit is that of the smallest normal number.
+    let scale = double.abs().max(f64::from(f32::MIN_POSITIVE));
+    let exponent = ((scale.to_bits() >> 52) & 0x7ff) as i32 - 1023;
+    distance(single, double) / f64::from(exponent - 23).exp2()
+}
+
+/// The position of an event in the execution: the enclosing loops with their iterations, then the event.
+/// Positions are ordered as in the execution.
+type TracePosition = Vec<(EventId, u32)>;
+
+/// Computes the position of each event of a trace.
+struct PositionTracker<'a> {
+    schema: &'a TraceSchema,
+    /// The running loops, with their iterations.
+    loops: TracePosition,
+}
+
+impl PositionTracker<'_> {
+    fn position(&mut self, event: EventId) -> TracePosition {
+        let enclosing = self.schema.rounds(event);
+        let is_loop_header = self.schema.event(event).what == What::LoopHeader;
+        let known = self.loops.iter().zip(&enclosing);
+        let same = known
+            .take_while(|((running, _), iteration)| running == *iteration)
+            .count();
+        self.loops.truncate(same);
+        if is_loop_header {
+            match self.loops.last_mut() {
+                Some((running, iteration)) if *running == event => *iteration += 1,
+                _ => self.loops.push((event, 1)),
+            }
+            return self.loops.clone();
+        }
+        let mut position = self.loops.clone();
+        position.push((event, 0));
+        position
+    }
+}
+
+/// Merges two traces, both of which are in the order of their positions.
+fn merge(schema: &TraceSchema, single: &ExecutionTrace, double: &ExecutionTrace) -> Vec<Step> {
+    let (mut singles, mut doubles) = (with_positions(schema, single), with_positions(schema, double));
+    let mut steps = Vec::new();
+    loop {
+        let order = match (singles.peek(), doubles.peek()) {
+            (None, None) => return steps,
+            (Some(_), None) => std::cmp::Ordering::Less,
+            (None, Some(_)) => std::cmp::Ordering::Greater,
+            (Some((single, _)), Some((double, _))) => single.cmp(double),
+        };
+        let single = if order.is_le() { singles.next() } else { None };
+        let double = if order.is_ge() { doubles.next() } else { None };
+        let Some((position, event)) = [&single, &double]
+            .into_iter()
+            .flatten()
+            .map(|(position, happened)| (position.clone(), happened.event))
+            .next()
+        else {
+            return steps;
+        };
+        let values = |happened: Option<(TracePosition, &TraceEvent)>| {
+            happened.map(|(_, happened)| happened.values.clone())
+        };
+        steps.push(Step {
+            event,
+            position,
+            single: values(single),
+            double: values(double),
+        });
+    }
+}
+
+/// The events of a trace with their positions.
+fn with_positions<'a>(
+    schema: &'a TraceSchema,
+    story: &'a ExecutionTrace,
+) -> std::iter::Peekable<impl Iterator<Item = (TracePosition, &'a TraceEvent)>> {
+    let mut tracker = PositionTracker {
+        schema,
+        loops: TracePosition::new(),
+    };
+    let happened = story.happened.iter();
+    happened
+        .map(move |happened| (tracker.position(happened.event), happened))
+        .peekable()
+}
+
+/// Values diverge when they differ by more than this, relative to the largest component of the two: ten of
+/// the 24 bits of an f32 are left.
+pub const BOUND: f64 = 1e-3;
+
+/// Returns the first step where f32 and f64 diverge. `flushed` includes differences that arise because f32
+/// flushes tiny numbers to zero, which hardly ever matters.
+fn first_divergence(schema: &TraceSchema, steps: &[Step], flushed: bool) -> Option<usize> {
+    steps.iter().position(|step| diverges(schema, step, flushed))
+}
+
+fn diverges(schema: &TraceSchema, step: &Step, flushed: bool) -> bool {
+    if step.single.is_none() || step.double.is_none() {
+        return true;
+    }
+    // Counters and packed values follow from floats; only the branches that depend on them count.
+    let decides = schema.event(step.event).what == What::Branch;
+    let (mut scale, mut most) = (0.0f64, 0.0f64);
+    for pair in step.pairs() {
+        match pair {
+            (TraceValue::Word(single), TraceValue::Word(double)) if decides && single != double => {
+                return true;
+            }
+            (TraceValue::Float(single), TraceValue::Float(double)) => {
+                most = most.max(distance(single, double));
+                scale = scale.max(single.abs()).max(double.abs());
+            }
+            _ => {}
+        }
+    }
+    most == f64::INFINITY || most > BOUND * scale && (flushed || scale > f64::from(f32::MIN_POSITIVE))
+}
+
+// The cause of a visible difference between f32 and f64.
+//
+// Many values diverge without harm: a random number, or a component near zero. So f64 is forced to follow f32
+// up to an event, and then runs freely. If the color then no longer differs, the cause is before that event;
+// bisection finds the last event from which it still differs, and the first value that diverges after it is
+// the cause.
+
+/// Returns the position of the cause; none if the colors do not differ visibly.
+fn find_cause(
+    doubles: &PixelDebugger<'_, f64>,
+    pixel: [u32; 2],
+    single: &ExecutionTrace,
+    double: &ExecutionTrace,
+) -> Result<Option<TracePosition>, Failure> {
+    let whole = color_distance(single, double);
+    if whole <= SEEN {
+        return Ok(None);
+    }
+    let forced = |events| {
+        doubles.story(
+            pixel,
+            Some(ForcedPrefix {
+                story: single,
+                events,
+            }),
+        )
+    };
+    // With `differs` forced events, the color still differs by half as much; with `agrees`, it does not.
+    let (mut differs, mut agrees) = (0, single.happened.len());
+    while agrees - differs > 1 {
+        let middle = usize::midpoint(differs, agrees);
+        if color_distance(single, &forced(middle)?) >= whole.min(1.0) / 2.0 {
+            differs = middle;
+        } else {
+            agrees = middle;
+        }
+    }
+    let steps = merge(doubles.plot(), single, &forced(differs)?);
+    let parting = first_divergence(doubles.plot(), &steps, true);
+    let step = parting.map(|at| &steps[at]);
+    // Without a diverging value, the event that made the difference itself.
+    let step = step.or_else(|| steps.iter().filter(|step| step.single.is_some()).nth(differs));
+    Ok(step.map(|step| step.position.clone()))
+}
+
+/// The distance of two colors, in the largest component; infinite if exactly one is NaN or discarded.
+fn color_distance(single: &ExecutionTrace, double: &ExecutionTrace) -> f64 {
+    match (single.color, double.color) {
+        (None, None) => 0.0,
+        (Some(single), Some(double)) => {
+            let pairs = single.into_iter().zip(double);
+            pairs
+                .map(|(single, double)| distance(single, double))
+                .fold(0.0, f64::max)
+        }
+        _ => f64::INFINITY,
+    }
+}
+
+/// Formats a number: with the digits that distinguish an f32 from its neighbors if `single`, else with ten.
+#[must_use]
+pub fn digits(value: f64, single: bool) -> String {
+    match value {
+        _ if value.is_nan() => "NaN".to_owned(),
+        f64::INFINITY => "inf".to_owned(),
+        f64::NEG_INFINITY => "-inf".to_owned(),
+        _ if single => shortest(value as f32),
+        _ => ten_digits(value),
+    }
+}
+
+/// Whether a number is written without an exponent.
+fn is_plain(value: f64) -> bool {
+    value == 0.0 || (1e-5..1e9).contains(&value.abs())
+}
+
+fn shortest(value: f32) -> String {
+    if is_plain(f64::from(value)) {
+        format!("{value}")
+    } else {
+        format!("{value:e}")
+    }
+}
+
+fn ten_digits(value: f64) -> String {
+    let scientific = format!("{value:.9e}");
+    let (digits, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
+    if is_plain(value) {
+        // Rounded to ten digits first, so that its shortest form has no more.
+        return format!("{}", scientific.parse::<f64>().unwrap_or(value));
+    }
+    format!(
+        "{}e{exponent}",
+        digits.trim_end_matches('0').trim_end_matches('.')
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_formatted_for_people() {
+        let single = |value: f64| digits(value, true);
+        let double = |value: f64| digits(value, false);
+        assert_eq!(single(f64::from(0.1f32)), "0.1");
+        assert_eq!(single(-36.0), "-36");
+        assert_eq!(single(f64::from(1.5e-20f32)), "1.5e-20");
+        assert_eq!(single(f64::NAN), "NaN");
+        assert_eq!(double(1.0 / 3.0), "0.3333333333");
+        assert_eq!(double(-2.0), "-2");
+        assert_eq!(double(1e-7 / 3.0), "3.333333333e-8");
+        assert_eq!(double(1e30), "1e30");
+        assert_eq!(double(f64::NEG_INFINITY), "-inf");
+    }
+
+    #[test]
+    fn distances_are_in_units_of_f32() {
+        assert_eq!(ulps(1.0, 1.0), 0.0);
+        assert_eq!(ulps(1.0 + f64::from(f32::EPSILON), 1.0), 1.0);
+        assert_eq!(ulps(-2.0, -2.0 - 0.5 * f64::from(f32::EPSILON)), 0.25);
+        assert_eq!(ulps(f64::NAN, f64::NAN), 0.0);
+        assert_eq!(ulps(f64::NAN, 1.0), f64::INFINITY);
+        assert_eq!(ulps(f64::INFINITY, f64::INFINITY), 0.0);
+        assert_eq!(ulps(f64::INFINITY, 1.0), f64::INFINITY);
+        // At zero, the unit is that of the smallest number that is not flushed.
+        assert_eq!(ulps(f64::from(f32::MIN_POSITIVE), 0.0), f64::from(1u32 << 23));
+    }
+}

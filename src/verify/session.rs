@@ -1,0 +1,459 @@
+//! The checks in progress, band by band; whole images are kept only in 8 bits, as they are shown.
+
+use std::fmt::Write;
+use std::ops::Range;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use rayon::prelude::*;
+use toyproof_eval::{self as eval, Observations, Program};
+use toyproof_image::{Image, Rgb8Image};
+use toyproof_scene::Scene;
+use toyproof_tracer::{ColorRange, EpsilonFamily, EpsilonSet, RayEpsilons};
+use toyproof_translate::FloatMode;
+
+use crate::compare::{
+    self, Answers, Comparison, DiffLevel, MAX_UNSTABLE, Mixed, PixelStatus, Reference, Verdict,
+};
+use crate::contain::{Panic, Part, contain};
+use crate::cpu::{Band, Evaluator};
+use crate::expected::NumberType;
+use crate::notes::{self, NotFinite};
+use crate::silhouette_precision::{self, SilhouetteBand};
+use crate::stochastic::{CheckResults, SampledRows};
+use crate::{Case, CheckResult, Expected, Failure, Findings, MAX_PAIRS, Painter, acne, join, timed};
+
+/// The message after each band.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct IterationCount {
+    /// The largest number of loop iterations of a pixel of the band, in f32.
+    pub(super) most: u32,
+    pub(super) is_last: bool,
+}
+
+/// The results so far.
+pub(super) struct VerifySession<'a> {
+    case: &'a Case<'a>,
+    /// The evaluator, or why it failed.
+    pub(super) evaluator: Result<Evaluator<'a>, eval::Failure>,
+    /// The deadline of all checks.
+    deadline: Instant,
+    counts: Option<Sender<IterationCount>>,
+    /// What the evaluator observed in f32.
+    pub(super) observed: Observations,
+    excludes_pixels: bool,
+    algorithm: CheckResult,
+    mixed: Mixed,
+    precision: CheckResult,
+    toolchain: Option<CheckResult>,
+    picture: Option<(Comparison, Vec<DiffLevel>)>,
+    actual: Rgb8Image,
+    reference: Option<Rgb8Image>,
+    not_finite: NotFinite,
+    /// Spheres with a possibly wrong silhouette, and the image in f64, if there are any.
+    silhouettes: Option<(Scene, Vec<SilhouetteBand>, Rgb8Image)>,
+    /// Rows with the colors of random pixels, for a stochastic scene.
+    sampled_rows: Option<SampledRows<'a>>,
+    eval: Duration,
+    trace: Duration,
+}
+
+impl<'a> VerifySession<'a> {
+    pub(super) fn new(
+        case: &'a Case<'a>,
+        evaluator: Result<Evaluator<'a>, eval::Failure>,
+        deadline: Instant,
+        counts: Sender<IterationCount>,
+    ) -> Self {
+        let [width, height] = case.frame.size;
+        let empty = || Rgb8Image::empty(width, height);
+        let silhouettes = case
+            .expected
+            .filter(|_| !case.lints.discriminants.is_empty())
+            .map(|expected| {
+                let scene = expected.at_moment();
+                let candidates = silhouette_precision::candidates(&scene);
+                (scene, candidates, empty())
+            });
+        Self {
+            case,
+            deadline,
+            counts: evaluator.is_ok().then_some(counts),
+            evaluator,
+            observed: Observations::default(),
+            excludes_pixels: false,
+            algorithm: CheckResult::default(),
+            mixed: Mixed::of(u64::from(width) * u64::from(height)),
+            precision: CheckResult::default(),
+            toolchain: None,
+            picture: None,
+            actual: empty(),
+            reference: case.expected.map(|_| empty()),
+            not_finite: NotFinite::default(),
+            silhouettes: silhouettes.filter(|(_, candidates, _)| !candidates.is_empty()),
+            sampled_rows: case
+                .expected
+                .and_then(|expected| SampledRows::new(expected.tracer(), case.frame.size)),
+            eval: Duration::ZERO,
+            trace: Duration::ZERO,
+        }
+    }
+
+    /// Checks all bands. A GPU renders all of them before it returns them, one by one; if it fails, its
+    /// caller reports it.
+    ///
+    /// # Errors
+    /// Returns why there is no image, where no GPU renders one.
+    pub(super) fn bands(&mut self, gpu: Option<&Receiver<Image>>) -> Result<(), Failure> {
+        for rows in self.case.frame.bands() {
+            let (band, reference) = self.render(&rows);
+            let actual = match gpu {
+                None => None,
+                Some(gpu) => match gpu.recv() {
+                    Ok(band) => Some(band),
+                    Err(_) => return Ok(()),
+                },
+            };
+            if let (None, Err(failure)) = (gpu, &self.evaluator) {
+                return Err(failure.clone().into());
+            }
+            self.compare(&rows, band.as_ref(), reference.as_deref(), actual.as_ref());
+        }
+        self.counts = None;
+        Ok(())
+    }
+
+    /// Renders a band with the evaluator and the tracer in parallel.
+    fn render(&mut self, rows: &Range<u32>) -> (Option<Band>, Option<Arc<Image>>) {
+        let height = self.case.frame.size[1];
+        let counts = |most| {
+            let is_last = rows.end == height;
+            if let Some(sender) = &self.counts {
+                // The receiver may be gone.
+                let _ = sender.send(IterationCount { most, is_last });
+            }
+        };
+        let evaluator = &self.evaluator;
+        let ((band, eval), traced) = thread::scope(|scope| {
+            let trace = |expected: &Expected| timed(|| expected.rows(rows));
+            let traced = self
+                .case
+                .expected
+                .map(|expected| scope.spawn(move || trace(expected)));
+            let evaluated = timed(|| match evaluator {
+                Ok(evaluator) => evaluator.render(rows, counts).map(Some),
+                Err(_) => Ok(None),
+            });
+            (evaluated, traced.map(join))
+        });
+        self.eval += eval;
+        let band = band.unwrap_or_else(|failure| {
+            self.evaluator = Err(failure);
+            // No more messages follow.
+            self.counts = None;
+            None
+        });
+        let reference = traced.map(|(reference, trace)| {
+            self.trace += trace;
+            reference
+        });
+        (band, reference)
+    }
+
+    /// Compares a band; `drawn` is the GPU's.
+    fn compare(
+        &mut self,
+        rows: &Range<u32>,
+        band: Option<&Band>,
+        reference: Option<&Image>,
+        drawn: Option<&Image>,
+    ) {
+        let offset = rows.start;
+        if let Some(actual) = drawn.or(band.map(|band| &band.single)) {
+            self.actual.extend(actual);
+            self.not_finite.record(actual, offset);
+            if let (Some(reference), Some(image)) = (reference, &mut self.reference) {
+                image.extend(reference);
+                let (comparison, marks) = compare::compare(reference, actual);
+                match &mut self.picture {
+                    None => self.picture = Some((comparison, marks)),
+                    Some((whole, all)) => {
+                        whole.extend(&comparison, offset);
+                        all.extend(marks);
+                    }
+                }
+            }
+        }
+        let Some(band) = band else {
+            return;
+        };
+        let actual = drawn.unwrap_or(&band.single);
+        if let Some(reference) = reference {
+            self.check_algorithm(rows, band, reference);
+            if let Some(sampled_rows) = &mut self.sampled_rows {
+                sampled_rows.record(&band.double, reference, offset);
+            }
+        }
+        let mut statuses = compare::precision(&band.double, actual, &band.undefined);
+        if let Some(expected) = self.case.expected {
+            exclude_tied(
+                &mut statuses,
+                |x, y| expected.is_tied(x, offset + y, NumberType::Single),
+                actual.size()[0],
+            );
+        }
+        self.precision.extend(&band.double, actual, &statuses, offset);
+        if let (Some(drawn), FloatMode::Strict) = (drawn, self.case.float) {
+            let statuses = compare::toolchain(&band.single, drawn, &band.undefined);
+            let check = self.toolchain.get_or_insert_default();
+            check.extend(&band.single, drawn, &statuses, offset);
+        }
+        if let Some((_, _, double)) = &mut self.silhouettes {
+            double.extend(&band.double);
+        }
+        self.excludes_pixels |= band.undefined.contains(&true);
+        self.observed.merge(&band.observed);
+    }
+
+    fn check_algorithm(&mut self, rows: &Range<u32>, band: &Band, reference: &Image) {
+        let (Some(expected), Ok(evaluator)) = (self.case.expected, &self.evaluator) else {
+            return;
+        };
+        let offset = rows.start;
+        let from_row = FromRow {
+            expected,
+            offset,
+            derives: self.case.checked.takes_derivatives(),
+        };
+        let (statuses, perturbing) = timed(|| {
+            let perturbed = |seed, wanted: &[bool]| evaluator.perturbed(rows, seed, wanted);
+            let mixed = &mut self.mixed;
+            compare::algorithm(
+                reference,
+                &band.double,
+                &band.undefined,
+                &from_row,
+                mixed,
+                perturbed,
+            )
+        });
+        self.eval += perturbing;
+        self.algorithm.extend(reference, &band.double, &statuses, offset);
+    }
+
+    /// Returns the findings; `painter` is the GPU that rendered the image.
+    pub(super) fn findings(self, painter: Option<Painter>) -> Findings {
+        let mut findings = Findings {
+            verdict: Verdict::Ok,
+            reason: String::new(),
+            algorithm: None,
+            precision: None,
+            toolchain: None,
+            picture: self.picture,
+            reference: self.reference,
+            actual: self.actual,
+            painter,
+            notes: Vec::new(),
+            cause: None,
+            mistake: None,
+            panics: Vec::new(),
+            eval: self.eval,
+            trace: self.case.expected.map(|_| self.trace),
+        };
+        match self.evaluator {
+            Err(failure) => findings.evaluator_failed(&failure),
+            Ok(evaluator) => {
+                findings.algorithm = self.case.expected.map(|_| self.algorithm);
+                findings.precision = Some(self.precision);
+                findings.toolchain = self.toolchain;
+                let (case, program) = (self.case, evaluator.program());
+                findings.notes = notes::notes(&self.observed, self.excludes_pixels, &case.lints.warnings);
+                let (not_finite, silhouettes, actual) = (self.not_finite, self.silhouettes, &findings.actual);
+                let notes = contain(Part::Notes, || {
+                    let mut notes: Vec<_> = not_finite
+                        .diagnostic(program, case, self.deadline)
+                        .into_iter()
+                        .collect();
+                    if let (Some((scene, silhouettes, double)), Some(&at)) =
+                        (silhouettes, case.lints.discriminants.first())
+                    {
+                        let silhouettes = silhouette_precision::visible(silhouettes, &scene, actual, &double);
+                        notes.extend(silhouette_precision::warning(&silhouettes, at));
+                    }
+                    notes
+                });
+                let notes = findings.contained(notes);
+                findings.notes.extend(notes);
+                findings.decide(case, program, self.deadline, self.sampled_rows.as_ref());
+                findings.notes.retain(|note| !case.lints.allows(note));
+            }
+        }
+        findings
+    }
+}
+
+/// The reference of a band that begins at a row.
+struct FromRow<'a> {
+    expected: &'a Expected,
+    offset: u32,
+    /// Whether the shader takes derivatives.
+    derives: bool,
+}
+
+impl Reference for FromRow<'_> {
+    fn color_range(&self, x: u32, y: u32, epsilons: EpsilonSet) -> ColorRange {
+        self.expected.color_range(x, self.offset + y, epsilons)
+    }
+    fn families(&self) -> &[EpsilonFamily] {
+        self.expected.families()
+    }
+    fn styled(&self, x: u32, y: u32, epsilons: &RayEpsilons) -> [f64; 3] {
+        self.expected.styled(x, self.offset + y, epsilons)
+    }
+    fn samples(&self) -> u32 {
+        self.expected.tracer().samples()
+    }
+    fn is_across_edge(&self, x: u32, y: u32) -> bool {
+        self.derives && self.expected.tracer().is_quad_mixed(x, self.offset + y)
+    }
+    fn is_tied(&self, x: u32, y: u32) -> bool {
+        self.expected.is_tied(x, self.offset + y, NumberType::Double)
+    }
+}
+
+/// The largest share of a band's pixels that may change with the number type because of the scene's edges; if
+/// more change, edges are not the cause.
+const MAX_TIED: f64 = 0.05;
+
+/// Excludes pixels that change with the number type because the scene has an edge there: no shader can
+/// resolve its side in float32.
+fn exclude_tied(statuses: &mut [PixelStatus], is_tied: impl Fn(u32, u32) -> bool + Sync, width: u32) {
+    let differs = |status: &&PixelStatus| **status == PixelStatus::Differs;
+    let count = statuses.iter().filter(differs).count();
+    if count as f64 > MAX_TIED * statuses.len() as f64 {
+        return;
+    }
+    statuses.par_iter_mut().enumerate().for_each(|(at, status)| {
+        let at = at as u32;
+        if *status == PixelStatus::Differs && is_tied(at % width, at / width) {
+            *status = PixelStatus::Tied;
+        }
+    });
+}
+
+impl Findings {
+    fn decide(
+        &mut self,
+        case: &Case,
+        program: &Program,
+        deadline: Instant,
+        sampled_rows: Option<&SampledRows>,
+    ) {
+        (self.verdict, self.reason) = compare::decide(Answers {
+            algorithm: self.algorithm.as_ref().map(|check| &check.answer),
+            precision: self.precision.as_ref().map(|check| &check.answer),
+            toolchain: self.toolchain.as_ref().map(|check| &check.answer),
+        });
+        // A mistake that explains every pixel is reported whatever random numbers the shader uses. Pairs are
+        // searched for only if the comparison of random pixels reaches no verdict: with other random numbers,
+        // two mistakes do not render the image of the pair.
+        self.search_for_mistake(case, program, if sampled_rows.is_some() { 0 } else { MAX_PAIRS });
+        let mut is_stochastic = false;
+        if let (Verdict::Wrong | Verdict::Unstable, None, Some(sampled_rows), Some(algorithm)) =
+            (self.verdict, &self.mistake, sampled_rows, &self.algorithm)
+        {
+            let found = CheckResults {
+                algorithm,
+                precision: self.precision.as_ref(),
+                toolchain: self.toolchain.as_ref(),
+            };
+            if let Some(stochastic) = sampled_rows.verdict(found, program, case, deadline) {
+                is_stochastic = true;
+                (self.verdict, self.reason) = (stochastic.verdict, stochastic.reason);
+                self.mistake = stochastic.mistake;
+            }
+        }
+        if let (Verdict::Unstable | Verdict::Wrong, None, Some(expected)) =
+            (self.verdict, &self.mistake, case.expected)
+            && let Some(check) = acne::detect(
+                expected.tracer(),
+                case.frame.size,
+                self.algorithm.as_ref(),
+                self.precision.as_ref(),
+            )
+        {
+            self.verdict = Verdict::Wrong;
+            self.reason = acne::reason(&check.answer);
+            self.mistake = Some(vec![acne::named()]);
+        }
+        if sampled_rows.is_some() && !is_stochastic {
+            self.search_for_mistake(case, program, MAX_PAIRS);
+        }
+        if let (Verdict::Correct, Some(suspects), Some(algorithm)) =
+            (self.verdict, case.suspects, &self.algorithm)
+            && algorithm.answer.differing > 0
+            && !is_stochastic
+        {
+            let differing = notes::sample_pixels(algorithm, case.frame.size, usize::MAX);
+            let named = contain(Part::Mistake, || suspects.explaining(program, &differing));
+            if let Some(named) = self.contained(named) {
+                let _ = write!(self.reason, "; they are what a tracer paints that {}", named.says);
+            }
+        }
+        self.notes
+            .extend(notes::unbound(case.checked, case.lints, case.frame));
+        if let (Verdict::Wrong, None, Some(color)) = (self.verdict, &self.mistake, self.actual.only_color()) {
+            let [r, g, b] = color;
+            let says = match color {
+                [0, 0, 0] => "; every pixel is black".to_owned(),
+                _ => format!("; every pixel has one colour, ({r}, {g}, {b}) of 255"),
+            };
+            self.reason.push_str(&says);
+        }
+        let differs_often = |check: &CheckResult| check.answer.share(check.answer.differing) > MAX_UNSTABLE;
+        let loses_precision =
+            self.verdict == Verdict::Ok && self.precision.as_ref().is_some_and(differs_often);
+        if self.verdict == Verdict::Unstable || loses_precision {
+            let cause = contain(Part::Cause, || {
+                let mut checks = [&self.precision, &self.algorithm].into_iter().flatten();
+                checks.find_map(|check| notes::cause(program, case, deadline, check))
+            });
+            let cause = self.contained(cause);
+            self.cause = cause.as_ref().and_then(|cause| cause.span);
+            let is_reported = case
+                .lints
+                .warnings
+                .iter()
+                .any(|warning| warning.span == self.cause);
+            self.notes.extend(cause.filter(|_| !is_reported));
+        }
+    }
+
+    /// Searches for the mistake that explains a wrong image, or for two, among at most `pairs` pairs.
+    fn search_for_mistake(&mut self, case: &Case, program: &Program, pairs: usize) {
+        if let (Verdict::Wrong, None, Some(suspects)) = (self.verdict, &self.mistake, case.suspects) {
+            let named = contain(Part::Mistake, || suspects.recognize(program, case.frame, pairs));
+            self.mistake = self.contained(named);
+        }
+    }
+
+    /// Returns a part's result, or the default if it panicked, which is recorded.
+    fn contained<T: Default>(&mut self, found: Result<T, Panic>) -> T {
+        found.unwrap_or_else(|panic| {
+            self.panics.push(panic);
+            T::default()
+        })
+    }
+
+    /// Sets the verdict where the evaluator failed: only the GPU's image is known.
+    fn evaluator_failed(&mut self, failure: &eval::Failure) {
+        if self.reference.is_some() {
+            self.verdict = Verdict::Inconclusive;
+            self.reason = format!("the shader could not be evaluated on the CPU: {failure}");
+        } else {
+            self.reason = format!("the shader paints; it could not be evaluated on the CPU: {failure}");
+        }
+    }
+}

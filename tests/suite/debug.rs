@@ -1,0 +1,224 @@
+//! Traces of a pixel: the trace ends with the rendered color, and the first difference is named.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+use toyproof::eval::{ForcedPrefix, Number, Program, Settings};
+use toyproof::image::Frame;
+
+use crate::program::toyproof;
+use crate::support::{self, EVERY_EXERCISE, Exercise};
+
+fn program(shader: &str) -> Program {
+    Program::new(&support::checked(shader)).unwrap()
+}
+
+fn frame(exercise: &Exercise) -> Frame {
+    support::frame(exercise, [33, 21])
+}
+
+/// Pixels in the interior, and at the image's edge, where the last tile is truncated.
+const PIXELS: [[u32; 2]; 4] = [[16, 10], [12, 7], [32, 20], [0, 0]];
+
+fn assert_trace_ends_with_color<N: Number>(exercise: &Exercise) {
+    let (program, frame) = (program(exercise.shader), frame(exercise));
+    let painting = program
+        .render::<N>(&frame, &Settings::default())
+        .unwrap()
+        .framebuffer;
+    let teller = program.teller::<N>(&frame, Settings::default()).unwrap();
+    for pixel @ [x, y] in PIXELS {
+        let story = teller.story(pixel, None).unwrap();
+        let rendered = painting.get(x, y).map(|part| part.to_f64().to_bits());
+        let reported = story.color.unwrap().map(f64::to_bits);
+        assert_eq!(reported, rendered, "{} at {pixel:?}", exercise.name);
+        assert!(story.is_cut || !story.happened.is_empty());
+    }
+}
+
+#[test]
+fn traces_end_with_the_rendered_color() {
+    for exercise in EVERY_EXERCISE {
+        assert_trace_ends_with_color::<f32>(exercise);
+        assert_trace_ends_with_color::<f64>(exercise);
+    }
+}
+
+/// Forced to follow every step of f32, f64 computes the same.
+#[test]
+fn fully_forced_traces_end_with_the_same_color() {
+    for exercise in EVERY_EXERCISE {
+        let (program, frame) = (program(exercise.shader), frame(exercise));
+        let singles = program.teller::<f32>(&frame, Settings::default()).unwrap();
+        let doubles = program.teller::<f64>(&frame, Settings::default()).unwrap();
+        for pixel in PIXELS {
+            let single = singles.story(pixel, None).unwrap();
+            let lead = ForcedPrefix {
+                story: &single,
+                events: single.happened.len(),
+            };
+            let led = doubles.story(pixel, Some(lead)).unwrap();
+            if single.is_cut {
+                continue;
+            }
+            assert_eq!(
+                led.happened.len(),
+                single.happened.len(),
+                "{} at {pixel:?}",
+                exercise.name
+            );
+            assert_eq!(
+                led.color.map(|color| color.map(|part| part as f32)),
+                single.color.map(|color| color.map(|part| part as f32)),
+                "{} at {pixel:?}",
+                exercise.name
+            );
+        }
+    }
+}
+
+/// A sphere of radius 2.5 at a distance of 20,000: b² and c are the same f32.
+const FAR: &str = "\
+bool hit(vec3 d, vec3 center, float radius) {
+    float b = dot(-center, d);
+    float c = dot(center, center) - radius * radius;
+    float disc = b * b - c;
+    return disc > 0.0;
+}
+
+void mainImage(out vec4 fragColor, in vec2 fragCoord) {
+    vec3 color = vec3(0.0);
+    float seed = fract(sin(fragCoord.x) * 437585.453); // toyproof: allow(W0005)
+    float shift = 0.0001 * seed;
+    for (int i = 0; i < 2; i++) {
+        if (hit(vec3(shift * float(i), 0.0, -1.0), vec3(0.0, 0.0, -20000.0), 2.5)) color += 0.5;
+    }
+    fragColor = vec4(color, 1.0);
+}
+";
+
+#[test]
+fn explain_names_the_line_that_loses_digits() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("far.glsl"), FAR).unwrap();
+    let explain = |rest: &[&str]| {
+        let arguments = [
+            &["explain", "far.glsl", "--size", "64x36", "--pixel", "30,18"],
+            rest,
+        ]
+        .concat();
+        let run = toyproof(folder.path(), &arguments);
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        run.stdout
+    };
+    let human = explain(&[]);
+    assert!(human.contains("they first part in line 10, column 18"), "{human}");
+    assert!(
+        human.contains("what is seen comes of line 4, column 18: `b * b - c` is 0 in f32"),
+        "{human}"
+    );
+    assert!(human.contains("in hit, called in line 13:"), "{human}");
+    assert!(
+        human.contains("for (int i = 0; i < 2; i++) {   (round 2)"),
+        "{human}"
+    );
+    let json: Value = serde_json::from_str(&explain(&["--format", "json"])).unwrap();
+    let step = |name: &str| &json["steps"][json[name].as_u64().unwrap() as usize];
+    assert_eq!(step("parts_at")["line"], 10);
+    let cause = step("cause_at");
+    assert_eq!(cause["line"], 4);
+    assert_eq!(cause["function"], "hit");
+    assert_eq!(cause["f32"][0], 0.0);
+    assert!(cause["f64"][0].as_f64().unwrap() > 1.0, "{cause}");
+    assert_eq!(cause["calls"], serde_json::json!([13]));
+}
+
+#[test]
+fn explain_follows_uniform_and_shared_values() {
+    let folder = tempfile::tempdir().unwrap();
+    let causes = [
+        (
+            "float t = iTime * 1000.0;\n float s = sin(t);\n float u = s * 0.5 + 0.5;\n c = vec4(u);",
+            3,
+        ),
+        (
+            "float a = (1e8 + p.x) - 1e8;\n float u = a * 0.0;\n float b = (1e8 + p.x) - 1e8;\n c = vec4(b * 0.1, u, 0, 1);",
+            4,
+        ),
+        (
+            "float s = 0.0;\n for (int i = 0; i < 3; i++) {\n float a = (1e8 + fract(iTime)) - 1e8;\n if (i == 2) s = a; }\n c = vec4(s);",
+            4,
+        ),
+    ];
+    for (body, line) in causes {
+        let text = format!("void mainImage(out vec4 c, in vec2 p) {{\n{body}\n}}\n");
+        fs::write(folder.path().join("a.glsl"), text).unwrap();
+        let arguments = [
+            "explain",
+            "a.glsl",
+            "--pixel",
+            "20,5",
+            "--time",
+            "12345.678",
+            "--format",
+            "json",
+        ];
+        let run = toyproof(folder.path(), &arguments);
+        let story: Value = serde_json::from_str(&run.stdout).unwrap();
+        let cause = &story["steps"][story["cause_at"].as_u64().unwrap() as usize];
+        assert_eq!(cause["line"], line, "{body}\n{cause}");
+    }
+}
+
+#[test]
+fn explain_locates_the_origin_of_a_nan() {
+    let folder = tempfile::tempdir().unwrap();
+    let shader =
+        "void mainImage(out vec4 c, in vec2 p) {\n    float x = sqrt(-p.x);\n    c = vec4(x * 0.5);\n}\n";
+    fs::write(folder.path().join("nan.glsl"), shader).unwrap();
+    let run = toyproof(folder.path(), &["explain", "nan.glsl", "--pixel", "1,1"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    assert!(
+        run.stdout
+            .contains("what is not finite comes of line 2, column 15: `sqrt(-p.x)`"),
+        "{}",
+        run.stdout
+    );
+    let run = toyproof(
+        folder.path(),
+        &["check", "nan.glsl", "--on", "cpu", "--size", "8x8"],
+    );
+    assert!(
+        run.stderr.contains("W0603") && run.stderr.contains("in 64 pixels, first at (0, 0)"),
+        "{}",
+        run.stderr
+    );
+}
+
+#[test]
+fn explain_reports_its_limits() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let run = |arguments: &[&str]| {
+        let run = toyproof(root, arguments);
+        (run.code, run.stderr)
+    };
+    let (code, words) = run(&["explain", "glsl/02-sphere.glsl", "--pixel", "640,0"]);
+    assert!(
+        code == 2 && words.contains("there is no pixel (640, 0) in a picture of 640x360"),
+        "{words}"
+    );
+    let (code, words) = run(&["explain", "glsl", "--pixel", "1,1"]);
+    assert!(code == 2 && words.contains("explain takes one"), "{words}");
+    let (code, words) = run(&["explain", "glsl/02-sphere.glsl", "--pixel", "1"]);
+    assert!(code == 2 && words.contains("X,Y"), "{words}");
+    let (code, words) = run(&[
+        "explain",
+        "glsl/02-sphere.glsl",
+        "--pixel",
+        "1,1",
+        "--timeout",
+        "0s",
+    ]);
+    assert!(code == 0 || words.contains("time"), "{words}");
+}
