@@ -22,11 +22,11 @@ fill() {
 cp "$work"/stress-*.png "$out"
 sed 's/^/- /' "$work/lines" | fill stress
 
-for rung in 03-shading 06-reflections 09-soft-shadows 12-whitted; do
+for exercise in 03-shading 06-reflections 09-soft-shadows 12-whitted; do
     size=320x180
-    [ $rung = 09-soft-shadows ] && size=160x90
-    "$program" trade -q "glsl/$rung.toml" -o "$work/$rung" --size $size >"$work/$rung.lines"
-    cp "$work/$rung/trade.svg" "$out/trade-$rung.svg"
-    cp "$work/$rung/trade.png" "$out/trade-$rung.png"
-    sed "s/^/- $rung: /" "$work/$rung.lines"
+    [ $exercise = 09-soft-shadows ] && size=160x90
+    "$program" trade -q "glsl/$exercise.toml" -o "$work/$exercise" --size $size >"$work/$exercise.lines"
+    cp "$work/$exercise/trade.svg" "$out/trade-$exercise.svg"
+    cp "$work/$exercise/trade.png" "$out/trade-$exercise.png"
+    sed "s/^/- $exercise: /" "$work/$exercise.lines"
 done | fill trade
