@@ -198,7 +198,7 @@ pub fn prove(
 /// The visible differences between a conversion and its original on the same device, whose functions have
 /// their own last bits.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rgb8Image {
+pub struct Rgb8Comparison {
     /// The number of pixels that were compared.
     pub pixels: u64,
     /// The number of pixels in which a color, as shown, differs by more than 1/255.
@@ -207,7 +207,7 @@ pub struct Rgb8Image {
     pub max: f32,
 }
 
-impl Rgb8Image {
+impl Rgb8Comparison {
     /// Compares images of the same frames, except the excluded pixels.
     #[must_use]
     pub fn of(original: &[Image], converted: &[Image], excluded: &[Vec<bool>]) -> Self {

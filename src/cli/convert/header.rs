@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use toyproof_translate::backend::{Target, spirv};
 use toyproof_verify::compare::grouped;
-use toyproof_verify::conversion::{Against, FRAMES, Proof, Rgb8Image};
+use toyproof_verify::conversion::{Against, FRAMES, Proof, Rgb8Comparison};
 
 use super::proof::ProofStatus;
 
@@ -99,7 +99,7 @@ fn settings(head: &mut String, proof: &Proof) {
 }
 
 /// Describes the difference between a browser's images.
-pub(super) fn describe_browser(shown: Rgb8Image) -> String {
+pub(super) fn describe_browser(shown: Rgb8Comparison) -> String {
     let by = match format!("{:.2}", shown.max * 255.0).as_str() {
         _ if shown.max == 0.0 => String::new(),
         "0.00" => " by as much as 0.01/255".to_owned(),
@@ -142,7 +142,7 @@ mod tests {
     #[test]
     fn a_zero_difference_has_no_number() {
         let messages = [0.0, 1e-9, 0.5 / 255.0].map(|max| {
-            let shown = Rgb8Image {
+            let shown = Rgb8Comparison {
                 pixels: 57_600,
                 differing: 0,
                 max,

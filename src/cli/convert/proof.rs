@@ -12,7 +12,7 @@ use toyproof_translate::wgsl::Style;
 use toyproof_translate::{FloatMode, Lowered};
 use toyproof_verify as verify;
 use toyproof_verify::compare::{grouped, plural};
-use toyproof_verify::conversion::{Against, Proof, Rgb8Image, frames, prove};
+use toyproof_verify::conversion::{Against, Proof, Rgb8Comparison, frames, prove};
 
 use super::super::shader::Shader;
 use super::conversion::{Converter, WorkerContext};
@@ -42,7 +42,7 @@ pub(super) struct Readers {
     /// The validator that accepts it, as text.
     pub(super) validator: Option<String>,
     /// The browser that renders it like the original, if `--browser` was given.
-    pub(super) browser: Option<(String, Rgb8Image)>,
+    pub(super) browser: Option<(String, Rgb8Comparison)>,
 }
 
 impl Converter<'_> {
@@ -206,7 +206,7 @@ pub(super) fn prove_in_browser(
     if upside_down {
         converted = converted.iter().map(Image::upside_down).collect();
     }
-    let shown = Rgb8Image::of(&original, &converted, &proof.undefined_at);
+    let shown = Rgb8Comparison::of(&original, &converted, &proof.undefined_at);
     if shown.differing > 0 {
         return ProofStatus::Unproved(format!(
             "in Chromium {} of {} pixels {} not as with WebGL 2 of the original, by up to {:.1}/255",
