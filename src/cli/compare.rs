@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use toyproof_diagnostic::path_name;
+use toyproof_diagnostic::{grouped, magnitude, path_name};
 use toyproof_image::{self as image};
-use toyproof_verify::compare::{Legend, TOLERANCE, compare, grouped, magnitude};
+use toyproof_verify::compare::{Legend, TOLERANCE, compare};
 
 use super::inputs::may_write;
 use super::{Exit, Terminal};

@@ -3,12 +3,11 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use toyproof_diagnostic::path_name;
+use toyproof_diagnostic::{grouped, path_name};
 use toyproof_gpu::{
     AdapterSelector, Driver, Failure, INSTALL_HINT, LoopCap, is_pinned_by_user, lavapipe_manifest, manifests,
     pinned,
 };
-use toyproof_verify::compare::grouped;
 
 use super::inputs::{self, DeviceSelector};
 use super::{Exit, Terminal};

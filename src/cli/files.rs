@@ -8,7 +8,6 @@ use std::fs::File as OsFile;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-use thiserror::Error;
 use toyproof_diagnostic::{Diagnostic, File, Files, Span, path_name};
 use walkdir::{DirEntry, WalkDir};
 
@@ -64,26 +63,15 @@ impl Input {
 }
 
 /// The error of finding or reading an input.
-#[derive(Debug, Error)]
+#[derive(Debug)]
 pub(crate) enum ReadError {
     /// No such file or folder.
-    #[error("{}: no such file or folder", path_name(.0))]
     Missing(PathBuf),
     /// A scene where a shader is required.
-    #[error(
-        "{name}: this is a scene, not a shader; `toyproof check SHADER --scene {name}` compares a shader with it, and \
-         `toyproof render {name} -o PICTURE` traces it",
-        name = path_name(.0)
-    )]
     Scene(PathBuf),
     /// A folder without any shader.
-    #[error(
-        "{}: no shader in this folder (looked for .glsl .frag .fs .shadertoy, also in the folders below)",
-        path_name(.0)
-    )]
     NoShader(PathBuf),
     /// An error of the operating system.
-    #[error("{name}: cannot be read: {error}")]
     Unreadable {
         /// The file or folder.
         name: String,
@@ -91,19 +79,58 @@ pub(crate) enum ReadError {
         error: io::Error,
     },
     /// More than [`MAX_BYTES`].
-    #[error("{name}: {TOO_LARGE}")]
     TooLarge {
         /// The file.
         name: String,
     },
     /// Not UTF-8.
-    #[error("{}:{}:{}: {NOT_UTF8}", file.name(), file.position(*at).line, file.position(*at).column)]
     NotUtf8 {
         /// The file, with replacement characters for invalid bytes.
         file: File,
         /// The offset of the first invalid byte.
         at: usize,
     },
+}
+
+impl ReadError {
+    /// The name of the file or folder.
+    pub(crate) fn name(&self) -> String {
+        match self {
+            Self::Missing(path) | Self::NoShader(path) | Self::Scene(path) => path_name(path),
+            Self::Unreadable { name, .. } | Self::TooLarge { name } => name.clone(),
+            Self::NotUtf8 { file, .. } => file.name().to_owned(),
+        }
+    }
+
+    /// What is wrong with it.
+    pub(crate) fn reason(&self) -> String {
+        match self {
+            Self::Missing(_) => "no such file or folder".to_owned(),
+            Self::Scene(path) => format!(
+                "this is a scene, not a shader; `toyproof check SHADER --scene {name}` compares a shader with it, and \
+                 `toyproof render {name} -o PICTURE` traces it",
+                name = path_name(path)
+            ),
+            Self::NoShader(_) => {
+                "no shader in this folder (looked for .glsl .frag .fs .shadertoy, also in the folders below)"
+                    .to_owned()
+            }
+            Self::Unreadable { error, .. } => format!("cannot be read: {error}"),
+            Self::TooLarge { .. } => TOO_LARGE.to_owned(),
+            Self::NotUtf8 { .. } => NOT_UTF8.to_owned(),
+        }
+    }
+}
+
+impl fmt::Display for ReadError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.name())?;
+        if let Self::NotUtf8 { file, at } = self {
+            let at = file.position(*at);
+            write!(f, ":{}:{}", at.line, at.column)?;
+        }
+        write!(f, ": {}", self.reason())
+    }
 }
 
 /// The message on a file that is too large.

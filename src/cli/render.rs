@@ -6,11 +6,10 @@ use std::time::Instant;
 
 use clap::ValueEnum;
 use indicatif::ProgressBar;
-use toyproof_diagnostic::{Files, path_name};
+use toyproof_diagnostic::{Files, grouped, magnitude, path_name};
 use toyproof_image::{self as image, Image};
 use toyproof_scene::{self as scene, FrameTime, Requirements, Sampler, Scene};
 use toyproof_tracer::{Real, Tracer};
-use toyproof_verify::compare::{grouped, magnitude};
 
 use super::inputs::may_write;
 use super::sequence::{self, Frames, Sequence};

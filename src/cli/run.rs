@@ -5,19 +5,19 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::ValueEnum;
-use toyproof_diagnostic::{Deadline, Files, path_name};
+use toyproof_diagnostic::{Deadline, path_name};
 use toyproof_eval::{self as eval, Number, Program, Settings, UndefinedPolicy};
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_gpu::{Drawn, Failure, Worker};
 use toyproof_image::{self as image, Frame, Image};
 use toyproof_verify::unbound;
 
-use super::check::loop_truncated;
 use super::inputs::{DriverArgs, FrameArgs, LanguageArgs, may_write};
 use super::names::{Names, with_suffix};
 use super::sequence::{self, Frames, Sequence};
-use super::shader::{Shader, Unusable, find, is_invalid};
+use super::shader::{Shader, Unusable, find};
 use super::{Exit, Terminal};
+use crate::report;
 
 /// Run shaders and keep the pictures that they paint
 #[derive(Debug, clap::Args)]
@@ -209,8 +209,11 @@ impl Runner<'_> {
                 loop_truncated: Some(pixels @ 1..),
                 ..
             }) => {
-                self.terminal
-                    .error(format_args!("{}: {}", shader.name, loop_truncated(pixels)));
+                self.terminal.error(format_args!(
+                    "{}: {}",
+                    shader.name,
+                    report::loop_truncated(pixels)
+                ));
                 Err(Exit::ShaderFault)
             }
             Ok(drawn) => {
@@ -227,7 +230,7 @@ impl Runner<'_> {
             }
             Err(failure) => {
                 self.terminal.error(format_args!("{}: {failure}", shader.name));
-                let shaders_fault = is_invalid(&failure) || matches!(failure, Failure::Timeout { .. });
+                let shaders_fault = failure.is_invalid() || matches!(failure, Failure::Timeout { .. });
                 Err(if shaders_fault {
                     Exit::ShaderFault
                 } else {
@@ -269,21 +272,10 @@ pub(super) fn not_evaluated(failure: &eval::Failure, shader: &Shader, terminal: 
         terminal.diagnostics(&[glsl::overdue(*overdue)], &shader.files);
         return Exit::ShaderFault;
     }
-    let position = failure_position(failure, &shader.files);
+    let position = report::failure_position(failure, &shader.files);
     terminal.error(format_args!("{}: {failure}{position}", shader.name));
     let ours = matches!(failure, eval::Failure::Refused(_));
     if ours { Exit::Error } else { Exit::ShaderFault }
-}
-
-/// The position where the evaluator stopped, as a suffix of its message.
-pub(super) fn failure_position(failure: &eval::Failure, files: &Files) -> String {
-    match failure {
-        eval::Failure::TooOften { at, .. } | eval::Failure::Timeout { at } => {
-            let at = files.position(at.span);
-            format!(" (line {}, column {})", at.line, at.column)
-        }
-        _ => String::new(),
-    }
 }
 
 fn write_image(rendered: &Image, path: &Path, output: &Path, terminal: &Terminal) -> Exit {

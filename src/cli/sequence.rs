@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use toyproof_diagnostic::grouped;
 use toyproof_image::FRAME_RATE;
-use toyproof_verify::compare::grouped;
 
 use super::Terminal;
 

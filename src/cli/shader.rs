@@ -1,10 +1,10 @@
 //! Finds and reads shaders, for all commands that take them.
 
+use std::fmt;
 use std::path::{Path, PathBuf};
 
-use toyproof_diagnostic::{Deadline, Diagnostic, Files, Severity, path_name};
+use toyproof_diagnostic::{Deadline, Diagnostic, Files, Severity};
 use toyproof_glsl::{self as glsl, Checked};
-use toyproof_gpu::{Failure, Phase};
 use toyproof_lint::{Lints, lint};
 
 use super::Terminal;
@@ -28,7 +28,40 @@ pub(super) enum Unusable {
     /// Its content is invalid.
     Invalid(Vec<Diagnostic>),
     /// It cannot be read.
-    Unreadable(String),
+    Unreadable(Unreadable),
+}
+
+impl Unusable {
+    /// Distinguishes invalid content, whose text is added to `files`, from a file that cannot be read.
+    pub(super) fn of(error: ReadError, files: &mut Files) -> Self {
+        match content_diagnostic(error, files) {
+            Ok(diagnostic) => Self::Invalid(vec![diagnostic]),
+            Err(error) => Self::Unreadable((&error).into()),
+        }
+    }
+}
+
+/// A file that cannot be read.
+#[derive(Debug, Clone)]
+pub(super) struct Unreadable {
+    name: String,
+    /// What is wrong with it.
+    pub(super) reason: String,
+}
+
+impl From<&ReadError> for Unreadable {
+    fn from(error: &ReadError) -> Self {
+        Self {
+            name: error.name(),
+            reason: error.reason(),
+        }
+    }
+}
+
+impl fmt::Display for Unreadable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.name, self.reason)
+    }
 }
 
 impl Shader {
@@ -40,7 +73,7 @@ impl Shader {
         let mut files = Files::default();
         let mut lints = Lints::default();
         let (name, checked) = match found {
-            Err(error) => (error_name(error), Err(Unusable::Unreadable(error.to_string()))),
+            Err(error) => (error.name(), Err(Unusable::Unreadable(error.into()))),
             Ok(found) => {
                 let share = deadline.share(LINT_TIME_SHARE);
                 let checked = read(found, &mut files, &language.options(deadline));
@@ -90,18 +123,7 @@ fn read(found: &Input, files: &mut Files, options: &glsl::Options) -> Result<Che
             let file = files.add(text);
             glsl::check(files, file, options).map_err(Unusable::Invalid)
         }
-        Err(error) => Err(match content_diagnostic(error, files) {
-            Ok(diagnostic) => Unusable::Invalid(vec![diagnostic]),
-            Err(error) => Unusable::Unreadable(error.to_string()),
-        }),
-    }
-}
-
-fn error_name(error: &ReadError) -> String {
-    match error {
-        ReadError::Missing(path) | ReadError::NoShader(path) | ReadError::Scene(path) => path_name(path),
-        ReadError::Unreadable { name, .. } | ReadError::TooLarge { name } => name.clone(),
-        ReadError::NotUtf8 { file, .. } => file.name().to_owned(),
+        Err(error) => Err(Unusable::of(error, files)),
     }
 }
 
@@ -121,15 +143,4 @@ pub(super) fn find(arguments: &[PathBuf], terminal: &Terminal) -> Vec<Result<Inp
             search.inputs
         })
         .collect()
-}
-
-/// Returns whether the shader does not compile, as opposed to an error of the tools.
-pub(super) fn is_invalid(failure: &Failure) -> bool {
-    matches!(
-        failure,
-        Failure::Invalid(_)
-            | Failure::StackOverflow {
-                phase: Phase::Translating | Phase::Compiling
-            }
-    )
 }

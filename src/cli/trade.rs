@@ -4,14 +4,13 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-use toyproof_diagnostic::{Deadline, File, Files, path_name};
+use toyproof_diagnostic::{Deadline, File, Files, grouped, path_name, plural};
 use toyproof_gpu::{AdapterSelector, Worker};
 use toyproof_image as image;
 use toyproof_image::Frame;
 use toyproof_lab::trade::{self, ERRORS, Report, Subject};
 use toyproof_lint::Lints;
 use toyproof_scene::{Scene, export};
-use toyproof_verify::compare::{grouped, plural};
 
 use super::check::References;
 use super::inputs::{FrameArgs, LanguageArgs, parse_adapter, parse_time_limit, worker};

@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 pub use self::deadline::{Deadline, Overdue};
 pub use self::file::{File, FileId, Files, Position, Span};
 pub use self::render::{Json, human, json, short};
-pub use self::text::{nearest, path_name, printable, printable_lines};
+pub use self::text::{grouped, magnitude, nearest, path_name, plural, printable, printable_lines};
 
 /// The severity of a diagnostic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]

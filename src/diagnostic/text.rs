@@ -1,4 +1,4 @@
-//! Escaping of untrusted text for display, and suggestions for misspelled names.
+//! Escaping of untrusted text for display, suggestions for misspelled names, and numbers in sentences.
 //!
 //! The names and texts of submissions are written to terminals, reports and logs. A control character in them
 //! could move the cursor, color the screen or forge a line of output, and a bidirectional control could make
@@ -105,6 +105,36 @@ pub fn nearest<'c>(name: &str, candidates: impl IntoIterator<Item = &'c str>) ->
         .map(|(_, candidate)| candidate)
 }
 
+/// Returns the form of a word for a count.
+#[must_use]
+pub fn plural<'a>(count: u64, one: &'a str, many: &'a str) -> &'a str {
+    if count == 1 { one } else { many }
+}
+
+/// Formats a count with separated thousands: 230,400.
+#[must_use]
+pub fn grouped(count: u64) -> String {
+    let digits = count.to_string();
+    let mut text = String::with_capacity(digits.len() + digits.len() / 3);
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// Formats an error in two digits: 1.2e-7, or 0.
+#[must_use]
+pub fn magnitude(error: f64) -> String {
+    if error == 0.0 {
+        "0".to_owned()
+    } else {
+        format!("{error:.1e}")
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -163,5 +193,25 @@ mod tests {
             assert_eq!(nearest(written, names), meant, "{written}");
         }
         assert_eq!(nearest(&"x".repeat(100_000), names), None);
+    }
+
+    #[test]
+    fn numbers_are_formatted_for_people() {
+        assert_eq!(
+            [0, 999, 1000, 57_600, 230_400, 1_234_567, 67_108_864].map(grouped),
+            [
+                "0",
+                "999",
+                "1,000",
+                "57,600",
+                "230,400",
+                "1,234,567",
+                "67,108,864"
+            ]
+        );
+        assert_eq!(
+            [0.0, -0.0, 1.25e-7, 3.0].map(magnitude),
+            ["0", "0", "1.2e-7", "3.0e0"]
+        );
     }
 }

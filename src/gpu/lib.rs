@@ -142,6 +142,18 @@ impl Failure {
         matches!(self, Self::NoDriver(_) | Self::NotStarted(_))
     }
 
+    /// Returns whether the shader does not compile, as opposed to an error of the tools.
+    #[must_use]
+    pub fn is_invalid(&self) -> bool {
+        matches!(
+            self,
+            Self::Invalid(_)
+                | Self::StackOverflow {
+                    phase: Phase::Translating | Phase::Compiling
+                }
+        )
+    }
+
     /// Returns whether the deadline expired while the driver compiled the shader, which does not imply that
     /// the shader runs long.
     #[must_use]

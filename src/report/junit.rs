@@ -4,7 +4,7 @@ use std::io;
 
 use quick_xml::Writer;
 use quick_xml::events::BytesText;
-use toyproof_verify::compare::Verdict;
+use toyproof_verify::Verdict;
 
 use super::{Record, details};
 

@@ -1,9 +1,12 @@
 //! The report for programs: `verdict.json`, and `--format json` on standard output.
 
 use serde::{Deserialize, Serialize};
-use toyproof_diagnostic as diagnostic;
-use toyproof_verify::compare::{Answer, Comparison, Verdict};
+use toyproof_diagnostic::{self as diagnostic, Files};
+use toyproof_verify::compare::{Answer, Comparison};
 use toyproof_verify::mistake::Named;
+use toyproof_verify::{CheckResult, Evidence, Failure, Findings, Verdict, decide};
+
+use super::reason::{reason, sentence};
 
 /// The JSON Schema of a [`Report`].
 pub const SCHEMA: &str = include_str!("verdict.schema.json");
@@ -80,13 +83,13 @@ pub struct Record {
 }
 
 impl Record {
-    /// Creates a record that holds only a verdict.
+    /// Creates the record of a shader that was not checked yet.
     #[must_use]
-    pub fn new(shader: String, verdict: Verdict) -> Self {
+    pub fn new(shader: String) -> Self {
         Self {
             shader,
             scene: None,
-            verdict,
+            verdict: Verdict::Error,
             reason: String::new(),
             algorithm: None,
             precision: None,
@@ -96,6 +99,35 @@ impl Record {
             diagnostics: Vec::new(),
             seconds: Seconds::default(),
         }
+    }
+
+    /// Adds the findings, apart from their notes.
+    pub fn set_findings(&mut self, findings: &Findings, files: &Files) {
+        let answer = |check: &Option<CheckResult>| check.as_ref().map(|check| check.answer.clone());
+        self.verdict = findings.verdict;
+        self.reason = sentence(findings, files);
+        self.mistake = findings.mistake.as_deref().map(Mistake::new);
+        self.algorithm = answer(&findings.algorithm);
+        self.precision = answer(&findings.precision);
+        self.toolchain = answer(&findings.toolchain);
+        self.picture = findings
+            .picture
+            .as_ref()
+            .map(|(comparison, _)| comparison.clone());
+        let seconds = &mut self.seconds;
+        seconds.eval = Some(findings.eval.as_secs_f64());
+        seconds.trace = findings.trace.map(|trace| trace.as_secs_f64());
+        if let Some(painter) = &findings.painter {
+            seconds.translate = Some(painter.translate.as_secs_f64());
+            seconds.gpu = Some((painter.compile + painter.draw).as_secs_f64());
+        }
+    }
+
+    /// Records why there is no image, apart from the diagnostics.
+    pub fn set_failure(&mut self, failure: Failure, files: &Files) {
+        let (verdict, because) = decide(Evidence::NoImage(failure));
+        self.verdict = verdict;
+        self.reason = reason(&because, files);
     }
 
     /// The reason why the toolchain check did not run although other checks did.
@@ -163,7 +195,8 @@ impl Seconds {
 #[cfg(test)]
 pub(super) mod samples {
     use toyproof_diagnostic::{self as diagnostic, File, Files, Severity};
-    use toyproof_verify::compare::{Answer, Verdict};
+    use toyproof_verify::Verdict;
+    use toyproof_verify::compare::Answer;
 
     use crate::report::{Record, Rubric, Seconds};
 

@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 use toml::Spanned;
 use toyproof_diagnostic::{Diagnostic, FileId, Files, Span};
 use toyproof_scene::of_toml;
-use toyproof_verify::compare::{Answer, MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABLE, Verdict};
+use toyproof_verify::compare::Answer;
+use toyproof_verify::{MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABLE, Verdict};
 
 use super::{Record, details, terminal};
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use serde_json::{Value, json};
 use toyproof_diagnostic as diagnostic;
-use toyproof_verify::compare::Verdict;
+use toyproof_verify::Verdict;
 
 use super::{Record, terminal};
 

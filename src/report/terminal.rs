@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use anstyle::{AnsiColor, Style};
-use toyproof_diagnostic::Json;
-use toyproof_verify::compare::{Answer, Comparison, Pixel, Verdict, grouped, magnitude, plural};
+use toyproof_diagnostic::{Json, grouped, magnitude, plural};
+use toyproof_verify::Verdict;
+use toyproof_verify::compare::{Answer, Comparison, Pixel};
 
 use super::Record;
 

@@ -3,10 +3,9 @@
 use std::fmt::Write;
 
 use serde::{Serialize, Serializer};
-use toyproof_diagnostic::{Files, Span};
+use toyproof_diagnostic::{Files, Span, grouped};
 use toyproof_eval::{Event, TraceSchema, TraceValue, What};
 use toyproof_glsl::tree::{Scalar, Tree, Type};
-use toyproof_verify::compare::grouped;
 use toyproof_verify::debug::{Explanation, Step, digits};
 
 /// The trace of a pixel in f32 and in f64, in terms of the source text.

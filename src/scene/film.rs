@@ -43,6 +43,18 @@ impl Sampler {
     pub fn draws(self) -> bool {
         !matches!(self, Self::Center | Self::SineHash)
     }
+
+    /// Its name in scene files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Center => "center",
+            Self::SineHash => "sine-hash",
+            Self::Independent => "independent",
+            Self::Stratified => "stratified",
+            Self::Sobol => "sobol",
+        }
+    }
 }
 
 /// The light transport algorithm.

@@ -6,7 +6,8 @@ use toyproof_scene::Sampler;
 use toyproof_tracer::{RayEpsilons, Tracer};
 
 use super::CheckResult;
-use crate::compare::{Answer, MAX_UNSTABLE, PixelStatus, grouped};
+use crate::compare::PixelStatus;
+use crate::decide::{MAX_UNSTABLE, Share};
 use crate::mistake::Named;
 
 /// The largest number of pixels that are examined.
@@ -25,14 +26,14 @@ const MIN_SHARE_IN_SINGLE: f64 = 0.01;
 /// The tolerance of colors, in float32 too.
 const COLOR_TOLERANCE: f64 = 4.0 / 255.0;
 
-/// Returns the check in which most differing pixels differ because rays hit the surfaces they start from, if
-/// there is one.
-pub(super) fn detect<'a>(
+/// Returns the pixels that differ in the check in which most do because rays hit the surfaces they start from,
+/// if there is one.
+pub(super) fn detect(
     tracer: &Tracer<f64>,
     size: [u32; 2],
-    algorithm: Option<&'a CheckResult>,
-    precision: Option<&'a CheckResult>,
-) -> Option<&'a CheckResult> {
+    algorithm: Option<&CheckResult>,
+    precision: Option<&CheckResult>,
+) -> Option<Share> {
     let epsilons = tracer.acne();
     if epsilons.is_empty() {
         return None;
@@ -45,20 +46,20 @@ pub(super) fn detect<'a>(
     let precision = precision
         .into_iter()
         .map(|check| (check, MIN_SHARE_IN_SINGLE, MIN_EXPLAINED_SHARE));
-    let check_with_acne = algorithm.chain(precision).find(|&(check, least, most)| {
+    algorithm.chain(precision).find_map(|(check, least, most)| {
         let answer = &check.answer;
-        let count = answer.differing + answer.undecided - answer.tied;
-        if answer.share(count) <= least {
-            return false;
+        let differing = Share::of(answer, answer.differing + answer.undecided - answer.tied);
+        if differing.ratio() <= least {
+            return None;
         }
         let pixels: Vec<DifferingPixel> = pixels_to_examine(check, size)
             .into_par_iter()
             .filter_map(|pixel| DifferingPixel::at(tracer, check, size, pixel))
             .collect();
         let explained = pixels.par_iter().filter(|pixel| pixel.is_acne(tracer, &epsilons));
-        explained.count() as f64 >= most * pixels.len() as f64 && !pixels.is_empty()
-    });
-    check_with_acne.map(|(check, ..)| check)
+        let is_explained = explained.count() as f64 >= most * pixels.len() as f64;
+        (is_explained && !pixels.is_empty()).then_some(differing)
+    })
 }
 
 /// Returns ill-conditioned pixels spread over the image, or differing ones if there are none, among those
@@ -117,16 +118,6 @@ impl DifferingPixel {
 
 fn is_near(a: f64, b: f64) -> bool {
     (a - b).abs() <= COLOR_TOLERANCE
-}
-
-/// Returns why the shader is wrong.
-pub(super) fn reason(answer: &Answer) -> String {
-    let count = answer.differing + answer.undecided - answer.tied;
-    format!(
-        "in {} of {} pixels rounding decides whether a ray meets the surface that it starts from",
-        grouped(count),
-        grouped(answer.pixels)
-    )
 }
 
 /// The mistake.

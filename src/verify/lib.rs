@@ -8,8 +8,7 @@
 //! use toyproof_diagnostic::{Deadline, File, Files};
 //! use toyproof_image::Frame;
 //! use toyproof_translate::FloatMode;
-//! use toyproof_verify::compare::Verdict;
-//! use toyproof_verify::{Case, Expected, verify};
+//! use toyproof_verify::{Case, Expected, Verdict, verify};
 //!
 //! let mut files = Files::default();
 //! let scene = files.add(File::new("red.toml", "[background]\ncolor = [1.0, 0.0, 0.0]\n"));
@@ -40,7 +39,9 @@ pub mod contain;
 pub mod conversion;
 mod cpu;
 pub mod debug;
+mod decide;
 mod expected;
+mod findings;
 pub mod mistake;
 mod notes;
 mod replicates;
@@ -50,7 +51,6 @@ mod session;
 mod silhouette_precision;
 mod stochastic;
 
-use std::collections::HashMap;
 use std::iter;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, SyncSender};
@@ -59,20 +59,24 @@ use std::time::{Duration, Instant};
 
 use rayon::ThreadPool;
 use thiserror::Error;
-use toyproof_diagnostic::{Deadline, Diagnostic, Overdue, Span};
+use toyproof_diagnostic::{Deadline, Diagnostic, Overdue, grouped, plural};
 use toyproof_eval::{self as eval, Program};
-use toyproof_glsl::Checked;
+use toyproof_glsl::{self as glsl, Checked};
 use toyproof_gpu::{self as gpu, Drawn, SAFE_ROUNDS, Worker};
-use toyproof_image::{Frame, Image, Rgb8Image};
+use toyproof_image::{Frame, Image};
 use toyproof_lint::Lints;
 use toyproof_translate::FloatMode;
 
 use self::cpu::Evaluator;
+pub use self::decide::{
+    CheckEvidence, Checks, Evidence, MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABLE, MeanComparison, Means,
+    OtherRandomNumbers, Reason, Share, Verdict, decide,
+};
 pub use self::expected::Expected;
+pub use self::findings::{CheckResult, Findings, Painter};
 pub use self::notes::unbound;
-use crate::compare::{Answer, Comparison, DiffLevel, PixelStatus, Verdict};
 use crate::contain::Panic;
-use crate::mistake::{Hypotheses, Named};
+use crate::mistake::Hypotheses;
 use crate::session::{IterationCount, VerifySession};
 
 /// A shader to verify, and how.
@@ -97,101 +101,18 @@ pub struct Case<'a> {
     pub pool: Option<&'a ThreadPool>,
 }
 
-/// The results of [`verify`].
-#[derive(Debug)]
-pub struct Findings {
-    /// The verdict.
-    pub verdict: Verdict,
-    /// Why, in one sentence.
-    pub reason: String,
-    /// The algorithm check; none without a scene.
-    pub algorithm: Option<CheckResult>,
-    /// The precision check.
-    pub precision: Option<CheckResult>,
-    /// The toolchain check; only for strict runs on a GPU.
-    pub toolchain: Option<CheckResult>,
-    /// The comparison of the shader's image with the reference.
-    pub picture: Option<(Comparison, Vec<DiffLevel>)>,
-    /// The tracer's image.
-    pub reference: Option<Rgb8Image>,
-    /// The GPU's image, or the evaluator's in f32 without a GPU.
-    pub actual: Rgb8Image,
-    /// The GPU and its times; none if the evaluator rendered the image.
-    pub painter: Option<Painter>,
-    /// Observations of the run, with their lines.
-    pub notes: Vec<Diagnostic>,
-    /// Where the shader loses precision, if float32 is not enough and the place could be found; a note or a
-    /// warning describes it.
-    pub cause: Option<Span>,
-    /// The classic mistake, or the two, that explain a wrong image.
-    pub mistake: Option<Vec<Named>>,
-    /// Internal errors; the parts in which they occurred are missing here.
-    pub panics: Vec<Panic>,
-    /// The evaluator's time for all its images.
-    pub eval: Duration,
-    /// The tracer's time; nearly 0 where the reference was cached.
-    pub trace: Option<Duration>,
-}
-
-/// The GPU that rendered an image, and its times: [`Drawn`] without the image.
-#[derive(Debug, Clone)]
-pub struct Painter {
-    /// Adapter and driver.
-    pub device: String,
-    /// Time for naga to parse, validate and write.
-    pub translate: Duration,
-    /// Time for the driver to compile.
-    pub compile: Duration,
-    /// Time to render and read back.
-    pub draw: Duration,
-}
-
-impl Painter {
-    fn of(drawn: Drawn) -> Self {
-        Self {
-            device: drawn.device,
-            translate: drawn.translate,
-            compile: drawn.compile,
-            draw: drawn.draw,
-        }
-    }
-}
-
-/// The result of a check, and its difference image.
-#[derive(Debug, Default)]
-pub struct CheckResult {
-    /// The counts.
-    pub answer: Answer,
-    /// The difference level of each pixel, bottom row first.
-    pub marks: Vec<DiffLevel>,
-    /// The status of each pixel.
-    statuses: Vec<PixelStatus>,
-    /// The shader's colors in pixels that do not agree, by pixel index.
-    actual: HashMap<usize, [f32; 3]>,
-}
-
-impl CheckResult {
-    /// Adds the band above the first `height` rows.
-    fn extend(&mut self, expected: &Image, actual: &Image, statuses: &[PixelStatus], height: u32) {
-        self.answer
-            .extend(&Answer::new(expected, actual, statuses), height);
-        self.marks.extend(compare::marks(expected, actual, statuses));
-        let offset = self.statuses.len();
-        let differing = statuses.iter().enumerate();
-        let differing =
-            differing.filter(|&(_, &status)| matches!(status, PixelStatus::Differs | PixelStatus::Undecided));
-        let capacity = MAX_KEPT_COLORS.saturating_sub(self.actual.len());
-        self.actual.extend(differing.take(capacity).map(|(at, _)| {
-            let [r, g, b, _] = actual.pixels()[at];
-            (offset + at, [r, g, b])
-        }));
-        self.statuses.extend(statuses);
-    }
-}
-
-/// Why a shader could not be verified.
-#[derive(Debug, Error)]
+/// Why there is no image of a shader.
+#[derive(Debug, Clone, Error)]
 pub enum Failure {
+    /// The shader, or its scene, cannot be read.
+    #[error("{0}")]
+    Unreadable(String),
+    /// The shader does not compile.
+    #[error("it does not compile")]
+    Invalid(Vec<Diagnostic>),
+    /// The scene is invalid.
+    #[error("its scene is invalid")]
+    InvalidScene(Vec<Diagnostic>),
     /// The GPU failed.
     #[error(transparent)]
     Gpu(#[from] gpu::Failure),
@@ -202,15 +123,28 @@ pub enum Failure {
     #[error(transparent)]
     Overdue(#[from] Overdue),
     /// The driver truncated loops in that many pixels.
-    #[error("a loop was ended by force in {} {}", compare::grouped(*.0), compare::plural(*.0, "pixel", "pixels"))]
+    #[error("a loop was ended by force in {} {}", grouped(*.0), plural(*.0, "pixel", "pixels"))]
     LoopTruncated(u64),
+    /// There was an internal error.
+    #[error(transparent)]
+    Panic(#[from] Panic),
 }
 
-/// The largest number of pairs of mistakes that are searched for in a wrong image: a few seconds' work.
-const MAX_PAIRS: usize = 512;
-
-/// The largest number of pixels that do not agree whose colors are kept.
-const MAX_KEPT_COLORS: usize = 1 << 16;
+impl Failure {
+    /// Returns the diagnostics on the shader or its scene.
+    #[must_use]
+    pub fn diagnostics(&self) -> Vec<Diagnostic> {
+        match self {
+            Self::Invalid(diagnostics)
+            | Self::InvalidScene(diagnostics)
+            | Self::Gpu(gpu::Failure::Invalid(diagnostics) | gpu::Failure::Refused(diagnostics)) => {
+                diagnostics.clone()
+            }
+            Self::Overdue(overdue) => vec![glsl::overdue(*overdue)],
+            _ => Vec::new(),
+        }
+    }
+}
 
 /// The capacity of the queue of GPU bands that wait to be compared: an image of 1920×1080. If a larger image
 /// has to wait, so does watching its loops.
@@ -226,7 +160,8 @@ const TOTAL_TIME_FACTOR: u32 = 8;
 /// once per scene.
 ///
 /// # Errors
-/// Returns why there is no image of the shader.
+/// Returns why there is no image of the shader: [`Failure::Gpu`], [`Failure::Cpu`], [`Failure::Overdue`] or
+/// [`Failure::LoopTruncated`].
 pub fn verify(worker: Option<&mut Worker>, case: &Case) -> Result<Findings, Failure> {
     let deadline = Instant::now() + case.timeout * TOTAL_TIME_FACTOR;
     let program = Program::within(case.checked, case.timeout * EVALUATOR_TIME_FACTOR);

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-use toyproof_diagnostic::{Diagnostic, Severity, Span};
+use toyproof_diagnostic::{Diagnostic, Severity, Span, grouped, plural};
 use toyproof_eval::{Fault, MESA_CAP, Observations, Observed, Program, TraceValue, What};
 use toyproof_glsl::tree::{ExprKind, Input, SamplerShape, VariableKind};
 use toyproof_glsl::{Checked, Code};
@@ -12,7 +12,7 @@ use toyproof_image::{Frame, Image};
 use toyproof_lint::Lints;
 
 use super::{Case, CheckResult};
-use crate::compare::{PixelStatus, grouped, plural};
+use crate::compare::PixelStatus;
 use crate::debug::{Explanation, digits, explain};
 
 /// Reports what was observed, except what `warnings` of the lints report already. `excludes_pixels` says that

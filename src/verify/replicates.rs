@@ -10,9 +10,9 @@ use toyproof_tracer::Tracer;
 use super::reseed::{Reseeding, is_deterministic};
 use super::{Case, CheckResult};
 use crate::compare::{
-    EXACT_TOLERANCE, MAX_DIFFERING, PixelStatus, REPLICATES, ReplicateTest, ReplicatedPixel,
-    compare_replicates,
+    EXACT_TOLERANCE, PixelStatus, REPLICATES, ReplicateTest, ReplicatedPixel, compare_replicates,
 };
+use crate::decide::MAX_DIFFERING;
 use crate::mistake::NoisyPixel;
 
 /// The number of further replicates that estimate the weights of pixels, so that weights are independent of

@@ -1,6 +1,5 @@
 //! The checks in progress, band by band; whole images are kept only in 8 bits, as they are shown.
 
-use std::fmt::Write;
 use std::ops::Range;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender};
@@ -8,22 +7,21 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
-use toyproof_eval::{self as eval, Observations, Program};
+use toyproof_eval::{self as eval, Observations};
 use toyproof_image::{Image, Rgb8Image};
 use toyproof_scene::Scene;
 use toyproof_tracer::{ColorRange, EpsilonFamily, EpsilonSet, RayEpsilons};
 use toyproof_translate::FloatMode;
 
-use crate::compare::{
-    self, Answers, Comparison, DiffLevel, MAX_UNSTABLE, Mixed, PixelStatus, Reference, Verdict,
-};
-use crate::contain::{Panic, Part, contain};
+use crate::compare::{self, Comparison, DiffLevel, Mixed, PixelStatus, Reference};
+use crate::contain::{Part, contain};
 use crate::cpu::{Band, Evaluator};
+use crate::decide::{Reason, Verdict};
 use crate::expected::NumberType;
 use crate::notes::{self, NotFinite};
 use crate::silhouette_precision::{self, SilhouetteBand};
-use crate::stochastic::{CheckResults, SampledRows};
-use crate::{Case, CheckResult, Expected, Failure, Findings, MAX_PAIRS, Painter, acne, join, timed};
+use crate::stochastic::SampledRows;
+use crate::{Case, CheckResult, Expected, Failure, Findings, Painter, join, timed};
 
 /// The message after each band.
 #[derive(Debug, Clone, Copy)]
@@ -247,7 +245,7 @@ impl<'a> VerifySession<'a> {
     pub(super) fn findings(self, painter: Option<Painter>) -> Findings {
         let mut findings = Findings {
             verdict: Verdict::Ok,
-            reason: String::new(),
+            reason: Reason::NoReference,
             algorithm: None,
             precision: None,
             toolchain: None,
@@ -258,12 +256,13 @@ impl<'a> VerifySession<'a> {
             notes: Vec::new(),
             cause: None,
             mistake: None,
+            tolerated_mistake: None,
             panics: Vec::new(),
             eval: self.eval,
             trace: self.case.expected.map(|_| self.trace),
         };
         match self.evaluator {
-            Err(failure) => findings.evaluator_failed(&failure),
+            Err(failure) => findings.evaluator_failed(failure),
             Ok(evaluator) => {
                 findings.algorithm = self.case.expected.map(|_| self.algorithm);
                 findings.precision = Some(self.precision);
@@ -286,7 +285,7 @@ impl<'a> VerifySession<'a> {
                 });
                 let notes = findings.contained(notes);
                 findings.notes.extend(notes);
-                findings.decide(case, program, self.deadline, self.sampled_rows.as_ref());
+                findings.explain(case, program, self.deadline, self.sampled_rows.as_ref());
                 findings.notes.retain(|note| !case.lints.allows(note));
             }
         }
@@ -341,119 +340,4 @@ fn exclude_tied(statuses: &mut [PixelStatus], is_tied: impl Fn(u32, u32) -> bool
             *status = PixelStatus::Tied;
         }
     });
-}
-
-impl Findings {
-    fn decide(
-        &mut self,
-        case: &Case,
-        program: &Program,
-        deadline: Instant,
-        sampled_rows: Option<&SampledRows>,
-    ) {
-        (self.verdict, self.reason) = compare::decide(Answers {
-            algorithm: self.algorithm.as_ref().map(|check| &check.answer),
-            precision: self.precision.as_ref().map(|check| &check.answer),
-            toolchain: self.toolchain.as_ref().map(|check| &check.answer),
-        });
-        // A mistake that explains every pixel is reported whatever random numbers the shader uses. Pairs are
-        // searched for only if the comparison of random pixels reaches no verdict: with other random numbers,
-        // two mistakes do not render the image of the pair.
-        self.search_for_mistake(case, program, if sampled_rows.is_some() { 0 } else { MAX_PAIRS });
-        let mut is_stochastic = false;
-        if let (Verdict::Wrong | Verdict::Unstable, None, Some(sampled_rows), Some(algorithm)) =
-            (self.verdict, &self.mistake, sampled_rows, &self.algorithm)
-        {
-            let found = CheckResults {
-                algorithm,
-                precision: self.precision.as_ref(),
-                toolchain: self.toolchain.as_ref(),
-            };
-            if let Some(stochastic) = sampled_rows.verdict(found, program, case, deadline) {
-                is_stochastic = true;
-                (self.verdict, self.reason) = (stochastic.verdict, stochastic.reason);
-                self.mistake = stochastic.mistake;
-            }
-        }
-        if let (Verdict::Unstable | Verdict::Wrong, None, Some(expected)) =
-            (self.verdict, &self.mistake, case.expected)
-            && let Some(check) = acne::detect(
-                expected.tracer(),
-                case.frame.size,
-                self.algorithm.as_ref(),
-                self.precision.as_ref(),
-            )
-        {
-            self.verdict = Verdict::Wrong;
-            self.reason = acne::reason(&check.answer);
-            self.mistake = Some(vec![acne::named()]);
-        }
-        if sampled_rows.is_some() && !is_stochastic {
-            self.search_for_mistake(case, program, MAX_PAIRS);
-        }
-        if let (Verdict::Correct, Some(suspects), Some(algorithm)) =
-            (self.verdict, case.suspects, &self.algorithm)
-            && algorithm.answer.differing > 0
-            && !is_stochastic
-        {
-            let differing = notes::sample_pixels(algorithm, case.frame.size, usize::MAX);
-            let named = contain(Part::Mistake, || suspects.explaining(program, &differing));
-            if let Some(named) = self.contained(named) {
-                let _ = write!(self.reason, "; they are what a tracer paints that {}", named.says);
-            }
-        }
-        self.notes
-            .extend(notes::unbound(case.checked, case.lints, case.frame));
-        if let (Verdict::Wrong, None, Some(color)) = (self.verdict, &self.mistake, self.actual.only_color()) {
-            let [r, g, b] = color;
-            let says = match color {
-                [0, 0, 0] => "; every pixel is black".to_owned(),
-                _ => format!("; every pixel has one colour, ({r}, {g}, {b}) of 255"),
-            };
-            self.reason.push_str(&says);
-        }
-        let differs_often = |check: &CheckResult| check.answer.share(check.answer.differing) > MAX_UNSTABLE;
-        let loses_precision =
-            self.verdict == Verdict::Ok && self.precision.as_ref().is_some_and(differs_often);
-        if self.verdict == Verdict::Unstable || loses_precision {
-            let cause = contain(Part::Cause, || {
-                let mut checks = [&self.precision, &self.algorithm].into_iter().flatten();
-                checks.find_map(|check| notes::cause(program, case, deadline, check))
-            });
-            let cause = self.contained(cause);
-            self.cause = cause.as_ref().and_then(|cause| cause.span);
-            let is_reported = case
-                .lints
-                .warnings
-                .iter()
-                .any(|warning| warning.span == self.cause);
-            self.notes.extend(cause.filter(|_| !is_reported));
-        }
-    }
-
-    /// Searches for the mistake that explains a wrong image, or for two, among at most `pairs` pairs.
-    fn search_for_mistake(&mut self, case: &Case, program: &Program, pairs: usize) {
-        if let (Verdict::Wrong, None, Some(suspects)) = (self.verdict, &self.mistake, case.suspects) {
-            let named = contain(Part::Mistake, || suspects.recognize(program, case.frame, pairs));
-            self.mistake = self.contained(named);
-        }
-    }
-
-    /// Returns a part's result, or the default if it panicked, which is recorded.
-    fn contained<T: Default>(&mut self, found: Result<T, Panic>) -> T {
-        found.unwrap_or_else(|panic| {
-            self.panics.push(panic);
-            T::default()
-        })
-    }
-
-    /// Sets the verdict where the evaluator failed: only the GPU's image is known.
-    fn evaluator_failed(&mut self, failure: &eval::Failure) {
-        if self.reference.is_some() {
-            self.verdict = Verdict::Inconclusive;
-            self.reason = format!("the shader could not be evaluated on the CPU: {failure}");
-        } else {
-            self.reason = format!("the shader paints; it could not be evaluated on the CPU: {failure}");
-        }
-    }
 }

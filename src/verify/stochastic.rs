@@ -1,26 +1,24 @@
-//! Verdicts on shaders that differ from a stochastic scene only by their random numbers.
+//! Compares shaders that differ from a stochastic scene only by their random numbers.
 //!
 //! A shader with other random numbers than its scene renders another image with the same mean. Where all
 //! pixels that differ depend on random numbers, the means are compared: the tracer's over many sets of random
 //! numbers, and the shader's over its replicates, or over many pixels of its one image.
 
-use std::fmt::Write;
 use std::ops::Range;
 use std::time::Instant;
 
 use rayon::prelude::*;
-use toyproof_eval::Program;
+use toyproof_eval::{Places, Program};
 use toyproof_image::Image;
 use toyproof_scene::Sampler;
 use toyproof_tracer::{RESAMPLED_ROWS, Tracer};
 
-use crate::compare::{
-    Answer, Answers, EXACT_TOLERANCE, MeanTest, PixelStatus, RARE_EVENT_VARIANCE_RATIO, REPLICATES,
-    RandomPixel, ReplicateTest, Verdict, decide, differing, grouped, means, uses_scene_numbers,
-};
-use crate::mistake::Named;
+use crate::compare::{Answer, EXACT_TOLERANCE, PixelStatus, RandomPixel, means, uses_scene_numbers};
+use crate::decide::{Checks, MAX_VARIANCE_RATIO, MeanComparison, OtherRandomNumbers};
+use crate::mistake::NoisyPixel;
 use crate::notes::sample_pixels;
-use crate::replicates::{self, Incomparable, SceneComparison};
+use crate::replicates::{self, Incomparable};
+use crate::reseed::Reseeding;
 use crate::sample_loops::fewer_samples;
 use crate::{Case, CheckResult};
 
@@ -33,16 +31,6 @@ const RESAMPLES: u32 = 16;
 
 /// The share of them that must change in at least one of the sets.
 const MIN_RANDOM_SHARE: f64 = 0.98;
-
-/// The ratio of variances above which the noise is reported.
-const MAX_VARIANCE_RATIO: f64 = 1.2;
-
-/// The largest undetected difference of means, two and a half 8-bit levels; above it the verdict is
-/// inconclusive.
-const MAX_BIAS_BOUND: f64 = 0.01;
-
-/// The smallest number of random pixels: with fewer, a mistake in some of them is not detected.
-const MIN_PIXELS: usize = 1000;
 
 /// The sets of random numbers that select pixels and estimate their weights. They are disjoint from the sets
 /// that estimate the means, and independent of the shader's image; otherwise pixels would be selected because
@@ -62,7 +50,7 @@ const MAX_PATHS: u32 = 1 << 18;
 /// The colors of a shader and of the reference in rows spread over an image.
 pub(super) struct SampledRows<'a> {
     tracer: &'a Tracer<f64>,
-    sampler: &'static str,
+    sampler: Sampler,
     size: [u32; 2],
     /// The first rows, from the bottom up: [`RESAMPLED_ROWS`] rows each, or the rest of the image.
     bottoms: Vec<u32>,
@@ -70,32 +58,17 @@ pub(super) struct SampledRows<'a> {
     colors: Vec<[[f32; 3]; 2]>,
 }
 
-/// A verdict on a stochastic shader.
-pub(super) struct StochasticVerdict {
-    pub(super) verdict: Verdict,
-    pub(super) reason: String,
-    /// The recognized mistake.
-    pub(super) mistake: Option<Vec<Named>>,
-}
-
-/// The results of the three checks.
-#[derive(Clone, Copy)]
-pub(super) struct CheckResults<'a> {
-    pub(super) algorithm: &'a CheckResult,
-    pub(super) precision: Option<&'a CheckResult>,
-    pub(super) toolchain: Option<&'a CheckResult>,
+/// The comparison of the means of a shader and of its scene.
+pub(super) struct ComparedMeans {
+    pub(super) random_numbers: OtherRandomNumbers,
+    /// How the shader's random numbers were changed; none if they were not.
+    pub(super) reseeding: Option<Reseeding>,
 }
 
 impl<'a> SampledRows<'a> {
     /// Selects rows of an image of that size; none if the scene uses no random numbers.
     pub(super) fn new(tracer: &'a Tracer<f64>, size: [u32; 2]) -> Option<Self> {
-        let sampler = match tracer.sampler()? {
-            Sampler::Center => return None,
-            Sampler::SineHash => "sine-hash",
-            Sampler::Independent => "independent",
-            Sampler::Stratified => "stratified",
-            Sampler::Sobol => "sobol",
-        };
+        let sampler = tracer.sampler().filter(|&sampler| sampler != Sampler::Center)?;
         let samples = if tracer.traces_paths() {
             MAX_PATHS
         } else {
@@ -136,161 +109,97 @@ impl<'a> SampledRows<'a> {
         }
     }
 
-    /// Returns the verdict on a shader that differs from its scene only in random pixels; none if it differs
-    /// elsewhere too.
-    pub(super) fn verdict(
+    /// Compares the means of a shader that differs from its scene only in random pixels; none if it differs
+    /// elsewhere too. The precision check of the other pixels is left out.
+    pub(super) fn compare_means(
         &self,
-        checks: CheckResults,
+        algorithm: &CheckResult,
+        checks: &Checks,
         program: &Program,
         case: &Case,
         deadline: Instant,
-    ) -> Option<StochasticVerdict> {
-        let differs = format!(
-            "{}, only where the samples' random numbers decide: it draws others than the scene, whose sampler is `{}`",
-            differing(&checks.algorithm.answer),
-            self.sampler
-        );
-        let is_random = self.differs_randomly(checks.algorithm);
-        if !is_random && !replicates::is_random(program, case, self.tracer, checks.algorithm, deadline) {
+    ) -> Option<ComparedMeans> {
+        let is_random = self.differs_randomly(algorithm);
+        if !is_random && !replicates::is_random(program, case, self.tracer, algorithm, deadline) {
             return None;
         }
-        match replicates::compare_with_scene(program, case, self.tracer, checks.algorithm, deadline) {
+        let samples = self.tracer.samples();
+        let compared = replicates::compare_with_scene(program, case, self.tracer, algorithm, deadline);
+        let (means, reseeding) = match compared {
             Ok(compared) => {
-                let (verdict, reason) = self.by_replicates(&differs, &compared, checks, case);
-                let mistake = case
-                    .suspects
-                    .filter(|_| verdict == Verdict::Wrong)
-                    .and_then(|suspects| {
-                        let (tracer, places) = (self.tracer, suspects.places());
-                        let pixels = replicates::noisy_pixels(
-                            program,
-                            case,
-                            tracer,
-                            compared.reseeding,
-                            places,
-                            deadline,
-                        )?;
-                        suspects.recognize_noisy(&pixels)
-                    });
-                Some(StochasticVerdict {
-                    verdict,
-                    reason,
-                    mistake,
-                })
+                let test = compared.test;
+                let is_noisier = test.variance > MAX_VARIANCE_RATIO && test.is_uniform;
+                let fewer_samples = || fewer_samples(&case.checked.tree, samples, test.variance);
+                let means = MeanComparison::Replicates {
+                    test,
+                    pixels: compared.pixels as u64,
+                    fewer_samples: is_noisier.then(fewer_samples).flatten(),
+                };
+                (means, Some(compared.reseeding))
             }
             Err(Incomparable::NotReseeded) if is_random => {
-                let pairs = self.pairs(checks.algorithm);
-                (!uses_scene_numbers(&pairs)).then(|| {
-                    let (verdict, reason) = self.by_one_image(&differs, &pairs, checks);
-                    StochasticVerdict {
-                        verdict,
-                        reason,
-                        mistake: None,
-                    }
-                })
-            }
-            Err(Incomparable::NotReseeded | Incomparable::NotRandom | Incomparable::SceneNumbers) => None,
-        }
-    }
-
-    /// The verdict from replicates of the shader.
-    fn by_replicates(
-        &self,
-        differs: &str,
-        &SceneComparison { test, pixels, .. }: &SceneComparison,
-        checks: CheckResults,
-        case: &Case,
-    ) -> (Verdict, String) {
-        let ReplicateTest {
-            bias: (deviations, [x, y]),
-            is_biased,
-            is_correlated,
-            variance,
-            is_uniform,
-            within,
-        } = test;
-        if is_biased {
-            let much = if deviations.is_finite() {
-                format!("by {deviations:.0} standard deviations")
-            } else {
-                "and nothing random is left to explain it".to_owned()
-            };
-            return (
-                Verdict::Wrong,
-                format!(
-                    "{differs}; but there its mean is another too, most of all around ({x}, {y}), {much}"
-                ),
-            );
-        }
-        if is_correlated {
-            return (Verdict::Inconclusive, correlated(differs));
-        }
-        if pixels >= MIN_PIXELS
-            && within > MAX_BIAS_BOUND
-            && variance > RARE_EVENT_VARIANCE_RATIO
-            && variance.is_finite()
-        {
-            return (Verdict::Inconclusive, too_noisy(differs, variance));
-        }
-        if pixels < MIN_PIXELS || within > MAX_BIAS_BOUND {
-            return (Verdict::Inconclusive, underpowered(differs));
-        }
-        let samples = self.tracer.samples();
-        if variance > MAX_VARIANCE_RATIO
-            && is_uniform
-            && let Some(own) = fewer_samples(&case.checked.tree, samples, variance)
-        {
-            return (
-                Verdict::Wrong,
-                format!(
-                    "{differs}; the mean is the same, but it takes fewer samples, {own} where the scene has {samples}: its noise has \
-                     {variance:.1} times the variance"
-                ),
-            );
-        }
-        match checks.ignoring_random_pixels(self) {
-            (Verdict::Correct, _) => {
-                let pixels = grouped(pixels as u64);
-                let mut reason = format!(
-                    "the same in the mean, to within {within:.4} over {pixels} pixels, with {REPLICATES} sets of random numbers; {differs}"
-                );
-                if variance > MAX_VARIANCE_RATIO {
-                    let _ = write!(
-                        reason,
-                        "; its noise has {variance:.1} times the variance of the scene's own sampler"
-                    );
+                let pairs = self.pairs(algorithm);
+                if uses_scene_numbers(&pairs) {
+                    return None;
                 }
-                (Verdict::Correct, reason)
+                let means = MeanComparison::OneImage {
+                    test: means(&pairs, self.size),
+                    pixels: 2 * pairs.len() as u64,
+                };
+                (means, None)
             }
-            other => other,
-        }
-    }
-
-    /// The verdict from the shader's one image, where no reseeding works.
-    fn by_one_image(
-        &self,
-        differs: &str,
-        pairs: &[[RandomPixel; 2]],
-        checks: CheckResults,
-    ) -> (Verdict, String) {
-        match means(pairs, self.size) {
-            MeanTest::Same(within) => match checks.ignoring_random_pixels(self) {
-                (Verdict::Correct, _) => {
-                    let pixels = grouped(2 * pairs.len() as u64);
-                    let reason = format!(
-                        "the same in the mean, to within {within:.4} over {pixels} pixels; {differs}"
-                    );
-                    (Verdict::Correct, reason)
-                }
-                other => other,
+            Err(Incomparable::NotReseeded | Incomparable::NotRandom | Incomparable::SceneNumbers) => {
+                return None;
+            }
+        };
+        let without_differing = Answer {
+            differing: 0,
+            undecided: 0,
+            tied: 0,
+            ..algorithm.answer.clone()
+        };
+        let random_numbers = OtherRandomNumbers {
+            sampler: self.sampler,
+            samples,
+            means,
+            other_pixels: Checks {
+                algorithm: Some(without_differing),
+                precision: None,
+                toolchain: checks.toolchain.clone(),
             },
-            MeanTest::Different([x, y]) => (
-                Verdict::Wrong,
-                format!("{differs}; but there its mean is another too, most of all around ({x}, {y})"),
-            ),
-            MeanTest::Underpowered => (Verdict::Inconclusive, underpowered(differs)),
-            MeanTest::Correlated => (Verdict::Inconclusive, correlated(differs)),
+        };
+        Some(ComparedMeans {
+            random_numbers,
+            reseeding,
+        })
+    }
+
+    /// Returns the precision check without the pixels that differ from the scene, and without random ones: in
+    /// float32, the same formula may yield other random numbers.
+    pub(super) fn precision_of_others(&self, algorithm: &CheckResult, precision: &CheckResult) -> Answer {
+        let width = self.size[0] as usize;
+        let statuses = precision.statuses.iter().zip(&algorithm.statuses);
+        let left = statuses.enumerate().filter(|&(at, (&precision, &algorithm))| {
+            precision == PixelStatus::Differs
+                && !matches!(algorithm, PixelStatus::Differs | PixelStatus::Undecided)
+                && !self.is_random([(at % width) as u32, (at / width) as u32])
+        });
+        Answer {
+            differing: left.count() as u64,
+            ..precision.answer.clone()
         }
+    }
+
+    /// Returns the means of a shader with other random numbers, and of the scene, at these places.
+    pub(super) fn noisy_pixels(
+        &self,
+        program: &Program,
+        case: &Case,
+        reseeding: Reseeding,
+        places: &Places,
+        deadline: Instant,
+    ) -> Option<Vec<NoisyPixel>> {
+        replicates::noisy_pixels(program, case, self.tracer, reseeding, places, deadline)
     }
 
     fn is_random(&self, at: [u32; 2]) -> bool {
@@ -347,27 +256,6 @@ impl<'a> SampledRows<'a> {
         });
         pairs.flatten_iter().collect()
     }
-}
-
-fn underpowered(differs: &str) -> String {
-    format!(
-        "random: {differs}, and samples or pixels are too few to compare means. Draw as docs/scenes.md tells, give the scene the sampler \
-         that draws as the shader does, or ask for a larger picture"
-    )
-}
-
-fn too_noisy(differs: &str, variance: f64) -> String {
-    format!(
-        "random: {differs}, and its noise has {variance:.0} times the variance of the scene's own sampler: too much to compare means, as where \
-         directions seldom meet a light. Sample the lights as well, or take more samples"
-    )
-}
-
-fn correlated(differs: &str) -> String {
-    format!(
-        "random: {differs}, and what they do in neighbouring pixels has much in common, so that means cannot be compared. Draw as docs/scenes.md \
-         tells, or start each pixel's numbers from its place"
-    )
 }
 
 /// The pixels of some rows with several sets of random numbers.
@@ -430,37 +318,4 @@ fn mean(sets: &[Vec<[f64; 3]>], at: usize) -> [f64; 3] {
 
 fn differs(a: [f64; 3], b: [f64; 3]) -> bool {
     (0..3).any(|i| (a[i] - b[i]).abs() > EXACT_TOLERANCE)
-}
-
-impl CheckResults<'_> {
-    /// The verdict if pixels that differ from the scene are ignored: there, float32 may change the random
-    /// numbers as well.
-    fn ignoring_random_pixels(self, sampled_rows: &SampledRows) -> (Verdict, String) {
-        let algorithm = Answer {
-            differing: 0,
-            undecided: 0,
-            tied: 0,
-            ..self.algorithm.answer.clone()
-        };
-        let precision = self.precision.map(|precision| {
-            let statuses = precision.statuses.iter().zip(&self.algorithm.statuses);
-            let left = statuses.enumerate().filter(|&(_, (&precision, &algorithm))| {
-                precision == PixelStatus::Differs
-                    && !matches!(algorithm, PixelStatus::Differs | PixelStatus::Undecided)
-            });
-            // In float32, the same formula may yield other random numbers.
-            let width = sampled_rows.size[0] as usize;
-            let left =
-                left.filter(|&(at, _)| !sampled_rows.is_random([(at % width) as u32, (at / width) as u32]));
-            Answer {
-                differing: left.count() as u64,
-                ..precision.answer.clone()
-            }
-        });
-        decide(Answers {
-            algorithm: Some(&algorithm),
-            precision: precision.as_ref(),
-            toolchain: self.toolchain.map(|check| &check.answer),
-        })
-    }
 }

@@ -1,6 +1,6 @@
 //! Normals by derivatives are exact on planes, and arbitrary where a quad sees two surfaces.
 
-use toyproof::verify::compare::Verdict;
+use toyproof::verify::Verdict;
 
 use crate::support::{Edit, Exercise, STILL, algorithm, check_exercise, edit, numbers, worker};
 

@@ -13,8 +13,7 @@ use toyproof::image::Frame;
 use toyproof::lint::Lints;
 use toyproof::translate::backend::Target;
 use toyproof::translate::{FloatMode, lower};
-use toyproof::verify::compare::Verdict;
-use toyproof::verify::{self, Case, Findings, verify};
+use toyproof::verify::{self, Case, Findings, Verdict, verify};
 
 use crate::program::{Run, command, has_driver, run};
 use crate::support::{SPHERE, checked};

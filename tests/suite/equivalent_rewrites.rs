@@ -6,8 +6,8 @@ use std::sync::LazyLock;
 
 use toyproof::eval::{Program, Settings};
 use toyproof::tracer::{ColorRange, EpsilonSet};
-use toyproof::verify::Findings;
-use toyproof::verify::compare::{EXACT_TOLERANCE, Verdict};
+use toyproof::verify::compare::EXACT_TOLERANCE;
+use toyproof::verify::{Findings, Verdict};
 
 use crate::exercises::{EDITED, Edited};
 use crate::support::{

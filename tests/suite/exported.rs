@@ -4,7 +4,7 @@
 use toyproof::diagnostic::{File, Files};
 use toyproof::scene;
 use toyproof::scene::export;
-use toyproof::verify::compare::Verdict;
+use toyproof::verify::Verdict;
 
 use crate::support::{Exercise, check_exercise_with, numbers};
 

@@ -1,7 +1,7 @@
 //! Tests the checker itself: mistakes that students make in the course's shaders must all be found.
 //! `equivalent_rewrites` is the other half.
 
-use toyproof::verify::compare::Verdict;
+use toyproof::verify::Verdict;
 
 use crate::exercises::EDITED;
 use crate::support::{

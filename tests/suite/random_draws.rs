@@ -1,6 +1,6 @@
 //! Shaders whose random numbers differ from their scene's are compared by their mean.
 
-use toyproof::verify::compare::Verdict;
+use toyproof::verify::{Means, Reason, Verdict};
 
 use crate::support::{Edit, Exercise, MANY_OBJECTS, SIZE, SOFT_SHADOWS, check_exercise, edited};
 
@@ -49,43 +49,36 @@ const STRATIFIED: &[Edit] = &[
     ),
 ];
 
-/// The edits of the sampling, the other edits, and the expected verdict.
+/// The edits of the sampling, the other edits, the expected verdict, and whether the comparison of the means,
+/// if there is one, is the expected one.
 type Case = (
     &'static Exercise,
     &'static [Edit],
     &'static [Edit],
     Verdict,
-    &'static str,
+    fn(Option<Means>) -> bool,
 );
 
 static CASES: &[Case] = &[
-    (
-        &MANY_OBJECTS,
-        OTHER_HASH,
-        &[],
-        Verdict::Correct,
-        "the same in the mean",
-    ),
-    (
-        &SOFT_SHADOWS,
-        &[OTHER_SEED],
-        &[],
-        Verdict::Correct,
-        "the same in the mean",
-    ),
+    (&MANY_OBJECTS, OTHER_HASH, &[], Verdict::Correct, |means| {
+        matches!(means, Some(Means::Same { .. }))
+    }),
+    (&SOFT_SHADOWS, &[OTHER_SEED], &[], Verdict::Correct, |means| {
+        matches!(means, Some(Means::Same { .. }))
+    }),
     (
         &SOFT_SHADOWS,
         &[OTHER_SEED],
         STRATIFIED,
         Verdict::Correct,
-        "the same in the mean",
+        |means| matches!(means, Some(Means::Same { .. })),
     ),
     (
         &SOFT_SHADOWS,
         &[SAME_EVERYWHERE],
         &[],
         Verdict::Inconclusive,
-        "in neighbouring pixels has much in common",
+        |means| means == Some(Means::Correlated),
     ),
     // Faults that only the mean shows: in each of these pixels, different random numbers give different
     // colors.
@@ -94,21 +87,21 @@ static CASES: &[Case] = &[
         &[OTHER_SEED],
         &[("vec3(3.0, 5.0, -5.0), 0.6", "vec3(3.0, 5.0, -5.0), 1.0")],
         Verdict::Wrong,
-        "its mean is another too",
+        |means| matches!(means, Some(Means::Different { .. })),
     ),
     (
         &SOFT_SHADOWS,
         &[OTHER_SEED],
         &[("fragCoord.x + random() - 0.5", "fragCoord.x + random()")],
         Verdict::Wrong,
-        "its mean is another too",
+        |means| matches!(means, Some(Means::Different { .. })),
     ),
     (
         &SOFT_SHADOWS,
         &[OTHER_SEED],
         &[("SAMPLES = 16", "SAMPLES = 6")],
         Verdict::Wrong,
-        "it takes fewer samples",
+        |means| matches!(means, Some(Means::FewerSamples { .. })),
     ),
     // Shaders with the scene's own random numbers are compared pixel by pixel.
     (
@@ -116,7 +109,7 @@ static CASES: &[Case] = &[
         &[],
         &[("vec3(3.0, 5.0, -5.0), 0.6", "vec3(3.0, 5.0, -5.0), 0.63")],
         Verdict::Wrong,
-        "it is the mathematics",
+        |means| means.is_none(),
     ),
     // Errors in pixels that no random number affects are not stochastic.
     (
@@ -124,7 +117,7 @@ static CASES: &[Case] = &[
         OTHER_HASH,
         &[("vec3(0.9, 0.8, 0.1)", "vec3(0.918, 0.816, 0.102)")],
         Verdict::Wrong,
-        "it is the mathematics",
+        |means| means.is_none(),
     ),
 ];
 
@@ -133,14 +126,18 @@ fn different_random_numbers_are_compared_by_the_mean() {
     let Some(mut worker) = crate::support::worker() else {
         return;
     };
-    for &(exercise, draws, edits, verdict, reason) in CASES {
+    for &(exercise, draws, edits, verdict, is_expected) in CASES {
         let exercise = &Exercise {
             size: SIZE,
             ..*exercise
         };
         let findings = check_exercise(&mut worker, &edited(exercise, &[draws, edits].concat()), exercise);
-        let case = format!("{} {edits:?}: {}", exercise.name, findings.reason);
+        let case = format!("{} {edits:?}: {:?}", exercise.name, findings.reason);
         assert_eq!(findings.verdict, verdict, "{case}");
-        assert!(findings.reason.contains(reason), "{case}");
+        let means = match findings.reason {
+            Reason::OtherRandomNumbers { means, .. } => Some(means),
+            _ => None,
+        };
+        assert!(is_expected(means), "{case}");
     }
 }

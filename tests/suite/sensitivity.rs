@@ -5,9 +5,8 @@ use toyproof::eval::{Number, Program, RandomRounding, Seed, Settings};
 use toyproof::image::{Frame, Image};
 use toyproof::scene::{FrameTime, Point, Projection, Scene, Shape};
 use toyproof::tracer::{ColorRange, EpsilonFamily, EpsilonSet, RayEpsilons, Tracer};
-use toyproof::verify::compare::{
-    Answer, Answers, Mixed, PERTURBATIONS, Reference, Verdict, algorithm, decide,
-};
+use toyproof::verify::compare::{Answer, Mixed, PERTURBATIONS, Reference, algorithm};
+use toyproof::verify::{CheckEvidence, Checks, Evidence, Verdict, decide};
 
 use crate::support::{EXERCISES, Exercise, checked, frame, scene};
 
@@ -198,11 +197,14 @@ impl Subject {
             |seed, _| self.perturbed.get(seed as usize).cloned(),
         );
         let answer = Answer::new(&expected, &self.exact, &standings);
-        let (verdict, _) = decide(Answers {
-            algorithm: Some(&answer),
-            precision: None,
-            toolchain: None,
-        });
+        let checks = Checks {
+            algorithm: Some(answer),
+            ..Checks::default()
+        };
+        let (verdict, _) = decide(Evidence::Checked(CheckEvidence {
+            checks,
+            ..CheckEvidence::default()
+        }));
         verdict == Verdict::Wrong
     }
 

@@ -2,7 +2,7 @@
 //! and for each a formula that renders the same scene without harm. The first must be `unstable` with the
 //! line that loses the digits, the second `correct`.
 
-use toyproof::verify::compare::Verdict;
+use toyproof::verify::Verdict;
 
 use crate::support::{Edit, Exercise, MANY_OBJECTS, SHADING, SPHERE, check_exercise, edit, numbers, worker};
 

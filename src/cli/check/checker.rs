@@ -7,27 +7,22 @@ use std::time::SystemTime;
 
 use rayon::ThreadPool;
 use sha2::{Digest, Sha256};
-use toyproof_diagnostic::{self as diagnostic, Deadline, Diagnostic, Files, Severity, path_name};
-use toyproof_eval as eval;
-use toyproof_glsl::{self as glsl, Code};
-use toyproof_gpu::{Failure, Worker};
+use toyproof_diagnostic::{self as diagnostic, Deadline, Diagnostic, Files, path_name};
+use toyproof_gpu::Worker;
 use toyproof_image as image;
 use toyproof_image::{Frame, output};
 use toyproof_scene::Scene;
-use toyproof_verify::compare::Verdict;
 use toyproof_verify::contain::{Part, contain};
-use toyproof_verify::{self as verify, Case, Findings, verify};
+use toyproof_verify::{Case, Failure, Findings, verify};
 
 use super::Args;
 use super::images::IMAGES;
-use super::loop_truncated;
 use super::reference::{Reference, References, SceneCache};
 use crate::cli::files::{Input, ReadError};
 use crate::cli::names::{Names, with_suffix};
-use crate::cli::run::failure_position;
-use crate::cli::shader::{Shader, Unusable, denied, is_invalid};
+use crate::cli::shader::{Shader, Unusable, denied};
 use crate::cli::{Terminal, files, pool};
-use crate::report::{Mistake, Record};
+use crate::report::Record;
 
 /// A shader to check.
 pub(super) struct Submission {
@@ -137,6 +132,8 @@ pub(super) struct Outcome {
     pub(super) record: Record,
     pub(super) messages: Vec<Message>,
     pub(super) device: Option<String>,
+    /// Whether no driver is usable.
+    pub(super) is_without_driver: bool,
     /// Whether something failed that the verdict does not show.
     pub(super) failed: bool,
 }
@@ -148,8 +145,30 @@ impl Outcome {
             record,
             messages: Vec::new(),
             device: None,
+            is_without_driver: false,
             failed: false,
         }
+    }
+
+    fn set_findings(&mut self, findings: &Findings, files: &Files) {
+        self.record.set_findings(findings, files);
+        if let Some(painter) = &findings.painter {
+            self.messages.push(Message::Detail(format!(
+                "{}: translated in {:.4} s, compiled in {:.3} s, painted in {:.3} s on {}",
+                self.record.shader,
+                painter.translate.as_secs_f64(),
+                painter.compile.as_secs_f64(),
+                painter.draw.as_secs_f64(),
+                painter.device
+            )));
+            self.device = Some(painter.device.clone());
+        }
+    }
+
+    fn set_failure(&mut self, failure: Failure, files: &Files) {
+        self.report(failure.diagnostics(), files);
+        self.is_without_driver = matches!(&failure, Failure::Gpu(failure) if failure.is_without_driver());
+        self.record.set_failure(failure, files);
     }
 
     fn report(&mut self, diagnostics: Vec<Diagnostic>, files: &Files) {
@@ -194,9 +213,9 @@ impl<'a> Checker<'a> {
         contain(Part::Shader, || self.check_shader(context, submission)).unwrap_or_else(|panic| {
             // The worker was interrupted in an unknown state.
             context.worker = context.worker.take().and_then(|_| new_worker(self.args));
-            let mut outcome = Outcome::known(Record::new(submission.name.clone(), Verdict::Error));
-            outcome.record.reason = panic.to_string();
-            outcome
+            let mut record = Record::new(submission.name.clone());
+            record.set_failure(panic.into(), &Files::default());
+            Outcome::known(record)
         })
     }
 
@@ -208,24 +227,19 @@ impl<'a> Checker<'a> {
         );
         let found = submission.input.as_ref().ok();
         let reference = found.and_then(|found| self.references.find(found));
-        let mut outcome = Outcome::known(Record::new(shader.name.clone(), Verdict::Ok));
+        let mut outcome = Outcome::known(Record::new(shader.name.clone()));
         outcome.record.scene = reference.as_ref().map(|reference| reference.name.clone());
-        let findings = self.verify(context, &mut outcome, shader, reference);
+        outcome.report(shader.lints.warnings.clone(), &shader.files);
+        let findings = self.verify(context, &mut outcome, &shader, reference.as_ref());
         if let (Some(out), Some(stem)) = (&self.args.out, &submission.output_stem) {
             keep(out, stem, findings.as_ref().ok(), &mut outcome);
         }
-        match findings {
-            Ok(findings) => fill(&mut outcome, findings),
-            Err(aborted) => {
-                outcome.record.verdict = aborted.verdict;
-                // The shader's name is printed before the reason anyway.
-                let prefix = format!("{}: ", outcome.record.shader);
-                outcome.record.reason = match aborted.reason.strip_prefix(&prefix) {
-                    Some(reason) => reason.to_owned(),
-                    None => aborted.reason,
-                };
-                outcome.report(aborted.diagnostics, &aborted.files);
+        match (findings, reference) {
+            (Ok(findings), _) => outcome.set_findings(&findings, &shader.files),
+            (Err(failure @ Failure::InvalidScene(_)), Some(reference)) => {
+                outcome.set_failure(failure, &reference.files);
             }
+            (Err(failure), _) => outcome.set_failure(failure, &shader.files),
         }
         outcome
     }
@@ -234,25 +248,17 @@ impl<'a> Checker<'a> {
         &self,
         context: &mut WorkerContext,
         outcome: &mut Outcome,
-        shader: Shader,
-        reference: Option<Reference>,
-    ) -> Result<Findings, Aborted> {
-        let Shader {
-            files,
-            checked,
-            lints,
-            ..
-        } = shader;
-        outcome.report(lints.warnings.clone(), &files);
-        let checked = match checked {
-            Ok(checked) => checked,
-            Err(unusable) => return Err(Aborted::unusable(unusable, files, Verdict::Invalid)),
-        };
+        shader: &Shader,
+        reference: Option<&Reference>,
+    ) -> Result<Findings, Failure> {
+        let checked = shader.checked.as_ref().map_err(|unusable| match unusable {
+            Unusable::Unreadable(error) => Failure::Unreadable(error.reason.clone()),
+            Unusable::Invalid(diagnostics) => Failure::Invalid(diagnostics.clone()),
+        })?;
         let mut frame = self.frame.clone();
-        let scene = match reference.map(|reference| (reference.scene, reference.files)) {
+        let scene = match reference {
             None => None,
-            Some((Err(unusable), files)) => return Err(Aborted::unusable(unusable, files, Verdict::Error)),
-            Some((Ok(scene), _)) => Some(self.sized(scene, &mut frame)),
+            Some(reference) => Some(self.sized(reference.scene.clone()?, &mut frame)),
         };
         let cached = scene.map(|scene| self.scenes.get(scene, &frame));
         let hypotheses = contain(Part::Mistake, || {
@@ -263,8 +269,8 @@ impl<'a> Checker<'a> {
             None
         });
         let case = Case {
-            checked: &checked,
-            lints: &lints,
+            checked,
+            lints: &shader.lints,
             expected: cached.as_ref().map(|cached| &cached.expected),
             suspects: hypotheses,
             frame: &frame,
@@ -276,7 +282,7 @@ impl<'a> Checker<'a> {
             context.worker = None;
         }
         let mut verified = verify(context.worker.as_mut(), &case);
-        if let Err(verify::Failure::Gpu(failure)) = &verified
+        if let Err(Failure::Gpu(failure)) = &verified
             && failure.is_without_driver()
             && self.args.driver.may_fall_back()
         {
@@ -288,23 +294,16 @@ impl<'a> Checker<'a> {
             context.worker = None;
             verified = verify(None, &case);
         }
-        let mut findings = verified.map_err(|failure| Aborted::failure(failure, files.clone()))?;
-        if let (Verdict::Unstable, Some(cause)) = (findings.verdict, findings.cause) {
-            let at = files.position(cause);
-            let suffix = format!("; it is lost in line {}, column {}", at.line, at.column);
-            findings.reason.push_str(&suffix);
-        }
+        let mut findings = verified?;
         for panic in findings.panics.drain(..) {
             outcome.fail(format!("{}: {panic}", outcome.record.shader));
         }
-        let mut notes = std::mem::take(&mut findings.notes);
-        let denied = denied(&mut notes, self.args.language.denied());
-        outcome.report(notes, &files);
+        let denied = denied(&mut findings.notes, self.args.language.denied());
+        outcome.report(std::mem::take(&mut findings.notes), &shader.files);
         if denied.is_empty() {
             Ok(findings)
         } else {
-            let denied = Unusable::Invalid(denied);
-            Err(Aborted::unusable(denied, files, Verdict::Invalid))
+            Err(Failure::Invalid(denied))
         }
     }
 
@@ -314,37 +313,6 @@ impl<'a> Checker<'a> {
         scene.film.size = frame.size;
         scene
     }
-}
-
-/// Copies the findings into the record.
-fn fill(outcome: &mut Outcome, findings: Findings) {
-    let record = &mut outcome.record;
-    let seconds = &mut record.seconds;
-    seconds.eval = Some(findings.eval.as_secs_f64());
-    seconds.trace = findings.trace.map(|trace| trace.as_secs_f64());
-    if let Some(painter) = findings.painter {
-        seconds.translate = Some(painter.translate.as_secs_f64());
-        seconds.gpu = Some((painter.compile + painter.draw).as_secs_f64());
-        outcome.messages.push(Message::Detail(format!(
-            "{}: translated in {:.4} s, compiled in {:.3} s, painted in {:.3} s on {}",
-            record.shader,
-            painter.translate.as_secs_f64(),
-            painter.compile.as_secs_f64(),
-            painter.draw.as_secs_f64(),
-            painter.device
-        )));
-        outcome.device = Some(painter.device);
-    }
-    record.verdict = findings.verdict;
-    record.reason = findings.reason;
-    record.mistake = findings.mistake.as_deref().map(Mistake::new);
-    if let Some(mistake) = &record.mistake {
-        record.reason = format!("{}; {}", record.reason, mistake.says);
-    }
-    record.algorithm = findings.algorithm.map(|result| result.answer);
-    record.precision = findings.precision.map(|result| result.answer);
-    record.toolchain = findings.toolchain.map(|result| result.answer);
-    record.picture = findings.picture.map(|(comparison, _)| comparison);
 }
 
 /// Writes the images, and removes stale ones of an earlier run.
@@ -364,90 +332,5 @@ fn keep(out: &Path, stem: &Path, findings: Option<&Findings>, outcome: &mut Outc
         if let Err(error) = kept {
             outcome.fail(format!("cannot write {error}"));
         }
-    }
-}
-
-/// Why checking a shader ended early.
-pub(super) struct Aborted {
-    pub(super) verdict: Verdict,
-    pub(super) reason: String,
-    pub(super) diagnostics: Vec<Diagnostic>,
-    pub(super) files: Files,
-}
-
-impl Aborted {
-    fn because(verdict: Verdict, reason: String) -> Self {
-        Self {
-            verdict,
-            reason,
-            diagnostics: Vec::new(),
-            files: Files::default(),
-        }
-    }
-
-    /// `verdict` applies if the text itself is invalid.
-    pub(super) fn unusable(unusable: Unusable, files: Files, verdict: Verdict) -> Self {
-        match unusable {
-            Unusable::Unreadable(error) => Self::because(Verdict::Error, error),
-            Unusable::Invalid(diagnostics) => Self::invalid(verdict, diagnostics, files),
-        }
-    }
-
-    fn invalid(verdict: Verdict, diagnostics: Vec<Diagnostic>, files: Files) -> Self {
-        let is_slow = |error: &Diagnostic| error.code == Code::TooSlow.as_str();
-        let verdict = if diagnostics.iter().any(is_slow) {
-            Verdict::Timeout
-        } else {
-            verdict
-        };
-        let error = diagnostics.iter().find(|one| one.severity == Severity::Error);
-        let reason = error.map_or_else(
-            || "it does not compile".to_owned(),
-            |first| match first.span.map(|span| files.position(span)) {
-                Some(at) => format!("{} (line {}, column {})", first.message, at.line, at.column),
-                None => first.message.clone(),
-            },
-        );
-        Self {
-            verdict,
-            reason,
-            diagnostics,
-            files,
-        }
-    }
-
-    pub(super) fn failure(failure: verify::Failure, files: Files) -> Self {
-        match failure {
-            verify::Failure::Gpu(failure) => Self::gpu(failure, files),
-            verify::Failure::LoopTruncated(pixels) => Self::because(Verdict::Timeout, loop_truncated(pixels)),
-            verify::Failure::Cpu(failure) => Self::cpu(&failure, &files),
-            verify::Failure::Overdue(overdue) => {
-                Self::invalid(Verdict::Timeout, vec![glsl::overdue(overdue)], files)
-            }
-        }
-    }
-
-    fn gpu(failure: Failure, files: Files) -> Self {
-        let verdict = match &failure {
-            failure if is_invalid(failure) => Verdict::Invalid,
-            Failure::Timeout { .. } => Verdict::Timeout,
-            _ => Verdict::Error,
-        };
-        match failure {
-            Failure::Invalid(diagnostics) | Failure::Refused(diagnostics) => {
-                Self::invalid(verdict, diagnostics, files)
-            }
-            failure => Self::because(verdict, failure.to_string()),
-        }
-    }
-
-    fn cpu(failure: &eval::Failure, files: &Files) -> Self {
-        use eval::Failure::{Interrupted, Refused, TimeUp, Timeout, TooOften};
-        let verdict = match failure {
-            Refused(_) | Interrupted => Verdict::Error,
-            TooOften { .. } | Timeout { .. } | TimeUp => Verdict::Timeout,
-        };
-        let position = failure_position(failure, files);
-        Self::because(verdict, format!("{failure}{position}"))
     }
 }

@@ -9,9 +9,8 @@ use std::num::NonZero;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
-use toyproof_diagnostic::{nearest, path_name};
-use toyproof_gpu::INSTALL_HINT;
-use toyproof_verify::compare::{Verdict, grouped, plural};
+use toyproof_diagnostic::{grouped, nearest, path_name, plural};
+use toyproof_verify::Verdict;
 use toyproof_verify::contain::{Part, contain};
 
 use self::checker::{Checker, Outcome, Submission, WorkerContext};
@@ -124,20 +123,11 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         order: InOrder::default(),
         records: Vec::new(),
         device: None,
+        is_without_driver: false,
         failed: false,
     };
     batch.check(&submissions, &Checker::new(args, &references, frame));
     batch.finish(&submissions)
-}
-
-/// The message on a shader whose loops the driver truncated.
-pub(super) fn loop_truncated(pixels: u64) -> String {
-    format!(
-        "a loop never ends, or runs longer than this driver allows: it was ended by force in {} {} \
-         (Mesa before 23 stops at 65,535 iterations)",
-        grouped(pixels),
-        plural(pixels, "pixel", "pixels")
-    )
 }
 
 /// A run over all shaders of one command.
@@ -150,6 +140,8 @@ struct Batch<'a> {
     /// The reported records, in order, each with the index of its submission.
     records: Vec<(usize, Record)>,
     device: Option<String>,
+    /// Whether no driver is usable.
+    is_without_driver: bool,
     /// Whether something failed that no verdict shows.
     failed: bool,
 }
@@ -262,6 +254,7 @@ impl Batch<'_> {
             }
         }
         self.failed |= outcome.failed;
+        self.is_without_driver |= outcome.is_without_driver;
         self.device = outcome.device.or(self.device.take());
         self.records.push((index, outcome.record));
     }
@@ -274,6 +267,7 @@ impl Batch<'_> {
             records,
             device,
             results,
+            is_without_driver,
             mut failed,
             ..
         } = self;
@@ -281,7 +275,6 @@ impl Batch<'_> {
             .into_iter()
             .map(|(index, record)| (&submissions[index], record))
             .unzip();
-        let no_driver = records.iter().any(|record| record.reason.contains(INSTALL_HINT));
         let report = Report::new(device, records);
         if args.format == Format::Human {
             terminal.note(&report::summary(report.shaders()));
@@ -305,7 +298,7 @@ impl Batch<'_> {
                 }
             }
         }
-        if no_driver {
+        if is_without_driver {
             terminal.detail("`toyproof doctor` tells more of the drivers");
         }
         let verdicts = || report.shaders().iter().map(|record| record.verdict);

@@ -7,16 +7,15 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use toyproof_diagnostic::{File, Files, path_name};
 use toyproof_image::Frame;
 use toyproof_scene::{self as scene, Scene};
-use toyproof_verify::Expected;
 use toyproof_verify::mistake::Hypotheses;
+use toyproof_verify::{Expected, Failure};
 
 use crate::cli::files::{self, Input, InputSource, ReadError, Skipped};
-use crate::cli::shader::Unusable;
 
 /// The reference scene of a shader.
 pub(in crate::cli) struct Reference {
     pub(in crate::cli) name: String,
-    pub(in crate::cli) scene: Result<Scene, Unusable>,
+    pub(in crate::cli) scene: Result<Scene, Failure>,
     pub(in crate::cli) files: Files,
 }
 
@@ -59,9 +58,9 @@ impl References {
     pub(in crate::cli) fn find(&self, found: &Input) -> Option<Reference> {
         let (path, text) = self.text(found)?;
         let mut files = Files::default();
-        let scene = text.map_err(Unusable::Unreadable).and_then(|text| {
+        let scene = text.map_err(Failure::Unreadable).and_then(|text| {
             let file = files.add(text);
-            scene::parse(&files, file).map_err(Unusable::Invalid)
+            scene::parse(&files, file).map_err(Failure::InvalidScene)
         });
         Some(Reference {
             name: path_name(&path),

@@ -13,7 +13,6 @@ use toyproof_verify::contain::{Part, contain};
 use super::Args;
 use super::checker::Submission;
 use super::images::gallery;
-use crate::cli::files::content_diagnostic;
 use crate::cli::shader::Unusable;
 use crate::cli::{Terminal, files};
 use crate::report::{Record, Report, Rubric, csv, gradescope, html, junit, sarif};
@@ -32,10 +31,7 @@ pub(super) fn rubric(args: &Args, terminal: &Terminal) -> Result<Option<Rubric>,
             let file = files.add(text);
             Rubric::parse(&files, file).map_err(Unusable::Invalid)
         }
-        Err(error) => Err(match content_diagnostic(error, &mut files) {
-            Ok(diagnostic) => Unusable::Invalid(vec![diagnostic]),
-            Err(error) => Unusable::Unreadable(error.to_string()),
-        }),
+        Err(error) => Err(Unusable::of(error, &mut files)),
     };
     rubric.map(Some).map_err(|unusable| match unusable {
         Unusable::Invalid(diagnostics) => terminal.diagnostics(&diagnostics, &files),

@@ -13,7 +13,7 @@ use toyproof_translate::{FloatMode, Lowered};
 use toyproof_verify::conversion::FRAMES;
 
 use super::super::inputs::{DriverArgs, LanguageArgs};
-use super::super::shader::{Shader, Unusable, is_invalid};
+use super::super::shader::{Shader, Unusable};
 use super::super::{Exit, pool};
 use super::proof::{NAGA, ProofStatus, prove_in_browser};
 use super::{To, header, tool};
@@ -104,7 +104,7 @@ impl Converter<'_> {
             Err(Unusable::Invalid(diagnostics)) => {
                 Err(ConvertError::Diagnostics(diagnostics.clone(), Exit::ShaderFault))
             }
-            Err(Unusable::Unreadable(error)) => Err(ConvertError::Unreadable(error.clone())),
+            Err(Unusable::Unreadable(error)) => Err(ConvertError::Unreadable(error.to_string())),
         };
         (shader, converted)
     }
@@ -277,7 +277,7 @@ fn convert_error(failure: Failure) -> ConvertError {
         Failure::Invalid(diagnostics) => ConvertError::Diagnostics(diagnostics, Exit::ShaderFault),
         Failure::Refused(diagnostics) => ConvertError::Diagnostics(diagnostics, Exit::Error),
         failure => {
-            let exit = if is_invalid(&failure) {
+            let exit = if failure.is_invalid() {
                 Exit::ShaderFault
             } else {
                 Exit::Error

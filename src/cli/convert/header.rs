@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
+use toyproof_diagnostic::grouped;
 use toyproof_translate::backend::{Target, spirv};
-use toyproof_verify::compare::grouped;
 use toyproof_verify::conversion::{Against, FRAMES, Proof, Rgb8Comparison};
 
 use super::proof::ProofStatus;

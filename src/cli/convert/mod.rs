@@ -11,12 +11,11 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
 use clap::ValueEnum;
-use toyproof_diagnostic::path_name;
+use toyproof_diagnostic::{grouped, path_name, plural};
 use toyproof_gpu::browser;
 use toyproof_translate::FloatMode;
 use toyproof_translate::backend::Target;
 use toyproof_translate::wgsl::Style;
-use toyproof_verify::compare::{grouped, plural};
 
 use self::conversion::{Conversion, ConvertError, Converter};
 use self::proof::ProofStatus;

@@ -1,6 +1,6 @@
 //! Proofs of conversions: the written file is read by independent readers, and what they read is run.
 
-use toyproof_diagnostic::{File, Files, short};
+use toyproof_diagnostic::{File, Files, grouped, plural, short};
 use toyproof_glsl::tree::SamplerShape;
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_gpu::browser::{self, Text};
@@ -11,7 +11,6 @@ use toyproof_translate::naga_ir::Shape;
 use toyproof_translate::wgsl::Style;
 use toyproof_translate::{FloatMode, Lowered};
 use toyproof_verify as verify;
-use toyproof_verify::compare::{grouped, plural};
 use toyproof_verify::conversion::{Against, Proof, Rgb8Comparison, frames, prove};
 
 use super::super::shader::Shader;
@@ -163,7 +162,7 @@ fn failure_status(failure: verify::Failure) -> ProofStatus {
         | verify::Failure::LoopTruncated(_)
         | verify::Failure::Overdue(_)
         | verify::Failure::Gpu(Timeout { .. } | Device(_)) => ProofStatus::NotProvable(failure.to_string()),
-        verify::Failure::Gpu(_) => ProofStatus::Unproved(failure.to_string()),
+        failure => ProofStatus::Unproved(failure.to_string()),
     }
 }
 

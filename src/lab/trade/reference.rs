@@ -3,11 +3,12 @@
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
+use toyproof_diagnostic::grouped;
 use toyproof_eval::{self as eval, RandomRounding, Seed};
 use toyproof_image::{Frame, Image};
 use toyproof_scene::{Requirements, Sampler, Scene};
 use toyproof_tracer::Tracer;
-use toyproof_verify::compare::{self, TOLERANCE, grouped};
+use toyproof_verify::compare::{self, TOLERANCE};
 
 use super::method::{RenderContext, Shader};
 

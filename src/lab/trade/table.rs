@@ -1,7 +1,7 @@
 //! Results of a study as CSV, JSON, a chart, and text.
 
 use serde::Serialize;
-use toyproof_verify::compare::{grouped, magnitude, plural};
+use toyproof_diagnostic::{grouped, magnitude, plural};
 
 use super::{MethodResult, Report};
 use crate::chart::{Point, Scatter};

@@ -1,7 +1,7 @@
 //! One shader on the page: its verdict, its checks, its images and its messages.
 
-use toyproof_diagnostic::Json;
-use toyproof_verify::compare::{Answer, Pixel, grouped, magnitude};
+use toyproof_diagnostic::{Json, grouped, magnitude};
+use toyproof_verify::compare::{Answer, Pixel};
 
 use super::{Exhibit, Text, verdict};
 use crate::report::Record;
@@ -192,8 +192,9 @@ fn mark_word(line: &str, column: usize) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use toyproof_diagnostic::Severity;
+
+    use super::*;
 
     fn message_at(line: usize, column: usize) -> Json {
         Json {

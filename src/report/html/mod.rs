@@ -12,11 +12,11 @@ use base64::engine::general_purpose::STANDARD;
 use sha2::{Digest, Sha256};
 use toyproof_diagnostic::printable;
 use toyproof_image::quantize;
-use toyproof_verify::compare::{Answer, IN_BITS, Legend, SEEN_BY_EYE, Verdict};
-
-use super::{Record, Report, Rubric, plain, summary};
+use toyproof_verify::Verdict;
+use toyproof_verify::compare::{Answer, IN_BITS, Legend, SEEN_BY_EYE};
 
 pub use self::gallery::{Exhibit, Gallery, MAX_IMAGE_BYTES, subsample};
+use super::{Record, Report, Rubric, plain, summary};
 
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");

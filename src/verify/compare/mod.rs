@@ -1,4 +1,4 @@
-//! Compares two images pixel by pixel; the three checks, and the verdict.
+//! Compares two images pixel by pixel: the three checks.
 //!
 //! | check | expected | actual | a difference means |
 //! |---|---|---|---|
@@ -12,7 +12,6 @@ mod images;
 mod legend;
 mod mean;
 mod replicate;
-mod verdict;
 
 pub use algorithm::{Mixed, PERTURBATIONS, Reference, algorithm};
 pub use check::{Answer, EXACT_TOLERANCE, PixelStatus, SEEN, TOLERANCE, marks, precision, toolchain};
@@ -21,8 +20,4 @@ pub use legend::{DiffLevel, IN_BITS, Legend, SEEN_BY_EYE, difference};
 pub use mean::{MeanTest, RandomPixel, means, uses_scene_numbers};
 pub use replicate::{
     RARE_EVENT_VARIANCE_RATIO, REPLICATES, ReplicateTest, ReplicatedPixel, compare_replicates,
-};
-pub use verdict::{
-    Answers, MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABLE, Verdict, decide, differing, grouped, magnitude,
-    plural,
 };

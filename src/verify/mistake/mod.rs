@@ -18,7 +18,7 @@ use toyproof_eval::{Places, Program};
 use toyproof_image::Frame;
 use toyproof_scene::{FrameTime, Scene, export};
 
-use crate::compare::MAX_DIFFERING;
+use crate::decide::MAX_DIFFERING;
 use crate::mistake::mutant::{Mutant, MutantSource, render};
 pub use crate::mistake::stochastic::NoisyPixel;
 use crate::mistake::thumbnail::{Thumbnail, View, WrongImage, differing, max_left_over, pixels, work};

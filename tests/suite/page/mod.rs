@@ -8,7 +8,7 @@ use std::{env, fs};
 use serde_json::{Value, json};
 use toyproof::image::{self, Image, quantize};
 use toyproof::report::{Exhibit, Gallery, Record, Report, Seconds, html};
-use toyproof::verify::compare::Verdict;
+use toyproof::verify::Verdict;
 
 use self::devtools::Page;
 use crate::program::toyproof;

@@ -1,0 +1,682 @@
+//! Decides: the verdict on a shader and its reason, a pure function of the evidence.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+use toyproof_diagnostic::Diagnostic;
+use toyproof_eval as eval;
+use toyproof_glsl::Code;
+use toyproof_gpu as gpu;
+use toyproof_scene::Sampler;
+
+use crate::Failure;
+use crate::compare::{Answer, MeanTest, RARE_EVENT_VARIANCE_RATIO, REPLICATES, ReplicateTest, SEEN};
+
+/// The verdict on a shader, in the order of precedence.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// It does not compile, is not text, or is nested too deeply.
+    Invalid,
+    /// It never ends or takes too long; also if a driver truncated its loops.
+    Timeout,
+    /// naga, the driver or toyproof failed.
+    Error,
+    /// Its algorithm differs from the reference.
+    Wrong,
+    /// Its algorithm is right, but float32 is not precise enough for it.
+    Unstable,
+    /// It cannot be decided.
+    Inconclusive,
+    /// Its image agrees with the reference.
+    Correct,
+    /// It renders, and there is no scene to compare with.
+    Ok,
+}
+
+impl Verdict {
+    /// Whether the shader has no fault.
+    #[must_use]
+    pub fn is_good(self) -> bool {
+        matches!(self, Self::Correct | Self::Ok)
+    }
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Invalid => "invalid",
+            Self::Timeout => "timeout",
+            Self::Error => "error",
+            Self::Wrong => "wrong",
+            Self::Unstable => "unstable",
+            Self::Inconclusive => "inconclusive",
+            Self::Correct => "correct",
+            Self::Ok => "ok",
+        })
+    }
+}
+
+/// The largest share of differing pixels in f64 of a shader that is not wrong. Only legal ray epsilons cause
+/// such differences: a ray that grazes an edge between two of the tested epsilons may have the color of
+/// neither.
+pub const MAX_DIFFERING: f64 = 0.001;
+
+/// The largest share of pixels that visibly change with the number type, or are ill-conditioned in f64, of a
+/// shader that is not unstable. Silhouettes of a well-written shader in float32 cause less than a tenth of
+/// it.
+pub const MAX_UNSTABLE: f64 = 0.003;
+
+/// The largest share of undefined pixels for which there is a verdict: a check that excludes everything
+/// proves nothing.
+pub const MAX_UNDEFINED: f64 = 0.05;
+
+/// The ratio of variances above which the noise of a stochastic shader is reported.
+pub(crate) const MAX_VARIANCE_RATIO: f64 = 1.2;
+
+/// The largest undetected difference of means, two and a half 8-bit levels; above it the verdict is
+/// inconclusive.
+const MAX_BIAS_BOUND: f64 = 0.01;
+
+/// The smallest number of random pixels whose means are compared: with fewer, a mistake in some of them is
+/// not detected.
+const MIN_RANDOM_PIXELS: u64 = 1000;
+
+/// Everything that a verdict depends on.
+#[derive(Debug, Clone)]
+pub enum Evidence {
+    /// There is no image of the shader.
+    NoImage(Failure),
+    /// The GPU rendered the shader, but the evaluator failed, so that no check was run.
+    NotEvaluated {
+        /// Why the evaluator failed.
+        failure: eval::Failure,
+        /// Whether there is a reference to compare with.
+        has_reference: bool,
+    },
+    /// The shader was checked.
+    Checked(CheckEvidence),
+}
+
+/// The results of the three checks; none for a check that was not run.
+#[derive(Debug, Clone, Default)]
+pub struct Checks {
+    /// The shader in f64 against the tracer in f64.
+    pub algorithm: Option<Answer>,
+    /// The image in f32 against the shader in f64.
+    pub precision: Option<Answer>,
+    /// The GPU in f32 against the CPU in f32, in bits.
+    pub toolchain: Option<Answer>,
+}
+
+/// The results of the checks, and of the tests that a difference calls for.
+#[derive(Debug, Clone, Default)]
+pub struct CheckEvidence {
+    /// The three checks.
+    pub checks: Checks,
+    /// The comparison of means, where the shader differs from its scene only by its random numbers.
+    pub random_numbers: Option<OtherRandomNumbers>,
+    /// The pixels in which rounding decides whether a ray hits the surface that it starts from, where there
+    /// are enough of them to explain the difference.
+    pub self_intersection: Option<Share>,
+}
+
+/// A shader that differs from a stochastic scene only in pixels that depend on random numbers.
+#[derive(Debug, Clone)]
+pub struct OtherRandomNumbers {
+    /// The scene's sampler.
+    pub sampler: Sampler,
+    /// The number of samples per pixel of the scene.
+    pub samples: u32,
+    /// The comparison of the means.
+    pub means: MeanComparison,
+    /// The checks without the pixels that depend on random numbers.
+    pub other_pixels: Checks,
+}
+
+/// How the means of a shader and of its scene were compared.
+#[derive(Debug, Clone)]
+pub enum MeanComparison {
+    /// By replicates: evaluations of the shader with other random numbers.
+    Replicates {
+        /// The result.
+        test: ReplicateTest,
+        /// The number of pixels that were compared.
+        pixels: u64,
+        /// The shader's number of samples, if a smaller one than the scene's explains its noise.
+        fewer_samples: Option<u32>,
+    },
+    /// By the one image of the shader, where its random numbers could not be changed.
+    OneImage {
+        /// The result.
+        test: MeanTest,
+        /// The number of pixels that were compared.
+        pixels: u64,
+    },
+}
+
+/// A number of pixels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Share {
+    /// These pixels.
+    pub count: u64,
+    /// All pixels of the image.
+    pub of: u64,
+}
+
+impl Share {
+    /// Returns `count` pixels of those of a check.
+    #[must_use]
+    pub fn of(check: &Answer, count: u64) -> Self {
+        Self {
+            count,
+            of: check.pixels,
+        }
+    }
+
+    /// Returns the pixels that differ in a check.
+    #[must_use]
+    pub fn differing(check: &Answer) -> Self {
+        Self::of(check, check.differing)
+    }
+
+    /// The share, from 0 to 1.
+    #[must_use]
+    pub fn ratio(self) -> f64 {
+        self.count as f64 / self.of.max(1) as f64
+    }
+}
+
+/// The reason of a verdict.
+#[derive(Debug, Clone)]
+pub enum Reason {
+    /// There is no image of the shader: `invalid`, `timeout` or `error`.
+    NoImage(Failure),
+    /// The evaluator failed: `inconclusive`, or `ok` without a reference.
+    NotEvaluated {
+        /// Why the evaluator failed.
+        failure: eval::Failure,
+        /// Whether there is a reference to compare with.
+        has_reference: bool,
+    },
+    /// These pixels are not what the shader computes on the CPU: `error`.
+    ToolchainDiffers(Share),
+    /// There is no reference: `ok`.
+    NoReference,
+    /// These pixels differ in double precision: `wrong`.
+    AlgorithmDiffers(Share),
+    /// In these pixels, rounding decides whether a ray hits the surface that it starts from: `wrong`.
+    SelfIntersection(Share),
+    /// These pixels depend on undefined behavior: `inconclusive`.
+    Undefined(Share),
+    /// These pixels are ill-conditioned in double precision: `unstable`.
+    IllConditioned(Share),
+    /// These pixels differ visibly between float32 and double precision: `unstable`.
+    Imprecise(Share),
+    /// The shader agrees with its reference: `correct`.
+    Agrees {
+        /// The pixels that differ, which are few.
+        differing: Share,
+        /// The number of pixels that are ill-conditioned or depend on undefined behavior.
+        excluded: u64,
+        /// The number of pixels through whose sample an edge of the scene itself passes.
+        tied: u64,
+    },
+    /// The shader differs from its scene only by its random numbers.
+    OtherRandomNumbers {
+        /// The pixels that differ.
+        differing: Share,
+        /// The scene's sampler.
+        sampler: Sampler,
+        /// What the comparison of the means shows.
+        means: Means,
+    },
+}
+
+/// What the comparison of the means of a shader and its scene shows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Means {
+    /// They differ: `wrong`.
+    Different {
+        /// The center of the most significant difference, in pixels.
+        at: [u32; 2],
+        /// The significance in standard deviations, if it is known; infinite if the shader is not random.
+        deviations: Option<f64>,
+    },
+    /// They agree, but the shader takes fewer samples than the scene: `wrong`.
+    FewerSamples {
+        /// The shader's number of samples per pixel.
+        own: u32,
+        /// The scene's number.
+        scene: u32,
+        /// The ratio of the variances.
+        variance: f64,
+    },
+    /// Neighboring pixels share random numbers, so that the significance is unknown: `inconclusive`.
+    Correlated,
+    /// The shader is too noisy: `inconclusive`.
+    TooNoisy {
+        /// The ratio of the variances.
+        variance: f64,
+    },
+    /// The samples or pixels are too few: `inconclusive`.
+    Underpowered,
+    /// They agree: `correct`.
+    Same {
+        /// The upper bound of the difference over the image.
+        within: f64,
+        /// The number of pixels that were compared.
+        pixels: u64,
+        /// The number of sets of random numbers that the shader was evaluated with; none for its one image.
+        replicates: Option<usize>,
+        /// The ratio of the variances, where it exceeds [`MAX_VARIANCE_RATIO`].
+        variance: Option<f64>,
+    },
+}
+
+/// Returns the verdict on a shader, and its reason.
+#[must_use]
+pub fn decide(evidence: Evidence) -> (Verdict, Reason) {
+    match evidence {
+        Evidence::NoImage(failure) => (without_image(&failure), Reason::NoImage(failure)),
+        Evidence::NotEvaluated {
+            failure,
+            has_reference,
+        } => {
+            let verdict = if has_reference {
+                Verdict::Inconclusive
+            } else {
+                Verdict::Ok
+            };
+            let reason = Reason::NotEvaluated {
+                failure,
+                has_reference,
+            };
+            (verdict, reason)
+        }
+        Evidence::Checked(CheckEvidence {
+            self_intersection: Some(pixels),
+            ..
+        }) => (Verdict::Wrong, Reason::SelfIntersection(pixels)),
+        Evidence::Checked(CheckEvidence {
+            random_numbers: Some(random_numbers),
+            checks,
+            ..
+        }) => by_means(&random_numbers, &checks),
+        Evidence::Checked(CheckEvidence { checks, .. }) => by_checks(&checks),
+    }
+}
+
+/// The verdict on a shader without an image.
+fn without_image(failure: &Failure) -> Verdict {
+    use eval::Failure::{Interrupted, Refused, TimeUp, Timeout, TooOften};
+    let is_late = |diagnostics: &[Diagnostic]| {
+        let code = Code::TooSlow.as_str();
+        diagnostics.iter().any(|diagnostic| diagnostic.code == code)
+    };
+    match failure {
+        Failure::Invalid(diagnostics)
+        | Failure::Gpu(gpu::Failure::Invalid(diagnostics) | gpu::Failure::Refused(diagnostics))
+            if is_late(diagnostics) =>
+        {
+            Verdict::Timeout
+        }
+        Failure::Invalid(_) => Verdict::Invalid,
+        Failure::Gpu(failure) if failure.is_invalid() => Verdict::Invalid,
+        Failure::Gpu(gpu::Failure::Timeout { .. })
+        | Failure::Cpu(TooOften { .. } | Timeout { .. } | TimeUp)
+        | Failure::Overdue(_)
+        | Failure::LoopTruncated(_) => Verdict::Timeout,
+        Failure::Unreadable(_)
+        | Failure::InvalidScene(_)
+        | Failure::Gpu(_)
+        | Failure::Cpu(Refused(_) | Interrupted)
+        | Failure::Panic(_) => Verdict::Error,
+    }
+}
+
+/// The verdict by the three checks, pixel by pixel.
+fn by_checks(checks: &Checks) -> (Verdict, Reason) {
+    if let Some(toolchain) = &checks.toolchain {
+        let differing = Share::differing(toolchain);
+        if toolchain.max_abs > SEEN
+            && differing.ratio() > MAX_DIFFERING
+            // Not every pixel that depends on undefined behavior is detected: where most pixels do, a few
+            // others prove nothing.
+            && toolchain.differing > toolchain.undefined
+        {
+            return (Verdict::Error, Reason::ToolchainDiffers(differing));
+        }
+    }
+    let Some(algorithm) = &checks.algorithm else {
+        return (Verdict::Ok, Reason::NoReference);
+    };
+    let differing = Share::differing(algorithm);
+    if differing.ratio() > MAX_DIFFERING {
+        return (Verdict::Wrong, Reason::AlgorithmDiffers(differing));
+    }
+    let undefined = Share::of(algorithm, algorithm.undefined);
+    if undefined.ratio() > MAX_UNDEFINED {
+        return (Verdict::Inconclusive, Reason::Undefined(undefined));
+    }
+    let ill_conditioned = Share::of(algorithm, algorithm.undecided - algorithm.tied);
+    if ill_conditioned.ratio() > MAX_UNSTABLE {
+        return (Verdict::Unstable, Reason::IllConditioned(ill_conditioned));
+    }
+    if let Some(imprecise) = checks.precision.as_ref().map(Share::differing)
+        && imprecise.ratio() > MAX_UNSTABLE
+    {
+        return (Verdict::Unstable, Reason::Imprecise(imprecise));
+    }
+    let tied = checks.precision.as_ref().map_or(0, |precision| precision.tied);
+    let reason = Reason::Agrees {
+        differing,
+        excluded: algorithm.undecided + algorithm.undefined,
+        tied: algorithm.tied.max(tied),
+    };
+    (Verdict::Correct, reason)
+}
+
+/// The verdict by the means of the random pixels, and by the checks of the others.
+fn by_means(random: &OtherRandomNumbers, checks: &Checks) -> (Verdict, Reason) {
+    let (verdict, means) = match random.means {
+        MeanComparison::Replicates {
+            test,
+            pixels,
+            fewer_samples,
+        } => by_replicates(&test, pixels, fewer_samples, random.samples),
+        MeanComparison::OneImage { test, pixels } => match test {
+            MeanTest::Different(at) => {
+                let deviations = None;
+                (Verdict::Wrong, Means::Different { at, deviations })
+            }
+            MeanTest::Underpowered => (Verdict::Inconclusive, Means::Underpowered),
+            MeanTest::Correlated => (Verdict::Inconclusive, Means::Correlated),
+            MeanTest::Same(within) => {
+                let same = Means::Same {
+                    within,
+                    pixels,
+                    replicates: None,
+                    variance: None,
+                };
+                (Verdict::Correct, same)
+            }
+        },
+    };
+    if verdict == Verdict::Correct {
+        let others = by_checks(&random.other_pixels);
+        if others.0 != Verdict::Correct {
+            return others;
+        }
+    }
+    let reason = Reason::OtherRandomNumbers {
+        differing: checks
+            .algorithm
+            .as_ref()
+            .map_or(Share { count: 0, of: 0 }, Share::differing),
+        sampler: random.sampler,
+        means,
+    };
+    (verdict, reason)
+}
+
+fn by_replicates(
+    test: &ReplicateTest,
+    pixels: u64,
+    fewer_samples: Option<u32>,
+    samples: u32,
+) -> (Verdict, Means) {
+    let &ReplicateTest {
+        bias: (deviations, at),
+        within,
+        variance,
+        ..
+    } = test;
+    let is_precise = pixels >= MIN_RANDOM_PIXELS && within <= MAX_BIAS_BOUND;
+    if test.is_biased {
+        let deviations = Some(deviations);
+        (Verdict::Wrong, Means::Different { at, deviations })
+    } else if test.is_correlated {
+        (Verdict::Inconclusive, Means::Correlated)
+    } else if !is_precise
+        && pixels >= MIN_RANDOM_PIXELS
+        && variance > RARE_EVENT_VARIANCE_RATIO
+        && variance.is_finite()
+    {
+        (Verdict::Inconclusive, Means::TooNoisy { variance })
+    } else if !is_precise {
+        (Verdict::Inconclusive, Means::Underpowered)
+    } else if let Some(own) = fewer_samples {
+        let means = Means::FewerSamples {
+            own,
+            scene: samples,
+            variance,
+        };
+        (Verdict::Wrong, means)
+    } else {
+        let means = Means::Same {
+            within,
+            pixels,
+            replicates: Some(REPLICATES),
+            variance: (variance > MAX_VARIANCE_RATIO).then_some(variance),
+        };
+        (Verdict::Correct, means)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The result of a check of 10,000 pixels.
+    fn answer([differing, undecided, undefined]: [u64; 3], max_abs: f64) -> Answer {
+        Answer {
+            pixels: 10_000,
+            differing,
+            undecided,
+            undefined,
+            max_abs,
+            ..Answer::default()
+        }
+    }
+
+    fn checks(algorithm: [u64; 3], precision: u64, toolchain: (u64, f64)) -> Checks {
+        Checks {
+            algorithm: Some(answer(algorithm, 1.0)),
+            precision: Some(answer([precision, 0, 0], 1.0)),
+            toolchain: Some(answer([toolchain.0, 0, 0], toolchain.1)),
+        }
+    }
+
+    fn decided(evidence: CheckEvidence) -> (Verdict, Reason) {
+        decide(Evidence::Checked(evidence))
+    }
+
+    fn verdict(checks: Checks) -> Verdict {
+        let evidence = CheckEvidence {
+            checks,
+            ..CheckEvidence::default()
+        };
+        decided(evidence).0
+    }
+
+    const SAME: (u64, f64) = (0, 0.0);
+
+    #[test]
+    fn the_verdict_changes_at_its_thresholds() {
+        assert_eq!(verdict(checks([0; 3], 0, SAME)), Verdict::Correct);
+        assert_eq!(verdict(checks([10, 30, 500], 30, SAME)), Verdict::Correct);
+        assert_eq!(verdict(checks([11, 0, 0], 0, SAME)), Verdict::Wrong);
+        assert_eq!(verdict(checks([0, 31, 0], 0, SAME)), Verdict::Unstable);
+        assert_eq!(verdict(checks([0, 0, 0], 31, SAME)), Verdict::Unstable);
+        assert_eq!(verdict(checks([0, 0, 501], 0, SAME)), Verdict::Inconclusive);
+    }
+
+    #[test]
+    fn a_wrong_shader_is_wrong_however_unstable_it_is() {
+        assert_eq!(verdict(checks([11, 5_000, 501], 5_000, SAME)), Verdict::Wrong);
+    }
+
+    #[test]
+    fn a_broken_toolchain_is_an_error_and_lost_bits_are_not() {
+        assert_eq!(verdict(checks([5_000, 0, 0], 0, (11, 0.1))), Verdict::Error);
+        assert_eq!(verdict(checks([0; 3], 0, (10_000, 1e-6))), Verdict::Correct);
+        assert_eq!(verdict(checks([0; 3], 0, (10, 1.0))), Verdict::Correct);
+        let [few, many] = [4_000, 6_000].map(|undefined| {
+            verdict(Checks {
+                toolchain: Some(answer([5_000, 0, undefined], 0.1)),
+                ..Checks::default()
+            })
+        });
+        assert_eq!((few, many), (Verdict::Error, Verdict::Ok));
+    }
+
+    #[test]
+    fn without_a_scene_a_shader_is_ok() {
+        let precision = Some(answer([5_000, 0, 0], 1.0));
+        let checks = Checks {
+            precision,
+            ..Checks::default()
+        };
+        assert_eq!(verdict(checks), Verdict::Ok);
+    }
+
+    #[test]
+    fn edges_of_the_scene_do_not_count_against_the_shader() {
+        let mut checks = checks([0, 500, 0], 0, SAME);
+        checks.algorithm.as_mut().unwrap().tied = 470;
+        assert_eq!(verdict(checks), Verdict::Correct);
+    }
+
+    #[test]
+    fn self_intersection_takes_precedence_over_the_precision_it_resembles() {
+        let evidence = CheckEvidence {
+            checks: checks([0, 500, 0], 500, SAME),
+            self_intersection: Some(Share {
+                count: 500,
+                of: 10_000,
+            }),
+            ..CheckEvidence::default()
+        };
+        let (verdict, reason) = decided(evidence);
+        assert_eq!(verdict, Verdict::Wrong);
+        assert!(matches!(reason, Reason::SelfIntersection(_)), "{reason:?}");
+    }
+
+    /// A shader with other random numbers than its scene, of which the other pixels are `other_pixels`.
+    fn random(means: MeanComparison, other_pixels: Checks) -> (Verdict, Reason) {
+        decided(CheckEvidence {
+            checks: checks([5_000, 0, 0], 0, SAME),
+            random_numbers: Some(OtherRandomNumbers {
+                sampler: Sampler::Sobol,
+                samples: 16,
+                means,
+                other_pixels,
+            }),
+            ..CheckEvidence::default()
+        })
+    }
+
+    const UNBIASED: ReplicateTest = ReplicateTest {
+        bias: (1.0, [3, 4]),
+        is_biased: false,
+        within: 0.001,
+        is_correlated: false,
+        variance: 1.0,
+        is_uniform: true,
+    };
+
+    fn replicates(test: ReplicateTest, pixels: u64, fewer_samples: Option<u32>) -> MeanComparison {
+        MeanComparison::Replicates {
+            test,
+            pixels,
+            fewer_samples,
+        }
+    }
+
+    #[test]
+    fn means_decide_on_other_random_numbers() {
+        let of = |test, pixels, fewer| random(replicates(test, pixels, fewer), checks([0; 3], 0, SAME)).0;
+        let biased = ReplicateTest {
+            is_biased: true,
+            ..UNBIASED
+        };
+        let correlated = ReplicateTest {
+            is_correlated: true,
+            ..UNBIASED
+        };
+        let vague = ReplicateTest {
+            within: 0.02,
+            ..UNBIASED
+        };
+        assert_eq!(of(UNBIASED, 1000, None), Verdict::Correct);
+        assert_eq!(of(biased, 1, None), Verdict::Wrong);
+        assert_eq!(of(UNBIASED, 1000, Some(4)), Verdict::Wrong);
+        assert_eq!(of(correlated, 1000, None), Verdict::Inconclusive);
+        assert_eq!(of(vague, 1000, None), Verdict::Inconclusive);
+        assert_eq!(of(UNBIASED, 999, Some(4)), Verdict::Inconclusive);
+    }
+
+    #[test]
+    fn noise_is_named_as_the_cause_only_where_it_is() {
+        let noisy = ReplicateTest {
+            within: 0.02,
+            variance: 2.0 * RARE_EVENT_VARIANCE_RATIO,
+            ..UNBIASED
+        };
+        let means = |test, pixels| match random(replicates(test, pixels, None), Checks::default()).1 {
+            Reason::OtherRandomNumbers { means, .. } => means,
+            other => panic!("{other:?}"),
+        };
+        assert!(matches!(means(noisy, 1000), Means::TooNoisy { .. }));
+        assert_eq!(means(noisy, 999), Means::Underpowered);
+        let endless = ReplicateTest {
+            variance: f64::INFINITY,
+            ..noisy
+        };
+        assert_eq!(means(endless, 1000), Means::Underpowered);
+    }
+
+    #[test]
+    fn equal_means_do_not_excuse_the_other_pixels() {
+        let (verdict, reason) = random(replicates(UNBIASED, 1000, None), checks([0; 3], 31, SAME));
+        assert_eq!(verdict, Verdict::Unstable);
+        assert!(matches!(reason, Reason::Imprecise(_)), "{reason:?}");
+        let one_image = MeanComparison::OneImage {
+            test: MeanTest::Different([1, 2]),
+            pixels: 1000,
+        };
+        assert_eq!(random(one_image, checks([0; 3], 31, SAME)).0, Verdict::Wrong);
+    }
+
+    #[test]
+    fn without_an_image_the_failure_decides() {
+        let of = |failure| decide(Evidence::NoImage(failure)).0;
+        let error = |code: &'static str| vec![Diagnostic::error(code, "x")];
+        assert_eq!(of(Failure::Invalid(error("E0201"))), Verdict::Invalid);
+        assert_eq!(
+            of(Failure::Invalid(error(Code::TooSlow.as_str()))),
+            Verdict::Timeout
+        );
+        assert_eq!(of(Failure::InvalidScene(error("E0501"))), Verdict::Error);
+        assert_eq!(of(Failure::LoopTruncated(1)), Verdict::Timeout);
+        assert_eq!(
+            of(Failure::Gpu(gpu::Failure::Device(String::new()))),
+            Verdict::Error
+        );
+        assert_eq!(of(Failure::Cpu(eval::Failure::TimeUp)), Verdict::Timeout);
+    }
+
+    #[test]
+    fn a_failure_of_the_evaluator_is_inconclusive_only_if_there_is_something_to_compare_with() {
+        let of = |has_reference| {
+            let failure = eval::Failure::Interrupted;
+            let evidence = Evidence::NotEvaluated {
+                failure,
+                has_reference,
+            };
+            decide(evidence).0
+        };
+        assert_eq!((of(true), of(false)), (Verdict::Inconclusive, Verdict::Ok));
+    }
+}

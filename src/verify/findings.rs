@@ -1,0 +1,274 @@
+//! The findings of a verification, and the search for what explains a difference.
+
+use std::collections::HashMap;
+use std::time::{Duration, Instant};
+
+use toyproof_diagnostic::{Diagnostic, Span};
+use toyproof_eval::{self as eval, Program};
+use toyproof_gpu::Drawn;
+use toyproof_image::{Image, Rgb8Image};
+
+use crate::compare::{self, Answer, Comparison, DiffLevel, PixelStatus};
+use crate::contain::{Panic, Part, contain};
+use crate::decide::{CheckEvidence, Checks, Evidence, MAX_UNSTABLE, Reason, Share, Verdict, decide};
+use crate::mistake::Named;
+use crate::stochastic::SampledRows;
+use crate::{Case, acne, notes};
+
+/// The largest number of pairs of mistakes that are searched for in a wrong image: a few seconds' work.
+const MAX_PAIRS: usize = 512;
+
+/// The largest number of pixels that do not agree whose colors are kept.
+const MAX_KEPT_COLORS: usize = 1 << 16;
+
+/// The results of [`verify`].
+#[derive(Debug)]
+pub struct Findings {
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Why.
+    pub reason: Reason,
+    /// The algorithm check; none without a scene.
+    pub algorithm: Option<CheckResult>,
+    /// The precision check.
+    pub precision: Option<CheckResult>,
+    /// The toolchain check; only for strict runs on a GPU.
+    pub toolchain: Option<CheckResult>,
+    /// The comparison of the shader's image with the reference.
+    pub picture: Option<(Comparison, Vec<DiffLevel>)>,
+    /// The tracer's image.
+    pub reference: Option<Rgb8Image>,
+    /// The GPU's image, or the evaluator's in f32 without a GPU.
+    pub actual: Rgb8Image,
+    /// The GPU and its times; none if the evaluator rendered the image.
+    pub painter: Option<Painter>,
+    /// Observations of the run, with their lines.
+    pub notes: Vec<Diagnostic>,
+    /// Where the shader loses precision, if float32 is not enough and the place could be found; a note or a
+    /// warning describes it.
+    pub cause: Option<Span>,
+    /// The classic mistake, or the two, that explain a wrong image.
+    pub mistake: Option<Vec<Named>>,
+    /// The mistake that explains the pixels that differ in a correct image, which are few.
+    pub tolerated_mistake: Option<Named>,
+    /// Internal errors; the parts in which they occurred are missing here.
+    pub panics: Vec<Panic>,
+    /// The evaluator's time for all its images.
+    pub eval: Duration,
+    /// The tracer's time; nearly 0 where the reference was cached.
+    pub trace: Option<Duration>,
+}
+
+/// The GPU that rendered an image, and its times: [`Drawn`] without the image.
+#[derive(Debug, Clone)]
+pub struct Painter {
+    /// Adapter and driver.
+    pub device: String,
+    /// Time for naga to parse, validate and write.
+    pub translate: Duration,
+    /// Time for the driver to compile.
+    pub compile: Duration,
+    /// Time to render and read back.
+    pub draw: Duration,
+}
+
+impl Painter {
+    pub(super) fn of(drawn: Drawn) -> Self {
+        Self {
+            device: drawn.device,
+            translate: drawn.translate,
+            compile: drawn.compile,
+            draw: drawn.draw,
+        }
+    }
+}
+
+/// The result of a check, and its difference image.
+#[derive(Debug, Default)]
+pub struct CheckResult {
+    /// The counts.
+    pub answer: Answer,
+    /// The difference level of each pixel, bottom row first.
+    pub marks: Vec<DiffLevel>,
+    /// The status of each pixel.
+    pub(super) statuses: Vec<PixelStatus>,
+    /// The shader's colors in pixels that do not agree, by pixel index.
+    pub(super) actual: HashMap<usize, [f32; 3]>,
+}
+
+impl CheckResult {
+    /// Adds the band above the first `height` rows.
+    pub(super) fn extend(&mut self, expected: &Image, actual: &Image, statuses: &[PixelStatus], height: u32) {
+        self.answer
+            .extend(&Answer::new(expected, actual, statuses), height);
+        self.marks.extend(compare::marks(expected, actual, statuses));
+        let offset = self.statuses.len();
+        let differing = statuses.iter().enumerate();
+        let differing =
+            differing.filter(|&(_, &status)| matches!(status, PixelStatus::Differs | PixelStatus::Undecided));
+        let capacity = MAX_KEPT_COLORS.saturating_sub(self.actual.len());
+        self.actual.extend(differing.take(capacity).map(|(at, _)| {
+            let [r, g, b, _] = actual.pixels()[at];
+            (offset + at, [r, g, b])
+        }));
+        self.statuses.extend(statuses);
+    }
+}
+
+impl Findings {
+    /// Decides from the evidence so far.
+    fn decide(&mut self, evidence: Evidence) {
+        (self.verdict, self.reason) = decide(evidence);
+    }
+
+    /// Decides from the checks, and searches for what explains a difference. `sampled_rows` are there if the
+    /// scene is stochastic.
+    pub(super) fn explain(
+        &mut self,
+        case: &Case,
+        program: &Program,
+        deadline: Instant,
+        sampled_rows: Option<&SampledRows>,
+    ) {
+        let answer = |check: &Option<CheckResult>| check.as_ref().map(|check| check.answer.clone());
+        let mut evidence = CheckEvidence {
+            checks: Checks {
+                algorithm: answer(&self.algorithm),
+                precision: answer(&self.precision),
+                toolchain: answer(&self.toolchain),
+            },
+            ..CheckEvidence::default()
+        };
+        self.decide(Evidence::Checked(evidence.clone()));
+        // A mistake that explains every pixel is reported whatever random numbers the shader uses. Pairs are
+        // searched for only if the comparison of random pixels reaches no verdict: with other random numbers,
+        // two mistakes do not render the image of the pair.
+        self.search_for_mistake(case, program, if sampled_rows.is_some() { 0 } else { MAX_PAIRS });
+        if self.is_unexplained()
+            && let Some(sampled_rows) = sampled_rows
+        {
+            self.compare_means(&mut evidence, sampled_rows, case, program, deadline);
+        }
+        if self.is_unexplained()
+            && let Some(expected) = case.expected
+        {
+            let (algorithm, precision) = (self.algorithm.as_ref(), self.precision.as_ref());
+            evidence.self_intersection =
+                acne::detect(expected.tracer(), case.frame.size, algorithm, precision);
+            if evidence.self_intersection.is_some() {
+                self.decide(Evidence::Checked(evidence.clone()));
+                self.mistake = Some(vec![acne::named()]);
+            }
+        }
+        if sampled_rows.is_some() && evidence.random_numbers.is_none() {
+            self.search_for_mistake(case, program, MAX_PAIRS);
+        }
+        if evidence.random_numbers.is_none() {
+            self.explain_few_pixels(case, program);
+        }
+        self.notes
+            .extend(notes::unbound(case.checked, case.lints, case.frame));
+        self.locate_loss_of_precision(case, program, deadline);
+    }
+
+    /// Whether there is a fault, and no mistake is known that explains it.
+    fn is_unexplained(&self) -> bool {
+        matches!(self.verdict, Verdict::Wrong | Verdict::Unstable) && self.mistake.is_none()
+    }
+
+    /// Compares the means of a shader that differs only in pixels that depend on random numbers, and decides
+    /// again.
+    fn compare_means(
+        &mut self,
+        evidence: &mut CheckEvidence,
+        sampled_rows: &SampledRows,
+        case: &Case,
+        program: &Program,
+        deadline: Instant,
+    ) {
+        let Some(algorithm) = &self.algorithm else {
+            return;
+        };
+        let Some(compared) = sampled_rows.compare_means(algorithm, &evidence.checks, program, case, deadline)
+        else {
+            return;
+        };
+        let precision = self.precision.as_ref();
+        evidence.random_numbers = Some(compared.random_numbers);
+        (self.verdict, self.reason) = decide(Evidence::Checked(evidence.clone()));
+        // The precision of the pixels that do not depend on random numbers costs samples of the scene, and
+        // counts only where everything else agrees.
+        if let (Verdict::Correct, Some(random_numbers), Some(precision)) =
+            (self.verdict, &mut evidence.random_numbers, precision)
+        {
+            random_numbers.other_pixels.precision =
+                Some(sampled_rows.precision_of_others(algorithm, precision));
+            self.decide(Evidence::Checked(evidence.clone()));
+        }
+        if let (Verdict::Wrong, Some(suspects), Some(reseeding)) =
+            (self.verdict, case.suspects, compared.reseeding)
+        {
+            let named = contain(Part::Mistake, || {
+                let pixels =
+                    sampled_rows.noisy_pixels(program, case, reseeding, suspects.places(), deadline)?;
+                suspects.recognize_noisy(&pixels)
+            });
+            self.mistake = self.contained(named);
+        }
+    }
+
+    /// Searches for the mistake that explains a wrong image, or for two, among at most `pairs` pairs.
+    fn search_for_mistake(&mut self, case: &Case, program: &Program, pairs: usize) {
+        if let (Verdict::Wrong, None, Some(suspects)) = (self.verdict, &self.mistake, case.suspects) {
+            let named = contain(Part::Mistake, || suspects.recognize(program, case.frame, pairs));
+            self.mistake = self.contained(named);
+        }
+    }
+
+    /// Searches for the mistake that explains the few differing pixels of a correct image.
+    fn explain_few_pixels(&mut self, case: &Case, program: &Program) {
+        if let (Verdict::Correct, Some(suspects), Some(algorithm)) =
+            (self.verdict, case.suspects, &self.algorithm)
+            && algorithm.answer.differing > 0
+        {
+            let differing = notes::sample_pixels(algorithm, case.frame.size, usize::MAX);
+            let named = contain(Part::Mistake, || suspects.explaining(program, &differing));
+            self.tolerated_mistake = self.contained(named);
+        }
+    }
+
+    /// Searches for the line in which float32 loses precision, where it is not enough.
+    fn locate_loss_of_precision(&mut self, case: &Case, program: &Program, deadline: Instant) {
+        let differs_often = |check: &CheckResult| Share::differing(&check.answer).ratio() > MAX_UNSTABLE;
+        let loses_precision =
+            self.verdict == Verdict::Ok && self.precision.as_ref().is_some_and(differs_often);
+        if self.verdict != Verdict::Unstable && !loses_precision {
+            return;
+        }
+        let cause = contain(Part::Cause, || {
+            let mut checks = [&self.precision, &self.algorithm].into_iter().flatten();
+            checks.find_map(|check| notes::cause(program, case, deadline, check))
+        });
+        let cause = self.contained(cause);
+        self.cause = cause.as_ref().and_then(|cause| cause.span);
+        let mut warnings = case.lints.warnings.iter();
+        let is_reported = warnings.any(|warning| warning.span == self.cause);
+        self.notes.extend(cause.filter(|_| !is_reported));
+    }
+
+    /// Returns a part's result, or the default if it panicked, which is recorded.
+    pub(super) fn contained<T: Default>(&mut self, found: Result<T, Panic>) -> T {
+        found.unwrap_or_else(|panic| {
+            self.panics.push(panic);
+            T::default()
+        })
+    }
+
+    /// Decides where the evaluator failed: only the GPU's image is known.
+    pub(super) fn evaluator_failed(&mut self, failure: eval::Failure) {
+        self.decide(Evidence::NotEvaluated {
+            failure,
+            has_reference: self.reference.is_some(),
+        });
+    }
+}
