@@ -3,7 +3,8 @@
 
 use std::fmt::Write as _;
 
-use crate::backend::Target;
+use crate::backend::{Target, write_glsl};
+use crate::naga_ir::ValidModule;
 
 /// Adapts a text for glslang with Vulkan semantics, including our bindings; `None` if glslang does not
 /// support the language.
@@ -31,7 +32,7 @@ pub fn for_glslang(target: Target, text: &str) -> Option<String> {
                          #define {name} sampler{shape}({own}_t{binding}, {own}_s{binding})",
                         binding + 1
                     ),
-                    Line::Precision | Line::Output(_) | Line::Main | Line::Other => {
+                    Line::Precision | Line::Output(_) | Line::Other => {
                         writeln!(adapted, "{line}")
                     }
                 };
@@ -66,13 +67,48 @@ fn with_expanded_zeros(line: &str) -> String {
     expanded().unwrap_or_else(|| line.to_owned())
 }
 
-/// Converts written GLSL to a `ShaderToy` shader: its block and channels become `ShaderToy`'s inputs again.
+/// Converts GLSL that was written from a lowered shader to a `ShaderToy` shader.
+///
+/// `ShaderToy` declares the inputs, the output and the entry point itself, so the declarations that a WebGL2
+/// host needs are replaced, line by line; everything else stays as written. A declaration that is not
+/// recognized stays too, and the front end rejects it: a mistake here cannot make a wrong file a proved one.
 #[must_use]
 pub fn as_shadertoy(text: &str) -> String {
+    with_shadertoy_inputs(text, &INPUTS.map(|(_, value)| value).join(", "))
+}
+
+/// Writes a module as a `ShaderToy` shader: what was converted to a language without tools on this machine can
+/// then be evaluated.
+///
+/// # Errors
+/// naga's message if it cannot write the module, or if its uniform block is not the one that
+/// [`crate::backend`] documents.
+pub fn shadertoy(module: &ValidModule) -> Result<String, String> {
+    let text = write_glsl(module)?;
+    let naga = module.module();
+    let mut values = Vec::new();
+    for (_, global) in naga.global_variables.iter() {
+        let naga::TypeInner::Struct { members, .. } = &naga.types[global.ty].inner else {
+            continue;
+        };
+        if global.space != naga::AddressSpace::Uniform {
+            continue;
+        }
+        for member in members {
+            let input = INPUTS.iter().find(|(offset, _)| *offset == member.offset);
+            let (_, value) =
+                input.ok_or_else(|| format!("the block has no input at byte {}", member.offset))?;
+            values.push(*value);
+        }
+    }
+    Ok(with_shadertoy_inputs(&text, &values.join(", ")))
+}
+
+/// Replaces the interface of a WebGL2 host by `ShaderToy`'s; `values` initializes the members of the block.
+fn with_shadertoy_inputs(text: &str, values: &str) -> String {
     let own = unused_prefix(text);
-    // The text already has a `mainImage`, which `main` calls.
-    let text = text.replace("mainImage", &format!("{own}_image"));
-    let mut adapted = String::new();
+    // The text has a `main`, and may have a `mainImage` that it calls.
+    let mut adapted = format!("#define main {own}_main\n#define mainImage {own}_image\n");
     let mut before = String::new();
     let mut after = String::new();
     for line in text.lines() {
@@ -81,12 +117,8 @@ pub fn as_shadertoy(text: &str) -> String {
             Line::Block(rest) => {
                 let member = rest.split_once('{').and_then(|(_, rest)| rest.split_once('}'));
                 let member = member.map_or("", |(member, _)| member.trim());
-                let name = member
-                    .trim_end_matches(';')
-                    .rsplit(' ')
-                    .next()
-                    .unwrap_or_default();
-                let _ = writeln!(before, "    {name} = {BLOCK};");
+                let (ty, name) = member.trim_end_matches(';').split_once(' ').unwrap_or_default();
+                let _ = writeln!(before, "    {name} = {ty}({values});");
                 writeln!(adapted, "{member}")
             }
             Line::Channel(_, binding, name) => writeln!(adapted, "#define {name} iChannel{}", binding / 2),
@@ -95,13 +127,13 @@ pub fn as_shadertoy(text: &str) -> String {
                 let _ = writeln!(after, "    {own}_color = {name};");
                 writeln!(adapted, "{rest}")
             }
-            Line::Main => writeln!(adapted, "void {own}_main() {{"),
             Line::Other => writeln!(adapted, "{line}"),
         };
     }
     let _ = writeln!(
         adapted,
-        "void mainImage(out vec4 {own}_color, in vec2 {own}_at) {{\n{before}    {own}_main();\n{after}}}"
+        "#undef main\n#undef mainImage\n\
+         void mainImage(out vec4 {own}_color, in vec2 {own}_at) {{\n{before}    {own}_main();\n{after}}}"
     );
     adapted
 }
@@ -115,9 +147,22 @@ fn unused_prefix(text: &str) -> String {
     prefix
 }
 
-const BLOCK: &str = "ToyproofFrame(iResolution, iTime, iTimeDelta, iFrame, iFrameRate, \
-    vec4[4](vec4(iChannelTime[0]), vec4(iChannelTime[1]), vec4(iChannelTime[2]), vec4(iChannelTime[3])), \
-    iChannelResolution, iMouse, iDate, iSampleRate)";
+/// The members of the uniform block: their offsets in bytes, and their values in a `ShaderToy` shader.
+const INPUTS: [(u32, &str); 10] = [
+    (0, "iResolution"),
+    (12, "iTime"),
+    (16, "iTimeDelta"),
+    (20, "iFrame"),
+    (24, "iFrameRate"),
+    (
+        32,
+        "vec4[4](vec4(iChannelTime[0]), vec4(iChannelTime[1]), vec4(iChannelTime[2]), vec4(iChannelTime[3]))",
+    ),
+    (96, "iChannelResolution"),
+    (160, "iMouse"),
+    (176, "iDate"),
+    (192, "iSampleRate"),
+];
 
 /// The role of a line in naga's GLSL.
 enum Line<'a> {
@@ -129,7 +174,6 @@ enum Line<'a> {
     Channel(&'a str, u32, &'a str),
     /// The output color, with the text after the layout.
     Output(&'a str),
-    Main,
     Other,
 }
 
@@ -139,9 +183,6 @@ fn classify(line: &str) -> Line<'_> {
     }
     if line.starts_with("precision ") {
         return Line::Precision;
-    }
-    if line == "void main() {" {
-        return Line::Main;
     }
     if let Some(rest) = line.strip_prefix("layout(std140) uniform ") {
         return Line::Block(rest);
@@ -195,7 +236,7 @@ mod tests {
             "B _group_0_binding_0_fs;\n",
             "#define _group_0_binding_5_fs iChannel2\n",
             "vec4 _fs2p_location0;\n",
-            "void written_image(inout vec4 c) {}",
+            "void mainImage(inout vec4 c) {}",
             "    written_color = _fs2p_location0;\n",
         ] {
             assert!(again.contains(expected), "{again}");
