@@ -13,8 +13,9 @@ use toyproof::translate::backend::{Target, emit, roundtrip, spirv};
 use toyproof::translate::lower;
 use toyproof::translate::naga_ir::{Shape, ValidModule};
 use toyproof::translate::wgsl::{Style, wgsl};
-use toyproof::verify::Failure;
-use toyproof::verify::conversion::{Proof, frames, prove};
+use toyproof::verify::conversion::{
+    Proof, Prover, Runner, Source, Unproved, Written, compare_with_original, frames,
+};
 
 use crate::program::{command, run, toyproof};
 use crate::support::{ANIMATION, EVERY_EXERCISE, Exercise, REFLECTIONS, worker};
@@ -35,8 +36,10 @@ fn proof(worker: &mut Worker, shader: &str, style: Style, edit: impl Fn(String) 
 }
 
 /// Compares a conversion with the shader.
-fn proof_of(worker: &mut Worker, checked: &Checked, written: ShaderArtifact) -> Result<Proof, Failure> {
-    let proofs = prove(worker, checked, vec![written], &frames(checked), TIMEOUT, None)?;
+fn proof_of(worker: &mut Worker, checked: &Checked, written: ShaderArtifact) -> Result<Proof, Unproved> {
+    let mut runner = Runner::Driver(worker);
+    let frames = frames(checked);
+    let proofs = compare_with_original(&mut runner, checked, vec![written], &frames, TIMEOUT, None)?;
     Ok(proofs.into_iter().next().expect("a proof for each reading"))
 }
 
@@ -57,6 +60,28 @@ fn every_exercise_is_proved() {
     let Some(mut worker) = worker() else { return };
     for exercise in EVERY_EXERCISE {
         holds(&mut worker, exercise, Style::Plain);
+    }
+}
+
+#[test]
+fn every_exercise_is_proved_without_a_driver() {
+    for exercise in EVERY_EXERCISE {
+        let mut files = Files::default();
+        let file = files.add(File::new(exercise.name, exercise.shader));
+        let checked = check(&files, file, &Options::default()).expect("it is valid");
+        let text = wgsl(&checked, &files, Style::Plain, &Deadline::default()).unwrap();
+        let mut prover = Prover {
+            runner: Runner::Evaluator,
+            browser: None,
+            timeout: TIMEOUT,
+            pool: None,
+        };
+        let source = Source {
+            checked: &checked,
+            files: &files,
+        };
+        let proved = prover.prove(source, &Written::Wgsl(text, Style::Plain));
+        assert!(proved.is_ok(), "{}: {proved:?}", exercise.name);
     }
 }
 

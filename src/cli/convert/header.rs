@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 
 use toyproof_diagnostic::grouped;
 use toyproof_translate::backend::{Target, spirv};
-use toyproof_verify::conversion::{Against, FRAMES, Proof, Rgb8Comparison};
+use toyproof_verify::conversion::{Against, FRAMES, Proof, Proved, Rgb8Comparison};
 
-use super::proof::ProofStatus;
+use super::conversion::ProofStatus;
 
 /// The version of naga that is linked.
 const NAGA: &str = "30.0.1";
@@ -41,16 +41,17 @@ fn head(name: &str, status: &ProofStatus) -> String {
     let mut head = format!("// {name}, converted by toyproof {version} (naga {NAGA}).\n");
     match status {
         ProofStatus::NotRequested => {}
-        ProofStatus::Proved(proof, readers) => {
+        ProofStatus::Proved(Proved::File(proof, readers)) => {
+            let names: Vec<_> = readers.run.iter().map(ToString::to_string).collect();
             let _ = writeln!(
                 head,
                 "// Proved: this file, read again by {} and run on {},",
-                readers.names.join(" and by "),
+                names.join(" and by "),
                 proof.device
             );
             settings(&mut head, proof);
             if let Some(validator) = &readers.validator {
-                let _ = writeln!(head, "// {validator}.");
+                let _ = writeln!(head, "// {validator} accepts it.");
             }
             if let Some((name, shown)) = &readers.browser {
                 let _ = writeln!(
@@ -60,14 +61,14 @@ fn head(name: &str, status: &ProofStatus) -> String {
                 );
             }
         }
-        ProofStatus::SourceProved(proof) => {
+        ProofStatus::Proved(Proved::Source(proof)) => {
             head.push_str(
                 "// Proved is what this text was written from, not the text itself: nothing here reads it.\n",
             );
             let _ = writeln!(head, "// That, run on {},", proof.device);
             settings(&mut head, proof);
         }
-        ProofStatus::Unproved(why) | ProofStatus::NotProvable(why) => {
+        ProofStatus::NotProved(why) => {
             let why: String = why
                 .chars()
                 .map(|c| if c.is_control() { ' ' } else { c })
@@ -122,7 +123,7 @@ pub(super) fn describe_proof(proof: &Proof) -> String {
     };
     format!(
         "all {} pixels equal to the bit{undefined}",
-        grouped(proof.pixels() - proof.undefined())
+        grouped(proof.equal())
     )
 }
 

@@ -2,8 +2,6 @@
 
 mod conversion;
 mod header;
-mod proof;
-mod tool;
 
 use std::fmt::Write as _;
 use std::num::NonZero;
@@ -16,9 +14,9 @@ use toyproof_gpu::browser;
 use toyproof_translate::FloatMode;
 use toyproof_translate::backend::Target;
 use toyproof_translate::wgsl::Style;
+use toyproof_verify::conversion::{Converter, Proved};
 
-use self::conversion::{Conversion, ConvertError, Converter};
-use self::proof::ProofStatus;
+use self::conversion::{ConvertedFile, ProofStatus, Refusal, Settings};
 use super::inputs::{DriverArgs, LanguageArgs, may_write};
 use super::names::{Names, with_suffix};
 use super::pool::{self, InOrder};
@@ -194,20 +192,21 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     // People read converted shaders: by default they keep the author's functions.
     let float = args.driver.explicit_float().unwrap_or(FloatMode::Fast);
     let workers = args.driver.translator().and_then(|_| args.driver.worker());
-    let converter = match workers {
-        Ok(_) => Converter {
-            to,
-            float,
+    if let Err(error) = workers {
+        terminal.error(error);
+        return Exit::Error;
+    }
+    let settings = Settings {
+        converter: Converter {
+            target: to.target(),
             style: args.style.into(),
-            verify: args.verify,
-            browser,
-            language: &args.language,
-            driver: &args.driver,
+            float,
+            timeout: args.driver.timeout(),
         },
-        Err(error) => {
-            terminal.error(error);
-            return Exit::Error;
-        }
+        verify: args.verify,
+        browser,
+        language: &args.language,
+        driver: &args.driver,
     };
     let threads = args
         .jobs
@@ -239,7 +238,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         exit: Exit::Success,
         tally: Tally::default(),
     }
-    .convert(&jobs, &converter)
+    .convert(&jobs, &settings)
 }
 
 /// A shader and its output path.
@@ -273,10 +272,10 @@ struct Batch<'a> {
 }
 
 /// A shader, its result, and whether its file was written.
-type Finished = (Shader, Result<Conversion, ConvertError>, bool);
+type Finished = (Shader, Result<ConvertedFile, Refusal>, bool);
 
 impl Batch<'_> {
-    fn convert(mut self, jobs: &[Job], converter: &Converter) -> Exit {
+    fn convert(mut self, jobs: &[Job], settings: &Settings) -> Exit {
         let stop = watch_interrupts("finishing the shaders in hand");
         let threads = self.threads;
         let bar = match jobs {
@@ -289,8 +288,8 @@ impl Batch<'_> {
             &todo,
             threads,
             &stop,
-            || converter.worker_context(threads),
-            |context, index| converter.convert(context, &jobs[index].input),
+            || settings.worker_context(threads),
+            |context, index| settings.convert(context, &jobs[index].input),
             |index, (shader, mut converted)| {
                 bar.inc(1);
                 bar.suspend(|| {
@@ -317,9 +316,9 @@ impl Batch<'_> {
     }
 
     /// Writes a conversion if it is proved or forced; returns whether it was written.
-    fn write(&self, job: &Job, converted: &mut Result<Conversion, ConvertError>) -> bool {
+    fn write(&self, job: &Job, converted: &mut Result<ConvertedFile, Refusal>) -> bool {
         match converted {
-            Ok(converted) if converted.is_proved() || self.args.force => {
+            Ok(converted) if converted.status.is_proved() || self.args.force => {
                 let bytes = std::mem::take(&mut converted.bytes);
                 self.terminal.write_output(&self.args.output, &job.path, &bytes)
             }
@@ -333,22 +332,22 @@ impl Batch<'_> {
         self.tally.written += usize::from(written);
         let exit = match converted {
             Ok(converted) => self.report_status(job, &converted, written),
-            Err(convert_error) => {
+            Err(refusal) => {
                 self.tally.refused += 1;
-                let exit = convert_error.exit();
-                match convert_error {
-                    ConvertError::Diagnostics(diagnostics, _) => {
+                let exit = refusal.exit();
+                match refusal {
+                    Refusal::Diagnostics(diagnostics, _) => {
                         self.terminal.diagnostics(&diagnostics, &shader.files);
                         self.print_row("refused", job, "see above");
                     }
-                    ConvertError::Message(why, _) => {
+                    Refusal::Message(why, _) => {
                         if self.args.verify {
                             self.print_row("refused", job, &why);
                         } else {
                             self.terminal.error(format_args!("{}: {why}", shader.name));
                         }
                     }
-                    ConvertError::Unreadable(why) => self.terminal.error(why),
+                    Refusal::Unreadable(why) => self.terminal.error(why),
                 }
                 exit
             }
@@ -356,21 +355,21 @@ impl Batch<'_> {
         self.exit = self.exit.max(exit);
     }
 
-    fn report_status(&mut self, job: &Job, converted: &Conversion, written: bool) -> Exit {
+    fn report_status(&mut self, job: &Job, converted: &ConvertedFile, written: bool) -> Exit {
         match &converted.status {
             ProofStatus::NotRequested => {}
-            ProofStatus::Proved(proof, readers) => {
+            ProofStatus::Proved(Proved::File(proof, readers)) => {
                 self.tally.proved += 1;
                 let mut message = header::describe_proof(proof);
                 if let Some((_, shown)) = readers.browser {
                     let _ = write!(message, "; in Chromium {}", header::describe_browser(shown));
                 }
-                if let Some(why) = &converted.fallback_reason {
+                if let Some(why) = &converted.fallback {
                     let _ = write!(message, "; in naga's words: {why}");
                 }
                 self.print_row("proved", job, &message);
             }
-            ProofStatus::SourceProved(proof) => {
+            ProofStatus::Proved(Proved::Source(proof)) => {
                 self.tally.proved += 1;
                 let equal = header::describe_proof(proof);
                 self.print_row(
@@ -379,7 +378,7 @@ impl Batch<'_> {
                     &format!("{equal}; nothing here reads the text itself"),
                 );
             }
-            ProofStatus::Unproved(why) | ProofStatus::NotProvable(why) => {
+            ProofStatus::NotProved(why) => {
                 self.tally.unproved += 1;
                 let kept = if written {
                     "written all the same"
@@ -389,7 +388,7 @@ impl Batch<'_> {
                 self.print_row("not proved", job, &format!("{why}; {kept}"));
             }
         }
-        if written && converted.is_proved() {
+        if written && converted.status.is_proved() {
             Exit::Success
         } else {
             Exit::Error

@@ -1,288 +1,272 @@
-//! Translates one shader, and proves the conversion with `--verify`.
+//! Converts shaders, and proves that a conversion is equivalent to the original: the written file is read
+//! again, run, and compared with the shader.
+//!
+//! The file calls `sin` and the like, whose last bits WGSL and its relatives leave to the implementation. For
+//! the proof, the evaluator's definitions replace them in what naga parsed; everything else is the file's. So
+//! no tolerance is needed: a conversion is proved if every pixel has the evaluator's bits.
+//!
+//! A [`Converter`] writes files, with naga in a worker process; a [`Prover`] proves what is [`Written`], on a
+//! driver or on the CPU. `examples/convert.rs` uses both [`toyproof_translate::wgsl`] and a prover without any
+//! worker.
 
-use std::path::PathBuf;
+mod proof;
+mod prover;
+mod tool;
 
-use rayon::ThreadPool;
-use toyproof_diagnostic::{Deadline, Diagnostic, Overdue};
-use toyproof_glsl::{self as glsl, Checked};
-use toyproof_gpu::browser::{Chromium, Text};
-use toyproof_gpu::{Failure, ShaderArtifact, Worker};
+#[cfg(test)]
+mod tests;
+
+use std::time::Duration;
+
+pub use proof::{Against, FRAMES, Proof, Rgb8Comparison, Runner, TestFrame, compare_with_original, frames};
+pub use prover::{Proved, Prover, Reader, Readers, Unproved};
+use thiserror::Error;
+pub use tool::ToolError;
+use toyproof_diagnostic::{Deadline, Files, Overdue};
+use toyproof_glsl::Checked;
+use toyproof_gpu::{self as gpu, Worker};
 use toyproof_translate::backend::Target;
-use toyproof_translate::wgsl::{self, Style};
+use toyproof_translate::wgsl::{self, Style, Unprintable};
 use toyproof_translate::{FloatMode, Lowered};
-use toyproof_verify::conversion::FRAMES;
 
-use super::super::inputs::{DriverArgs, LanguageArgs};
-use super::super::shader::{Shader, Unusable};
-use super::super::{Exit, pool};
-use super::proof::{NAGA, ProofStatus, prove_in_browser};
-use super::{To, header, tool};
-use crate::cli::files::{Input, ReadError};
-
-/// The settings of the conversion, the same for every shader.
-pub(super) struct Converter<'a> {
-    pub(super) to: To,
-    pub(super) float: FloatMode,
-    pub(super) style: Style,
-    pub(super) verify: bool,
-    /// The path of Chromium; none without `--browser`.
-    pub(super) browser: Option<PathBuf>,
-    pub(super) language: &'a LanguageArgs,
-    pub(super) driver: &'a DriverArgs,
+/// A shader to convert.
+#[derive(Debug, Clone, Copy)]
+pub struct Source<'a> {
+    /// The shader.
+    pub checked: &'a Checked,
+    /// The files that it was read from.
+    pub files: &'a Files,
 }
 
-/// The processes and the thread pool that a thread owns.
-pub(super) struct WorkerContext {
-    translator: Result<Worker, String>,
-    /// Runs the conversion; none for `--on cpu`.
-    pub(super) runner: Result<Option<Worker>, String>,
-    pub(super) browser: Option<Chromium>,
-    /// The evaluator's pool, if several threads convert.
-    pub(super) pool: Option<ThreadPool>,
+impl Source<'_> {
+    /// The author's text.
+    fn text(&self) -> &str {
+        let at = self.checked.tree[self.checked.main_image].at;
+        self.files.get(at.span.file).text()
+    }
+}
+
+/// The settings of a conversion.
+#[derive(Debug, Clone, Copy)]
+pub struct Converter {
+    /// The language; none for the lowered GLSL that naga parses.
+    pub target: Option<Target>,
+    /// The kind of host that WGSL is written for.
+    pub style: Style,
+    /// Whether functions such as `sin` are expanded.
+    pub float: FloatMode,
+    /// The time limit of each step.
+    pub timeout: Duration,
 }
 
 /// A converted shader.
-pub(super) struct Conversion {
-    pub(super) bytes: Vec<u8>,
-    pub(super) status: ProofStatus,
-    /// Why naga's writer was used instead of our own.
-    pub(super) fallback_reason: Option<String>,
+#[derive(Debug, Clone)]
+pub enum Written {
+    /// The GLSL that naga parses.
+    Lowered(Lowered),
+    /// WGSL for a kind of host.
+    Wgsl(String, Style),
+    /// A file of naga's in a language other than WGSL.
+    Naga {
+        /// The language.
+        target: Target,
+        /// The file.
+        bytes: Vec<u8>,
+        /// What naga wrote it from.
+        lowered: Lowered,
+    },
+}
+
+impl Written {
+    /// The bytes of the file.
+    #[must_use]
+    pub fn into_bytes(self) -> Vec<u8> {
+        match self {
+            Self::Lowered(lowered) => lowered.text().as_bytes().to_vec(),
+            Self::Wgsl(text, _) => text.into_bytes(),
+            Self::Naga { bytes, .. } => bytes,
+        }
+    }
+}
+
+/// The result of a conversion.
+#[derive(Debug)]
+pub struct Conversion {
+    /// The file.
+    pub written: Written,
+    /// The proof; none if none was requested.
+    pub proof: Option<Result<Proved, Unproved>>,
+    /// Why naga wrote the WGSL, which the author recognizes less well.
+    pub fallback: Option<FallbackReason>,
+}
+
+/// Why our own WGSL writer was not used.
+#[derive(Debug, Error)]
+pub enum FallbackReason {
+    /// It wrote nothing.
+    #[error(transparent)]
+    Unwritable(WgslError),
+    /// Its text could not be proved, and naga's could.
+    #[error(transparent)]
+    Unproved(Unproved),
+}
+
+/// Why our own WGSL writer wrote nothing.
+#[derive(Debug, Error)]
+pub enum WgslError {
+    /// The shader has a construct that it does not support.
+    #[error("cannot be written in the style {}: {why}", style.name())]
+    Unprintable {
+        /// The kind of host.
+        style: Style,
+        /// The construct.
+        why: Unprintable,
+    },
+    /// naga rejects its text with this message.
+    #[error("{0}")]
+    Refused(String),
+    /// The worker that reads its text failed.
+    #[error(transparent)]
+    Worker(gpu::Failure),
+}
+
+/// Why a shader could not be converted.
+#[derive(Debug, Error)]
+pub enum ConvertError {
+    /// It takes too long to compile.
+    #[error(transparent)]
+    Overdue(#[from] Overdue),
+    /// naga or its worker failed.
+    #[error(transparent)]
+    Worker(#[from] gpu::Failure),
+    /// It cannot be written as WGSL for this kind of host, and naga writes for none but the plain one.
+    #[error(transparent)]
+    Unwritable(WgslError),
 }
 
 impl Conversion {
-    /// Returns whether it is proved, or no proof was requested.
-    pub(super) fn is_proved(&self) -> bool {
-        !matches!(
-            self.status,
-            ProofStatus::Unproved(_) | ProofStatus::NotProvable(_)
-        )
-    }
-}
-
-/// The error of a conversion.
-pub(super) enum ConvertError {
-    /// Errors with their positions.
-    Diagnostics(Vec<Diagnostic>, Exit),
-    /// An error without a position.
-    Message(String, Exit),
-    /// The shader cannot be read.
-    Unreadable(String),
-}
-
-impl ConvertError {
-    pub(super) fn exit(&self) -> Exit {
-        match self {
-            Self::Diagnostics(_, exit) | Self::Message(_, exit) => *exit,
-            Self::Unreadable(_) => Exit::Error,
-        }
-    }
-}
-
-impl Converter<'_> {
-    /// Creates the context for one of `threads` threads.
-    pub(super) fn worker_context(&self, threads: usize) -> WorkerContext {
-        let runner = self.driver.worker_for(FRAMES.len() as u32);
-        WorkerContext {
-            translator: self.driver.translator(),
-            runner: runner.map(|runner| runner.map(Worker::with_plain_code)),
-            pool: self.verify.then(|| pool::thread_pool(threads)).flatten(),
-            browser: self.browser.as_ref().map(|program| {
-                let patience = self.driver.timeout() * FRAMES.len() as u32;
-                Chromium::new(program.clone(), patience)
-            }),
-        }
-    }
-
-    pub(super) fn convert(
-        &self,
-        context: &mut WorkerContext,
-        input: &Result<Input, ReadError>,
-    ) -> (Shader, Result<Conversion, ConvertError>) {
-        let shader = Shader::load(input, self.language, Deadline::after(self.driver.timeout()));
-        let converted = match &shader.checked {
-            Ok(checked) => self.convert_checked(context, checked, &shader),
-            Err(Unusable::Invalid(diagnostics)) => {
-                Err(ConvertError::Diagnostics(diagnostics.clone(), Exit::ShaderFault))
-            }
-            Err(Unusable::Unreadable(error)) => Err(ConvertError::Unreadable(error.to_string())),
+    /// Writes a proof beside the file, if there is a prover.
+    ///
+    /// # Errors
+    /// If the shader takes too long to compile.
+    fn new(source: Source, written: Written, prover: Option<&mut Prover>) -> Result<Self, ConvertError> {
+        let proof = match prover.map(|prover| prover.prove(source, &written)) {
+            Some(Err(Unproved::Overdue(overdue))) => return Err(overdue.into()),
+            proof => proof,
         };
-        (shader, converted)
-    }
-
-    fn convert_checked(
-        &self,
-        context: &mut WorkerContext,
-        checked: &Checked,
-        shader: &Shader,
-    ) -> Result<Conversion, ConvertError> {
-        let Some(target) = self.to.target() else {
-            let lowered = self.lower(checked)?;
-            let bytes = lowered.text().as_bytes().to_vec();
-            let status = if self.verify {
-                let readings = vec![(NAGA.to_owned(), ShaderArtifact::Lowered(lowered))];
-                self.run(context, (checked, &shader.files), readings, None)
-            } else {
-                ProofStatus::NotRequested
-            };
-            return Ok(Conversion {
-                bytes,
-                status,
-                fallback_reason: None,
-            });
-        };
-        if target == Target::Wgsl && self.float == FloatMode::Fast {
-            let converted = self.write_wgsl(context, checked, shader)?;
-            let why = match &converted {
-                Err(why)
-                | Ok(Conversion {
-                    status: ProofStatus::Unproved(why),
-                    ..
-                }) => why.clone(),
-                Ok(_) => return converted.map_err(|why| ConvertError::Message(why, Exit::Error)),
-            };
-            if self.style != Style::Plain {
-                return converted.map_err(|why| ConvertError::Message(why, Exit::Error));
-            }
-            let other = self.convert_with_naga(context, checked, target, shader);
-            return match (converted, other) {
-                // Neither is proved: prefer the readable one.
-                (
-                    Ok(converted),
-                    Err(_)
-                    | Ok(Conversion {
-                        status: ProofStatus::Unproved(_) | ProofStatus::NotProvable(_),
-                        ..
-                    }),
-                ) => Ok(converted),
-                (_, other) => other.map(|converted| Conversion {
-                    fallback_reason: Some(why),
-                    ..converted
-                }),
-            };
-        }
-        self.convert_with_naga(context, checked, target, shader)
-    }
-
-    /// Writes WGSL that keeps the author's names and comments; or the reason why that is impossible.
-    fn write_wgsl(
-        &self,
-        context: &mut WorkerContext,
-        checked: &Checked,
-        shader: &Shader,
-    ) -> Result<Result<Conversion, String>, ConvertError> {
-        let deadline = Deadline::after(self.driver.timeout());
-        match wgsl::wgsl(checked, &shader.files, self.style, &deadline) {
-            Ok(text) => self.verify_wgsl(context, checked, shader, text),
-            Err(wgsl::Failure::Overdue(overdue)) => Err(too_slow(overdue)),
-            Err(wgsl::Failure::Unprintable(why)) => Ok(Err(format!(
-                "cannot be written in the style {}: {why}",
-                self.style.name()
-            ))),
-        }
-    }
-
-    /// Checks that naga reads that WGSL, and proves it with `--verify`; or the reason why naga rejects it.
-    fn verify_wgsl(
-        &self,
-        context: &mut WorkerContext,
-        checked: &Checked,
-        shader: &Shader,
-        text: String,
-    ) -> Result<Result<Conversion, String>, ConvertError> {
-        let hosted = self.style.hosted(&text);
-        match translator(context)?.read_wgsl(&hosted.text) {
-            Ok(()) => {}
-            Err(failure @ Failure::Timeout { .. }) => return Err(convert_error(failure)),
-            Err(Failure::Reread(why)) => return Ok(Err(why)),
-            Err(failure) => return Ok(Err(failure.to_string())),
-        }
-        let mut bytes = text.into_bytes();
-        let status = if self.verify {
-            // The other styles are complete only within their hosts.
-            let validated = match self.style {
-                Style::Plain => tool::validate(Target::Wgsl, &bytes),
-                _ => Ok(None),
-            };
-            match validated {
-                Err(why) => ProofStatus::Unproved(why),
-                Ok(validator) => {
-                    let readings = vec![(NAGA.to_owned(), ShaderArtifact::Wgsl(hosted.clone()))];
-                    let status = self.run(context, (checked, &shader.files), readings, validator);
-                    let text = Text::Wgsl(&hosted.text);
-                    prove_in_browser(context, checked, shader, status, text, hosted.upside_down)
-                }
-            }
-        } else {
-            ProofStatus::NotRequested
-        };
-        header::insert(&mut bytes, Target::Wgsl, &shader.name, &status);
-        Ok(Ok(Conversion {
-            bytes,
-            status,
-            fallback_reason: None,
-        }))
-    }
-
-    fn lower(&self, checked: &Checked) -> Result<Lowered, ConvertError> {
-        let deadline = Deadline::after(self.driver.timeout());
-        let lowered = self.float.lower_within(checked, &deadline);
-        lowered.map_err(too_slow)
-    }
-
-    /// Converts the shader with naga's writer.
-    fn convert_with_naga(
-        &self,
-        context: &mut WorkerContext,
-        checked: &Checked,
-        target: Target,
-        shader: &Shader,
-    ) -> Result<Conversion, ConvertError> {
-        let lowered = self.lower(checked)?;
-        let mut bytes = translator(context)?
-            .translate(lowered.clone(), target, self.float)
-            .map_err(convert_error)?;
-        let status = if self.verify {
-            let status = self.prove(context, (checked, &shader.files), lowered, target, &bytes);
-            let status = status.unwrap_or_else(ProofStatus::Unproved);
-            let text = String::from_utf8_lossy(&bytes);
-            let text = match target {
-                Target::Glsl => Text::Glsl(&text),
-                _ => Text::Wgsl(&text),
-            };
-            prove_in_browser(context, checked, shader, status, text, false)
-        } else {
-            ProofStatus::NotRequested
-        };
-        header::insert(&mut bytes, target, &shader.name, &status);
-        Ok(Conversion {
-            bytes,
-            status,
-            fallback_reason: None,
+        Ok(Self {
+            written,
+            proof,
+            fallback: None,
         })
     }
+
+    /// Returns whether it is proved, or no proof was requested.
+    #[must_use]
+    pub fn is_proved(&self) -> bool {
+        self.proof.as_ref().is_none_or(Result::is_ok)
+    }
+
+    /// Returns whether it is not proved, and another conversion of the shader might be.
+    fn is_replaceable(&self) -> bool {
+        matches!(&self.proof, Some(Err(unproved)) if !unproved.is_of_shader())
+    }
 }
 
-/// The translator, which is a separate process.
-fn translator(context: &mut WorkerContext) -> Result<&mut Worker, ConvertError> {
-    let translator = context.translator.as_mut();
-    translator.map_err(|error| ConvertError::Message(error.clone(), Exit::Error))
-}
-
-fn too_slow(overdue: Overdue) -> ConvertError {
-    ConvertError::Diagnostics(vec![glsl::overdue(overdue)], Exit::ShaderFault)
-}
-
-fn convert_error(failure: Failure) -> ConvertError {
-    match failure {
-        Failure::Invalid(diagnostics) => ConvertError::Diagnostics(diagnostics, Exit::ShaderFault),
-        Failure::Refused(diagnostics) => ConvertError::Diagnostics(diagnostics, Exit::Error),
-        failure => {
-            let exit = if failure.is_invalid() {
-                Exit::ShaderFault
-            } else {
-                Exit::Error
-            };
-            ConvertError::Message(failure.to_string(), exit)
+impl Converter {
+    /// Converts a shader; `translator` runs naga. With a prover, the conversion is proved too. Plain WGSL that
+    /// our own writer cannot write, or that is not proved, is naga's.
+    ///
+    /// # Errors
+    /// Returns why there is no conversion. One that is not proved is not an error.
+    pub fn convert(
+        &self,
+        source: Source,
+        translator: &mut Worker,
+        mut prover: Option<&mut Prover>,
+    ) -> Result<Conversion, ConvertError> {
+        let Some(target) = self.target else {
+            let lowered = self.lower(source)?;
+            return Conversion::new(source, Written::Lowered(lowered), prover);
+        };
+        if target != Target::Wgsl || self.float == FloatMode::Strict {
+            let written = self.write_with_naga(source, target, translator)?;
+            return Conversion::new(source, written, prover);
         }
+        let own = self
+            .write_wgsl(source, translator)
+            .and_then(|written| Conversion::new(source, written, prover.as_deref_mut()));
+        let is_plain = self.style == Style::Plain;
+        let own = match own {
+            Ok(own) if is_plain && own.is_replaceable() => Ok(own),
+            Err(ConvertError::Unwritable(error)) if is_plain => Err(error),
+            own => return own,
+        };
+        let other = self
+            .write_with_naga(source, target, translator)
+            .and_then(|written| Conversion::new(source, written, prover));
+        let with_reason = |reason| {
+            move |other| Conversion {
+                fallback: Some(reason),
+                ..other
+            }
+        };
+        match (own, other) {
+            (Err(error), other) => other.map(with_reason(FallbackReason::Unwritable(error))),
+            (
+                Ok(Conversion {
+                    proof: Some(Err(unproved)),
+                    ..
+                }),
+                Ok(other),
+            ) if other.is_proved() => Ok(with_reason(FallbackReason::Unproved(unproved))(other)),
+            // Neither is proved: the readable one is better.
+            (Ok(own), _) => Ok(own),
+        }
+    }
+
+    fn lower(&self, source: Source) -> Result<Lowered, ConvertError> {
+        let deadline = Deadline::after(self.timeout);
+        Ok(self.float.lower_within(source.checked, &deadline)?)
+    }
+
+    /// Writes WGSL that keeps the author's names and comments, and that naga reads.
+    fn write_wgsl(&self, source: Source, translator: &mut Worker) -> Result<Written, ConvertError> {
+        let deadline = Deadline::after(self.timeout);
+        let text = wgsl::wgsl(source.checked, source.files, self.style, &deadline);
+        let text = text.map_err(|failure| match failure {
+            wgsl::Failure::Overdue(overdue) => ConvertError::Overdue(overdue),
+            wgsl::Failure::Unprintable(why) => ConvertError::Unwritable(WgslError::Unprintable {
+                style: self.style,
+                why,
+            }),
+        })?;
+        match translator.read_wgsl(&self.style.hosted(&text).text) {
+            Ok(()) => Ok(Written::Wgsl(text, self.style)),
+            Err(failure @ gpu::Failure::Timeout { .. }) => Err(failure.into()),
+            Err(gpu::Failure::Reread(why)) => Err(ConvertError::Unwritable(WgslError::Refused(why))),
+            Err(failure) => Err(ConvertError::Unwritable(WgslError::Worker(failure))),
+        }
+    }
+
+    fn write_with_naga(
+        &self,
+        source: Source,
+        target: Target,
+        translator: &mut Worker,
+    ) -> Result<Written, ConvertError> {
+        let lowered = self.lower(source)?;
+        let bytes = translator.translate(lowered.clone(), target, self.float)?;
+        Ok(match target {
+            Target::Wgsl => {
+                let text = String::from_utf8_lossy(&bytes).into_owned();
+                Written::Wgsl(text, Style::Plain)
+            }
+            _ => Written::Naga {
+                target,
+                bytes,
+                lowered,
+            },
+        })
     }
 }

@@ -1,26 +1,36 @@
-//! Verifies that a converted shader is equivalent to the original: the written file is parsed again, run, and
-//! compared with the shader.
-//!
-//! The file calls `sin` and the like, whose last bits WGSL and its relatives leave to the implementation. For
-//! the proof, the evaluator's definitions replace them in what naga parsed; everything else is the file's. So
-//! no tolerance is needed: a conversion is proved if every pixel has the evaluator's bits.
+//! Runs what was converted, and compares it with the shader in every frame.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use rayon::ThreadPool;
-use toyproof_eval::{self as eval, Observed, Program};
-use toyproof_glsl::Checked;
+use toyproof_diagnostic::{Deadline, File, Files, short};
+use toyproof_eval::{self as eval, Observed, Program, Refusal};
 use toyproof_glsl::tree::SamplerShape;
+use toyproof_glsl::{self as glsl, Checked};
 use toyproof_gpu::{self as gpu, ShaderArtifact, Worker};
 use toyproof_image::{self as image, Frame, Image};
 use toyproof_lint::Lints;
 use toyproof_translate::FloatMode;
+use toyproof_translate::backend::roundtrip;
+use toyproof_translate::naga_ir::ValidModule;
 
-use super::cpu::{Evaluator, Single};
-use super::{Case, EVALUATOR_TIME_FACTOR, Failure, TOTAL_TIME_FACTOR, join, within};
 use crate::compare::{self, Answer};
+use crate::cpu::{Evaluator, Single};
+use crate::{Case, EVALUATOR_TIME_FACTOR, Failure, TOTAL_TIME_FACTOR, join, within};
+
+use super::prover::Unproved;
+
+/// What runs a converted shader.
+#[derive(Debug)]
+pub enum Runner<'a> {
+    /// A Vulkan driver, in a worker process.
+    Driver(&'a mut Worker),
+    /// The evaluator, which runs the GLSL that naga makes of the file. naga runs in this process and without
+    /// a time limit, so the shader should be a trusted one. Binary files cannot be run.
+    Evaluator,
+}
 
 /// The result of running a converted shader.
 #[derive(Debug, Clone)]
@@ -58,6 +68,21 @@ impl Proof {
     #[must_use]
     pub fn pixels(&self) -> u64 {
         self.answers.iter().map(|answer| answer.pixels).sum()
+    }
+
+    /// The number of pixels that have the same bits.
+    #[must_use]
+    pub fn equal(&self) -> u64 {
+        self.pixels() - self.undefined() - self.differing()
+    }
+
+    /// The largest difference of a component.
+    #[must_use]
+    pub fn max_abs(&self) -> f64 {
+        self.answers
+            .iter()
+            .map(|answer| answer.max_abs)
+            .fold(0.0, f64::max)
     }
 
     /// The number of pixels that differ.
@@ -131,25 +156,25 @@ pub fn frames(checked: &Checked) -> Vec<Frame> {
     FRAMES.map(of).to_vec()
 }
 
-/// Renders each parsed file in each of the frames and compares it with the shader: a proof for each. The
-/// evaluator runs in `pool`, if there is one: in rayon's global pool, all rows of a slow shader could run
-/// before another shader's.
+/// Renders what was read of a converted shader in each of the frames, and compares it with the shader: a proof
+/// for each artifact. `timeout` is the time limit of an image. The evaluator runs in `pool`, if there is one:
+/// in rayon's global pool, all rows of a slow shader could run before another shader's.
 ///
 /// # Errors
 /// Returns why one of them, or the shader itself, has no images.
-pub fn prove(
-    worker: &mut Worker,
+pub fn compare_with_original(
+    runner: &mut Runner,
     checked: &Checked,
     artifacts: Vec<ShaderArtifact>,
     frames: &[Frame],
     timeout: Duration,
     pool: Option<&ThreadPool>,
-) -> Result<Vec<Proof>, Failure> {
+) -> Result<Vec<Proof>, Unproved> {
     let stop = AtomicBool::new(false);
     let singles = || evaluate(checked, frames, timeout, &stop);
     let (rendered, singles) = thread::scope(|scope| {
         let cpu = scope.spawn(|| within(pool, singles));
-        let render = |artifact| worker.render(artifact, frames.to_vec());
+        let render = |artifact| runner.render(artifact, frames, timeout, pool);
         let rendered: Result<Vec<_>, _> = artifacts.into_iter().map(render).collect();
         stop.store(rendered.is_err(), Ordering::Relaxed);
         (rendered, join(cpu))
@@ -161,19 +186,17 @@ pub fn prove(
         .map(|single| single.observed.beyond_cap)
         .sum::<u64>()
     {
-        return Err(Failure::LoopTruncated(pixels));
+        return Err(Failure::LoopTruncated(pixels).into());
     }
-    let (against, expected) = if checked.reads_textures() {
-        let mut run = |frame: &Frame| {
-            let lowered = FloatMode::Strict.lower(checked);
-            let drawn = worker.draw_unwatched(lowered, frame.clone(), FloatMode::Strict)?;
-            Ok(drawn.image())
-        };
-        let images: Result<Vec<Image>, gpu::Failure> = frames.iter().map(&mut run).collect();
-        (Against::StrictRun, images?)
-    } else {
-        let images = singles.iter().map(|single| single.image.clone());
-        (Against::Evaluator, images.collect())
+    let (against, expected) = match runner {
+        Runner::Driver(worker) if checked.reads_textures() => (
+            Against::StrictRun,
+            strict_images(worker, checked, frames, timeout)?,
+        ),
+        _ => {
+            let images = singles.iter().map(|single| single.image.clone());
+            (Against::Evaluator, images.collect())
+        }
     };
     let faults = singles.iter().flat_map(|single| &single.observed.faults);
     let undefined = faults.filter(|observed| observed.site.fault.is_undefined());
@@ -242,13 +265,83 @@ fn difference(a: f32, b: f32) -> f32 {
     }
 }
 
+impl Runner<'_> {
+    /// Renders the frames; returns the images and the name of the device.
+    fn render(
+        &mut self,
+        artifact: ShaderArtifact,
+        frames: &[Frame],
+        timeout: Duration,
+        pool: Option<&ThreadPool>,
+    ) -> Result<(Vec<Image>, String), Unproved> {
+        match self {
+            Self::Driver(worker) => Ok(worker.render(artifact, frames.to_vec()).map_err(Failure::Gpu)?),
+            Self::Evaluator => {
+                let upside_down = matches!(&artifact, ShaderArtifact::Wgsl(hosted) if hosted.upside_down);
+                let module = match artifact {
+                    ShaderArtifact::Wgsl(hosted) => {
+                        ValidModule::of_wgsl(&hosted.text).map_err(gpu::Failure::Reread)
+                    }
+                    ShaderArtifact::Lowered(lowered) => {
+                        ValidModule::parse(&lowered).map_err(gpu::Failure::Refused)
+                    }
+                    ShaderArtifact::Words(..) => return Err(Unproved::Binary),
+                };
+                let text =
+                    module.and_then(|module| roundtrip::shadertoy(&module).map_err(gpu::Failure::Naga));
+                let written = read_shadertoy(&text.map_err(Failure::Gpu)?, timeout)?;
+                let stop = AtomicBool::new(false);
+                let singles = within(pool, || evaluate(&written, frames, timeout, &stop))?;
+                let images = singles.into_iter().map(|single| match upside_down {
+                    true => single.image.upside_down(),
+                    false => single.image,
+                });
+                Ok((images.collect(), "toyproof's evaluator".to_owned()))
+            }
+        }
+    }
+}
+
+/// Reads a converted shader, as `ShaderToy` would run it, with our own front end.
+pub(super) fn read_shadertoy(text: &str, timeout: Duration) -> Result<Checked, Unproved> {
+    let mut files = Files::default();
+    let file = files.add(File::new("written", text));
+    let options = glsl::Options {
+        deadline: Deadline::after(timeout),
+        ..glsl::Options::default()
+    };
+    glsl::check(&files, file, &options).map_err(|errors| {
+        let first = errors.first().map(|error| short(error, &files));
+        Unproved::FrontEnd(first.unwrap_or_default())
+    })
+}
+
+/// The original, rendered strictly by the same driver.
+fn strict_images(
+    worker: &mut Worker,
+    checked: &Checked,
+    frames: &[Frame],
+    timeout: Duration,
+) -> Result<Vec<Image>, Failure> {
+    let lowered = FloatMode::Strict.lower_within(checked, &Deadline::after(timeout))?;
+    let image = |frame: &Frame| {
+        let drawn = worker.draw_unwatched(lowered.clone(), frame.clone(), FloatMode::Strict)?;
+        Ok(drawn.image())
+    };
+    frames.iter().map(image).collect()
+}
+
 fn evaluate(
     checked: &Checked,
     frames: &[Frame],
     timeout: Duration,
     stop: &AtomicBool,
-) -> Result<Vec<Single>, eval::Failure> {
-    let program = Program::new(checked)?;
+) -> Result<Vec<Single>, Failure> {
+    let program =
+        Program::within(checked, timeout * EVALUATOR_TIME_FACTOR).map_err(|refusal| match refusal {
+            Refusal::TooSlow(overdue) => Failure::Overdue(overdue),
+            refusal => Failure::Cpu(eval::Failure::from(refusal)),
+        })?;
     let single = |frame: &Frame| {
         let case = Case {
             checked,
@@ -261,7 +354,8 @@ fn evaluate(
             pool: None,
         };
         let deadline = Instant::now() + timeout * TOTAL_TIME_FACTOR;
-        Evaluator::new(&program, &case, timeout * EVALUATOR_TIME_FACTOR, deadline, stop).single(&frame.rows())
+        let evaluator = Evaluator::new(&program, &case, timeout * EVALUATOR_TIME_FACTOR, deadline, stop);
+        Ok(evaluator.single(&frame.rows())?)
     };
     frames.iter().map(single).collect()
 }

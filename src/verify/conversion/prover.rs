@@ -1,272 +1,373 @@
-//! Proofs of conversions: the written file is read by independent readers, and what they read is run.
+//! Proves conversions: each reader that is available reads the written file, and what it read is run.
 
-use toyproof_diagnostic::{File, Files, grouped, plural, short};
+use std::fmt;
+use std::time::Duration;
+
+use rayon::ThreadPool;
+use thiserror::Error;
+use toyproof_diagnostic::{Deadline, Files, Overdue, grouped, plural};
+use toyproof_eval::Fault;
+use toyproof_glsl::Checked;
 use toyproof_glsl::tree::SamplerShape;
-use toyproof_glsl::{self as glsl, Checked};
-use toyproof_gpu::browser::{self, Text};
-use toyproof_gpu::{Failure, ShaderArtifact};
-use toyproof_image::Image;
+use toyproof_gpu::browser::{self, Chromium, Text};
+use toyproof_gpu::{self as gpu, ShaderArtifact};
+use toyproof_image::{Frame, Image};
+use toyproof_translate::FloatMode;
 use toyproof_translate::backend::{Target, roundtrip, spirv};
 use toyproof_translate::naga_ir::Shape;
 use toyproof_translate::wgsl::Style;
-use toyproof_translate::{FloatMode, Lowered};
-use toyproof_verify as verify;
-use toyproof_verify::conversion::{Against, Proof, Rgb8Comparison, frames, prove};
 
-use super::super::shader::Shader;
-use super::conversion::{Converter, WorkerContext};
-use super::tool;
+use super::proof::{Against, Proof, Rgb8Comparison, Runner, compare_with_original, frames, read_shadertoy};
+use super::tool::{self, ToolError};
+use super::{Source, Written};
+use crate::Failure;
 
-/// The name of the reader of WGSL and of the GLSL that naga is fed.
-pub(super) const NAGA: &str = "naga";
+/// Proves conversions.
+#[derive(Debug)]
+pub struct Prover<'a> {
+    /// What runs the conversion.
+    pub runner: Runner<'a>,
+    /// A browser that must also render WGSL and GLSL like the original.
+    pub browser: Option<&'a mut Chromium>,
+    /// The time limit of an image.
+    pub timeout: Duration,
+    /// The evaluator's thread pool; rayon's global pool if none.
+    pub pool: Option<&'a ThreadPool>,
+}
 
-/// The status of a conversion's proof.
-pub(super) enum ProofStatus {
-    /// No proof was requested.
-    NotRequested,
-    /// The file was read again, and renders the same image.
-    Proved(Proof, Readers),
-    /// The shader that naga wrote the file from renders the same image; no reader reads the file itself.
-    SourceProved(Proof),
-    /// The proof failed, for this reason.
-    Unproved(String),
-    /// No proof was possible, for a reason that applies to any conversion of the shader.
-    NotProvable(String),
+/// A conversion that renders the same image as the original.
+#[derive(Debug, Clone)]
+pub enum Proved {
+    /// The file was read again.
+    File(Proof, Readers),
+    /// The shader that naga wrote the file from was run; no reader reads the file itself.
+    Source(Proof),
+}
+
+impl Proved {
+    /// The comparison with the original, of the first reader if there are several.
+    #[must_use]
+    pub fn proof(&self) -> &Proof {
+        match self {
+            Self::File(proof, _) | Self::Source(proof) => proof,
+        }
+    }
 }
 
 /// The readers of a conversion.
-pub(super) struct Readers {
+#[derive(Debug, Clone)]
+pub struct Readers {
     /// The readers whose results were run, each separately.
-    pub(super) names: Vec<String>,
-    /// The validator that accepts it, as text.
-    pub(super) validator: Option<String>,
-    /// The browser that renders it like the original, if `--browser` was given.
-    pub(super) browser: Option<(String, Rgb8Comparison)>,
+    pub run: Vec<Reader>,
+    /// The name and version of the validator that accepts the file.
+    pub validator: Option<String>,
+    /// The name and version of the browser that renders it like the original.
+    pub browser: Option<(String, Rgb8Comparison)>,
 }
 
-impl Converter<'_> {
-    /// Reads the conversion with every available reader, and runs the results.
-    pub(super) fn prove(
+/// A reader of a converted file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Reader {
+    /// naga.
+    Naga,
+    /// The driver, which takes SPIR-V as it is.
+    Driver,
+    /// Our own front end.
+    FrontEnd,
+    /// A compiler to SPIR-V, with its version.
+    Compiler(String),
+}
+
+impl fmt::Display for Reader {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Naga => "naga",
+            Self::Driver => "the driver",
+            Self::FrontEnd => "toyproof's GLSL front end",
+            Self::Compiler(name) => name,
+        })
+    }
+}
+
+/// Why a conversion is not proved.
+#[derive(Debug, Error)]
+pub enum Unproved {
+    /// A tool rejects the file.
+    #[error(transparent)]
+    Tool(#[from] ToolError),
+    /// The length of a SPIR-V file is not a multiple of four bytes.
+    #[error("half a word was written")]
+    PartialWord,
+    /// Our own front end rejects the file with this message.
+    #[error("our own front end refuses it: {0}")]
+    FrontEnd(String),
+    /// The evaluator does not run SPIR-V.
+    #[error("the evaluator does not run SPIR-V")]
+    Binary,
+    /// There is no driver to run it.
+    #[error("to prove a conversion takes a Vulkan driver: {0}")]
+    NoDriver(gpu::Failure),
+    /// The shader takes too long to compile.
+    #[error(transparent)]
+    Overdue(Overdue),
+    /// The conversion or the original has no images.
+    #[error(transparent)]
+    Run(Failure),
+    /// Some pixels differ.
+    #[error(
+        "{}{} of {} pixels {} not to the bit {}, by up to {max_abs:.1e}",
+        reader.as_ref().map_or_else(String::new, |reader| format!("as {reader} reads it, ")),
+        grouped(*differing),
+        grouped(*pixels),
+        plural(*differing, "is", "are"),
+        match against {
+            Against::Evaluator => "the evaluator's",
+            Against::StrictRun => "the shader's own",
+        }
+    )]
+    Differs {
+        /// The reader, if there are several.
+        reader: Option<Reader>,
+        /// The number of pixels that differ.
+        differing: u64,
+        /// The number of pixels of all frames.
+        pixels: u64,
+        /// The largest difference of a component.
+        max_abs: f64,
+        /// The reference.
+        against: Against,
+    },
+    /// Every pixel depends on undefined behavior.
+    #[error("every pixel hangs on what GLSL leaves undefined: {} at {at}", fault.words())]
+    FullyUndefined {
+        /// The operation that occurs in most pixels.
+        fault: Fault,
+        /// Its position: file, line and column.
+        at: String,
+    },
+    /// The browser cannot be given one of the channels.
+    #[error("a channel that is not flat cannot be fed to Chromium yet")]
+    BrowserChannel,
+    /// The browser does not render the original.
+    #[error("the original: {0}")]
+    BrowserOriginal(browser::Failure),
+    /// The browser does not render the conversion.
+    #[error(transparent)]
+    Browser(browser::Failure),
+    /// The browser renders the conversion with other colors than the original.
+    #[error(
+        "in Chromium {} of {} pixels {} not as with WebGL 2 of the original, by up to {:.1}/255",
+        grouped(.0.differing),
+        grouped(.0.pixels),
+        plural(.0.differing, "is", "are"),
+        .0.max * 255.0
+    )]
+    BrowserDiffers(Rgb8Comparison),
+}
+
+impl Unproved {
+    /// Returns whether the reason applies to every conversion of the shader: it takes too long, depends on
+    /// undefined behavior, or cannot be run.
+    #[must_use]
+    pub fn is_of_shader(&self) -> bool {
+        match self {
+            Self::NoDriver(_) | Self::Overdue(_) | Self::FullyUndefined { .. } => true,
+            Self::Run(Failure::Gpu(failure)) => {
+                matches!(failure, gpu::Failure::Timeout { .. } | gpu::Failure::Device(_))
+            }
+            Self::Run(_) => true,
+            _ => false,
+        }
+    }
+}
+
+impl From<Failure> for Unproved {
+    fn from(failure: Failure) -> Self {
+        match failure {
+            Failure::Gpu(failure) if failure.is_without_driver() => Self::NoDriver(failure),
+            Failure::Overdue(overdue) => Self::Overdue(overdue),
+            failure => Self::Run(failure),
+        }
+    }
+}
+
+impl Prover<'_> {
+    /// Proves that a written file renders the same images as the shader: to the bit in every frame of
+    /// [`super::FRAMES`], except in pixels that depend on undefined behavior.
+    ///
+    /// # Errors
+    /// Returns why it is not proved.
+    pub fn prove(&mut self, source: Source, written: &Written) -> Result<Proved, Unproved> {
+        let validator = match written {
+            Written::Wgsl(text, Style::Plain) => tool::validate(Target::Wgsl, text.as_bytes())?,
+            Written::Naga { target, bytes, .. } => tool::validate(*target, bytes)?,
+            // Only their hosts complete them.
+            Written::Wgsl(..) | Written::Lowered(_) => None,
+        };
+        let mut readings = self.readings(source.checked, written)?;
+        let is_unread = readings.is_empty();
+        if let (true, Written::Naga { lowered, .. }) = (is_unread, written) {
+            readings.push((Reader::Naga, ShaderArtifact::Lowered(lowered.clone())));
+        }
+        let frames = frames(source.checked);
+        let (run, proof) = self.run(source, readings, &frames)?;
+        if is_unread {
+            return Ok(Proved::Source(proof));
+        }
+        let browser = match &mut self.browser {
+            Some(browser) => in_browser(browser, source, written, &proof, &frames)?,
+            None => None,
+        };
+        Ok(Proved::File(
+            proof,
+            Readers {
+                run,
+                validator,
+                browser,
+            },
+        ))
+    }
+
+    /// What each available reader reads of a file.
+    fn readings(
         &self,
-        context: &mut WorkerContext,
-        (checked, files): (&Checked, &Files),
-        lowered: Lowered,
-        target: Target,
-        bytes: &[u8],
-    ) -> Result<ProofStatus, String> {
-        let validator = tool::validate(target, bytes)?;
+        checked: &Checked,
+        written: &Written,
+    ) -> Result<Vec<(Reader, ShaderArtifact)>, Unproved> {
+        let (target, bytes) = match written {
+            Written::Lowered(lowered) => {
+                return Ok(vec![(Reader::Naga, ShaderArtifact::Lowered(lowered.clone()))]);
+            }
+            Written::Wgsl(text, style) => {
+                return Ok(vec![(Reader::Naga, ShaderArtifact::Wgsl(style.hosted(text)))]);
+            }
+            Written::Naga { target, bytes, .. } => (*target, bytes),
+        };
         let channels = checked.channels.map(|shape| match shape {
             SamplerShape::D2 | SamplerShape::D2Array => Shape::D2,
             SamplerShape::D3 => Shape::D3,
             SamplerShape::Cube => Shape::Cube,
         });
-        let mut readings = match target {
-            Target::Wgsl => {
-                let text = String::from_utf8_lossy(bytes);
-                vec![(NAGA.to_owned(), ShaderArtifact::Wgsl(Style::Plain.hosted(&text)))]
-            }
+        let mut readings = Vec::new();
+        match target {
             Target::Spirv => {
-                let words = spirv::of_bytes(bytes).ok_or("half a word was written")?;
-                vec![("the driver".to_owned(), ShaderArtifact::Words(words, channels))]
+                let words = spirv::of_bytes(bytes).ok_or(Unproved::PartialWord)?;
+                readings.push((Reader::Driver, ShaderArtifact::Words(words, channels)));
             }
-            Target::Glsl => vec![("toyproof's GLSL front end".to_owned(), read_glsl(bytes)?)],
-            Target::Hlsl | Target::Msl => Vec::new(),
-        };
-        if let Some((words, who)) = tool::compile(target, bytes)? {
-            readings.push((who, ShaderArtifact::Words(words, channels)));
-        }
-        if !readings.is_empty() {
-            return Ok(self.run(context, (checked, files), readings, validator));
-        }
-        let meaning = vec![(String::new(), ShaderArtifact::Lowered(lowered))];
-        Ok(match self.run(context, (checked, files), meaning, None) {
-            ProofStatus::Proved(proof, _) => ProofStatus::SourceProved(proof),
-            other => other,
-        })
-    }
-
-    /// Runs the result of each reader; the status is proved only if all results agree with the shader.
-    pub(super) fn run(
-        &self,
-        context: &mut WorkerContext,
-        (checked, files): (&Checked, &Files),
-        readings: Vec<(String, ShaderArtifact)>,
-        validator: Option<String>,
-    ) -> ProofStatus {
-        let (names, written): (Vec<_>, Vec<_>) = readings.into_iter().unzip();
-        let proofs = self.proofs(context, checked, written);
-        let proofs = match proofs {
-            Ok(proofs) => proofs,
-            Err(status) => return status,
-        };
-        if let Some(why) = proofs.first().and_then(|proof| fully_undefined(proof, files)) {
-            return ProofStatus::NotProvable(why);
-        }
-        let held = || {
-            let several = proofs.len() > 1;
-            let mut first = None;
-            for (proof, who) in proofs.into_iter().zip(&names) {
-                let held = require_proof(proof).map_err(|why| {
-                    if several {
-                        format!("as {who} reads it, {why}")
-                    } else {
-                        why
-                    }
-                })?;
-                first.get_or_insert(held);
+            Target::Glsl => {
+                let text = roundtrip::as_shadertoy(&String::from_utf8_lossy(bytes));
+                let again = read_shadertoy(&text, self.timeout)?;
+                let lowered = FloatMode::Fast.lower_within(&again, &Deadline::after(self.timeout));
+                let lowered = lowered.map_err(Unproved::Overdue)?;
+                readings.push((Reader::FrontEnd, ShaderArtifact::Lowered(lowered)));
             }
-            first.ok_or_else(|| "nothing read it".to_owned())
-        };
-        held().map_or_else(ProofStatus::Unproved, |proof| {
-            let browser = None;
-            ProofStatus::Proved(
-                proof,
-                Readers {
-                    names,
-                    validator,
-                    browser,
-                },
-            )
-        })
-    }
-
-    fn proofs(
-        &self,
-        context: &mut WorkerContext,
-        checked: &Checked,
-        readings: Vec<ShaderArtifact>,
-    ) -> Result<Vec<Proof>, ProofStatus> {
-        let runner = match &mut context.runner {
-            Ok(Some(runner)) => runner,
-            Ok(None) => {
-                let why = "to prove a conversion takes a Vulkan driver, and --on cpu asks for none";
-                return Err(ProofStatus::NotProvable(why.to_owned()));
-            }
-            Err(error) => return Err(ProofStatus::NotProvable(error.clone())),
-        };
-        let frames = frames(checked);
-        let pool = context.pool.as_ref();
-        prove(runner, checked, readings, &frames, self.driver.timeout(), pool).map_err(failure_status)
-    }
-}
-
-/// The status of a conversion that could not be rendered. A different conversion would help only if this one
-/// is at fault, not if the shader itself takes too long or cannot be run.
-fn failure_status(failure: verify::Failure) -> ProofStatus {
-    use Failure::{Device, Timeout};
-    match failure {
-        verify::Failure::Gpu(failure) if failure.is_without_driver() => {
-            ProofStatus::NotProvable(format!("to prove a conversion takes a Vulkan driver: {failure}"))
+            Target::Wgsl | Target::Hlsl | Target::Msl => {}
         }
-        verify::Failure::Cpu(_)
-        | verify::Failure::LoopTruncated(_)
-        | verify::Failure::Overdue(_)
-        | verify::Failure::Gpu(Timeout { .. } | Device(_)) => ProofStatus::NotProvable(failure.to_string()),
-        failure => ProofStatus::Unproved(failure.to_string()),
+        if let Runner::Driver(_) = self.runner
+            && let Some((words, compiler)) = tool::compile(target, bytes)?
+        {
+            readings.push((Reader::Compiler(compiler), ShaderArtifact::Words(words, channels)));
+        }
+        Ok(readings)
     }
-}
 
-/// Renders a proved conversion and the original in a browser, if there is one: their 8-bit colors may differ
-/// by at most 1/255.
-pub(super) fn prove_in_browser(
-    context: &mut WorkerContext,
-    checked: &Checked,
-    shader: &Shader,
-    status: ProofStatus,
-    text: Text,
-    upside_down: bool,
-) -> ProofStatus {
-    let Some(browser) = &mut context.browser else {
-        return status;
-    };
-    let (proof, mut readers) = match status {
-        ProofStatus::Proved(proof, readers) => (proof, readers),
-        other => return other,
-    };
-    let is_flat = |shape: &SamplerShape| *shape == SamplerShape::D2;
-    if checked.reads_textures() && !checked.channels.iter().all(is_flat) {
-        return ProofStatus::Unproved("a channel that is not flat cannot be fed to Chromium yet".to_owned());
+    /// Runs each reader's result; all of them must agree with the shader.
+    fn run(
+        &mut self,
+        source: Source,
+        readings: Vec<(Reader, ShaderArtifact)>,
+        frames: &[Frame],
+    ) -> Result<(Vec<Reader>, Proof), Unproved> {
+        let (readers, artifacts): (Vec<_>, Vec<_>) = readings.into_iter().unzip();
+        let mut proofs = compare_with_original(
+            &mut self.runner,
+            source.checked,
+            artifacts,
+            frames,
+            self.timeout,
+            self.pool,
+        )?;
+        if let Some(unproved) = proofs
+            .first()
+            .and_then(|proof| fully_undefined(proof, source.files))
+        {
+            return Err(unproved);
+        }
+        let different = proofs.iter().zip(&readers).find(|(proof, _)| !proof.holds());
+        if let Some((proof, reader)) = different {
+            return Err(Unproved::Differs {
+                reader: (readers.len() > 1).then(|| reader.clone()),
+                differing: proof.differing(),
+                pixels: proof.pixels(),
+                max_abs: proof.max_abs(),
+                against: proof.against,
+            });
+        }
+        // There is a proof for each reader, and at least one reader.
+        Ok((readers, proofs.swap_remove(0)))
     }
-    let frames = frames(checked);
-    let original = browser::as_shadertoy(shader.text(checked));
-    let images = browser
-        .render(Text::Glsl(&original), &frames)
-        .map_err(|failure| format!("the original: {failure}"))
-        .and_then(|original| {
-            let converted = browser
-                .render(text, &frames)
-                .map_err(|failure| failure.to_string())?;
-            Ok((original, converted))
-        });
-    let (original, mut converted) = match images {
-        Ok(images) => images,
-        Err(why) => return ProofStatus::Unproved(why),
-    };
-    if upside_down {
-        converted = converted.iter().map(Image::upside_down).collect();
-    }
-    let shown = Rgb8Comparison::of(&original, &converted, &proof.undefined_at);
-    if shown.differing > 0 {
-        return ProofStatus::Unproved(format!(
-            "in Chromium {} of {} pixels {} not as with WebGL 2 of the original, by up to {:.1}/255",
-            grouped(shown.differing),
-            grouped(shown.pixels),
-            plural(shown.differing, "is", "are"),
-            shown.max * 255.0
-        ));
-    }
-    let name = browser.name().unwrap_or("Chromium").to_owned();
-    readers.browser = Some((name, shown));
-    ProofStatus::Proved(proof, readers)
 }
 
 /// The reason why no conversion of a shader can be proved, if every pixel depends on undefined behavior.
-fn fully_undefined(proof: &Proof, files: &Files) -> Option<String> {
+fn fully_undefined(proof: &Proof, files: &Files) -> Option<Unproved> {
     let by = proof
         .undefined_by
         .filter(|_| proof.undefined() == proof.pixels())?;
     let span = by.site.at.span;
     let place = files.position(span);
-    Some(format!(
-        "every pixel hangs on what GLSL leaves undefined: {} at {}:{}:{}",
-        by.site.fault.words(),
-        files.get(span.file).name(),
-        place.line,
-        place.column
-    ))
+    let name = files.get(span.file).name();
+    Some(Unproved::FullyUndefined {
+        fault: by.site.fault,
+        at: format!("{name}:{}:{}", place.line, place.column),
+    })
 }
 
-/// Returns the proof if it holds, or the reason why it does not.
-fn require_proof(proof: Proof) -> Result<Proof, String> {
-    if proof.holds() {
-        return Ok(proof);
+/// Renders a conversion and its original in a browser: their 8-bit colors may differ by at most 1/255. Returns
+/// the browser's name and the comparison; none for languages that browsers do not run.
+fn in_browser(
+    browser: &mut Chromium,
+    source: Source,
+    written: &Written,
+    proof: &Proof,
+    frames: &[Frame],
+) -> Result<Option<(String, Rgb8Comparison)>, Unproved> {
+    let is_flat = |shape: &SamplerShape| *shape == SamplerShape::D2;
+    if source.checked.reads_textures() && !source.checked.channels.iter().all(is_flat) {
+        return Err(Unproved::BrowserChannel);
     }
-    let differing = proof.differing();
-    let worst = proof
-        .answers
-        .iter()
-        .map(|answer| answer.max_abs)
-        .fold(0.0, f64::max);
-    let against = match proof.against {
-        Against::Evaluator => "the evaluator's",
-        Against::StrictRun => "the shader's own",
+    let original = browser::as_shadertoy(source.text());
+    let render_original = |browser: &mut Chromium| {
+        let images = browser.render(Text::Glsl(&original), frames);
+        images.map_err(Unproved::BrowserOriginal)
     };
-    Err(format!(
-        "{} of {} pixels {} not to the bit {against}, by up to {worst:.1e}",
-        grouped(differing),
-        grouped(proof.pixels()),
-        plural(differing, "is", "are")
-    ))
-}
-
-/// Reads the written GLSL with our own front end.
-fn read_glsl(bytes: &[u8]) -> Result<ShaderArtifact, String> {
-    let mut files = Files::default();
-    let text = roundtrip::as_shadertoy(&String::from_utf8_lossy(bytes));
-    let file = files.add(File::new("written", &text));
-    let checked = glsl::check(&files, file, &glsl::Options::default()).map_err(|errors| {
-        let first = errors.first().map(|error| short(error, &files));
-        format!("our own front end refuses it: {}", first.unwrap_or_default())
-    })?;
-    Ok(ShaderArtifact::Lowered(FloatMode::Fast.lower(&checked)))
+    let (original, converted) = match written {
+        Written::Wgsl(text, style) => {
+            let hosted = style.hosted(text);
+            let original = render_original(browser)?;
+            let images = browser.render(Text::Wgsl(&hosted.text), frames);
+            let images = images.map_err(Unproved::Browser)?;
+            if hosted.upside_down {
+                (original, images.iter().map(Image::upside_down).collect())
+            } else {
+                (original, images)
+            }
+        }
+        Written::Naga {
+            target: Target::Glsl,
+            bytes,
+            ..
+        } => {
+            let original = render_original(browser)?;
+            let text = String::from_utf8_lossy(bytes);
+            let images = browser.render(Text::Glsl(&text), frames);
+            (original, images.map_err(Unproved::Browser)?)
+        }
+        Written::Naga { .. } | Written::Lowered(_) => return Ok(None),
+    };
+    let shown = Rgb8Comparison::of(&original, &converted, &proof.undefined_at);
+    if shown.differing > 0 {
+        return Err(Unproved::BrowserDiffers(shown));
+    }
+    let name = browser.name().unwrap_or("Chromium").to_owned();
+    Ok(Some((name, shown)))
 }

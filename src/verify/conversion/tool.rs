@@ -8,7 +8,40 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use tempfile::{NamedTempFile, tempfile};
+use thiserror::Error;
 use toyproof_translate::backend::{Target, roundtrip, spirv};
+
+/// Why a tool did not accept a file.
+#[derive(Debug, Error)]
+pub enum ToolError {
+    /// It rejects the file with this message.
+    #[error("{tool} refuses it: {message}")]
+    Refused {
+        /// The tool.
+        tool: &'static str,
+        /// Its first error message.
+        message: String,
+    },
+    /// The file could not be written for it.
+    #[error("{tool} has no file to read: {error}")]
+    Unwritable {
+        /// The tool.
+        tool: &'static str,
+        /// The system's error.
+        error: io::Error,
+    },
+    /// It could not be run, or its output could not be read.
+    #[error("{tool}: {error}")]
+    NotRun {
+        /// The tool.
+        tool: &'static str,
+        /// The system's error.
+        error: io::Error,
+    },
+    /// The length of its output is not a multiple of four bytes.
+    #[error("{0} wrote half a word")]
+    PartialWord(&'static str),
+}
 
 /// A tool that reads a language: its program and arguments; the file's name is appended.
 struct Tool {
@@ -52,17 +85,17 @@ fn compiler_of(target: Target) -> Option<Tool> {
     })
 }
 
-/// Validates a file; returns which tool accepts it, or none if none is installed.
+/// Validates a file; returns the name and version of the tool that accepts it, or none if none is installed.
 ///
 /// # Errors
 /// The tool's first error message.
-pub(super) fn validate(target: Target, bytes: &[u8]) -> Result<Option<String>, String> {
+pub(super) fn validate(target: Target, bytes: &[u8]) -> Result<Option<String>, ToolError> {
     let Some(tool) = validator_of(target) else {
         return Ok(None);
     };
     let file = tool.file(target, bytes)?;
     let read = tool.read(&file, &[])?;
-    Ok(read.map(|()| format!("{} accepts it", tool.name_and_version())))
+    Ok(read.map(|()| tool.name_and_version()))
 }
 
 /// Compiles a file with glslang for Vulkan; returns the SPIR-V and the tool's name and version, or none if
@@ -70,7 +103,7 @@ pub(super) fn validate(target: Target, bytes: &[u8]) -> Result<Option<String>, S
 ///
 /// # Errors
 /// The tool's first error message.
-pub(super) fn compile(target: Target, bytes: &[u8]) -> Result<Option<(Vec<u32>, String)>, String> {
+pub(super) fn compile(target: Target, bytes: &[u8]) -> Result<Option<(Vec<u32>, String)>, ToolError> {
     let text = String::from_utf8_lossy(bytes);
     let (Some(tool), Some(text)) = (compiler_of(target), roundtrip::for_glslang(target, &text)) else {
         return Ok(None);
@@ -81,13 +114,18 @@ pub(super) fn compile(target: Target, bytes: &[u8]) -> Result<Option<(Vec<u32>, 
     if tool.read(&file, &["-o", &to])?.is_none() {
         return Ok(None);
     }
-    let bytes = std::fs::read(converted.path()).map_err(|error| format!("{}: {error}", tool.name))?;
-    let words = spirv::of_bytes(&bytes).ok_or_else(|| format!("{} wrote half a word", tool.name))?;
+    let bytes = std::fs::read(converted.path()).map_err(|error| tool.not_run(error))?;
+    let words = spirv::of_bytes(&bytes).ok_or(ToolError::PartialWord(tool.name))?;
     Ok(Some((words, tool.name_and_version())))
 }
 
 impl Tool {
-    fn file(&self, target: Target, bytes: &[u8]) -> Result<NamedTempFile, String> {
+    fn not_run(&self, error: io::Error) -> ToolError {
+        let tool = self.name;
+        ToolError::NotRun { tool, error }
+    }
+
+    fn file(&self, target: Target, bytes: &[u8]) -> Result<NamedTempFile, ToolError> {
         let suffix = format!(".{}", target.extension());
         let written = tempfile::Builder::new()
             .suffix(&suffix)
@@ -97,11 +135,12 @@ impl Tool {
                 file.flush()?;
                 Ok(file)
             });
-        written.map_err(|error| format!("{} has no file to read: {error}", self.name))
+        let tool = self.name;
+        written.map_err(|error| ToolError::Unwritable { tool, error })
     }
 
     /// Runs the tool on a file; none if it is not installed.
-    fn read(&self, file: &NamedTempFile, more: &[&str]) -> Result<Option<()>, String> {
+    fn read(&self, file: &NamedTempFile, more: &[&str]) -> Result<Option<()>, ToolError> {
         let output = run(Command::new(self.name)
             .args(self.arguments)
             .args(more)
@@ -110,7 +149,7 @@ impl Tool {
             Ok(output) => output,
             // It is not installed.
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-            Err(error) => return Err(format!("{}: {error}", self.name)),
+            Err(error) => return Err(self.not_run(error)),
         };
         if output.status.success() {
             return Ok(Some(()));
@@ -123,7 +162,10 @@ impl Tool {
         let first = first
             .or_else(|| messages.lines().next())
             .unwrap_or("it says nothing");
-        Err(format!("{} refuses it: {}", self.name, first.trim()))
+        Err(ToolError::Refused {
+            tool: self.name,
+            message: first.trim().to_owned(),
+        })
     }
 
     /// Its name, with its version if it reports one.
