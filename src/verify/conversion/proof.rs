@@ -310,9 +310,12 @@ pub(super) fn read_shadertoy(text: &str, timeout: Duration) -> Result<Checked, U
         deadline: Deadline::after(timeout),
         ..glsl::Options::default()
     };
-    glsl::check(&files, file, &options).map_err(|errors| {
-        let first = errors.first().map(|error| short(error, &files));
-        Unproved::FrontEnd(first.unwrap_or_default())
+    glsl::check(&files, file, &options).map_err(|errors| match options.deadline.check() {
+        Err(overdue) => Unproved::Overdue(overdue),
+        Ok(()) => {
+            let first = errors.first().map(|error| short(error, &files));
+            Unproved::FrontEnd(first.unwrap_or_default())
+        }
     })
 }
 
@@ -324,14 +327,15 @@ fn strict_images(
     timeout: Duration,
 ) -> Result<Vec<Image>, Failure> {
     let lowered = FloatMode::Strict.lower_within(checked, &Deadline::after(timeout))?;
-    let image = |frame: &Frame| {
+    let image = |frame: &Frame| -> Result<Image, Failure> {
         let drawn = worker.draw_unwatched(lowered.clone(), frame.clone(), FloatMode::Strict)?;
         Ok(drawn.image())
     };
     frames.iter().map(image).collect()
 }
 
-fn evaluate(
+/// Evaluates the shader in every frame.
+pub(super) fn evaluate(
     checked: &Checked,
     frames: &[Frame],
     timeout: Duration,
@@ -342,7 +346,7 @@ fn evaluate(
             Refusal::TooSlow(overdue) => Failure::Overdue(overdue),
             refusal => Failure::Cpu(eval::Failure::from(refusal)),
         })?;
-    let single = |frame: &Frame| {
+    let single = |frame: &Frame| -> Result<Single, Failure> {
         let case = Case {
             checked,
             lints: &Lints::default(),

@@ -172,10 +172,12 @@ impl Unproved {
     pub fn is_of_shader(&self) -> bool {
         match self {
             Self::NoDriver(_) | Self::Overdue(_) | Self::FullyUndefined { .. } => true,
-            Self::Run(Failure::Gpu(failure)) => {
-                matches!(failure, gpu::Failure::Timeout { .. } | gpu::Failure::Device(_))
-            }
-            Self::Run(_) => true,
+            Self::Run(failure) => matches!(
+                failure,
+                Failure::Cpu(_)
+                    | Failure::LoopTruncated(_)
+                    | Failure::Gpu(gpu::Failure::Timeout { .. } | gpu::Failure::Device(_))
+            ),
             _ => false,
         }
     }

@@ -1,5 +1,6 @@
 //! Proofs on the evaluator, without a driver.
 
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use toyproof_diagnostic::{Deadline, File, Files};
@@ -9,7 +10,9 @@ use toyproof_translate::lower;
 use toyproof_translate::naga_ir::ValidModule;
 use toyproof_translate::wgsl::{Style, wgsl};
 
-use super::{Proved, Prover, Runner, Source, Unproved, Written};
+use super::proof::evaluate;
+use super::{Proved, Prover, Runner, Source, Unproved, Written, frames};
+use crate::Failure;
 
 const TIME_LIMIT: Duration = Duration::from_secs(60);
 
@@ -79,13 +82,13 @@ fn a_changed_operator_is_found() {
         ("p - wave.at", "p + wave.at"),
     ] {
         let unproved = prove(WAVES, TIME_LIMIT, |source| edited(source, Style::Plain, from, to));
-        match unproved {
+        match &unproved {
             Err(
                 unproved @ Unproved::Differs {
                     differing, pixels, ..
                 },
             ) => {
-                assert!(0 < differing && differing <= pixels && !unproved.is_of_shader());
+                assert!(*differing > 0 && differing <= pixels && !unproved.is_of_shader());
                 assert!(
                     unproved.to_string().contains(" not to the bit the evaluator's"),
                     "{unproved}"
@@ -136,6 +139,14 @@ fn a_shader_that_is_undefined_everywhere_cannot_be_proved() {
 
 #[test]
 fn the_evaluator_compiles_within_the_time_limit() {
+    let checked = checked(&mut Files::default(), WAVES);
+    let stop = AtomicBool::new(false);
+    let failure = evaluate(&checked, &frames(&checked), Duration::from_nanos(1), &stop).err();
+    assert!(matches!(failure, Some(Failure::Overdue(_))), "{failure:?}");
+}
+
+#[test]
+fn a_file_that_takes_too_long_to_read_is_overdue() {
     let unproved = prove(WAVES, Duration::from_nanos(1), |source| {
         edited(source, Style::Plain, "", "")
     });
