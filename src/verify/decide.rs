@@ -76,7 +76,7 @@ pub(crate) const MAX_VARIANCE_RATIO: f64 = 1.2;
 
 /// The largest undetected difference of means, two and a half 8-bit levels; above it the verdict is
 /// inconclusive.
-const MAX_BIAS_BOUND: f64 = 0.01;
+pub(crate) const MAX_BIAS_BOUND: f64 = 0.01;
 
 /// The smallest number of random pixels whose means are compared: with fewer, a mistake in some of them is
 /// not detected.
