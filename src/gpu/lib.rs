@@ -25,15 +25,17 @@ mod device;
 mod draw;
 mod pipeline;
 mod protocol;
+pub mod quirks;
 mod serve;
 mod worker;
 
 use std::fmt;
 use std::time::Duration;
 
-pub use device::{Driver, INSTALL_HINT, LoopCap, is_pinned_by_user, lavapipe_manifest, manifests, pinned};
-pub use draw::{Drawn, Painter, SAFE_ROUNDS};
+pub use device::{Driver, INSTALL_HINT, is_pinned_by_user, lavapipe_manifest, manifests, pinned};
+pub use draw::{Drawn, Painter};
 pub use protocol::ShaderArtifact;
+pub use quirks::loop_cap::{LoopCap, SAFE_ITERATIONS};
 use serde::{Deserialize, Serialize};
 pub use serve::{MAX_MEMORY_BYTES, serve};
 use thiserror::Error;

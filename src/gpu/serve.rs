@@ -8,12 +8,14 @@ use std::time::Instant;
 
 use toyproof_image::Frame;
 use toyproof_translate::backend::{Target, emit, spirv};
-use toyproof_translate::naga_ir::{Probe, Shape, ValidModule};
+use toyproof_translate::naga_ir::{Shape, ValidModule};
 use toyproof_translate::{FloatMode, Lowered};
 
 use super::device::{self, Device};
 use super::draw::{PreparedFrame, Program};
 use super::protocol::{DrawJob, ForeignSpirv, Job, Output, Reply, ShaderArtifact, receive, send};
+use super::quirks::loop_probe::{self, Probe};
+use super::quirks::{LOOP_CAP, loop_cap, loop_steps};
 use super::{AdapterSelector, Failure, Phase, draw};
 
 /// Maximum size of a worker's address space in bytes.
@@ -126,7 +128,7 @@ impl<W: Write> Server<W> {
         } = draw_job;
         let (program, loops) = on_translator_thread(move || {
             let module = ValidModule::parse(&lowered).map_err(Failure::Refused)?;
-            Ok((Program::new(&module, float)?, module.has_loops()))
+            Ok((Program::new(&module, float)?, loop_probe::has_loops(&module)))
         })?;
         let translate = start.elapsed();
         self.open(&selector)?;
@@ -141,7 +143,7 @@ impl<W: Write> Server<W> {
         Ok(Output::Drawn(Box::new(draw::Drawn {
             bands: Vec::new(),
             device: device.name(),
-            may_truncate_loops: loops && device.may_terminate_loops(),
+            may_truncate_loops: loops && device.has(&LOOP_CAP),
             loop_truncated: Some(0),
             translate,
             compile,
@@ -192,7 +194,7 @@ impl<W: Write> Server<W> {
             let module = match artifact {
                 ShaderArtifact::Wgsl(hosted) => {
                     let module = ValidModule::of_wgsl(&hosted.text).map_err(Failure::Reread)?;
-                    module.with_steps_last().map_err(Failure::Naga)?
+                    loop_steps::with_steps_last(&module).map_err(Failure::Naga)?
                 }
                 ShaderArtifact::Lowered(lowered) => ValidModule::parse(&lowered).map_err(Failure::Refused)?,
                 ShaderArtifact::Words(words, channels) => {
@@ -236,23 +238,23 @@ impl<W: Write> Server<W> {
             return Ok(Output::LoopTruncated(0));
         };
         // After an endless loop any value is possible, including a small number of iterations.
-        if !module.has_endless_loop() {
+        if !loop_probe::has_infinite_loop(&module) {
             let (mut reached, mut may_reach) = (0, false);
             device.render(&device.prepare(&iterations, &frame)?, |band| {
-                reached += draw::count_reached(&band, cap);
-                may_reach |= draw::may_reach(&band, cap);
+                reached += loop_cap::count_reached(&band, cap);
+                may_reach |= loop_cap::may_reach(&band, cap);
                 Ok(())
             })?;
             if reached > 0 || !may_reach {
                 return Ok(Output::LoopTruncated(reached));
             }
         }
-        let discards = module.discards();
+        let discards = loop_probe::discards(&module);
         let open = on_translator_thread(move || probe_program(&module, Probe::OpenLoops, float))?;
         let device = self.device()?;
         let mut loop_truncated = 0;
         device.render(&device.prepare(&open, &frame)?, |band| {
-            loop_truncated += draw::count_truncated(&band, discards);
+            loop_truncated += loop_cap::count_truncated(&band, discards);
             Ok(())
         })?;
         Ok(Output::LoopTruncated(loop_truncated))
@@ -289,7 +291,7 @@ fn send_reply(output: impl Write, reply: &Reply) -> Result<(), Failure> {
 }
 
 fn probe_program(module: &ValidModule, probe: Probe, float: FloatMode) -> Result<Program, Failure> {
-    Program::new(&module.probed(probe).map_err(Failure::Naga)?, float)
+    Program::new(&loop_probe::probed(module, probe).map_err(Failure::Naga)?, float)
 }
 
 /// Runs naga on a thread with a large stack. Panics become failures.

@@ -14,7 +14,7 @@ use toyproof_translate::backend::Target;
 use toyproof_translate::{FloatMode, Lowered};
 
 use super::protocol::{DrawJob, ForeignSpirv, Job, Output, Reply, ShaderArtifact, receive, send};
-use super::{AdapterSelector, Drawn, Driver, Failure, Phase, device};
+use super::{AdapterSelector, Drawn, Driver, Failure, Phase, device, quirks};
 
 /// A worker process, started on first use and restarted after each failure.
 #[derive(Debug)]
@@ -187,7 +187,7 @@ impl Worker {
     /// Like [`Self::draw`], but passes the bands of [`Frame::bands`] to `on_band`, one after the other. The
     /// time that it takes does not count. The check of loops runs only if `watch` returns true; it receives
     /// the result and the time that rendering took. Callers may know that no pixel runs more iterations than
-    /// [`SAFE_ROUNDS`](super::SAFE_ROUNDS).
+    /// [`SAFE_ITERATIONS`](super::SAFE_ITERATIONS).
     ///
     /// # Errors
     /// Why there is no image: [`Failure::Invalid`] also for a shader that nests deeper than drivers
@@ -373,9 +373,7 @@ impl Worker {
         if self.is_unoptimized && std::env::var_os(COMPILER_FLAGS).is_none() {
             command.env(COMPILER_FLAGS, "nopt");
         }
-        if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
-            command.env("XDG_RUNTIME_DIR", std::env::temp_dir());
-        }
+        quirks::set_environment(&mut command);
         detach(&mut command);
         let mut child = command
             .stdin(Stdio::piped())

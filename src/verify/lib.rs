@@ -62,7 +62,7 @@ use thiserror::Error;
 use toyproof_diagnostic::{Deadline, Diagnostic, Overdue, grouped, plural};
 use toyproof_eval::{self as eval, Program};
 use toyproof_glsl::{self as glsl, Checked};
-use toyproof_gpu::{self as gpu, Drawn, SAFE_ROUNDS, Worker};
+use toyproof_gpu::{self as gpu, Drawn, SAFE_ITERATIONS, Worker};
 use toyproof_image::{Frame, Image};
 use toyproof_lint::Lints;
 use toyproof_translate::FloatMode;
@@ -273,8 +273,8 @@ fn draw(
     // waited for longer than the driver would need to render the image again.
     let are_short = |render_time| {
         let mut counts = iter::from_fn(|| iteration_counts.recv_timeout(render_time).ok());
-        let last = counts.find(|counts| counts.most > SAFE_ROUNDS || counts.is_last);
-        last.is_some_and(|counts| counts.most <= SAFE_ROUNDS)
+        let last = counts.find(|counts| counts.most > SAFE_ITERATIONS || counts.is_last);
+        last.is_some_and(|counts| counts.most <= SAFE_ITERATIONS)
     };
     let send_band = |band| {
         // If the receiver is gone, the comparison has failed and reports it.

@@ -61,7 +61,7 @@ impl ValidModule {
             renumber(&mut entry.function, &handles);
             replace(&mut entry.function, sites, &calls);
         }
-        Self::validate(module).map_err(|error| crate::naga_ir::chain(error.as_inner()))
+        Self::new(module)
     }
 }
 
