@@ -79,7 +79,7 @@ pub(super) struct Program {
 impl Program {
     /// Emits SPIR-V for a module, decorated for strict arithmetic if `float` is strict.
     pub(super) fn new(module: &ValidModule, float: FloatMode) -> Result<Self, Failure> {
-        let words = spirv::words(module).map_err(Failure::Naga)?;
+        let words = spirv::words(module).map_err(Failure::naga)?;
         Ok(Self {
             words: apply_float_mode(words, float),
             channels: module.channels(),
@@ -357,7 +357,7 @@ impl Painter {
         float: FloatMode,
         selector: &AdapterSelector,
     ) -> Result<Self, Failure> {
-        let module = ValidModule::parse(lowered).map_err(Failure::Refused)?;
+        let module = ValidModule::parse(lowered).map_err(Failure::refused)?;
         let device = Device::open(selector)?;
         let prepared = device.prepare(&Program::new(&module, float)?, frame)?;
         Ok(Self { device, prepared })

@@ -108,10 +108,10 @@ impl<W: Write> Server<W> {
     fn translate(&mut self, lowered: Lowered, target: Target, float: FloatMode) -> Result<Output, Failure> {
         self.phase(Phase::Translating)?;
         on_translator_thread(move || {
-            let module = ValidModule::parse(&lowered).map_err(Failure::Refused)?;
+            let module = ValidModule::parse(&lowered).map_err(Failure::refused)?;
             match target {
                 Target::Spirv => Ok(Program::new(&module, float)?.bytes()),
-                _ => emit(&module, target).map_err(Failure::Naga),
+                _ => emit(&module, target).map_err(Failure::naga),
             }
         })
         .map(Output::Translated)
@@ -127,7 +127,7 @@ impl<W: Write> Server<W> {
             selector,
         } = draw_job;
         let (program, loops) = on_translator_thread(move || {
-            let module = ValidModule::parse(&lowered).map_err(Failure::Refused)?;
+            let module = ValidModule::parse(&lowered).map_err(Failure::refused)?;
             Ok((Program::new(&module, float)?, loop_probe::has_loops(&module)))
         })?;
         let translate = start.elapsed();
@@ -178,7 +178,7 @@ impl<W: Write> Server<W> {
 
     fn read(&mut self, text: String) -> Result<Output, Failure> {
         self.phase(Phase::Translating)?;
-        on_translator_thread(move || ValidModule::of_wgsl(&text).map_err(Failure::Reread))?;
+        on_translator_thread(move || ValidModule::of_wgsl(&text).map_err(|error| Failure::Reread(error.0)))?;
         Ok(Output::Completed)
     }
 
@@ -193,16 +193,17 @@ impl<W: Write> Server<W> {
         let program = on_translator_thread(move || {
             let module = match artifact {
                 ShaderArtifact::Wgsl(hosted) => {
-                    let module = ValidModule::of_wgsl(&hosted.text).map_err(Failure::Reread)?;
-                    loop_steps::with_steps_last(&module).map_err(Failure::Naga)?
+                    let module =
+                        ValidModule::of_wgsl(&hosted.text).map_err(|error| Failure::Reread(error.0))?;
+                    loop_steps::with_steps_last(&module).map_err(Failure::naga)?
                 }
-                ShaderArtifact::Lowered(lowered) => ValidModule::parse(&lowered).map_err(Failure::Refused)?,
+                ShaderArtifact::Lowered(lowered) => ValidModule::parse(&lowered).map_err(Failure::refused)?,
                 ShaderArtifact::Words(words, channels) => {
-                    let words = spirv::spelled(&words).map_err(Failure::Naga)?;
+                    let words = spirv::spelled(&words).map_err(Failure::naga)?;
                     return Ok(Program::from_words(words, channels, FloatMode::Strict));
                 }
             };
-            Program::new(&module.spelled().map_err(Failure::Naga)?, FloatMode::Strict)
+            Program::new(&module.spelled().map_err(Failure::naga)?, FloatMode::Strict)
         })?;
         self.open(selector)?;
         let mut images = Vec::new();
@@ -228,7 +229,7 @@ impl<W: Write> Server<W> {
             selector,
         } = draw_job;
         let (module, iterations) = on_translator_thread(move || {
-            let module = ValidModule::parse(&lowered).map_err(Failure::Refused)?;
+            let module = ValidModule::parse(&lowered).map_err(Failure::refused)?;
             let iterations = probe_program(&module, Probe::Iterations, float)?;
             Ok((module, iterations))
         })?;
@@ -291,7 +292,7 @@ fn send_reply(output: impl Write, reply: &Reply) -> Result<(), Failure> {
 }
 
 fn probe_program(module: &ValidModule, probe: Probe, float: FloatMode) -> Result<Program, Failure> {
-    Program::new(&loop_probe::probed(module, probe).map_err(Failure::Naga)?, float)
+    Program::new(&loop_probe::probed(module, probe).map_err(Failure::naga)?, float)
 }
 
 /// Runs naga on a thread with a large stack. Panics become failures.

@@ -44,9 +44,10 @@ const LOOP_COUNT_SHADER: &str = "void mainImage(out vec4 c, in vec2 p) {
 pub(crate) fn measure(device: &Device) -> Result<LoopCap, Failure> {
     let mut files = Files::default();
     let file = files.add(File::new("<loop cap>", LOOP_COUNT_SHADER));
-    let checked = glsl::check(&files, file, &glsl::Options::default()).map_err(Failure::Invalid)?;
+    let checked = glsl::check(&files, file, &glsl::Options::default())
+        .map_err(|errors| Failure::Invalid(errors.into()))?;
     let lowered = toyproof_translate::lower(&checked);
-    let module = ValidModule::parse(&lowered).map_err(Failure::Refused)?;
+    let module = ValidModule::parse(&lowered).map_err(Failure::refused)?;
     let program = Program::new(&module, FloatMode::Strict)?;
     let frame = Frame {
         size: [1, 1],

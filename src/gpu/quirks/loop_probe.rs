@@ -7,6 +7,7 @@ use naga::{
     Scalar, ScalarKind, Span, Statement, Type, TypeInner,
 };
 
+use toyproof_translate::TranslateError;
 use toyproof_translate::naga_ir::ValidModule;
 
 /// The value that a probe writes to alpha.
@@ -81,7 +82,7 @@ pub(crate) fn discards(module: &ValidModule) -> bool {
 ///
 /// # Errors
 /// naga's message, if it refuses the result.
-pub(crate) fn probed(module: &ValidModule, probe: Probe) -> Result<ValidModule, String> {
+pub(crate) fn probed(module: &ValidModule, probe: Probe) -> Result<ValidModule, TranslateError> {
     let mut module = module.module().clone();
     let counter = Counter::declare(&mut module, probe);
     for (_, function) in module.functions.iter_mut() {

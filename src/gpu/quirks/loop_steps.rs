@@ -2,6 +2,7 @@
 //! `toyproof_translate` does the same for GLSL.
 
 use naga::{Block, Statement};
+use toyproof_translate::TranslateError;
 use toyproof_translate::naga_ir::ValidModule;
 
 /// Returns the same module with the steps of its loops at the end of their bodies.
@@ -11,7 +12,7 @@ use toyproof_translate::naga_ir::ValidModule;
 ///
 /// # Errors
 /// naga's message, if it refuses the result.
-pub(crate) fn with_steps_last(module: &ValidModule) -> Result<ValidModule, String> {
+pub(crate) fn with_steps_last(module: &ValidModule) -> Result<ValidModule, TranslateError> {
     let mut module = module.module().clone();
     for (_, function) in module.functions.iter_mut() {
         move_steps(&mut function.body);

@@ -6,9 +6,9 @@ use naga::front::glsl::{Frontend, Options};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{Module, ShaderStage};
 use serde::{Deserialize, Serialize};
-use toyproof_diagnostic::Diagnostic;
+use toyproof_diagnostic::{Diagnostic, Diagnostics};
 
-use crate::Lowered;
+use crate::{Lowered, TranslateError};
 
 /// The shape of a texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -45,13 +45,12 @@ impl ValidModule {
     ///
     /// # Errors
     /// naga's message, at the author's source lines.
-    pub fn parse(lowered: &Lowered) -> Result<Self, Vec<Diagnostic>> {
+    pub fn parse(lowered: &Lowered) -> Result<Self, Diagnostics> {
         let mut module = Frontend::default()
             .parse(&Options::from(ShaderStage::Fragment), lowered.text())
             .map_err(|errors| {
+                let errors = errors.errors.iter();
                 errors
-                    .errors
-                    .iter()
                     .map(|error| naga_diagnostic("E0900", &error.kind.to_string(), error.meta, lowered))
                     .collect::<Vec<_>>()
             })?;
@@ -61,7 +60,7 @@ impl ValidModule {
                 .spans()
                 .next()
                 .map_or(naga::Span::UNDEFINED, |(span, _)| *span);
-            vec![naga_diagnostic("E0901", &chain(error.as_inner()), span, lowered)]
+            vec![naga_diagnostic("E0901", &chain(error.as_inner()), span, lowered)].into()
         })
     }
 
@@ -69,10 +68,10 @@ impl ValidModule {
     ///
     /// # Errors
     /// naga's message, with the line.
-    pub fn of_wgsl(text: &str) -> Result<Self, String> {
+    pub fn of_wgsl(text: &str) -> Result<Self, TranslateError> {
         let module = naga::front::wgsl::parse_str(text).map_err(|error| {
             let line = error.location(text).map_or(0, |location| location.line_number);
-            format!("line {line}: {error}")
+            TranslateError(format!("line {line}: {error}"))
         })?;
         Self::new(module)
     }
@@ -81,8 +80,8 @@ impl ValidModule {
     ///
     /// # Errors
     /// naga's message, if it refuses the module.
-    pub fn new(module: Module) -> Result<Self, String> {
-        Self::validate(module).map_err(|error| chain(error.as_inner()))
+    pub fn new(module: Module) -> Result<Self, TranslateError> {
+        Self::validate(module).map_err(|error| TranslateError(chain(error.as_inner())))
     }
 
     fn validate(module: Module) -> Result<Self, naga::WithSpan<naga::valid::ValidationError>> {

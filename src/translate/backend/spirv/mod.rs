@@ -10,6 +10,7 @@ use naga::ShaderStage;
 use naga::back::spv::{BindingInfo, Options, PipelineOptions, WriterFlags, write_vec};
 
 use super::{BOUNDS, ENTRY_POINT, bindings};
+use crate::TranslateError;
 use crate::naga_ir::ValidModule;
 
 /// Writes a module by naga: with names, without flipped coordinates, with clamped indices and unbounded
@@ -17,7 +18,7 @@ use crate::naga_ir::ValidModule;
 ///
 /// # Errors
 /// naga's message, if it cannot write the module.
-pub fn words(module: &ValidModule) -> Result<Vec<u32>, String> {
+pub fn words(module: &ValidModule) -> Result<Vec<u32>, TranslateError> {
     let options = Options {
         flags: WriterFlags::DEBUG | WriterFlags::LABEL_VARYINGS,
         binding_map: bindings(module)
@@ -39,7 +40,7 @@ pub fn words(module: &ValidModule) -> Result<Vec<u32>, String> {
         shader_stage: ShaderStage::Fragment,
         entry_point: ENTRY_POINT.to_owned(),
     };
-    write_vec(module.module(), module.info(), &options, Some(&pipeline)).map_err(|error| error.to_string())
+    write_vec(module.module(), module.info(), &options, Some(&pipeline)).map_err(TranslateError::new)
 }
 
 /// Encodes words as the little-endian bytes of a `.spv` file.
