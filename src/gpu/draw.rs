@@ -18,7 +18,7 @@ use super::{AdapterSelector, Failure};
 
 /// A rendered image with its statistics.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Drawn {
+pub struct DrawOutput {
     /// The image in the float target's format, in bands of rows from the bottom up, as given by
     /// [`Frame::bands`]. Empty if the bands were passed to a callback.
     #[serde(skip)]
@@ -38,7 +38,7 @@ pub struct Drawn {
     pub draw: Duration,
 }
 
-impl Drawn {
+impl DrawOutput {
     /// Returns whether the driver may have terminated a loop, so that a check is needed.
     #[must_use]
     pub fn may_truncate_loops(&self) -> bool {
@@ -341,12 +341,12 @@ impl PreparedFrame {
 /// A shader compiled on a device of this process: for measurements, where the isolation of a worker is not
 /// needed.
 #[derive(Debug)]
-pub struct Painter {
+pub struct LocalRenderer {
     device: Device,
     prepared: PreparedFrame,
 }
 
-impl Painter {
+impl LocalRenderer {
     /// Translates and compiles a shader.
     ///
     /// # Errors

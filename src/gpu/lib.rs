@@ -40,7 +40,7 @@ use std::fmt;
 use std::time::Duration;
 
 pub use device::{Driver, INSTALL_HINT, is_pinned_by_user, lavapipe_manifest, manifests, pinned};
-pub use draw::{Drawn, Painter};
+pub use draw::{DrawOutput, LocalRenderer};
 pub use protocol::ShaderArtifact;
 pub use quirks::loop_cap::{LoopCap, SAFE_ITERATIONS};
 use serde::{Deserialize, Serialize};

@@ -140,7 +140,7 @@ impl<W: Write> Server<W> {
         let start = Instant::now();
         self.render_and_send(&prepared)?;
         let device = self.device()?;
-        Ok(Output::Drawn(Box::new(draw::Drawn {
+        Ok(Output::Drawn(Box::new(draw::DrawOutput {
             bands: Vec::new(),
             device: device.name(),
             may_truncate_loops: loops && device.has(&LOOP_CAP),

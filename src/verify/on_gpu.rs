@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 
 use toyproof_diagnostic::Deadline;
 use toyproof_eval::{self as eval, Program, Refusal};
+use toyproof_gpu::{DrawOutput, SAFE_ITERATIONS};
 pub use toyproof_gpu::{Failure as GpuFailure, Worker};
-use toyproof_gpu::{Drawn, SAFE_ITERATIONS};
 use toyproof_image::Image;
 use toyproof_translate::FloatMode;
 
@@ -22,7 +22,7 @@ use crate::{Case, EVALUATOR_TIME_FACTOR, Failure, Findings, Painter, join, notes
 const MAX_QUEUED_BANDS: usize = 9;
 
 impl Painter {
-    fn of(drawn: Drawn) -> Self {
+    fn of(drawn: DrawOutput) -> Self {
         Self {
             device: drawn.device,
             translate: drawn.translate,
@@ -49,7 +49,7 @@ pub(super) fn verify(
         let (sender, bands) = mpsc::sync_channel(MAX_QUEUED_BANDS);
         let comparing = scope.spawn(move || within(case.pool, move || comparing_session.bands(Some(&bands))));
         let drawn = draw(worker, case, iteration_counts, &sender);
-        let is_usable = |drawn: &Drawn| drawn.loop_truncated.is_none_or(|pixels| pixels == 0);
+        let is_usable = |drawn: &DrawOutput| drawn.loop_truncated.is_none_or(|pixels| pixels == 0);
         stop.store(!drawn.as_ref().is_ok_and(is_usable), Ordering::Relaxed);
         drop(sender);
         (drawn, join(comparing))
@@ -108,7 +108,7 @@ fn draw(
     case: &Case,
     iteration_counts: &Receiver<IterationCount>,
     bands: &SyncSender<Image>,
-) -> Result<Drawn, Failure> {
+) -> Result<DrawOutput, Failure> {
     // A strict run has the evaluator's iteration counts, which are often known by now. Otherwise, no band is
     // waited for longer than the driver would need to render the image again.
     let are_short = |render_time| {
@@ -120,7 +120,7 @@ fn draw(
         // If the receiver is gone, the comparison has failed and reports it.
         let _ = bands.send(band);
     };
-    let watch = |drawn: &Drawn, render_time| {
+    let watch = |drawn: &DrawOutput, render_time| {
         drawn.may_truncate_loops() && (case.float == FloatMode::Fast || !are_short(render_time))
     };
     let lowered = case
