@@ -92,15 +92,15 @@ pub const LOOP_CAP: Quirk = Quirk {
 pub const OPAQUE_NUMBERS: Quirk = Quirk {
     name: "opaque-numbers",
     driver: DriverKind::Lavapipe,
-    versions: "22.3.6; others were not measured",
+    versions: "Mesa 22.3.6; others were not measured",
     symptom: "to see whether a condition is uniform, its compiler walks expressions of uniforms as trees and \
               does not come to the end of an expanded `sin(cos(iTime))`; and it takes the product or \
               quotient of a constant zero for zero even if it is NaN",
     workaround: "in strict runs, numbers of the uniform block and zeros that are multiplied or divided are \
                  combined by exclusive or with bits of `gl_FragCoord.z` that are 0",
     source: "src/gpu/quirks/mesa_barriers.rs",
-    removal: "when the supported versions of Mesa compile `tests/suite/strict.rs` and equal the evaluator in \
-              `tests/suite/generated.rs` without it",
+    removal: "when `tests/suite/evaluator.rs` and `tests/suite/generated.rs` pass without it on the supported \
+              versions of Mesa",
     scope: Scope::Affected,
 };
 
@@ -111,11 +111,11 @@ pub const QUIRKS: [Quirk; 11] = [
     Quirk {
         name: "loop-steps",
         driver: DriverKind::Lavapipe,
-        versions: "22.3.6; others were not measured",
+        versions: "Mesa 22.3.6; others were not measured",
         symptom: "the step in SPIR-V's continue construct runs once too often if nothing continues the loop \
                   and the stepped variable is initialized with a constant vector",
-        workaround: "steps move to the end of the body, in lowered GLSL and in modules from WGSL \
-                     (`src/gpu/quirks/loop_steps.rs`)",
+        workaround: "steps move to the end of the body, in lowered GLSL and, by \
+                     `src/gpu/quirks/loop_steps.rs`, in modules from WGSL",
         source: "src/translate/lower/loops.rs",
         removal: AFTER_MESA_22,
         scope: Scope::Everywhere,
@@ -123,7 +123,7 @@ pub const QUIRKS: [Quirk; 11] = [
     Quirk {
         name: "nesting",
         driver: DriverKind::Lavapipe,
-        versions: "22.3.6; others were not measured",
+        versions: "Mesa 22.3.6; others were not measured",
         symptom: "conditions nested deeper than 80, or 79 with an `else`, and loops deeper than 80 run \
                   whatever their condition is",
         workaround: "deep statements are flattened under flags; what still nests too deep is not run",
@@ -134,7 +134,7 @@ pub const QUIRKS: [Quirk; 11] = [
     Quirk {
         name: "half-of-constant",
         driver: DriverKind::Lavapipe,
-        versions: "22.3.6; others were not measured",
+        versions: "Mesa 22.3.6; others were not measured",
         symptom: "the upper half of `unpackHalf2x16` of a constant is 0",
         workaround: "strict lowering unpacks each half by itself",
         source: "src/translate/lower/polyfill.rs",
@@ -144,7 +144,7 @@ pub const QUIRKS: [Quirk; 11] = [
     Quirk {
         name: "switch-labels",
         driver: DriverKind::Lavapipe,
-        versions: "22.3.6; others were not measured",
+        versions: "Mesa 22.3.6; others were not measured",
         symptom: "the device is lost at a `switch` of 50,000 labels",
         workaround: "more than 20,000 labels are an error of the shader",
         source: "src/glsl/check/statement.rs",
@@ -154,7 +154,7 @@ pub const QUIRKS: [Quirk; 11] = [
     Quirk {
         name: "sign-of-zero",
         driver: DriverKind::Lavapipe,
-        versions: "22.3.6; Vulkan leaves the sign to all drivers without `SignedZeroInfNanPreserve`",
+        versions: "Mesa 22.3.6; Vulkan leaves the sign to all drivers without `SignedZeroInfNanPreserve`",
         symptom: "a zero that an `if` or `?:` chooses, or that is `0.0 - x`, may lose its sign",
         workaround: "the toolchain check takes both zeros for equal",
         source: "src/verify/compare/check.rs",
@@ -164,7 +164,7 @@ pub const QUIRKS: [Quirk; 11] = [
     Quirk {
         name: "runtime-directory",
         driver: DriverKind::Lavapipe,
-        versions: "22.3.6; others were not measured",
+        versions: "Mesa 22.3.6; others were not measured",
         symptom: "a message on standard error where `XDG_RUNTIME_DIR` is not set",
         workaround: "the worker's process has it set to the folder for temporary files",
         source: "src/gpu/quirks/mod.rs",
@@ -174,7 +174,7 @@ pub const QUIRKS: [Quirk; 11] = [
     Quirk {
         name: "coarse-derivatives",
         driver: DriverKind::SwiftShader,
-        versions: "Chromium 156's; SPIR-V leaves the precision to all drivers",
+        versions: "the one that Chromium ships; SPIR-V leaves the precision to all drivers",
         symptom: "`dFdx`, `dFdy` and `fwidth` are those of the quad's first row and column",
         workaround: "strict words ask for fine derivatives",
         source: "src/translate/backend/spirv/mod.rs",
@@ -184,7 +184,7 @@ pub const QUIRKS: [Quirk; 11] = [
     Quirk {
         name: "decorated-constants",
         driver: DriverKind::SwiftShader,
-        versions: "Chromium 156's SPIRV-Tools",
+        versions: "the SPIRV-Tools that Chromium ships",
         symptom: "its propagation of constants takes `sqrt`, `min` and `max` of constants for unknown if \
                   they are decorated, and the other branch's constant wins",
         workaround: "these functions, which are exact or correctly rounded, carry no `NoContraction`",
@@ -195,7 +195,7 @@ pub const QUIRKS: [Quirk; 11] = [
     Quirk {
         name: "inexact-functions",
         driver: DriverKind::SwiftShader,
-        versions: "Chromium 156's",
+        versions: "the one that Chromium ships",
         symptom: "`fract` stays below 1, `step` of NaN is 0, `float(uint)` is rounded twice above 2³¹, and \
                   `unpackUnorm2x16` multiplies by 1/65535",
         workaround: "strict lowering expands them",
