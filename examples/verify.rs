@@ -6,7 +6,7 @@
 use std::error::Error;
 use std::time::Duration;
 
-use toyproof::diagnostic::{Deadline, File, Files, short};
+use toyproof::diagnostic::{Deadline, File, Files};
 use toyproof::glsl::{Options, check};
 use toyproof::image::Frame;
 use toyproof::lint::lint;
@@ -22,9 +22,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut files = Files::default();
     let shader = files.add(File::new(&shader, std::fs::read_to_string(&shader)?));
     let scene = files.add(File::new(&scene, std::fs::read_to_string(&scene)?));
-    let checked = check(&files, shader, &Options::default()).map_err(|errors| short(&errors[0], &files))?;
+    let checked = check(&files, shader, &Options::default())?;
     let lints = lint(&files, &checked, &Deadline::default());
-    let scene = scene::parse(&files, scene).map_err(|errors| short(&errors[0], &files))?;
+    let scene = scene::parse(&files, scene)?;
 
     let frame = Frame {
         size: scene.film.size,

@@ -155,7 +155,7 @@ fn shader_for_scene(path: &Path, scene: Option<&Scene>, args: &Args, deadline: &
     Some(Shader {
         name: "<exported>".to_owned(),
         checked: toyproof_glsl::check(&files, file, &args.language.options(deadline.clone()))
-            .map_err(Unusable::Invalid),
+            .map_err(|errors| Unusable::Invalid(errors.into())),
         files,
         lints: Lints::default(),
     })

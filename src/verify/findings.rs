@@ -5,7 +5,6 @@ use std::time::{Duration, Instant};
 
 use toyproof_diagnostic::{Diagnostic, Span};
 use toyproof_eval::{self as eval, Program};
-use toyproof_gpu::Drawn;
 use toyproof_image::{Image, Rgb8Image};
 
 use crate::compare::{self, Answer, Comparison, DiffLevel, PixelStatus};
@@ -59,7 +58,7 @@ pub struct Findings {
     pub trace: Option<Duration>,
 }
 
-/// The GPU that rendered an image, and its times: [`Drawn`] without the image.
+/// The GPU that rendered an image, and its times.
 #[derive(Debug, Clone)]
 pub struct Painter {
     /// Adapter and driver.
@@ -70,17 +69,6 @@ pub struct Painter {
     pub compile: Duration,
     /// Time to render and read back.
     pub draw: Duration,
-}
-
-impl Painter {
-    pub(super) fn of(drawn: Drawn) -> Self {
-        Self {
-            device: drawn.device,
-            translate: drawn.translate,
-            compile: drawn.compile,
-            draw: drawn.draw,
-        }
-    }
 }
 
 /// The result of a check, and its difference image.

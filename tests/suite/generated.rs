@@ -17,7 +17,7 @@ use proptest::test_runner::{Config, RngAlgorithm, TestError, TestRng, TestRunner
 use toyproof::diagnostic::{File, Files};
 use toyproof::eval::{Program, Settings};
 use toyproof::glsl::{Checked, Options, check};
-use toyproof::gpu::{Drawn, Failure, Worker};
+use toyproof::gpu::{DrawOutput, Failure, Worker};
 use toyproof::image::{Frame, Image};
 use toyproof::translate::{FloatMode, lower, lower_strict};
 
@@ -76,7 +76,7 @@ impl Renderers<'_> {
         };
         let ours = self.again_after_a_crash(|worker| {
             let drawn = worker.draw_unwatched(lowered.clone(), frame(), FloatMode::Strict);
-            drawn.map(Drawn::image)
+            drawn.map(DrawOutput::image)
         });
         match ours {
             Ok(image) => images.push(("ours", image)),

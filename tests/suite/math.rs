@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use toyproof::diagnostic::{File, Files};
 use toyproof::glsl::{Options, check};
-use toyproof::gpu::{Drawn, Worker};
+use toyproof::gpu::{DrawOutput, Worker};
 use toyproof::image::Frame;
 use toyproof::math::{self as e, Matrix, native};
 use toyproof::translate::{FloatMode, lower_strict};
@@ -90,7 +90,7 @@ fn shader(call: &str, first: u32) -> String {
     text
 }
 
-fn draw(worker: &mut Worker, text: &str, size: u32) -> Drawn {
+fn draw(worker: &mut Worker, text: &str, size: u32) -> DrawOutput {
     let mut files = Files::default();
     let file = files.add(File::new("s", text));
     let frame = Frame {

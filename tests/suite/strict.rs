@@ -2,7 +2,7 @@
 
 use toyproof::diagnostic::{File, Files};
 use toyproof::glsl::{Options, check};
-use toyproof::gpu::{Drawn, Worker};
+use toyproof::gpu::{DrawOutput, Worker};
 use toyproof::image::Frame;
 use toyproof::translate::{FloatMode, lower};
 
@@ -22,7 +22,7 @@ fn as_written(x: f32, y: f32) -> [f32; 3] {
     ]
 }
 
-fn draw(worker: &mut Worker, float: FloatMode) -> Drawn {
+fn draw(worker: &mut Worker, float: FloatMode) -> DrawOutput {
     let mut files = Files::default();
     let file = files.add(File::new("s", SHADER));
     let frame = Frame {
@@ -33,7 +33,7 @@ fn draw(worker: &mut Worker, float: FloatMode) -> Drawn {
     worker.draw(lower(&checked), frame, float).unwrap()
 }
 
-fn differing_pixels(drawn: &Drawn) -> usize {
+fn differing_pixels(drawn: &DrawOutput) -> usize {
     let rendered_image = drawn.clone().image();
     let width = rendered_image.size()[0] as usize;
     let differs = |(index, pixel): (usize, &[f32; 4])| {

@@ -214,7 +214,7 @@ fn first_message(diagnostics: &[Diagnostic]) -> &str {
 fn check_subject(subject: &Subject) -> Result<Checked, Failure> {
     let mut files = Files::default();
     let file = files.add(File::new("<stress>", subject.text.as_str()));
-    glsl::check(&files, file, &subject.options).map_err(Failure::Invalid)
+    glsl::check(&files, file, &subject.options).map_err(|errors| Failure::Invalid(errors.into()))
 }
 
 /// A frame whose channels hold the cases.

@@ -7,19 +7,26 @@ mod intersection;
 mod shading;
 mod structure;
 
+use thiserror::Error;
+
 use self::image::{background_function, camera_function, figure_functions, random_functions};
 use self::intersection::quadric_functions;
 use self::shading::{DISNEY_STRUCTURE, GLASS, Kind, REFLECTIVE};
 use self::structure::motion_functions;
 use crate::{Integrator, Object, Point, Quadric, Requirements, Sampler, Scatter, Scattered, Scene, Shape};
 
+/// A feature of a scene that has no shader yet, named as in the scene file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[error("{0} cannot be exported yet")]
+pub struct Unsupported(pub &'static str);
+
 /// Returns a ShaderToy shader that renders the scene.
 ///
 /// # Errors
-/// The feature of the scene that has no shader yet, named as in the scene file.
-pub fn shader(scene: &Scene) -> Result<String, String> {
+/// If the scene has a feature that no shader renders yet.
+pub fn shader(scene: &Scene) -> Result<String, Unsupported> {
     if matches!(scene.film.sampler, Sampler::Stratified | Sampler::Sobol) {
-        return Err("the samplers \"stratified\" and \"sobol\"".to_owned());
+        return Err(Unsupported("the samplers \"stratified\" and \"sobol\""));
     }
     Ok(Parts::of(scene).text(scene))
 }

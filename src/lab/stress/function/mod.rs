@@ -16,7 +16,7 @@ pub use mistake::Mistake;
 pub use replace::replacements;
 pub use role::Role;
 pub(super) use signature::clear_misses;
-pub use signature::{Answers, Map, Signature};
+pub use signature::{Answers, Map, Signature, Unrecognized};
 use toyproof_gpu::Worker;
 
 use super::axis::{Case, Kind, RaySphere, Step, axes};

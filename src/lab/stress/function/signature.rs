@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use thiserror::Error;
 use toyproof_glsl::Checked;
 use toyproof_glsl::tree::{Direction, Function, Tree, Type, VariableKind};
 
@@ -29,13 +30,18 @@ pub struct Signature {
     pub(super) outputs: Vec<(String, Role, Type)>,
 }
 
+/// Why no function is recognized, in a sentence.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("{0}")]
+pub struct Unrecognized(pub String);
+
 impl Signature {
     /// Recognizes the function of that name.
     ///
     /// # Errors
     ///
-    /// A sentence that states what is not recognized.
-    pub fn recognize(checked: &Checked, name: &str, map: &Map) -> Result<Self, String> {
+    /// States what is not recognized.
+    pub fn recognize(checked: &Checked, name: &str, map: &Map) -> Result<Self, Unrecognized> {
         let tree = &checked.tree;
         let mut why = None;
         for (_, function) in tree.functions.iter() {
@@ -46,11 +52,11 @@ impl Signature {
                 }
             }
         }
-        Err(why.unwrap_or_else(|| {
+        Err(Unrecognized(why.unwrap_or_else(|| {
             let names = tree.functions.iter().map(|(_, function)| function.name.as_str());
             let names: Vec<_> = names.filter(|name| *name != "mainImage").collect();
             format!("there is no function {name}; there are {}", names.join(", "))
-        }))
+        })))
     }
 
     /// All functions that are recognized with this map.
@@ -67,8 +73,8 @@ impl Signature {
     ///
     /// # Errors
     ///
-    /// A sentence that states that there is none, or lists several.
-    pub fn only(checked: &Checked, map: &Map) -> Result<Self, String> {
+    /// States that there is none, or lists several.
+    pub fn only(checked: &Checked, map: &Map) -> Result<Self, Unrecognized> {
         let mut all = Self::all(checked, map);
         // If only the map prevents the recognition of the single candidate, report why.
         if all.is_empty()
@@ -79,14 +85,15 @@ impl Signature {
         }
         match (all.pop(), all.is_empty()) {
             (Some(one), true) => Ok(one),
-            (None, _) => Err(
+            (None, _) => Err(Unrecognized(
                 "no function is seen to take a ray and a sphere and to give t; name it with --function, and what it takes with --map"
                     .to_owned(),
-            ),
+            )),
             (Some(last), false) => {
                 let names = all.iter().chain([&last]).map(|one| one.name.as_str());
                 let names: Vec<_> = names.collect();
-                Err(format!("say with --function which one: {}", names.join(", ")))
+                let which = names.join(", ");
+                Err(Unrecognized(format!("say with --function which one: {which}")))
             }
         }
     }
