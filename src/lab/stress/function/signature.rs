@@ -12,7 +12,7 @@ use crate::stress::case_sampler::Random;
 use crate::stress::tally::Outcome;
 
 /// Roles that the user assigns, by path (`ray.origin`, `s`, `return`).
-pub type Map = BTreeMap<String, Role>;
+pub type RoleMap = BTreeMap<String, Role>;
 
 /// A function, with the roles of its inputs and outputs.
 #[derive(Debug, Clone)]
@@ -35,7 +35,7 @@ impl Signature {
     /// # Errors
     ///
     /// A sentence that states what is not recognized.
-    pub fn recognize(checked: &Checked, name: &str, map: &Map) -> Result<Self, String> {
+    pub fn recognize(checked: &Checked, name: &str, map: &RoleMap) -> Result<Self, String> {
         let tree = &checked.tree;
         let mut why = None;
         for (_, function) in tree.functions.iter() {
@@ -55,7 +55,7 @@ impl Signature {
 
     /// All functions that are recognized with this map.
     #[must_use]
-    pub fn all(checked: &Checked, map: &Map) -> Vec<Self> {
+    pub fn all(checked: &Checked, map: &RoleMap) -> Vec<Self> {
         let functions = checked.tree.functions.iter();
         let functions = functions.filter(|(_, function)| function.body.is_some());
         functions
@@ -68,12 +68,12 @@ impl Signature {
     /// # Errors
     ///
     /// A sentence that states that there is none, or lists several.
-    pub fn only(checked: &Checked, map: &Map) -> Result<Self, String> {
+    pub fn only(checked: &Checked, map: &RoleMap) -> Result<Self, String> {
         let mut all = Self::all(checked, map);
         // If only the map prevents the recognition of the single candidate, report why.
         if all.is_empty()
             && !map.is_empty()
-            && let Ok(one) = Self::only(checked, &Map::new())
+            && let Ok(one) = Self::only(checked, &RoleMap::new())
         {
             return Self::recognize(checked, &one.name, map);
         }
@@ -91,7 +91,7 @@ impl Signature {
         }
     }
 
-    fn of(tree: &Tree, function: &Function, map: &Map) -> Result<Self, String> {
+    fn of(tree: &Tree, function: &Function, map: &RoleMap) -> Result<Self, String> {
         let mut input_leaves = Vec::new();
         let mut in_only_leaves = Vec::new();
         let mut output_leaves = Vec::new();
@@ -261,14 +261,14 @@ pub(in crate::stress) fn clear_misses() -> Vec<RaySphere> {
 
 /// How to interpret the color of a function's call: t, flag and second t.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Answers {
+pub struct MissConvention {
     two: bool,
     flag: bool,
     /// Results for clear misses: colors that occur more than once.
     misses: Vec<[f64; 3]>,
 }
 
-impl Answers {
+impl MissConvention {
     /// Derives the convention of a function from its colors for [`clear_misses`].
     pub(in crate::stress) fn of(signature: &Signature, colors: &[[f64; 3]]) -> Self {
         let same = |color: &&[f64; 3]| colors.iter().filter(|other| same_bits(other, color)).count() > 1;
