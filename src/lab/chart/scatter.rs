@@ -97,7 +97,8 @@ impl Scatter {
         let mut front: Vec<_> = self.points.iter().filter(|point| point.on_front).collect();
         front.sort_by(|a, b| a.x.total_cmp(&b.x));
         let names = front.iter().map(|point| &point.name).chain(&self.groups);
-        let legend_width = 60 + text_width(names.map(String::as_str), FONT_SIZE);
+        // Fonts of viewers of the SVG may be wider than the embedded one.
+        let legend_width = 60 + text_width(names.map(String::as_str), FONT_SIZE) * 9 / 8;
         let (plot, legend) = area.split_horizontally(SIZE.0 as i32 - legend_width);
         self.draw_plot(&plot, &front)?;
         self.draw_legend(&legend, &front)?;
