@@ -18,7 +18,7 @@ pub fn junit(records: &[Record]) -> String {
     report.set_time(time).add_test_suite(suite);
     // Writing to memory does not fail.
     let xml = report.to_string().unwrap_or_default();
-    // `junit-10.xsd` has no such attribute of `testsuites`, the first element; readers that validate refuse it.
+    // `junit-10.xsd` has no such attribute of `testsuites`, the first element; Jenkins refuses it.
     xml.replacen(&format!(" skipped=\"{}\"", report.skipped), "", 1)
 }
 

@@ -17,8 +17,8 @@ const FAINT: RGBColor = RGBColor(215, 215, 215);
 const PAPER: RGBColor = RGBColor(255, 255, 255);
 /// The font family: in SVG the viewer's own, in images the embedded font.
 const FONT: &str = "sans-serif";
-/// Roboto 2.138 by Google, under the Apache License 2.0; a subset (Latin, Greek, Cyrillic and symbols) without
-/// hinting: `pyftsubset Roboto-Regular.ttf --unicodes=U+0020-024F,U+0370-052F,U+2000-22FF --no-hinting
+/// Roboto 2.138 by Google, under the Apache License 2.0; a subset (Latin, Greek, Cyrillic and symbols)
+/// without hinting: `pyftsubset Roboto-Regular.ttf --unicodes=U+0020-024F,U+0370-052F,U+2000-22FF --no-hinting
 /// --drop-tables+=GSUB,GPOS,GDEF --notdef-outline`.
 static ROBOTO: &[u8] = include_bytes!("Roboto-Regular.ttf");
 

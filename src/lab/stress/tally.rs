@@ -79,8 +79,8 @@ impl Reading {
 }
 
 impl Tally {
-    /// Counts the results of one step. `digits`: the precision of the number type, in bits; `convention`: how a
-    /// function reports a miss.
+    /// Counts the results of one step. `digits`: the precision of the number type, in bits; `convention`: how
+    /// a function reports a miss.
     pub(super) fn of(
         reading: &Reading,
         digits: u32,

@@ -45,7 +45,7 @@ impl Report {
     #[must_use]
     pub fn chart(&self) -> Scatter {
         let errors = self
-            .ways
+            .results
             .iter()
             .map(|result| result.error.rmse)
             .filter(|&rmse| rmse > 0.0);
