@@ -426,7 +426,7 @@ fn growth(chart: &mut Scatter, name: &str, scenes: Vec<(f64, Scene)>) {
             y,
             name: String::new(),
             group,
-            best: false,
+            on_front: false,
         }));
     }
     let [single, double] = points.map(|points| exponent(&points));
@@ -437,11 +437,11 @@ fn growths(counts: &[usize]) {
     println!("\nHow the time grows, a picture of flat colours, milliseconds:");
     let mut chart = Scatter {
         title: "Time of a picture of flat colours".to_owned(),
-        x: "how many".to_owned(),
-        y: "milliseconds of processor time".to_owned(),
+        x_title: "how many".to_owned(),
+        y_title: "milliseconds of processor time".to_owned(),
         groups: Vec::new(),
         points: Vec::new(),
-        lines: Vec::new(),
+        reference_lines: Vec::new(),
     };
     let counted = |&count: &usize| (count as f64, spheres(count, Model::Emitter));
     growth(&mut chart, "spheres", counts.iter().map(counted).collect());

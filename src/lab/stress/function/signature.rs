@@ -13,7 +13,7 @@ use crate::stress::case_sampler::Random;
 use crate::stress::tally::Outcome;
 
 /// Roles that the user assigns, by path (`ray.origin`, `s`, `return`).
-pub type Map = BTreeMap<String, Role>;
+pub type RoleMap = BTreeMap<String, Role>;
 
 /// A function, with the roles of its inputs and outputs.
 #[derive(Debug, Clone)]
@@ -41,7 +41,7 @@ impl Signature {
     /// # Errors
     ///
     /// States what is not recognized.
-    pub fn recognize(checked: &Checked, name: &str, map: &Map) -> Result<Self, Unrecognized> {
+    pub fn recognize(checked: &Checked, name: &str, map: &RoleMap) -> Result<Self, Unrecognized> {
         let tree = &checked.tree;
         let mut why = None;
         for (_, function) in tree.functions.iter() {
@@ -61,7 +61,7 @@ impl Signature {
 
     /// All functions that are recognized with this map.
     #[must_use]
-    pub fn all(checked: &Checked, map: &Map) -> Vec<Self> {
+    pub fn all(checked: &Checked, map: &RoleMap) -> Vec<Self> {
         let functions = checked.tree.functions.iter();
         let functions = functions.filter(|(_, function)| function.body.is_some());
         functions
@@ -74,12 +74,12 @@ impl Signature {
     /// # Errors
     ///
     /// States that there is none, or lists several.
-    pub fn only(checked: &Checked, map: &Map) -> Result<Self, Unrecognized> {
+    pub fn only(checked: &Checked, map: &RoleMap) -> Result<Self, Unrecognized> {
         let mut all = Self::all(checked, map);
         // If only the map prevents the recognition of the single candidate, report why.
         if all.is_empty()
             && !map.is_empty()
-            && let Ok(one) = Self::only(checked, &Map::new())
+            && let Ok(one) = Self::only(checked, &RoleMap::new())
         {
             return Self::recognize(checked, &one.name, map);
         }
@@ -98,7 +98,7 @@ impl Signature {
         }
     }
 
-    fn of(tree: &Tree, function: &Function, map: &Map) -> Result<Self, String> {
+    fn of(tree: &Tree, function: &Function, map: &RoleMap) -> Result<Self, String> {
         let mut input_leaves = Vec::new();
         let mut in_only_leaves = Vec::new();
         let mut output_leaves = Vec::new();
@@ -268,14 +268,14 @@ pub(in crate::stress) fn clear_misses() -> Vec<RaySphere> {
 
 /// How to interpret the color of a function's call: t, flag and second t.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Answers {
+pub struct MissConvention {
     two: bool,
     flag: bool,
     /// Results for clear misses: colors that occur more than once.
     misses: Vec<[f64; 3]>,
 }
 
-impl Answers {
+impl MissConvention {
     /// Derives the convention of a function from its colors for [`clear_misses`].
     pub(in crate::stress) fn of(signature: &Signature, colors: &[[f64; 3]]) -> Self {
         let same = |color: &&[f64; 3]| colors.iter().filter(|other| same_bits(other, color)).count() > 1;
