@@ -2,6 +2,7 @@
 
 use toyproof::verify::compare::Verdict;
 
+use crate::requirements::require_worker;
 use crate::support::{Edit, Exercise, MANY_OBJECTS, SIZE, SOFT_SHADOWS, check_exercise, edited};
 
 const HASH: &str = "uint state;
@@ -130,7 +131,7 @@ static CASES: &[Case] = &[
 
 #[test]
 fn different_random_numbers_are_compared_by_the_mean() {
-    let Some(mut worker) = crate::support::worker() else {
+    let Some(mut worker) = require_worker() else {
         return;
     };
     for &(exercise, draws, edits, verdict, reason) in CASES {
