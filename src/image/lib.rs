@@ -124,8 +124,8 @@ pub enum SizeError {
     /// More than [`MAX_SIDE`] or [`MAX_PIXELS`].
     #[error(
         "a picture of {0}×{1} pixels is too large; each side may be at most {MAX_SIDE}, and the picture at \
-         most {} million pixels",
-        MAX_PIXELS / 1_000_000
+         most {million} million pixels",
+        million = MAX_PIXELS / 1_000_000
     )]
     TooLarge(u64, u64),
 }

@@ -4,7 +4,7 @@ use std::iter;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, SyncSender};
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use toyproof_diagnostic::Deadline;
 use toyproof_eval::{self as eval, Program, Refusal};

@@ -11,8 +11,10 @@ use toyproof::lab::stress::function::{self, Findings, Role, RoleMap, Signature};
 use toyproof::lab::stress::{self, Settings, formula};
 use toyproof::translate::FloatMode;
 
-use crate::program::{command, has_driver, toyproof};
-use crate::support::{EVERY_EXERCISE, Edit, QUADRICS, SPHERE, checked, edited, worker};
+use crate::program::{command, toyproof};
+use crate::requirements::{require_driver, require_worker};
+use crate::support::wait::wait_until;
+use crate::support::{EVERY_EXERCISE, Edit, QUADRICS, SPHERE, checked, edited};
 
 const FEW_CASES: Settings = Settings {
     seed: 1,
@@ -218,10 +220,14 @@ fn signatures_are_recognized_by_types_and_names_or_given() {
         .collect();
     let found = examine(&text, "f", &map).mistake.map(|mistake| mistake.name);
     assert_eq!(found, Some("direction-of-length-1"));
-    let why = Signature::recognize(&checked(&text), "g", &RoleMap::new()).unwrap_err();
+    let why = Signature::recognize(&checked(&text), "g", &RoleMap::new())
+        .unwrap_err()
+        .to_string();
     assert!(why.contains("there is no function g; there are f"), "{why}");
     let other = format!("float f(float x) {{ return x; }}\n{main}");
-    let why = Signature::recognize(&checked(&other), "f", &RoleMap::new()).unwrap_err();
+    let why = Signature::recognize(&checked(&other), "f", &RoleMap::new())
+        .unwrap_err()
+        .to_string();
     assert!(why.contains("it is not clear what is the ray's origin"), "{why}");
 }
 
@@ -254,8 +260,9 @@ fn other_shapes_are_not_mistaken_for_spheres() {
             );
         }
     }
-    let why =
-        Signature::recognize(&checked(QUADRICS.shader), "intersectQuadric", &RoleMap::new()).unwrap_err();
+    let why = Signature::recognize(&checked(QUADRICS.shader), "intersectQuadric", &RoleMap::new())
+        .unwrap_err()
+        .to_string();
     assert!(why.contains("not clear") && why.contains("--map"), "{why}");
     let body = "{ return length(o + d + c) + r; } void mainImage(out vec4 c, in vec2 p) { c = vec4(0.0); }";
     for (head, is_sphere) in [
@@ -277,7 +284,9 @@ fn name(head: &str) -> &str {
 
 #[test]
 fn a_strict_gpu_fails_where_the_cpu_does() {
-    let Some(mut worker) = worker() else { return };
+    let Some(mut worker) = require_worker() else {
+        return;
+    };
     let subjects = formula::subjects();
     let never = AtomicBool::new(false);
     let report = stress::study(&subjects, Some(&mut worker), FEW_CASES, &never, || ()).unwrap();
@@ -342,7 +351,7 @@ fn known_weaknesses_of_the_formulas_are_found() {
 #[test]
 fn the_command_writes_its_files_and_names_the_columns() {
     let folder = tempfile::tempdir().unwrap();
-    let on = if has_driver() { "auto" } else { "cpu" };
+    let on = if require_driver() { "auto" } else { "cpu" };
     let run = toyproof(
         folder.path(),
         &["stress", "-o", "out", "--cases", "20", "--on", on],
@@ -405,7 +414,17 @@ fn bad_input_is_reported_and_leaves_nothing() {
     assert!(!folder.path().join("out").exists());
 }
 
-#[cfg(unix)]
+/// Whether a process has a handler for interrupts, without which they would kill it.
+#[cfg(target_os = "linux")]
+fn handles_interrupts(pid: u32) -> bool {
+    let status = fs::read_to_string(format!("/proc/{pid}/status")).unwrap();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigCgt:"));
+    let mask = u64::from_str_radix(mask.unwrap().trim(), 16).unwrap();
+    // Signal n is bit n − 1.
+    mask & 1 << 1 != 0
+}
+
+#[cfg(target_os = "linux")]
 #[test]
 fn an_interrupt_leaves_no_partial_files() {
     use rustix::process::{Pid, Signal, kill_process};
@@ -431,7 +450,7 @@ fn an_interrupt_leaves_no_partial_files() {
             .stderr(std::process::Stdio::piped())
             .spawn()
             .unwrap();
-        std::thread::sleep(std::time::Duration::from_secs(1));
+        wait_until(|| handles_interrupts(child.id()));
         kill_process(Pid::from_child(&child), Signal::INT).unwrap();
         assert_eq!(child.wait().unwrap().code(), Some(2), "{arguments:?}");
         assert!(!Path::exists(&folder.path().join("out")), "{arguments:?}");

@@ -6,6 +6,8 @@ use toyproof::gpu::{DrawOutput, Worker};
 use toyproof::image::Frame;
 use toyproof::translate::{FloatMode, lower};
 
+use crate::requirements::require_worker;
+
 /// Sums and products that drivers tend to rearrange, contract or fold.
 const SHADER: &str = "void mainImage(out vec4 c, in vec2 p) {
     float a = p.x * 0.37, b = p.y * 1.13;
@@ -50,7 +52,7 @@ fn differing_pixels(drawn: &DrawOutput) -> usize {
 
 #[test]
 fn strict_shaders_compute_the_same_bits_as_rust() {
-    let Some(mut worker) = crate::support::worker() else {
+    let Some(mut worker) = require_worker() else {
         return;
     };
     let strict = draw(&mut worker, FloatMode::Strict);

@@ -8,7 +8,7 @@ mod tests;
 
 use serde::Deserialize;
 use toml::Spanned;
-use toyproof_diagnostic::{Diagnostic, Diagnostics, FileId, Files};
+use toyproof_diagnostic::{Diagnostics, FileId, Files};
 
 pub use self::checks::of_toml;
 use self::checks::{Checks, Triple};
