@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         checked: &checked,
         lints: &lints,
         expected: Some(&Expected::new(scene, &frame)),
-        suspects: None,
+        hypotheses: None,
         frame: &frame,
         float: FloatMode::Strict,
         timeout: Duration::from_secs(10),

@@ -254,7 +254,7 @@ fn evaluate(
             checked,
             lints: &Lints::default(),
             expected: None,
-            suspects: None,
+            hypotheses: None,
             frame,
             float: FloatMode::Strict,
             timeout,

@@ -55,7 +55,7 @@
 //!     checked: &checked,
 //!     lints: &lints,
 //!     expected: Some(&expected),
-//!     suspects: None,
+//!     hypotheses: None,
 //!     frame: &frame,
 //!     float: FloatMode::Strict,
 //!     timeout: Duration::from_secs(10),
@@ -155,7 +155,7 @@ pub struct Case<'a> {
     /// The reference, if there is a scene; its frame and its film's size must be those of `frame`.
     pub expected: Option<&'a Expected>,
     /// The mistakes that are searched for in a wrong image, for that scene and frame.
-    pub suspects: Option<&'a Hypotheses>,
+    pub hypotheses: Option<&'a Hypotheses>,
     /// The frame.
     pub frame: &'a Frame,
     /// How far the driver may rearrange arithmetic. If it may, there is no toolchain check.

@@ -108,7 +108,7 @@ fn seen(files: &Files, checked: &Checked, scene: Option<&Scene>) -> Vec<Diagnost
         checked,
         lints: &lints,
         expected: expected.as_ref(),
-        suspects: None,
+        hypotheses: None,
         frame: &frame,
         float: FloatMode::Strict,
         timeout: Duration::from_secs(60),

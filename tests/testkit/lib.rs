@@ -226,8 +226,8 @@ pub fn check_exercise_with(worker: Option<&mut Worker>, shader: &str, exercise: 
 /// # Panics
 /// Like [`check_exercise`].
 pub fn check_and_name(worker: &mut Worker, shader: &str, exercise: &Exercise) -> Findings {
-    let suspects = Hypotheses::of(&scene(exercise), &frame(exercise, exercise.size)).unwrap();
-    check_against(Some(&suspects), Some(worker), shader, exercise)
+    let hypotheses = Hypotheses::of(&scene(exercise), &frame(exercise, exercise.size)).unwrap();
+    check_against(Some(&hypotheses), Some(worker), shader, exercise)
 }
 
 /// Like [`check_and_name`], by the evaluator alone.
@@ -235,12 +235,12 @@ pub fn check_and_name(worker: &mut Worker, shader: &str, exercise: &Exercise) ->
 /// # Panics
 /// Like [`check_exercise`].
 pub fn check_and_name_on_cpu(shader: &str, exercise: &Exercise) -> Findings {
-    let suspects = Hypotheses::of(&scene(exercise), &frame(exercise, exercise.size)).unwrap();
-    check_against(Some(&suspects), None, shader, exercise)
+    let hypotheses = Hypotheses::of(&scene(exercise), &frame(exercise, exercise.size)).unwrap();
+    check_against(Some(&hypotheses), None, shader, exercise)
 }
 
 fn check_against(
-    suspects: Option<&Hypotheses>,
+    hypotheses: Option<&Hypotheses>,
     worker: Option<&mut Worker>,
     shader: &str,
     exercise: &Exercise,
@@ -251,7 +251,7 @@ fn check_against(
         checked: &checked,
         lints: &lints,
         expected: Some(&Expected::new(scene(exercise), &frame)),
-        suspects,
+        hypotheses,
         frame: &frame,
         float: FloatMode::Strict,
         timeout: Duration::from_secs(60),
