@@ -13,7 +13,7 @@ use rustix::time::{ClockId, clock_gettime};
 use toyproof::diagnostic::{File, Files};
 use toyproof::eval::{Number, Program, RandomRounding, Seed, Settings, UndefinedPolicy};
 use toyproof::glsl::{Checked, Options, check};
-use toyproof::gpu::{AdapterSelector, Painter};
+use toyproof::gpu::{AdapterSelector, LocalRenderer};
 use toyproof::image::Frame;
 use toyproof::translate::{FloatMode, lower_strict};
 
@@ -69,13 +69,13 @@ fn main() {
     for exercise in EXERCISES {
         let checked = checked(exercise);
         let lowered = lower_strict(&checked);
-        let mut painter = match Painter::new(
+        let mut renderer = match LocalRenderer::new(
             &lowered,
             &Frame::default(),
             FloatMode::Strict,
             &AdapterSelector::Lavapipe,
         ) {
-            Ok(painter) => Some(painter),
+            Ok(renderer) => Some(renderer),
             Err(failure) => {
                 eprintln!("without lavapipe: {failure}");
                 None
@@ -86,8 +86,8 @@ fn main() {
         for round in 0..=ROUNDS {
             let compile = time(|| drop(Program::new(&checked)));
             let gpu = time(|| {
-                if let Some(painter) = &mut painter {
-                    painter.render().expect("it painted before");
+                if let Some(renderer) = &mut renderer {
+                    renderer.render().expect("it painted before");
                 }
             });
             let taken = [

@@ -52,19 +52,19 @@ fn translate(bencher: Bencher, exercise: &str) {
 #[divan::bench(args = EXERCISES, sample_count = 20)]
 fn lavapipe(bencher: Bencher, exercise: &str) {
     let lowered = lowered(exercise);
-    let mut painter = match gpu::Painter::new(
+    let mut renderer = match gpu::LocalRenderer::new(
         &lowered,
         &Frame::default(),
         FloatMode::Strict,
         &AdapterSelector::Lavapipe,
     ) {
-        Ok(painter) => painter,
+        Ok(renderer) => renderer,
         Err(failure) => {
             eprintln!("skipped: {failure}");
             return;
         }
     };
-    bencher.bench_local(|| painter.render().expect("it painted before"));
+    bencher.bench_local(|| renderer.render().expect("it painted before"));
 }
 
 /// The whole way through the worker process: translate, compile (from Mesa's cache), paint, watch loops, send

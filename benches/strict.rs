@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use toyproof::diagnostic::{File, Files};
 use toyproof::glsl::{Options, check};
-use toyproof::gpu::{AdapterSelector, Painter};
+use toyproof::gpu::{AdapterSelector, LocalRenderer};
 use toyproof::image::Frame;
 use toyproof::translate::{FloatMode, Lowered, lower, lower_strict};
 
@@ -46,19 +46,19 @@ fn measure(name: &str, text: &str) {
     ];
     let first = |(lowered, mode): &(Lowered, FloatMode)| {
         let start = Instant::now();
-        let mut painter = Painter::new(lowered, &Frame::default(), *mode, &AdapterSelector::Lavapipe)
+        let mut renderer = LocalRenderer::new(lowered, &Frame::default(), *mode, &AdapterSelector::Lavapipe)
             .expect("lavapipe is here");
-        painter.render().expect("it paints");
-        (painter, start.elapsed())
+        renderer.render().expect("it paints");
+        (renderer, start.elapsed())
     };
     // The driver itself is loaded, and warm.
     drop(first(&modes[0]));
     let [(mut strict, strict_first), (mut fast, fast_first)] = [first(&modes[0]), first(&modes[1])];
     let (mut strict_times, mut fast_times) = (Vec::new(), Vec::new());
     for _ in 0..ROUNDS {
-        for (painter, times) in [(&mut strict, &mut strict_times), (&mut fast, &mut fast_times)] {
+        for (renderer, times) in [(&mut strict, &mut strict_times), (&mut fast, &mut fast_times)] {
             let start = Instant::now();
-            painter.render().expect("it paints");
+            renderer.render().expect("it paints");
             times.push(start.elapsed());
         }
     }

@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use toyproof::diagnostic::{File, Files, short};
+use toyproof::diagnostic::{File, Files};
 use toyproof::eval::{Program, Settings};
 use toyproof::glsl::{Options, check};
 use toyproof::image::{Frame, encode, output};
@@ -14,7 +14,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let mut files = Files::default();
     let file = files.add(File::new(&shader, std::fs::read_to_string(&shader)?));
-    let checked = check(&files, file, &Options::default()).map_err(|errors| short(&errors[0], &files))?;
+    let checked = check(&files, file, &Options::default())?;
 
     let frame = Frame {
         size: [320, 180],

@@ -16,15 +16,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).ok_or("usage: parse SHADER.glsl")?;
     let mut files = Files::default();
     let file = files.add(File::new(&path, std::fs::read_to_string(&path)?));
-    let checked = match check(&files, file, &Options::default()) {
-        Ok(checked) => checked,
-        Err(errors) => {
-            for error in &errors {
-                eprint!("{}", human(error, &files, false));
-            }
-            return Err("this shader is not valid".into());
-        }
-    };
+    let checked = check(&files, file, &Options::default())?;
     for (_, function) in checked.tree.functions.iter() {
         println!("{} takes {} parameters", function.name, function.parameters.len());
     }

@@ -6,10 +6,11 @@
 use std::error::Error;
 use std::time::Duration;
 
-use toyproof::diagnostic::{Deadline, File, Files, short};
+use toyproof::diagnostic::{Deadline, File, Files};
 use toyproof::glsl::{Options, check};
 use toyproof::image::Frame;
 use toyproof::lint::lint;
+use toyproof::report::reason;
 use toyproof::scene;
 use toyproof::translate::FloatMode;
 use toyproof::verify::{Case, Expected, verify};
@@ -22,9 +23,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut files = Files::default();
     let shader = files.add(File::new(&shader, std::fs::read_to_string(&shader)?));
     let scene = files.add(File::new(&scene, std::fs::read_to_string(&scene)?));
-    let checked = check(&files, shader, &Options::default()).map_err(|errors| short(&errors[0], &files))?;
+    let checked = check(&files, shader, &Options::default())?;
     let lints = lint(&files, &checked, &Deadline::default());
-    let scene = scene::parse(&files, scene).map_err(|errors| short(&errors[0], &files))?;
+    let scene = scene::parse(&files, scene)?;
 
     let frame = Frame {
         size: scene.film.size,
@@ -34,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         checked: &checked,
         lints: &lints,
         expected: Some(&Expected::new(scene, &frame)),
-        suspects: None,
+        hypotheses: None,
         frame: &frame,
         float: FloatMode::Strict,
         timeout: Duration::from_secs(10),
@@ -42,6 +43,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     // The first argument would be a `gpu::Worker`; without one the toolchain check is left out.
     let findings = verify(None, &case)?;
-    println!("{}: {}", findings.verdict, findings.reason);
+    println!("{}: {}", findings.verdict, reason(&findings, &files));
     Ok(())
 }

@@ -32,26 +32,19 @@ const STACK: usize = 2 << 20;
 /// As the worker gives it.
 const NAGA_STACK: usize = 256 << 20;
 
-/// What the front end may take of a processor: a constant and a share of the size. Macros may make up to 2^20
-/// tokens of a line, so where there are any the constant is larger.
-fn allowance(text: &str) -> Duration {
-    let constant = if text.contains("define") { 4000 } else { 100 };
-    Duration::from_millis(constant) + Duration::from_micros(20) * text.len() as u32
-}
-
 /// Judges a text, and what WebGL 2 refuses once more as desktop GLSL.
 ///
 /// # Panics
-/// If the front end does, takes longer than is proportionate, or needs more than a small stack.
-pub(crate) fn judge(text: &str) -> Outcome {
-    let judged = judge_as(text, false);
+/// If the front end does, takes more than `allowed` of a processor, or needs more than a small stack.
+pub(crate) fn judge(text: &str, allowed: Duration) -> Outcome {
+    let judged = judge_as(text, false, allowed);
     match judged {
-        Outcome::Refused => judge_as(text, true),
+        Outcome::Refused => judge_as(text, true, allowed),
         _ => judged,
     }
 }
 
-fn judge_as(text: &str, lenient: bool) -> Outcome {
+fn judge_as(text: &str, lenient: bool, allowed: Duration) -> Outcome {
     let options = Options {
         lenient,
         ..Options::default()
@@ -63,7 +56,6 @@ fn judge_as(text: &str, lenient: bool) -> Outcome {
         (lowered, Duration::try_from(took).unwrap_or_default())
     })
     .unwrap_or_else(|payload| resume_unwind(payload));
-    let allowed = allowance(text);
     assert!(
         took <= allowed,
         "{took:?} for {} bytes, more than {allowed:?}",

@@ -1,19 +1,87 @@
 //! Checks, renders and converts ShaderToy shaders, and states how far each image can be trusted.
 //!
-//! Each stage is a crate of its own; this one composes them into the command line.
+//! A ShaderToy shader is a GLSL function `mainImage(out vec4 color, in vec2 position)` that is called for each
+//! pixel. If its image differs from the expected one, three things can be at fault, and one comparison cannot
+//! tell them apart. So there are three **checks**, each of which compares two images pixel by pixel:
+//!
+//! | check | expected | actual | a difference means |
+//! |---|---|---|---|
+//! | algorithm | the reference tracer, in double precision | the shader on the CPU, in double precision | the shader computes something else |
+//! | precision | the shader in double precision | the shader in float32 | float32 is not enough for this formula |
+//! | toolchain | the shader in float32 on the CPU | the shader in float32 on the GPU, to the bit | naga, our translation or the driver is wrong |
+//!
+//! In double precision two equivalent formulas agree to far below what an eye can see, whatever their style, and
+//! a bug does not. Some pixels are special:
+//!
+//! - A pixel that changes when every operation is perturbed by a unit in the last place is **ill-conditioned**:
+//!   no precision would settle it, and it is not held against the shader.
+//! - A pixel that depends on **undefined behavior** (an index out of bounds, `pow` of a negative base, a
+//!   derivative across an edge) is counted separately and left out of the checks.
+//!
+//! A **strict** run makes the bits of float32 comparable: operations carry SPIR-V's `NoContraction`, and `sin`,
+//! `exp`, `pow` and their like are expanded to operations that all drivers and CPUs round alike. A **fast** run
+//! gives the shader to the driver unchanged; it has no toolchain check.
+//!
+//! # Features
+//!
+//! Each stage is a crate of its own, which can be used alone; this one re-exports them. The front end and the
+//! lints are always there; the default is `cli`, that is, everything.
+//!
+//! | feature | adds |
+//! |---|---|
+//! | `eval` | evaluating shaders on the CPU |
+//! | `tracer` | scenes and the reference tracer |
+//! | `translate` | translation by naga to SPIR-V, WGSL, MSL, HLSL and GLSL |
+//! | `verify` | the three checks and the verdict (without `gpu`: algorithm and precision) |
+//! | `gpu` | rendering on a Vulkan driver, in a worker process |
+//! | `lab` | measurements of stability, and of accuracy against time |
+//! | `report` | reports: JSON, HTML, JUnit, SARIF, CSV, Gradescope |
+//! | `cli` | the command line |
+//!
+//! # Example
+//!
+//! ```
+//! use toyproof::diagnostic::{Deadline, File, Files};
+//! use toyproof::glsl::{Options, check};
+//! use toyproof::lint::lint;
+//!
+//! fn main() -> Result<(), Box<dyn std::error::Error>> {
+//!     let mut files = Files::default();
+//!     let text = "void mainImage(out vec4 c, in vec2 p) { float shade; c = vec4(shade); }";
+//!     let file = files.add(File::new("shade.glsl", text));
+//!     // The error of an invalid shader displays each message with its position.
+//!     let checked = check(&files, file, &Options::default())?;
+//!     let lints = lint(&files, &checked, &Deadline::default());
+//!     assert_eq!(lints.warnings[0].code, "W0003");
+//!     Ok(())
+//! }
+//! ```
+//!
+//! `examples/` has programs that parse, evaluate and verify a shader. A program that renders on a GPU must be
+//! able to start itself as the worker process: see `toyproof_gpu`.
 
+#[cfg(feature = "cli")]
 pub mod cli;
+#[cfg(feature = "report")]
 pub mod report;
 
 pub use toyproof_diagnostic as diagnostic;
+#[cfg(feature = "eval")]
 pub use toyproof_eval as eval;
 pub use toyproof_glsl as glsl;
+#[cfg(feature = "gpu")]
 pub use toyproof_gpu as gpu;
+#[cfg(any(feature = "eval", feature = "tracer", feature = "gpu"))]
 pub use toyproof_image as image;
+#[cfg(feature = "lab")]
 pub use toyproof_lab as lab;
 pub use toyproof_lint as lint;
 pub use toyproof_math as math;
+#[cfg(feature = "tracer")]
 pub use toyproof_scene as scene;
+#[cfg(feature = "tracer")]
 pub use toyproof_tracer as tracer;
+#[cfg(feature = "translate")]
 pub use toyproof_translate as translate;
+#[cfg(feature = "verify")]
 pub use toyproof_verify as verify;

@@ -21,7 +21,7 @@ use std::process::Command;
 use rustix::time::{ClockId, clock_gettime};
 use toyproof::diagnostic::{File, Files};
 use toyproof::glsl::{Options, check};
-use toyproof::gpu::{AdapterSelector, Painter};
+use toyproof::gpu::{AdapterSelector, LocalRenderer};
 use toyproof::image::Frame;
 use toyproof::lab::chart::{Point, Scatter};
 use toyproof::scene::{
@@ -68,12 +68,12 @@ fn in_turns<const N: usize>(mut turn: impl FnMut() -> [f64; N]) -> [f64; N] {
 }
 
 /// Lavapipe with the shader that paints a scene.
-fn painter(scene: &Scene) -> Option<Painter> {
+fn renderer(scene: &Scene) -> Option<LocalRenderer> {
     let text = export::shader(scene).ok()?;
     let mut files = Files::default();
     let file = files.add(File::new("exported", text));
     let checked = check(&files, file, &Options::default()).ok()?;
-    Painter::new(
+    LocalRenderer::new(
         &lower_strict(&checked),
         &Frame::default(),
         FloatMode::Strict,
@@ -169,14 +169,14 @@ fn beside_embree_and_lavapipe(program: Option<&Path>, counts: &[usize]) {
         let plain = |rays: &[(Ray, Option<usize>)]| rays.iter().map(|(ray, _)| *ray).collect::<Vec<_>>();
         let mut embree = program
             .map(|program| [&primary, &shuffled].map(|rays| Embree::new(program, &scene, &plain(rays))));
-        let mut painter = (count <= MOST_IN_A_SHADER).then(|| painter(&scene)).flatten();
+        let mut renderer = (count <= MOST_IN_A_SHADER).then(|| renderer(&scene)).flatten();
         let times = in_turns(|| {
             let theirs = embree.as_mut().map_or([f64::NAN; 3], |[primary, shuffled]| {
                 [primary.one_by_one(), primary.by_eights(), shuffled.one_by_one()]
                     .map(|seconds| 1e3 * seconds)
             });
-            let gpu = painter.as_mut().map_or(f64::NAN, |painter| {
-                time(|| painter.render().expect("it compiled"))
+            let gpu = renderer.as_mut().map_or(f64::NAN, |renderer| {
+                time(|| renderer.render().expect("it compiled"))
             });
             [
                 time(|| single.surfaces()),
@@ -426,7 +426,7 @@ fn growth(chart: &mut Scatter, name: &str, scenes: Vec<(f64, Scene)>) {
             y,
             name: String::new(),
             group,
-            best: false,
+            on_front: false,
         }));
     }
     let [single, double] = points.map(|points| exponent(&points));
@@ -437,11 +437,11 @@ fn growths(counts: &[usize]) {
     println!("\nHow the time grows, a picture of flat colours, milliseconds:");
     let mut chart = Scatter {
         title: "Time of a picture of flat colours".to_owned(),
-        x: "how many".to_owned(),
-        y: "milliseconds of processor time".to_owned(),
+        x_title: "how many".to_owned(),
+        y_title: "milliseconds of processor time".to_owned(),
         groups: Vec::new(),
         points: Vec::new(),
-        lines: Vec::new(),
+        reference_lines: Vec::new(),
     };
     let counted = |&count: &usize| (count as f64, spheres(count, Model::Emitter));
     growth(&mut chart, "spheres", counts.iter().map(counted).collect());

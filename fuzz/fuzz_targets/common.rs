@@ -4,6 +4,7 @@ use std::collections::HashSet;
 use std::panic;
 use std::path::PathBuf;
 use std::sync::{LazyLock, Mutex};
+use std::time::Duration;
 use std::{env, fs, thread};
 
 #[path = "../judge.rs"]
@@ -21,10 +22,17 @@ pub(crate) fn spare_naga() {
     }));
 }
 
+/// What the front end may take of a processor: a constant and a share of the size. Macros may make up to 2^20
+/// tokens of a line, so where there are any the constant is larger.
+fn allowance(text: &str) -> Duration {
+    let constant = if text.contains("define") { 4000 } else { 100 };
+    Duration::from_millis(constant) + Duration::from_micros(20) * text.len() as u32
+}
+
 /// Judges a text; the first of each kind that naga refuses or panics on is kept in the folder that `NAGA_FINDINGS` names.
 pub(crate) fn run(text: &str) {
     static TOLD: LazyLock<Mutex<HashSet<String>>> = LazyLock::new(Mutex::default);
-    let Outcome::Naga(words) = judge::judge(text) else {
+    let Outcome::Naga(words) = judge::judge(text, allowance(text)) else {
         return;
     };
     // Names and numbers apart, the same words tell of the same thing.

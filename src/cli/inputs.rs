@@ -264,7 +264,7 @@ pub(super) fn parse_size(text: &str) -> Result<[u32; 2], String> {
         side.parse::<u64>()
             .map_err(|_| format!("“{side}” is no number of pixels"))
     };
-    check_size(side(width)?, side(height)?)
+    check_size(side(width)?, side(height)?).map_err(|error| error.to_string())
 }
 
 pub(super) fn parse_device(text: &str) -> Result<DeviceSelector, String> {

@@ -250,11 +250,8 @@ pub(super) fn export(args: &ExportArgs, terminal: &Terminal) -> Exit {
     match scene::export::shader(&scene) {
         Ok(text) if terminal.write(&args.output, text.as_bytes()) => Exit::Success,
         Ok(_) => Exit::Error,
-        Err(fingerprint) => {
-            terminal.error(format_args!(
-                "{}: {fingerprint} cannot be exported yet",
-                path_name(&args.scene)
-            ));
+        Err(error) => {
+            terminal.error(format_args!("{}: {error}", path_name(&args.scene)));
             Exit::Error
         }
     }

@@ -8,7 +8,7 @@ use clap::ValueEnum;
 use toyproof_diagnostic::{Deadline, path_name};
 use toyproof_eval::{self as eval, Number, Program, Settings, UndefinedPolicy};
 use toyproof_glsl::{self as glsl, Checked};
-use toyproof_gpu::{Drawn, Failure, Worker};
+use toyproof_gpu::{DrawOutput, Failure, Worker};
 use toyproof_image::{self as image, Frame, Image};
 use toyproof_verify::unbound;
 
@@ -203,9 +203,9 @@ impl Runner<'_> {
         }
     }
 
-    fn draw_result(&self, drawn: Result<Drawn, Failure>, shader: &Shader) -> Result<Image, Exit> {
+    fn draw_result(&self, drawn: Result<DrawOutput, Failure>, shader: &Shader) -> Result<Image, Exit> {
         match drawn {
-            Ok(Drawn {
+            Ok(DrawOutput {
                 loop_truncated: Some(pixels @ 1..),
                 ..
             }) => {

@@ -121,7 +121,7 @@ fn read(found: &Input, files: &mut Files, options: &glsl::Options) -> Result<Che
     match files::read(found) {
         Ok(text) => {
             let file = files.add(text);
-            glsl::check(files, file, options).map_err(Unusable::Invalid)
+            glsl::check(files, file, options).map_err(|errors| Unusable::Invalid(errors.into()))
         }
         Err(error) => Err(Unusable::of(error, files)),
     }

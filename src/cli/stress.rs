@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use toyproof_diagnostic::{Deadline, path_name};
 use toyproof_gpu::Worker;
-use toyproof_lab::stress::function::{self, Findings, Map, Role, Signature};
+use toyproof_lab::stress::function::{self, Findings, Role, RoleMap, Signature};
 use toyproof_lab::stress::{self, Report, Settings, formula};
 
 use super::inputs::{DriverArgs, LanguageArgs};
@@ -89,7 +89,7 @@ impl Args {
 
 fn study(args: &Args, worker: Option<&mut Worker>, interrupted: &AtomicBool, terminal: &Terminal) -> Exit {
     let subjects = formula::subjects();
-    let bar = terminal.bar(stress::runs(&subjects, worker.is_some()), "stress");
+    let bar = terminal.bar(stress::run_count(&subjects, worker.is_some()), "stress");
     let studied = stress::study(&subjects, worker, args.settings(), interrupted, || bar.inc(1));
     bar.finish_and_clear();
     match studied {
@@ -105,7 +105,7 @@ fn study(args: &Args, worker: Option<&mut Worker>, interrupted: &AtomicBool, ter
 }
 
 fn print_report(report: &Report, terminal: &Terminal) {
-    for line in report.lines() {
+    for line in report.breakdown_lines() {
         terminal.result(&line);
     }
 }
@@ -137,7 +137,7 @@ fn examine(
             return Exit::Error;
         }
     };
-    let map: Map = args.map.iter().cloned().collect();
+    let map: RoleMap = args.map.iter().cloned().collect();
     let signature = match &args.function {
         Some(name) => Signature::recognize(checked, name, &map),
         None => Signature::only(checked, &map),
@@ -164,7 +164,7 @@ fn examine(
             print_report(&findings.report, terminal);
             print_findings(&signature, &findings, terminal);
             let kept = write_results(&findings.report, findings.json(), args, terminal);
-            kept.max(if findings.mistake.is_some_and(|mistake| !mistake.excusable) {
+            kept.max(if findings.mistake.is_some_and(|mistake| !mistake.recoverable) {
                 Exit::ShaderFault
             } else {
                 Exit::Success
@@ -180,18 +180,18 @@ fn examine(
 fn print_findings(signature: &Signature, findings: &Findings, terminal: &Terminal) {
     let name = &signature.name;
     if let Some(mistake) = &findings.mistake {
-        terminal.result(&format!("{name} {} ({})", mistake.says, mistake.name));
+        terminal.result(&format!("{name} {} ({})", mistake.description, mistake.name));
     }
     match &findings.example {
         None => terminal.result(&format!("{name} is right wherever it was asked")),
         Some(example) => {
-            terminal.result(&format!("it fails at {}, for example with", example.at));
-            for line in &example.paste {
+            terminal.result(&format!("it fails at {}, for example with", example.step));
+            for line in &example.assignments {
                 terminal.result(&format!("    {line}"));
             }
             terminal.result(&format!(
                 "where {} is right and {} came",
-                example.expected, example.came
+                example.expected, example.actual
             ));
         }
     }
@@ -221,7 +221,7 @@ fn write_results(report: &Report, json: String, args: &Args, terminal: &Terminal
         ("stress.csv".to_owned(), report.csv().into_bytes()),
         ("stress.json".to_owned(), json.into_bytes()),
     ];
-    for (name, heat_map) in report.pictures() {
+    for (name, heat_map) in report.heat_maps() {
         let name = format!("{name}.png");
         match toyproof_image::encode(&heat_map, name.as_ref()) {
             Ok(bytes) => files.push((name, bytes)),

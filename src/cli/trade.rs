@@ -8,7 +8,7 @@ use toyproof_diagnostic::{Deadline, File, Files, grouped, path_name, plural};
 use toyproof_gpu::{AdapterSelector, Worker};
 use toyproof_image as image;
 use toyproof_image::Frame;
-use toyproof_lab::trade::{self, ERRORS, Report, Subject};
+use toyproof_lab::trade::{self, ERROR_LIMITS, Report, Subject};
 use toyproof_lint::Lints;
 use toyproof_scene::{Scene, export};
 
@@ -155,7 +155,7 @@ fn shader_for_scene(path: &Path, scene: Option<&Scene>, args: &Args, deadline: &
     Some(Shader {
         name: "<exported>".to_owned(),
         checked: toyproof_glsl::check(&files, file, &args.language.options(deadline.clone()))
-            .map_err(Unusable::Invalid),
+            .map_err(|errors| Unusable::Invalid(errors.into())),
         files,
         lints: Lints::default(),
     })
@@ -207,35 +207,35 @@ fn workers(selector: &str, budget: Duration, terminal: &Terminal) -> Result<Vec<
 }
 
 fn print_report(report: &Report, args: &Args, terminal: &Terminal) -> Exit {
-    if report.ways.is_empty() {
-        terminal.error(format_args!("nothing was measured: {}", report.unmeasured()));
+    if report.results.is_empty() {
+        terminal.error(format_args!("nothing was measured: {}", report.skipped_line()));
         return Exit::Error;
     }
     if let Some(error) = args.max_error {
-        terminal.result(&report.line(error, &error.to_string()));
-        if report.cheapest(error).is_some() && !report.left_out.is_empty() {
-            terminal.note(&report.unmeasured());
+        terminal.result(&report.cheapest_line(error, &error.to_string()));
+        if report.cheapest(error).is_some() && !report.skipped.is_empty() {
+            terminal.note(&report.skipped_line());
         }
     } else {
-        let ways = report.ways.len() as u64;
+        let ways = report.results.len() as u64;
         terminal.note(&format!(
             "{} {}; the truth is {}: {}",
             grouped(ways),
             plural(ways, "way", "ways"),
-            report.truth,
-            if report.truth_error > 0.0 {
-                format!("{:.1e}", report.truth_error)
+            report.reference,
+            if report.reference_error > 0.0 {
+                format!("{:.1e}", report.reference_error)
             } else {
                 "nothing that a picture in f32 holds".to_owned()
             }
         ));
-        if !report.left_out.is_empty() {
-            terminal.note(&format!("no time for {}", report.left_out.join("; ")));
+        if !report.skipped.is_empty() {
+            terminal.note(&format!("no time for {}", report.skipped.join("; ")));
         }
-        for (error, word) in ERRORS {
-            terminal.result(&report.line(error, word));
+        for (error, word) in ERROR_LIMITS {
+            terminal.result(&report.cheapest_line(error, word));
         }
-        if let Some(line) = report.stability() {
+        if let Some(line) = report.stable_formula_cost() {
             terminal.result(&line);
         }
     }

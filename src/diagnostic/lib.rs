@@ -141,9 +141,111 @@ impl Diagnostic {
     }
 }
 
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}[{}]: {}", self.severity, self.code, self.message)
+    }
+}
+
+/// The diagnostics of a text with errors, as an error that `?` passes on. It displays one line for each
+/// diagnostic, in the form of [`short`], and so does `Debug`, which is what `main` prints.
+#[derive(Clone, PartialEq, Eq, Default)]
+pub struct Diagnostics {
+    diagnostics: Vec<Diagnostic>,
+    text: String,
+}
+
+impl Diagnostics {
+    /// Diagnostics about these files.
+    #[must_use]
+    pub fn new(diagnostics: Vec<Diagnostic>, files: &Files) -> Self {
+        let lines: Vec<_> = diagnostics.iter().map(|one| short(one, files)).collect();
+        Self {
+            text: lines.join("\n"),
+            diagnostics,
+        }
+    }
+}
+
+/// Diagnostics about texts that are not at hand: they are displayed without positions.
+impl From<Vec<Diagnostic>> for Diagnostics {
+    fn from(diagnostics: Vec<Diagnostic>) -> Self {
+        let lines: Vec<_> = diagnostics.iter().map(ToString::to_string).collect();
+        Self {
+            text: lines.join("\n"),
+            diagnostics,
+        }
+    }
+}
+
+impl From<Diagnostics> for Vec<Diagnostic> {
+    fn from(diagnostics: Diagnostics) -> Self {
+        diagnostics.diagnostics
+    }
+}
+
+impl std::ops::Deref for Diagnostics {
+    type Target = [Diagnostic];
+
+    fn deref(&self) -> &[Diagnostic] {
+        &self.diagnostics
+    }
+}
+
+impl<'a> IntoIterator for &'a Diagnostics {
+    type Item = &'a Diagnostic;
+    type IntoIter = std::slice::Iter<'a, Diagnostic>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.diagnostics.iter()
+    }
+}
+
+impl IntoIterator for Diagnostics {
+    type Item = Diagnostic;
+    type IntoIter = std::vec::IntoIter<Diagnostic>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.diagnostics.into_iter()
+    }
+}
+
+impl fmt::Display for Diagnostics {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+impl fmt::Debug for Diagnostics {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+impl std::error::Error for Diagnostics {}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn diagnostics_are_an_error_with_positions() {
+        let mut files = Files::default();
+        let file = files.add(File::new("a.glsl", "x\ny z"));
+        let all = vec![
+            Diagnostic::error("E0001", "no y").at(Span::new(file, 2, 3)),
+            Diagnostic::warning("W0002", "no file"),
+        ];
+        let error: Box<dyn std::error::Error> = Diagnostics::new(all.clone(), &files).into();
+        let lines = "a.glsl:2:1: error[E0001]: no y\nwarning[W0002]: no file";
+        assert_eq!(
+            (error.to_string(), format!("{error:?}")),
+            (lines.to_owned(), lines.to_owned())
+        );
+        let unplaced = Diagnostics::from(all.clone()).to_string();
+        assert_eq!(unplaced, "error[E0001]: no y\nwarning[W0002]: no file");
+        assert_eq!(Vec::from(Diagnostics::from(all.clone())), all);
+    }
 
     #[test]
     fn long_messages_are_truncated_in_the_middle() {

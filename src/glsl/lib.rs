@@ -1,5 +1,5 @@
-//! A front end for GLSL ES 3.00 as ShaderToy runs it: turns source text into a typed tree, or into
-//! diagnostics that a student can act on. It does not depend on any consumer of the tree.
+//! A front end for GLSL ES 3.00 as ShaderToy runs it: turns source text into a typed tree, or into diagnostics
+//! that a student can act on. It does not depend on any consumer of the tree.
 //!
 //! ```text
 //! text ─► preprocess ─► tokens ─► parse ─(calls)─► check ─► tree
@@ -9,6 +9,48 @@
 //! rules, and gets a typed node. So there is one tree and no separate syntax tree. Section numbers (§) refer
 //! to the GLSL ES 3.00.6 specification; where WebGL 2 (ANGLE) is stricter, so is this front end, and a
 //! comment says so.
+//!
+//! # The tree
+//!
+//! [`Checked`] holds a [`tree::Tree`]: functions, variables and expressions lie in arenas and are named by ids,
+//! such as [`tree::ExprId`]. Every expression has a type, one parent, and its place in the source, also if a
+//! macro expanded to it. Literals stay as they are written, so that a consumer can read `0.1` as float32 or as
+//! double precision. Implicit initializations, such as ShaderToy's black color, are not part of the tree.
+//!
+//! ```
+//! use toyproof_diagnostic::{File, Files};
+//! use toyproof_glsl::{Options, check};
+//!
+//! fn main() -> Result<(), Box<dyn std::error::Error>> {
+//!     let mut files = Files::default();
+//!     let text = "float sq(float x) { return x * x; }\n\
+//!                 void mainImage(out vec4 c, in vec2 p) { c = vec4(sq(p.x)); }";
+//!     let file = files.add(File::new("square.glsl", text));
+//!     let checked = check(&files, file, &Options::default())?;
+//!     let names: Vec<_> = checked.tree.functions.iter().map(|(_, function)| &function.name).collect();
+//!     assert_eq!(names, ["sq", "mainImage"]);
+//!     Ok(())
+//! }
+//! ```
+//!
+//! # Diagnostics
+//!
+//! The parser continues after errors. Each error has a stable code ([`Code`]), a span, and often a suggestion;
+//! [`toyproof_diagnostic`] renders it for people, editors and programs. The error of [`check`] displays them:
+//!
+//! ```
+//! # use toyproof_diagnostic::{File, Files};
+//! # use toyproof_glsl::{Options, check};
+//! # let mut files = Files::default();
+//! let file = files.add(File::new("a.glsl", "void mainImage(out vec4 c, in vec2 p) { c = vec4(q); }"));
+//! let errors = check(&files, file, &Options::default()).unwrap_err();
+//! assert!(errors.to_string().starts_with("a.glsl:1:50: error[E0"), "{errors}");
+//! ```
+//!
+//! # Untrusted input
+//!
+//! No input overflows the stack, and time is linear in the size of the text after macros are expanded, whose
+//! size is limited. Nesting is limited by [`MAX_NESTING`], time by [`Options::deadline`].
 
 mod check;
 mod codes;
@@ -22,7 +64,7 @@ pub mod tree;
 
 pub use codes::{Code, IN_MACRO, MAX_TOLD, overdue};
 pub use preprocess::Remark;
-use toyproof_diagnostic::{Deadline, Diagnostic, FileId, Files, Severity};
+use toyproof_diagnostic::{Deadline, Diagnostic, Diagnostics, FileId, Files, Severity};
 use tree::{FunctionId, SamplerShape, Tree};
 
 use self::check::{Channels, Checker};
@@ -94,13 +136,13 @@ impl Checked {
 ///
 /// # Errors
 /// If the shader breaks a rule: at least one error, possibly among warnings.
-pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, Vec<Diagnostic>> {
+pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, Diagnostics> {
     let deadline = &options.deadline;
-    let too_slow = |overdue| vec![codes::overdue(overdue)];
+    let too_slow = |overdue| Diagnostics::from(vec![codes::overdue(overdue)]);
     let mut text = preprocess::preprocess(files, file, deadline);
     deadline.check().map_err(too_slow)?;
     if text.incomplete {
-        return Err(text.diagnostics);
+        return Err(Diagnostics::new(text.diagnostics, files));
     }
     let source = files.get(file);
     parse::balance(&mut text, source);
@@ -138,7 +180,7 @@ pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, 
                 for diagnostic in all {
                     codes::push_limited(&mut reported, diagnostic);
                 }
-                Err(reported)
+                Err(Diagnostics::new(reported, files))
             }
         };
     }

@@ -7,6 +7,8 @@ use std::sync::{Arc, Mutex};
 use serde::{Deserialize, Serialize};
 use wgpu::{Adapter, Backends, DeviceType, Features, Instance, InstanceDescriptor};
 
+use super::quirks::loop_cap::{self, LoopCap};
+use super::quirks::{DriverKind, LOOP_CAP, Quirk};
 use super::{AdapterSelector, Failure};
 
 /// Properties of a Vulkan driver.
@@ -30,24 +32,9 @@ impl Driver {
     /// Returns whether it is Mesa's software driver.
     #[must_use]
     pub fn is_lavapipe(&self) -> bool {
-        self.name.contains(LAVAPIPE_ADAPTER_NAME)
+        DriverKind::Lavapipe.matches(&self.name)
     }
 }
-
-/// The name of lavapipe's adapter.
-const LAVAPIPE_ADAPTER_NAME: &str = "llvmpipe";
-
-/// Whether a driver terminates the loops of an invocation after a number of iterations.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum LoopCap {
-    /// No termination within this number of iterations.
-    NoneUpTo(u32),
-    /// Termination after this number of iterations.
-    After(u32),
-}
-
-/// Number of iterations within which the loop cap is searched.
-pub(super) const PROBED_ITERATIONS: u32 = 70_000;
 
 /// An open device with the state that all its pipelines share.
 #[derive(Debug)]
@@ -80,8 +67,8 @@ fn choose(mut adapters: Vec<Adapter>, selector: &AdapterSelector) -> Result<Vec<
             .position(|name| name.to_lowercase().contains(&substring.to_lowercase()))
     };
     let chosen = match selector {
-        AdapterSelector::Auto => find_by_name(LAVAPIPE_ADAPTER_NAME).unwrap_or(0),
-        AdapterSelector::Lavapipe => find_by_name(LAVAPIPE_ADAPTER_NAME).ok_or_else(|| {
+        AdapterSelector::Auto => find_by_name(DriverKind::Lavapipe.adapter_name()).unwrap_or(0),
+        AdapterSelector::Lavapipe => find_by_name(DriverKind::Lavapipe.adapter_name()).ok_or_else(|| {
             Failure::NoDriver(format!(
                 "lavapipe is not among the Vulkan drivers here; {INSTALL_HINT}"
             ))
@@ -202,20 +189,15 @@ impl Device {
         format!("{}, {}", info.name, version(&info))
     }
 
-    /// Returns whether this kind of driver is known to terminate long loops: some versions of Mesa's software
-    /// rasterizer do.
-    pub(super) fn may_terminate_loops(&self) -> bool {
-        self.is_lavapipe()
-    }
-
-    pub(super) fn is_lavapipe(&self) -> bool {
-        self.adapter.get_info().name.contains(LAVAPIPE_ADAPTER_NAME)
+    /// Returns whether a workaround is applied on this device.
+    pub(super) fn has(&self, quirk: &Quirk) -> bool {
+        quirk.applies_to(&self.adapter.get_info().name)
     }
 
     /// Returns the number of iterations after which this driver terminates the loops of an invocation, if it
     /// does.
     pub(super) fn loop_cap(&mut self) -> Result<Option<u32>, Failure> {
-        if !self.may_terminate_loops() {
+        if !self.has(&LOOP_CAP) {
             return Ok(None);
         }
         Ok(match self.measured_cap()? {
@@ -228,7 +210,7 @@ impl Device {
         if let Some(cap) = self.cap {
             return Ok(cap);
         }
-        let cap = super::draw::measure_cap(self)?;
+        let cap = loop_cap::measure(self)?;
         self.cap = Some(cap);
         Ok(cap)
     }

@@ -5,21 +5,20 @@ use std::ops::Range;
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
-use toyproof_diagnostic::{File, Files};
-use toyproof_glsl::{self as glsl};
 use toyproof_image::{Frame, Image};
 use toyproof_translate::backend::spirv;
 use toyproof_translate::naga_ir::{Shape, ValidModule};
 use toyproof_translate::{FloatMode, Lowered};
 use wgpu::{BindGroup, Buffer, BufferUsages, PollType, RenderPipeline, Texture, TextureUsages};
 
-use super::device::{Device, LoopCap, PROBED_ITERATIONS};
+use super::device::Device;
 use super::pipeline::{FORMAT, Layout};
+use super::quirks::{OPAQUE_NUMBERS, mesa_barriers};
 use super::{AdapterSelector, Failure};
 
 /// A rendered image with its statistics.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Drawn {
+pub struct DrawOutput {
     /// The image in the float target's format, in bands of rows from the bottom up, as given by
     /// [`Frame::bands`]. Empty if the bands were passed to a callback.
     #[serde(skip)]
@@ -39,7 +38,7 @@ pub struct Drawn {
     pub draw: Duration,
 }
 
-impl Drawn {
+impl DrawOutput {
     /// Returns whether the driver may have terminated a loop, so that a check is needed.
     #[must_use]
     pub fn may_truncate_loops(&self) -> bool {
@@ -80,7 +79,7 @@ pub(super) struct Program {
 impl Program {
     /// Emits SPIR-V for a module, decorated for strict arithmetic if `float` is strict.
     pub(super) fn new(module: &ValidModule, float: FloatMode) -> Result<Self, Failure> {
-        let words = spirv::words(module).map_err(Failure::Naga)?;
+        let words = spirv::words(module).map_err(Failure::naga)?;
         Ok(Self {
             words: apply_float_mode(words, float),
             channels: module.channels(),
@@ -111,49 +110,12 @@ fn apply_float_mode(words: Vec<u32>, float: FloatMode) -> Vec<u32> {
 }
 
 /// Clear color, which no shader outputs: the alpha of probes is an integer, that of shaders 1.
-const CLEAR_COLOR: wgpu::Color = wgpu::Color {
+pub(crate) const CLEAR_COLOR: wgpu::Color = wgpu::Color {
     r: 0.0,
     g: 0.0,
     b: 0.0,
     a: 0.5,
 };
-
-/// Maximum number of pixels that llvmpipe runs together, on the widest processors. It counts their iterations
-/// as one.
-const MAX_LAVAPIPE_LANES: u32 = 16;
-
-/// Number of iterations, over all loops of a pixel, up to which no driver terminates it: Mesa before 23
-/// allows 65,535 for all pixels that it runs together.
-pub const SAFE_ROUNDS: u32 = 65_535 / MAX_LAVAPIPE_LANES;
-
-/// Returns whether a driver that stops after `cap` iterations may have stopped any pixel of an image whose
-/// alpha is the number of iterations plus 1. An alpha that is not a valid count is suspect too.
-pub(super) fn may_reach(iterations: &Image, cap: u32) -> bool {
-    let counts = 1.0..cap as f32 / MAX_LAVAPIPE_LANES as f32;
-    let is_suspect = |alpha: f32| !counts.contains(&alpha) || alpha.fract() != 0.0;
-    iterations.pixels().iter().any(|pixel| is_suspect(pixel[3]))
-}
-
-/// Counts the pixels of such an image that ran all iterations that the driver allows.
-pub(super) fn count_reached(iterations: &Image, cap: u32) -> u64 {
-    iterations
-        .pixels()
-        .iter()
-        .filter(|pixel| pixel[3] > cap as f32)
-        .count() as u64
-}
-
-/// Counts the pixels of an image of the open-loops probe in which a loop was terminated. A pixel that nothing
-/// was written to counts too, unless the shader discards: code after an endless loop may never be reached.
-pub(super) fn count_truncated(watched: &Image, discards: bool) -> u64 {
-    let cleared = CLEAR_COLOR.a as f32;
-    let is_truncated = |alpha: f32| alpha < cleared || (alpha <= cleared && !discards);
-    watched
-        .pixels()
-        .iter()
-        .filter(|pixel| is_truncated(pixel[3]))
-        .count() as u64
-}
 
 /// A pipeline for frames of any size.
 #[derive(Debug)]
@@ -182,7 +144,9 @@ impl Device {
     /// are computed from uniforms.
     fn driver_words<'a>(&self, program: &'a Program) -> Cow<'a, [u32]> {
         match program.float {
-            FloatMode::Strict if self.is_lavapipe() => spirv::with_opaque_numbers(&program.words).into(),
+            FloatMode::Strict if self.has(&OPAQUE_NUMBERS) => {
+                mesa_barriers::with_opaque_numbers(&program.words).into()
+            }
             _ => (&program.words).into(),
         }
     }
@@ -377,12 +341,12 @@ impl PreparedFrame {
 /// A shader compiled on a device of this process: for measurements, where the isolation of a worker is not
 /// needed.
 #[derive(Debug)]
-pub struct Painter {
+pub struct LocalRenderer {
     device: Device,
     prepared: PreparedFrame,
 }
 
-impl Painter {
+impl LocalRenderer {
     /// Translates and compiles a shader.
     ///
     /// # Errors
@@ -393,7 +357,7 @@ impl Painter {
         float: FloatMode,
         selector: &AdapterSelector,
     ) -> Result<Self, Failure> {
-        let module = ValidModule::parse(lowered).map_err(Failure::Refused)?;
+        let module = ValidModule::parse(lowered).map_err(Failure::refused)?;
         let device = Device::open(selector)?;
         let prepared = device.prepare(&Program::new(&module, float)?, frame)?;
         Ok(Self { device, prepared })
@@ -406,33 +370,4 @@ impl Painter {
     pub fn render(&mut self) -> Result<Image, Failure> {
         self.device.render_image(&self.prepared)
     }
-}
-
-/// A shader for one pixel with `iFrame` iterations, whose output is the number of iterations that the driver
-/// ran.
-const LOOP_COUNT_SHADER: &str = "void mainImage(out vec4 c, in vec2 p) {
-    float count = 0.0;
-    for (int i = 0; i < iFrame; i++) count += 1.0;
-    c = vec4(count);
-}";
-
-/// Measures whether the driver terminates long loops.
-pub(super) fn measure_cap(device: &Device) -> Result<LoopCap, Failure> {
-    let mut files = Files::default();
-    let file = files.add(File::new("<loop cap>", LOOP_COUNT_SHADER));
-    let checked = glsl::check(&files, file, &glsl::Options::default()).map_err(Failure::Invalid)?;
-    let lowered = toyproof_translate::lower(&checked);
-    let module = ValidModule::parse(&lowered).map_err(Failure::Refused)?;
-    let program = Program::new(&module, FloatMode::Strict)?;
-    let frame = Frame {
-        size: [1, 1],
-        frame: PROBED_ITERATIONS as i32,
-        ..Frame::default()
-    };
-    let count = device.render_image(&device.prepare(&program, &frame)?)?.get(0, 0)[0] as u32;
-    Ok(if count < PROBED_ITERATIONS {
-        LoopCap::After(count)
-    } else {
-        LoopCap::NoneUpTo(count)
-    })
 }

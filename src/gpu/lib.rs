@@ -1,5 +1,9 @@
 //! Runs shaders on a Vulkan driver in a worker process, so that a hang, a crash or memory exhaustion affects
-//! one shader only. The program that uses this crate starts itself as the worker.
+//! one shader only.
+//!
+//! The worker is the host program itself, started again with the arguments that it names: no second binary
+//! has to be installed or found. So `main` must serve the worker before it does anything else, and write
+//! nothing to standard output there, which carries the replies:
 //!
 //! ```no_run
 //! use std::time::Duration;
@@ -8,7 +12,7 @@
 //!
 //! let arguments: Vec<String> = std::env::args().skip(1).collect();
 //! if arguments == ["worker"] {
-//! return serve(std::io::stdin().lock(), std::io::stdout().lock()).unwrap();
+//!     return serve(std::io::stdin().lock(), std::io::stdout().lock()).unwrap();
 //! }
 //! let program = std::env::current_exe().unwrap();
 //! let timeout = Duration::from_secs(10);
@@ -18,26 +22,31 @@
 //!
 //! naga and the driver run in the worker process: [`Worker`] is the parent's side, [`serve`] the child's.
 //! After a hang, a crash, a panic, a lost device or memory exhaustion, the worker is restarted for the next
-//! shader.
+//! shader. A library without a `main` of its own, such as a plug-in, needs a small program that serves.
+//!
+//! [`quirks`] lists the faults of drivers that are worked around.
 
 pub mod browser;
 mod device;
 mod draw;
 mod pipeline;
 mod protocol;
+pub mod quirks;
 mod serve;
 mod worker;
 
 use std::fmt;
 use std::time::Duration;
 
-pub use device::{Driver, INSTALL_HINT, LoopCap, is_pinned_by_user, lavapipe_manifest, manifests, pinned};
-pub use draw::{Drawn, Painter, SAFE_ROUNDS};
+pub use device::{Driver, INSTALL_HINT, is_pinned_by_user, lavapipe_manifest, manifests, pinned};
+pub use draw::{DrawOutput, LocalRenderer};
 pub use protocol::ShaderArtifact;
+pub use quirks::loop_cap::{LoopCap, SAFE_ITERATIONS};
 use serde::{Deserialize, Serialize};
 pub use serve::{MAX_MEMORY_BYTES, serve};
 use thiserror::Error;
-use toyproof_diagnostic::Diagnostic;
+use toyproof_diagnostic::{Diagnostic, Diagnostics};
+use toyproof_translate::TranslateError;
 pub use worker::Worker;
 
 /// The adapter on which shaders run.
@@ -136,10 +145,33 @@ pub enum Failure {
 }
 
 impl Failure {
+    fn refused(diagnostics: Diagnostics) -> Self {
+        Self::Refused(diagnostics.into())
+    }
+
+    fn naga(error: TranslateError) -> Self {
+        Self::Naga(error.0)
+    }
+
     /// Returns whether no driver is usable, whatever the shader. The evaluator may take its place.
     #[must_use]
     pub fn is_without_driver(&self) -> bool {
         matches!(self, Self::NoDriver(_) | Self::NotStarted(_))
+    }
+
+    /// Returns the diagnostics on the shader.
+    #[must_use]
+    pub fn diagnostics(&self) -> &[Diagnostic] {
+        match self {
+            Self::Invalid(diagnostics) | Self::Refused(diagnostics) => diagnostics,
+            _ => &[],
+        }
+    }
+
+    /// Returns whether the deadline expired.
+    #[must_use]
+    pub fn is_timeout(&self) -> bool {
+        matches!(self, Self::Timeout { .. })
     }
 
     /// Returns whether the shader does not compile, as opposed to an error of the tools.

@@ -10,7 +10,7 @@ use toyproof_translate::naga_ir::Shape;
 use toyproof_translate::wgsl::Hosted;
 use toyproof_translate::{FloatMode, Lowered};
 
-use super::{AdapterSelector, Drawn, Driver, Failure, Phase};
+use super::{AdapterSelector, DrawOutput, Driver, Failure, Phase};
 
 /// A request from the parent.
 #[derive(Debug, Serialize, Deserialize)]
@@ -76,7 +76,7 @@ pub(super) enum Reply {
 pub(super) enum Output {
     Drivers(Vec<Driver>),
     Translated(Vec<u8>),
-    Drawn(Box<Drawn>),
+    Drawn(Box<DrawOutput>),
     Completed,
     Rendered(Vec<Image>, String),
     LoopTruncated(u64),

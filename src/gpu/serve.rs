@@ -8,12 +8,14 @@ use std::time::Instant;
 
 use toyproof_image::Frame;
 use toyproof_translate::backend::{Target, emit, spirv};
-use toyproof_translate::naga_ir::{Probe, Shape, ValidModule};
+use toyproof_translate::naga_ir::{Shape, ValidModule};
 use toyproof_translate::{FloatMode, Lowered};
 
 use super::device::{self, Device};
 use super::draw::{PreparedFrame, Program};
 use super::protocol::{DrawJob, ForeignSpirv, Job, Output, Reply, ShaderArtifact, receive, send};
+use super::quirks::loop_probe::{self, Probe};
+use super::quirks::{LOOP_CAP, loop_cap, loop_steps};
 use super::{AdapterSelector, Failure, Phase, draw};
 
 /// Maximum size of a worker's address space in bytes.
@@ -106,10 +108,10 @@ impl<W: Write> Server<W> {
     fn translate(&mut self, lowered: Lowered, target: Target, float: FloatMode) -> Result<Output, Failure> {
         self.phase(Phase::Translating)?;
         on_translator_thread(move || {
-            let module = ValidModule::parse(&lowered).map_err(Failure::Refused)?;
+            let module = ValidModule::parse(&lowered).map_err(Failure::refused)?;
             match target {
                 Target::Spirv => Ok(Program::new(&module, float)?.bytes()),
-                _ => emit(&module, target).map_err(Failure::Naga),
+                _ => emit(&module, target).map_err(Failure::naga),
             }
         })
         .map(Output::Translated)
@@ -125,8 +127,8 @@ impl<W: Write> Server<W> {
             selector,
         } = draw_job;
         let (program, loops) = on_translator_thread(move || {
-            let module = ValidModule::parse(&lowered).map_err(Failure::Refused)?;
-            Ok((Program::new(&module, float)?, module.has_loops()))
+            let module = ValidModule::parse(&lowered).map_err(Failure::refused)?;
+            Ok((Program::new(&module, float)?, loop_probe::has_loops(&module)))
         })?;
         let translate = start.elapsed();
         self.open(&selector)?;
@@ -138,10 +140,10 @@ impl<W: Write> Server<W> {
         let start = Instant::now();
         self.render_and_send(&prepared)?;
         let device = self.device()?;
-        Ok(Output::Drawn(Box::new(draw::Drawn {
+        Ok(Output::Drawn(Box::new(draw::DrawOutput {
             bands: Vec::new(),
             device: device.name(),
-            may_truncate_loops: loops && device.may_terminate_loops(),
+            may_truncate_loops: loops && device.has(&LOOP_CAP),
             loop_truncated: Some(0),
             translate,
             compile,
@@ -176,7 +178,7 @@ impl<W: Write> Server<W> {
 
     fn read(&mut self, text: String) -> Result<Output, Failure> {
         self.phase(Phase::Translating)?;
-        on_translator_thread(move || ValidModule::of_wgsl(&text).map_err(Failure::Reread))?;
+        on_translator_thread(move || ValidModule::of_wgsl(&text).map_err(|error| Failure::Reread(error.0)))?;
         Ok(Output::Completed)
     }
 
@@ -191,16 +193,17 @@ impl<W: Write> Server<W> {
         let program = on_translator_thread(move || {
             let module = match artifact {
                 ShaderArtifact::Wgsl(hosted) => {
-                    let module = ValidModule::of_wgsl(&hosted.text).map_err(Failure::Reread)?;
-                    module.with_steps_last().map_err(Failure::Naga)?
+                    let module =
+                        ValidModule::of_wgsl(&hosted.text).map_err(|error| Failure::Reread(error.0))?;
+                    loop_steps::with_steps_last(&module).map_err(Failure::naga)?
                 }
-                ShaderArtifact::Lowered(lowered) => ValidModule::parse(&lowered).map_err(Failure::Refused)?,
+                ShaderArtifact::Lowered(lowered) => ValidModule::parse(&lowered).map_err(Failure::refused)?,
                 ShaderArtifact::Words(words, channels) => {
-                    let words = spirv::spelled(&words).map_err(Failure::Naga)?;
+                    let words = spirv::spelled(&words).map_err(Failure::naga)?;
                     return Ok(Program::from_words(words, channels, FloatMode::Strict));
                 }
             };
-            Program::new(&module.spelled().map_err(Failure::Naga)?, FloatMode::Strict)
+            Program::new(&module.spelled().map_err(Failure::naga)?, FloatMode::Strict)
         })?;
         self.open(selector)?;
         let mut images = Vec::new();
@@ -226,7 +229,7 @@ impl<W: Write> Server<W> {
             selector,
         } = draw_job;
         let (module, iterations) = on_translator_thread(move || {
-            let module = ValidModule::parse(&lowered).map_err(Failure::Refused)?;
+            let module = ValidModule::parse(&lowered).map_err(Failure::refused)?;
             let iterations = probe_program(&module, Probe::Iterations, float)?;
             Ok((module, iterations))
         })?;
@@ -236,23 +239,23 @@ impl<W: Write> Server<W> {
             return Ok(Output::LoopTruncated(0));
         };
         // After an endless loop any value is possible, including a small number of iterations.
-        if !module.has_endless_loop() {
+        if !loop_probe::has_infinite_loop(&module) {
             let (mut reached, mut may_reach) = (0, false);
             device.render(&device.prepare(&iterations, &frame)?, |band| {
-                reached += draw::count_reached(&band, cap);
-                may_reach |= draw::may_reach(&band, cap);
+                reached += loop_cap::count_reached(&band, cap);
+                may_reach |= loop_cap::may_reach(&band, cap);
                 Ok(())
             })?;
             if reached > 0 || !may_reach {
                 return Ok(Output::LoopTruncated(reached));
             }
         }
-        let discards = module.discards();
+        let discards = loop_probe::discards(&module);
         let open = on_translator_thread(move || probe_program(&module, Probe::OpenLoops, float))?;
         let device = self.device()?;
         let mut loop_truncated = 0;
         device.render(&device.prepare(&open, &frame)?, |band| {
-            loop_truncated += draw::count_truncated(&band, discards);
+            loop_truncated += loop_cap::count_truncated(&band, discards);
             Ok(())
         })?;
         Ok(Output::LoopTruncated(loop_truncated))
@@ -289,7 +292,7 @@ fn send_reply(output: impl Write, reply: &Reply) -> Result<(), Failure> {
 }
 
 fn probe_program(module: &ValidModule, probe: Probe, float: FloatMode) -> Result<Program, Failure> {
-    Program::new(&module.probed(probe).map_err(Failure::Naga)?, float)
+    Program::new(&loop_probe::probed(module, probe).map_err(Failure::naga)?, float)
 }
 
 /// Runs naga on a thread with a large stack. Panics become failures.

@@ -14,7 +14,7 @@ use toyproof_translate::backend::Target;
 use toyproof_translate::{FloatMode, Lowered};
 
 use super::protocol::{DrawJob, ForeignSpirv, Job, Output, Reply, ShaderArtifact, receive, send};
-use super::{AdapterSelector, Drawn, Driver, Failure, Phase, device};
+use super::{AdapterSelector, DrawOutput, Driver, Failure, Phase, device, quirks};
 
 /// A worker process, started on first use and restarted after each failure.
 #[derive(Debug)]
@@ -154,7 +154,7 @@ impl Worker {
     ///
     /// # Errors
     /// Why there is no image.
-    pub fn draw(&mut self, lowered: Lowered, frame: Frame, float: FloatMode) -> Result<Drawn, Failure> {
+    pub fn draw(&mut self, lowered: Lowered, frame: Frame, float: FloatMode) -> Result<DrawOutput, Failure> {
         self.draw_frame(lowered, frame, float, true)
     }
 
@@ -167,7 +167,7 @@ impl Worker {
         lowered: Lowered,
         frame: Frame,
         float: FloatMode,
-    ) -> Result<Drawn, Failure> {
+    ) -> Result<DrawOutput, Failure> {
         self.draw_frame(lowered, frame, float, false)
     }
 
@@ -177,17 +177,17 @@ impl Worker {
         frame: Frame,
         float: FloatMode,
         watch: bool,
-    ) -> Result<Drawn, Failure> {
+    ) -> Result<DrawOutput, Failure> {
         let mut bands = Vec::new();
         let on_band = |band| bands.push(band);
         let drawn = self.draw_in_bands(lowered, frame, float, on_band, |_, _| watch)?;
-        Ok(Drawn { bands, ..drawn })
+        Ok(DrawOutput { bands, ..drawn })
     }
 
     /// Like [`Self::draw`], but passes the bands of [`Frame::bands`] to `on_band`, one after the other. The
     /// time that it takes does not count. The check of loops runs only if `watch` returns true; it receives
     /// the result and the time that rendering took. Callers may know that no pixel runs more iterations than
-    /// [`SAFE_ROUNDS`](super::SAFE_ROUNDS).
+    /// [`SAFE_ITERATIONS`](super::SAFE_ITERATIONS).
     ///
     /// # Errors
     /// Why there is no image: [`Failure::Invalid`] also for a shader that nests deeper than drivers
@@ -198,8 +198,8 @@ impl Worker {
         frame: Frame,
         float: FloatMode,
         mut on_band: impl FnMut(Image),
-        watch: impl FnOnce(&Drawn, Duration) -> bool,
-    ) -> Result<Drawn, Failure> {
+        watch: impl FnOnce(&DrawOutput, Duration) -> bool,
+    ) -> Result<DrawOutput, Failure> {
         if let Some(diagnostic) = lowered.too_deep() {
             return Err(Failure::Invalid(vec![diagnostic.clone()]));
         }
@@ -373,9 +373,7 @@ impl Worker {
         if self.is_unoptimized && std::env::var_os(COMPILER_FLAGS).is_none() {
             command.env(COMPILER_FLAGS, "nopt");
         }
-        if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
-            command.env("XDG_RUNTIME_DIR", std::env::temp_dir());
-        }
+        quirks::set_environment(&mut command);
         detach(&mut command);
         let mut child = command
             .stdin(Stdio::piped())

@@ -161,7 +161,8 @@ fn decode(path: &Path) -> Result<DynamicImage, ImageError> {
     limits.max_alloc = Some(1 << 30);
     reader.limits(limits);
     let decoded = reader.decode().map_err(|error| unreadable(error.to_string()))?;
-    check_size(decoded.width().into(), decoded.height().into()).map_err(unreadable)?;
+    check_size(decoded.width().into(), decoded.height().into())
+        .map_err(|error| unreadable(error.to_string()))?;
     Ok(decoded)
 }
 

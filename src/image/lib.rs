@@ -21,6 +21,7 @@ pub use file::{ImageError, encode, encode_shown, read, read_shown};
 pub use frame::{BLOCK_BYTES, FRAME_RATE, Frame, SAMPLE_RATE};
 pub use rgb8::Rgb8Image;
 use serde::{Deserialize, Serialize};
+use thiserror::Error;
 
 /// Maximum side of an image, in pixels: the common limit of Vulkan drivers.
 pub const MAX_SIDE: u32 = 16_384;
@@ -114,23 +115,32 @@ pub fn quantize(component: f32) -> u8 {
     (clamped * 255.0 + 8_388_608.0).to_bits() as u8
 }
 
-/// Checks that an image can have this size; otherwise describes the problem.
+/// Why an image cannot have a size: a sentence without a full stop, naming the limit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+pub enum SizeError {
+    /// No pixels.
+    #[error("a picture of {0}×{1} pixels has nothing to show; both sides must be at least 1")]
+    Empty(u64, u64),
+    /// More than [`MAX_SIDE`] or [`MAX_PIXELS`].
+    #[error(
+        "a picture of {0}×{1} pixels is too large; each side may be at most {MAX_SIDE}, and the picture at \
+         most {million} million pixels",
+        million = MAX_PIXELS / 1_000_000
+    )]
+    TooLarge(u64, u64),
+}
+
+/// Checks that an image can have this size.
 ///
 /// # Errors
-/// A sentence without a full stop, naming the limit.
-pub fn check_size(width: u64, height: u64) -> Result<[u32; 2], String> {
+/// If it has no pixels, or too many.
+pub fn check_size(width: u64, height: u64) -> Result<[u32; 2], SizeError> {
     let side = u64::from(MAX_SIDE);
     if width == 0 || height == 0 {
-        return Err(format!(
-            "a picture of {width}×{height} pixels has nothing to show; both sides must be at least 1"
-        ));
+        return Err(SizeError::Empty(width, height));
     }
     if width > side || height > side || width * height > MAX_PIXELS {
-        return Err(format!(
-            "a picture of {width}×{height} pixels is too large; each side may be at most {MAX_SIDE}, \
-             and the picture at most {} million pixels",
-            MAX_PIXELS / 1_000_000
-        ));
+        return Err(SizeError::TooLarge(width, height));
     }
     Ok([width as u32, height as u32])
 }
@@ -196,9 +206,10 @@ mod tests {
     #[test]
     fn sizes_are_checked_without_overflow() {
         assert_eq!(check_size(7680, 4320), Ok([7680, 4320]));
-        assert!(check_size(0, 5).unwrap_err().contains("nothing to show"));
-        assert!(check_size(100_000, 100_000).unwrap_err().contains("too large"));
-        assert!(check_size(u64::MAX, u64::MAX).unwrap_err().contains("too large"));
-        assert!(check_size(16_384, 16_384).unwrap_err().contains("million"));
+        let refusal = |width, height| check_size(width, height).unwrap_err().to_string();
+        assert!(refusal(0, 5).contains("nothing to show"));
+        assert!(refusal(100_000, 100_000).contains("too large"));
+        assert!(refusal(u64::MAX, u64::MAX).contains("too large"));
+        assert!(refusal(16_384, 16_384).contains("million"));
     }
 }

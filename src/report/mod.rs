@@ -15,7 +15,7 @@ pub use csv::csv;
 pub use gradescope::gradescope;
 pub use html::{Exhibit, Gallery, MAX_IMAGE_BYTES, html, subsample};
 pub use junit::junit;
-pub use reason::{failure_position, loop_truncated};
+pub use reason::{failure_position, loop_truncated, reason};
 pub use record::{Mistake, Record, Report, SCHEMA, Seconds};
 pub use rubric::{Mark, Rubric, Visibility};
 pub use sarif::sarif;

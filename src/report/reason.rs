@@ -8,9 +8,11 @@ use toyproof_verify::{Failure, Findings, MAX_DIFFERING, Means, Reason, Share, Ve
 
 use super::Mistake;
 
-/// Formats why a verdict was reached, with what explains it: the mistake, the line that loses precision.
-pub(super) fn sentence(findings: &Findings, files: &Files) -> String {
-    let mut sentence = reason(&findings.reason, files);
+/// Formats why a verdict was reached, in one sentence, with what explains it: the mistake, the line that loses
+/// precision. `files` are those of the shader.
+#[must_use]
+pub fn reason(findings: &Findings, files: &Files) -> String {
+    let mut sentence = phrase(&findings.reason, files);
     let mut add = |part: String| {
         sentence.push_str("; ");
         sentence.push_str(&part);
@@ -37,7 +39,7 @@ pub(super) fn sentence(findings: &Findings, files: &Files) -> String {
 }
 
 /// Formats the reason alone.
-pub(super) fn reason(reason: &Reason, files: &Files) -> String {
+pub(super) fn phrase(reason: &Reason, files: &Files) -> String {
     match reason {
         Reason::NoImage(failure) => without_image(failure, files),
         Reason::NotEvaluated {

@@ -6,7 +6,7 @@ use toyproof_verify::compare::{Answer, Comparison};
 use toyproof_verify::mistake::Named;
 use toyproof_verify::{CheckResult, Evidence, Failure, Findings, Verdict, decide};
 
-use super::reason::{reason, sentence};
+use super::reason::{phrase, reason};
 
 /// The JSON Schema of a [`Report`].
 pub const SCHEMA: &str = include_str!("verdict.schema.json");
@@ -105,7 +105,7 @@ impl Record {
     pub fn set_findings(&mut self, findings: &Findings, files: &Files) {
         let answer = |check: &Option<CheckResult>| check.as_ref().map(|check| check.answer.clone());
         self.verdict = findings.verdict;
-        self.reason = sentence(findings, files);
+        self.reason = reason(findings, files);
         self.mistake = findings.mistake.as_deref().map(Mistake::new);
         self.algorithm = answer(&findings.algorithm);
         self.precision = answer(&findings.precision);
@@ -127,7 +127,7 @@ impl Record {
     pub fn set_failure(&mut self, failure: Failure, files: &Files) {
         let (verdict, because) = decide(Evidence::NoImage(failure));
         self.verdict = verdict;
-        self.reason = reason(&because, files);
+        self.reason = phrase(&because, files);
     }
 
     /// The reason why the toolchain check did not run although other checks did.

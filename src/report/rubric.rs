@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
-use toyproof_diagnostic::{Diagnostic, FileId, Files, Span};
+use toyproof_diagnostic::{Diagnostic, Diagnostics, FileId, Files, Span};
 use toyproof_scene::of_toml;
 use toyproof_verify::compare::Answer;
 use toyproof_verify::{MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABLE, Verdict};
@@ -89,9 +89,9 @@ impl Rubric {
     ///
     /// # Errors
     /// The first syntax or schema error of the TOML, or all values that are out of range.
-    pub fn parse(files: &Files, file: FileId) -> Result<Self, Vec<Diagnostic>> {
+    pub fn parse(files: &Files, file: FileId) -> Result<Self, Diagnostics> {
         let document: Document = toml::from_str(files.get(file).text())
-            .map_err(|error| vec![of_toml("E0503", &error, files, file)])?;
+            .map_err(|error| Diagnostics::new(vec![of_toml("E0503", &error, files, file)], files))?;
         let mut errors = Vec::new();
         let mut parser = Parser {
             file,
@@ -116,7 +116,7 @@ impl Rubric {
                 visibility: document.visibility,
             })
         } else {
-            Err(errors)
+            Err(Diagnostics::new(errors, files))
         }
     }
 

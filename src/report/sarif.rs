@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
-use serde_json::{Value, json};
-use toyproof_diagnostic as diagnostic;
+use serde::Serialize;
+use toyproof_diagnostic::{self as diagnostic, Severity};
 use toyproof_verify::Verdict;
 
 use super::{Record, terminal};
@@ -50,120 +50,236 @@ pub fn sarif(records: &[Record]) -> String {
         for message in &record.diagnostics {
             results.push(diagnostic_result(record, message, &mut rules));
         }
-        if VERDICTS.iter().any(|(verdict, ..)| *verdict == record.verdict) {
-            results.push(verdict_result(record, &mut rules));
+        if let Some((_, title, help)) = VERDICTS.iter().find(|(verdict, ..)| *verdict == record.verdict) {
+            results.push(verdict_result(record, title, help, &mut rules));
         }
         if record.verdict == Verdict::Error {
-            notifications.push(json!({
-                "level": "error",
-                "message": { "text": record.reason },
-                "locations": [location(&record.shader, None)],
-            }));
+            notifications.push(Notification {
+                level: Severity::Error,
+                message: Message::new(record.reason.clone()),
+                locations: [Location::new(&record.shader, None)],
+            });
         }
     }
-    let sarif = json!({
-        "$schema": "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json",
-        "version": "2.1.0",
-        "runs": [{
-            "tool": { "driver": {
-                "name": "toyproof",
-                "version": env!("CARGO_PKG_VERSION"),
-                "rules": rules.rules,
-            } },
-            "invocations": [{
-                "executionSuccessful": notifications.is_empty(),
-                "toolExecutionNotifications": notifications,
+    let log = Log {
+        schema: "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json",
+        version: "2.1.0",
+        runs: [Run {
+            tool: Tool {
+                driver: Driver {
+                    name: "toyproof",
+                    version: env!("CARGO_PKG_VERSION"),
+                    rules: rules.rules,
+                },
+            },
+            invocations: [Invocation {
+                execution_successful: notifications.is_empty(),
+                tool_execution_notifications: notifications,
             }],
-            "columnKind": "unicodeCodePoints",
-            "results": results,
+            column_kind: "unicodeCodePoints",
+            results,
         }],
-    });
-    format!("{sarif:#}\n")
+    };
+    // Strings and numbers always serialize.
+    serde_json::to_string_pretty(&log).unwrap_or_default() + "\n"
 }
 
 /// The rules that results refer to, without duplicates.
 #[derive(Default)]
 struct Rules {
     indices: BTreeMap<String, usize>,
-    rules: Vec<Value>,
+    rules: Vec<Rule>,
 }
 
 impl Rules {
     /// Returns the index of a rule, adding it if it is new.
-    fn index_of(&mut self, id: &str, rule: impl FnOnce() -> Value) -> usize {
+    fn index_of(&mut self, id: &str, about: Option<(&'static str, &'static str)>) -> usize {
         if let Some(index) = self.indices.get(id) {
             return *index;
         }
         self.indices.insert(id.to_owned(), self.rules.len());
-        self.rules.push(rule());
+        self.rules.push(Rule {
+            id: id.to_owned(),
+            short_description: about.map(|(title, _)| Message::new(title.to_owned())),
+            help: about.map(|(_, help)| Help {
+                text: help,
+                markdown: help,
+            }),
+        });
         self.rules.len() - 1
     }
 }
 
-fn rule(id: &str, title: &str, help: &str) -> Value {
-    json!({
-        "id": id,
-        "shortDescription": { "text": title },
-        "help": { "text": help, "markdown": help },
-    })
-}
-
-fn diagnostic_result(record: &Record, message: &diagnostic::Json, rules: &mut Rules) -> Value {
-    let index = rules.index_of(&message.code, || match super::explain(&message.code) {
-        Some(explanation) => rule(&message.code, explanation.title, explanation.text),
-        None => json!({ "id": message.code }),
-    });
+fn diagnostic_result(record: &Record, message: &diagnostic::Json, rules: &mut Rules) -> SarifResult {
+    let about = super::explain(&message.code).map(|explanation| (explanation.title, explanation.text));
     let mut lines = vec![message.message.as_str()];
     lines.extend(message.notes.iter().map(String::as_str));
-    json!({
-        "ruleId": message.code,
-        "ruleIndex": index,
-        "level": message.severity,
-        "message": { "text": lines.join("\n") },
-        "locations": [location(message.file.as_ref().unwrap_or(&record.shader), message.line.zip(message.column))],
-    })
+    let file = message.file.as_ref().unwrap_or(&record.shader);
+    SarifResult {
+        rule_id: message.code.clone(),
+        rule_index: rules.index_of(&message.code, about),
+        level: message.severity,
+        message: Message::new(lines.join("\n")),
+        locations: [Location::new(file, message.line.zip(message.column))],
+    }
 }
 
-fn verdict_result(record: &Record, rules: &mut Rules) -> Value {
+fn verdict_result(
+    record: &Record,
+    title: &'static str,
+    help: &'static str,
+    rules: &mut Rules,
+) -> SarifResult {
     let id = record.verdict.to_string();
-    let about = VERDICTS.iter().find(|(verdict, ..)| *verdict == record.verdict);
-    let index = rules.index_of(&id, || {
-        about.map_or(Value::Null, |(_, title, help)| rule(&id, title, help))
-    });
     let mut lines = vec![record.reason.clone()];
-    let answers = [&record.algorithm, &record.precision].into_iter().flatten();
+    let mut answers = [&record.algorithm, &record.precision].into_iter().flatten();
     lines.extend(
         answers
-            .filter_map(|answer| answer.first.as_ref())
-            .map(terminal::place)
-            .take(1),
+            .find_map(|answer| answer.first.as_ref())
+            .map(terminal::place),
     );
-    json!({
-        "ruleId": id,
-        "ruleIndex": index,
-        "level": "error",
-        "message": { "text": lines.join("\n") },
-        "locations": [location(&record.shader, None)],
-    })
+    SarifResult {
+        rule_index: rules.index_of(&id, Some((title, help))),
+        rule_id: id,
+        level: Severity::Error,
+        message: Message::new(lines.join("\n")),
+        locations: [Location::new(&record.shader, None)],
+    }
 }
 
-/// A location: a file, and optionally a line and a column.
-fn location(file: &str, at: Option<(usize, usize)>) -> Value {
-    let path = utf8_percent_encode(file, ENCODE_IN_PATH);
-    let uri = if file.starts_with('/') {
-        format!("file://{path}")
-    } else {
-        path.to_string()
-    };
-    let mut location = json!({ "artifactLocation": { "uri": uri } });
-    if let Some((line, column)) = at {
-        location["region"] = json!({ "startLine": line, "startColumn": column });
+// The objects of the SARIF 2.1.0 schema, with the properties that are used here.
+
+#[derive(Serialize)]
+struct Log {
+    #[serde(rename = "$schema")]
+    schema: &'static str,
+    version: &'static str,
+    runs: [Run; 1],
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Run {
+    tool: Tool,
+    invocations: [Invocation; 1],
+    column_kind: &'static str,
+    results: Vec<SarifResult>,
+}
+
+#[derive(Serialize)]
+struct Tool {
+    driver: Driver,
+}
+
+#[derive(Serialize)]
+struct Driver {
+    name: &'static str,
+    version: &'static str,
+    rules: Vec<Rule>,
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Rule {
+    id: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    short_description: Option<Message>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    help: Option<Help>,
+}
+
+#[derive(Serialize)]
+struct Help {
+    text: &'static str,
+    markdown: &'static str,
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Invocation {
+    execution_successful: bool,
+    tool_execution_notifications: Vec<Notification>,
+}
+
+#[derive(Serialize)]
+struct Notification {
+    level: Severity,
+    message: Message,
+    locations: [Location; 1],
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct SarifResult {
+    rule_id: String,
+    rule_index: usize,
+    level: Severity,
+    message: Message,
+    locations: [Location; 1],
+}
+
+#[derive(Serialize)]
+struct Message {
+    text: String,
+}
+
+impl Message {
+    fn new(text: String) -> Self {
+        Self { text }
     }
-    json!({ "physicalLocation": location })
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Location {
+    physical_location: PhysicalLocation,
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct PhysicalLocation {
+    artifact_location: ArtifactLocation,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    region: Option<Region>,
+}
+
+#[derive(Serialize)]
+struct ArtifactLocation {
+    uri: String,
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Region {
+    start_line: usize,
+    start_column: usize,
+}
+
+impl Location {
+    /// A location in a file, with an optional line and column.
+    fn new(file: &str, at: Option<(usize, usize)>) -> Self {
+        let path = utf8_percent_encode(file, ENCODE_IN_PATH);
+        let uri = if file.starts_with('/') {
+            format!("file://{path}")
+        } else {
+            path.to_string()
+        };
+        Self {
+            physical_location: PhysicalLocation {
+                artifact_location: ArtifactLocation { uri },
+                region: at.map(|(start_line, start_column)| Region {
+                    start_line,
+                    start_column,
+                }),
+            },
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
+    use serde_json::{Value, json};
+
     use super::*;
     use crate::report::record::samples::{every_verdict, invalid};
 
@@ -306,7 +422,7 @@ mod tests {
 
     #[test]
     fn names_become_uris() {
-        let uri = |name| location(name, None)["physicalLocation"]["artifactLocation"]["uri"].clone();
+        let uri = |name| Location::new(name, None).physical_location.artifact_location.uri;
         assert_eq!(uri("hw/a-b_1.glsl"), "hw/a-b_1.glsl");
         assert_eq!(uri("a b:<\u{e9}>"), "a%20b%3A%3C%C3%A9%3E");
     }

@@ -1,21 +1,55 @@
 //! Translates checked shaders to GPU languages.
 //!
-//! There are two paths: GLSL 450, in the subset that naga parses correctly, which naga writes as SPIR-V,
-//! WGSL, MSL, HLSL or GLSL; and WGSL printed straight from the syntax tree, which the author would recognize.
+//! There are two paths. The first lowers the tree to GLSL 450, in the subset that naga parses correctly; naga
+//! writes it as SPIR-V, WGSL, MSL, HLSL or GLSL. The second ([`wgsl`]) prints WGSL straight from the tree, with
+//! the author's names, loops and comments.
+//!
+//! ```text
+//! tree ─► lower ─► print (GLSL 450) ─► naga_ir ─► backend (SPIR-V, WGSL, MSL, HLSL, GLSL)
+//!   └───► wgsl
+//! ```
 //!
 //! ```
 //! use toyproof_diagnostic::{File, Files};
 //! use toyproof_translate::backend::{Target, emit};
 //! use toyproof_translate::{lower, naga_ir};
 //!
-//! let mut files = Files::default();
-//! let text = "void mainImage(out vec4 c, in vec2 p) { c = vec4(p / iResolution.xy, 0, 1); }";
-//! let file = files.add(File::new("gradient.glsl", text));
-//! let checked = toyproof_glsl::check(&files, file, &Default::default()).unwrap();
-//! let module = naga_ir::ValidModule::parse(&lower(&checked)).unwrap();
-//! let spirv = emit(&module, Target::Spirv).unwrap();
-//! assert_eq!(spirv[..4], 0x0723_0203_u32.to_le_bytes());
+//! fn main() -> Result<(), Box<dyn std::error::Error>> {
+//!     let mut files = Files::default();
+//!     let text = "void mainImage(out vec4 c, in vec2 p) { c = vec4(p / iResolution.xy, 0, 1); }";
+//!     let file = files.add(File::new("gradient.glsl", text));
+//!     let checked = toyproof_glsl::check(&files, file, &Default::default())?;
+//!     let module = naga_ir::ValidModule::parse(&lower(&checked))?;
+//!     let spirv = emit(&module, Target::Spirv)?;
+//!     assert_eq!(spirv[..4], 0x0723_0203_u32.to_le_bytes());
+//!     Ok(())
+//! }
 //! ```
+//!
+//! # Lowering
+//!
+//! Each pass of [`lower()`] rewrites one construct that naga or a driver gets wrong, and a test shows that it
+//! still does without the pass, so that the pass can be removed some day. [`Lowered`] leads from naga's messages
+//! back to the author's lines. naga's validator stays the gate: backends take only a [`naga_ir::ValidModule`],
+//! and what naga refuses of our text is an error of ours, never the shader's.
+//!
+//! # Strict and fast
+//!
+//! GLSL lets drivers rearrange sums, fuse products and choose the last bits of `sin`. With
+//! [`FloatMode::Strict`], arithmetic is evaluated as written: such functions are expanded to exact operations
+//! ([`lower_strict`]), and float operations carry `NoContraction` ([`backend::spirv::strict`]). All drivers then
+//! give the bits that `toyproof_eval` computes in `f32`. With [`FloatMode::Fast`] the driver is free.
+//!
+//! # Interface of a translated shader
+//!
+//! The entry point is `main`, with the color at location 0. Group 0 has the uniform block of ShaderToy's inputs
+//! at binding 0, in std140 layout (`iResolution` at byte 0, `iTime` 12, `iTimeDelta` 16, `iFrame` 20, `iFrameRate`
+//! 24, `iChannelTime` 32, `iChannelResolution` 96, `iMouse` 160, `iDate` 176, `iSampleRate` 192), the texture of
+//! channel K at binding 1 + 2K and its sampler at 2 + 2K. A shader declares only what it uses.
+//!
+//! # Crashes
+//!
+//! naga may panic, and drivers may crash or hang. `toyproof_gpu` runs both in a worker process.
 
 pub mod backend;
 pub mod lower;
@@ -26,10 +60,28 @@ pub mod wgsl;
 pub use lower::{lower, lower_strict, lower_within};
 pub use print::Lowered;
 use serde::{Deserialize, Serialize};
+use thiserror::Error;
 use toyproof_diagnostic::{Deadline, Overdue};
 use toyproof_glsl::Checked;
 
 use crate::lower::Passes;
+
+/// Why a module cannot be read, changed or written: mostly naga's message.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("{0}")]
+pub struct TranslateError(pub String);
+
+impl TranslateError {
+    fn new(message: impl ToString) -> Self {
+        Self(message.to_string())
+    }
+}
+
+impl From<&str> for TranslateError {
+    fn from(message: &str) -> Self {
+        Self(message.to_owned())
+    }
+}
 
 /// The freedom that a driver has to rearrange arithmetic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]

@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::Diagnostic;
 use toyproof_eval as eval;
 use toyproof_glsl::Code;
-use toyproof_gpu as gpu;
 use toyproof_scene::Sampler;
 
 use crate::Failure;
@@ -76,7 +75,7 @@ pub(crate) const MAX_VARIANCE_RATIO: f64 = 1.2;
 
 /// The largest undetected difference of means, two and a half 8-bit levels; above it the verdict is
 /// inconclusive.
-const MAX_BIAS_BOUND: f64 = 0.01;
+pub(crate) const MAX_BIAS_BOUND: f64 = 0.01;
 
 /// The smallest number of random pixels whose means are compared: with fewer, a mistake in some of them is
 /// not detected.
@@ -315,16 +314,11 @@ fn without_image(failure: &Failure) -> Verdict {
         diagnostics.iter().any(|diagnostic| diagnostic.code == code)
     };
     match failure {
-        Failure::Invalid(diagnostics)
-        | Failure::Gpu(gpu::Failure::Invalid(diagnostics) | gpu::Failure::Refused(diagnostics))
-            if is_late(diagnostics) =>
-        {
-            Verdict::Timeout
-        }
+        Failure::Invalid(diagnostics) if is_late(diagnostics) => Verdict::Timeout,
         Failure::Invalid(_) => Verdict::Invalid,
+        Failure::Gpu(failure) if failure.is_timeout() || is_late(failure.diagnostics()) => Verdict::Timeout,
         Failure::Gpu(failure) if failure.is_invalid() => Verdict::Invalid,
-        Failure::Gpu(gpu::Failure::Timeout { .. })
-        | Failure::Cpu(TooOften { .. } | Timeout { .. } | TimeUp)
+        Failure::Cpu(TooOften { .. } | Timeout { .. } | TimeUp)
         | Failure::Overdue(_)
         | Failure::LoopTruncated(_) => Verdict::Timeout,
         Failure::Unreadable(_)
@@ -660,8 +654,9 @@ mod tests {
         );
         assert_eq!(of(Failure::InvalidScene(error("E0501"))), Verdict::Error);
         assert_eq!(of(Failure::LoopTruncated(1)), Verdict::Timeout);
+        #[cfg(feature = "gpu")]
         assert_eq!(
-            of(Failure::Gpu(gpu::Failure::Device(String::new()))),
+            of(Failure::Gpu(toyproof_gpu::Failure::Device(String::new()))),
             Verdict::Error
         );
         assert_eq!(of(Failure::Cpu(eval::Failure::TimeUp)), Verdict::Timeout);

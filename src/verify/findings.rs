@@ -5,7 +5,6 @@ use std::time::{Duration, Instant};
 
 use toyproof_diagnostic::{Diagnostic, Span};
 use toyproof_eval::{self as eval, Program};
-use toyproof_gpu::Drawn;
 use toyproof_image::{Image, Rgb8Image};
 
 use crate::compare::{self, Answer, Comparison, DiffLevel, PixelStatus};
@@ -59,7 +58,7 @@ pub struct Findings {
     pub trace: Option<Duration>,
 }
 
-/// The GPU that rendered an image, and its times: [`Drawn`] without the image.
+/// The GPU that rendered an image, and its times.
 #[derive(Debug, Clone)]
 pub struct Painter {
     /// Adapter and driver.
@@ -70,17 +69,6 @@ pub struct Painter {
     pub compile: Duration,
     /// Time to render and read back.
     pub draw: Duration,
-}
-
-impl Painter {
-    pub(super) fn of(drawn: Drawn) -> Self {
-        Self {
-            device: drawn.device,
-            translate: drawn.translate,
-            compile: drawn.compile,
-            draw: drawn.draw,
-        }
-    }
 }
 
 /// The result of a check, and its difference image.
@@ -205,13 +193,13 @@ impl Findings {
                 Some(sampled_rows.precision_of_others(algorithm, precision));
             self.decide(Evidence::Checked(evidence.clone()));
         }
-        if let (Verdict::Wrong, Some(suspects), Some(reseeding)) =
-            (self.verdict, case.suspects, compared.reseeding)
+        if let (Verdict::Wrong, Some(hypotheses), Some(reseeding)) =
+            (self.verdict, case.hypotheses, compared.reseeding)
         {
             let named = contain(Part::Mistake, || {
                 let pixels =
-                    sampled_rows.noisy_pixels(program, case, reseeding, suspects.places(), deadline)?;
-                suspects.recognize_noisy(&pixels)
+                    sampled_rows.noisy_pixels(program, case, reseeding, hypotheses.places(), deadline)?;
+                hypotheses.recognize_noisy(&pixels)
             });
             self.mistake = self.contained(named);
         }
@@ -219,20 +207,20 @@ impl Findings {
 
     /// Searches for the mistake that explains a wrong image, or for two, among at most `pairs` pairs.
     fn search_for_mistake(&mut self, case: &Case, program: &Program, pairs: usize) {
-        if let (Verdict::Wrong, None, Some(suspects)) = (self.verdict, &self.mistake, case.suspects) {
-            let named = contain(Part::Mistake, || suspects.recognize(program, case.frame, pairs));
+        if let (Verdict::Wrong, None, Some(hypotheses)) = (self.verdict, &self.mistake, case.hypotheses) {
+            let named = contain(Part::Mistake, || hypotheses.recognize(program, case.frame, pairs));
             self.mistake = self.contained(named);
         }
     }
 
     /// Searches for the mistake that explains the few differing pixels of a correct image.
     fn explain_few_pixels(&mut self, case: &Case, program: &Program) {
-        if let (Verdict::Correct, Some(suspects), Some(algorithm)) =
-            (self.verdict, case.suspects, &self.algorithm)
+        if let (Verdict::Correct, Some(hypotheses), Some(algorithm)) =
+            (self.verdict, case.hypotheses, &self.algorithm)
             && algorithm.answer.differing > 0
         {
             let differing = notes::sample_pixels(algorithm, case.frame.size, usize::MAX);
-            let named = contain(Part::Mistake, || suspects.explaining(program, &differing));
+            let named = contain(Part::Mistake, || hypotheses.explaining(program, &differing));
             self.tolerated_mistake = self.contained(named);
         }
     }

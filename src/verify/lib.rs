@@ -2,6 +2,37 @@
 //! whether the toolchain preserves every bit. GPU, evaluator and tracer run in parallel; [`verify`] returns
 //! the verdict and what explains it.
 //!
+//! # The checks
+//!
+//! | check | expected | actual |
+//! |---|---|---|
+//! | algorithm | the tracer on the scene, in double precision | the shader on the CPU, in double precision |
+//! | precision | the shader in double precision | the shader in float32 on the GPU |
+//! | toolchain | the shader in float32 on the CPU | the shader in float32 on the GPU, to the bit |
+//!
+//! Without a scene there is no algorithm check; without a GPU the evaluator's image in float32 takes the place
+//! of the GPU's, and there is no toolchain check; neither is there in a fast run, which leaves the order of
+//! operations to the driver. Images are compared in bands of rows, while they are rendered.
+//!
+//! # Pixels that are not held against a shader
+//!
+//! - **Undefined**: the color depends on an operation that GLSL leaves undefined. Derivatives across an edge
+//!   belong here. They are left out of all checks and counted.
+//! - **Ill-conditioned**: the pixel differs, and its color changes when every f64 operation is perturbed by a
+//!   random unit in the last place. If only such pixels differ, the verdict is `unstable`, not `wrong`.
+//! - Colors between those of the accepted offsets of secondary rays: offsets are a matter of style.
+//!
+//! A stochastic shader that draws other random numbers than the scene's is compared by its mean. The verdict
+//! does not depend on the load of the machine, the number of threads or the speed of the driver.
+//!
+//! # Explanations
+//!
+//! A wrong image is compared with those of classic mistakes ([`mistake`]); an imprecise one is traced to the
+//! operation that loses the digits ([`debug`]). `conversion` proves that a converted shader still renders the
+//! original's bits.
+//!
+//! # Without a GPU, and with one
+//!
 //! ```
 //! use std::time::Duration;
 //!
@@ -10,12 +41,13 @@
 //! use toyproof_translate::FloatMode;
 //! use toyproof_verify::{Case, Expected, Verdict, verify};
 //!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let mut files = Files::default();
 //! let scene = files.add(File::new("red.toml", "[background]\ncolor = [1.0, 0.0, 0.0]\n"));
-//! let scene = toyproof_scene::parse(&files, scene).unwrap();
+//! let scene = toyproof_scene::parse(&files, scene)?;
 //! let text = "void mainImage(out vec4 c, in vec2 p) { c = vec4(1, 0, 0, 1); }";
 //! let shader = files.add(File::new("red.glsl", text));
-//! let checked = toyproof_glsl::check(&files, shader, &Default::default()).unwrap();
+//! let checked = toyproof_glsl::check(&files, shader, &Default::default())?;
 //! let lints = toyproof_lint::lint(&files, &checked, &Deadline::default());
 //! let frame = Frame { size: [16, 9], ..Frame::default() };
 //! let expected = Expected::new(scene, &frame);
@@ -23,19 +55,49 @@
 //!     checked: &checked,
 //!     lints: &lints,
 //!     expected: Some(&expected),
-//!     suspects: None,
+//!     hypotheses: None,
 //!     frame: &frame,
 //!     float: FloatMode::Strict,
 //!     timeout: Duration::from_secs(10),
 //!     pool: None,
 //! };
 //! // Without a GPU worker, the toolchain check is left out.
-//! assert_eq!(verify(None, &case).unwrap().verdict, Verdict::Correct);
+//! assert_eq!(verify(None, &case)?.verdict, Verdict::Correct);
+//! # Ok(())
+//! # }
 //! ```
+//!
+//! With a GPU, the shader runs in a worker process, so that a hang or a crash of the driver takes nothing else
+//! with it. The worker is the program itself, started again with other arguments; `main` must serve it before
+//! anything else:
+//!
+//! ```no_run
+//! # #[cfg(feature = "gpu")]
+//! # fn main() {
+//! use std::time::Duration;
+//!
+//! use toyproof_gpu::{AdapterSelector, Worker, serve};
+//!
+//! if std::env::args().nth(1).as_deref() == Some("worker") {
+//!     serve(std::io::stdin().lock(), std::io::stdout().lock()).unwrap();
+//!     return;
+//! }
+//! let program = std::env::current_exe().unwrap();
+//! let timeout = Duration::from_secs(10);
+//! let mut worker = Worker::new(program, vec!["worker".into()], AdapterSelector::Auto, timeout);
+//! // verify(Some(&mut worker), &case)
+//! # }
+//! # #[cfg(not(feature = "gpu"))]
+//! # fn main() {}
+//! ```
+//!
+//! The feature `gpu`, on by default, can be left out: the crate then needs no processes and compiles to
+//! WebAssembly, and [`Worker`] has no values.
 
 mod acne;
 pub mod compare;
 pub mod contain;
+#[cfg(feature = "gpu")]
 pub mod conversion;
 mod cpu;
 pub mod debug;
@@ -44,6 +106,11 @@ mod expected;
 mod findings;
 pub mod mistake;
 mod notes;
+#[cfg(feature = "gpu")]
+mod on_gpu;
+#[cfg(not(feature = "gpu"))]
+#[path = "no_gpu.rs"]
+mod on_gpu;
 mod replicates;
 mod reseed;
 mod sample_loops;
@@ -51,19 +118,17 @@ mod session;
 mod silhouette_precision;
 mod stochastic;
 
-use std::iter;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{self, Receiver, SyncSender};
-use std::thread::{self, ScopedJoinHandle};
+use std::sync::atomic::AtomicBool;
+use std::sync::mpsc;
+use std::thread::ScopedJoinHandle;
 use std::time::{Duration, Instant};
 
 use rayon::ThreadPool;
 use thiserror::Error;
-use toyproof_diagnostic::{Deadline, Diagnostic, Overdue, grouped, plural};
+use toyproof_diagnostic::{Diagnostic, Overdue, grouped, plural};
 use toyproof_eval::{self as eval, Program};
 use toyproof_glsl::{self as glsl, Checked};
-use toyproof_gpu::{self as gpu, Drawn, SAFE_ROUNDS, Worker};
-use toyproof_image::{Frame, Image};
+use toyproof_image::Frame;
 use toyproof_lint::Lints;
 use toyproof_translate::FloatMode;
 
@@ -75,9 +140,10 @@ pub use self::decide::{
 pub use self::expected::Expected;
 pub use self::findings::{CheckResult, Findings, Painter};
 pub use self::notes::unbound;
+pub use self::on_gpu::{GpuFailure, Worker};
 use crate::contain::Panic;
 use crate::mistake::Hypotheses;
-use crate::session::{IterationCount, VerifySession};
+use crate::session::VerifySession;
 
 /// A shader to verify, and how.
 #[derive(Debug, Clone, Copy)]
@@ -89,7 +155,7 @@ pub struct Case<'a> {
     /// The reference, if there is a scene; its frame and its film's size must be those of `frame`.
     pub expected: Option<&'a Expected>,
     /// The mistakes that are searched for in a wrong image, for that scene and frame.
-    pub suspects: Option<&'a Hypotheses>,
+    pub hypotheses: Option<&'a Hypotheses>,
     /// The frame.
     pub frame: &'a Frame,
     /// How far the driver may rearrange arithmetic. If it may, there is no toolchain check.
@@ -115,7 +181,7 @@ pub enum Failure {
     InvalidScene(Vec<Diagnostic>),
     /// The GPU failed.
     #[error(transparent)]
-    Gpu(#[from] gpu::Failure),
+    Gpu(#[from] GpuFailure),
     /// There is no GPU, and the evaluator failed.
     #[error(transparent)]
     Cpu(#[from] eval::Failure),
@@ -135,20 +201,13 @@ impl Failure {
     #[must_use]
     pub fn diagnostics(&self) -> Vec<Diagnostic> {
         match self {
-            Self::Invalid(diagnostics)
-            | Self::InvalidScene(diagnostics)
-            | Self::Gpu(gpu::Failure::Invalid(diagnostics) | gpu::Failure::Refused(diagnostics)) => {
-                diagnostics.clone()
-            }
+            Self::Invalid(diagnostics) | Self::InvalidScene(diagnostics) => diagnostics.clone(),
+            Self::Gpu(failure) => failure.diagnostics().to_vec(),
             Self::Overdue(overdue) => vec![glsl::overdue(*overdue)],
             _ => Vec::new(),
         }
     }
 }
-
-/// The capacity of the queue of GPU bands that wait to be compared: an image of 1920×1080. If a larger image
-/// has to wait, so does watching its loops.
-const MAX_QUEUED_BANDS: usize = 9;
 
 /// The evaluator's time limit as a multiple of the GPU's: a slow evaluator is not the shader's fault.
 const EVALUATOR_TIME_FACTOR: u32 = 4;
@@ -182,42 +241,13 @@ pub fn verify(worker: Option<&mut Worker>, case: &Case) -> Result<Findings, Fail
         Err(refusal) => Err((*refusal).into()),
     };
     let session = VerifySession::new(case, evaluator, deadline, counts);
-    let Some(worker) = worker else {
-        return on_cpu(case, session);
-    };
-    let mut session = session;
-    // They share the cores, but none waits for another's latency. The worker runs on this thread: its process
-    // ends with the thread that started it.
-    let comparing_session = &mut session;
-    let (drawn, compared) = thread::scope(|scope| {
-        let (sender, bands) = mpsc::sync_channel(MAX_QUEUED_BANDS);
-        let comparing = scope.spawn(move || within(case.pool, move || comparing_session.bands(Some(&bands))));
-        let drawn = draw(worker, case, &iteration_counts, &sender);
-        let is_usable = |drawn: &Drawn| drawn.loop_truncated.is_none_or(|pixels| pixels == 0);
-        stop.store(!drawn.as_ref().is_ok_and(is_usable), Ordering::Relaxed);
-        drop(sender);
-        (drawn, join(comparing))
-    });
-    let drawn = match drawn {
-        Err(Failure::Gpu(failure)) if failure.is_slow_compilation() => {
-            return without_compiler(failure, case, program.as_ref(), deadline);
+    match worker {
+        None => on_cpu(case, session),
+        Some(worker) => {
+            let program = program.as_ref();
+            on_gpu::verify(worker, case, program, session, &iteration_counts, &stop, deadline)
         }
-        drawn => drawn?,
-    };
-    compared?;
-    // The evaluator found a loop that does not end, on a driver that may have truncated it and could not be
-    // watched.
-    if let (None, Err(failure @ (eval::Failure::Timeout { .. } | eval::Failure::TooOften { .. }))) =
-        (drawn.loop_truncated, &session.evaluator)
-    {
-        return Err(failure.clone().into());
     }
-    // Where the driver could not be watched in time, the evaluator has counted the iterations.
-    let painter = match drawn.loop_truncated.unwrap_or(session.observed.beyond_cap) {
-        0 => Painter::of(drawn),
-        pixels => return Err(Failure::LoopTruncated(pixels)),
-    };
-    Ok(within(case.pool, || session.findings(Some(painter))))
 }
 
 /// Verifies with the evaluator alone.
@@ -228,66 +258,12 @@ fn on_cpu(case: &Case, mut session: VerifySession) -> Result<Findings, Failure> 
     })
 }
 
-/// Verifies with the evaluator alone because the driver's compiler exceeded the time limit: how long it takes
-/// does not show how long the shader runs. Fails if the evaluator cannot compile the shader either.
-fn without_compiler(
-    failure: gpu::Failure,
-    case: &Case,
-    program: Result<&Program, &eval::Refusal>,
-    deadline: Instant,
-) -> Result<Findings, Failure> {
-    let Ok(program) = program else {
-        return Err(failure.into());
-    };
-    let stop = AtomicBool::new(false);
-    let (counts, _) = mpsc::channel();
-    let evaluator = Evaluator::new(
-        program,
-        case,
-        case.timeout * EVALUATOR_TIME_FACTOR,
-        deadline,
-        &stop,
-    );
-    let mut findings = on_cpu(case, VerifySession::new(case, Ok(evaluator), deadline, counts))?;
-    findings.notes.push(notes::slow_compilation(case.timeout));
-    Ok(findings)
-}
-
 /// Runs `work` in the pool, if there is one.
 fn within<T: Send>(pool: Option<&ThreadPool>, work: impl FnOnce() -> T + Send) -> T {
     match pool {
         Some(pool) => pool.install(work),
         None => work(),
     }
-}
-
-/// Renders on the GPU, sends the bands on, and watches the loops unless the evaluator shows that they are
-/// short.
-fn draw(
-    worker: &mut Worker,
-    case: &Case,
-    iteration_counts: &Receiver<IterationCount>,
-    bands: &SyncSender<Image>,
-) -> Result<Drawn, Failure> {
-    // A strict run has the evaluator's iteration counts, which are often known by now. Otherwise, no band is
-    // waited for longer than the driver would need to render the image again.
-    let are_short = |render_time| {
-        let mut counts = iter::from_fn(|| iteration_counts.recv_timeout(render_time).ok());
-        let last = counts.find(|counts| counts.most > SAFE_ROUNDS || counts.is_last);
-        last.is_some_and(|counts| counts.most <= SAFE_ROUNDS)
-    };
-    let send_band = |band| {
-        // If the receiver is gone, the comparison has failed and reports it.
-        let _ = bands.send(band);
-    };
-    let watch = |drawn: &Drawn, render_time| {
-        drawn.may_truncate_loops() && (case.float == FloatMode::Fast || !are_short(render_time))
-    };
-    let lowered = case
-        .float
-        .lower_within(case.checked, &Deadline::after(case.timeout))?;
-    let drawn = worker.draw_in_bands(lowered, case.frame.clone(), case.float, send_band, watch)?;
-    Ok(drawn)
 }
 
 fn timed<T>(work: impl FnOnce() -> T) -> (T, Duration) {

@@ -10,28 +10,24 @@ use toyproof_tracer::Tracer;
 use super::reseed::{Reseeding, is_deterministic};
 use super::{Case, CheckResult};
 use crate::compare::{
-    EXACT_TOLERANCE, PixelStatus, REPLICATES, ReplicateTest, ReplicatedPixel, compare_replicates,
+    EXACT_TOLERANCE, MIN_SHARED_CORRELATION, MIN_STANDARD_DEVIATION, PixelStatus, REPLICATES, ReplicateTest,
+    ReplicatedPixel, compare_replicates,
 };
 use crate::decide::MAX_DIFFERING;
 use crate::mistake::NoisyPixel;
+use crate::stochastic::{SELECTION_SETS, differs};
 
 /// The number of further replicates that estimate the weights of pixels, so that weights are independent of
 /// the values that are compared.
 const WEIGHT_REPLICATES: usize = 4;
 
-/// The tracer's sets of random numbers: the first select pixels and estimate their weights, the two halves
-/// estimate the means.
-const SELECTION_SETS: std::ops::Range<u32> = 1..9;
+/// The halves of the tracer's sets of random numbers that estimate the means.
 const ESTIMATE_HALVES: [std::ops::Range<u32>; 2] = [9..13, 13..17];
 
 /// The largest numbers of samples, of paths and of pixels of a replicate.
 const MAX_SAMPLES: u32 = 1 << 18;
 const MAX_PATHS: u32 = 1 << 17;
 const MAX_PIXELS: u32 = 1 << 15;
-
-/// The lower bound of a pixel's standard deviation in weights: what eight sets of samples happen to miss,
-/// others miss too.
-const MIN_STANDARD_DEVIATION: f64 = 0.01;
 
 /// The largest mean of samples: above it, the inverse of a tone map has no precision left.
 const MAX_SAMPLE_MEAN: f64 = 1e4;
@@ -104,10 +100,6 @@ fn variance(all: &[[f64; 3]]) -> [f64; 3] {
         let squares = all.iter().map(|each| (each[i] - mean[i]).powi(2));
         squares.sum::<f64>() / (all.len() - 1) as f64
     })
-}
-
-fn differs(a: [f64; 3], b: [f64; 3]) -> bool {
-    (0..3).any(|i| (a[i] - b[i]).abs() > EXACT_TOLERANCE)
 }
 
 /// Compares the replicates of a shader that differs from its scene with the tracer.
@@ -257,10 +249,6 @@ pub(super) fn noisy_pixels(
     });
     Some(pixels.collect())
 }
-
-/// A shader uses the scene's random numbers if the correlation of its noise with the reference's exceeds
-/// this. Independent noise has a correlation of 0.1, because the same mean is subtracted from both.
-const MIN_SHARED_CORRELATION: f64 = 0.5;
 
 /// Whether a shader uses the scene's random numbers.
 fn uses_scene_numbers(

@@ -35,7 +35,7 @@ const MIN_RANDOM_SHARE: f64 = 0.98;
 /// The sets of random numbers that select pixels and estimate their weights. They are disjoint from the sets
 /// that estimate the means, and independent of the shader's image; otherwise pixels would be selected because
 /// a set hit a small feature.
-const SELECTION_SETS: Range<u32> = 1..9;
+pub(super) const SELECTION_SETS: Range<u32> = 1..9;
 
 /// The sets of random numbers that estimate the means.
 const ESTIMATE_SETS: Range<u32> = 9..17;
@@ -316,6 +316,7 @@ fn mean(sets: &[Vec<[f64; 3]>], at: usize) -> [f64; 3] {
     [0, 1, 2].map(|i| sets.iter().map(|set| set[at][i]).sum::<f64>() / count)
 }
 
-fn differs(a: [f64; 3], b: [f64; 3]) -> bool {
+/// Whether two colors differ.
+pub(super) fn differs(a: [f64; 3], b: [f64; 3]) -> bool {
     (0..3).any(|i| (a[i] - b[i]).abs() > EXACT_TOLERANCE)
 }

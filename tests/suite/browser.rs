@@ -6,24 +6,25 @@
 //! `TOYPROOF_COUNT` (500) are chosen with `TOYPROOF_SEED` (0) among those that read no channel; a line for
 //! each goes to standard error.
 
-use std::ffi::OsStr;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 use std::{env, fs};
 
 use toyproof::diagnostic::{Deadline, File, Files};
 use toyproof::glsl::{Options, check};
 use toyproof::gpu::Worker;
-use toyproof::gpu::browser::{Chromium, Failure, Text, as_shadertoy, find};
+use toyproof::gpu::browser::{Chromium, Failure, Text, as_shadertoy};
 use toyproof::image::Frame;
 use toyproof::translate::backend::{Target, emit};
 use toyproof::translate::naga_ir::ValidModule;
 use toyproof::translate::wgsl::{Style, wgsl};
 use toyproof::translate::{FloatMode, lower};
 
-use crate::page::devtools::Page;
-use crate::support::{EXERCISES, setting, swiftshader};
+use crate::requirements::{require_chromium, require_folder, require_swiftshader};
+use crate::support::devtools::Page;
+use crate::support::wait::wait_until;
+use crate::support::{EXERCISES, setting};
 
 const SIZE: [u32; 2] = [64, 36];
 /// `iTime` and `iFrame`.
@@ -144,11 +145,8 @@ fn compare_shader(browser: &mut Chromium, worker: &mut Worker, shader: &str) -> 
 
 /// A browser and a worker on its software driver; none without Chromium.
 fn browser_and_worker() -> Option<(Chromium, Worker)> {
-    let worker = swiftshader()?;
-    let Some(program) = find() else {
-        eprintln!("skipped: no Chromium here");
-        return None;
-    };
+    let worker = require_swiftshader()?;
+    let program = require_chromium()?;
     Some((Chromium::new(program, TIME_LIMIT), worker))
 }
 
@@ -195,9 +193,9 @@ fn choose_shaders(folder: &Path) -> Vec<(PathBuf, String)> {
 }
 
 #[test]
+#[ignore = "needs a folder of shaders"]
 fn other_shaders_are_the_same_in_a_browser() {
-    let Some(folder) = env::var_os("TOYPROOF_SHADERS") else {
-        eprintln!("skipped: TOYPROOF_SHADERS names no folder of shaders");
+    let Some(folder) = require_folder("TOYPROOF_SHADERS") else {
         return;
     };
     let Some((mut browser, mut worker)) = browser_and_worker() else {
@@ -207,9 +205,9 @@ fn other_shaders_are_the_same_in_a_browser() {
 }
 
 #[test]
+#[ignore = "needs a folder of shaders"]
 fn conversions_of_other_shaders_are_the_same_in_a_browser() {
-    let Some(folder) = env::var_os("TOYPROOF_SHADERS") else {
-        eprintln!("skipped: TOYPROOF_SHADERS names no folder of shaders");
+    let Some(folder) = require_folder("TOYPROOF_SHADERS") else {
         return;
     };
     let Some((mut browser, _)) = browser_and_worker() else {
@@ -219,9 +217,9 @@ fn conversions_of_other_shaders_are_the_same_in_a_browser() {
 }
 
 /// Compares shaders of a folder; few may differ.
-fn tally(folder: &OsStr, mut compare_shader: impl FnMut(&str) -> (Outcome, String)) {
+fn tally(folder: &Path, mut compare_shader: impl FnMut(&str) -> (Outcome, String)) {
     let (mut equal, mut close, mut differ, mut others) = (0, 0, 0, 0);
-    for (path, text) in choose_shaders(Path::new(folder)) {
+    for (path, text) in choose_shaders(folder) {
         let (outcome, words) = compare_shader(&text);
         eprintln!("{} {outcome:?} {words}", path.display());
         *match outcome {
@@ -256,8 +254,7 @@ fn example_hosts_render_conversions() {
     const SHADER: &str = "void mainImage(out vec4 c, in vec2 p) {
         c = vec4(p / iResolution.xy, 0.25 + 0.0 * sin(iTime) + 0.5 * float(iFrame < 0), 1.0);
     }";
-    let Some(program) = find() else {
-        eprintln!("skipped: no Chromium here");
+    let Some(program) = require_chromium() else {
         return;
     };
     let mut files = Files::default();
@@ -289,24 +286,20 @@ fn example_hosts_render_conversions() {
         window.open(&file);
         // The page loads before its canvas is rendered, and no event reports when the canvas reaches the
         // window.
-        let start = Instant::now();
-        while let Err(unlike) = shows_the_ramps(&window.screenshot()) {
-            assert!(start.elapsed() < TIME_LIMIT, "{page} {unlike}");
-        }
+        wait_until(|| shows_the_ramps(&window.screenshot()));
     }
 }
 
-/// Checks that a window shows red increasing to the right and green increasing upward, on a canvas of 640 by
+/// Whether a window shows red increasing to the right and green increasing upward, on a canvas of 640 by
 /// 360 pixels that starts 8 pixels from its top left.
-fn shows_the_ramps(shot: &[u8]) -> Result<(), String> {
+fn shows_the_ramps(shot: &[u8]) -> bool {
     let shown = image::load_from_memory(shot).unwrap().into_rgb8();
-    for [x, y] in [[0, 0], [639, 0], [0, 359], [400, 100]] {
-        let found = shown.get_pixel(8 + x, 8 + 359 - y).0;
-        let expected = [(x as f32 + 0.5) / 640.0, (y as f32 + 0.5) / 360.0, 0.25];
-        let near = |(found, expected): (u8, f32)| (f32::from(found) - 255.0 * expected).abs() <= 1.0;
-        if !found.into_iter().zip(expected).all(near) {
-            return Err(format!("at {x}, {y}: {found:?}"));
-        }
-    }
-    Ok(())
+    [[0, 0], [639, 0], [0, 359], [400, 100]]
+        .into_iter()
+        .all(|[x, y]| {
+            let found = shown.get_pixel(8 + x, 8 + 359 - y).0;
+            let expected = [(x as f32 + 0.5) / 640.0, (y as f32 + 0.5) / 360.0, 0.25];
+            let near = |(found, expected): (u8, f32)| (f32::from(found) - 255.0 * expected).abs() <= 1.0;
+            found.into_iter().zip(expected).all(near)
+        })
 }

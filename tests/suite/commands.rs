@@ -6,7 +6,8 @@ use std::process::Command;
 
 use serde_json::Value;
 
-use crate::program::{command, has_driver, run, toyproof};
+use crate::program::{command, run, toyproof};
+use crate::requirements::{require_chromium, require_driver, require_program};
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -57,7 +58,7 @@ fn the_course_is_correct_at_odd_sizes() {
 
 #[test]
 fn the_course_is_correct_and_its_json_follows_the_schema() {
-    if !has_driver() {
+    if !require_driver() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
@@ -209,7 +210,7 @@ fn repeated_warnings_are_summarized() {
 
 #[test]
 fn a_shader_without_a_scene_is_ok_and_one_with_the_wrong_scene_is_wrong() {
-    if !has_driver() {
+    if !require_driver() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
@@ -237,7 +238,7 @@ fn a_shader_without_a_scene_is_ok_and_one_with_the_wrong_scene_is_wrong() {
 
 #[test]
 fn standard_input_is_a_shader() {
-    if !has_driver() {
+    if !require_driver() {
         return;
     }
     let shader = fs::File::open(root().join("glsl/02-sphere.glsl")).unwrap();
@@ -251,7 +252,7 @@ fn standard_input_is_a_shader() {
 
 #[test]
 fn the_frame_flags_reach_the_shader() {
-    if !has_driver() {
+    if !require_driver() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
@@ -331,7 +332,7 @@ fn sequences_are_numbered_and_resume() {
 
 #[test]
 fn derivatives_point_upward() {
-    if !has_driver() {
+    if !require_driver() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
@@ -398,15 +399,13 @@ fn rendering_and_comparing_images() {
 
 /// Runs a validator on a converted file, if it is installed.
 fn judge(program: &str, arguments: &[&str]) {
-    match Command::new(program).args(arguments).output() {
-        Err(_) => eprintln!("skipped: {program} is not installed here"),
-        Ok(output) => {
-            assert!(
-                output.status.success(),
-                "{program} {arguments:?}: {}",
-                String::from_utf8_lossy(&output.stderr)
-            );
-        }
+    if require_program(program) {
+        let output = Command::new(program).args(arguments).output().unwrap();
+        assert!(
+            output.status.success(),
+            "{program} {arguments:?}: {}",
+            String::from_utf8_lossy(&output.stderr)
+        );
     }
 }
 
@@ -535,7 +534,6 @@ fn colors_are_for_terminals_and_can_be_forced_or_disabled() {
 /// looked up.
 #[test]
 fn every_command_of_the_readme_works() {
-    let driver = has_driver();
     let readme = fs::read_to_string(root().join("README.md")).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let made = toyproof(folder.path(), &["scenes", "--write", "glsl"]);
@@ -562,8 +560,7 @@ fn every_command_of_the_readme_works() {
             .iter()
             .any(|name| line.starts_with(&format!("toyproof {name}")));
         let needs_browser = line.contains("--browser");
-        if (needs_driver && !driver) || (needs_browser && toyproof::gpu::browser::find().is_none()) {
-            eprintln!("skipped, for want of a driver or a browser: {line}");
+        if (needs_driver && !require_driver()) || (needs_browser && require_chromium().is_none()) {
             continue;
         }
         let ran = Command::new("sh")

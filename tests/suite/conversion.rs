@@ -18,7 +18,8 @@ use toyproof::verify::conversion::{
 };
 
 use crate::program::{command, run, toyproof};
-use crate::support::{ANIMATION, EVERY_EXERCISE, Exercise, REFLECTIONS, worker};
+use crate::requirements::{require_chromium, require_driver, require_program, require_worker};
+use crate::support::{ANIMATION, EVERY_EXERCISE, Exercise, REFLECTIONS};
 
 const TIMEOUT: Duration = Duration::from_secs(60);
 
@@ -57,7 +58,9 @@ fn holds(worker: &mut Worker, exercise: &Exercise, style: Style) {
 
 #[test]
 fn every_exercise_is_proved() {
-    let Some(mut worker) = worker() else { return };
+    let Some(mut worker) = require_worker() else {
+        return;
+    };
     for exercise in EVERY_EXERCISE {
         holds(&mut worker, exercise, Style::Plain);
     }
@@ -87,7 +90,9 @@ fn every_exercise_is_proved_without_a_driver() {
 
 #[test]
 fn every_style_is_proved() {
-    let Some(mut worker) = worker() else { return };
+    let Some(mut worker) = require_worker() else {
+        return;
+    };
     for style in Style::ALL {
         for exercise in [&REFLECTIONS, &ANIMATION] {
             holds(&mut worker, exercise, style);
@@ -167,7 +172,9 @@ fn conversions_are_valid_in_their_hosts_modules() {
 
 #[test]
 fn wrong_conversions_are_not_proved() {
-    let Some(mut worker) = worker() else { return };
+    let Some(mut worker) = require_worker() else {
+        return;
+    };
     let edits = [
         ("-b - root", "-b + root"),
         ("disc > 0.0", "disc > 0.01"),
@@ -214,7 +221,9 @@ fn words(checked: &Checked, from: Op, to: Op) -> ShaderArtifact {
 
 #[test]
 fn exact_spirv_is_proved_and_modified_is_not() {
-    let Some(mut worker) = worker() else { return };
+    let Some(mut worker) = require_worker() else {
+        return;
+    };
     for shader in [REFLECTIONS.shader, CONSTRUCTS] {
         let checked = checked(shader);
         let as_written = words(&checked, Op::FAdd, Op::FAdd);
@@ -228,7 +237,9 @@ fn exact_spirv_is_proved_and_modified_is_not() {
 
 #[test]
 fn reread_glsl_is_proved_and_modified_is_not() {
-    let Some(mut worker) = worker() else { return };
+    let Some(mut worker) = require_worker() else {
+        return;
+    };
     let checked_shader = checked(REFLECTIONS.shader);
     let text = String::from_utf8(emitted(&checked_shader, Target::Glsl)).unwrap();
     for (from, to, holds) in [("", "", true), ("reflect(", "-reflect(", false)] {
@@ -283,7 +294,9 @@ void mainImage(out vec4 c, in vec2 p) {
 
 #[test]
 fn constructs_that_wgsl_lacks_are_replaced_and_proved() {
-    let Some(mut worker) = worker() else { return };
+    let Some(mut worker) = require_worker() else {
+        return;
+    };
     for style in Style::ALL {
         let proof = proof(&mut worker, CONSTRUCTS, style, |text| text);
         assert!(proof.holds(), "{}: {proof:?}", style.name());
@@ -292,7 +305,7 @@ fn constructs_that_wgsl_lacks_are_replaced_and_proved() {
 
 #[test]
 fn proved_files_are_written_with_a_header() {
-    if worker().is_none() {
+    if !require_driver() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
@@ -337,7 +350,7 @@ fn proved_files_are_written_with_a_header() {
 
 #[test]
 fn unprovable_shaders_name_the_operation_and_position() {
-    if worker().is_none() {
+    if !require_driver() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
@@ -351,7 +364,7 @@ fn unprovable_shaders_name_the_operation_and_position() {
 
 #[test]
 fn folders_have_a_proof_table() {
-    if worker().is_none() {
+    if !require_driver() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
@@ -401,7 +414,7 @@ fn folders_have_a_proof_table() {
 /// The header of each language's file states its proof.
 #[test]
 fn files_in_every_language_state_their_proof() {
-    if worker().is_none() {
+    if !require_driver() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
@@ -482,7 +495,7 @@ fn named(declared: impl Fn(&str) -> String, used: impl Fn(&str) -> String) -> St
 
 #[test]
 fn authors_may_use_names_of_the_surrounding_code() {
-    if worker().is_none() {
+    if !require_driver() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
@@ -541,12 +554,7 @@ fn authors_may_use_names_of_the_surrounding_code() {
 
 #[test]
 fn hlsl_is_read_without_optimization() {
-    if worker().is_none()
-        || Command::new("glslangValidator")
-            .arg("--version")
-            .output()
-            .is_err()
-    {
+    if !require_driver() || !require_program("glslangValidator") {
         return;
     }
     // An optimizer would fold these two products into one, and the sum into `fma`.
@@ -589,7 +597,7 @@ fn files_are_written_while_others_are_in_progress() {
 
 #[test]
 fn the_browser_runs_on_request_and_leaves_nothing_behind() {
-    if worker().is_none() || toyproof::gpu::browser::find().is_none() {
+    if !require_driver() || require_chromium().is_none() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
@@ -621,38 +629,4 @@ fn the_browser_runs_on_request_and_leaves_nothing_behind() {
         &["convert", "a.glsl", "-o", "a.spv", "--verify", "--browser"],
     );
     assert_eq!(refused.code, 2, "browsers run no SPIR-V: {}", refused.stderr);
-}
-
-/// Third-party conversions: `TOYPROOF_CONVERTED` is a folder of WGSL with our bindings, `TOYPROOF_SHADERS`
-/// one of their source shaders, with the same names. A line for each goes to standard error; nothing is
-/// asserted of them.
-#[test]
-fn third_party_conversions_are_checked() {
-    let folders = ["TOYPROOF_SHADERS", "TOYPROOF_CONVERTED"].map(env::var_os);
-    let [Some(shaders), Some(others)] = folders else {
-        eprintln!("skipped: TOYPROOF_SHADERS and TOYPROOF_CONVERTED name no folders");
-        return;
-    };
-    let Some(mut worker) = worker() else { return };
-    for entry in fs::read_dir(shaders).unwrap() {
-        let path = entry.unwrap().path();
-        let name = path
-            .file_stem()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into_owned();
-        let Ok(text) = fs::read_to_string(Path::new(&others).join(format!("{name}.wgsl"))) else {
-            continue;
-        };
-        let original = checked(&fs::read_to_string(&path).unwrap());
-        match proof_of(
-            &mut worker,
-            &original,
-            ShaderArtifact::Wgsl(Style::Plain.hosted(&text)),
-        ) {
-            Ok(proof) if proof.holds() => eprintln!("{name}: proved"),
-            Ok(proof) => eprintln!("{name}: {} of {} differ", proof.differing(), proof.pixels()),
-            Err(failure) => eprintln!("{name}: {failure}"),
-        }
-    }
 }

@@ -2,7 +2,8 @@
 
 use toyproof::verify::Verdict;
 
-use crate::support::{Edit, Exercise, STILL, algorithm, check_exercise, edit, numbers, worker};
+use crate::requirements::require_worker;
+use crate::support::{Edit, Exercise, STILL, algorithm, check_exercise, edit, numbers};
 
 const SCENE: &str = r#"
 ambient = [0.1, 0.1, 0.1]
@@ -74,7 +75,7 @@ static FAULTS: &[(&str, &[Edit])] = &[
 
 #[test]
 fn quads_across_edges_have_arbitrary_derivatives() {
-    let Some(mut worker) = worker() else {
+    let Some(mut worker) = require_worker() else {
         return;
     };
     let exercise = Exercise {

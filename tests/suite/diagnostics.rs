@@ -75,17 +75,20 @@ fn told(example: &Example, scene: Option<&Scene>) -> (Vec<Diagnostic>, Files) {
             let file = files.add(File::new("example.glsl", format!("{}{rest}", example.text)));
             let checked = glsl::check(&files, file, &glsl::Options::default());
             (
-                checked.map_or_else(|reported| reported, |checked| seen(&files, &checked, scene)),
+                checked.map_or_else(Vec::from, |checked| seen(&files, &checked, scene)),
                 files,
             )
         }
         "toml" => {
             let file = files.add(File::new("example.toml", example.text));
-            (scene::parse(&files, file).err().unwrap_or_default(), files)
+            (scene::parse(&files, file).err().unwrap_or_default().into(), files)
         }
         "toml rubric" => {
             let file = files.add(File::new("example.toml", example.text));
-            (Rubric::parse(&files, file).err().unwrap_or_default(), files)
+            (
+                Rubric::parse(&files, file).err().unwrap_or_default().into(),
+                files,
+            )
         }
         other => panic!("what is ```{other}?"),
     }
@@ -105,7 +108,7 @@ fn seen(files: &Files, checked: &Checked, scene: Option<&Scene>) -> Vec<Diagnost
         checked,
         lints: &lints,
         expected: expected.as_ref(),
-        suspects: None,
+        hypotheses: None,
         frame: &frame,
         float: FloatMode::Strict,
         timeout: Duration::from_secs(60),

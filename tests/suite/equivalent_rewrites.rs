@@ -9,7 +9,8 @@ use toyproof::tracer::{ColorRange, EpsilonSet};
 use toyproof::verify::compare::EXACT_TOLERANCE;
 use toyproof::verify::{Findings, Verdict};
 
-use crate::exercises::{EDITED, Edited};
+use crate::requirements::{require_driver, require_worker};
+use crate::support::exercises::{EDITED, Edited};
 use crate::support::{
     COMPLEX_SCENE, DISNEY, EXERCISES, Edit, Exercise, MANY_OBJECTS, REFLECTIONS, SHADING, SPHERE, algorithm,
     check_exercise, checked, edited, frame, numbers, tracer,
@@ -746,9 +747,9 @@ struct Outcome {
     findings: Findings,
 }
 
-/// All rewrites, checked once for all tests here; none without a Vulkan driver.
-static OUTCOMES: LazyLock<Option<Vec<Outcome>>> = LazyLock::new(|| {
-    let mut worker = crate::support::worker()?;
+/// All rewrites, checked once for all tests here.
+static OUTCOMES: LazyLock<Vec<Outcome>> = LazyLock::new(|| {
+    let mut worker = require_worker().expect("there is a driver");
     let mut outcomes = Vec::new();
     for (name, exercise, edits) in rewrites() {
         let shader = edited(exercise, edits);
@@ -761,14 +762,15 @@ static OUTCOMES: LazyLock<Option<Vec<Outcome>>> = LazyLock::new(|| {
             findings,
         });
     }
-    Some(outcomes)
+    outcomes
 });
 
 #[test]
 fn every_rewrite_stays_correct() {
-    let Some(outcomes) = &*OUTCOMES else {
+    if !require_driver() {
         return;
-    };
+    }
+    let outcomes = &*OUTCOMES;
     let undecided = |outcome: &&Outcome| algorithm(&outcome.findings).undecided;
     if let Some(most) = outcomes.iter().max_by_key(undecided) {
         eprintln!(
@@ -797,7 +799,7 @@ fn every_rewrite_stays_correct() {
 /// The sixth class starts its shadow rays 0.01 off the surface.
 #[test]
 fn scenes_set_the_offset_of_ray_origins() {
-    let Some(mut worker) = crate::support::worker() else {
+    let Some(mut worker) = require_worker() else {
         return;
     };
     let shader = edited(&DISNEY, &[("0.001 * normal", "0.01 * normal")]);
@@ -836,9 +838,10 @@ const TOLERANCE_MARGIN: f64 = 10.0;
 /// are outliers, so shaders with differing or ill-conditioned pixels are left out.
 #[test]
 fn the_tolerance_is_no_larger_than_needed() {
-    let Some(outcomes) = &*OUTCOMES else {
+    if !require_driver() {
         return;
-    };
+    }
+    let outcomes = &*OUTCOMES;
     let mut needed = Largest::default();
     for exercise in EXERCISES {
         let hulls = hulls(exercise);

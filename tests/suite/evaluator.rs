@@ -1,32 +1,13 @@
 //! The evaluator in f32 and the strict GPU run produce the same bits.
 
-use std::path::PathBuf;
-use std::time::{Duration, Instant};
-
-use toyproof::diagnostic::{File, Files};
 use toyproof::eval::{Program, Rendered, Settings};
-use toyproof::glsl::{Checked, Options, check};
-use toyproof::gpu::{AdapterSelector, Worker};
+use toyproof::glsl::Checked;
+use toyproof::gpu::Worker;
 use toyproof::image::{Frame, Image};
 use toyproof::translate::{FloatMode, lower_strict};
 
-use crate::support::{self, EXERCISES, checked};
-
-/// The number of pixels that differ between two images, and the first with both colors.
-fn differences(a: &Image, b: &Image, ignore: impl Fn(u32, u32) -> bool) -> (usize, String) {
-    let [width, height] = a.size();
-    // Compared like in the toolchain check.
-    let same = |a: f32, b: f32| a == b || (a.is_nan() && b.is_nan());
-    let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-    let differing: Vec<_> = pixels
-        .filter(|&(x, y)| !ignore(x, y))
-        .filter(|&(x, y)| (0..3).any(|at| !same(a.get(x, y)[at], b.get(x, y)[at])))
-        .collect();
-    let first = differing.first().map_or(String::new(), |&(x, y)| {
-        format!("first at ({x}, {y}): {:?} and {:?}", a.get(x, y), b.get(x, y))
-    });
-    (differing.len(), first)
-}
+use crate::requirements::{require_swiftshader, require_worker};
+use crate::support::{EXERCISES, checked, differences};
 
 fn both(worker: &mut Worker, checked: &Checked, frame: &Frame) -> (Rendered<f32>, Image) {
     let rendered = Program::new(checked)
@@ -41,7 +22,7 @@ fn both(worker: &mut Worker, checked: &Checked, frame: &Frame) -> (Rendered<f32>
 
 #[test]
 fn the_course_has_the_same_bits_on_the_cpu() {
-    let Some(mut worker) = support::worker() else {
+    let Some(mut worker) = require_worker() else {
         return;
     };
     let frame = Frame {
@@ -91,7 +72,7 @@ fn drivers_agree_where_they_once_differed() {
         size: [64, 36],
         ..Frame::default()
     };
-    for mut worker in [support::worker(), support::swiftshader()].into_iter().flatten() {
+    for mut worker in [require_worker(), require_swiftshader()].into_iter().flatten() {
         for body in DIFFERED {
             let shader = format!("void mainImage(out vec4 c, in vec2 p) {{ {body} }}");
             let (rendered, drawn) = both(&mut worker, &checked(&shader), &frame);
@@ -99,97 +80,4 @@ fn drivers_agree_where_they_once_differed() {
             assert_eq!(count, 0, "{body}: {first}");
         }
     }
-}
-
-/// `TOYPROOF_CORPUS=DIR cargo test --release --test suite -- --ignored corpus --nocapture`: every shader
-/// below a folder that reads no channel, at two times; `TOYPROOF_CORPUS_LIMIT` limits their number.
-#[test]
-#[ignore = "needs a folder of shaders"]
-fn the_corpus_has_the_same_bits_on_the_cpu() {
-    let folder = std::env::var_os("TOYPROOF_CORPUS").expect("TOYPROOF_CORPUS names a folder");
-    let limit = std::env::var("TOYPROOF_CORPUS_LIMIT").map_or(usize::MAX, |limit| limit.parse().unwrap());
-    let program = PathBuf::from(env!("CARGO_BIN_EXE_toyproof"));
-    let patience = Duration::from_secs(60);
-    let mut worker = Worker::new(program, vec!["worker".into()], AdapterSelector::Auto, patience);
-    let mut paths: Vec<PathBuf> = std::fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .collect();
-    // In an order independent of their names.
-    paths.sort_by_key(|path| {
-        let name = path.as_os_str().as_encoded_bytes();
-        name.iter().fold(0u32, |hash, &byte| {
-            (hash ^ u32::from(byte)).wrapping_mul(16_777_619)
-        })
-    });
-    let (mut shaders, mut same, mut pixels, mut undefined, mut differing) = (0, 0, 0, 0, 0);
-    for path in paths {
-        if shaders == limit {
-            break;
-        }
-        let name = path.file_stem().unwrap().to_string_lossy().into_owned();
-        let text = std::fs::read_to_string(&path).unwrap();
-        let mut files = Files::default();
-        let file = files.add(File::new(&name, text.as_str()));
-        let Ok(checked) = check(&files, file, &Options::default()) else {
-            continue;
-        };
-        if text.contains("iChannel") {
-            continue;
-        }
-        let program = match Program::new(&checked) {
-            Ok(program) => program,
-            Err(refusal) => {
-                eprintln!("{name}: {refusal}");
-                continue;
-            }
-        };
-        let mut bad = String::new();
-        let mut done = 0;
-        for time in [0.7, 10.3] {
-            let frame = Frame {
-                size: [64, 36],
-                time,
-                frame: (time * 60.0) as i32,
-                ..Frame::default()
-            };
-            let settings = Settings {
-                deadline: Some(Instant::now() + patience),
-                ..Settings::default()
-            };
-            let rendered = match program.render::<f32>(&frame, &settings) {
-                Ok(rendered) => rendered,
-                Err(failure) => {
-                    eprintln!("{name}: cpu: {failure}");
-                    continue;
-                }
-            };
-            let drawn = match worker.draw(lower_strict(&checked), frame.clone(), FloatMode::Strict) {
-                Ok(drawn) => drawn.image(),
-                Err(failure) => {
-                    eprintln!("{name}: gpu: {failure}");
-                    continue;
-                }
-            };
-            done += 1;
-            let painting = &rendered.framebuffer;
-            pixels += 64 * 36;
-            undefined += painting.undefined();
-            let (count, first) = differences(&painting.image(), &drawn, |x, y| painting.is_undefined(x, y));
-            if count > 0 {
-                differing += count;
-                bad = format!("{bad} {count} differ at {time} s, {first}");
-            }
-        }
-        if done == 2 {
-            shaders += 1;
-            same += usize::from(bad.is_empty());
-            if !bad.is_empty() {
-                eprintln!("{name}:{bad}");
-            }
-        }
-    }
-    eprintln!(
-        "{shaders} shaders, {same} the same in every defined bit; of {pixels} pixels {undefined} undefined, {differing} differ"
-    );
 }

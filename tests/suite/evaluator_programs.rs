@@ -9,6 +9,8 @@ use toyproof::glsl::{Checked, Options, check};
 use toyproof::image::{Frame, Image};
 use toyproof::translate::{FloatMode, lower_strict};
 
+use crate::requirements::require_worker;
+
 /// The text before `mainImage`, its body, and the resulting `o.x`. `p` is (0.5, 0.5); `iTime` is 2; texel (1,
 /// 2) of `iChannel0` is 0.75, the others are 0.
 static PROGRAMS: &[(&str, &str, f64)] = &[
@@ -398,7 +400,7 @@ fn small_programs_evaluate_to_their_result() {
 
 #[test]
 fn small_programs_render_the_same_on_the_gpu() {
-    let Some(mut worker) = crate::support::worker() else {
+    let Some(mut worker) = require_worker() else {
         return;
     };
     let mut wrong = Vec::new();
@@ -589,7 +591,7 @@ fn undefined_operations_are_observed_exactly_where_they_occur() {
 /// Pixels of one quad that diverge: loops of different lengths, returns and discards.
 #[test]
 fn divergent_pixels_have_the_same_bits_as_on_the_gpu() {
-    let Some(mut worker) = crate::support::worker() else {
+    let Some(mut worker) = require_worker() else {
         return;
     };
     let bodies = [

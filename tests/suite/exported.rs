@@ -256,7 +256,7 @@ fn random_surfaces(random: &mut Random, motions: u32, traces_paths: bool) -> Vec
 fn exported(text: &str) -> Result<String, String> {
     let mut files = Files::default();
     let file = files.add(File::new("<scene>", text));
-    export::shader(&scene::parse(&files, file).unwrap())
+    export::shader(&scene::parse(&files, file).unwrap()).map_err(|error| error.to_string())
 }
 
 #[test]

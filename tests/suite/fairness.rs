@@ -10,7 +10,8 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use crate::program::{command, has_driver, run};
+use crate::program::{command, run};
+use crate::requirements::require_driver;
 
 /// Counts the shaders of a folder of `tests/fairness` by verdict, at 160×90.
 fn verdicts(kind: &str) -> BTreeMap<String, usize> {
@@ -34,7 +35,7 @@ fn verdicts(kind: &str) -> BTreeMap<String, usize> {
 #[test]
 #[ignore = "takes minutes; run it in release"]
 fn right_shaders_are_accepted_and_biased_ones_are_not() {
-    if !has_driver() {
+    if !require_driver() {
         return;
     }
     let right = verdicts("correct");

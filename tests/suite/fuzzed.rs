@@ -8,6 +8,8 @@ mod judge;
 
 use judge::{Outcome, judge};
 
+use crate::support::wait::HANG_GUARD;
+
 fn texts(folder: &str) -> Vec<(PathBuf, String)> {
     let folder = Path::new("fuzz").join(folder);
     let mut texts: Vec<_> = fs::read_dir(folder)
@@ -27,7 +29,7 @@ fn texts(folder: &str) -> Vec<(PathBuf, String)> {
 fn seeds_reach_their_targets() {
     let mut valid = 0;
     for (path, text) in texts("seeds") {
-        match judge(&text) {
+        match judge(&text, HANG_GUARD) {
             Outcome::Refused => assert_eq!(path, Path::new("fuzz/seeds/errors.glsl")),
             Outcome::Valid => valid += 1,
             Outcome::Naga(words) => panic!("{}: naga {words}", path.display()),
@@ -39,7 +41,7 @@ fn seeds_reach_their_targets() {
 #[test]
 fn findings_are_fixed() {
     for (path, text) in texts("regressions") {
-        if let Outcome::Naga(words) = judge(&text) {
+        if let Outcome::Naga(words) = judge(&text, HANG_GUARD) {
             panic!("{}: naga {words}", path.display());
         }
     }

@@ -17,11 +17,12 @@ use proptest::test_runner::{Config, RngAlgorithm, TestError, TestRng, TestRunner
 use toyproof::diagnostic::{File, Files};
 use toyproof::eval::{Program, Settings};
 use toyproof::glsl::{Checked, Options, check};
-use toyproof::gpu::{Drawn, Failure, Worker};
+use toyproof::gpu::{DrawOutput, Failure, Worker};
 use toyproof::image::{Frame, Image};
 use toyproof::translate::{FloatMode, lower, lower_strict};
 
 use crate::generate::Effects;
+use crate::requirements::{require_program, require_worker};
 use crate::support::setting;
 use crate::{generate, glslang};
 
@@ -76,7 +77,7 @@ impl Renderers<'_> {
         };
         let ours = self.again_after_a_crash(|worker| {
             let drawn = worker.draw_unwatched(lowered.clone(), frame(), FloatMode::Strict);
-            drawn.map(Drawn::image)
+            drawn.map(DrawOutput::image)
         });
         match ours {
             Ok(image) => images.push(("ours", image)),
@@ -108,9 +109,7 @@ impl Renderers<'_> {
         match render(&mut self.worker) {
             Err(failure) if !matches!(failure, Failure::Refused(_) | Failure::Naga(_)) => {
                 eprintln!("once more: {failure}");
-                self.worker = crate::support::worker()
-                    .expect("there was one before")
-                    .with_plain_code();
+                self.worker = require_worker().expect("there was one before").with_plain_code();
                 render(&mut self.worker)
             }
             result => result,
@@ -170,7 +169,7 @@ fn difference(pictures: &[(&str, Image)]) -> Option<String> {
 
 #[test]
 fn glslang_and_the_evaluator_agree_with_ours() {
-    if !glslang::is_here() {
+    if !require_program("glslangValidator") {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
@@ -194,7 +193,7 @@ fn effects(number: u32) -> Effects {
 
 /// Compares the requested number of programs, of at most `longest` decisions.
 fn compare_all(glslang: Option<&Path>, longest: usize) {
-    let Some(worker) = crate::support::worker() else {
+    let Some(worker) = require_worker() else {
         return;
     };
     let count: u32 = setting("TOYPROOF_PROGRAMS", 24);
@@ -306,10 +305,10 @@ void alias(inout int a) { a += 1; g += 16; a += g; }
 
 #[test]
 fn operands_are_evaluated_in_the_order_of_glslang() {
-    let Some(worker) = crate::support::worker() else {
+    let Some(worker) = require_worker() else {
         return;
     };
-    if !glslang::is_here() {
+    if !require_program("glslangValidator") {
         return;
     }
     let folder = tempfile::tempdir().unwrap();

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Command;
 
 /// The prelude that makes a shader's SPIR-V compatible with our bindings. No channels.
 const PRELUDE: &str = "#version 310 es
@@ -30,19 +30,6 @@ void main() {
     painted = vec4(result.xyz, 1.0);
 }
 ";
-
-/// Returns whether glslang is installed.
-pub(crate) fn is_here() -> bool {
-    let found = Command::new("glslangValidator")
-        .arg("--version")
-        .stdout(Stdio::null())
-        .status()
-        .is_ok();
-    if !found {
-        eprintln!("skipped: no glslangValidator here");
-    }
-    found
-}
 
 /// Compiles a shader with glslang: its SPIR-V words, or the error messages.
 pub(crate) fn words(shader: &str, folder: &Path) -> Result<Vec<u32>, String> {

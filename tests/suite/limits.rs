@@ -4,12 +4,12 @@ use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
 use crate::program::{command, run, toyproof};
 use crate::support::SPHERE;
+use crate::support::wait::wait_until;
 
 /// Creates a folder `hw` with `count` correct shaders.
 fn homework(count: usize) -> tempfile::TempDir {
@@ -160,10 +160,7 @@ fn removing_the_folder_during_the_run_is_an_error() {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    let start = Instant::now();
-    while results(folder.path()) == 0 && start.elapsed() < Duration::from_secs(60) {
-        std::thread::sleep(Duration::from_millis(2));
-    }
+    wait_until(|| results(folder.path()) > 0);
     fs::rename(folder.path().join("out"), folder.path().join("moved")).unwrap();
     let output = running.wait_with_output().unwrap();
     let stderr = String::from_utf8(output.stderr).unwrap();

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use serde_json::Value;
 
 use crate::program::{command, run};
+use crate::requirements::require_driver;
 use crate::support::{EVERY_EXERCISE, setting};
 
 /// The byte ranges of the numbers in a text, outside of comments and names.
@@ -106,7 +107,7 @@ fn sweep(step: usize) {
 
 #[test]
 fn some_changed_numbers_get_verdicts() {
-    if crate::program::has_driver() {
+    if require_driver() {
         sweep(193);
     }
 }

@@ -23,7 +23,6 @@ mod equivalent_rewrites;
 mod estimators;
 mod evaluator;
 mod evaluator_programs;
-mod exercises;
 mod exported;
 #[cfg(unix)]
 mod fair_verdicts;
@@ -46,13 +45,14 @@ mod povray;
 mod program;
 mod random_draws;
 mod reports;
+mod requirements;
 mod rules;
-mod sensitivity;
 mod snapshots;
 mod stress;
 mod strict;
 mod submissions;
-mod support;
 mod trade;
 mod ui;
 mod unstable;
+
+use toyproof_testkit as support;

@@ -4,10 +4,12 @@ use std::fmt::Write as _;
 
 use toyproof::diagnostic::{File, Files};
 use toyproof::glsl::{Options, check};
-use toyproof::gpu::{Drawn, Worker};
+use toyproof::gpu::{DrawOutput, Worker};
 use toyproof::image::Frame;
 use toyproof::math::{self as e, Matrix, native};
 use toyproof::translate::{FloatMode, lower_strict};
+
+use crate::requirements::require_worker;
 
 /// Width and height of an image of arguments, in pixels.
 const SIZE: u32 = 256;
@@ -90,7 +92,7 @@ fn shader(call: &str, first: u32) -> String {
     text
 }
 
-fn draw(worker: &mut Worker, text: &str, size: u32) -> Drawn {
+fn draw(worker: &mut Worker, text: &str, size: u32) -> DrawOutput {
     let mut files = Files::default();
     let file = files.add(File::new("s", text));
     let frame = Frame {
@@ -125,7 +127,7 @@ fn compare(worker: &mut Worker, call: &str, ours: impl Fn(u32) -> f32, first: u3
 
 #[test]
 fn the_driver_and_the_cpu_compute_the_same_bits() {
-    let Some(mut worker) = crate::support::worker() else {
+    let Some(mut worker) = require_worker() else {
         return;
     };
     // TOYPROOF_PICTURES=64 tests 4 million arguments for each function.
@@ -205,7 +207,7 @@ const OF_VECTORS: [OfVectors; 26] = [
 
 #[test]
 fn vectors_and_matrices_have_the_same_bits() {
-    let Some(mut worker) = crate::support::worker() else {
+    let Some(mut worker) = require_worker() else {
         return;
     };
     for (call, ours) in OF_VECTORS {
@@ -219,7 +221,7 @@ fn vectors_and_matrices_have_the_same_bits() {
 
 #[test]
 fn constants_have_the_same_bits() {
-    let Some(mut worker) = crate::support::worker() else {
+    let Some(mut worker) = require_worker() else {
         return;
     };
     for case in &cases() {

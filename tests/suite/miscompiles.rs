@@ -8,6 +8,8 @@ use toyproof::image::{Frame, Image};
 use toyproof::translate::FloatMode;
 use toyproof::translate::lower::{Pass, Passes, lower_with};
 
+use crate::requirements::require_worker;
+
 /// A miscompilation: the pass that fixes it, the text before `mainImage`, its body, and the expected `o.x`.
 type Case = (Pass, &'static str, &'static str, f32);
 
@@ -144,7 +146,7 @@ fn render(worker: &mut Worker, (pass, before, body, _): &Case, passes: Passes) -
 
 #[test]
 fn each_pass_fixes_its_miscompilation() {
-    let Some(mut worker) = crate::support::worker() else {
+    let Some(mut worker) = require_worker() else {
         return;
     };
     for case in CASES {
@@ -162,7 +164,7 @@ fn each_pass_fixes_its_miscompilation() {
 /// naga swaps the dimensions of `float a[2][3]`; the printer writes them swapped.
 #[test]
 fn arrays_of_arrays_keep_their_dimensions() {
-    let Some(mut worker) = crate::support::worker() else {
+    let Some(mut worker) = require_worker() else {
         return;
     };
     let body = "float a[2][3]; for (int i = 0; i < 2; i++) for (int j = 0; j < 3; j++) a[i][j] = float(10 * i + j); \

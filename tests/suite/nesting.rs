@@ -10,6 +10,7 @@ use toyproof::image::{Frame, Image};
 use toyproof::translate::FloatMode;
 use toyproof::translate::lower::{Pass, Passes, lower_with};
 
+use crate::requirements::require_worker;
 use crate::support;
 
 /// The number of pixels in a row, each of which reaches a different depth.
@@ -174,7 +175,7 @@ fn evaluated(checked: &Checked) -> Image {
 
 #[test]
 fn deep_nesting_renders_as_it_evaluates() {
-    let Some(worker) = support::worker() else {
+    let Some(worker) = require_worker() else {
         return;
     };
     let mut worker = worker.with_plain_code();
@@ -262,7 +263,7 @@ fn too_deep_nesting_is_not_run_on_a_driver() {
             .unwrap_err();
         assert_eq!(failure, Failure::Invalid(vec![reported.clone()]));
     }
-    let Some(worker) = support::worker() else {
+    let Some(worker) = require_worker() else {
         return;
     };
     let mut worker = worker.with_plain_code();

@@ -2,6 +2,7 @@
 
 use toyproof::verify::{Means, Reason, Verdict};
 
+use crate::requirements::require_worker;
 use crate::support::{Edit, Exercise, MANY_OBJECTS, SIZE, SOFT_SHADOWS, check_exercise, edited};
 
 const HASH: &str = "uint state;
@@ -123,7 +124,7 @@ static CASES: &[Case] = &[
 
 #[test]
 fn different_random_numbers_are_compared_by_the_mean() {
-    let Some(mut worker) = crate::support::worker() else {
+    let Some(mut worker) = require_worker() else {
         return;
     };
     for &(exercise, draws, edits, verdict, is_expected) in CASES {

@@ -7,12 +7,14 @@ use std::sync::atomic::AtomicBool;
 
 use serde_json::Value;
 use toyproof::glsl::Options;
-use toyproof::lab::stress::function::{self, Findings, Map, Role, Signature};
+use toyproof::lab::stress::function::{self, Findings, Role, RoleMap, Signature};
 use toyproof::lab::stress::{self, Settings, formula};
 use toyproof::translate::FloatMode;
 
-use crate::program::{command, has_driver, toyproof};
-use crate::support::{EVERY_EXERCISE, Edit, QUADRICS, SPHERE, checked, edited, worker};
+use crate::program::{command, toyproof};
+use crate::requirements::{require_driver, require_worker};
+use crate::support::wait::wait_until;
+use crate::support::{EVERY_EXERCISE, Edit, QUADRICS, SPHERE, checked, edited};
 
 const FEW_CASES: Settings = Settings {
     seed: 1,
@@ -20,7 +22,7 @@ const FEW_CASES: Settings = Settings {
     float: FloatMode::Strict,
 };
 
-fn examine(text: &str, name: &str, map: &Map) -> Findings {
+fn examine(text: &str, name: &str, map: &RoleMap) -> Findings {
     let signature = Signature::recognize(&checked(text), name, map).unwrap_or_else(|why| panic!("{why}"));
     let subject = function::subject(text, &signature, Options::default());
     let never = AtomicBool::new(false);
@@ -28,7 +30,7 @@ fn examine(text: &str, name: &str, map: &Map) -> Findings {
 }
 
 fn mistake(text: &str, name: &str) -> Option<&'static str> {
-    examine(text, name, &Map::new())
+    examine(text, name, &RoleMap::new())
         .mistake
         .map(|mistake| mistake.name)
 }
@@ -127,16 +129,19 @@ fn planted_mistakes_are_named() {
 
 #[test]
 fn correct_functions_are_not_blamed_and_their_limits_are_reported() {
-    let findings = examine(TEXTBOOK, "hitSphere", &Map::new());
+    let findings = examine(TEXTBOOK, "hitSphere", &RoleMap::new());
     assert_eq!(findings.mistake, None);
-    let lines = findings.report.lines();
+    let lines = findings.report.breakdown_lines();
     assert!(
         lines[0].starts_with("hitSphere f32 fails from scale 1e-20 down"),
         "{lines:?}"
     );
     let example = findings.example.unwrap();
     assert!(
-        example.paste.iter().any(|line| line.starts_with("ro = vec3(")),
+        example
+            .assignments
+            .iter()
+            .any(|line| line.starts_with("ro = vec3(")),
         "{example:?}"
     );
 }
@@ -144,10 +149,12 @@ fn correct_functions_are_not_blamed_and_their_limits_are_reported() {
 #[test]
 fn examples_have_few_digits_and_fail_as_stated() {
     let text = edited(&SPHERE, &[("float t = -b - root;", "float t = -b + root;")]);
-    let example = examine(&text, "intersectSphere", &Map::new()).example.unwrap();
-    let digits: usize = example.paste.iter().map(String::len).sum();
+    let example = examine(&text, "intersectSphere", &RoleMap::new())
+        .example
+        .unwrap();
+    let digits: usize = example.assignments.iter().map(String::len).sum();
     assert!(digits < 160, "{example:?}");
-    assert_ne!(example.expected, example.came);
+    assert_ne!(example.expected, example.actual);
 }
 
 #[test]
@@ -207,16 +214,20 @@ fn signatures_are_recognized_by_types_and_names_or_given() {
         "float f(vec3 m, vec3 a, vec3 v, float w) {{ {formula} return h < 0.0 ? 1e9 : -b - sqrt(h) > 0.0 ? -b - sqrt(h) : -b + sqrt(h) > 0.0 ? -b + sqrt(h) : 1e9; }}\n{main}"
     );
     let map = [("m", Role::Center), ("a", Role::Origin), ("v", Role::Direction)];
-    let map: Map = map
+    let map: RoleMap = map
         .into_iter()
         .map(|(path, role)| (path.to_owned(), role))
         .collect();
     let found = examine(&text, "f", &map).mistake.map(|mistake| mistake.name);
     assert_eq!(found, Some("direction-of-length-1"));
-    let why = Signature::recognize(&checked(&text), "g", &Map::new()).unwrap_err();
+    let why = Signature::recognize(&checked(&text), "g", &RoleMap::new())
+        .unwrap_err()
+        .to_string();
     assert!(why.contains("there is no function g; there are f"), "{why}");
     let other = format!("float f(float x) {{ return x; }}\n{main}");
-    let why = Signature::recognize(&checked(&other), "f", &Map::new()).unwrap_err();
+    let why = Signature::recognize(&checked(&other), "f", &RoleMap::new())
+        .unwrap_err()
+        .to_string();
     assert!(why.contains("it is not clear what is the ray's origin"), "{why}");
 }
 
@@ -224,7 +235,8 @@ fn signatures_are_recognized_by_types_and_names_or_given() {
 fn exercise_functions_are_blamed_only_for_unit_directions() {
     let mut seen = 0;
     for exercise in EVERY_EXERCISE {
-        let Ok(signature) = Signature::recognize(&checked(exercise.shader), "intersectSphere", &Map::new())
+        let Ok(signature) =
+            Signature::recognize(&checked(exercise.shader), "intersectSphere", &RoleMap::new())
         else {
             continue;
         };
@@ -238,7 +250,7 @@ fn exercise_functions_are_blamed_only_for_unit_directions() {
 #[test]
 fn other_shapes_are_not_mistaken_for_spheres() {
     for exercise in EVERY_EXERCISE {
-        for signature in Signature::all(&checked(exercise.shader), &Map::new()) {
+        for signature in Signature::all(&checked(exercise.shader), &RoleMap::new()) {
             let name = signature.name.to_lowercase();
             // `keepNearest` takes a ray and a sphere, too.
             assert!(
@@ -248,7 +260,9 @@ fn other_shapes_are_not_mistaken_for_spheres() {
             );
         }
     }
-    let why = Signature::recognize(&checked(QUADRICS.shader), "intersectQuadric", &Map::new()).unwrap_err();
+    let why = Signature::recognize(&checked(QUADRICS.shader), "intersectQuadric", &RoleMap::new())
+        .unwrap_err()
+        .to_string();
     assert!(why.contains("not clear") && why.contains("--map"), "{why}");
     let body = "{ return length(o + d + c) + r; } void mainImage(out vec4 c, in vec2 p) { c = vec4(0.0); }";
     for (head, is_sphere) in [
@@ -258,7 +272,7 @@ fn other_shapes_are_not_mistaken_for_spheres() {
         ("float f(vec3 o, vec3 d, vec3 c, vec3 n, float r)", false),
         ("float f(vec3 o, vec3 d, vec3 c, vec3 axis, float r)", false),
     ] {
-        let found = Signature::recognize(&checked(&format!("{head} {body}")), name(head), &Map::new());
+        let found = Signature::recognize(&checked(&format!("{head} {body}")), name(head), &RoleMap::new());
         assert_eq!(found.is_ok(), is_sphere, "{head}");
     }
 }
@@ -270,7 +284,9 @@ fn name(head: &str) -> &str {
 
 #[test]
 fn a_strict_gpu_fails_where_the_cpu_does() {
-    let Some(mut worker) = worker() else { return };
+    let Some(mut worker) = require_worker() else {
+        return;
+    };
     let subjects = formula::subjects();
     let never = AtomicBool::new(false);
     let report = stress::study(&subjects, Some(&mut worker), FEW_CASES, &never, || ()).unwrap();
@@ -335,7 +351,7 @@ fn known_weaknesses_of_the_formulas_are_found() {
 #[test]
 fn the_command_writes_its_files_and_names_the_columns() {
     let folder = tempfile::tempdir().unwrap();
-    let on = if has_driver() { "auto" } else { "cpu" };
+    let on = if require_driver() { "auto" } else { "cpu" };
     let run = toyproof(
         folder.path(),
         &["stress", "-o", "out", "--cases", "20", "--on", on],
@@ -398,7 +414,17 @@ fn bad_input_is_reported_and_leaves_nothing() {
     assert!(!folder.path().join("out").exists());
 }
 
-#[cfg(unix)]
+/// Whether a process has a handler for interrupts, without which they would kill it.
+#[cfg(target_os = "linux")]
+fn handles_interrupts(pid: u32) -> bool {
+    let status = fs::read_to_string(format!("/proc/{pid}/status")).unwrap();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigCgt:"));
+    let mask = u64::from_str_radix(mask.unwrap().trim(), 16).unwrap();
+    // Signal n is bit n − 1.
+    mask & 1 << 1 != 0
+}
+
+#[cfg(target_os = "linux")]
 #[test]
 fn an_interrupt_leaves_no_partial_files() {
     use rustix::process::{Pid, Signal, kill_process};
@@ -424,7 +450,7 @@ fn an_interrupt_leaves_no_partial_files() {
             .stderr(std::process::Stdio::piped())
             .spawn()
             .unwrap();
-        std::thread::sleep(std::time::Duration::from_secs(1));
+        wait_until(|| handles_interrupts(child.id()));
         kill_process(Pid::from_child(&child), Signal::INT).unwrap();
         assert_eq!(child.wait().unwrap().code(), Some(2), "{arguments:?}");
         assert!(!Path::exists(&folder.path().join("out")), "{arguments:?}");

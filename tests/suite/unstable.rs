@@ -4,7 +4,8 @@
 
 use toyproof::verify::Verdict;
 
-use crate::support::{Edit, Exercise, MANY_OBJECTS, SHADING, SPHERE, check_exercise, edit, numbers, worker};
+use crate::requirements::require_worker;
+use crate::support::{Edit, Exercise, MANY_OBJECTS, SHADING, SPHERE, check_exercise, edit, numbers};
 
 /// A scene that is demanding for float32, and two formulas that render it.
 struct Case {
@@ -292,7 +293,9 @@ static CASES: &[Case] = &[
 
 #[test]
 fn unstable_formulas_are_blamed_with_their_line_and_stable_ones_are_correct() {
-    let Some(mut worker) = worker() else { return };
+    let Some(mut worker) = require_worker() else {
+        return;
+    };
     let only = std::env::var("TOYPROOF_ONLY").unwrap_or_default();
     let mut failures = Vec::new();
     for case in CASES.iter().filter(|case| case.cause.contains(&only)) {

@@ -272,7 +272,7 @@ impl<'a> Checker<'a> {
             checked,
             lints: &shader.lints,
             expected: cached.as_ref().map(|cached| &cached.expected),
-            suspects: hypotheses,
+            hypotheses,
             frame: &frame,
             float: self.args.driver.float(),
             timeout: self.args.driver.timeout(),

@@ -60,7 +60,7 @@ impl References {
         let mut files = Files::default();
         let scene = text.map_err(Failure::Unreadable).and_then(|text| {
             let file = files.add(text);
-            scene::parse(&files, file).map_err(Failure::InvalidScene)
+            scene::parse(&files, file).map_err(|errors| Failure::InvalidScene(errors.into()))
         });
         Some(Reference {
             name: path_name(&path),

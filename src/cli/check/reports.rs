@@ -29,7 +29,7 @@ pub(super) fn rubric(args: &Args, terminal: &Terminal) -> Result<Option<Rubric>,
     let rubric = match files::read_text(path) {
         Ok(text) => {
             let file = files.add(text);
-            Rubric::parse(&files, file).map_err(Unusable::Invalid)
+            Rubric::parse(&files, file).map_err(|errors| Unusable::Invalid(errors.into()))
         }
         Err(error) => Err(Unusable::of(error, &mut files)),
     };

@@ -111,14 +111,12 @@ impl Search<'_> {
                     Some(partner) => pairs.push((partner, index)),
                     None => return Some(self.extra_close(&pairs, bare, index)),
                 },
-                _ if let Some(&last) = open.last()
-                    && self.opens_structure(last)
-                    && self.ends_structure(index) =>
+                _ if open
+                    .last()
+                    .is_some_and(|&last| self.opens_structure(last) && self.ends_structure(index)) =>
                 {
-                    return Some(Fault::NeverClosed {
-                        open: last,
-                        before: index,
-                    });
+                    let before = index;
+                    return open.pop().map(|open| Fault::NeverClosed { open, before });
                 }
                 TokenKind::Word(_) => {
                     let Some(end) = self.header(index) else {

@@ -234,11 +234,10 @@ impl Parser<'_> {
         use Punctuator::{Assign, Comma, Greater, LeftBrace, Less};
         let previous = self.at.checked_sub(1).and_then(|at| self.tokens.get(at));
         match (previous.map(|token| token.kind), self.kind()) {
-            (_, TokenKind::Word(symbol))
-                if let Some(foreign) = Foreign::named(self.interner.text(symbol)) =>
-            {
-                diagnostic.label(format!("write {}", foreign.replacement()))
-            }
+            (_, TokenKind::Word(symbol)) => match Foreign::named(self.interner.text(symbol)) {
+                Some(foreign) => diagnostic.label(format!("write {}", foreign.replacement())),
+                None => diagnostic,
+            },
             (Some(before), TokenKind::Punctuator(LeftBrace)) if self.comes_before_value(before) => diagnostic
                 .note(
                     "GLSL ES has no lists in braces: write `vec3(…)` for a vector, `float[](…)` for an array",
@@ -246,10 +245,11 @@ impl Parser<'_> {
             (Some(TokenKind::Punctuator(Assign)), TokenKind::Punctuator(comparison @ (Less | Greater))) => {
                 diagnostic.label(format!("write `{}=`", comparison.text()))
             }
-            (Some(TokenKind::Punctuator(Comma)), TokenKind::Number(_))
-                if let Some(number) = self.decimal_comma(self.at - 1) =>
-            {
-                diagnostic.label(format!("write `{number}`: GLSL has a decimal point"))
+            (Some(TokenKind::Punctuator(Comma)), TokenKind::Number(_)) => {
+                match self.decimal_comma(self.at - 1) {
+                    Some(number) => diagnostic.label(format!("write `{number}`: GLSL has a decimal point")),
+                    None => diagnostic,
+                }
             }
             _ => diagnostic,
         }

@@ -9,7 +9,7 @@ use super::*;
 
 const MAIN: &str = "void mainImage(out vec4 c, in vec2 f) { c = vec4(0.0); }\n";
 
-fn check_text(text: &str, options: &Options) -> Result<Checked, Vec<Diagnostic>> {
+fn check_text(text: &str, options: &Options) -> Result<Checked, Diagnostics> {
     let mut files = Files::default();
     let file = files.add(File::new("a", text));
     check(&files, file, options)

@@ -155,6 +155,9 @@ fn at_most_fifty_errors_are_reported() {
     assert!(errors.is_sorted_by_key(|error| error.span.map(|span| span.start)));
 }
 
+/// Quadratic time would be minutes, linear time is less than a second.
+const HANG_GUARD: std::time::Duration = std::time::Duration::from_secs(60);
+
 #[test]
 fn hostile_texts_take_linear_time() {
     let count = 60_000;
@@ -178,8 +181,7 @@ fn hostile_texts_take_linear_time() {
     for text in texts {
         let start = std::time::Instant::now();
         assert!(check_text(&text, &Options::default()).is_err());
-        // Quadratic time would be minutes; the limit allows for slow machines.
-        assert!(start.elapsed().as_secs() < 20, "{}", &text[..20]);
+        assert!(start.elapsed() < HANG_GUARD, "{}", &text[..20]);
     }
 }
 

@@ -3,130 +3,50 @@
 mod heat;
 mod scatter;
 
-use std::convert::Infallible;
+use std::sync::Once;
 
-use font8x8::{BASIC_FONTS, UnicodeFonts};
 pub use heat::{Band, HeatMap, Panel};
-use plotters::style::RGBColor;
-use plotters_backend::text_anchor::{HPos, VPos};
-use plotters_backend::{BackendColor, BackendCoord, BackendTextStyle, DrawingBackend, DrawingErrorKind};
+use plotters::prelude::*;
+use plotters::style::register_font;
 pub use scatter::{Point, Scatter};
 use toyproof_image::Image;
 
 const INK: RGBColor = RGBColor(30, 30, 30);
+const GRAY: RGBColor = RGBColor(110, 110, 110);
 const FAINT: RGBColor = RGBColor(215, 215, 215);
 const PAPER: RGBColor = RGBColor(255, 255, 255);
-/// The family of SVG text; images use the built-in 8-pixel font.
-const FONT: &str = "monospace";
+/// The font family: in SVG the viewer's own, in images the embedded font.
+const FONT: &str = "sans-serif";
+/// Roboto 2.138 by Google, under the Apache License 2.0; a subset (Latin, Greek, Cyrillic and symbols)
+/// without hinting: `pyftsubset Roboto-Regular.ttf --unicodes=U+0020-024F,U+0370-052F,U+2000-22FF --no-hinting
+/// --drop-tables+=GSUB,GPOS,GDEF --notdef-outline`.
+static ROBOTO: &[u8] = include_bytes!("Roboto-Regular.ttf");
 
-// A plotters backend for images with a built-in font, so that no fonts need to be installed.
+/// A style for text of the given size in pixels. All text must use it: it registers the font.
+fn text_style(size: i32, color: RGBColor) -> TextStyle<'static> {
+    static REGISTERED: Once = Once::new();
+    REGISTERED.call_once(|| {
+        let registered = register_font(FONT, FontStyle::Normal, ROBOTO);
+        debug_assert!(registered.is_ok(), "the embedded font is valid");
+    });
+    (FONT, size).into_font().color(&color)
+}
 
-const GLYPH: i32 = 8;
-
-/// An image being drawn; y points down, as in plotters.
-struct Raster<'a> {
-    size: (u32, u32),
-    pixels: &'a mut [[f32; 3]],
+/// The width of the widest text, in pixels.
+fn text_width<'a>(texts: impl IntoIterator<Item = &'a str>, size: i32) -> i32 {
+    let font = text_style(size, INK).font;
+    let width = |text: &str| font.box_size(text).map_or(0, |(width, _)| width as i32);
+    texts.into_iter().map(width).max().unwrap_or(0)
 }
 
 /// Draws an image of the given size.
-fn rasterize(size: (u32, u32), draw: impl FnOnce(Raster)) -> Image {
-    let mut pixels = vec![[1.0; 3]; size.0 as usize * size.1 as usize];
-    draw(Raster {
-        size,
-        pixels: &mut pixels,
-    });
-    let rows = pixels.chunks(size.0 as usize).rev();
-    let pixels = rows.flat_map(|row| row.iter().map(|&[r, g, b]| [r, g, b, 1.0]));
+fn rasterize(size: (u32, u32), draw: impl FnOnce(BitMapBackend)) -> Image {
+    let (width, height) = (size.0 as usize, size.1 as usize);
+    let mut bytes = vec![255; 3 * width * height];
+    draw(BitMapBackend::with_buffer(&mut bytes, size));
+    // Plotters' rows run downwards, an image's upwards.
+    let rows = bytes.chunks(3 * width).rev();
+    let pixels = rows.flat_map(|row| row.chunks(3));
+    let pixels = pixels.map(|rgb| [rgb[0], rgb[1], rgb[2], 255].map(|byte| f32::from(byte) / 255.0));
     Image::new(size.0, size.1, pixels.collect())
-}
-
-impl Raster<'_> {
-    fn blend(&mut self, (x, y): BackendCoord, color: BackendColor) {
-        let (Ok(x), Ok(y)) = (u32::try_from(x), u32::try_from(y)) else {
-            return;
-        };
-        if x >= self.size.0 || y >= self.size.1 {
-            return;
-        }
-        let pixel = &mut self.pixels[y as usize * self.size.0 as usize + x as usize];
-        let alpha = color.alpha as f32;
-        let (r, g, b) = color.rgb;
-        for (old, new) in pixel.iter_mut().zip([r, g, b]) {
-            // Exactly the new color if alpha is 1.
-            *old = alpha * (f32::from(new) / 255.0) + (1.0 - alpha) * *old;
-        }
-    }
-}
-
-/// The width of a font dot in pixels, for letters `size` pixels high.
-fn dot(size: f64) -> i32 {
-    (size / f64::from(GLYPH)).round().max(1.0) as i32
-}
-
-impl DrawingBackend for Raster<'_> {
-    type ErrorType = Infallible;
-
-    fn get_size(&self) -> (u32, u32) {
-        self.size
-    }
-
-    fn ensure_prepared(&mut self) -> Result<(), DrawingErrorKind<Infallible>> {
-        Ok(())
-    }
-
-    fn present(&mut self) -> Result<(), DrawingErrorKind<Infallible>> {
-        Ok(())
-    }
-
-    fn draw_pixel(
-        &mut self,
-        point: BackendCoord,
-        color: BackendColor,
-    ) -> Result<(), DrawingErrorKind<Infallible>> {
-        self.blend(point, color);
-        Ok(())
-    }
-
-    fn draw_text<S: BackendTextStyle>(
-        &mut self,
-        text: &str,
-        style: &S,
-        at: BackendCoord,
-    ) -> Result<(), DrawingErrorKind<Infallible>> {
-        let dot = dot(style.size());
-        let (width, height) = (text.chars().count() as i32 * GLYPH * dot, GLYPH * dot);
-        let left = match style.anchor().h_pos {
-            HPos::Left => 0,
-            HPos::Center => -width / 2,
-            HPos::Right => -width,
-        };
-        let top = match style.anchor().v_pos {
-            VPos::Top => 0,
-            VPos::Center => -height / 2,
-            VPos::Bottom => -height,
-        };
-        for (column, character) in (0..).zip(text.chars()) {
-            let rows = BASIC_FONTS.get(character).unwrap_or_default();
-            for (row, bits) in (0..).zip(rows) {
-                for bit in (0..GLYPH).filter(|bit| bits & (1 << bit) != 0) {
-                    let (x, y) = (left + (column * GLYPH + bit) * dot, top + row * dot);
-                    for (dx, dy) in (0..dot).flat_map(|dx| (0..dot).map(move |dy| (dx, dy))) {
-                        let (x, y) = style.transform().transform(x + dx, y + dy);
-                        self.blend((at.0 + x, at.1 + y), style.color());
-                    }
-                }
-            }
-        }
-        Ok(())
-    }
-
-    fn estimate_text_size<S: BackendTextStyle>(
-        &self,
-        text: &str,
-        style: &S,
-    ) -> Result<(u32, u32), DrawingErrorKind<Infallible>> {
-        let side = GLYPH * dot(style.size());
-        Ok(((text.chars().count() as i32 * side) as u32, side as u32))
-    }
 }

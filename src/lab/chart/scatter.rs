@@ -2,25 +2,26 @@
 
 use std::ops::Range;
 
+use plotters::coord::Shift;
 use plotters::prelude::*;
-use plotters_backend::text_anchor::{HPos, Pos, VPos};
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 use toyproof_image::Image;
 
-use super::{FAINT, FONT, INK, PAPER};
+use super::{FAINT, GRAY, INK, PAPER, text_style, text_width};
 
-/// A point with its label.
+/// A named point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
     /// Must be positive.
     pub x: f64,
     /// Must be positive.
     pub y: f64,
-    /// The label beside it; may be empty.
+    /// The name, which the legend lists for points on the Pareto front.
     pub name: String,
     /// The index of its group.
     pub group: usize,
     /// Whether it is on the Pareto front: no other point has both smaller x and smaller y.
-    pub best: bool,
+    pub on_front: bool,
 }
 
 /// A scatter plot on logarithmic scales.
@@ -29,21 +30,24 @@ pub struct Scatter {
     /// The title.
     pub title: String,
     /// The quantity on the x-axis, with its unit.
-    pub x: String,
+    pub x_title: String,
     /// The quantity on the y-axis, with its unit.
-    pub y: String,
+    pub y_title: String,
     /// The names of the groups; each has a color.
     pub groups: Vec<String>,
     /// The points.
     pub points: Vec<Point>,
     /// Values of y marked by horizontal lines, with their labels.
-    pub lines: Vec<(f64, String)>,
+    pub reference_lines: Vec<(f64, String)>,
 }
 
 /// The relative margin at the ends of a scale: far less than a pixel.
 const RANGE_MARGIN: f64 = 1e-9;
 const SIZE: (u32, u32) = (1500, 960);
-const FONT_SIZE: i32 = 16;
+const FONT_SIZE: i32 = 18;
+const SMALL_SIZE: i32 = 14;
+const TITLE_SIZE: i32 = 26;
+const LINE_HEIGHT: i32 = 26;
 /// Distinguishable with color-vision deficiency: Okabe and Ito, “Color Universal Design” (2008).
 const COLORS: [RGBColor; 7] = [
     RGBColor(0, 114, 178),
@@ -90,18 +94,33 @@ impl Scatter {
     fn draw<B: DrawingBackend>(&self, backend: B) -> DrawResult<(), B> {
         let area = backend.into_drawing_area();
         area.fill(&PAPER)?;
-        let lines = self.lines.iter().map(|line| line.0);
+        let mut front: Vec<_> = self.points.iter().filter(|point| point.on_front).collect();
+        front.sort_by(|a, b| a.x.total_cmp(&b.x));
+        let names = front.iter().map(|point| &point.name).chain(&self.groups);
+        // Fonts of viewers of the SVG may be wider than the embedded one.
+        let legend_width = 60 + text_width(names.map(String::as_str), FONT_SIZE) * 9 / 8;
+        let (plot, legend) = area.split_horizontally(SIZE.0 as i32 - legend_width);
+        self.draw_plot(&plot, &front)?;
+        self.draw_legend(&legend, &front)?;
+        area.present()
+    }
+
+    fn draw_plot<B: DrawingBackend>(
+        &self,
+        area: &DrawingArea<B, Shift>,
+        front: &[&Point],
+    ) -> DrawResult<(), B> {
+        let lines = self.reference_lines.iter().map(|line| line.0);
         let x = Self::range(self.points.iter().map(|point| point.x));
-        let mut y = Self::range(self.points.iter().map(|point| point.y).chain(lines));
-        if self.is_any_under_legend(&x, &y) {
-            y.end *= 10.0;
-        }
-        let mut chart = ChartBuilder::on(&area)
+        let y = Self::range(self.points.iter().map(|point| point.y).chain(lines));
+        let mut chart = ChartBuilder::on(area)
             .margin(20)
-            .margin_right(40)
-            .caption(self.title.as_str(), text_style(24, INK))
+            .margin_right(
+                LINE_HEIGHT + text_width(self.reference_lines.iter().map(|line| &*line.1), SMALL_SIZE),
+            )
+            .caption(self.title.as_str(), text_style(TITLE_SIZE, INK))
             .x_label_area_size(60)
-            .y_label_area_size(110)
+            .y_label_area_size(80)
             .build_cartesian_2d(x.clone().log_scale(), y.clone().log_scale())?;
         chart
             .configure_mesh()
@@ -112,215 +131,123 @@ impl Scatter {
             .axis_desc_style(text_style(FONT_SIZE, INK))
             .x_label_formatter(&|x| tick(*x))
             .y_label_formatter(&|y| tick(*y))
-            .x_desc(self.x.as_str())
-            .y_desc(self.y.as_str())
+            .x_desc(self.x_title.as_str())
+            .y_desc(self.y_title.as_str())
             .draw()?;
-        for (at, name) in &self.lines {
+        for (at, _) in &self.reference_lines {
             let ends = [(x.start, *at), (x.end, *at)];
-            chart.draw_series(DashedLineSeries::new(ends, 6, 6, INK.mix(0.5).stroke_width(1)))?;
-            let style = text_style(FONT_SIZE, INK).pos(Pos::new(HPos::Left, VPos::Bottom));
-            chart.draw_series([Text::new(name.clone(), (x.start, *at), style)])?;
+            chart.draw_series(DashedLineSeries::new(ends, 6, 6, GRAY.stroke_width(1)))?;
         }
-        let mut front: Vec<_> = self.points.iter().filter(|point| point.best).collect();
-        front.sort_by(|a, b| a.x.total_cmp(&b.x));
-        chart.draw_series(LineSeries::new(
-            front.iter().map(|point| (point.x, point.y)),
-            INK.stroke_width(2),
-        ))?;
+        // Between two points of the front, nothing is better than the first.
+        let corners = front.windows(2).map(|ends| (ends[1].x, ends[0].y));
+        let ends = front.iter().map(|point| (point.x, point.y));
+        let steps = ends
+            .clone()
+            .take(1)
+            .chain(corners.zip(ends.skip(1)).flat_map(|(a, b)| [a, b]));
+        chart.draw_series(LineSeries::new(steps, INK.stroke_width(2)))?;
         for point in &self.points {
-            let color = COLORS[point.group % COLORS.len()];
-            let size = if point.best { 8 } else { 5 };
-            chart.draw_series([Circle::new((point.x, point.y), size, color.filled())])?;
+            let size = if point.on_front { 8 } else { 5 };
+            chart.draw_series([Circle::new((point.x, point.y), size, color(point.group).filled())])?;
         }
-        let place = |x: f64, y: f64| chart.backend_coord(&(x, y));
-        let names = self.lines.iter().map(|(at, name)| {
-            let (x, y) = place(x.start, *at);
-            [x, y - FONT_SIZE, x + FONT_SIZE * name.chars().count() as i32, y]
-        });
-        let labels = self.labels(&place, names.collect());
-        let groups = self.groups.iter().enumerate();
-        let legend: Vec<_> = groups
-            .map(|(i, name)| (name, COLORS[i % COLORS.len()], 40 + FONT_SIZE * 3 / 2 * i as i32))
+        let at_pixel = |x: f64, y: f64| chart.backend_coord(&(x, y));
+        let pixels: Vec<_> = front.iter().map(|point| at_pixel(point.x, point.y)).collect();
+        let lines: Vec<_> = self
+            .reference_lines
+            .iter()
+            .map(|(at, name)| (at_pixel(x.end, *at), name))
             .collect();
         drop(chart);
-        for label in &labels {
-            area.draw(&PathElement::new(
-                [label.point, label.at],
-                RGBColor(150, 150, 150),
-            ))?;
-        }
-        for label in labels {
-            let anchor = if label.is_left() { HPos::Right } else { HPos::Left };
-            let style = text_style(FONT_SIZE, INK).pos(Pos::new(anchor, VPos::Center));
-            area.draw(&Text::new(label.name, label.at, style))?;
-        }
-        let corners = [
-            (self.legend_left(), 60),
-            (
-                SIZE.0 as i32 - 41,
-                62 + FONT_SIZE * 3 / 2 * self.groups.len() as i32,
-            ),
-        ];
-        area.draw(&Rectangle::new(corners, PAPER.filled()))?;
-        for (name, color, y) in legend {
-            let x = SIZE.0 as i32 - 50;
-            area.draw(&Circle::new((x, y + 30), 6, color.filled()))?;
-            let style = text_style(FONT_SIZE, INK).pos(Pos::new(HPos::Right, VPos::Center));
-            area.draw(&Text::new(name.as_str(), (x - 16, y + 30), style))?;
-        }
-        area.present()
-    }
-
-    /// The left edge of the legend, in pixels.
-    fn legend_left(&self) -> i32 {
-        let char_count = self.groups.iter().map(|name| name.chars().count() as i32).max();
-        SIZE.0 as i32 - 80 - FONT_SIZE * char_count.unwrap_or(0)
-    }
-
-    /// The bottom edge of the legend, in pixels.
-    fn legend_bottom(&self) -> i32 {
-        80 + FONT_SIZE * 3 / 2 * self.groups.len() as i32
-    }
-
-    /// Whether the legend hides a point, approximately: the constants are the widths of axes and labels, in
-    /// pixels.
-    fn is_any_under_legend(&self, x: &Range<f64>, y: &Range<f64>) -> bool {
-        const LEFT: f64 = 130.0;
-        const RIGHT: f64 = 40.0;
-        const TOP: f64 = 50.0;
-        const BOTTOM: f64 = 80.0;
-        let share = |value: f64, range: &Range<f64>| {
-            libm::log10(value / range.start) / libm::log10(range.end / range.start)
+        let origin = area.get_base_pixel();
+        let text = |text: String, (x, y): Pixel, style: TextStyle<'static>| {
+            area.draw(&Text::new(text, (x - origin.0, y - origin.1), style))
         };
-        let [width, height] = [f64::from(SIZE.0), f64::from(SIZE.1)];
-        self.points.iter().any(|point| {
-            let across = LEFT + share(point.x, x) * (width - LEFT - RIGHT);
-            let down = height - BOTTOM - share(point.y, y) * (height - TOP - BOTTOM);
-            across > f64::from(self.legend_left()) && down < f64::from(self.legend_bottom())
-        })
+        // Nothing is nearer to the lower left corner than the front, so its numbers are free of other points.
+        let style = text_style(FONT_SIZE, INK).pos(Pos::new(HPos::Right, VPos::Top));
+        for (range, (x, y)) in front_labels(&pixels) {
+            text(range, (x - 8, y + 6), style.clone())?;
+        }
+        let style = text_style(SMALL_SIZE, GRAY).pos(Pos::new(HPos::Left, VPos::Center));
+        for (at, name) in lines {
+            text(name.clone(), (at.0 + 8, at.1), style.clone())?;
+        }
+        Ok(())
+    }
+
+    /// Draws the colors of the groups, and the names of the points on the front.
+    fn draw_legend<B: DrawingBackend>(
+        &self,
+        area: &DrawingArea<B, Shift>,
+        front: &[&Point],
+    ) -> DrawResult<(), B> {
+        let style = text_style(FONT_SIZE, INK).pos(Pos::new(HPos::Left, VPos::Center));
+        let mut y = 80;
+        for (group, name) in self.groups.iter().enumerate() {
+            area.draw(&Circle::new((10, y - 2), 6, color(group).filled()))?;
+            area.draw(&Text::new(name.as_str(), (30, y), style.clone()))?;
+            y += LINE_HEIGHT;
+        }
+        if front.is_empty() {
+            return Ok(());
+        }
+        y += LINE_HEIGHT;
+        area.draw(&Text::new("Pareto front", (2, y), style.clone()))?;
+        for (number, point) in (1..).zip(front) {
+            y += LINE_HEIGHT;
+            let right = style.clone().pos(Pos::new(HPos::Right, VPos::Center));
+            area.draw(&Text::new(format!("{number}"), (20, y), right))?;
+            area.draw(&Text::new(point.name.as_str(), (30, y), style.clone()))?;
+        }
+        Ok(())
     }
 }
 
-/// Formats a tick label.
+fn color(group: usize) -> RGBColor {
+    COLORS[group % COLORS.len()]
+}
+
+/// Formats a tick label: `0.01`, `100`, `10⁻⁵`.
 fn tick(value: f64) -> String {
-    let digits = format!("{value:.1e}");
-    digits.replace(".0e", "e")
+    let exponent = libm::log10(value).floor() as i32;
+    let is_power = (value / libm::exp10(f64::from(exponent)) - 1.0).abs() < 1e-6;
+    if (-2..=4).contains(&exponent) || !is_power {
+        return format!("{}", (value * 1e6).round() / 1e6);
+    }
+    let superscript = |digit: char| match digit {
+        '-' => '⁻',
+        digit => "⁰¹²³⁴⁵⁶⁷⁸⁹"
+            .chars()
+            .nth(digit as usize - '0' as usize)
+            .unwrap_or(digit),
+    };
+    let exponent: String = exponent.to_string().chars().map(superscript).collect();
+    format!("10{exponent}")
 }
 
-fn text_style(size: i32, color: RGBColor) -> TextStyle<'static> {
-    (FONT, size).into_font().color(&color)
-}
-
-// Labels of points.
-
-/// Left, top, right and bottom, in pixels.
-type Area = [i32; 4];
 type Pixel = (i32, i32);
 
-/// The tolerance for equal distances, as a difference of squared pixels.
-const SLACK: i32 = 8;
-
-/// A label and its position.
-#[derive(Debug, Clone)]
-struct Label {
-    name: String,
-    /// The end of the text next to the point.
-    at: Pixel,
-    point: Pixel,
-}
-
-impl Label {
-    /// Whether the label is left of its point.
-    fn is_left(&self) -> bool {
-        self.at.0 < self.point.0
-    }
-
-    fn around(&self) -> Area {
-        let (x, y) = self.at;
-        let width = FONT_SIZE * self.name.chars().count() as i32;
-        let left = if self.is_left() { x - width } else { x };
-        [left, y - FONT_SIZE / 2, left + width, y + FONT_SIZE / 2]
-    }
-}
-
-impl Scatter {
-    /// Places as many labels as fit, those of the front first. A label covers no other label, point, front
-    /// line or `occupied` area, and is not nearer to another point than to its own; labels of the front,
-    /// whose points are larger, may be equally near to both within [`SLACK`].
-    fn labels(&self, place: &impl Fn(f64, f64) -> Pixel, mut occupied: Vec<Area>) -> Vec<Label> {
-        let pixel = |point: &Point| place(point.x, point.y);
-        let dots: Vec<Pixel> = self.points.iter().map(pixel).collect();
-        occupied.extend(dots.iter().map(|&dot| square(dot, 6)));
-        // The corner of the legend.
-        occupied.push([self.legend_left(), 0, SIZE.0 as i32, self.legend_bottom()]);
-        let mut front: Vec<Pixel> = self.points.iter().filter(|point| point.best).map(pixel).collect();
-        front.sort_unstable();
-        occupied.extend(front.windows(2).flat_map(|ends| boxes_along(ends[0], ends[1])));
-        let named = self.points.iter().filter(|point| !point.name.is_empty());
-        let mut points: Vec<_> = named.collect();
-        points.sort_by(|a, b| b.best.cmp(&a.best).then(a.y.total_cmp(&b.y)));
-        let mut labels: Vec<Label> = Vec::new();
-        for point in points {
-            let own = pixel(point);
-            let slack = if point.best { SLACK } else { 0 };
-            let is_free = |label: &Label| {
-                let around = label.around();
-                let inside = around[0] > 140 && around[2] < SIZE.0 as i32 - 20 && around[1] > 60;
-                let distance = squared_distance(own, &around);
-                inside
-                    && around[3] < SIZE.1 as i32 - 90
-                    && !occupied.iter().any(|other| overlap(&around, other))
-                    && !dots
-                        .iter()
-                        .any(|&dot| squared_distance(dot, &around) + slack < distance)
-                    && !labels.iter().any(|other| {
-                        let mut leader = boxes_along(own, label.at);
-                        leader.any(|piece| overlap(&piece, &other.around()))
-                    })
-            };
-            if let Some(label) = candidate_positions(&point.name, own).find(is_free) {
-                occupied.push(label.around());
-                occupied.extend(boxes_along(own, label.at));
-                labels.push(label);
-            }
+/// The numbers of the points of a front, with the point that each label belongs to: neighbors whose numbers
+/// would overlap share a label, such as `3–5`.
+fn front_labels(front: &[Pixel]) -> Vec<(String, Pixel)> {
+    let mut labels = Vec::new();
+    let mut first = 0;
+    for last in 0..front.len() {
+        let is_near = |next: &Pixel| {
+            let (x, y) = front[last];
+            next.0 - x < 2 * FONT_SIZE && next.1 - y < FONT_SIZE
+        };
+        if front.get(last + 1).is_some_and(is_near) {
+            continue;
         }
-        labels
+        let text = if first == last {
+            format!("{}", first + 1)
+        } else {
+            format!("{}–{}", first + 1, last + 1)
+        };
+        labels.push((text, front[first]));
+        first = last + 1;
     }
-}
-
-/// Candidate positions of a point's label, nearest first.
-fn candidate_positions(name: &str, (x, y): Pixel) -> impl Iterator<Item = Label> {
-    [0, -1, 1, -2, 2, -3, 3, -4, 4].into_iter().flat_map(move |row| {
-        let y_of_row = y + row * (FONT_SIZE + 4);
-        let beside = [14, -14].into_iter();
-        // In other rows, the text may begin or end at the point itself.
-        let above_or_below = [1, -1].into_iter().filter(move |_| row != 0);
-        beside.chain(above_or_below).map(move |dx| Label {
-            name: name.to_owned(),
-            at: (x + dx, y_of_row),
-            point: (x, y),
-        })
-    })
-}
-
-/// Small boxes along a line.
-fn boxes_along((ax, ay): Pixel, (bx, by): Pixel) -> impl Iterator<Item = Area> {
-    let steps = ((bx - ax).abs().max((by - ay).abs()) / 4).max(1);
-    (0..=steps).map(move |step| square((ax + (bx - ax) * step / steps, ay + (by - ay) * step / steps), 2))
-}
-
-fn square((x, y): Pixel, half: i32) -> Area {
-    [x - half, y - half, x + half, y + half]
-}
-
-fn squared_distance((x, y): Pixel, [left, top, right, bottom]: &Area) -> i32 {
-    let dx = (left - x).max(x - right).max(0);
-    let dy = (top - y).max(y - bottom).max(0);
-    dx * dx + dy * dy
-}
-
-fn overlap(a: &Area, b: &Area) -> bool {
-    a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3]
+    labels
 }
 
 #[cfg(test)]
@@ -335,42 +262,32 @@ mod tests {
                 y: 1e-3 / i,
                 name: format!("way {i}"),
                 group: 0,
-                best: i > 28.0,
+                on_front: i > 28.0,
             }
         });
         Scatter {
             title: "t".to_owned(),
-            x: "x".to_owned(),
-            y: "y".to_owned(),
+            x_title: "x".to_owned(),
+            y_title: "y".to_owned(),
             groups: vec!["one".to_owned()],
             points: points.collect(),
-            lines: vec![(1e-3, "E".to_owned())],
+            reference_lines: vec![(1e-3, "E".to_owned())],
         }
-    }
-
-    #[test]
-    fn no_point_is_under_the_legend() {
-        let mut scatter = scatter();
-        let range = |of: fn(&Point) -> f64| Scatter::range(scatter.points.iter().map(of));
-        let (x, y) = (range(|point| point.x), range(|point| point.y));
-        assert!(!scatter.is_any_under_legend(&x, &y));
-        (scatter.points[0].x, scatter.points[0].y) = (x.end, y.end);
-        assert!(scatter.is_any_under_legend(&x, &y));
-        assert!(!scatter.is_any_under_legend(&x, &(y.start..10.0 * y.end)));
     }
 
     #[test]
     fn both_ends_of_the_scales_are_labeled() {
         for power in -6..3 {
             let mut scatter = scatter();
-            scatter.lines.clear();
+            scatter.reference_lines.clear();
             for point in &mut scatter.points {
                 (point.x, point.y) = (point.x * libm::exp10(f64::from(power)), point.y * 1e3);
                 point.y *= libm::exp10(f64::from(power));
             }
             let svg = scatter.svg();
             for end in [power - 2, power + 1] {
-                assert!(svg.contains(&format!("\n1e{end}\n")), "1e{end}");
+                let label = tick(libm::exp10(f64::from(end)));
+                assert!(svg.contains(&format!("\n{label}\n")), "{label}");
             }
         }
     }
@@ -380,7 +297,7 @@ mod tests {
         let scatter = scatter();
         let svg = scatter.svg();
         assert!(
-            svg.matches("<circle").count() > 30 && svg.contains("way 30"),
+            svg.matches("<circle").count() > 30 && svg.contains("way 30") && !svg.contains("way 28"),
             "{svg}"
         );
         let image = scatter.image();
@@ -394,73 +311,20 @@ mod tests {
     fn empty_plots_are_drawn() {
         let mut scatter = scatter();
         scatter.points.clear();
-        scatter.lines.clear();
+        scatter.reference_lines.clear();
         assert!(scatter.svg().contains("<svg"));
     }
 
-    fn place(x: f64, y: f64) -> Pixel {
-        ((x * 400.0) as i32, (-libm::log10(y) * 200.0) as i32)
+    #[test]
+    fn ticks_are_plain_numbers_or_powers_of_ten() {
+        let ticks = [1e-5, 0.01, 0.2, 1.0, 1000.0, 1e12].map(tick);
+        assert_eq!(ticks, ["10⁻⁵", "0.01", "0.2", "1", "1000", "10¹²"]);
     }
 
     #[test]
-    fn labels_never_overlap_and_the_best_is_labeled() {
-        let labels = scatter().labels(&place, Vec::new());
-        for (i, one) in labels.iter().enumerate() {
-            let covers = |other: &Label| overlap(&one.around(), &other.around());
-            assert!(!labels[..i].iter().any(covers), "{one:?}");
-        }
-        assert_eq!(labels[0].name, "way 30", "the best has its name");
-        assert!((5..30).contains(&labels.len()), "{}", labels.len());
-    }
-
-    #[test]
-    fn labels_are_nearest_to_their_own_points() {
-        let scatter = scatter();
-        let dots: Vec<_> = scatter
-            .points
-            .iter()
-            .map(|point| place(point.x, point.y))
-            .collect();
-        for label in scatter.labels(&place, Vec::new()) {
-            let own = squared_distance(label.point, &label.around());
-            let nearest = dots
-                .iter()
-                .map(|&dot| squared_distance(dot, &label.around()))
-                .min();
-            let slack = if scatter
-                .points
-                .iter()
-                .any(|point| point.best && point.name == label.name)
-            {
-                SLACK
-            } else {
-                0
-            };
-            assert!(nearest >= Some(own - slack), "{label:?}");
-        }
-    }
-
-    #[test]
-    fn labels_avoid_the_front_and_occupied_areas() {
-        let mut scatter = scatter();
-        for point in &mut scatter.points {
-            point.best = true;
-        }
-        let occupied = [500, 0, 620, 960];
-        for label in scatter.labels(&place, vec![occupied]) {
-            assert!(!overlap(&label.around(), &occupied), "{label:?}");
-            let ends = scatter.points.windows(2);
-            let mut front =
-                ends.flat_map(|pair| boxes_along(place(pair[0].x, pair[0].y), place(pair[1].x, pair[1].y)));
-            assert!(!front.any(|piece| overlap(&piece, &label.around())), "{label:?}");
-        }
-    }
-
-    #[test]
-    fn points_without_names_have_no_labels() {
-        let mut scatter = scatter();
-        let others = scatter.points.iter_mut().skip(2);
-        others.for_each(|point| point.name.clear());
-        assert_eq!(scatter.labels(&place, Vec::new()).len(), 2);
+    fn near_points_of_the_front_share_a_label() {
+        let labels = front_labels(&[(0, 0), (20, 5), (100, 5), (101, 50), (105, 52), (109, 60)]);
+        let labels: Vec<_> = labels.iter().map(|(text, at)| (&**text, *at)).collect();
+        assert_eq!(labels, [("1–2", (0, 0)), ("3", (100, 5)), ("4–6", (101, 50))]);
     }
 }

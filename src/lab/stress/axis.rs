@@ -96,7 +96,7 @@ impl fmt::Display for Step {
 
 /// The steps that are easy to compute.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Easy {
+pub enum EasySteps {
     /// The first; each next one is harder.
     First,
     /// The one of value 1; steps get harder in both directions.
@@ -116,7 +116,7 @@ pub struct Axis {
     /// The steps in order.
     pub steps: Vec<Step>,
     /// The easy steps.
-    pub easy: Easy,
+    pub easy: EasySteps,
     /// The minimum |δ| of a case: its distance from tangency.
     pub margin: f64,
     /// Samples a case; `None` if the sample is unsuitable.
@@ -173,39 +173,44 @@ pub fn axes() -> Vec<Axis> {
         name,
         kind: Kind::Secondaries,
         steps,
-        easy: Easy::Unordered,
+        easy: EasySteps::Unordered,
         margin: 0.0,
         sample,
     };
     vec![
-        spheres("scale", decades(-30, 30, 5), Easy::One, scaled_sphere),
-        spheres("distance/radius", decades(0, 12, 1), Easy::First, distant_sphere),
+        spheres("scale", decades(-30, 30, 5), EasySteps::One, scaled_sphere),
+        spheres(
+            "distance/radius",
+            decades(0, 12, 1),
+            EasySteps::First,
+            distant_sphere,
+        ),
         Axis {
             margin: 0.0,
             ..spheres(
                 "grazing",
                 grazing.chain(missing).collect(),
-                Easy::Ends,
+                EasySteps::Ends,
                 grazing_sphere,
             )
         },
         spheres(
             "origin",
             labels(&SPHERE_ORIGINS),
-            Easy::Unordered,
+            EasySteps::Unordered,
             origin_near_sphere,
         ),
         spheres(
             "gap of shells",
             decades(-7, -1, 1).into_iter().rev().collect(),
-            Easy::First,
+            EasySteps::First,
             concentric_shells,
         ),
-        spheres("|d|", decades(-20, 20, 2), Easy::One, stretched_direction),
+        spheres("|d|", decades(-20, 20, 2), EasySteps::One, stretched_direction),
         spheres(
             "world offset",
             [Step::Number(0.0)].into_iter().chain(decades(1, 7, 1)).collect(),
-            Easy::First,
+            EasySteps::First,
             offset_sphere,
         ),
         Axis {
@@ -213,28 +218,28 @@ pub fn axes() -> Vec<Axis> {
             ..spheres(
                 "parts",
                 labels(&DEGENERATE_PARTS),
-                Easy::Unordered,
+                EasySteps::Unordered,
                 degenerate_sphere,
             )
         },
         quadrics(
             "A/|q|",
             decades(-14, -1, 1).into_iter().rev().collect(),
-            Easy::First,
+            EasySteps::First,
             MARGIN,
             nearly_linear_quadric,
         ),
         quadrics(
             "distance/size",
             decades(0, 7, 1),
-            Easy::First,
+            EasySteps::First,
             MARGIN,
             distant_quadric,
         ),
         quadrics(
             "rays of a quadric",
             labels(&SPECIAL_QUADRIC_RAYS),
-            Easy::Unordered,
+            EasySteps::Unordered,
             0.0,
             special_quadric_ray,
         ),

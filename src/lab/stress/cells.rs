@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::axis::{Axis, Case, Kind, RaySphere, Step};
 use super::case_sampler::Random;
-use super::exact::{self, Precise};
+use super::exact::{self, DoubleDouble};
 
 /// The maximum number of samples per requested case: grazing cases are rare.
 const MAX_ATTEMPTS_PER_CASE: usize = 64;
@@ -33,7 +33,7 @@ pub(super) struct Cell {
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Reference {
     /// The smallest t > 0.
-    pub(super) t: Option<Precise>,
+    pub(super) t: Option<DoubleDouble>,
     /// The alternative result that is also accepted, if `t` is so small that the hit may count as the ray's
     /// origin.
     pub(super) alternative: Alternative,
@@ -47,7 +47,7 @@ pub(super) enum Alternative {
     #[default]
     Nothing,
     Miss,
-    Hit(Precise),
+    Hit(DoubleDouble),
 }
 
 impl Reference {
@@ -75,7 +75,7 @@ pub(super) fn reference_of(case: &Case, near: bool) -> Option<(Reference, f64)> 
         .iter()
         .find(|root| root.high > NEAR_HIT_RADII * size)
         .copied();
-    let is_near = |t: Precise| near && t.high <= NEAR_HIT_RADII * size;
+    let is_near = |t: DoubleDouble| near && t.high <= NEAR_HIT_RADII * size;
     let reference = Reference {
         t: intersection.t,
         alternative: match (intersection.t.is_some_and(is_near), next) {

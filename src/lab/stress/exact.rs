@@ -87,10 +87,10 @@ impl Dyadic {
     }
 
     /// The number truncated to f64, and the remainder likewise.
-    fn pair(&self) -> Precise {
+    fn pair(&self) -> DoubleDouble {
         let high = self.leading();
         let rest = self - &high.0;
-        Precise {
+        DoubleDouble {
             high: high.1,
             low: rest.leading().1,
         }
@@ -149,14 +149,14 @@ operation!(Mul, mul, a, b => Dyadic {
 
 /// A number of about a hundred bits: the sum of two f64.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Precise {
+pub struct DoubleDouble {
     /// The leading 53 bits.
     pub high: f64,
     /// The next 53 bits.
     pub low: f64,
 }
 
-impl Precise {
+impl DoubleDouble {
     /// The error of `value`, in units in the last place of a number of `digits` binary digits at this
     /// magnitude.
     #[must_use]
@@ -171,9 +171,9 @@ impl Precise {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Intersection {
     /// The smallest t > 0.
-    pub t: Option<Precise>,
+    pub t: Option<DoubleDouble>,
     /// All t in ascending order: two, equal for a tangent ray; one if the equation is linear.
-    pub roots: Vec<Precise>,
+    pub roots: Vec<DoubleDouble>,
     /// The normalized discriminant: δ = (r² − squared distance of center and line) / r² for spheres, (b² − a
     /// c) / (d·d q·q) for quadrics, which have size 1.
     pub discriminant: f64,
@@ -340,7 +340,7 @@ mod tests {
 
     #[test]
     fn ulps_count_steps_between_floats() {
-        let third = Precise {
+        let third = DoubleDouble {
             high: 1.0 / 3.0,
             low: 1.0 / 54_043_195_528_445_952.0,
         };

@@ -18,7 +18,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use axis::{Case, Kind, Step, axes};
 use cells::Cells;
 use formula::{Reading, Subject};
-use function::Answers;
+use function::MissConvention;
 use serde::Serialize;
 pub use tally::{Breakdown, Tally};
 use thiserror::Error;
@@ -77,7 +77,7 @@ pub const CPU: &str = "cpu";
 
 /// The number of runs in a [`study`], each of which calls `done`.
 #[must_use]
-pub fn runs(subjects: &[Subject], gpu: bool) -> u64 {
+pub fn run_count(subjects: &[Subject], gpu: bool) -> u64 {
     let runs = subjects
         .iter()
         .map(|subject| 1 + u64::from(subject.in_f64) + u64::from(gpu));
@@ -114,9 +114,9 @@ pub fn study(
             let checked = check_subject(subject)?;
             let program = Program::prepared(&checked, UndefinedPolicy::Plain).map_err(eval::Failure::from)?;
             let mut record = |precision, digits, device: &str, colors: &[[f64; 3]]| {
-                let answers = match &subject.reading {
+                let convention = match &subject.reading {
                     Reading::Function(signature) => {
-                        Some(Answers::of(signature, &colors[count..all_cases.len()]))
+                        Some(MissConvention::of(signature, &colors[count..all_cases.len()]))
                     }
                     _ => None,
                 };
@@ -124,7 +124,7 @@ pub fn study(
                     precision,
                     digits,
                     device,
-                    answers,
+                    convention,
                 };
                 rows.extend(cells.rows(subject, &run, colors));
                 done();
@@ -161,7 +161,7 @@ struct Run<'a> {
     precision: &'static str,
     digits: u32,
     device: &'a str,
-    answers: Option<Answers>,
+    convention: Option<MissConvention>,
 }
 
 impl Cells {
@@ -169,15 +169,15 @@ impl Cells {
     fn rows(&self, subject: &Subject, run: &Run, colors: &[[f64; 3]]) -> Vec<Row> {
         let rows = self.steps.iter().map(|cell| {
             let range = cell.range.clone();
-            let answers = colors[range.clone()].iter().copied();
-            let cases = answers.zip(self.references[range].iter().copied());
+            let results = colors[range.clone()].iter().copied();
+            let cases = results.zip(self.references[range].iter().copied());
             Row {
                 formula: subject.name.clone(),
                 precision: run.precision,
                 device: run.device.to_owned(),
                 axis: cell.axis,
                 value: cell.step,
-                tally: Tally::of(&subject.reading, run.digits, run.answers.as_ref(), cases),
+                tally: Tally::of(&subject.reading, run.digits, run.convention.as_ref(), cases),
             }
         });
         rows.collect()
@@ -214,7 +214,7 @@ fn first_message(diagnostics: &[Diagnostic]) -> &str {
 fn check_subject(subject: &Subject) -> Result<Checked, Failure> {
     let mut files = Files::default();
     let file = files.add(File::new("<stress>", subject.text.as_str()));
-    glsl::check(&files, file, &subject.options).map_err(Failure::Invalid)
+    glsl::check(&files, file, &subject.options).map_err(|errors| Failure::Invalid(errors.into()))
 }
 
 /// A frame whose channels hold the cases.

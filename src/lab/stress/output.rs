@@ -56,13 +56,13 @@ impl Report {
 
     /// A line for each formula and precision that fails anywhere, with its failures.
     #[must_use]
-    pub fn lines(&self) -> Vec<String> {
+    pub fn breakdown_lines(&self) -> Vec<String> {
         let same =
             |a: &super::Breakdown, b: &super::Breakdown| a.formula == b.formula && a.precision == b.precision;
         let groups = self.breakdowns.chunk_by(same);
         groups
             .map(|group| {
-                let says: Vec<_> = group.iter().map(|one| one.says.clone()).collect();
+                let says: Vec<_> = group.iter().map(|one| one.description.clone()).collect();
                 let first = &group[0];
                 format!("{} {} fails {}", first.formula, first.precision, join_list(&says))
             })
@@ -108,7 +108,7 @@ type CellValue = fn(&Row) -> Option<f64>;
 impl Report {
     /// The heat maps that have data, each with its file name without an extension.
     #[must_use]
-    pub fn pictures(&self) -> Vec<(&'static str, Image)> {
+    pub fn heat_maps(&self) -> Vec<(&'static str, Image)> {
         let failing: CellValue = |row| (row.tally.cases > 0).then(|| row.tally.failing_share());
         let error: CellValue = |row| row.tally.t_ulp.map(|[_, p99, _]| p99);
         let maps = [
@@ -189,8 +189,8 @@ fn has_equal_tallies(cpu: &[&Row], gpu: &[&Row]) -> bool {
 }
 
 fn bands<const N: usize>(bands: [(f64, &str, [u8; 3]); N]) -> Vec<Band> {
-    let bands = bands.into_iter().map(|(above, label, color)| Band {
-        above,
+    let bands = bands.into_iter().map(|(min, label, color)| Band {
+        min,
         label: label.to_owned(),
         color,
     });

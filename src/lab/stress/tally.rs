@@ -3,11 +3,11 @@
 use serde::Serialize;
 
 use super::Row;
-use super::axis::{Axis, Easy, Kind, Step};
+use super::axis::{Axis, EasySteps, Kind, Step};
 use super::cells::{Alternative, Reference};
-use super::exact::Precise;
+use super::exact::DoubleDouble;
 use super::formula::Reading;
-use super::function::Answers;
+use super::function::MissConvention;
 
 /// The maximum relative error of a usable root: about ten thousand ULPs of f32.
 const MAX_RELATIVE_ERROR: f64 = 1e-3;
@@ -44,7 +44,7 @@ pub(super) enum Outcome {
 impl Outcome {
     /// Whether the result is usable, given the reference `exact`.
     pub(super) fn is_right(self, exact: &Reference) -> bool {
-        let agrees = |with: Option<Precise>| match (self, with) {
+        let agrees = |with: Option<DoubleDouble>| match (self, with) {
             (Self::Hit(t), Some(exact)) => (t - exact.high).abs() <= MAX_RELATIVE_ERROR * exact.high,
             (Self::Miss, None) => true,
             (Self::Nan, None) => exact.undefined,
@@ -63,9 +63,9 @@ impl Reading {
     /// Interprets a color.
     ///
     /// `misses`: how a function reports a miss.
-    pub(super) fn outcome(misses: Option<&Answers>, color: [f64; 3]) -> Outcome {
-        if let Some(answers) = misses {
-            return answers.outcome(color);
+    pub(super) fn outcome(misses: Option<&MissConvention>, color: [f64; 3]) -> Outcome {
+        if let Some(convention) = misses {
+            return convention.outcome(color);
         }
         let [t, _, _] = color;
         if !t.is_finite() {
@@ -79,12 +79,12 @@ impl Reading {
 }
 
 impl Tally {
-    /// Counts the results of one step. `digits`: the precision of the number type, in bits; `answers`: how a
-    /// function reports a miss.
+    /// Counts the results of one step. `digits`: the precision of the number type, in bits; `convention`: how
+    /// a function reports a miss.
     pub(super) fn of(
         reading: &Reading,
         digits: u32,
-        answers: Option<&Answers>,
+        convention: Option<&MissConvention>,
         cases: impl Iterator<Item = ([f64; 3], Reference)>,
     ) -> Self {
         let mut tally = Self::default();
@@ -98,7 +98,7 @@ impl Tally {
                 tally.failing += u64::from(own || lost);
                 continue;
             }
-            let outcome = Reading::outcome(answers, color);
+            let outcome = Reading::outcome(convention, color);
             tally.failing += u64::from(!outcome.is_right(&exact));
             match (outcome, exact.t) {
                 (Outcome::Hit(t), Some(exact)) => errors.push(exact.ulps(t, digits)),
@@ -142,7 +142,8 @@ pub struct Breakdown {
     /// The share of unusable results in that step, in [0, 1].
     pub failing: f64,
     /// The failure as text, to follow “fails”.
-    pub says: String,
+    #[serde(rename = "says")]
+    pub description: String,
 }
 
 /// All breakdowns in the rows of one formula, precision and device.
@@ -162,32 +163,32 @@ pub(super) fn join_list(items: &[String]) -> String {
 fn axis_breakdowns(axis: &Axis, rows: &[&Row]) -> Vec<Breakdown> {
     let rows: Vec<&Row> = rows.iter().filter(|row| row.axis == axis.name).copied().collect();
     let name = axis.name;
-    let breakdown = |row: &Row, says: String| Breakdown {
+    let breakdown = |row: &Row, description: String| Breakdown {
         formula: row.formula.clone(),
         precision: row.precision,
         axis: name,
         from: row.value.to_string(),
         failing: row.tally.failing_share(),
-        says,
+        description,
     };
     let fails = |row: &&&Row| row.tally.failing_share() > MAX_FAILING_SHARE;
     let is = |row: &&&Row, side: fn(f64) -> bool| matches!(row.value, Step::Number(x) if side(x));
     let found: Vec<_> = match axis.easy {
-        Easy::First => {
+        EasySteps::First => {
             let first = rows.iter().find(fails);
             first
                 .map(|row| breakdown(row, format!("from {name} {} on", row.value)))
                 .into_iter()
                 .collect()
         }
-        Easy::One => {
+        EasySteps::One => {
             let low = rows.iter().rev().filter(|row| is(row, |x| x <= 1.0)).find(fails);
             let high = rows.iter().filter(|row| is(row, |x| x > 1.0)).find(fails);
             let low = low.map(|row| breakdown(row, format!("from {name} {} down", row.value)));
             let high = high.map(|row| breakdown(row, format!("from {name} {} up", row.value)));
             low.into_iter().chain(high).collect()
         }
-        Easy::Ends => {
+        EasySteps::Ends => {
             let size = |row: &Row| match row.value {
                 Step::Number(x) => Step::Number(x.abs()),
                 label @ Step::Label(_) => label,
@@ -200,7 +201,7 @@ fn axis_breakdowns(axis: &Axis, rows: &[&Row]) -> Vec<Breakdown> {
                 misses.map(|row| breakdown(row, format!("on misses that graze from |δ| {} on", size(row))));
             hits.into_iter().chain(misses).collect()
         }
-        Easy::Unordered => rows
+        EasySteps::Unordered => rows
             .iter()
             .filter(fails)
             .map(|row| breakdown(row, describe_unordered_step(axis, row)))
@@ -233,7 +234,7 @@ mod tests {
 
     #[test]
     fn tally_counts_each_kind_of_failure() {
-        let exact = |t: f64| Some(Precise { high: t, low: 0.0 });
+        let exact = |t: f64| Some(DoubleDouble { high: t, low: 0.0 });
         let off = 2.0 + 2.0 * f64::from(f32::EPSILON);
         let cases = [
             (2.0, exact(2.0)),
@@ -261,7 +262,7 @@ mod tests {
 
     #[test]
     fn near_hits_may_be_ignored() {
-        let precise = |high| Precise { high, low: 0.0 };
+        let precise = |high| DoubleDouble { high, low: 0.0 };
         let reference = Reference {
             t: Some(precise(1e-7)),
             alternative: Alternative::Hit(precise(2.0)),

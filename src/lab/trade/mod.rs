@@ -13,9 +13,9 @@ use method::{Group, Method, RenderContext, Shader};
 pub use reference::Error;
 use reference::Reference;
 use schedule::{Cost, Runner};
-pub use schedule::{Times, median};
+pub use schedule::{TimeStatistics, median};
 use serde::Serialize;
-pub use table::ERRORS;
+pub use table::ERROR_LIMITS;
 use toyproof_eval as eval;
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_gpu::Worker;
@@ -63,15 +63,17 @@ pub enum Failure {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MethodResult {
     /// The name of the method.
-    pub way: String,
+    #[serde(rename = "way")]
+    pub method: String,
     /// The renderer and precision.
     pub group: &'static str,
     /// The time of a frame.
-    pub seconds: Times,
+    pub seconds: TimeStatistics,
     /// The error relative to the reference.
     pub error: Error,
     /// Whether the method is on the Pareto front: no other is both faster and more accurate.
-    pub best: bool,
+    #[serde(rename = "best")]
+    pub on_front: bool,
 }
 
 /// The results of a study.
@@ -82,13 +84,17 @@ pub struct Report {
     /// The width and height in pixels.
     pub size: [u32; 2],
     /// A description of the reference image.
-    pub truth: String,
+    #[serde(rename = "truth")]
+    pub reference: String,
     /// The error of the reference itself: a root mean square, in [0, 1].
-    pub truth_error: f64,
+    #[serde(rename = "truth_error")]
+    pub reference_error: f64,
     /// Methods that failed or exceeded the time budget.
-    pub left_out: Vec<String>,
+    #[serde(rename = "left_out")]
+    pub skipped: Vec<String>,
     /// The methods, fastest first.
-    pub ways: Vec<MethodResult>,
+    #[serde(rename = "ways")]
+    pub results: Vec<MethodResult>,
 }
 
 /// The share of the time budget for the reference image, in [0, 1].
@@ -159,17 +165,17 @@ pub fn study(subject: Subject, interrupt: &AtomicBool, progress: impl Fn(f64)) -
     };
     let seconds = schedule::measure(&mut bench, &costs, budget.as_secs_f64())?;
     let mut measured = Vec::new();
-    let mut left_out = Vec::new();
+    let mut skipped = Vec::new();
     for ((method, error), seconds) in bench.methods.iter().zip(&bench.errors).zip(seconds) {
         match error {
             Some(error) if !seconds.is_empty() => measured.push(MethodResult {
-                way: method.name.clone(),
+                method: method.name.clone(),
                 group: group_name(method.group),
-                seconds: Times::of(&seconds),
+                seconds: TimeStatistics::of(&seconds),
                 error: *error,
-                best: false,
+                on_front: false,
             }),
-            _ => left_out.push(method.name.clone()),
+            _ => skipped.push(method.name.clone()),
         }
     }
     measured.sort_by(|a, b| a.seconds.median.total_cmp(&b.seconds.median));
@@ -177,10 +183,10 @@ pub fn study(subject: Subject, interrupt: &AtomicBool, progress: impl Fn(f64)) -
     Ok(Report {
         subject: name,
         size: frame.size,
-        truth: reference.description,
-        truth_error: reference.error,
-        left_out,
-        ways: measured,
+        reference: reference.description,
+        reference_error: reference.error,
+        skipped,
+        results: measured,
     })
 }
 
@@ -207,8 +213,8 @@ const MIN_ERROR_REDUCTION: f64 = 0.01;
 fn mark_pareto_front(measured: &mut [MethodResult]) {
     let mut least = f64::INFINITY;
     for result in measured {
-        result.best = result.error.rmse < (1.0 - MIN_ERROR_REDUCTION) * least;
-        if result.best {
+        result.on_front = result.error.rmse < (1.0 - MIN_ERROR_REDUCTION) * least;
+        if result.on_front {
             least = result.error.rmse;
         }
     }
@@ -256,7 +262,7 @@ impl Report {
     /// The fastest method whose root mean square error is at most `error`; `None` if there is none.
     #[must_use]
     pub fn cheapest(&self, error: f64) -> Option<&MethodResult> {
-        self.ways.iter().find(|result| result.error.rmse <= error)
+        self.results.iter().find(|result| result.error.rmse <= error)
     }
 }
 
@@ -264,13 +270,13 @@ impl Report {
 mod tests {
     use super::*;
 
-    fn way(name: &str, median: f64, rmse: f64) -> MethodResult {
+    fn result(name: &str, median: f64, rmse: f64) -> MethodResult {
         MethodResult {
-            way: name.to_owned(),
+            method: name.to_owned(),
             group: "",
-            seconds: Times {
+            seconds: TimeStatistics {
                 median,
-                ..Times::default()
+                ..TimeStatistics::default()
             },
             error: Error {
                 rmse,
@@ -278,63 +284,63 @@ mod tests {
                 mismatches_8bit: 0,
                 flips: None,
             },
-            best: false,
+            on_front: false,
         }
     }
 
     #[test]
     fn pareto_front_omits_dominated_methods() {
         let mut ways = [
-            way("a", 1.0, 0.1),
-            way("b", 2.0, 0.2),
-            way("c", 3.0, 0.1),
-            way("d", 4.0, 0.01),
-            way("e", 5.0, 0.0),
+            result("a", 1.0, 0.1),
+            result("b", 2.0, 0.2),
+            result("c", 3.0, 0.1),
+            result("d", 4.0, 0.01),
+            result("e", 5.0, 0.0),
         ];
         mark_pareto_front(&mut ways);
         let best: Vec<_> = ways
             .iter()
-            .filter(|result| result.best)
-            .map(|result| &*result.way)
+            .filter(|result| result.on_front)
+            .map(|result| &*result.method)
             .collect();
         assert_eq!(best, ["a", "d", "e"]);
         let report = Report {
             subject: "s".to_owned(),
             size: [1, 1],
-            truth: String::new(),
-            truth_error: 0.0,
-            left_out: Vec::new(),
-            ways: ways.to_vec(),
+            reference: String::new(),
+            reference_error: 0.0,
+            skipped: Vec::new(),
+            results: ways.to_vec(),
         };
-        assert_eq!(report.cheapest(0.05).map(|result| &*result.way), Some("d"));
-        assert_eq!(report.cheapest(0.0).map(|result| &*result.way), Some("e"));
+        assert_eq!(report.cheapest(0.05).map(|result| &*result.method), Some("d"));
+        assert_eq!(report.cheapest(0.0).map(|result| &*result.method), Some("e"));
         assert_eq!(report.cheapest(-1.0), None);
-        assert_eq!(report.stability(), None);
+        assert_eq!(report.stable_formula_cost(), None);
         let mut pair = report.clone();
-        pair.ways = vec![
-            way("gpu strict", 1.0, 0.1),
-            way("gpu strict, recentred", 1.5, 0.01),
+        pair.results = vec![
+            result("gpu strict", 1.0, 0.1),
+            result("gpu strict, recentred", 1.5, 0.01),
         ];
-        for result in &mut pair.ways {
+        for result in &mut pair.results {
             result.group = group_name(Group::Strict);
         }
         assert!(
-            pair.stability().unwrap().contains("(+50 %)"),
+            pair.stable_formula_cost().unwrap().contains("(+50 %)"),
             "{:?}",
-            pair.stability()
+            pair.stable_formula_cost()
         );
         assert!(report.csv().starts_with("way,group,") && report.csv().lines().count() == 6);
         assert!(
             report
-                .line(0.05, "0.05")
+                .cheapest_line(0.05, "0.05")
                 .contains("within 0.05 of the truth is d:")
         );
         let few = Report {
-            ways: vec![way("a", 1.0, 0.1)],
-            left_out: vec!["b".to_owned(), "c".to_owned()],
+            results: vec![result("a", 1.0, 0.1)],
+            skipped: vec!["b".to_owned(), "c".to_owned()],
             ..report
         };
-        assert!(few.line(0.2, "0.2").starts_with("a, the only way"));
-        assert!(few.line(0.05, "0.05").contains("no time for 2 ways"));
+        assert!(few.cheapest_line(0.2, "0.2").starts_with("a, the only way"));
+        assert!(few.cheapest_line(0.05, "0.05").contains("no time for 2 ways"));
     }
 }

@@ -117,7 +117,7 @@ const QUARTILE: f64 = 0.6745;
 
 /// Statistics of a method's times.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Times {
+pub struct TimeStatistics {
     /// The number of runs, without the warm-up.
     pub runs: usize,
     /// The median without outliers, in seconds.
@@ -145,7 +145,7 @@ fn deviation(values: &[f64], from: f64) -> f64 {
     median(&distances)
 }
 
-impl Times {
+impl TimeStatistics {
     /// Computes the statistics of times in seconds.
     #[must_use]
     pub fn of(seconds: &[f64]) -> Self {
@@ -270,22 +270,28 @@ mod tests {
         assert_eq!(median(&[]), 0.0);
         assert_eq!(median(&[3.0, 1.0, 2.0]), 2.0);
         assert_eq!(median(&[4.0, 1.0, 2.0, 3.0]), 2.5);
-        let times = Times::of(&[1.0, 1.1, 0.9, 1.0, 1.05, 0.95, 9.0]);
+        let times = TimeStatistics::of(&[1.0, 1.1, 0.9, 1.0, 1.05, 0.95, 9.0]);
         assert_eq!((times.runs, times.outliers, times.median), (7, 1, 1.0));
         assert!((times.deviation - 0.05).abs() < 1e-12);
     }
 
     #[test]
     fn uniform_and_equal_times_have_no_outliers() {
-        assert_eq!(Times::of(&[1.0, 2.0, 3.0, 4.0, 5.0]).outliers, 0);
-        let times = Times::of(&[2.0; 5]);
+        assert_eq!(TimeStatistics::of(&[1.0, 2.0, 3.0, 4.0, 5.0]).outliers, 0);
+        let times = TimeStatistics::of(&[2.0; 5]);
         assert_eq!((times.outliers, times.median, times.deviation), (0, 2.0, 0.0));
     }
 
     #[test]
     fn score_matches_iglewicz_and_hoaglin() {
         // With median 2 and deviation 1, the limit is 2 + 3.5 / 0.6745 = 7.189.
-        assert_eq!(Times::of(&[1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 7.18]).outliers, 0);
-        assert_eq!(Times::of(&[1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 7.20]).outliers, 1);
+        assert_eq!(
+            TimeStatistics::of(&[1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 7.18]).outliers,
+            0
+        );
+        assert_eq!(
+            TimeStatistics::of(&[1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 7.20]).outliers,
+            1
+        );
     }
 }

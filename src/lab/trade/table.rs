@@ -11,13 +11,14 @@ use crate::trade::method::Group;
 const COLUMNS: &str = "way,group,runs,outliers,median_ms,mad_ms,rmse,max,mismatches_8bit,flips,pareto";
 
 /// Error limits of interest to users, with their text.
-pub const ERRORS: [(f64, &str); 3] = [(1.0 / 255.0, "1/255"), (0.5 / 255.0, "0.5/255"), (1e-3, "1/1000")];
+pub const ERROR_LIMITS: [(f64, &str); 3] =
+    [(1.0 / 255.0, "1/255"), (0.5 / 255.0, "0.5/255"), (1e-3, "1/1000")];
 
 impl Report {
     /// A table (RFC 4180) with a header row. Flips are empty if the background is unknown.
     #[must_use]
     pub fn csv(&self) -> String {
-        let rows = self.ways.iter().map(MethodResult::cells);
+        let rows = self.results.iter().map(MethodResult::cells);
         let rows = [COLUMNS.to_owned()].into_iter().chain(rows);
         rows.map(|row| row + "\r\n").collect()
     }
@@ -44,7 +45,7 @@ impl Report {
     #[must_use]
     pub fn chart(&self) -> Scatter {
         let errors = self
-            .ways
+            .results
             .iter()
             .map(|result| result.error.rmse)
             .filter(|&rmse| rmse > 0.0);
@@ -52,22 +53,22 @@ impl Report {
         let used: Vec<_> = Group::ALL
             .iter()
             .map(|(_, name)| *name)
-            .filter(|name| self.ways.iter().any(|result| result.group == *name))
+            .filter(|name| self.results.iter().any(|result| result.group == *name))
             .collect();
-        let points = self.ways.iter().map(|result| Point {
+        let points = self.results.iter().map(|result| Point {
             x: 1e3 * result.seconds.median.max(1e-9),
             y: result.error.rmse.max(least),
-            name: result.way.clone(),
+            name: result.method.clone(),
             group: used.iter().position(|name| *name == result.group).unwrap_or(0),
-            best: result.best,
+            on_front: result.on_front,
         });
         Scatter {
             title: format!("{}: {}x{} pixels", self.subject, self.size[0], self.size[1]),
-            x: "median time of a frame (ms)".to_owned(),
-            y: "root mean square error (none: at the bottom)".to_owned(),
+            x_title: "median time of a frame (ms)".to_owned(),
+            y_title: "root mean square error, colors in [0, 1] (no error: at the bottom)".to_owned(),
             groups: used.iter().map(|name| (*name).to_owned()).collect(),
             points: points.collect(),
-            lines: ERRORS
+            reference_lines: ERROR_LIMITS
                 .iter()
                 .map(|&(error, name)| (error, name.to_owned()))
                 .collect(),
@@ -77,21 +78,21 @@ impl Report {
     /// The cost of the stable ray–sphere formula relative to the shader's own; `None` if that was not
     /// measured.
     #[must_use]
-    pub fn stability(&self) -> Option<String> {
+    pub fn stable_formula_cost(&self) -> Option<String> {
         let groups = [Group::Strict, Group::Evaluator32].map(super::group_name);
         let mut own = groups.iter().filter_map(|group| {
-            let is_own = |result: &&MethodResult| result.group == *group && !result.way.contains(", ");
-            self.ways.iter().find(is_own)
+            let is_own = |result: &&MethodResult| result.group == *group && !result.method.contains(", ");
+            self.results.iter().find(is_own)
         });
         own.find_map(|own| {
-            let name = format!("{}, {}", own.way, RECENTERED.name);
-            let stable = self.ways.iter().find(|result| result.way == name)?;
+            let name = format!("{}, {}", own.method, RECENTERED.name);
+            let stable = self.results.iter().find(|result| result.method == name)?;
             let [before, after] = [own, stable].map(|result| 1e3 * result.seconds.median);
             Some(format!(
                 "with the {} formula for spheres, {} takes {after:.2} ms a frame where its own takes {before:.2} ({:+.0} %); the error is {} \
                  where it is {}",
                 RECENTERED.name,
-                own.way,
+                own.method,
                 100.0 * (after / before - 1.0),
                 magnitude(stable.error.rmse),
                 magnitude(own.error.rmse)
@@ -101,26 +102,26 @@ impl Report {
 
     /// The cheapest method within an error limit.
     #[must_use]
-    pub fn line(&self, error: f64, limit: &str) -> String {
+    pub fn cheapest_line(&self, error: f64, limit: &str) -> String {
         let Some(result) = self.cheapest(error) else {
-            let ways = match &self.ways[..] {
-                [only] => format!("{}, the only way that was measured, is not", only.way),
+            let ways = match &self.results[..] {
+                [only] => format!("{}, the only way that was measured, is not", only.method),
                 _ => "no way that was measured is".to_owned(),
             };
-            let rest = match self.left_out.len() {
+            let rest = match self.skipped.len() {
                 0 => String::new(),
-                _ => format!("; {}", self.unmeasured()),
+                _ => format!("; {}", self.skipped_line()),
             };
             return format!("{ways} within {limit} of the truth{rest}");
         };
-        let which = match self.ways.len() {
+        let which = match self.results.len() {
             1 => format!(
                 "{}, the only way that was measured, is within {limit} of the truth",
-                result.way
+                result.method
             ),
             _ => format!(
                 "the cheapest way to be within {limit} of the truth is {}",
-                result.way
+                result.method
             ),
         };
         format!(
@@ -133,8 +134,8 @@ impl Report {
 
     /// The number of methods that were not measured, with advice.
     #[must_use]
-    pub fn unmeasured(&self) -> String {
-        let ways = self.left_out.len() as u64;
+    pub fn skipped_line(&self) -> String {
+        let ways = self.skipped.len() as u64;
         format!(
             "there was no time for {} {}; a longer --budget or a smaller --size measures more",
             grouped(ways),
@@ -146,14 +147,14 @@ impl Report {
 impl MethodResult {
     fn cells(&self) -> String {
         let Self {
-            way,
+            method,
             group,
             seconds,
             error,
-            best,
+            on_front,
         } = self;
         format!(
-            "\"{way}\",\"{group}\",{},{},{:.4},{:.4},{:e},{:e},{},{},{}",
+            "\"{method}\",\"{group}\",{},{},{:.4},{:.4},{:e},{:e},{},{},{}",
             seconds.runs,
             seconds.outliers,
             1e3 * seconds.median,
@@ -162,7 +163,7 @@ impl MethodResult {
             error.max,
             error.mismatches_8bit,
             error.flips.map_or_else(String::new, |flips| flips.to_string()),
-            u8::from(*best)
+            u8::from(*on_front)
         )
     }
 }

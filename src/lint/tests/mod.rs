@@ -147,6 +147,9 @@ fn allowed_warnings_are_suppressed() {
     assert!(self::warned(text).is_empty());
 }
 
+/// Quadratic time would be minutes, linear time is less than a second.
+const HANG_GUARD: std::time::Duration = std::time::Duration::from_secs(60);
+
 #[test]
 fn analysis_time_is_linear() {
     let lines = |line: fn(usize) -> String| (0..5_000).map(line).collect::<String>();
@@ -176,12 +179,8 @@ fn analysis_time_is_linear() {
                 .join()
                 .unwrap()
         });
-        assert!(
-            found <= 50 && start.elapsed().as_secs() < 20,
-            "{:?} {}",
-            start.elapsed(),
-            &text[..60]
-        );
+        assert!(found <= 50, "{found} {}", &text[..60]);
+        assert!(start.elapsed() < HANG_GUARD, "{}", &text[..60]);
     }
 }
 

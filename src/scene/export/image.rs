@@ -3,14 +3,14 @@
 use std::fmt::Write;
 
 use super::{Parts, number, vector};
-use crate::{Background, Color, Figure, Outline, Projection, Sampler, Scene, ToneMap};
+use crate::{Background, Figure, Outline, Projection, Sampler, Scene, ToneMap};
 
 impl Parts<'_> {
     pub(super) fn main(&self, scene: &Scene) -> String {
         let film = &scene.film;
         let multisampled = film.samples > 1;
         let (indent, index) = if multisampled {
-            ("        ", "i")
+            ("        ", "«SampleIndex: i»")
         } else {
             ("    ", "0")
         };
@@ -19,16 +19,19 @@ impl Parts<'_> {
             _ => String::new(),
         };
         let sample = if film.sampler == Sampler::Center {
-            format!("{indent}color += look(fragCoord);\n")
+            format!("{indent}«SampleStatement: color += «Sample: look(fragCoord)»;»\n")
         } else {
             format!(
-                "{start}{indent}float x = fragCoord.x + random() - 0.5;\n{indent}float y = fragCoord.y + random() - 0.5;\n\
-                 {indent}color += look(vec2(x, y));\n"
+                "{start}\
+                 {indent}«SampleXStatement: float x = «SampleX: fragCoord.x + random() - 0.5»;»\n\
+                 {indent}«SampleYStatement: float y = «SampleY: fragCoord.y + random() - 0.5»;»\n\
+                 {indent}«SampleStatement: color += «Sample: look(vec2(x, y))»;»\n"
             )
         };
         let samples = if multisampled {
             format!(
-                "    for (int i = 0; i < SAMPLES; i++) {{\n{sample}    }}\n    color /= float(SAMPLES);\n"
+                "    for (int i = 0; «SampleCondition: i < SAMPLES»; i++) {{\n{sample}    }}\n    \
+                 «MeanStatement: color /= float(«MeanDivisor: SAMPLES»);»\n"
             )
         } else {
             sample
@@ -44,7 +47,7 @@ impl Parts<'_> {
         };
         format!(
             "void mainImage(out vec4 fragColor, in vec2 fragCoord) {{\n{scene_made}{seed}    vec3 color = vec3(0.0);\n\
-             {samples}{}    fragColor = vec4(color, 1.0);\n}}\n",
+             {samples}{}    fragColor = vec4(«FinalColor: color», 1.0);\n}}\n",
             post_process(scene)
         )
     }
@@ -53,12 +56,12 @@ impl Parts<'_> {
 fn post_process(scene: &Scene) -> String {
     let mut text = String::new();
     if scene.film.tone_map == ToneMap::Reinhard {
-        text.push_str("    color = color / (color + 1.0);\n");
+        text.push_str("    «ToneMapStatement: color = «ToneMapped: color / (color + 1.0)»;»\n");
     }
     if scene.film.gamma != 1.0 {
         let _ = writeln!(
             text,
-            "    color = pow(color, vec3(1.0 / {}));",
+            "    «GammaStatement: color = pow(color, vec3(«GammaExponent: 1.0 / «Gamma: {}»»));»",
             number(scene.film.gamma)
         );
     }
@@ -73,20 +76,21 @@ pub(super) fn camera_function(scene: &Scene) -> String {
     let ray = match scene.camera.projection {
         Projection::Pinhole { screen_distance } => {
             format!(
-                "trace({eye}, normalize(vec3(x, y, {})))",
-                number(-screen_distance)
+                "trace({eye}, \
+                 «CameraDirection: normalize(«ScreenPoint: vec3(x, y, «ScreenZ: -«ScreenDistance: {}»»)»)»)",
+                number(screen_distance)
             )
         }
         Projection::Parallel { width } => format!(
-            "trace({eye} + {} * vec3(x, y, 0.0), vec3(0.0, 0.0, -1.0))",
+            "trace({eye} + {} * «ParallelOffset: vec3(x, y, 0.0)», «ParallelDirection: vec3(0.0, 0.0, -1.0)»)",
             number(0.5 * width)
         ),
     };
     let figures = figure_tests(&scene.figures);
     format!(
-        "vec3 look(vec2 fragCoord) {{\n    float aspect = iResolution.x / iResolution.y;\n    \
-         float x = fragCoord.x / iResolution.x * 2.0 - 1.0;\n    \
-         float y = (fragCoord.y / iResolution.y * 2.0 - 1.0) / aspect;\n{figures}    return {ray};\n}}\n"
+        "vec3 look(vec2 fragCoord) {{\n    «AspectStatement: float aspect = «AspectRatio: iResolution.x / iResolution.y»;»\n    \
+         float x = «ScreenX: fragCoord.x / iResolution.x * 2.0 - 1.0»;\n    \
+         float y = «ScreenYOverAspect: «ScreenY: (fragCoord.y / iResolution.y * 2.0 - 1.0)» / aspect»;\n{figures}    return {ray};\n}}\n"
     )
 }
 
@@ -141,38 +145,36 @@ pub(super) fn figure_tests(figures: &[Figure]) -> String {
 
 const DISK: &str = "float disk(vec2 p, vec2 center, float radius) {
     vec2 d = p - center;
-    return dot(d, d) - radius * radius;
+    return «DiskFunction: dot(d, d) - radius * radius»;
 }
 ";
 
 const WAVE: &str = "// Below a sine wave.
 float wave(vec2 p, float height, float amplitude, float frequency) {
-    return p.y - height - amplitude * sin(frequency * p.x);
+    return «WaveFunction: p.y - height - amplitude * sin(frequency * p.x)»;
 }
 ";
 
 const HEART: &str = "float heart(vec2 p, vec2 center, float size) {
     vec2 q = (p - center) / size;
     float ring = dot(q, q) - 1.0;
-    return ring * ring * ring - q.x * q.x * q.y * q.y * q.y;
+    return «HeartFunction: ring * ring * ring - q.x * q.x * q.y * q.y * q.y»;
 }
 ";
 
 // The background.
 
 pub(super) fn background_function(background: &Background) -> String {
-    let body = match *background {
-        Background::Uniform(color) => format!("    return {};\n", vector(color)),
-        Background::Gradient { bottom, top } => gradient(bottom, top),
+    let color = match *background {
+        Background::Uniform(color) => vector(color),
+        Background::Gradient { bottom, top } => format!(
+            "mix({}, {}, «BackgroundHeight: 0.5 * (1.0 + direction.y)»)",
+            vector(bottom),
+            vector(top)
+        ),
     };
-    format!("vec3 background(vec3 direction) {{\n{body}}}\n")
-}
-
-fn gradient(bottom: Color, top: Color) -> String {
     format!(
-        "    return mix({}, {}, 0.5 * (1.0 + direction.y));\n",
-        vector(bottom),
-        vector(top)
+        "vec3 background(vec3 direction) {{\n    «BackgroundStatement: return «BackgroundColor: {color}»;»\n}}\n"
     )
 }
 
@@ -197,7 +199,7 @@ pub(super) const PCG: &str = "// The integer hash pcg (Jarzynski and Olano 2020)
 uint pcg(uint v) {
     uint s = v * 747796405u + 2891336453u;
     uint word = ((s >> ((s >> 28u) + 4u)) ^ s) * 277803737u;
-    return (word >> 22u) ^ word;
+    return «HashResult: (word >> 22u) ^ word»;
 }
 ";
 
@@ -219,7 +221,7 @@ vec3 around(vec3 w, float cosine, float turn) {
     vec3 a = normalize(cross(up, w));
     vec3 b = cross(w, a);
     float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
-    float phi = 6.28318530718 * turn;
+    float phi = «Turn: 6.28318530718 * turn»;
     return sine * cos(phi) * a + sine * sin(phi) * b + cosine * w;
 }
 ";

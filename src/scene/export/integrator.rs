@@ -3,9 +3,15 @@
 use super::Parts;
 use super::image::AROUND;
 use super::shading::{GLASS, Kind, REFLECTIVE};
+use super::slot::Slot;
 
 /// A mirrored ray, offset from its surface.
-const MIRRORED: &str = "Ray(hit.point + 0.001 * side, reflect(ray.direction, hit.normal))";
+const MIRRORED: &str = "Ray(«ReflectedOrigin: hit.point + «ReflectionOffset: 0.001» * side», \
+     «ReflectedDirection: reflect(ray.direction, hit.normal)»)";
+/// Mirrors tint what they reflect.
+const TINTED: &str = "«MirrorStatement: throughput *= hit.color;»";
+const PRIMARY_RAY: &str = "«PrimaryRay: Ray ray = Ray(origin, direction);»";
+const BACKGROUND: &str = "background(«BackgroundDirection: ray.direction»)";
 const SIDE: &str = "vec3 side = faceforward(hit.normal, ray.direction, hit.normal);";
 
 impl Parts<'_> {
@@ -21,26 +27,30 @@ impl Parts<'_> {
         };
         let cases = self.ends(|color| format!("return {throughput}{color};"));
         let [facing, emitter, is_lit] = &cases;
-        let mirror = format!("throughput *= hit.color;\n{SIDE}\nray = {MIRRORED};");
+        let mirror = format!("{TINTED}\n{SIDE}\nray = {MIRRORED};");
         let cases: [(&[Kind], String); 4] = [
             (&[Kind::Facing], facing.clone()),
             (&[Kind::Emitter], emitter.clone()),
             (&REFLECTIVE, is_lit.clone()),
             (&[Kind::Mirror], mirror),
         ];
+        let mut background = BACKGROUND.to_owned();
+        if mirrors {
+            background = format!("«BackgroundThroughMirrors: throughput * {background}»");
+        }
         let mut body = format!(
             "{indent}Intersection hit = nearestHit(ray);\n{indent}if (hit.t == NO_HIT) {{\n{indent}    \
-             return {throughput}background(ray.direction);\n{indent}}}\n{}",
+             return {background};\n{indent}}}\n{}",
             self.cases(indent, &cases)
         );
         if mirrors {
             body = format!(
-                "    vec3 throughput = vec3(1.0);\n    for (int depth = 0; depth < MAX_DEPTH; depth++) {{\n{body}    }}\n    \
-                 return vec3(0.0);\n"
+                "    vec3 throughput = vec3(1.0);\n    for (int depth = 0; «MirrorDepth: depth < MAX_DEPTH»; depth++) {{\n{body}    }}\n    \
+                 return «ColorAfterLastMirror: vec3(0.0)»;\n"
             );
         }
         vec![format!(
-            "vec3 trace(vec3 origin, vec3 direction) {{\n    Ray ray = Ray(origin, direction);\n{body}}}\n"
+            "vec3 trace(vec3 origin, vec3 direction) {{\n    {PRIMARY_RAY}\n{body}}}\n"
         )]
     }
 
@@ -50,7 +60,7 @@ impl Parts<'_> {
             end("hit.color * abs(dot(ray.direction, hit.normal))"),
             end("hit.color"),
             end(if self.uses_view() {
-                "shade(hit, -ray.direction)"
+                "shade(hit, «ShadeView: -ray.direction»)"
             } else {
                 "shade(hit)"
             }),
@@ -71,23 +81,24 @@ impl Parts<'_> {
             _ => "schlick(eta, cosine, beyond)",
         };
         let glass = format!(
-            "float eta = dot(ray.direction, hit.normal) < 0.0 ? 1.0 / hit.ior : hit.ior;
-float cosine = -dot(ray.direction, side);
+            "float eta = dot(ray.direction, hit.normal) < 0.0 ? «EtaEntering: 1.0 / hit.ior» : «EtaLeaving: hit.ior»;
+float cosine = «GlassCosine: -dot(ray.direction, side)»;
 float sine2 = eta * eta * (1.0 - cosine * cosine);
 if (sine2 >= 1.0) {{
-    // Total reflection.
-    stack[top++] = Branch(mirrored, throughput, branch.depth + 1);
+    «TotalReflection: // Total reflection.
+    stack[top++] = Branch(mirrored, throughput, branch.depth + 1);»
     continue;
 }}
 float beyond = sqrt(1.0 - sine2);
-float share = {share};
-vec3 refracted = eta * ray.direction + (eta * cosine - beyond) * side;
-stack[top++] = Branch(Ray(hit.point - 0.001 * side, refracted), throughput * (1.0 - share), branch.depth + 1);
-stack[top++] = Branch(mirrored, throughput * share, branch.depth + 1);"
+float share = «ReflectedShare: {share}»;
+vec3 refracted = «Refracted: eta * ray.direction + (eta * cosine - beyond) * side»;
+stack[top++] = Branch(Ray(«RefractedOrigin: hit.point - «RefractionOffset: 0.001» * side», refracted), \
+«RefractedThroughput: throughput * (1.0 - share)», branch.depth + 1);
+stack[top++] = Branch(mirrored, «ReflectedThroughput: throughput * share», branch.depth + 1);"
         );
         let sent = self.cases("", &[(&[Kind::Mirror], mirror.to_owned()), (&GLASS, glass)]);
         let parted = format!(
-            "{go_on}\nvec3 throughput = branch.throughput * hit.color;\n{SIDE}\nRay mirrored = {MIRRORED};\n{sent}"
+            "{go_on}\nvec3 throughput = branch.throughput * «GlassColor: hit.color»;\n{SIDE}\nRay mirrored = {MIRRORED};\n{sent}"
         );
         let both: Vec<Kind> = GLASS.into_iter().chain([Kind::Mirror]).collect();
         let cases: [(&[Kind], String); 4] = [
@@ -116,7 +127,7 @@ const FRESNEL: &str = "// The share of light that is reflected, by Fresnel's equ
 float fresnel(float eta, float cosine, float beyond) {
     float across = (eta * cosine - beyond) / (eta * cosine + beyond);
     float along = (cosine - eta * beyond) / (cosine + eta * beyond);
-    return 0.5 * (across * across + along * along);
+    return «Fresnel: 0.5 * (across * across + along * along)»;
 }
 ";
 
@@ -147,7 +158,7 @@ const BRANCHING_TRACE: &str = "vec3 trace(vec3 origin, vec3 direction) {
         Ray ray = branch.ray;
         Intersection hit = nearestHit(ray);
         if (hit.t == NO_HIT) {
-            color += branch.throughput * background(ray.direction);
+            color += branch.throughput * background(«BackgroundDirection: ray.direction»);
             continue;
         }
 ";
@@ -167,28 +178,24 @@ impl Parts<'_> {
             pieces.push(LIGHT_DENSITY.to_owned());
         }
         if self.uses(Kind::Emitter) && self.reflects() {
-            let brdf = self.brdf_call("direction", "view");
+            let brdf = self.path_brdf(Slot::EmitterDiffuseBrdf, "direction", "view");
             pieces.push(SAMPLE_LIGHT.replace("BRDF", &brdf));
         }
         let emitter = "float share = 1.0;
 if (density > 0.0) {
-    share = weight(density, lightDensity(ray.origin, spheres[hit.sphere]));
+    share = «EmitterShare: weight(density, lightDensity(ray.origin, spheres[hit.sphere]))»;
 }
 return color + throughput * hit.color * share;";
-        let mirror = "throughput *= hit.color;
-vec3 side = faceforward(hit.normal, ray.direction, hit.normal);
-density = 0.0;
-ray = Ray(hit.point + 0.001 * side, reflect(ray.direction, hit.normal));
-continue;";
+        let mirror = format!("{TINTED}\n{SIDE}\ndensity = 0.0;\nray = {MIRRORED};\ncontinue;");
         let sampled = if self.uses(Kind::Emitter) {
-            "color += throughput * sampleLight(hit, -ray.direction);\n"
+            "«EmitterStatement: color += throughput * «EmitterSample: sampleLight(hit, -ray.direction)»;»\n"
         } else {
             ""
         };
-        let brdf = self.brdf_call("next", "-ray.direction");
+        let brdf = self.path_brdf(Slot::PathDiffuseBrdf, "next", "-ray.direction");
         let reflective = format!(
             "// Light that is looked for here would come by a segment too many.
-if (depth == MAX_DEPTH) {{
+if («PathIsAtEnd: depth == MAX_DEPTH») {{
     return color;
 }}
 {sampled}vec3 next = sampleBrdf(hit, -ray.direction);
@@ -197,12 +204,12 @@ if (cosine <= 0.0) {{
     return color;
 }}
 density = brdfDensity(hit, next, -ray.direction);
-throughput *= {brdf} * cosine / density;
-ray = Ray(hit.point + 0.001 * hit.normal, next);"
+«PathStatement: throughput *= «PathFactor: «PathBrdf: {brdf}» * cosine / density»;»
+ray = Ray(«SampledOrigin: hit.point + «SampledOffset: 0.001» * hit.normal», next);"
         );
         let cases: [(&[Kind], String); 3] = [
             (&[Kind::Emitter], emitter.to_owned()),
-            (&[Kind::Mirror], mirror.to_owned()),
+            (&[Kind::Mirror], mirror),
             (&REFLECTIVE, reflective),
         ];
         pieces.push(format!(
@@ -212,16 +219,25 @@ ray = Ray(hit.point + 0.001 * hit.normal, next);"
         pieces
     }
 
+    /// Returns the call of the BRDF, with a name if it is the expression of diffuse surfaces.
+    fn path_brdf(&self, diffuse: Slot, light: &str, view: &str) -> String {
+        let brdf = self.brdf_call(light, view);
+        match self.brdf_slot() {
+            Some(Slot::DiffuseBrdf) => diffuse.mark(&brdf),
+            _ => brdf,
+        }
+    }
+
     /// Returns the functions that sample a BRDF's directions, and their density.
     fn brdf_sampling(&self) -> Vec<String> {
         let cosine = [Kind::Lambert, Kind::Diffuse, Kind::Disney];
         let sampled_directions: [(&[Kind], String); 2] = [
             (
                 &[Kind::Glossy],
-                "return around(reflect(-view, hit.normal), pow(1.0 - u, 1.0 / (hit.exponent + 1.0)), v);"
+                "return around(«LobeAxis: reflect(-view, hit.normal)», pow(1.0 - u, «LobeExponent: 1.0 / (hit.exponent + 1.0)»), v);"
                     .to_owned(),
             ),
-            (&cosine, "return around(hit.normal, sqrt(1.0 - u), v);".to_owned()),
+            (&cosine, "return around(hit.normal, «DiffuseCosine: sqrt(1.0 - u)», v);".to_owned()),
         ];
         let density: [(&[Kind], String); 2] = [
             (
@@ -232,7 +248,7 @@ return (hit.exponent + 1.0) / (2.0 * PI) * lobe;"
             ),
             (
                 &cosine,
-                "return max(dot(hit.normal, light), 0.0) / PI;".to_owned(),
+                "return «DiffuseDensity: max(dot(hit.normal, light), 0.0) / PI»;".to_owned(),
             ),
         ];
         vec![
@@ -261,7 +277,7 @@ float coneDepth(vec3 point, Sphere emitter) {
 
 // The density, over the solid angle, with which a direction to this emitter is drawn.
 float lightDensity(vec3 point, Sphere emitter) {
-    return 1.0 / (2.0 * PI * coneDepth(point, emitter) * float(EMITTERS));
+    return 1.0 / «ConeSolidAngle: (2.0 * PI * coneDepth(point, emitter) * float(EMITTERS))»;
 }
 
 // The power heuristic.
@@ -277,30 +293,30 @@ const SAMPLE_LIGHT: &str = "bool inShadow(Ray ray, int emitter) {
 
 // The light of one emitter, drawn by chance.
 vec3 sampleLight(Intersection hit, vec3 view) {
-    int emitter = min(int(random() * float(EMITTERS)), EMITTERS - 1);
+    int emitter = «EmitterChoice: min(int(random() * float(EMITTERS)), EMITTERS - 1)»;
     float u = random();
     float v = random();
     float across = 1.0 - u * coneDepth(hit.point, spheres[emitter]);
     vec3 direction = around(normalize(spheres[emitter].center - hit.point), across, v);
     float cosine = dot(hit.normal, direction);
-    if (cosine <= 0.0 || inShadow(Ray(hit.point + 0.001 * hit.normal, direction), emitter)) {
+    if («EmitterHidden: cosine <= 0.0 || inShadow(Ray(hit.point + «ShadowOffset: 0.001» * hit.normal, direction), emitter)») {
         return vec3(0.0);
     }
     float density = lightDensity(hit.point, spheres[emitter]);
     float other = brdfDensity(hit, direction, view);
-    return spheres[emitter].color * BRDF * cosine * weight(density, other) / density;
+    return «WeightedEmitter: «UnweightedEmitter: spheres[emitter].color * BRDF * cosine» * weight(density, other)» / density;
 }
 ";
 
 const PATH_TRACE: &str = "vec3 trace(vec3 origin, vec3 direction) {
-    Ray ray = Ray(origin, direction);
+    «PrimaryRay: Ray ray = Ray(origin, direction);»
     vec3 color = vec3(0.0);
     vec3 throughput = vec3(1.0);
     // The density with which the ray was drawn; 0 from the eye and from mirrors.
     float density = 0.0;
-    for (int depth = 1; depth <= MAX_DEPTH; depth++) {
+    for (int depth = 1; «PathDepth: depth <= MAX_DEPTH»; depth++) {
         Intersection hit = nearestHit(ray);
         if (hit.t == NO_HIT) {
-            return color + throughput * background(ray.direction);
+            return color + throughput * background(«BackgroundDirection: ray.direction»);
         }
 ";

@@ -18,7 +18,7 @@ impl Parts<'_> {
             pieces.push(INTERSECT_SPHERE.to_owned());
         }
         if !self.spheres.is_empty() {
-            let normal = "normalize(hit.point - spheres[i].center)";
+            let normal = "«SphereNormal: normalize(hit.point - spheres[i].center)»";
             loops += &self.nearest("Sphere", "spheres", "spheres[i]", normal);
         }
         if !self.grids.is_empty() {
@@ -36,7 +36,8 @@ impl Parts<'_> {
             loops += &self.nearest("Quadric", "quadrics", "quadrics[i]", normal);
         }
         pieces.push(format!(
-            "Intersection nearestHit(Ray ray) {{\n    Intersection hit;\n    hit.t = NO_HIT;\n{loops}    return hit;\n}}\n"
+            "«NearestHitSignature: Intersection nearestHit(Ray ray)» {{\n    Intersection hit;\n    \
+             hit.t = «InitialT: NO_HIT»;\n{loops}    «ReturnHit: return hit;»\n}}\n"
         ));
         pieces
     }
@@ -47,8 +48,15 @@ impl Parts<'_> {
         let count = all.to_uppercase();
         let color = if self.checkers {
             format!("checkered(hit.point, {own}.color, {own}.other, {own}.side)")
+        } else if kind == "Sphere" {
+            format!("«SphereColor: {own}.color»")
         } else {
             format!("{own}.color")
+        };
+        let (first, count) = if kind == "Sphere" {
+            ("«FirstSphere: 0»", format!("«SphereCount: {count}»"))
+        } else {
+            ("0", count)
         };
         let mut taken = String::new();
         for property in self.properties() {
@@ -63,8 +71,8 @@ impl Parts<'_> {
             format!("        float t = intersect{kind}(ray, {own});\n")
         };
         format!(
-            "    for (int i = 0; i < {count}; i++) {{\n{intersect_call}        if (t < hit.t) {{\n            hit.t = t;\n            \
-             hit.point = ray.origin + t * ray.direction;\n            hit.normal = {normal};\n            \
+            "    for (int i = {first}; i < {count}; i++) {{\n{intersect_call}        if («IsNearer: t < hit.t») {{\n            \
+             hit.t = «HitT: t»;\n            hit.point = «HitPoint: ray.origin + t * ray.direction»;\n            hit.normal = {normal};\n            \
              hit.color = {color};\n{taken}        }}\n    }}\n"
         )
     }
@@ -72,26 +80,26 @@ impl Parts<'_> {
 
 const CHECKERED: &str = "// Squares seen from above.
 vec3 checkered(vec3 point, vec3 color, vec3 other, float side) {
-    vec2 square = floor(point.xz / side);
-    return mod(square.x + square.y, 2.0) < 0.5 ? color : other;
+    vec2 square = «CheckerSquare: floor(point.xz / side)»;
+    return mod(«CheckerSum: square.x + square.y», 2.0) < 0.5 ? «CheckerEven: color» : «CheckerOdd: other»;
 }
 ";
 
 const INTERSECT_SPHERE: &str =
     "// From the point of the ray that is closest to the centre: smaller numbers, smaller errors.
 float intersectSphere(Ray ray, Sphere sphere) {
-    vec3 f = ray.origin - sphere.center;
+    vec3 f = «CenterToOrigin: ray.origin - sphere.center»;
     float b = dot(f, ray.direction);
     vec3 closest = f - b * ray.direction;
-    float disc = sphere.radius * sphere.radius - dot(closest, closest);
+    float disc = «Discriminant: sphere.radius * sphere.radius - dot(closest, closest)»;
     if (disc > 0.0) {
-        float root = sqrt(disc);
-        float t = -b - root;
-        if (t > 0.00001) {
+        float root = «DiscriminantRoot: sqrt(disc)»;
+        float t = «NearRoot: -b - root»;
+        if («NearRootIsHit: t > «SphereMinT: 0.00001»») {
             return t;
         }
-        t = -b + root;
-        if (t > 0.00001) {
+        t = «FarRoot: -b + root»;
+        if (t > «SphereMinT: 0.00001») {
             return t;
         }
     }
@@ -101,7 +109,7 @@ float intersectSphere(Ray ray, Sphere sphere) {
 
 const INTERSECT_PLANE: &str = "float intersectPlane(Ray ray, Plane plane) {
     float t = dot(plane.normal, plane.point - ray.origin) / dot(plane.normal, ray.direction);
-    return t > 0.00001 ? t : NO_HIT;
+    return t > «PlaneMinT: 0.00001» ? t : NO_HIT;
 }
 ";
 
@@ -180,12 +188,12 @@ const FRAME: &str = "// Two directions at right angles to the axis, and the axis
 mat3 frame(vec3 axis) {
     vec3 x = abs(axis.z) > 0.9 ? vec3(1.0, 0.0, 0.0) : cross(axis, vec3(0.0, 0.0, 1.0));
     x = normalize(x - dot(x, axis) * axis);
-    return mat3(x, cross(axis, x), axis);
+    return «AxisFrame: mat3(x, cross(axis, x), axis)»;
 }
 ";
 
 const ELLIPSOID: &str = "Form ellipsoid(vec3 radii) {
-    return Form(1.0 / (radii * radii), 0.0, -1.0, -NO_HIT, NO_HIT);
+    return Form(«EllipsoidQ: 1.0 / (radii * radii)», 0.0, -1.0, «EllipsoidEnds: -NO_HIT, NO_HIT»);
 }
 ";
 
@@ -196,19 +204,19 @@ const CYLINDER: &str = "Form cylinder(float radius, float height) {
 
 const CONE: &str = "Form cone(float radius, float height) {
     float slope = radius / height;
-    return Form(vec3(1.0, 1.0, -slope * slope), 0.0, 0.0, 0.0, height);
+    return Form(vec3(1.0, 1.0, «ConeSlope: -slope * slope»), 0.0, 0.0, «ConeLow: 0.0», height);
 }
 ";
 
 const PARABOLOID: &str = "Form paraboloid(float radius, float height) {
-    return Form(vec3(1.0, 1.0, 0.0), -0.5 * radius * radius / height, 0.0, 0.0, height);
+    return Form(vec3(1.0, 1.0, 0.0), «ParaboloidG: -0.5 * radius * radius / height», 0.0, 0.0, height);
 }
 ";
 
 const HYPERBOLOID: &str = "Form hyperboloid(float waist, float radius, float height) {
     float z = 0.5 * height;
     float slope2 = (radius * radius - waist * waist) / (z * z);
-    return Form(vec3(1.0, 1.0, -slope2), 0.0, -waist * waist, -z, z);
+    return Form(vec3(1.0, 1.0, -slope2), 0.0, «HyperboloidK: -waist * waist», -z, z);
 }
 ";
 
@@ -216,8 +224,8 @@ pub(super) const INTERSECT_QUADRIC: &str =
     "// As for spheres, from the point of the ray that is closest to the origin.
 float intersectQuadric(Ray ray, Quadric quadric) {
     Form form = quadric.form;
-    vec3 d = ray.direction * quadric.axes;
-    vec3 origin = (ray.origin - quadric.origin) * quadric.axes;
+    vec3 d = «RayInFrame: ray.direction * quadric.axes»;
+    vec3 origin = «OriginInFrame: (ray.origin - quadric.origin) * quadric.axes»;
     float ahead = -dot(origin, d);
     vec3 o = origin + ahead * d;
     float a = dot(form.q * d, d);
@@ -233,13 +241,13 @@ float intersectQuadric(Ray ray, Quadric quadric) {
     float t1 = a == 0.0 ? NO_HIT : q / a;
     float near = min(t0, t1);
     float z = o.z + near * d.z;
-    if (ahead + near > 0.00001 && z >= form.low && z <= form.high) {
-        return ahead + near;
+    if («NearQuadricIsHit: ahead + near > «QuadricMinT: 0.00001» && z >= form.low && z <= form.high») {
+        return «NearQuadricT: ahead + near»;
     }
     float beyond = max(t0, t1);
     z = o.z + beyond * d.z;
-    if (ahead + beyond > 0.00001 && z >= form.low && z <= form.high) {
-        return ahead + beyond;
+    if («FarQuadricIsHit: ahead + beyond > «QuadricMinT: 0.00001» && z >= form.low && z <= form.high») {
+        return «FarQuadricT: ahead + beyond»;
     }
     return NO_HIT;
 }
@@ -247,8 +255,8 @@ float intersectQuadric(Ray ray, Quadric quadric) {
 // What is open shows both sides.
 vec3 normalOf(Quadric quadric, vec3 point, vec3 direction) {
     vec3 p = (point - quadric.origin) * quadric.axes;
-    vec3 normal = normalize(quadric.axes * (quadric.form.q * p + vec3(0.0, 0.0, quadric.form.g)));
-    return quadric.form.high < NO_HIT ? faceforward(normal, direction, normal) : normal;
+    vec3 normal = «QuadricNormal: normalize(quadric.axes * (quadric.form.q * p + vec3(0.0, 0.0, quadric.form.g)))»;
+    return «QuadricSide: quadric.form.high < NO_HIT ? faceforward(normal, direction, normal) : normal»;
 }
 ";
 
@@ -305,17 +313,17 @@ float draw() {
 
 // The sphere of a cell.
 Sphere sphereIn(Grid grid, ivec3 cell) {
-    drawn = grid.seed + uint(cell.x + grid.cells.x * (cell.y + grid.cells.y * cell.z));
-    float radius = mix(grid.small, grid.large, draw());
-    float room = grid.spacing - 2.0 * radius;
+    drawn = «CellSeed: grid.seed + «CellNumber: uint(cell.x + grid.cells.x * (cell.y + grid.cells.y * cell.z))»»;
+    float radius = «CellRadius: mix(grid.small, grid.large, draw())»;
+    float room = «CellRoom: grid.spacing - 2.0 * radius»;
     float x = draw();
     float y = draw();
     float z = draw();
     float r = draw();
     float g = draw();
     float b = draw();
-    vec3 center = grid.corner + grid.spacing * vec3(cell) + radius + room * vec3(x, y, z);
-    return Sphere(center, radius, grid.color * (0.2 + 0.8 * vec3(r, g, b))MEMBERS);
+    vec3 center = grid.corner + grid.spacing * vec3(cell) + radius + room * «CellPlace: vec3(x, y, z)»;
+    return Sphere(center, radius, grid.color * (0.2 + 0.8 * «CellColor: vec3(r, g, b)»)MEMBERS);
 }
 ";
 
@@ -338,21 +346,21 @@ float intersectGrid(Ray ray, Grid grid, out Sphere sphere) {
     if (enter >= leave) {
         return NO_HIT;
     }
-    ivec3 stride = ivec3(sign(direction));
+    ivec3 stride = «GridStride: ivec3(sign(direction))»;
     // t at which the ray leaves the cell along each axis, and how much later it leaves the one after.
     vec3 next = (grid.corner + grid.spacing * vec3(cell + max(stride, 0)) - ray.origin) / direction;
-    vec3 step = grid.spacing / abs(direction);
+    vec3 step = «GridStep: grid.spacing / abs(direction)»;
     int steps = grid.cells.x + grid.cells.y + grid.cells.z;
-    for (int i = 0; i < steps; i++) {
+    for (int i = 0; i < «GridSteps: steps»; i++) {
         sphere = sphereIn(grid, cell);
         float t = intersectSphere(ray, sphere);
         if (t < NO_HIT) {
             return t;
         }
-        if (next.x < next.y && next.x < next.z) {
+        if («NextCellIsX: next.x < next.y && next.x < next.z») {
             cell.x += stride.x;
             next.x += step.x;
-        } else if (next.y < next.z) {
+        } else if («NextCellIsY: next.y < next.z») {
             cell.y += stride.y;
             next.y += step.y;
         } else {

@@ -5,23 +5,45 @@ mod image;
 mod integrator;
 mod intersection;
 mod shading;
+mod slot;
 mod structure;
+
+use thiserror::Error;
 
 use self::image::{background_function, camera_function, figure_functions, random_functions};
 use self::intersection::quadric_functions;
 use self::shading::{DISNEY_STRUCTURE, GLASS, Kind, REFLECTIVE};
 use self::structure::motion_functions;
 use crate::{Integrator, Object, Point, Quadric, Requirements, Sampler, Scatter, Scattered, Scene, Shape};
+pub use slot::{MarkedShader, Slot};
+
+/// A feature of a scene that has no shader yet, named as in the scene file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[error("{0} cannot be exported yet")]
+pub struct Unsupported(pub &'static str);
 
 /// Returns a ShaderToy shader that renders the scene.
 ///
 /// # Errors
-/// The feature of the scene that has no shader yet, named as in the scene file.
-pub fn shader(scene: &Scene) -> Result<String, String> {
+/// If the scene has a feature that no shader renders yet.
+pub fn shader(scene: &Scene) -> Result<String, Unsupported> {
+    Ok(marked_shader(scene)?.text)
+}
+
+/// Returns the same shader with the names of its parts.
+///
+/// # Errors
+/// If the scene has a feature that no shader renders yet.
+pub fn marked_shader(scene: &Scene) -> Result<MarkedShader, Unsupported> {
     if matches!(scene.film.sampler, Sampler::Stratified | Sampler::Sobol) {
-        return Err("the samplers \"stratified\" and \"sobol\"".to_owned());
+        return Err(Unsupported("the samplers \"stratified\" and \"sobol\""));
     }
-    Ok(Parts::of(scene).text(scene))
+    let title = match scene.title.lines().next() {
+        None | Some("") => "A scene",
+        Some(title) => title,
+    };
+    let template = Parts::of(scene).template(scene);
+    Ok(MarkedShader::new(format!("// {title}\n\n"), &template))
 }
 
 fn number(value: f64) -> String {
@@ -107,7 +129,7 @@ impl<'a> Parts<'a> {
         self.models.len() > 1
     }
 
-    fn text(&self, scene: &Scene) -> String {
+    fn template(&self, scene: &Scene) -> String {
         let moves = Requirements::of(scene).motion;
         let mut pieces = vec![self.constants(scene)];
         if !scene.objects.is_empty() {
@@ -151,11 +173,7 @@ impl<'a> Parts<'a> {
     }
 
     fn constants(&self, scene: &Scene) -> String {
-        let title = match scene.title.lines().next() {
-            None | Some("") => "A scene",
-            Some(title) => title,
-        };
-        let mut text = format!("// {title}\n\nconst float NO_HIT = 1.0e30;\n");
+        let mut text = "const float NO_HIT = 1.0e30;\n".to_owned();
         let mut push = |line: String| text.push_str(&line);
         if self.traces_paths || self.uses_any(&[Kind::Diffuse, Kind::Glossy, Kind::Disney]) {
             push("const float PI = 3.14159265359;\n".to_owned());

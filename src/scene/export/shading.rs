@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::image::AROUND;
+use super::slot::Slot;
 use super::{Parts, number};
 use crate::{Disney, Fresnel, Light, Material, Model, Scene};
 
@@ -131,6 +132,18 @@ impl Parts<'_> {
         }
     }
 
+    /// Returns the name of the call of the BRDF at a hit, unless it is that of several models.
+    pub(super) fn brdf_slot(&self) -> Option<Slot> {
+        if self.uses_view() {
+            return Some(Slot::ViewBrdf);
+        }
+        match (self.uses(Kind::Lambert), self.uses(Kind::Diffuse)) {
+            (true, true) => None,
+            (false, true) => Some(Slot::DiffuseBrdf),
+            _ => Some(Slot::LambertBrdf),
+        }
+    }
+
     /// Returns the functions that the BRDF needs.
     pub(super) fn brdf(&self) -> Vec<String> {
         let mut pieces = Vec::new();
@@ -141,7 +154,7 @@ impl Parts<'_> {
             }
         };
         add(Kind::Lambert, "return hit.color;");
-        add(Kind::Diffuse, "return hit.color / PI;");
+        add(Kind::Diffuse, "return «DiffuseCase: hit.color / PI»;");
         add(
             Kind::Glossy,
             "float lobe = pow(max(dot(reflect(-view, hit.normal), light), 0.0), hit.exponent);\n\
@@ -233,7 +246,7 @@ pub(super) const DISNEY_FUNCTIONS: &str = "float square(float x) {
 // Schlick's weight.
 float schlickWeight(float cosine) {
     float m = clamp(1.0 - cosine, 0.0, 1.0);
-    return square(square(m)) * m;
+    return «SchlickWeight: square(square(m)) * m»;
 }
 
 // The clear coat's distribution, with a long tail.
@@ -261,7 +274,7 @@ vec3 disney(Disney m, vec3 color, vec3 light, vec3 view, vec3 normal) {
     if (nL <= 0.0 || nV <= 0.0) {
         return vec3(0.0);
     }
-    vec3 middle = normalize(light + view);
+    vec3 middle = «HalfVector: normalize(light + view)»;
     float nH = dot(normal, middle);
     float lH = dot(light, middle);
     // Around the y axis, and towards it.
@@ -270,36 +283,43 @@ vec3 disney(Disney m, vec3 color, vec3 light, vec3 view, vec3 normal) {
 
     float luminance = dot(color, vec3(0.3, 0.6, 0.1));
     vec3 tint = luminance > 0.0 ? color / luminance : vec3(1.0);
-    vec3 dielectric = 0.08 * m.specular * mix(vec3(1.0), tint, m.specularTint);
-    vec3 specularColor = mix(dielectric, color, m.metallic);
+    vec3 dielectric = 0.08 * m.specular * «SpecularTint: mix(vec3(1.0), tint, m.specularTint)»;
+    vec3 specularColor = «SpecularColor: mix(dielectric, color, m.metallic)»;
     vec3 sheenColor = mix(vec3(1.0), tint, m.sheenTint);
 
     float fL = schlickWeight(nL);
     float fV = schlickWeight(nV);
-    float fH = schlickWeight(lH);
+    float fH = schlickWeight(«FresnelCosine: lH»);
     float retro = lH * lH * m.roughness;
     float grazing = 0.5 + 2.0 * retro;
     float diffuse = mix(1.0, grazing, fL) * mix(1.0, grazing, fV);
     float flatness = mix(1.0, retro, fL) * mix(1.0, retro, fV);
     float subsurface = 1.25 * (flatness * (1.0 / (nL + nV) - 0.5) + 0.5);
-    vec3 base = color / PI * mix(diffuse, subsurface, m.subsurface);
+    vec3 base = «BaseOverPi: color / PI» * «DiffuseAndSubsurface: mix(diffuse, subsurface, m.subsurface)»;
     vec3 sheen = fH * m.sheen * sheenColor;
 
-    float aspect = sqrt(1.0 - 0.9 * m.anisotropic);
-    float ax = max(0.001, square(m.roughness) / aspect);
-    float ay = max(0.001, square(m.roughness) * aspect);
-    float d = trowbridgeReitz(nH, dot(x, middle), dot(y, middle), ax, ay);
+    float aspect = «Anisotropy: sqrt(1.0 - 0.9 * m.anisotropic)»;
+    float ax = max(0.001, «RoughnessX: square(m.roughness)» / aspect);
+    float ay = max(0.001, «RoughnessY: square(m.roughness)» * aspect);
+    float d = trowbridgeReitz(nH, «HalfVectorX: dot(x, middle)», «HalfVectorY: dot(y, middle)», ax, ay);
     float alpha = square(0.5 + 0.5 * m.roughness);
-    float g = smith(nL, alpha) * smith(nV, alpha);
+    float g = «Shadowing: smith(nL, alpha) * smith(nV, alpha)»;
     vec3 f = mix(specularColor, vec3(1.0), fH);
 
-    float coat = 0.25 * m.clearcoat * berry(nH, mix(0.1, 0.001, m.clearcoatGloss)) * mix(0.04, 1.0, fH)
+    float coat = 0.25 * m.clearcoat * «CoatDistribution: berry(nH, mix(0.1, 0.001, m.clearcoatGloss))» * mix(0.04, 1.0, fH)
         * smith(nL, 0.25) * smith(nV, 0.25);
-    return (base + sheen) * (1.0 - m.metallic) + f * d * g + coat;
+    return «DiffuseLobe: «BaseAndSheen: (base + sheen)» * (1.0 - m.metallic)» + «SpecularAndCoat: f * d * g + coat»;
 }
 ";
 
 // Lights and direct illumination.
+
+/// The condition under which a light illuminates a point.
+const LIT: &str = "«Lit: cosine > 0.0»";
+
+fn lit_and_visible(visible: &str) -> String {
+    format!("«LitAndVisible: {LIT} && «Visible: {visible}»»")
+}
 
 impl Parts<'_> {
     pub(super) fn shading(&self, scene: &Scene) -> Vec<String> {
@@ -319,28 +339,37 @@ impl Parts<'_> {
             pieces.push(SAMPLE_LIGHT.replace("POINT\n", point));
         }
         let (text, test) = if is_soft {
-            (IN_SOFT_SHADOW, "inShadow(hit, toLight, distance)")
+            (
+                IN_SOFT_SHADOW,
+                "inShadow(hit, «SoftShadowDirection: toLight», distance)",
+            )
         } else {
             (IN_SHADOW, "inShadow(hit, lights[i].position)")
         };
         if shadows != LightShare::None {
             pieces.push(text.to_owned());
         }
-        let visible = match shadows {
-            LightShare::None => String::new(),
-            LightShare::Some => format!(" && !(lights[i].shadow && {test})"),
-            LightShare::All => format!(" && !{test}"),
+        let is_lit = match shadows {
+            LightShare::None => LIT.to_owned(),
+            LightShare::Some => lit_and_visible(&format!("!(lights[i].shadow && {test})")),
+            LightShare::All => lit_and_visible(&format!("!{test}")),
         };
         let toward = if is_soft {
             "float distance;\n        vec3 toLight = sampleLight(lights[i], hit.point, distance);"
         } else {
-            "vec3 toLight = normalize(lights[i].position - hit.point);"
+            "vec3 toLight = «DirectionToLight: normalize(lights[i].position - hit.point)»;"
         };
         let brdf = self.brdf_call("toLight", "view");
+        let brdf = match self.brdf_slot() {
+            Some(slot) => slot.mark(&brdf),
+            None => brdf,
+        };
         pieces.push(format!(
-            "vec3 shade(Intersection hit{view}) {{\n    vec3 sum = AMBIENT * hit.color;\n    \
-             for (int i = 0; i < LIGHTS; i++) {{\n        {toward}\n        float cosine = dot(hit.normal, toLight);\n        \
-             if (cosine > 0.0{visible}) {{\n            sum += lights[i].color * {brdf} * cosine;\n        }}\n    }}\n    \
+            "vec3 shade(Intersection hit{view}) {{\n    vec3 sum = «AmbientTerm: AMBIENT * hit.color»;\n    \
+             for (int i = 0; i < «LightCount: LIGHTS»; i++) {{\n        {toward}\n        \
+             float cosine = «LightCosine: dot(hit.normal, toLight)»;\n        \
+             «LightStatement: if ({is_lit}) {{\n            \
+             «LightSum: sum += «LightTerm: lights[i].color * «Brdf: {brdf}» * cosine»;»\n        }}»\n    }}\n    \
              return sum;\n}}\n"
         ));
         pieces
@@ -366,16 +395,16 @@ impl LightShare {
 }
 
 const IN_SHADOW: &str = "bool inShadow(Intersection hit, vec3 light) {
-    vec3 origin = hit.point + 0.001 * hit.normal;
-    vec3 toLight = light - origin;
+    vec3 origin = «ShadowOrigin: hit.point + «ShadowOffset: 0.001» * hit.normal»;
+    vec3 toLight = «ShadowVector: light - origin»;
     float distance = length(toLight);
-    return nearestHit(Ray(origin, toLight / distance)).t < distance;
+    «ShadowStatement: return nearestHit(Ray(origin, «ShadowDirection: toLight / distance»)).t < «ShadowLength: distance»;»
 }
 ";
 
 const IN_SOFT_SHADOW: &str = "bool inShadow(Intersection hit, vec3 toLight, float distance) {
-    vec3 origin = hit.point + 0.001 * hit.normal;
-    return nearestHit(Ray(origin, toLight)).t < distance;
+    vec3 origin = «ShadowOrigin: hit.point + «ShadowOffset: 0.001» * hit.normal»;
+    «SoftShadowStatement: return nearestHit(Ray(origin, toLight)).t < «ShadowLength: distance»;»
 }
 ";
 
@@ -391,13 +420,13 @@ const SAMPLE_LIGHT: &str =
 vec3 sampleLight(Light light, vec3 point, out float distance) {
 POINT
     vec3 axis = light.position - point;
-    float sine2 = light.radius * light.radius / dot(axis, axis);
+    float sine2 = «LightRadiusSquared: light.radius * light.radius» / dot(axis, axis);
     float depth = sine2 < 1.0 ? sine2 / (1.0 + sqrt(1.0 - sine2)) : 2.0;
-    float u = random();
-    float v = random();
-    float cosine = 1.0 - u * depth;
+    «ConeUStatement: float u = random();»
+    «ConeVStatement: float v = random();»
+    float cosine = «ConeCosine: 1.0 - u * depth»;
     float chord = sqrt(max(sine2 - (1.0 - cosine * cosine), 0.0));
     distance = length(axis) * (sine2 < 1.0 ? cosine - chord : cosine + chord);
-    return around(normalize(axis), cosine, v);
+    return «LightSample: around(normalize(axis), cosine, v)»;
 }
 ";

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::intersection::{GRID_STRUCTURE, QUADRIC_FORM, QUADRIC_STRUCTURE, grid_values, quadric_values};
 use super::shading::LightShare;
+use super::slot::Slot;
 use super::{Parts, number, vector};
 use crate::{Light, Material, Motion, Period, Point, Scene};
 
@@ -176,10 +177,16 @@ pub(super) fn motion_functions(motions: &[Motion]) -> Vec<String> {
             Period::Seconds(seconds) => format!("iTime / {}", number(seconds)),
         };
         let [pivot, axis] = [motion.pivot, motion.axis].map(vector);
-        let turned = format!("rotateAbout(p, {pivot}, {axis}, {turns})");
+        let arguments = format!("{pivot}, {axis}, {turns}");
         let carried = match motion.within {
-            Some(outer) => format!("motion{outer}({turned})"),
-            None => turned,
+            Some(outer) => {
+                let call = format!("motion{outer}(rotateAbout(p, «RotationArguments: {arguments}»))");
+                match CARRIED_BY.get(outer) {
+                    Some(slot) => slot.mark(&call),
+                    None => call,
+                }
+            }
+            None => format!("rotateAbout(p, {arguments})"),
         };
         format!("vec3 motion{index}(vec3 p) {{\n    return {carried};\n}}\n")
     });
@@ -187,6 +194,9 @@ pub(super) fn motion_functions(motions: &[Motion]) -> Vec<String> {
     pieces.extend(own);
     pieces
 }
+
+/// The names of calls of the first motions that carry others along.
+const CARRIED_BY: [Slot; 3] = [Slot::CarriedBy0, Slot::CarriedBy1, Slot::CarriedBy2];
 
 /// Returns the expression of a point after its motion.
 pub(super) fn moved_point(point: Point, motion: Option<usize>) -> String {
@@ -207,12 +217,12 @@ pub(super) fn moved_direction(direction: Point, at: Point, motion: Option<usize>
 
 const ROTATE: &str = "// Rodrigues' formula: v turned about a unit axis.
 vec3 rotate(vec3 v, vec3 axis, float angle) {
-    float c = cos(angle);
-    float s = sin(angle);
-    return c * v + s * cross(axis, v) + (1.0 - c) * dot(axis, v) * axis;
+    float c = «AngleCosine: cos(angle)»;
+    float s = «AngleSine: sin(angle)»;
+    return «Rotation: c * v + s * «RotationCross: cross(axis, v)» + (1.0 - c) * dot(axis, v) * axis»;
 }
 
 vec3 rotateAbout(vec3 p, vec3 pivot, vec3 axis, float turns) {
-    return pivot + rotate(p - pivot, axis, 6.28318530718 * fract(turns));
+    return «RotationAboutPivot: pivot + rotate(«RotatedPoint: p - pivot», axis, «RotationAngle: 6.28318530718 * fract(turns)»)»;
 }
 ";

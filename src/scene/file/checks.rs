@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 use toml::Spanned;
-use toyproof_diagnostic::{Diagnostic, FileId, Files, Span};
+use toyproof_diagnostic::{Diagnostic, Diagnostics, FileId, Files, Span};
 use toyproof_image::check_size;
 
 use super::super::{Color, Point, Scene};
@@ -30,11 +30,11 @@ impl Checks {
     }
 
     /// Returns the scene, or the diagnostics if anything was refused.
-    pub(super) fn finish(self, scene: Scene) -> Result<Scene, Vec<Diagnostic>> {
+    pub(super) fn finish(self, scene: Scene, files: &Files) -> Result<Scene, Diagnostics> {
         if self.diagnostics.is_empty() {
             Ok(scene)
         } else {
-            Err(self.diagnostics)
+            Err(Diagnostics::new(self.diagnostics, files))
         }
     }
 
@@ -170,8 +170,8 @@ impl Checks {
             return [640, 360];
         };
         let [width, height] = value.get_ref().map(|side| side.max(0) as u64);
-        check_size(width, height).unwrap_or_else(|message| {
-            self.refuse(value.span(), message);
+        check_size(width, height).unwrap_or_else(|error| {
+            self.refuse(value.span(), error.to_string());
             [1, 1]
         })
     }

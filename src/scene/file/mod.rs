@@ -8,7 +8,7 @@ mod tests;
 
 use serde::Deserialize;
 use toml::Spanned;
-use toyproof_diagnostic::{Diagnostic, FileId, Files};
+use toyproof_diagnostic::{Diagnostics, FileId, Files};
 
 pub use self::checks::of_toml;
 use self::checks::{Checks, Triple};
@@ -19,13 +19,13 @@ use super::{Background, Integrator, Light, Model, Object, Scattered, Scene, Shap
 ///
 /// # Errors
 /// Diagnostics for the first error of the TOML syntax or schema, or for all values that are out of range.
-pub fn parse(files: &Files, file: FileId) -> Result<Scene, Vec<Diagnostic>> {
+pub fn parse(files: &Files, file: FileId) -> Result<Scene, Diagnostics> {
     let text = files.get(file).text();
-    let document: Document =
-        toml::from_str(text).map_err(|error| vec![of_toml("E0501", &error, files, file)])?;
+    let document: Document = toml::from_str(text)
+        .map_err(|error| Diagnostics::new(vec![of_toml("E0501", &error, files, file)], files))?;
     let mut checks = Checks::new(file);
     let scene = document.check(&mut checks);
-    checks.finish(scene)
+    checks.finish(scene, files)
 }
 
 #[derive(Deserialize)]

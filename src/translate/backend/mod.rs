@@ -11,6 +11,7 @@ use naga::back::{glsl, hlsl, msl, wgsl};
 use naga::{Expression, SampleLevel, ShaderStage};
 use serde::{Deserialize, Serialize};
 
+use crate::TranslateError;
 use crate::naga_ir::ValidModule;
 
 /// A language that a shader can be converted to.
@@ -77,7 +78,7 @@ impl fmt::Display for Target {
 ///
 /// # Errors
 /// naga's message, if it cannot write the module in that language.
-pub fn emit(module: &ValidModule, target: Target) -> Result<Vec<u8>, String> {
+pub fn emit(module: &ValidModule, target: Target) -> Result<Vec<u8>, TranslateError> {
     match target {
         Target::Wgsl => write_wgsl(module).map(String::into_bytes),
         Target::Spirv => Ok(spirv::bytes(&spirv::words(module)?)),
@@ -125,9 +126,9 @@ enum Class {
 /// undefined values. This directive keeps GLSL's semantics.
 const DERIVATIVES: &str = "diagnostic(off, derivative_uniformity);\n";
 
-fn write_wgsl(module: &ValidModule) -> Result<String, String> {
+fn write_wgsl(module: &ValidModule) -> Result<String, TranslateError> {
     let text = wgsl::write_string(module.module(), module.info(), wgsl::WriterFlags::empty())
-        .map_err(|error| error.to_string())?;
+        .map_err(TranslateError::new)?;
     Ok(if uses_derivatives(module) {
         DERIVATIVES.to_owned() + &text
     } else {
@@ -154,10 +155,10 @@ fn uses_derivatives(module: &ValidModule) -> bool {
 }
 
 /// Writes Metal Shading Language: binding K becomes `buffer(K)`, `texture(K)` or `sampler(K)`.
-fn write_msl(module: &ValidModule) -> Result<String, String> {
+fn write_msl(module: &ValidModule) -> Result<String, TranslateError> {
     let mut resources = msl::EntryPointResources::default();
     for (binding, class) in bindings(module) {
-        let slot = u8::try_from(binding.binding).map_err(|error| error.to_string())?;
+        let slot = u8::try_from(binding.binding).map_err(TranslateError::new)?;
         let mut target = msl::BindTarget::default();
         match class {
             Class::Block => target.buffer = Some(slot),
@@ -181,11 +182,11 @@ fn write_msl(module: &ValidModule) -> Result<String, String> {
         &msl::PipelineOptions::default(),
     )
     .map(|(text, _)| text)
-    .map_err(|error| error.to_string())
+    .map_err(TranslateError::new)
 }
 
 /// Writes GLSL ES 3.00 for WebGL2 hosts; naga combines textures with their samplers.
-fn write_glsl(module: &ValidModule) -> Result<String, String> {
+fn write_glsl(module: &ValidModule) -> Result<String, TranslateError> {
     let options = glsl::Options {
         version: glsl::Version::new_gles(300),
         writer_flags: glsl::WriterFlags::empty(),
@@ -206,12 +207,12 @@ fn write_glsl(module: &ValidModule) -> Result<String, String> {
         BOUNDS,
     )
     .and_then(|mut writer| writer.write())
-    .map_err(|error| error.to_string())?;
+    .map_err(TranslateError::new)?;
     Ok(text)
 }
 
 /// Writes HLSL: the block at `b0`, the texture of binding K at `tK`, the sampler of binding K at `sK`.
-fn write_hlsl(module: &ValidModule) -> Result<String, String> {
+fn write_hlsl(module: &ValidModule) -> Result<String, TranslateError> {
     let binding_map = bindings(module)
         .map(|(binding, _)| {
             let target = hlsl::BindTarget {
@@ -231,7 +232,7 @@ fn write_hlsl(module: &ValidModule) -> Result<String, String> {
     let named = without_reserved_names(module.module());
     hlsl::Writer::new(&mut text, &options, &pipeline)
         .write(&named, module.info(), None)
-        .map_err(|error| error.to_string())?;
+        .map_err(TranslateError::new)?;
     Ok(with_separate_samplers(&text))
 }
 

@@ -12,9 +12,10 @@ use naga::{
     BinaryOperator, Block, Expression, Function, Handle, MathFunction, Module, Range, ScalarKind, Span,
     Statement, Type, TypeInner,
 };
-use toyproof_diagnostic::{File, Files};
+use toyproof_diagnostic::{Diagnostics, File, Files};
 use toyproof_glsl as glsl;
 
+use crate::TranslateError;
 use crate::naga_ir::ValidModule;
 
 /// An expression to expand, with the index of its library function and its operands.
@@ -29,7 +30,7 @@ impl ValidModule {
     ///
     /// # Errors
     /// naga's message, if it refuses the result.
-    pub fn spelled(&self) -> Result<Self, String> {
+    pub fn spelled(&self) -> Result<Self, TranslateError> {
         let naga = &self.module;
         let mut needs = Vec::new();
         let mut in_functions = Vec::new();
@@ -61,7 +62,7 @@ impl ValidModule {
             renumber(&mut entry.function, &handles);
             replace(&mut entry.function, sites, &calls);
         }
-        Self::validate(module).map_err(|error| crate::naga_ir::chain(error.as_inner()))
+        Self::new(module)
     }
 }
 
@@ -186,7 +187,7 @@ fn glsl_type(ty: &TypeInner) -> Option<String> {
 }
 
 /// Puts the library functions before all others. Returns the function for each need.
-fn link(module: &mut Module, needs: &[Need]) -> Result<Vec<Handle<Function>>, String> {
+fn link(module: &mut Module, needs: &[Need]) -> Result<Vec<Handle<Function>>, TranslateError> {
     let library = library(needs)?;
     let library = library.module();
     let mut types = HashMap::new();
@@ -211,23 +212,26 @@ fn link(module: &mut Module, needs: &[Need]) -> Result<Vec<Handle<Function>>, St
         retype(&mut function, &types)?;
         let placed = module.functions.append(function, Span::UNDEFINED);
         if placed.index() != handle.index() {
-            return Err("the functions of the library are out of order".to_owned());
+            return Err("the functions of the library are out of order".into());
         }
         if let Some(call) = need.and_then(|need| calls.get_mut(need)) {
             *call = Some(placed);
         }
     }
     let calls: Option<Vec<_>> = calls.into_iter().collect();
-    calls.ok_or_else(|| "a function of the library is missing".to_owned())
+    calls.ok_or_else(|| "a function of the library is missing".into())
 }
 
 /// Maps the type handles of a function to those of another module.
-fn retype(function: &mut Function, types: &HashMap<Handle<Type>, Handle<Type>>) -> Result<(), String> {
+fn retype(
+    function: &mut Function,
+    types: &HashMap<Handle<Type>, Handle<Type>>,
+) -> Result<(), TranslateError> {
     let known = |ty: &mut Handle<Type>| {
         *ty = *types
             .get(ty)
             .ok_or("a function of the library has a type of its own")?;
-        Ok::<(), String>(())
+        Ok::<(), TranslateError>(())
     };
     function
         .arguments
@@ -247,7 +251,7 @@ fn retype(function: &mut Function, types: &HashMap<Handle<Type>, Handle<Type>>) 
         .try_for_each(|(_, expression)| match expression {
             Expression::ZeroValue(ty) | Expression::Compose { ty, .. } => known(ty),
             Expression::Constant(_) | Expression::GlobalVariable(_) => {
-                Err("a function of the library refers to its surroundings".to_owned())
+                Err("a function of the library refers to its surroundings".into())
             }
             _ => Ok(()),
         })
@@ -367,7 +371,7 @@ pub(crate) fn is_library_caller(function: &str) -> bool {
 ///
 /// # Errors
 /// Its first error message, in one line.
-pub(crate) fn library(needs: &[Need]) -> Result<ValidModule, String> {
+pub(crate) fn library(needs: &[Need]) -> Result<ValidModule, TranslateError> {
     let mut text = String::new();
     let mut uses = String::new();
     for (index, need) in needs.iter().enumerate() {
@@ -393,9 +397,9 @@ pub(crate) fn library(needs: &[Need]) -> Result<ValidModule, String> {
     let _ = writeln!(text, "void {MAIN_IMAGE}(out vec4 c, in vec2 p) {{\n{uses}}}");
     let mut files = Files::default();
     let file = files.add(File::new("<library>", &text));
-    let first = |errors: Vec<toyproof_diagnostic::Diagnostic>| {
-        let first = errors.into_iter().next();
-        first.map_or_else(String::new, |error| error.message)
+    let first = |errors: Diagnostics| {
+        let first = errors.first();
+        TranslateError(first.map_or_else(String::new, |error| error.message.clone()))
     };
     let checked = glsl::check(&files, file, &glsl::Options::default()).map_err(first)?;
     ValidModule::parse(&crate::lower_strict(&checked)).map_err(first)

@@ -1,16 +1,14 @@
 //! naga's modules, parsed from lowered GLSL or from WGSL, and validated.
 
 pub(crate) mod expand;
-mod loops;
 
-pub use loops::Probe;
 use naga::front::glsl::{Frontend, Options};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{Module, ShaderStage};
 use serde::{Deserialize, Serialize};
-use toyproof_diagnostic::Diagnostic;
+use toyproof_diagnostic::{Diagnostic, Diagnostics};
 
-use crate::Lowered;
+use crate::{Lowered, TranslateError};
 
 /// The shape of a texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -47,13 +45,12 @@ impl ValidModule {
     ///
     /// # Errors
     /// naga's message, at the author's source lines.
-    pub fn parse(lowered: &Lowered) -> Result<Self, Vec<Diagnostic>> {
+    pub fn parse(lowered: &Lowered) -> Result<Self, Diagnostics> {
         let mut module = Frontend::default()
             .parse(&Options::from(ShaderStage::Fragment), lowered.text())
             .map_err(|errors| {
+                let errors = errors.errors.iter();
                 errors
-                    .errors
-                    .iter()
                     .map(|error| naga_diagnostic("E0900", &error.kind.to_string(), error.meta, lowered))
                     .collect::<Vec<_>>()
             })?;
@@ -63,7 +60,7 @@ impl ValidModule {
                 .spans()
                 .next()
                 .map_or(naga::Span::UNDEFINED, |(span, _)| *span);
-            vec![naga_diagnostic("E0901", &chain(error.as_inner()), span, lowered)]
+            vec![naga_diagnostic("E0901", &chain(error.as_inner()), span, lowered)].into()
         })
     }
 
@@ -71,12 +68,20 @@ impl ValidModule {
     ///
     /// # Errors
     /// naga's message, with the line.
-    pub fn of_wgsl(text: &str) -> Result<Self, String> {
+    pub fn of_wgsl(text: &str) -> Result<Self, TranslateError> {
         let module = naga::front::wgsl::parse_str(text).map_err(|error| {
             let line = error.location(text).map_or(0, |location| location.line_number);
-            format!("line {line}: {error}")
+            TranslateError(format!("line {line}: {error}"))
         })?;
-        Self::validate(module).map_err(|error| chain(error.as_inner()))
+        Self::new(module)
+    }
+
+    /// Validates a module.
+    ///
+    /// # Errors
+    /// naga's message, if it refuses the module.
+    pub fn new(module: Module) -> Result<Self, TranslateError> {
+        Self::validate(module).map_err(|error| TranslateError(chain(error.as_inner())))
     }
 
     fn validate(module: Module) -> Result<Self, naga::WithSpan<naga::valid::ValidationError>> {
@@ -105,34 +110,6 @@ impl ValidModule {
             }
         }
         shapes
-    }
-
-    /// Whether any function contains a loop.
-    #[must_use]
-    pub fn has_loops(&self) -> bool {
-        loops::has_loop(&self.module)
-    }
-
-    /// Whether any function contains a loop without an exit.
-    #[must_use]
-    pub fn has_endless_loop(&self) -> bool {
-        loops::has_infinite_loop(&self.module)
-    }
-
-    /// Whether `discard` may skip a pixel.
-    #[must_use]
-    pub fn discards(&self) -> bool {
-        (0..self.module.entry_points.len()).any(|entry| self.info.get_entry_point(entry).may_kill)
-    }
-
-    /// Returns the same shader with a probe of its loops in alpha.
-    ///
-    /// # Errors
-    /// naga's message, if it refuses the result.
-    pub fn probed(&self, probe: Probe) -> Result<Self, String> {
-        let mut module = self.module.clone();
-        loops::probe(&mut module, probe);
-        Self::validate(module).map_err(|error| chain(error.as_inner()))
     }
 }
 
@@ -192,45 +169,5 @@ mod tests {
             parse(text).unwrap().channels(),
             [Shape::Cube, Shape::D2, Shape::D2, Shape::D2]
         );
-    }
-
-    #[test]
-    fn probes_are_valid_and_count_every_entry_and_exit() {
-        let module = parse(
-            "float f(float x) { for (int i = 0; i < 9; i++) { if (x > 4.0) return x; if (x > 3.0) break; x += 1.0; } return 0.0; }\n\
-             void mainImage(out vec4 c, in vec2 p) {\n\
-               float x = 0.0; do { x += f(x); } while (x < 3.0);\n\
-               switch (int(x)) { case 0: x = 1.0; break; default: x = 2.0; break; }\n\
-               c = vec4(x);\n\
-             }",
-        )
-        .unwrap();
-        let text = |probe| {
-            let probed = module.probed(probe).unwrap();
-            let flags = naga::back::wgsl::WriterFlags::empty();
-            naga::back::wgsl::write_string(probed.module(), probed.info(), flags).unwrap()
-        };
-        let open = text(Probe::OpenLoops);
-        // Two loops are entered; one is left by its condition, a return and a break, the other by its
-        // condition.
-        assert_eq!(open.matches("+ 1u").count(), 2, "{open}");
-        assert_eq!(open.matches("- 1u").count(), 4, "{open}");
-        assert!(open.contains("select(0f, 1f,"), "{open}");
-        let iterations = text(Probe::Iterations);
-        assert_eq!(iterations.matches("+ 1u").count(), 2, "{iterations}");
-        assert!(iterations.contains("f32("), "{iterations}");
-    }
-
-    #[test]
-    fn loops_are_found_at_any_depth() {
-        let with = "float f() { float x = 0.0; if (true) { while (x < 3.0) x += 1.0; } return x; }\n\
-                    void mainImage(out vec4 c, in vec2 p) { c = vec4(f()); }";
-        assert!(parse(with).unwrap().has_loops() && !parse(with).unwrap().has_endless_loop());
-        let endless = with
-            .replace("x < 3.0", "true")
-            .replace("while (true) x += 1.0;", "for (;;) x += 1.0;");
-        assert!(parse(&endless).unwrap().has_endless_loop());
-        let without = "void mainImage(out vec4 c, in vec2 p) { c = vec4(p, 0.0, 1.0); }";
-        assert!(!parse(without).unwrap().has_loops());
     }
 }

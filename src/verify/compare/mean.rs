@@ -7,6 +7,8 @@
 //! neighbor's. The shader may have any noise level. The variance of a sum is estimated by the sum of its
 //! squared terms, which only assumes that the distribution over many pixels is nearly symmetric.
 
+use crate::decide::MAX_BIAS_BOUND;
+
 /// A pixel whose color depends on random numbers. Color components are in [0, 1].
 #[derive(Debug, Clone, Copy)]
 pub struct RandomPixel {
@@ -45,15 +47,11 @@ const SIGMA_LIMIT: f64 = 4.5;
 
 /// The difference of means that two correct formulas may have: twice the tolerance, once for the image and
 /// once for its mean.
-const MEAN_TOLERANCE: f64 = 2.0 * super::EXACT_TOLERANCE;
+pub(crate) const MEAN_TOLERANCE: f64 = 2.0 * super::EXACT_TOLERANCE;
 
 /// The lower bound of a pixel's standard deviation in weights. Without it, pixels in which all eight sets
 /// happen to miss a small feature would have nearly all the weight.
-const MIN_STANDARD_DEVIATION: f64 = 0.01;
-
-/// The largest undetected difference of means, two and a half 8-bit levels; above it the test is
-/// underpowered.
-const MAX_BIAS_BOUND: f64 = 0.01;
+pub(crate) const MIN_STANDARD_DEVIATION: f64 = 0.01;
 
 /// Neighboring pixels share random numbers if the variance of their difference is below this share of the sum
 /// of their variances. The ratio is 1 for independent pixels.
@@ -65,7 +63,7 @@ const MAX_COVARIANCE: f64 = 4.0;
 
 /// The shader uses the scene's random numbers if the correlation of its noise with the reference's exceeds
 /// this. Independent noise has a correlation of 0.1, because the same mean is subtracted from both.
-const MIN_SHARED_CORRELATION: f64 = 0.5;
+pub(crate) const MIN_SHARED_CORRELATION: f64 = 0.5;
 
 /// The number of columns and of rows of blocks that are tested, besides the whole image.
 const BLOCKS: u32 = 8;

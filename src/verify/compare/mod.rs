@@ -17,6 +17,7 @@ pub use algorithm::{Mixed, PERTURBATIONS, Reference, algorithm};
 pub use check::{Answer, EXACT_TOLERANCE, PixelStatus, SEEN, TOLERANCE, marks, precision, toolchain};
 pub use images::{Comparison, Pixel, compare};
 pub use legend::{DiffLevel, IN_BITS, Legend, SEEN_BY_EYE, difference};
+pub(crate) use mean::{MIN_SHARED_CORRELATION, MIN_STANDARD_DEVIATION};
 pub use mean::{MeanTest, RandomPixel, means, uses_scene_numbers};
 pub use replicate::{
     RARE_EVENT_VARIANCE_RATIO, REPLICATES, ReplicateTest, ReplicatedPixel, compare_replicates,

@@ -11,7 +11,7 @@
 //! - *correlation*: whether neighbors use the same random numbers;
 //! - *variance*: the ratio of the shader's variance to the tracer's.
 
-use super::EXACT_TOLERANCE;
+use super::mean::MEAN_TOLERANCE;
 
 /// The number of replicates of a shader that are compared, each with other random numbers; the first is the
 /// shader's own image.
@@ -64,9 +64,6 @@ const CORRELATED_SIGMA_LIMIT: f64 = 10.0;
 /// The largest mean squared difference of the means of eight replicates that noise can explain, as a multiple
 /// of the variance of one, even if all pixels share their random numbers.
 const MAX_SQUARED_DIFFERENCE: f64 = 4.0;
-
-/// The difference of means that two correct formulas may have.
-const MEAN_TOLERANCE: f64 = 2.0 * EXACT_TOLERANCE;
 
 /// Neighbors use the same random numbers if the correlation of their noise exceeds this in some direction; it
 /// is 0 for independent pixels.

@@ -351,7 +351,7 @@ pub(super) fn evaluate(
             checked,
             lints: &Lints::default(),
             expected: None,
-            suspects: None,
+            hypotheses: None,
             frame,
             float: FloatMode::Strict,
             timeout,

@@ -1,11 +1,12 @@
-//! Mistakes in one number, whose value is found by minimizing the distance to the wrong image.
+//! Mistakes in one number: a parameter of the scene or of the shader is fitted to the wrong image, and the
+//! scene or the shader with the best value is a mutant like others.
 
 use rayon::prelude::*;
 use toyproof_image::Image;
+use toyproof_scene::export::{MarkedShader, Slot};
 use toyproof_scene::{FrameTime, Model, Projection, Scene, Shape};
 
 use super::Named;
-use crate::mistake::mutant::edited;
 use crate::mistake::mutant::{Mutant, MutantSource};
 use crate::mistake::thumbnail::{WrongImage, differs, max_left_over};
 
@@ -41,13 +42,13 @@ const MAX_STEPS: i32 = 16;
 pub(super) fn fitted_mutants(
     scene: &Scene,
     frame_time: FrameTime,
-    text: Option<&str>,
+    shader: Option<&MarkedShader>,
     wrong_image: &WrongImage,
     correct: &Image,
 ) -> Vec<Mutant> {
     let mut parameters = of_scene(scene, frame_time);
-    if let Some(text) = text {
-        parameters.extend(of_shader(text));
+    if let Some(shader) = shader {
+        parameters.extend(of_shader(shader));
     }
     let fitted = parameters.par_iter().filter_map(|parameter| {
         let value = best_value(parameter, wrong_image, correct)?;
@@ -62,20 +63,19 @@ pub(super) fn fitted_mutants(
             .flatten()
             .map(|source| Mutant::new(vec![named], source))
     });
-    let counted = text.into_iter().flat_map(step_count_mutants);
+    let counted = shader.into_iter().flat_map(step_count_mutants);
     fitted.collect::<Vec<_>>().into_iter().chain(counted).collect()
 }
 
 /// Mutants whose loop over the cells of a grid ends too early, one for each number of steps.
-fn step_count_mutants(text: &str) -> Vec<Mutant> {
+fn step_count_mutants(shader: &MarkedShader) -> Vec<Mutant> {
     let mutant = |steps: i32| {
-        let to = format!("for (int i = 0; i < {steps}; i++) {{");
-        let text = edited(text, &[("for (int i = 0; i < steps; i++) {", &to)])?;
+        let shader = shader.replaced(&[(Slot::GridSteps, &steps.to_string())])?;
         let named = Named {
             name: "too-few-steps",
             says: format!("goes through {steps} cells of the grid at most").into(),
         };
-        Some(Mutant::new(vec![named], MutantSource::Shader(text)))
+        Some(Mutant::new(vec![named], MutantSource::Shader(shader)))
     };
     (2..=MAX_STEPS).filter_map(mutant).collect()
 }
@@ -109,33 +109,33 @@ fn best_value(parameter: &Parameter, wrong_image: &WrongImage, correct: &Image) 
         return None;
     }
     let from = |image: &Image| distance(image, wrong_image.small);
-    let image_distances = images.map(|image| image.as_ref().map_or(f64::INFINITY, from));
-    let distance = |value| Some(from(&render(value)?));
-    let (at, _) = image_distances
+    let distances = images.map(|image| image.as_ref().map_or(f64::INFINITY, from));
+    let (best, _) = distances
         .iter()
         .enumerate()
         .min_by(|(_, one), (_, other)| one.total_cmp(other))?;
-    let mut low = values[at.saturating_sub(1)];
-    let mut high = values[(at + 1).min(values.len() - 1)];
+    let low = values[best.saturating_sub(1)];
+    let high = values[(best + 1).min(values.len() - 1)];
+    golden_section_search(low, high, |value| Some(from(&render(value)?)))
+}
+
+/// Returns where a function with one minimum between two numbers is least; none where it has no value.
+fn golden_section_search(mut low: f64, mut high: f64, f: impl Fn(f64) -> Option<f64>) -> Option<f64> {
     let ratio = 0.5 * (5.0f64.sqrt() - 1.0);
     let mut inner = [high - ratio * (high - low), low + ratio * (high - low)];
-    let mut distances = [distance(inner[0])?, distance(inner[1])?];
+    let mut values = [f(inner[0])?, f(inner[1])?];
     for _ in 0..SEARCH_ITERATIONS {
-        if distances[0] < distances[1] {
+        if values[0] < values[1] {
             high = inner[1];
             inner = [high - ratio * (high - low), inner[0]];
-            distances = [distance(inner[0])?, distances[0]];
+            values = [f(inner[0])?, values[0]];
         } else {
             low = inner[0];
             inner = [inner[1], low + ratio * (high - low)];
-            distances = [distances[1], distance(inner[1])?];
+            values = [values[1], f(inner[1])?];
         }
     }
-    Some(if distances[0] < distances[1] {
-        inner[0]
-    } else {
-        inner[1]
-    })
+    Some(if values[0] < values[1] { inner[0] } else { inner[1] })
 }
 
 /// Formats a value with three digits.
@@ -151,144 +151,178 @@ fn three_digits(value: f64) -> String {
     }
 }
 
-/// Sets a number in a scene.
-type Set = Box<dyn Fn(&mut Scene, f64) + Sync>;
+/// A number of the scene.
+struct SceneNumber {
+    /// The name of the mistake of having another one.
+    name: &'static str,
+    /// What the number is called.
+    what: String,
+    value: f64,
+    set: Box<dyn Fn(&mut Scene, f64) + Sync>,
+}
 
-/// The numbers of the scene: the name of the mistake, what the number is called, its value, and how it is
-/// set.
-fn of_scene(scene: &Scene, frame_time: FrameTime) -> Vec<Parameter> {
-    let mut numbers: Vec<(&'static str, String, f64, Set)> = Vec::new();
-    let mut add =
-        |name, what: &str, default_value, set: Set| numbers.push((name, what.to_owned(), default_value, set));
-    match scene.camera.projection {
-        Projection::Pinhole { screen_distance } => {
-            let set: Set = Box::new(|scene, screen_distance| {
-                scene.camera.projection = Projection::Pinhole { screen_distance };
-            });
-            add(
-                "screen-distance",
-                "the distance of the screen",
-                screen_distance,
-                set,
-            );
-        }
-        Projection::Parallel { width } => {
-            let set: Set = Box::new(|scene, width| scene.camera.projection = Projection::Parallel { width });
-            add("width-of-the-picture", "the width of the picture", width, set);
-        }
-    }
-    let gamma = scene.film.gamma;
-    add(
-        "another-gamma",
-        "the gamma",
-        gamma,
-        Box::new(|scene, gamma| scene.film.gamma = gamma),
-    );
-    for (index, light) in scene.lights.iter().enumerate() {
-        let color = light.color;
-        let set: Set = Box::new(move |scene, factor| {
-            scene.lights[index].color = color.map(|part| factor * part);
-        });
-        add(
-            "another-brightness",
-            &format!("the brightness of light {}", index + 1),
-            1.0,
-            set,
-        );
-        if light.radius > 0.0 {
-            let set: Set = Box::new(move |scene, radius| scene.lights[index].radius = radius);
-            add("another-light-radius", "the light's radius", light.radius, set);
-        }
-    }
-    let ambient = scene.ambient;
-    let set: Set = Box::new(move |scene, factor| scene.ambient = ambient.map(|part| factor * part));
-    add(
-        "another-ambient-light",
-        "the brightness of the ambient light",
-        1.0,
-        set,
-    );
-    for (index, object) in scene.objects.iter().enumerate() {
-        if let Model::Glass { ior, .. } = object.material.model {
-            let set: Set = Box::new(move |scene, new| {
-                if let Model::Glass { ior, .. } = &mut scene.objects[index].material.model {
-                    *ior = new;
-                }
-            });
-            add("another-index", "the index of refraction", ior, set);
-        }
-        if let Shape::Sphere { radius, .. } = object.shape
-            && scene.objects.len() <= MAX_OBJECTS
-        {
-            let set: Set = Box::new(move |scene, new| {
-                if let Shape::Sphere { radius, .. } = &mut scene.objects[index].shape {
-                    *radius = new;
-                }
-            });
-            add(
-                "another-radius",
-                &format!("the radius of sphere {}", index + 1),
-                radius,
-                set,
-            );
-        }
-    }
-    let parameter = |(name, what, default_value, set): (&'static str, String, f64, Set)| {
-        let scene = scene.clone();
-        Parameter {
+impl SceneNumber {
+    fn new(
+        name: &'static str,
+        what: impl Into<String>,
+        value: f64,
+        set: impl Fn(&mut Scene, f64) + Sync + 'static,
+    ) -> Self {
+        Self {
             name,
-            says: Box::new(move |value| {
-                format!(
-                    "has {} for {what}, which is {}",
-                    three_digits(value),
-                    three_digits(default_value)
-                )
-            }),
-            default_value,
+            what: what.into(),
+            value,
+            set: Box::new(set),
+        }
+    }
+
+    fn parameter(self, scene: Scene, frame_time: FrameTime) -> Parameter {
+        let (what, value) = (self.what, three_digits(self.value));
+        Parameter {
+            name: self.name,
+            says: Box::new(move |other| format!("has {} for {what}, which is {value}", three_digits(other))),
+            default_value: self.value,
             is_correct: true,
             source: Box::new(move |value| {
                 let mut scene = scene.clone();
-                set(&mut scene, value);
+                (self.set)(&mut scene, value);
                 scene.release_changed_scatters();
                 Some(MutantSource::Scene(Box::new(scene), frame_time))
             }),
         }
-    };
-    numbers.into_iter().map(parameter).collect()
+    }
 }
 
-/// Numbers that a shader may have but the scene does not, and where they are inserted.
-fn of_shader(text: &str) -> Vec<Parameter> {
-    let fall = "sum += lights[i].color * … * cosine;";
-    let falls = "sum += lights[i].color * … * cosine * NUMBER / dot(lights[i].position - hit.point, lights[i].position - hit.point);";
-    let of_one = "throughput *= NUMBER;";
+fn of_scene(scene: &Scene, frame_time: FrameTime) -> Vec<Parameter> {
+    let mut numbers = vec![of_projection(scene.camera.projection)];
+    numbers.push(SceneNumber::new(
+        "another-gamma",
+        "the gamma",
+        scene.film.gamma,
+        |scene, gamma| scene.film.gamma = gamma,
+    ));
+    numbers.extend(of_lights(scene));
+    numbers.extend(of_objects(scene));
+    let parameters = numbers
+        .into_iter()
+        .map(|number| number.parameter(scene.clone(), frame_time));
+    parameters.collect()
+}
+
+fn of_projection(projection: Projection) -> SceneNumber {
+    match projection {
+        Projection::Pinhole { screen_distance } => SceneNumber::new(
+            "screen-distance",
+            "the distance of the screen",
+            screen_distance,
+            |scene, screen_distance| scene.camera.projection = Projection::Pinhole { screen_distance },
+        ),
+        Projection::Parallel { width } => SceneNumber::new(
+            "width-of-the-picture",
+            "the width of the picture",
+            width,
+            |scene, width| scene.camera.projection = Projection::Parallel { width },
+        ),
+    }
+}
+
+fn of_lights(scene: &Scene) -> Vec<SceneNumber> {
+    let mut numbers = Vec::new();
+    for (index, light) in scene.lights.iter().enumerate() {
+        let (color, radius) = (light.color, light.radius);
+        let what = format!("the brightness of light {}", index + 1);
+        numbers.push(SceneNumber::new(
+            "another-brightness",
+            what,
+            1.0,
+            move |scene, factor| {
+                scene.lights[index].color = color.map(|part| factor * part);
+            },
+        ));
+        if radius > 0.0 {
+            numbers.push(SceneNumber::new(
+                "another-light-radius",
+                "the light's radius",
+                radius,
+                move |scene, radius| scene.lights[index].radius = radius,
+            ));
+        }
+    }
+    let ambient = scene.ambient;
+    numbers.push(SceneNumber::new(
+        "another-ambient-light",
+        "the brightness of the ambient light",
+        1.0,
+        move |scene, factor| scene.ambient = ambient.map(|part| factor * part),
+    ));
+    numbers
+}
+
+fn of_objects(scene: &Scene) -> Vec<SceneNumber> {
+    let mut numbers = Vec::new();
+    for (index, object) in scene.objects.iter().enumerate() {
+        if let Model::Glass { ior, .. } = object.material.model {
+            numbers.push(SceneNumber::new(
+                "another-index",
+                "the index of refraction",
+                ior,
+                move |scene, new| {
+                    if let Model::Glass { ior, .. } = &mut scene.objects[index].material.model {
+                        *ior = new;
+                    }
+                },
+            ));
+        }
+        if let Shape::Sphere { radius, .. } = object.shape
+            && scene.objects.len() <= MAX_OBJECTS
+        {
+            let what = format!("the radius of sphere {}", index + 1);
+            numbers.push(SceneNumber::new(
+                "another-radius",
+                what,
+                radius,
+                move |scene, new| {
+                    if let Shape::Sphere { radius, .. } = &mut scene.objects[index].shape {
+                        *radius = new;
+                    }
+                },
+            ));
+        }
+    }
+    numbers
+}
+
+/// Numbers that a shader may have but the scene does not.
+fn of_shader(shader: &MarkedShader) -> Vec<Parameter> {
     let all = [
         (
             "light-falls-off",
             "lets light fall off with the square of its distance, which the scene does not: by",
-            (fall, falls),
+            Slot::LightTerm,
+            "… * NUMBER / dot(lights[i].position - hit.point, lights[i].position - hit.point)",
             10.0,
         ),
         (
             "mirrors-of-one-colour",
             "has all mirrors reflect alike: by",
-            ("throughput *= hit.color;", of_one),
+            Slot::MirrorStatement,
+            "throughput *= NUMBER;",
             0.5,
         ),
     ];
-    let parameters = all.into_iter().filter_map(|(name, says, edit, default_value)| {
-        let text = edited(text, &[edit])?;
-        Some(Parameter {
+    let used = all.into_iter().filter(|(_, _, slot, ..)| shader.has(*slot));
+    let parameter = |(name, says, slot, template, default_value): (_, _, _, &'static str, _)| {
+        let shader = shader.clone();
+        Parameter {
             name,
             says: Box::new(move |value| format!("{says} {}", three_digits(value))),
             default_value,
             is_correct: false,
             source: Box::new(move |value| {
-                Some(MutantSource::Shader(
-                    text.replace("NUMBER", &format!("{value:?}")),
-                ))
+                let template = template.replace("NUMBER", &format!("{value:?}"));
+                shader.replaced(&[(slot, &template)]).map(MutantSource::Shader)
             }),
-        })
-    });
-    parameters.collect()
+        }
+    };
+    used.map(parameter).collect()
 }

@@ -1,6 +1,6 @@
 //! Names the mistake in a wrong image: the image is compared with those of mutants, tracers with one classic
-//! mistake, and with two at once where no single one explains it. Mistakes are edits of the shader that
-//! renders the scene, changes of the scene, or a wrong number.
+//! mistake, and with two at once where no single one explains it. A mistake replaces parts of the shader that
+//! renders the scene (`catalogue`), changes the scene (`change`), or is one wrong number (`fit`).
 
 mod catalogue;
 mod change;
@@ -16,7 +16,8 @@ use std::sync::OnceLock;
 use rayon::prelude::*;
 use toyproof_eval::{Places, Program};
 use toyproof_image::Frame;
-use toyproof_scene::{FrameTime, Scene, export};
+use toyproof_scene::export::MarkedShader;
+use toyproof_scene::{FrameTime, Scene};
 
 use crate::decide::MAX_DIFFERING;
 use crate::mistake::mutant::{Mutant, MutantSource, render};
@@ -100,7 +101,7 @@ pub struct Hypotheses {
     general: Vec<Mutant>,
     wrong: Vec<Mutant>,
     /// The shader that renders the scene, as students write it, in each of the variants that matter.
-    shaders: Vec<String>,
+    shaders: Vec<MarkedShader>,
     /// The hypotheses for larger images, created when needed; none if these are large.
     fine: Option<OnceLock<Box<Hypotheses>>>,
 }
@@ -120,9 +121,7 @@ impl Hypotheses {
             frame: small.frame.frame,
             time: f64::from(small.frame.time),
         };
-        let shaders = export::shader(scene)
-            .map(|text| mutant::variants(&text))
-            .unwrap_or_default();
+        let shaders = mutant::variants(scene);
         let tracer = MutantSource::Scene(Box::new(scene.clone()), frame_time);
         let correct_images = [tracer]
             .into_iter()
@@ -135,7 +134,7 @@ impl Hypotheses {
         };
         let edited = shaders
             .iter()
-            .flat_map(|text| catalogue::all().filter_map(|mistake| Mutant::edited(text, mistake)));
+            .flat_map(|shader| catalogue::all().filter_map(|mistake| Mutant::edited(shader, mistake)));
         let changes = change::all(scene, frame_time).into_iter().map(changed);
         Self {
             scene: scene.clone(),
@@ -217,8 +216,8 @@ impl Hypotheses {
         if small.pixels().windows(2).all(|pair| pair[0] == pair[1]) {
             return None;
         }
-        let text = self.shaders.first().map(String::as_str);
-        let fitted = fit::fitted_mutants(&self.scene, self.frame_time, text, &wrong_image, correct);
+        let shader = self.shaders.first();
+        let fitted = fit::fitted_mutants(&self.scene, self.frame_time, shader, &wrong_image, correct);
         if let Some(mutant) = wrong_image.matching(&fitted).first() {
             return confirmed(mutant, &[]);
         }
@@ -302,5 +301,43 @@ impl Hypotheses {
         let explaining: Vec<&Mutant> = self.wrong.par_iter().filter(explains).collect();
         let (first, others) = explaining.split_first()?;
         (others.len() <= MAX_OTHER_MISTAKES).then(|| first.mistakes[0].or(others))
+    }
+}
+
+/// The scenes of the exercises.
+#[cfg(test)]
+mod exercises {
+    use toyproof_diagnostic::{File, Files};
+    use toyproof_scene::{Scene, parse};
+
+    macro_rules! exercises {
+        ($($name:literal),* $(,)?) => {
+            [$(($name, include_str!(concat!("../../../glsl/", $name, ".toml")))),*]
+        };
+    }
+
+    /// The name and the text of each.
+    pub(super) const EXERCISES: [(&str, &str); 15] = exercises![
+        "01-sampling",
+        "02-sphere",
+        "03-shading",
+        "04-many-objects",
+        "05-complex-scene",
+        "06-reflections",
+        "07-diffuse",
+        "08-disney",
+        "09-soft-shadows",
+        "10-quadrics",
+        "11-animation",
+        "12-whitted",
+        "13-importance-sampling",
+        "14-accelerator",
+        "15-parallel-rays",
+    ];
+
+    pub(super) fn scene_of(text: &str) -> Scene {
+        let mut files = Files::default();
+        let file = files.add(File::new("scene", text));
+        parse(&files, file).unwrap()
     }
 }

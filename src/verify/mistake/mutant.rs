@@ -1,5 +1,4 @@
-//! Mutants: tracers with mistakes in them, and the edits that make a mistake in the shader that [`export`]
-//! writes.
+//! Mutants: tracers with mistakes in them, and the ways in which students write the shader without a mistake.
 
 use crate::mistake::Named;
 use crate::mistake::catalogue::Mistake;
@@ -10,7 +9,8 @@ use toyproof_diagnostic::{File, Files};
 use toyproof_eval::{Program, Settings, UndefinedPolicy};
 use toyproof_glsl as glsl;
 use toyproof_image::Image;
-use toyproof_scene::{FrameTime, Scene, export};
+use toyproof_scene::export::{self, MarkedShader, Slot};
+use toyproof_scene::{FrameTime, Scene};
 use toyproof_tracer::Tracer;
 
 /// The time limit of an image. It is generous, since most take milliseconds and the result must not depend on
@@ -21,7 +21,7 @@ const RENDER_TIMEOUT: Duration = Duration::from_secs(60);
 #[derive(Debug, Clone)]
 pub(super) enum MutantSource {
     /// A shader, rendered by the evaluator.
-    Shader(String),
+    Shader(MarkedShader),
     /// A changed scene, or another time, rendered by the reference tracer.
     Scene(Box<Scene>, FrameTime),
 }
@@ -30,9 +30,9 @@ impl MutantSource {
     /// Renders a view; none if the shader is invalid or exceeds the time limit.
     pub(super) fn render(&self, view: &View) -> Option<Image> {
         match self {
-            Self::Shader(text) => {
+            Self::Shader(shader) => {
                 let mut files = Files::default();
-                let file = files.add(File::new("<mistake>", text.as_str()));
+                let file = files.add(File::new("<mistake>", shader.text.as_str()));
                 let checked = glsl::check(&files, file, &glsl::Options::default()).ok()?;
                 render(&Program::prepared(&checked, UndefinedPolicy::Plain).ok()?, view)
             }
@@ -76,9 +76,9 @@ impl Mutant {
         }
     }
 
-    /// Creates a mutant with one mistake of the catalogue in that shader; none where its edits do not apply.
-    pub(super) fn edited(text: &str, mistake: &'static Mistake) -> Option<Self> {
-        let source = MutantSource::Shader(mistake.apply(text)?);
+    /// Creates a mutant with one mistake of the catalogue in that shader; none where it does not apply.
+    pub(super) fn edited(shader: &MarkedShader, mistake: &'static Mistake) -> Option<Self> {
+        let source = MutantSource::Shader(mistake.apply(shader)?);
         Some(Self {
             edit: Some(mistake),
             ..Self::new(vec![mistake.named()], source)
@@ -87,12 +87,12 @@ impl Mutant {
 
     /// The same mistakes in shaders with other ray epsilons.
     pub(super) fn with_other_epsilons(&self, frame_time: FrameTime, max_offset: f64) -> Vec<Self> {
-        let Some(text) = self.text(frame_time) else {
+        let Some(shader) = self.shader(frame_time) else {
             return Vec::new();
         };
-        let variants = epsilon_variants(&text, max_offset).into_iter();
+        let variants = epsilon_variants(&shader, max_offset).into_iter();
         variants
-            .map(|text| Self::new(self.mistakes.clone(), MutantSource::Shader(text)))
+            .map(|shader| Self::new(self.mistakes.clone(), MutantSource::Shader(shader)))
             .collect()
     }
 
@@ -111,74 +111,96 @@ impl Mutant {
     }
 
     /// The shader of this mutant, as students write it; none at another time.
-    pub(super) fn text(&self, frame_time: FrameTime) -> Option<String> {
+    pub(super) fn shader(&self, frame_time: FrameTime) -> Option<MarkedShader> {
         match &self.source {
-            MutantSource::Shader(text) => Some(text.clone()),
-            MutantSource::Scene(scene, own) if *own == frame_time => {
-                variants(&export::shader(scene).ok()?).into_iter().next()
-            }
+            MutantSource::Shader(shader) => Some(shader.clone()),
+            MutantSource::Scene(scene, own) if *own == frame_time => variants(scene).into_iter().next(),
             MutantSource::Scene(..) => None,
         }
     }
 }
 
-/// `(from, to)`. `from` occurs exactly once in the text. A `…` in it matches the text up to the first
-/// occurrence of what follows it, and a `…` in `to` is replaced by that text.
-pub(super) type Edit = (&'static str, &'static str);
-
-/// Applies the edits in order; none if the text of one of them does not occur exactly once.
-pub(super) fn edited(text: &str, edits: &[(&str, &str)]) -> Option<String> {
-    let mut text = text.to_owned();
-    for (from, to) in edits {
-        let (head, tail) = from.split_once('…').unwrap_or((from, ""));
-        let mut starts = text.match_indices(head).map(|(at, _)| at);
-        let start = starts.next().filter(|_| starts.next().is_none())?;
-        let after = start + head.len();
-        let between = text[after..].find(tail)?;
-        let to = to.replace('…', &text[after..after + between]);
-        text.replace_range(start..after + between + tail.len(), &to);
+/// Returns the shader of a scene as students write it, in each of the variants that matter; none if it cannot
+/// be exported. Correct variants render the same image; with a mistake in them they may not.
+pub(super) fn variants(scene: &Scene) -> Vec<MarkedShader> {
+    let Ok(mut shader) = export::marked_shader(scene) else {
+        return Vec::new();
+    };
+    let other_surfaces = [Slot::PlaneMinT, Slot::QuadricMinT, Slot::GridSteps];
+    if !other_surfaces.into_iter().any(|slot| shader.has(slot)) {
+        let no_shadows = (scene.objects.len() == 1).then_some(NO_SHADOWS);
+        for edits in no_shadows.into_iter().chain([ANY_SPHERE, ANY_SPHERE_SOFT]) {
+            shader = shader.replaced(edits).unwrap_or(shader);
+        }
     }
-    Some(text)
+    let with_min_t = with_min_t(&shader);
+    [Some(shader), with_min_t].into_iter().flatten().collect()
 }
 
-/// Returns the exported shader as students write it, in each of the variants that matter. Correct variants
-/// render the same image; with a mistake in them they may not.
-pub(super) fn variants(text: &str) -> Vec<String> {
-    let mut first = text.to_owned();
-    let rewrite = |text: &mut String, edits: &[Edit]| {
-        if let Some(edited) = edited(text, edits) {
-            *text = edited;
+/// A single sphere casts no shadow on itself.
+const NO_SHADOWS: &[(Slot, &str)] = &[(Slot::LitAndVisible, "«Lit»")];
+
+/// A shadow ray tests each sphere instead of finding the nearest hit.
+const ANY_SPHERE: &[(Slot, &str)] = &[(
+    Slot::ShadowStatement,
+    "Ray ray = Ray(origin, «ShadowDirection»);
+    for (int i = 0; i < SPHERES; i++) {
+        if (intersectSphere(ray, spheres[i]) < «ShadowLength») {
+            return true;
         }
-    };
-    if text.contains("const int SPHERES = 1;") {
-        // A single sphere casts no shadow on itself.
-        rewrite(&mut first, &[NO_SHADOWS]);
     }
-    if ["Plane", "Quadric", "Grid"]
-        .iter()
-        .all(|other| !text.contains(other))
-    {
-        rewrite(&mut first, &[ANY_SPHERE]);
-        rewrite(&mut first, &[ANY_SPHERE_SOFT]);
+    return false;",
+)];
+
+/// The same for lights with a radius.
+const ANY_SPHERE_SOFT: &[(Slot, &str)] = &[(
+    Slot::SoftShadowStatement,
+    "Ray ray = Ray(origin, toLight);
+    for (int i = 0; i < SPHERES; i++) {
+        if (intersectSphere(ray, spheres[i]) < «ShadowLength») {
+            return true;
+        }
     }
-    let second = edited(&first, MIN_T_EDITS_IN_GLASS)
-        .or_else(|| edited(&first, MIN_T_EDITS))
-        .or_else(|| edited(&first, MIN_T_EDITS_OF_QUADRICS));
-    [Some(first), second].into_iter().flatten().collect()
+    return false;",
+)];
+
+/// Returns the shader whose reflected and refracted rays start on their surface and ignore nearer hits; none
+/// if it has no such rays and no quadrics, which a shadow ray may start on as well.
+fn with_min_t(shader: &MarkedShader) -> Option<MarkedShader> {
+    let origins = [Slot::ReflectedOrigin, Slot::RefractedOrigin];
+    if shader.has(Slot::ReflectedOrigin) && shader.has(Slot::SphereMinT) {
+        let at_surface = origins.into_iter().fold(shader.clone(), |shader, origin| {
+            shader.with_all(origin, "hit.point")
+        });
+        return Some(at_surface.with_all(Slot::SphereMinT, "0.001"));
+    }
+    shader
+        .has(Slot::QuadricMinT)
+        .then(|| shader.with_all(Slot::QuadricMinT, "0.001"))
 }
 
 /// Returns the shader with other ray epsilons: offsets of secondary rays and smallest t's, as shares of the
 /// largest that the scene accepts.
-pub(super) fn epsilon_variants(text: &str, max_offset: f64) -> Vec<String> {
-    let all = EPSILONS.into_iter().map(|[offset, t_min]| {
-        let [offset, t_min] = [offset * max_offset, (t_min * max_offset).max(MIN_T)];
-        // The replaced numbers occur nowhere else.
-        text.replace(" 0.001 * ", &format!(" {offset:?} * "))
-            .replace("> 0.00001", &format!("> {t_min:?}"))
-            .replace("> 0.001)", &format!("> {t_min:?})"))
+pub(super) fn epsilon_variants(shader: &MarkedShader, max_offset: f64) -> Vec<MarkedShader> {
+    let all = EPSILONS.into_iter().map(|[offset, min_t]| {
+        let offsets = OFFSETS.map(|slot| (slot, offset * max_offset));
+        let min_ts = MIN_TS.map(|slot| (slot, (min_t * max_offset).max(LEAST_MIN_T)));
+        let numbers = offsets.into_iter().chain(min_ts);
+        numbers.fold(shader.clone(), |shader, (slot, value)| {
+            shader.with_all(slot, &format!("{value:?}"))
+        })
     });
-    all.filter(|other| other != text).collect()
+    all.filter(|other| other.text != shader.text).collect()
 }
+
+/// The offsets of secondary rays from their surfaces, and the smallest t's that count.
+const OFFSETS: [Slot; 4] = [
+    Slot::ShadowOffset,
+    Slot::ReflectionOffset,
+    Slot::RefractionOffset,
+    Slot::SampledOffset,
+];
+const MIN_TS: [Slot; 3] = [Slot::SphereMinT, Slot::PlaneMinT, Slot::QuadricMinT];
 
 /// Offsets and smallest t's.
 const EPSILONS: [[f64; 2]; 9] = [
@@ -192,80 +214,6 @@ const EPSILONS: [[f64; 2]; 9] = [
     [1.0, 1.0],
     [0.1, 0.1],
 ];
-/// The smallest t: a smaller one is below the rounding error of a ray that starts on its surface.
-const MIN_T: f64 = 1e-9;
-
-pub(super) const NO_SHADOWS: Edit = (
-    "if (cosine > 0.0 && !inShadow(hit, lights[i].position)) {",
-    "if (cosine > 0.0) {",
-);
-
-/// A shadow ray tests each sphere instead of finding the nearest hit.
-const ANY_SPHERE: Edit = (
-    "    return nearestHit(Ray(origin, toLight / distance)).t < distance;",
-    "    Ray ray = Ray(origin, toLight / distance);
-    for (int i = 0; i < SPHERES; i++) {
-        if (intersectSphere(ray, spheres[i]) < distance) {
-            return true;
-        }
-    }
-    return false;",
-);
-
-/// The same for lights with a radius.
-const ANY_SPHERE_SOFT: Edit = (
-    "    return nearestHit(Ray(origin, toLight)).t < distance;",
-    "    Ray ray = Ray(origin, toLight);
-    for (int i = 0; i < SPHERES; i++) {
-        if (intersectSphere(ray, spheres[i]) < distance) {
-            return true;
-        }
-    }
-    return false;",
-);
-
-/// Reflected rays start on their surface, and nearer hits do not count.
-const MIN_T_EDITS: &[Edit] = &[
-    ("Ray(hit.point + 0.001 * side,", "Ray(hit.point,"),
-    NEAR_ROOT,
-    FAR_ROOT,
-];
-
-/// The same where there is glass.
-const MIN_T_EDITS_IN_GLASS: &[Edit] = &[
-    ("Ray(hit.point + 0.001 * side,", "Ray(hit.point,"),
-    ("Ray(hit.point - 0.001 * side,", "Ray(hit.point,"),
-    NEAR_ROOT,
-    FAR_ROOT,
-];
-
-/// Immediate hits of quadrics do not count, either.
-const MIN_T_EDITS_OF_QUADRICS: &[Edit] = &[
-    ("if (ahead + near > 0.00001 ", "if (ahead + near > 0.001 "),
-    ("if (ahead + beyond > 0.00001 ", "if (ahead + beyond > 0.001 "),
-];
-
-const NEAR_ROOT: Edit = (
-    "float t = -b - root;\n        if (t > 0.00001)",
-    "float t = -b - root;\n        if (t > 0.001)",
-);
-const FAR_ROOT: Edit = (
-    "t = -b + root;\n        if (t > 0.00001)",
-    "t = -b + root;\n        if (t > 0.001)",
-);
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_edit_applies_only_where_its_text_occurs_once() {
-        assert_eq!(
-            edited("f(x, -2.0)", &[("f(x, -…)", "g(…)")]).as_deref(),
-            Some("g(2.0)")
-        );
-        assert_eq!(edited("a b", &[("a", "b"), ("b b", "c")]).as_deref(), Some("c"));
-        assert_eq!(edited("a a", &[("a", "b")]), None);
-        assert_eq!(edited("a", &[("b", "c")]), None);
-    }
-}
+/// The least of the smallest t's: one below it is within the rounding error of a ray that starts on its
+/// surface.
+const LEAST_MIN_T: f64 = 1e-9;

@@ -1,6 +1,8 @@
-//! Pairs of mistakes that are worth rendering. A pixel that one of them alone does not change most likely has
-//! the color that the other alone gives it; where the wrong image has another color, the pair is contradicted
-//! without rendering it.
+//! Two mistakes at once: which pairs are worth rendering, and the shader with both.
+//!
+//! There are too many pairs to render all. Each mistake alone has been rendered: a pixel that one of two does
+//! not change most likely has the color that the other alone gives it. Where the wrong image has another
+//! color, it contradicts the pair; the pairs with the fewest such pixels come first.
 
 use toyproof_image::Image;
 use toyproof_scene::FrameTime;
@@ -102,13 +104,13 @@ pub(super) fn likely<'a>(
         .collect()
 }
 
-/// Returns a mutant with both mistakes; none where they edit the same text, or both change the scene.
+/// Returns a mutant with both mistakes; none where they replace the same part, or both change the scene.
 pub(super) fn both(pair: [&Mutant; 2], frame_time: FrameTime) -> Option<Mutant> {
     let [one, other] = pair;
     [[one, other], [other, one]]
         .into_iter()
         .find_map(|[first, second]| {
-            let text = second.edit?.apply(&first.text(frame_time)?)?;
+            let shader = second.edit?.apply(&first.shader(frame_time)?)?;
             // Descriptions of changes are longer, and come last.
             let order = if first.edit.is_none() {
                 [second, first]
@@ -118,6 +120,6 @@ pub(super) fn both(pair: [&Mutant; 2], frame_time: FrameTime) -> Option<Mutant> 
             let mistakes = order
                 .into_iter()
                 .flat_map(|mutant| mutant.mistakes.iter().cloned());
-            Some(Mutant::new(mistakes.collect(), MutantSource::Shader(text)))
+            Some(Mutant::new(mistakes.collect(), MutantSource::Shader(shader)))
         })
 }

@@ -1,5 +1,8 @@
-//! Compares images of mutants with a wrong image: their sizes, the pixels that differ, and how many a mistake
-//! may leave unexplained.
+//! Small images of a wrong shader and of mutants, and which mutants explain the wrong image.
+//!
+//! A [`View`] is a selection of few pixels of a frame. A mutant explains a [`WrongImage`] of that view if the
+//! two differ in few pixels. A [`Thumbnail`] has still fewer pixels; it rules out most pairs of mistakes before
+//! they are rendered for a view.
 
 use rayon::prelude::*;
 use toyproof_eval::{Places, Program};
@@ -9,21 +12,104 @@ use toyproof_scene::{Integrator, Scene};
 use crate::compare::Pixel;
 use crate::mistake::mutant::{Mutant, render};
 
+// Views.
+
+/// Some pixels of a frame, in whole quads spread over it. Each has the color that it has in the frame, in the
+/// frame's own size and aspect ratio.
+#[derive(Debug, Clone)]
+pub(super) struct View {
+    pub(super) frame: Frame,
+    pub(super) places: Places,
+}
+
+impl View {
+    /// Selects at most `side` columns and rows, and at most `all` pixels.
+    pub(super) fn of(frame: &Frame, side: u32, all: u64) -> Self {
+        let [width, height] = frame.size;
+        let divided = |divisor: u32| {
+            [width, height].map(|own| match own / divisor {
+                side if divisor == 1 || side < 2 => side.max(1),
+                side => side & !1,
+            })
+        };
+        let is_small = |divisor: &u32| {
+            let [width, height] = divided(*divisor);
+            width.max(height) <= side && u64::from(width) * u64::from(height) <= all
+        };
+        let divisor = (1..=width.max(height)).find(is_small).unwrap_or(u32::MAX);
+        Self {
+            places: Places::spread(frame.size, divided(divisor)),
+            frame: frame.clone(),
+        }
+    }
+
+    pub(super) fn pixels(&self) -> u64 {
+        self.places.size().into_iter().map(u64::from).product()
+    }
+}
+
+/// The number of ray-surface intersections of one unit of work.
+const SURFACES_PER_WORK: usize = 8;
+
+/// The work of a pixel.
+pub(super) fn work(scene: &Scene) -> u64 {
+    let rays = match scene.film.integrator {
+        Integrator::Path => 2 * u64::from(scene.film.max_depth),
+        Integrator::Whitted => 1,
+    };
+    // In a grid, a ray tests only the spheres along its path.
+    let in_grids: usize = scene
+        .scatters
+        .iter()
+        .map(|scattered| scattered.objects.len())
+        .sum();
+    let cells: u32 = scene
+        .scatters
+        .iter()
+        .flat_map(|scattered| scattered.scatter.cells)
+        .sum();
+    let surfaces = scene.objects.len() - in_grids + cells as usize;
+    let surfaces = surfaces.div_ceil(SURFACES_PER_WORK).max(1) as u64;
+    u64::from(scene.film.samples) * rays * surfaces
+}
+
+pub(super) fn pixels(frame: &Frame) -> u64 {
+    frame.size.into_iter().map(u64::from).product()
+}
+
+// Differences of images.
+
 /// The largest difference of equal colors. It is invisible: both images are rendered in double precision.
 const COLOR_TOLERANCE: f64 = 1e-3;
+
+/// Whether two images differ in a pixel.
+pub(super) fn differs(at: usize, one: &Image, other: &Image) -> bool {
+    Pixel::at(at, one, other).difference() > COLOR_TOLERANCE
+}
+
+/// The number of pixels in which two images differ.
+pub(super) fn differing(one: &Image, other: &Image) -> u64 {
+    let count = one.pixels().len();
+    (0..count).filter(|&at| differs(at, one, other)).count() as u64
+}
 
 /// The largest shares of the wrong pixels, and of all pixels, that a mistake may leave unexplained: other ray
 /// epsilons shift the edges of shadows and of reflections.
 const MAX_LEFT_OVER_OF_WRONG: f64 = 0.05;
 const MAX_LEFT_OVER_OF_ALL: f64 = 0.005;
 
+/// The largest number of pixels that may remain unexplained.
+pub(super) fn max_left_over(differing: u64, pixels: usize) -> u64 {
+    let share = (differing as f64 * MAX_LEFT_OVER_OF_WRONG).min(pixels as f64 * MAX_LEFT_OVER_OF_ALL);
+    share.floor() as u64
+}
+
+// The wrong image.
+
 /// The factor by which a near miss may exceed the unexplained pixels, and the largest number of near misses
 /// that are tried with other ray epsilons.
 const NEAR_MISS_FACTOR: u64 = 6;
 const MAX_NEAR_MISSES: usize = 8;
-
-/// The number of ray-surface intersections of one unit of work.
-const SURFACES_PER_WORK: usize = 8;
 
 /// A wrong image of few pixels.
 pub(super) struct WrongImage<'a> {
@@ -75,6 +161,14 @@ impl WrongImage<'_> {
     }
 }
 
+// Thumbnails.
+
+/// The largest width and height of a thumbnail, and the share of its wrong pixels, plus a constant number,
+/// that may be left unexplained.
+const THUMBNAIL_SIDE: u32 = 24;
+const THUMBNAIL_LEFT_OVER: f64 = 0.2;
+const THUMBNAIL_EXTRA: u64 = 2;
+
 /// An image of still fewer pixels, which rules out most mutants.
 pub(super) struct Thumbnail {
     image: Image,
@@ -82,12 +176,6 @@ pub(super) struct Thumbnail {
     /// The largest number of pixels that may be left unexplained.
     limit: u64,
 }
-
-/// The largest width and height of a thumbnail, and the share of its wrong pixels, plus a constant number,
-/// that may be left unexplained.
-const THUMBNAIL_SIDE: u32 = 24;
-const THUMBNAIL_LEFT_OVER: f64 = 0.2;
-const THUMBNAIL_EXTRA: u64 = 2;
 
 impl Thumbnail {
     /// Renders a thumbnail of the student's shader; none if that fails.
@@ -108,81 +196,4 @@ impl Thumbnail {
         let rendered = mutant.source.render(&self.view);
         rendered.is_some_and(|rendered| differing(&self.image, &rendered) <= self.limit)
     }
-}
-
-/// The largest number of pixels that may remain unexplained.
-pub(super) fn max_left_over(differing: u64, pixels: usize) -> u64 {
-    let share = (differing as f64 * MAX_LEFT_OVER_OF_WRONG).min(pixels as f64 * MAX_LEFT_OVER_OF_ALL);
-    share.floor() as u64
-}
-
-/// The work of a pixel.
-pub(super) fn work(scene: &Scene) -> u64 {
-    let rays = match scene.film.integrator {
-        Integrator::Path => 2 * u64::from(scene.film.max_depth),
-        Integrator::Whitted => 1,
-    };
-    // In a grid, a ray tests only the spheres along its path.
-    let in_grids: usize = scene
-        .scatters
-        .iter()
-        .map(|scattered| scattered.objects.len())
-        .sum();
-    let cells: u32 = scene
-        .scatters
-        .iter()
-        .flat_map(|scattered| scattered.scatter.cells)
-        .sum();
-    let surfaces = scene.objects.len() - in_grids + cells as usize;
-    let surfaces = surfaces.div_ceil(SURFACES_PER_WORK).max(1) as u64;
-    u64::from(scene.film.samples) * rays * surfaces
-}
-
-pub(super) fn pixels(frame: &Frame) -> u64 {
-    frame.size.into_iter().map(u64::from).product()
-}
-
-/// Some pixels of a frame, in whole quads spread over it. Each has the color that it has in the frame, in the
-/// frame's own size and aspect ratio.
-#[derive(Debug, Clone)]
-pub(super) struct View {
-    pub(super) frame: Frame,
-    pub(super) places: Places,
-}
-
-impl View {
-    /// Selects at most `side` columns and rows, and at most `all` pixels.
-    pub(super) fn of(frame: &Frame, side: u32, all: u64) -> Self {
-        let [width, height] = frame.size;
-        let divided = |divisor: u32| {
-            [width, height].map(|own| match own / divisor {
-                side if divisor == 1 || side < 2 => side.max(1),
-                side => side & !1,
-            })
-        };
-        let is_small = |divisor: &u32| {
-            let [width, height] = divided(*divisor);
-            width.max(height) <= side && u64::from(width) * u64::from(height) <= all
-        };
-        let divisor = (1..=width.max(height)).find(is_small).unwrap_or(u32::MAX);
-        Self {
-            places: Places::spread(frame.size, divided(divisor)),
-            frame: frame.clone(),
-        }
-    }
-
-    pub(super) fn pixels(&self) -> u64 {
-        self.places.size().into_iter().map(u64::from).product()
-    }
-}
-
-/// Whether two images differ in a pixel.
-pub(super) fn differs(at: usize, one: &Image, other: &Image) -> bool {
-    Pixel::at(at, one, other).difference() > COLOR_TOLERANCE
-}
-
-/// The number of pixels in which two images differ.
-pub(super) fn differing(one: &Image, other: &Image) -> u64 {
-    let count = one.pixels().len();
-    (0..count).filter(|&at| differs(at, one, other)).count() as u64
 }

@@ -9,6 +9,8 @@ use std::process::Child;
 use std::time::{Duration, Instant};
 use std::{fs, thread};
 
+use crate::support::wait::HANG_GUARD;
+
 /// The observations until it ended.
 #[derive(Debug)]
 pub(super) struct Seen {
@@ -19,15 +21,15 @@ pub(super) struct Seen {
     pub(super) bytes: u64,
 }
 
-/// Watches a program until it ends, or kills it at the time limit.
-pub(super) fn watch(mut child: Child, longest: Duration) -> Seen {
+/// Watches a program until it ends, or kills it if it hangs.
+pub(super) fn watch(mut child: Child) -> Seen {
     let start = Instant::now();
     let mut bytes = 0;
     let status = loop {
         bytes = bytes.max(resident(child.id()));
         match child.try_wait().unwrap() {
             Some(status) => break Some(status),
-            None if start.elapsed() > longest => break None,
+            None if start.elapsed() > HANG_GUARD => break None,
             None => thread::sleep(Duration::from_millis(5)),
         }
     };
@@ -73,7 +75,7 @@ pub(super) fn left(word: &OsStr) -> Vec<String> {
             })
             .map(|process| fs::read_to_string(process.path().join("cmdline")).unwrap_or_default())
             .collect();
-        if left.is_empty() || start.elapsed() > Duration::from_secs(5) {
+        if left.is_empty() || start.elapsed() > HANG_GUARD {
             return left;
         }
         thread::sleep(Duration::from_millis(20));

@@ -4,12 +4,14 @@ mod words;
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Command;
 
 use toyproof::diagnostic::{File, Files};
 use toyproof::image::{self, Image};
 use toyproof::scene::{self, FrameTime, Sampler, Scene, ToneMap};
 use toyproof::tracer::Tracer;
+
+use crate::requirements::require_program;
 
 const SIZE: [u32; 2] = [320, 180];
 
@@ -69,20 +71,6 @@ static CASES: [Case; 15] = [
     case!("", "mirrors"),
     case!("", "quadrics"),
 ];
-
-/// Returns whether POV-Ray is installed.
-fn is_here() -> bool {
-    let found = Command::new("povray")
-        .arg("--version")
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .status()
-        .is_ok();
-    if !found {
-        eprintln!("skipped: no povray here; Debian has a package of that name");
-    }
-    found
-}
 
 /// The scene at its frame time, with one sample in the center of each pixel, in linear light.
 fn scene(case: &Case) -> Scene {
@@ -177,7 +165,7 @@ fn difference(a: [f32; 4], b: [f32; 4]) -> f32 {
 
 #[test]
 fn povray_renders_the_same() {
-    if !is_here() {
+    if !require_program("povray") {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
@@ -202,7 +190,7 @@ fn povray_renders_the_same() {
 
 #[test]
 fn different_scenes_are_distinguished() {
-    if !is_here() {
+    if !require_program("povray") {
         return;
     }
     let folder = tempfile::tempdir().unwrap();

@@ -9,6 +9,7 @@ use toyproof::translate::naga_ir::ValidModule;
 use toyproof::translate::{FloatMode, Lowered, lower};
 
 use super::{Expectation, Program, frame, programs};
+use crate::requirements::require_worker;
 
 fn checked(program: &Program, options: &Options) -> Result<(Checked, Files), String> {
     let mut files = Files::default();
@@ -95,7 +96,7 @@ fn each_program_holds_in_the_evaluator() {
 
 #[test]
 fn each_program_holds_on_the_gpu() {
-    let Some(mut worker) = crate::support::worker() else {
+    let Some(mut worker) = require_worker() else {
         return;
     };
     let failures = failures(|program| render(&mut worker, program));

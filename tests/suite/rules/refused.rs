@@ -9,10 +9,13 @@ use super::{Expectation, Program, programs};
 fn wrong(program: &Program, code: Option<&str>, lines: &[usize]) -> Option<String> {
     let mut files = Files::default();
     let file = files.add(File::new("s", program.text.as_str()));
-    let Err(mut reported) = check(&files, file, &Options::default()) else {
+    let Err(reported) = check(&files, file, &Options::default()) else {
         return Some("is accepted".to_owned());
     };
-    reported.retain(|diagnostic| diagnostic.severity == Severity::Error);
+    let errors = reported
+        .iter()
+        .filter(|diagnostic| diagnostic.severity == Severity::Error);
+    let reported: Vec<_> = errors.collect();
     let mut found: Vec<_> = reported
         .iter()
         .filter_map(|error| error.span)

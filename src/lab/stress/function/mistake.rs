@@ -12,9 +12,11 @@ pub struct Mistake {
     /// Its identifier.
     pub name: &'static str,
     /// What the function does, as text to follow its name.
-    pub says: &'static str,
+    #[serde(rename = "says")]
+    pub description: &'static str,
     /// Whether the function is right for callers that keep to its precondition.
-    pub excusable: bool,
+    #[serde(rename = "excusable")]
+    pub recoverable: bool,
 }
 
 /// The root that is returned.
@@ -82,10 +84,10 @@ const CORRECT: Model = Model {
 };
 
 macro_rules! mistakes {
-    ($($name:literal: $says:literal, { $($field:ident: $value:expr),* };)*) => {
+    ($($name:literal: $description:literal, { $($field:ident: $value:expr),* };)*) => {
         /// The mistakes that show with unit directions; the first that fits is reported.
         const MISTAKES: &[(Mistake, Model)] = &[$((
-            Mistake { name: $name, says: $says, excusable: false },
+            Mistake { name: $name, description: $description, recoverable: false },
             Model { $($field: $value,)* ..CORRECT },
         )),*];
     };
@@ -114,18 +116,18 @@ mistakes! {
 /// Reported for mistakes that show only with directions that are not unit vectors.
 const UNIT: Mistake = Mistake {
     name: "direction-of-length-1",
-    says: "takes a = 1: it is right only for directions of length 1",
-    excusable: true,
+    description: "takes a = 1: it is right only for directions of length 1",
+    recoverable: true,
 };
 const DIVIDES_BY_TWO: Mistake = Mistake {
     name: "not-over-a",
-    says: "divides the roots by 2, not by 2a: it is right only for directions of length 1",
-    excusable: true,
+    description: "divides the roots by 2, not by 2a: it is right only for directions of length 1",
+    recoverable: true,
 };
 const LENGTHS: Mistake = Mistake {
     name: "t-in-lengths",
-    says: "normalises the direction: its t counts in lengths, not in directions",
-    excusable: true,
+    description: "normalises the direction: its t counts in lengths, not in directions",
+    recoverable: true,
 };
 
 impl Model {

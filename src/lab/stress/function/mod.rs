@@ -16,7 +16,7 @@ pub use mistake::Mistake;
 pub use replace::replacements;
 pub use role::Role;
 pub(super) use signature::clear_misses;
-pub use signature::{Answers, Map, Signature};
+pub use signature::{MissConvention, RoleMap, Signature, Unrecognized};
 use toyproof_gpu::Worker;
 
 use super::axis::{Case, Kind, RaySphere, Step, axes};
@@ -50,13 +50,16 @@ impl Findings {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Example {
     /// Statements that assign the ray and sphere to the function's parameters.
-    pub paste: Vec<String>,
+    #[serde(rename = "paste")]
+    pub assignments: Vec<String>,
     /// The right result.
     pub expected: String,
     /// The actual result.
-    pub came: String,
+    #[serde(rename = "came")]
+    pub actual: String,
     /// The axis and step where it was found.
-    pub at: String,
+    #[serde(rename = "at")]
+    pub step: String,
 }
 
 /// A shader that calls a function of `text` for each case.
@@ -98,16 +101,16 @@ pub fn examine(
         program: &program,
         signature,
     };
-    let answers_f32 = runner.answers::<f32>()?;
-    let answers_f64 = runner.answers::<f64>()?;
+    let convention_f32 = runner.miss_convention::<f32>()?;
+    let convention_f64 = runner.miss_convention::<f64>()?;
     let [unit, other] = [true, false].map(|unit| {
         let ray_spheres = typical_cases(unit);
-        let outcomes = runner.outcomes::<f64>(&ray_spheres, &answers_f64)?;
+        let outcomes = runner.outcomes::<f64>(&ray_spheres, &convention_f64)?;
         Ok::<_, Failure>(ray_spheres.into_iter().zip(outcomes).collect::<Vec<_>>())
     });
-    let mistake = mistake::recognize(&unit?, &other?, answers_f64.behind_is_miss());
+    let mistake = mistake::recognize(&unit?, &other?, convention_f64.behind_is_miss());
     Ok(Findings {
-        example: runner.example(settings, &answers_f32, interrupt)?,
+        example: runner.example(settings, &convention_f32, interrupt)?,
         report,
         mistake,
     })
@@ -127,24 +130,30 @@ impl FunctionRunner<'_> {
         Ok(colors)
     }
 
-    fn answers<N: toyproof_eval::Number>(&self) -> Result<Answers, Failure> {
-        Ok(Answers::of(self.signature, &self.colors::<N>(&clear_misses())?))
+    fn miss_convention<N: toyproof_eval::Number>(&self) -> Result<MissConvention, Failure> {
+        Ok(MissConvention::of(
+            self.signature,
+            &self.colors::<N>(&clear_misses())?,
+        ))
     }
 
     fn outcomes<N: toyproof_eval::Number>(
         &self,
         ray_spheres: &[RaySphere],
-        answers: &Answers,
+        convention: &MissConvention,
     ) -> Result<Vec<Outcome>, Failure> {
         let colors = self.colors::<N>(ray_spheres)?;
-        Ok(colors.into_iter().map(|color| answers.outcome(color)).collect())
+        Ok(colors
+            .into_iter()
+            .map(|color| convention.outcome(color))
+            .collect())
     }
 
     /// The simplest failing case of the least extreme step that fails.
     fn example(
         &self,
         settings: Settings,
-        answers: &Answers,
+        convention: &MissConvention,
         interrupt: &AtomicBool,
     ) -> Result<Option<Example>, Failure> {
         let axes = axes();
@@ -160,7 +169,7 @@ impl FunctionRunner<'_> {
                     _ => None,
                 })
                 .collect();
-            let outcomes = self.outcomes::<f32>(&ray_spheres, answers)?;
+            let outcomes = self.outcomes::<f32>(&ray_spheres, convention)?;
             let references = &cells.references[cell.range.clone()];
             let wrong: Vec<RaySphere> = ray_spheres
                 .iter()
@@ -174,7 +183,7 @@ impl FunctionRunner<'_> {
             }
             let near = cell.axis == "origin";
             let failing = |ray_spheres: &[RaySphere]| -> Result<Vec<bool>, Failure> {
-                let outcomes = self.outcomes::<f32>(ray_spheres, answers)?;
+                let outcomes = self.outcomes::<f32>(ray_spheres, convention)?;
                 let pairs = ray_spheres.iter().zip(outcomes);
                 Ok(pairs
                     .map(|(ray_sphere, outcome)| is_wrong(ray_sphere, outcome, near))
@@ -183,7 +192,7 @@ impl FunctionRunner<'_> {
             if let Some(ray_sphere) = simplest_failing(&wrong, failing)? {
                 return Ok(Some(self.describe_example(
                     ray_sphere,
-                    answers,
+                    convention,
                     near,
                     format!("{} {}", cell.axis, cell.step),
                 )?));
@@ -195,25 +204,25 @@ impl FunctionRunner<'_> {
     fn describe_example(
         &self,
         ray_sphere: RaySphere,
-        answers: &Answers,
+        convention: &MissConvention,
         near: bool,
-        at: String,
+        step: String,
     ) -> Result<Example, Failure> {
         let colors = self.colors::<f32>(&[ray_sphere])?;
-        let came = answers.outcome(colors[0]);
+        let actual = convention.outcome(colors[0]);
         let expected = reference(&ray_sphere, near);
         let number = |t: f64| format!("t = {t:?}");
         Ok(Example {
-            paste: self
+            assignments: self
                 .signature
                 .assignments(ray_sphere.o, ray_sphere.d, ray_sphere.c, ray_sphere.r),
             expected: expected.t.map_or_else(|| "no hit".to_owned(), |t| number(t.high)),
-            came: match came {
+            actual: match actual {
                 Outcome::Miss => format!("no hit ({})", f64::from(colors[0][0] as f32)),
                 Outcome::Hit(t) => number(t),
                 Outcome::Nan => "NaN".to_owned(),
             },
-            at,
+            step,
         })
     }
 }

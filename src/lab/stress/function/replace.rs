@@ -6,7 +6,7 @@ use toyproof_eval::{self as eval, Program, UndefinedPolicy};
 use toyproof_glsl::tree::{Scalar, Type};
 use toyproof_glsl::{self as glsl, Checked};
 
-use super::{Answers, FunctionRunner, Map, Role, Signature, subject};
+use super::{FunctionRunner, MissConvention, Role, RoleMap, Signature, subject};
 use crate::stress::axis::RaySphere;
 use crate::stress::formula::{FORMULAS, Formula, RECENTERED};
 use crate::stress::tally::Outcome;
@@ -23,7 +23,7 @@ pub fn replacements(
     checked: &Checked,
     options: &glsl::Options,
 ) -> Result<Vec<(&'static str, String)>, Failure> {
-    let all = Signature::all(checked, &Map::new());
+    let all = Signature::all(checked, &RoleMap::new());
     let of_spheres = |one: &&Signature| one.name.to_lowercase().contains("sph");
     let Some(signature) = all.iter().find(of_spheres).or(all.first()) else {
         return Ok(Vec::new());
@@ -78,8 +78,8 @@ impl FunctionRunner<'_> {
             signature,
         };
         let ray_spheres = super::typical_cases(true);
-        let ours = self.outcomes::<f64>(&ray_spheres, &self.answers::<f64>()?)?;
-        let theirs = other.outcomes::<f64>(&ray_spheres, &other.answers::<f64>()?)?;
+        let ours = self.outcomes::<f64>(&ray_spheres, &self.miss_convention::<f64>()?)?;
+        let theirs = other.outcomes::<f64>(&ray_spheres, &other.miss_convention::<f64>()?)?;
         let same = |(one, other): (&Outcome, &Outcome)| match (one, other) {
             (Outcome::Hit(one), Outcome::Hit(other)) => (one - other).abs() < 1e-6 * one.abs(),
             (one, other) => one == other,
@@ -93,7 +93,7 @@ impl FunctionRunner<'_> {
     /// A body that calls `FORMULA` and returns its result in the function's own convention; `None` if that is
     /// not simple.
     fn body(&self) -> Result<Option<String>, Failure> {
-        let answers: Answers = self.answers::<f32>()?;
+        let convention: MissConvention = self.miss_convention::<f32>()?;
         let path = |role: Role| {
             let mut inputs = self.signature.inputs.iter();
             inputs
@@ -110,15 +110,15 @@ impl FunctionRunner<'_> {
         };
         let t_min = match path(Role::TMin) {
             Some(path) => path,
-            None => number(self.smallest_t(&answers)?),
+            None => number(self.smallest_t(&convention)?),
         };
         let call = |t_min: &str| format!("FORMULA({o}, {d}, {c}, {r}, {t_min})");
         let pair = Type::vector(Scalar::Float, 2);
         let statements = match &self.signature.outputs[..] {
             [(path, Role::T, ty)] if path == "return" && *ty == Type::FLOAT => {
-                let miss = match answers.positive_miss() {
+                let miss = match convention.positive_miss() {
                     Some(miss) => number(miss),
-                    None if answers.behind_is_miss() => "-1.0".to_owned(),
+                    None if convention.behind_is_miss() => "-1.0".to_owned(),
                     None => return Ok(None),
                 };
                 vec![
@@ -127,7 +127,7 @@ impl FunctionRunner<'_> {
                 ]
             }
             [(path, Role::T, ty)] if path == "return" && *ty == pair => {
-                let Some([near, _, far]) = answers.miss() else {
+                let Some([near, _, far]) = convention.miss() else {
                     return Ok(None);
                 };
                 vec![
@@ -148,7 +148,7 @@ impl FunctionRunner<'_> {
                 if flag == "return" =>
             {
                 // A value of 0 most likely means that the parameter is not written.
-                let miss = answers.miss().map_or(0.0, |[t, ..]| t);
+                let miss = convention.miss().map_or(0.0, |[t, ..]| t);
                 let else_branch = if miss == 0.0 {
                     String::new()
                 } else {
@@ -166,7 +166,7 @@ impl FunctionRunner<'_> {
     }
 
     /// The minimum accepted t of the function: 0, or 1, 2 or 5 times a power of ten.
-    fn smallest_t(&self, answers: &Answers) -> Result<f64, Failure> {
+    fn smallest_t(&self, convention: &MissConvention) -> Result<f64, Failure> {
         let decades = (1..=8).rev().map(|decade| 10f64.powi(-decade));
         let steps: Vec<f64> = decades
             .flat_map(|ten| [1.0, 2.0, 5.0].map(|step| step * ten))
@@ -182,7 +182,7 @@ impl FunctionRunner<'_> {
                 r: r as f32,
             })
             .collect();
-        let outcomes = self.outcomes::<f64>(&ray_spheres, answers)?;
+        let outcomes = self.outcomes::<f64>(&ray_spheres, convention)?;
         let counts = |(step, outcome): (&f64, &Outcome)| matches!(outcome, Outcome::Hit(t) if (t - 1.01 * step).abs() < 0.01 * step);
         let first = steps.iter().zip(&outcomes).position(counts);
         Ok(match first {

@@ -2,7 +2,7 @@
 
 use toyproof_glsl::tree::{Function, Scalar, Tree, Type};
 
-use super::signature::Map;
+use super::signature::RoleMap;
 
 /// The role of a value in ray–sphere intersection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -211,7 +211,7 @@ pub(super) fn check_map(
     function: &Function,
     input_leaves: &[Leaf],
     output_leaves: &[Leaf],
-    map: &Map,
+    map: &RoleMap,
 ) -> Result<(), String> {
     let name = &function.name;
     for (path, role) in map {
@@ -246,7 +246,7 @@ pub(super) fn is_sphere(
     function: &Function,
     input_leaves: &[Leaf],
     inputs: &[(String, Role)],
-    map: &Map,
+    map: &RoleMap,
 ) -> bool {
     if map.values().any(|role| role.is_of_sphere()) {
         return true;
@@ -291,7 +291,7 @@ pub(super) fn is_sphere(
     !any(&OTHER_SHAPES) && !unknown.any(is_others)
 }
 
-pub(super) fn assign_input_roles(input_leaves: &[Leaf], map: &Map) -> Vec<(String, Role)> {
+pub(super) fn assign_input_roles(input_leaves: &[Leaf], map: &RoleMap) -> Vec<(String, Role)> {
     let mut found: Vec<(String, Role)> = Vec::new();
     for leaf in input_leaves {
         if let Some(&role) = map.get(&leaf.path) {
@@ -351,7 +351,7 @@ pub(super) fn assign_input_roles(input_leaves: &[Leaf], map: &Map) -> Vec<(Strin
     found
 }
 
-pub(super) fn assign_output_roles(output_leaves: &[Leaf], map: &Map) -> Vec<(String, Role, Type)> {
+pub(super) fn assign_output_roles(output_leaves: &[Leaf], map: &RoleMap) -> Vec<(String, Role, Type)> {
     let mut found: Vec<(String, Role, Type)> = Vec::new();
     let mut give = |leaf: &Leaf, role: Role| {
         let taken = found

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use thiserror::Error;
 use toyproof_glsl::Checked;
 use toyproof_glsl::tree::{Direction, Function, Tree, Type, VariableKind};
 
@@ -12,7 +13,7 @@ use crate::stress::case_sampler::Random;
 use crate::stress::tally::Outcome;
 
 /// Roles that the user assigns, by path (`ray.origin`, `s`, `return`).
-pub type Map = BTreeMap<String, Role>;
+pub type RoleMap = BTreeMap<String, Role>;
 
 /// A function, with the roles of its inputs and outputs.
 #[derive(Debug, Clone)]
@@ -29,13 +30,18 @@ pub struct Signature {
     pub(super) outputs: Vec<(String, Role, Type)>,
 }
 
+/// Why no function is recognized, in a sentence.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("{0}")]
+pub struct Unrecognized(pub String);
+
 impl Signature {
     /// Recognizes the function of that name.
     ///
     /// # Errors
     ///
-    /// A sentence that states what is not recognized.
-    pub fn recognize(checked: &Checked, name: &str, map: &Map) -> Result<Self, String> {
+    /// States what is not recognized.
+    pub fn recognize(checked: &Checked, name: &str, map: &RoleMap) -> Result<Self, Unrecognized> {
         let tree = &checked.tree;
         let mut why = None;
         for (_, function) in tree.functions.iter() {
@@ -46,16 +52,16 @@ impl Signature {
                 }
             }
         }
-        Err(why.unwrap_or_else(|| {
+        Err(Unrecognized(why.unwrap_or_else(|| {
             let names = tree.functions.iter().map(|(_, function)| function.name.as_str());
             let names: Vec<_> = names.filter(|name| *name != "mainImage").collect();
             format!("there is no function {name}; there are {}", names.join(", "))
-        }))
+        })))
     }
 
     /// All functions that are recognized with this map.
     #[must_use]
-    pub fn all(checked: &Checked, map: &Map) -> Vec<Self> {
+    pub fn all(checked: &Checked, map: &RoleMap) -> Vec<Self> {
         let functions = checked.tree.functions.iter();
         let functions = functions.filter(|(_, function)| function.body.is_some());
         functions
@@ -67,31 +73,32 @@ impl Signature {
     ///
     /// # Errors
     ///
-    /// A sentence that states that there is none, or lists several.
-    pub fn only(checked: &Checked, map: &Map) -> Result<Self, String> {
+    /// States that there is none, or lists several.
+    pub fn only(checked: &Checked, map: &RoleMap) -> Result<Self, Unrecognized> {
         let mut all = Self::all(checked, map);
         // If only the map prevents the recognition of the single candidate, report why.
         if all.is_empty()
             && !map.is_empty()
-            && let Ok(one) = Self::only(checked, &Map::new())
+            && let Ok(one) = Self::only(checked, &RoleMap::new())
         {
             return Self::recognize(checked, &one.name, map);
         }
         match (all.pop(), all.is_empty()) {
             (Some(one), true) => Ok(one),
-            (None, _) => Err(
+            (None, _) => Err(Unrecognized(
                 "no function is seen to take a ray and a sphere and to give t; name it with --function, and what it takes with --map"
                     .to_owned(),
-            ),
+            )),
             (Some(last), false) => {
                 let names = all.iter().chain([&last]).map(|one| one.name.as_str());
                 let names: Vec<_> = names.collect();
-                Err(format!("say with --function which one: {}", names.join(", ")))
+                let which = names.join(", ");
+                Err(Unrecognized(format!("say with --function which one: {which}")))
             }
         }
     }
 
-    fn of(tree: &Tree, function: &Function, map: &Map) -> Result<Self, String> {
+    fn of(tree: &Tree, function: &Function, map: &RoleMap) -> Result<Self, String> {
         let mut input_leaves = Vec::new();
         let mut in_only_leaves = Vec::new();
         let mut output_leaves = Vec::new();
@@ -261,14 +268,14 @@ pub(in crate::stress) fn clear_misses() -> Vec<RaySphere> {
 
 /// How to interpret the color of a function's call: t, flag and second t.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Answers {
+pub struct MissConvention {
     two: bool,
     flag: bool,
     /// Results for clear misses: colors that occur more than once.
     misses: Vec<[f64; 3]>,
 }
 
-impl Answers {
+impl MissConvention {
     /// Derives the convention of a function from its colors for [`clear_misses`].
     pub(in crate::stress) fn of(signature: &Signature, colors: &[[f64; 3]]) -> Self {
         let same = |color: &&[f64; 3]| colors.iter().filter(|other| same_bits(other, color)).count() > 1;

@@ -9,6 +9,7 @@ use std::ops::Range;
 use ::spirv::{GlslStd450Op, Op};
 
 use super::BOUND;
+use crate::TranslateError;
 use crate::backend::spirv::{HEADER_WORDS, has_type, instructions, opcode, words};
 use crate::naga_ir::expand::{self as library, Need, library};
 
@@ -16,9 +17,9 @@ use crate::naga_ir::expand::{self as library, Need, library};
 ///
 /// # Errors
 /// If the library cannot be linked.
-pub fn spelled(spirv: &[u32]) -> Result<Vec<u32>, String> {
+pub fn spelled(spirv: &[u32]) -> Result<Vec<u32>, TranslateError> {
     if spirv.len() < HEADER_WORDS {
-        return Err("these are no words of SPIR-V".to_owned());
+        return Err("these are no words of SPIR-V".into());
     }
     let types = Types::of(spirv);
     let mut needs = Vec::new();
@@ -210,7 +211,7 @@ struct Linker<'a> {
 }
 
 impl<'a> Linker<'a> {
-    fn new(spirv: &[u32], library: &'a [u32]) -> Result<Self, String> {
+    fn new(spirv: &[u32], library: &'a [u32]) -> Result<Self, TranslateError> {
         let declared =
             instructions(library).filter_map(|(_, instruction)| Some((result(instruction)?, instruction)));
         let code =
@@ -226,7 +227,7 @@ impl<'a> Linker<'a> {
         });
         let glsl = import(library).map(|library_id| {
             let module_id = import(spirv).ok_or("the module imports nothing of GLSL's")?;
-            Ok::<_, String>((library_id, module_id))
+            Ok::<_, TranslateError>((library_id, module_id))
         });
         Ok(Self {
             library,
@@ -241,7 +242,7 @@ impl<'a> Linker<'a> {
     }
 
     /// Translates all library functions. Returns the id of the function for each need.
-    fn link(&mut self, needs: usize) -> Result<Vec<u32>, String> {
+    fn link(&mut self, needs: usize) -> Result<Vec<u32>, TranslateError> {
         let mut names = HashMap::new();
         let mut calls = vec![None; needs];
         for (_, instruction) in instructions(self.library) {
@@ -266,7 +267,7 @@ impl<'a> Linker<'a> {
             }
         }
         let calls: Option<Vec<_>> = calls.into_iter().collect();
-        calls.ok_or_else(|| "a function of the library is missing".to_owned())
+        calls.ok_or_else(|| "a function of the library is missing".into())
     }
 
     /// Inserts the new declarations before the module's first function and appends the new functions.
@@ -278,14 +279,14 @@ impl<'a> Linker<'a> {
         linked
     }
 
-    fn append(&mut self, instruction: &[u32]) -> Result<(), String> {
+    fn append(&mut self, instruction: &[u32]) -> Result<(), TranslateError> {
         let translated = self.translate(instruction)?;
         self.functions.extend(translated);
         Ok(())
     }
 
     /// Translates an instruction to the module's ids.
-    fn translate(&mut self, instruction: &[u32]) -> Result<Vec<u32>, String> {
+    fn translate(&mut self, instruction: &[u32]) -> Result<Vec<u32>, TranslateError> {
         let mut words = instruction.to_vec();
         let literals: HashSet<usize> = literal_words(instruction)?.collect();
         for (at, word) in words.iter_mut().enumerate().skip(1) {
@@ -297,7 +298,7 @@ impl<'a> Linker<'a> {
     }
 
     /// Translates an id. Types and constants that the module has are not declared twice (section 2.8).
-    fn id(&mut self, library_id: u32) -> Result<u32, String> {
+    fn id(&mut self, library_id: u32) -> Result<u32, TranslateError> {
         if let Some(&module_id) = self.ids.get(&library_id) {
             return Ok(module_id);
         }
@@ -307,7 +308,7 @@ impl<'a> Linker<'a> {
         };
         let module_id = match self.declared.get(&library_id).copied() {
             None if self.local.contains(&library_id) => fresh(self),
-            None => return Err("a function of the library refers to its surroundings".to_owned()),
+            None => return Err("a function of the library refers to its surroundings".into()),
             Some(declaration) => {
                 // A placeholder for its own id while its operands are translated.
                 self.ids.insert(library_id, 0);
@@ -364,7 +365,7 @@ fn without_id(instruction: &[u32]) -> Declaration {
 ///
 /// # Errors
 /// If the instruction is not one that functions of plain values consist of.
-fn literal_words(instruction: &[u32]) -> Result<Range<usize>, String> {
+fn literal_words(instruction: &[u32]) -> Result<Range<usize>, TranslateError> {
     let end = instruction.len();
     let op = opcode(instruction);
     Ok(match op.ok_or("an instruction that is not known")? {
@@ -399,7 +400,7 @@ fn literal_words(instruction: &[u32]) -> Result<Range<usize>, String> {
         | Op::AccessChain => end..end,
         // All operands of arithmetic, comparisons, bit operations and conversions are ids.
         op if is_arithmetic(op) => end..end,
-        op => return Err(format!("{op:?} in the library")),
+        op => return Err(TranslateError(format!("{op:?} in the library"))),
     })
 }
 

@@ -1,17 +1,16 @@
 //! SPIR-V, and the decorations that make drivers evaluate arithmetic as written.
 
 mod expand;
-mod mesa_barriers;
 
 use std::collections::HashSet;
 
 use ::spirv::{Capability, Decoration, GlslStd450Op, Op};
 pub use expand::spelled;
-pub use mesa_barriers::with_opaque_numbers;
 use naga::ShaderStage;
 use naga::back::spv::{BindingInfo, Options, PipelineOptions, WriterFlags, write_vec};
 
 use super::{BOUNDS, ENTRY_POINT, bindings};
+use crate::TranslateError;
 use crate::naga_ir::ValidModule;
 
 /// Writes a module by naga: with names, without flipped coordinates, with clamped indices and unbounded
@@ -19,7 +18,7 @@ use crate::naga_ir::ValidModule;
 ///
 /// # Errors
 /// naga's message, if it cannot write the module.
-pub fn words(module: &ValidModule) -> Result<Vec<u32>, String> {
+pub fn words(module: &ValidModule) -> Result<Vec<u32>, TranslateError> {
     let options = Options {
         flags: WriterFlags::DEBUG | WriterFlags::LABEL_VARYINGS,
         binding_map: bindings(module)
@@ -41,7 +40,7 @@ pub fn words(module: &ValidModule) -> Result<Vec<u32>, String> {
         shader_stage: ShaderStage::Fragment,
         entry_point: ENTRY_POINT.to_owned(),
     };
-    write_vec(module.module(), module.info(), &options, Some(&pipeline)).map_err(|error| error.to_string())
+    write_vec(module.module(), module.info(), &options, Some(&pipeline)).map_err(TranslateError::new)
 }
 
 /// Encodes words as the little-endian bytes of a `.spv` file.
@@ -53,7 +52,7 @@ pub fn bytes(words: &[u32]) -> Vec<u8> {
 const HEADER_WORDS: usize = 5;
 
 /// The instructions with the indices of their first words.
-fn instructions(words: &[u32]) -> impl Iterator<Item = (usize, &[u32])> {
+pub fn instructions(words: &[u32]) -> impl Iterator<Item = (usize, &[u32])> {
     let mut at = HEADER_WORDS;
     std::iter::from_fn(move || {
         let start = at;
@@ -91,7 +90,7 @@ pub fn with_note(words: &[u32], note: &str) -> Vec<u32> {
 }
 
 /// The index of the header word with the bound of all ids.
-const BOUND: usize = 3;
+pub const BOUND: usize = 3;
 
 /// Encodes a string literal: its bytes and zero padding; `None` if it is too long for an instruction.
 fn literal(text: &str) -> Option<Vec<u32>> {
@@ -116,12 +115,14 @@ pub fn of_bytes(bytes: &[u8]) -> Option<Vec<u32>> {
 }
 
 /// The opcode of an instruction, if known.
-fn opcode(instruction: &[u32]) -> Option<Op> {
+#[must_use]
+pub fn opcode(instruction: &[u32]) -> Option<Op> {
     Op::from_u32(instruction[0] & 0xffff)
 }
 
 /// Whether the first two operands are the result's type and id, as in all instructions with a typed result.
-fn has_type(op: Op) -> bool {
+#[must_use]
+pub fn has_type(op: Op) -> bool {
     let names_and_decorations = matches!(
         op,
         Op::Source | Op::Name | Op::MemberName | Op::Line | Op::Decorate | Op::MemberDecorate
@@ -146,7 +147,8 @@ fn has_type(op: Op) -> bool {
 }
 
 /// Whether an instruction multiplies floats, possibly adding the products.
-fn is_product(op: Op) -> bool {
+#[must_use]
+pub fn is_product(op: Op) -> bool {
     matches!(
         op,
         Op::FMul

@@ -1,26 +1,28 @@
-//! The catalogue of mistakes that occurred in the course, as edits of the shader that renders a scene, by
-//! topic.
+//! The catalogue of mistakes that occurred in the course, as replacements of parts of the shader that renders
+//! a scene, by topic.
 
 mod geometry;
 mod image;
 mod shading;
 mod transport;
 
+use toyproof_scene::export::{MarkedShader, Slot};
+
 use super::Named;
-use crate::mistake::mutant::{Edit, edited};
 
 /// A mistake of the catalogue.
 #[derive(Debug)]
 pub(super) struct Mistake {
     name: &'static str,
     says: &'static str,
-    edits: &'static [Edit],
+    /// The parts of the shader that differ, each with the template of what replaces it.
+    edits: &'static [(Slot, &'static str)],
 }
 
 impl Mistake {
-    /// Returns the shader with this mistake; none where its edits do not apply.
-    pub(super) fn apply(&self, text: &str) -> Option<String> {
-        edited(text, self.edits)
+    /// Returns the shader with this mistake; none if it lacks one of the parts, or has several of that name.
+    pub(super) fn apply(&self, shader: &MarkedShader) -> Option<MarkedShader> {
+        shader.replaced(self.edits)
     }
 
     pub(super) fn named(&self) -> Named {
@@ -54,14 +56,14 @@ pub(super) fn all() -> impl Iterator<Item = &'static Mistake> {
     topics.into_iter().flatten()
 }
 
-/// `name: says, [edits];`. A mistake that needs different edits in differently written shaders has several
-/// alternatives: `name: says, [edits], [other edits];`
+/// `name: says, [Part = template, OtherPart = template];`. A mistake that can be made in several ways, or that
+/// concerns different parts of different shaders, has alternatives: `name: says, [edits], [other edits];`
 macro_rules! mistakes {
-    ($($name:literal: $says:literal, $([$($edit:expr),* $(,)?]),+;)*) => {
+    ($($name:literal: $says:literal, $([$($slot:ident = $template:expr),* $(,)?]),+;)*) => {
         &[$($($crate::mistake::catalogue::Mistake {
             name: $name,
             says: $says,
-            edits: &[$($edit),*],
+            edits: &[$((toyproof_scene::export::Slot::$slot, $template)),*],
         }),+),*]
     };
 }
@@ -70,7 +72,51 @@ use mistakes;
 
 #[cfg(test)]
 mod tests {
+    use toyproof_diagnostic::{File, Files};
+    use toyproof_glsl as glsl;
+
     use super::*;
+    use crate::mistake::exercises::{EXERCISES, scene_of};
+    use crate::mistake::mutant::variants;
+
+    /// Scenes with what no exercise has.
+    const OTHER_SCENES: [&str; 1] = [NESTED_MOTIONS];
+
+    const NESTED_MOTIONS: &str = "[[motion]]\nname = \"a\"\naxis = [0, 1, 0]\nseconds = 2\n\
+         [[motion]]\nname = \"b\"\naxis = [0, 1, 0]\nseconds = 2\nwithin = \"a\"\n\
+         [[motion]]\nname = \"c\"\naxis = [0, 1, 0]\nseconds = 2\nwithin = \"b\"\n\
+         [[motion]]\nname = \"d\"\naxis = [0, 1, 0]\nseconds = 2\nwithin = \"c\"\n\
+         [[sphere]]\ncenter = [0, 0, -6]\nradius = 1\nmotion = \"d\"\n\
+         material = { model = \"facing\", color = [1, 1, 0] }\n";
+
+    fn shaders() -> Vec<MarkedShader> {
+        let exercises = EXERCISES.into_iter().map(|(_, text)| text);
+        let scenes = exercises.chain(OTHER_SCENES);
+        scenes.flat_map(|text| variants(&scene_of(text))).collect()
+    }
+
+    fn is_valid(shader: &MarkedShader) -> bool {
+        let mut files = Files::default();
+        let file = files.add(File::new("shader", shader.text.as_str()));
+        glsl::check(&files, file, &glsl::Options::default()).is_ok()
+    }
+
+    #[test]
+    fn every_mistake_can_be_made_in_a_shader() {
+        let shaders = shaders();
+        for mistake in all() {
+            let mut mutants = shaders.iter().filter_map(|shader| mistake.apply(shader));
+            assert!(mutants.any(|mutant| is_valid(&mutant)), "{mistake:?}");
+        }
+    }
+
+    #[test]
+    fn every_name_of_a_part_stands_for_one() {
+        let shaders = shaders();
+        for &slot in Slot::ALL {
+            assert!(shaders.iter().any(|shader| shader.has(slot)), "{slot:?}");
+        }
+    }
 
     #[test]
     fn every_mistake_is_documented() {

@@ -106,23 +106,11 @@ mod tests {
     use toyproof_eval::{Program, Settings};
     use toyproof_glsl as glsl;
     use toyproof_image::Frame;
-    use toyproof_scene as scene;
     use toyproof_scene::export;
     use toyproof_tracer::Tracer;
 
     use super::*;
-
-    macro_rules! exercises {
-        ($($name:literal),* $(,)?) => {
-            [$(($name, include_str!(concat!("../../../../glsl/", $name, ".toml")))),*]
-        };
-    }
-
-    fn scene_of(text: &str) -> Scene {
-        let mut files = Files::default();
-        let file = files.add(File::new("s", text));
-        scene::parse(&files, file).unwrap()
-    }
+    use crate::mistake::exercises::{EXERCISES, scene_of};
 
     /// The number of pixels of a small image in which the exported shader differs from the tracer.
     fn differing(scene: &Scene, frame_time: FrameTime) -> usize {
@@ -159,25 +147,8 @@ mod tests {
                      material = { model = \"lambert\", color = [1, 1, 1] }\n\
                      [[scatter]]\ncorner = [0.5, -1.0, -7.0]\ncells = [1, 2, 1]\nspacing = 1.0\nradius = [0.2, 0.4]\nseed = 9\n\
                      material = { model = \"lambert\", color = [1, 1, 1] }\n";
-        let exercises = exercises![
-            "01-sampling",
-            "02-sphere",
-            "03-shading",
-            "04-many-objects",
-            "05-complex-scene",
-            "06-reflections",
-            "07-diffuse",
-            "08-disney",
-            "09-soft-shadows",
-            "10-quadrics",
-            "11-animation",
-            "12-whitted",
-            "13-importance-sampling",
-            "14-accelerator",
-            "15-parallel-rays",
-        ];
         let frame_time = FrameTime { frame: 10, time: 1.3 };
-        for (name, text) in exercises.into_iter().chain([("two scatters", grids)]) {
+        for (name, text) in EXERCISES.into_iter().chain([("two scatters", grids)]) {
             let scene = scene_of(text);
             let own = differing(&scene, frame_time);
             for change in general(&scene, frame_time)

@@ -2,7 +2,7 @@
 
 use super::Edited;
 use super::sphere::{CAMERA, SPHERE};
-use crate::support::ANIMATION;
+use crate::ANIMATION;
 
 pub(super) static EDITED: Edited = Edited {
     exercise: &ANIMATION,

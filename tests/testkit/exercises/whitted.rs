@@ -1,7 +1,7 @@
 //! Mirror, glass and checker.
 
 use super::Edited;
-use crate::support::WHITTED;
+use crate::WHITTED;
 
 pub(super) static EDITED: Edited = Edited {
     exercise: &WHITTED,

@@ -1,7 +1,7 @@
 //! Two-dimensional figures.
 
 use super::Edited;
-use crate::support::SAMPLING;
+use crate::SAMPLING;
 
 pub(super) static EDITED: Edited = Edited {
     exercise: &SAMPLING,

@@ -12,20 +12,24 @@ mod soft_shadows;
 mod sphere;
 mod whitted;
 
-use crate::support::{Edit, Exercise};
+use crate::{Edit, Exercise};
 
 /// The name of a change, and its edits.
-pub(crate) type Named = (&'static str, &'static [Edit]);
+pub type Named = (&'static str, &'static [Edit]);
 
 /// An exercise with its mistakes and its rewrites.
-pub(crate) struct Edited {
-    pub(crate) exercise: &'static Exercise,
-    pub(crate) faults: &'static [Named],
-    /// Several lists, since some are shared by exercises.
-    pub(crate) rewrites: &'static [&'static [Named]],
+#[derive(Debug)]
+pub struct Edited {
+    /// The exercise.
+    pub exercise: &'static Exercise,
+    /// Its mistakes.
+    pub faults: &'static [Named],
+    /// Its rewrites: several lists, since some are shared by exercises.
+    pub rewrites: &'static [&'static [Named]],
 }
 
-pub(crate) static EDITED: [&Edited; 10] = [
+/// The later exercises.
+pub static EDITED: [&Edited; 10] = [
     &sampling::EDITED,
     &diffuse::EDITED,
     &disney::EDITED,

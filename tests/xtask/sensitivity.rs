@@ -7,8 +7,7 @@ use toyproof::scene::{FrameTime, Point, Projection, Scene, Shape};
 use toyproof::tracer::{ColorRange, EpsilonFamily, EpsilonSet, RayEpsilons, Tracer};
 use toyproof::verify::compare::{Answer, Mixed, PERTURBATIONS, Reference, algorithm};
 use toyproof::verify::{CheckEvidence, Checks, Evidence, Verdict, decide};
-
-use crate::support::{EXERCISES, Exercise, checked, frame, scene};
+use toyproof_testkit::{EXERCISES, Exercise, checked, frame, scene};
 
 /// The size of the course's images.
 const SIZE: [u32; 2] = [640, 360];
@@ -232,14 +231,11 @@ impl Subject {
     }
 }
 
-/// `cargo test --release --test suite -- --ignored smallest --nocapture` prints the table of
-/// `docs/accuracy.md`.
-#[test]
-#[ignore = "takes minutes"]
-fn the_smallest_error_that_is_found() {
+/// Prints the table of `docs/accuracy.md`.
+pub(super) fn print_table() {
     let names: Vec<_> = QUANTITIES.iter().map(|quantity| quantity.name).collect();
-    eprintln!("| | {} |", names.join(" | "));
-    eprintln!("|---{}|", "|---".repeat(names.len()));
+    println!("| | {} |", names.join(" | "));
+    println!("|---{}|", "|---".repeat(names.len()));
     for exercise in EXERCISES {
         let mut subject = Subject::new(exercise);
         assert!(!subject.is_wrong(&subject.scene), "{}", exercise.name);
@@ -257,7 +253,7 @@ fn the_smallest_error_that_is_found() {
                     Some(error) => format!("{:.3} %", 100.0 * error),
                 })
                 .collect();
-            eprintln!("| {}, {word} sphere | {} |", exercise.name, cells.join(" | "));
+            println!("| {}, {word} sphere | {} |", exercise.name, cells.join(" | "));
         }
     }
 }

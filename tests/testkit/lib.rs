@@ -1,15 +1,31 @@
-//! Edited exercises of the course, checked as by `toyproof check`, but through the library.
+//! What the test suite and `cargo xtask` share: edited exercises of the course, checked as by `toyproof check`,
+//! but through the library.
+
+#![expect(
+    clippy::must_use_candidate,
+    clippy::missing_panics_doc,
+    clippy::missing_errors_doc,
+    reason = "only for tests, which panic on errors"
+)]
+#![expect(
+    clippy::disallowed_methods,
+    reason = "tests show the paths that they made themselves"
+)]
+
+pub mod devtools;
+pub mod exercises;
+pub mod faults;
+pub mod wait;
 
 use std::env;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::time::Duration;
 
 use toyproof::diagnostic::{self, Deadline, Diagnostic, File, Files};
 use toyproof::glsl::{self, Checked};
-use toyproof::gpu::{AdapterSelector, Failure, Worker};
-use toyproof::image::Frame;
+use toyproof::gpu::Worker;
+use toyproof::image::{Frame, Image};
 use toyproof::lint::{Lints, lint};
 use toyproof::scene::{self, FrameTime, Scene};
 use toyproof::tracer::Tracer;
@@ -20,20 +36,25 @@ use toyproof::verify::{Case, Expected, Findings, verify};
 
 /// A shader of the course and its scene.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Exercise {
-    pub(crate) name: &'static str,
-    pub(crate) shader: &'static str,
-    pub(crate) scene: &'static str,
-    /// The number of the checked frame, and its time in seconds.
-    pub(crate) frame: i32,
-    pub(crate) time: f32,
+pub struct Exercise {
+    /// The stem of its files.
+    pub name: &'static str,
+    /// The shader's text.
+    pub shader: &'static str,
+    /// The scene's text.
+    pub scene: &'static str,
+    /// The number of the checked frame.
+    pub frame: i32,
+    /// The time of the checked frame, in seconds.
+    pub time: f32,
     /// Width and height in pixels.
-    pub(crate) size: [u32; 2],
+    pub size: [u32; 2],
 }
 
 macro_rules! exercises {
     ($($exercise:ident = $name:literal $(at $frame:literal, $time:literal)? $(of $size:ident)?;)*) => {$(
-        pub(crate) static $exercise: Exercise = Exercise {
+        /// An exercise of this name.
+        pub static $exercise: Exercise = Exercise {
             name: $name,
             shader: include_str!(concat!("../../glsl/", $name, ".glsl")),
             scene: include_str!(concat!("../../glsl/", $name, ".toml")),
@@ -45,7 +66,7 @@ macro_rules! exercises {
 }
 
 /// The settings of most exercises.
-pub(crate) const STILL: Exercise = Exercise {
+pub const STILL: Exercise = Exercise {
     name: "",
     shader: "",
     scene: "",
@@ -73,11 +94,10 @@ exercises! {
 }
 
 /// The first exercises with rays, in the course's order; all intersect spheres with the same code.
-pub(crate) static EXERCISES: [&Exercise; 5] =
-    [&SPHERE, &SHADING, &MANY_OBJECTS, &COMPLEX_SCENE, &REFLECTIONS];
+pub static EXERCISES: [&Exercise; 5] = [&SPHERE, &SHADING, &MANY_OBJECTS, &COMPLEX_SCENE, &REFLECTIONS];
 
 /// All exercises of the course.
-pub(crate) static EVERY_EXERCISE: [&Exercise; 15] = [
+pub static EVERY_EXERCISE: [&Exercise; 15] = [
     &SAMPLING,
     &SPHERE,
     &SHADING,
@@ -97,21 +117,21 @@ pub(crate) static EVERY_EXERCISE: [&Exercise; 15] = [
 
 /// An edit `(from, to)`. `from` occurs exactly once; a `…` in it matches everything up to the first
 /// occurrence of the text after it.
-pub(crate) type Edit = (&'static str, &'static str);
+pub type Edit = (&'static str, &'static str);
 
 /// Width and height in pixels: small enough for a hundred images, large enough that the tolerated share of
 /// differing pixels, 0.1 %, is more than a dozen pixels.
-pub(crate) const SIZE: [u32; 2] = [160, 90];
+pub const SIZE: [u32; 2] = [160, 90];
 /// The same for exercises that take many samples per pixel.
 const SMALL: [u32; 2] = [48, 27];
 
 /// The answer of the algorithm check: every test here has a scene.
-pub(crate) fn algorithm(findings: &Findings) -> &Answer {
+pub fn algorithm(findings: &Findings) -> &Answer {
     &findings.algorithm.as_ref().expect("there is a scene").answer
 }
 
 /// The numbers behind a verdict, for people.
-pub(crate) fn numbers(findings: &Findings) -> String {
+pub fn numbers(findings: &Findings) -> String {
     let questions = [
         ("maths", &findings.algorithm),
         ("rounding", &findings.precision),
@@ -132,51 +152,8 @@ pub(crate) fn numbers(findings: &Findings) -> String {
     format!("{}: {}", findings.verdict, format_errors.join("; "))
 }
 
-/// Creates the only worker of a test, or none where there is no Vulkan driver and the test is skipped.
-///
-/// # Panics
-/// If there is no driver although `CI` is set, or the worker fails.
-pub(crate) fn worker() -> Option<Worker> {
-    let program = PathBuf::from(env!("CARGO_BIN_EXE_toyproof"));
-    let mut worker = Worker::new(
-        program,
-        vec!["worker".into()],
-        AdapterSelector::Auto,
-        Duration::from_secs(60),
-    );
-    match worker.probe() {
-        Ok(_) => Some(worker),
-        Err(Failure::NoDriver(why)) if env::var_os("CI").is_none() => {
-            eprintln!("skipped, for there is no Vulkan driver: {why}");
-            None
-        }
-        Err(failure) => panic!("{failure}"),
-    }
-}
-
-/// Creates a worker on `SwiftShader`, the software driver that Chromium ships, or none without Chromium.
-pub(crate) fn swiftshader() -> Option<Worker> {
-    let manifest = [
-        "/usr/lib/chromium",
-        "/usr/lib/chromium-browser",
-        "/usr/lib64/chromium-browser",
-        "/opt/google/chrome",
-    ]
-    .map(|folder| Path::new(folder).join("vk_swiftshader_icd.json"))
-    .into_iter()
-    .find(|path| path.exists());
-    let Some(manifest) = manifest else {
-        eprintln!("skipped: no Chromium with SwiftShader here");
-        return None;
-    };
-    let program = PathBuf::from(env!("CARGO_BIN_EXE_toyproof"));
-    let on = AdapterSelector::Named("SwiftShader".into());
-    let worker = Worker::new(program, vec!["worker".into()], on, Duration::from_secs(60));
-    Some(worker.with_manifest(manifest))
-}
-
 /// An exercise's scene.
-pub(crate) fn scene(exercise: &Exercise) -> Scene {
+pub fn scene(exercise: &Exercise) -> Scene {
     let mut files = Files::default();
     let file = files.add(File::new("<scene>", exercise.scene));
     let mut scene =
@@ -186,7 +163,7 @@ pub(crate) fn scene(exercise: &Exercise) -> Scene {
 }
 
 /// The tracer of an exercise's scene.
-pub(crate) fn tracer(exercise: &Exercise) -> Tracer<f64> {
+pub fn tracer(exercise: &Exercise) -> Tracer<f64> {
     let moment = FrameTime {
         frame: exercise.frame,
         time: f64::from(exercise.time),
@@ -198,7 +175,7 @@ pub(crate) fn tracer(exercise: &Exercise) -> Tracer<f64> {
 ///
 /// # Panics
 /// If it is invalid.
-pub(crate) fn checked(shader: &str) -> Checked {
+pub fn checked(shader: &str) -> Checked {
     let mut files = Files::default();
     let file = files.add(File::new("<shader>", shader));
     glsl::check(&files, file, &glsl::Options::default())
@@ -209,7 +186,7 @@ pub(crate) fn checked(shader: &str) -> Checked {
 ///
 /// # Panics
 /// If it is invalid.
-pub(crate) fn linted(shader: &str) -> (Checked, Lints) {
+pub fn linted(shader: &str) -> (Checked, Lints) {
     let mut files = Files::default();
     let file = files.add(File::new("<shader>", shader));
     let checked = checked(shader);
@@ -219,7 +196,7 @@ pub(crate) fn linted(shader: &str) -> (Checked, Lints) {
 }
 
 /// The frame in which an exercise is checked, in a size.
-pub(crate) fn frame(exercise: &Exercise, size: [u32; 2]) -> Frame {
+pub fn frame(exercise: &Exercise, size: [u32; 2]) -> Frame {
     Frame {
         size,
         frame: exercise.frame,
@@ -232,7 +209,7 @@ pub(crate) fn frame(exercise: &Exercise, size: [u32; 2]) -> Frame {
 ///
 /// # Panics
 /// If anything but the comparison of the images fails.
-pub(crate) fn check_exercise(worker: &mut Worker, shader: &str, exercise: &Exercise) -> Findings {
+pub fn check_exercise(worker: &mut Worker, shader: &str, exercise: &Exercise) -> Findings {
     check_exercise_with(Some(worker), shader, exercise)
 }
 
@@ -240,11 +217,7 @@ pub(crate) fn check_exercise(worker: &mut Worker, shader: &str, exercise: &Exerc
 ///
 /// # Panics
 /// Like [`check_exercise`].
-pub(crate) fn check_exercise_with(
-    worker: Option<&mut Worker>,
-    shader: &str,
-    exercise: &Exercise,
-) -> Findings {
+pub fn check_exercise_with(worker: Option<&mut Worker>, shader: &str, exercise: &Exercise) -> Findings {
     check_against(None, worker, shader, exercise)
 }
 
@@ -252,22 +225,22 @@ pub(crate) fn check_exercise_with(
 ///
 /// # Panics
 /// Like [`check_exercise`].
-pub(crate) fn check_and_name(worker: &mut Worker, shader: &str, exercise: &Exercise) -> Findings {
-    let suspects = Hypotheses::of(&scene(exercise), &frame(exercise, exercise.size)).unwrap();
-    check_against(Some(&suspects), Some(worker), shader, exercise)
+pub fn check_and_name(worker: &mut Worker, shader: &str, exercise: &Exercise) -> Findings {
+    let hypotheses = Hypotheses::of(&scene(exercise), &frame(exercise, exercise.size)).unwrap();
+    check_against(Some(&hypotheses), Some(worker), shader, exercise)
 }
 
 /// Like [`check_and_name`], by the evaluator alone.
 ///
 /// # Panics
 /// Like [`check_exercise`].
-pub(crate) fn check_and_name_on_cpu(shader: &str, exercise: &Exercise) -> Findings {
-    let suspects = Hypotheses::of(&scene(exercise), &frame(exercise, exercise.size)).unwrap();
-    check_against(Some(&suspects), None, shader, exercise)
+pub fn check_and_name_on_cpu(shader: &str, exercise: &Exercise) -> Findings {
+    let hypotheses = Hypotheses::of(&scene(exercise), &frame(exercise, exercise.size)).unwrap();
+    check_against(Some(&hypotheses), None, shader, exercise)
 }
 
 fn check_against(
-    suspects: Option<&Hypotheses>,
+    hypotheses: Option<&Hypotheses>,
     worker: Option<&mut Worker>,
     shader: &str,
     exercise: &Exercise,
@@ -278,7 +251,7 @@ fn check_against(
         checked: &checked,
         lints: &lints,
         expected: Some(&Expected::new(scene(exercise), &frame)),
-        suspects,
+        hypotheses,
         frame: &frame,
         float: FloatMode::Strict,
         timeout: Duration::from_secs(60),
@@ -295,11 +268,27 @@ fn format_errors(errors: &[Diagnostic], files: &Files) -> String {
     lines.join("\n")
 }
 
+/// The number of pixels that differ between two images, and the first with both colors.
+pub fn differences(a: &Image, b: &Image, ignore: impl Fn(u32, u32) -> bool) -> (usize, String) {
+    let [width, height] = a.size();
+    // Compared like in the toolchain check.
+    let same = |a: f32, b: f32| a == b || (a.is_nan() && b.is_nan());
+    let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    let differing: Vec<_> = pixels
+        .filter(|&(x, y)| !ignore(x, y))
+        .filter(|&(x, y)| (0..3).any(|at| !same(a.get(x, y)[at], b.get(x, y)[at])))
+        .collect();
+    let first = differing.first().map_or(String::new(), |&(x, y)| {
+        format!("first at ({x}, {y}): {:?} and {:?}", a.get(x, y), b.get(x, y))
+    });
+    (differing.len(), first)
+}
+
 /// Applies edits in order to the exercise's shader.
 ///
 /// # Panics
 /// If an edit matches nothing or is ambiguous.
-pub(crate) fn edited(exercise: &Exercise, edits: &[Edit]) -> String {
+pub fn edited(exercise: &Exercise, edits: &[Edit]) -> String {
     edit(exercise.shader, edits, exercise.name)
 }
 
@@ -307,12 +296,12 @@ pub(crate) fn edited(exercise: &Exercise, edits: &[Edit]) -> String {
 ///
 /// # Panics
 /// If an edit matches nothing or is ambiguous.
-pub(crate) fn edit(text: &str, edits: &[Edit], name: &str) -> String {
+pub fn edit(text: &str, edits: &[Edit], name: &str) -> String {
     try_edit(text, edits).unwrap_or_else(|why| panic!("{name}: {why}\n{text}"))
 }
 
 /// Like [`edit`], but returns the error.
-pub(crate) fn try_edit(text: &str, edits: &[Edit]) -> Result<String, String> {
+pub fn try_edit(text: &str, edits: &[Edit]) -> Result<String, String> {
     let mut text = text.to_owned();
     for (from, to) in edits {
         let range = place(&text, from).map_err(|why| format!("`{from}` {why}"))?;
@@ -334,7 +323,7 @@ fn place(text: &str, from: &str) -> Result<Range<usize>, String> {
 }
 
 /// The value of an environment variable, or the default.
-pub(crate) fn setting<T: FromStr>(name: &str, default: T) -> T {
+pub fn setting<T: FromStr>(name: &str, default: T) -> T {
     env::var(name)
         .ok()
         .and_then(|value| value.parse().ok())

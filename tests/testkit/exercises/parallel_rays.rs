@@ -2,7 +2,7 @@
 
 use super::Edited;
 use super::sphere::SPHERE;
-use crate::support::PARALLEL_RAYS;
+use crate::PARALLEL_RAYS;
 
 pub(super) static EDITED: Edited = Edited {
     exercise: &PARALLEL_RAYS,

@@ -2,7 +2,7 @@
 
 use super::Edited;
 use super::sphere::{CAMERA, SPHERE};
-use crate::support::DISNEY;
+use crate::DISNEY;
 
 pub(super) static EDITED: Edited = Edited {
     exercise: &DISNEY,

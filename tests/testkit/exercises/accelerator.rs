@@ -1,7 +1,7 @@
 //! Hundreds of spheres in a grid.
 
 use super::Edited;
-use crate::support::ACCELERATOR;
+use crate::ACCELERATOR;
 
 pub(super) static EDITED: Edited = Edited {
     exercise: &ACCELERATOR,

@@ -1,7 +1,7 @@
 //! Path tracing with multiple importance sampling.
 
 use super::Edited;
-use crate::support::IMPORTANCE_SAMPLING;
+use crate::IMPORTANCE_SAMPLING;
 
 pub(super) static EDITED: Edited = Edited {
     exercise: &IMPORTANCE_SAMPLING,

@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use ::spirv::{BuiltIn, Decoration, Op, StorageClass};
+use spirv::{BuiltIn, Decoration, Op, StorageClass};
 
-use crate::backend::spirv::{BOUND, has_type, instructions, is_product, opcode};
+use toyproof_translate::backend::spirv::{BOUND, has_type, instructions, is_product, opcode};
 
 /// Combines some numbers by exclusive or with the bits of `gl_FragCoord.z`, which are 0 if an image is
 /// rendered with triangles at depth 0. Their values do not change, nor does a module without `gl_FragCoord`.
@@ -17,7 +17,7 @@ use crate::backend::spirv::{BOUND, has_type, instructions, is_product, opcode};
 /// - Zeros that are multiplied, divided or passed to where they may be. Mesa's llvmpipe takes the product of
 ///   a constant zero and any value, and its quotient, for zero even if it is NaN, regardless of decorations.
 #[must_use]
-pub fn with_opaque_numbers(words: &[u32]) -> Vec<u32> {
+pub(crate) fn with_opaque_numbers(words: &[u32]) -> Vec<u32> {
     let Some(mut rewriter) = Rewriter::of(words) else {
         return words.to_vec();
     };
@@ -293,8 +293,20 @@ fn push(code: &mut Vec<u32>, op: Op, operands: &[u32]) {
 mod tests {
     use std::collections::HashSet;
 
+    use toyproof_diagnostic::{File, Files};
+    use toyproof_glsl::{Options, check};
+    use toyproof_translate::backend::spirv::words;
+    use toyproof_translate::naga_ir::ValidModule;
+
     use super::*;
-    use crate::backend::spirv::words_of;
+
+    /// The words of a valid shader.
+    fn words_of(shader: &str) -> Vec<u32> {
+        let mut files = Files::default();
+        let file = files.add(File::new("s", shader));
+        let checked = check(&files, file, &Options::default()).unwrap();
+        words(&ValidModule::parse(&toyproof_translate::lower(&checked)).unwrap()).unwrap()
+    }
 
     fn all(words: &[u32], op: Op) -> Vec<&[u32]> {
         let found = instructions(words).filter(|(_, instruction)| opcode(instruction) == Some(op));

@@ -5,19 +5,17 @@ use std::path::Path;
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::mpsc::{self, Receiver};
 use std::thread;
-use std::time::{Duration, Instant};
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-/// The time limit of one browser operation, including its start.
-const TIME_LIMIT: Duration = Duration::from_secs(90);
+use crate::wait::{HANG_GUARD, wait_until};
 
 /// One page of a browser.
 #[derive(Debug)]
-pub(crate) struct Page {
+pub struct Page {
     browser: Child,
     orders: ChildStdin,
     told: Receiver<Value>,
@@ -30,12 +28,12 @@ pub(crate) struct Page {
 
 impl Page {
     /// Opens an empty page in a browser without a GPU.
-    pub(crate) fn new(program: &Path) -> Self {
+    pub fn new(program: &Path) -> Self {
         Self::with(program, &["--disable-gpu"])
     }
 
     /// Opens an empty page in a browser with these switches.
-    pub(crate) fn with(program: &Path, switches: &[&str]) -> Self {
+    pub fn with(program: &Path, switches: &[&str]) -> Self {
         let profile = tempfile::tempdir().unwrap();
         let mut browser = Command::new("sh")
             // The protocol uses file descriptors 3 and 4.
@@ -88,7 +86,7 @@ impl Page {
     }
 
     /// Calls a method and waits for the reply.
-    pub(crate) fn call(&mut self, method: &str, parameters: &Value) -> Value {
+    pub fn call(&mut self, method: &str, parameters: &Value) -> Value {
         self.last += 1;
         let mut order = json!({ "id": self.last, "method": method, "params": parameters });
         if let Some(session) = &self.session {
@@ -97,7 +95,7 @@ impl Page {
         write!(self.orders, "{order}\0").unwrap();
         self.orders.flush().unwrap();
         loop {
-            let message = self.told.recv_timeout(TIME_LIMIT).expect(method);
+            let message = self.told.recv_timeout(HANG_GUARD).expect(method);
             if message["id"] == self.last {
                 assert!(message["error"].is_null(), "{method}: {}", message["error"]);
                 return message["result"].clone();
@@ -106,9 +104,8 @@ impl Page {
         }
     }
 
-    /// Opens a file and waits until it is loaded; returns the time taken.
-    pub(crate) fn open(&mut self, file: &Path) -> Duration {
-        let start = Instant::now();
+    /// Opens a file and waits until it is loaded.
+    pub fn open(&mut self, file: &Path) {
         self.events.clear();
         let url = format!("file://{}", file.display());
         self.call("Page.navigate", &json!({ "url": url }));
@@ -117,14 +114,13 @@ impl Page {
             .iter()
             .any(|event| event["method"] == "Page.loadEventFired")
         {
-            let event = self.told.recv_timeout(TIME_LIMIT).expect("the page loads");
+            let event = self.told.recv_timeout(HANG_GUARD).expect("the page loads");
             self.events.push(event);
         }
-        start.elapsed()
     }
 
     /// Evaluates a JavaScript expression, awaiting promises.
-    pub(crate) fn value(&mut self, script: &str) -> Value {
+    pub fn value(&mut self, script: &str) -> Value {
         let asked = json!({ "expression": script, "awaitPromise": true, "returnByValue": true });
         let result = self.call("Runtime.evaluate", &asked);
         assert!(result["exceptionDetails"].is_null(), "{script}: {result}");
@@ -132,16 +128,12 @@ impl Page {
     }
 
     /// Waits until an expression is true.
-    pub(crate) fn until(&mut self, script: &str) {
-        let start = Instant::now();
-        while self.value(script) != true {
-            assert!(start.elapsed() < TIME_LIMIT, "never: {script}");
-            thread::sleep(Duration::from_millis(20));
-        }
+    pub fn until(&mut self, script: &str) {
+        wait_until(|| self.value(script) == true);
     }
 
     /// Presses and releases a key.
-    pub(crate) fn press(&mut self, key: &str) {
+    pub fn press(&mut self, key: &str) {
         // Some keys need their code, or the text that they produce.
         let (number, text) = match key {
             "Tab" => (9, ""),
@@ -155,7 +147,7 @@ impl Page {
     }
 
     /// Sets the window's size in pixels, and the dark or light color scheme.
-    pub(crate) fn window(&mut self, [width, height]: [u32; 2], dark: bool) {
+    pub fn window(&mut self, [width, height]: [u32; 2], dark: bool) {
         let metrics = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
         self.call("Emulation.setDeviceMetricsOverride", &metrics);
         let scheme = if dark { "dark" } else { "light" };
@@ -164,13 +156,13 @@ impl Page {
     }
 
     /// The window as a PNG.
-    pub(crate) fn screenshot(&mut self) -> Vec<u8> {
+    pub fn screenshot(&mut self) -> Vec<u8> {
         let shot = self.call("Page.captureScreenshot", &json!({ "format": "png" }));
         STANDARD.decode(shot["data"].as_str().unwrap()).unwrap()
     }
 
     /// Takes the events with this name since the page was opened.
-    pub(crate) fn events(&mut self, method: &str) -> Vec<Value> {
+    pub fn events(&mut self, method: &str) -> Vec<Value> {
         // Pending events have arrived once this call returns.
         self.value("0");
         let events = self.events.iter().filter(|event| event["method"] == method);

@@ -1,7 +1,7 @@
 //! Surfaces of second degree.
 
 use super::Edited;
-use crate::support::QUADRICS;
+use crate::QUADRICS;
 
 pub(super) static EDITED: Edited = Edited {
     exercise: &QUADRICS,

@@ -1,7 +1,4 @@
-//! Loops that drivers terminate or translate wrongly.
-//!
-//! Mesa's llvmpipe before version 23 silently leaves every loop of an invocation after 65,535 iterations in
-//! total. A [`Probe`] makes that visible in the image's alpha.
+//! Modules instrumented so that the image's alpha shows whether a driver terminated a loop.
 
 use std::num::NonZeroU32;
 
@@ -10,11 +7,12 @@ use naga::{
     Scalar, ScalarKind, Span, Statement, Type, TypeInner,
 };
 
-use super::ValidModule;
+use toyproof_translate::TranslateError;
+use toyproof_translate::naga_ir::ValidModule;
 
 /// The value that a probe writes to alpha.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Probe {
+pub(crate) enum Probe {
     /// One more than the total iterations of the pixel's loops. It is cheap. If a driver detects that a loop
     /// never ends, it treats the code after it as unreachable, and alpha may be anything, mostly 0.
     Iterations,
@@ -28,13 +26,14 @@ pub enum Probe {
 }
 
 /// Whether any function contains a loop.
-pub(super) fn has_loop(module: &Module) -> bool {
-    bodies(module).any(|body| visit(body, &mut |statement| matches!(statement, Statement::Loop { .. })))
+pub(crate) fn has_loops(module: &ValidModule) -> bool {
+    bodies(module.module())
+        .any(|body| visit(body, &mut |statement| matches!(statement, Statement::Loop { .. })))
 }
 
 /// Whether any loop has no exit, so that the code after it is unreachable.
-pub(super) fn has_infinite_loop(module: &Module) -> bool {
-    bodies(module).any(|body| {
+pub(crate) fn has_infinite_loop(module: &ValidModule) -> bool {
+    bodies(module.module()).any(|body| {
         visit(body, &mut |statement| match statement {
             Statement::Loop { body, break_if, .. } => break_if.is_none() && !has_exit(body),
             _ => false,
@@ -74,9 +73,18 @@ fn has_exit(body: &Block) -> bool {
     })
 }
 
-/// Adds a probe: the entry point's alpha becomes its value.
-pub(super) fn probe(module: &mut Module, probe: Probe) {
-    let counter = Counter::declare(module, probe);
+/// Whether `discard` may skip a pixel.
+pub(crate) fn discards(module: &ValidModule) -> bool {
+    (0..module.module().entry_points.len()).any(|entry| module.info().get_entry_point(entry).may_kill)
+}
+
+/// Returns the same shader with a probe of its loops: the entry point's alpha becomes the probe's value.
+///
+/// # Errors
+/// naga's message, if it refuses the result.
+pub(crate) fn probed(module: &ValidModule, probe: Probe) -> Result<ValidModule, TranslateError> {
+    let mut module = module.module().clone();
+    let counter = Counter::declare(&mut module, probe);
     for (_, function) in module.functions.iter_mut() {
         Rewriter::rewrite(function, probe, counter);
     }
@@ -87,6 +95,7 @@ pub(super) fn probe(module: &mut Module, probe: Probe) {
         }
         report(&mut entry.function, probe, counter);
     }
+    ValidModule::new(module)
 }
 
 /// A private counter, initially 0.
@@ -410,108 +419,56 @@ fn returned_variable(entry: &Function) -> Option<Handle<GlobalVariable>> {
     }
 }
 
-impl ValidModule {
-    /// Returns the same module with the steps of its loops at the end of their bodies, as
-    /// `lower::loops::move_steps` does for GLSL.
-    ///
-    /// Mesa 22.3 executes the step in SPIR-V's continue construct once too often if nothing continues the
-    /// loop and the stepped variable is initialized with a constant vector. The move changes nothing else.
-    ///
-    /// # Errors
-    /// naga's message, if it refuses the result.
-    pub fn with_steps_last(&self) -> Result<Self, String> {
-        let mut module = self.module.clone();
-        for (_, function) in module.functions.iter_mut() {
-            move_steps(&mut function.body);
-        }
-        for entry in &mut module.entry_points {
-            move_steps(&mut entry.function.body);
-        }
-        Self::validate(module).map_err(|error| super::chain(error.as_inner()))
-    }
-}
-
-fn move_steps(block: &mut Block) {
-    for statement in block.iter_mut() {
-        match statement {
-            Statement::Block(block) => move_steps(block),
-            Statement::If { accept, reject, .. } => {
-                move_steps(accept);
-                move_steps(reject);
-            }
-            Statement::Switch { cases, .. } => cases.iter_mut().for_each(|case| move_steps(&mut case.body)),
-            Statement::Loop {
-                body,
-                continuing,
-                break_if: None,
-            } => {
-                move_steps(body);
-                if !continues(body) && !always_jumps(body) {
-                    for (step, span) in std::mem::take(continuing).span_into_iter() {
-                        body.push(step, span);
-                    }
-                }
-            }
-            Statement::Loop { body, .. } => move_steps(body),
-            _ => {}
-        }
-    }
-}
-
-/// Whether the loop's body contains a `continue` of this loop.
-fn continues(block: &Block) -> bool {
-    block.iter().any(|statement| match statement {
-        Statement::Continue => true,
-        Statement::Block(block) => continues(block),
-        Statement::If { accept, reject, .. } => continues(accept) || continues(reject),
-        Statement::Switch { cases, .. } => cases.iter().any(|case| continues(&case.body)),
-        _ => false,
-    })
-}
-
-/// Whether the end of a block is never reached.
-fn always_jumps(block: &Block) -> bool {
-    block.last().is_some_and(|last| match last {
-        Statement::Return { .. } | Statement::Kill | Statement::Break | Statement::Continue => true,
-        Statement::Block(block) => always_jumps(block),
-        _ => false,
-    })
-}
-
 #[cfg(test)]
 mod tests {
+    use toyproof_diagnostic::{File, Files};
+    use toyproof_glsl::{Options, check};
+
     use super::*;
 
+    fn parse(text: &str) -> ValidModule {
+        let mut files = Files::default();
+        let file = files.add(File::new("s", text));
+        let checked = check(&files, file, &Options::default()).unwrap();
+        ValidModule::parse(&toyproof_translate::lower(&checked)).unwrap()
+    }
+
     #[test]
-    fn steps_move_to_the_end_of_bodies_without_continue() {
-        let text = |more: &str| {
-            format!(
-                "@fragment fn main() -> @location(0) vec4f {{
-                    var sum = 0.0;
-                    for (var i = 0; i < 3; i++) {{ {more} sum += 1.0; }}
-                    return vec4f(sum);
-                }}"
-            )
+    fn probes_are_valid_and_count_every_entry_and_exit() {
+        let module = parse(
+            "float f(float x) { for (int i = 0; i < 9; i++) { if (x > 4.0) return x; if (x > 3.0) break; x += 1.0; } return 0.0; }\n\
+             void mainImage(out vec4 c, in vec2 p) {\n\
+               float x = 0.0; do { x += f(x); } while (x < 3.0);\n\
+               switch (int(x)) { case 0: x = 1.0; break; default: x = 2.0; break; }\n\
+               c = vec4(x);\n\
+             }",
+        );
+        let text = |probe| {
+            let probed = probed(&module, probe).unwrap();
+            let flags = naga::back::wgsl::WriterFlags::empty();
+            naga::back::wgsl::write_string(probed.module(), probed.info(), flags).unwrap()
         };
-        let steps = |more: &str| {
-            let module = ValidModule::of_wgsl(&text(more))
-                .unwrap()
-                .with_steps_last()
-                .unwrap();
-            let body = &module.module().entry_points[0].function.body;
-            let find = |statement: &Statement| match statement {
-                Statement::Loop { continuing, .. } => Some(continuing.len()),
-                _ => None,
-            };
-            let nested = body.iter().find_map(|statement| match statement {
-                Statement::Block(block) => block.iter().find_map(find),
-                other => find(other),
-            });
-            nested.unwrap()
-        };
-        assert_eq!(steps(""), 0);
-        assert!(steps("if i == 1 { continue; }") > 0);
-        assert!(steps("if i == 1 { return vec4f(); }") == 0);
-        assert!(steps("for (var j = 0; j < 3; j++) { if j == 1 { continue; } }") == 0);
+        let open = text(Probe::OpenLoops);
+        // Two loops are entered; one is left by its condition, a return and a break, the other by its
+        // condition.
+        assert_eq!(open.matches("+ 1u").count(), 2, "{open}");
+        assert_eq!(open.matches("- 1u").count(), 4, "{open}");
+        assert!(open.contains("select(0f, 1f,"), "{open}");
+        let iterations = text(Probe::Iterations);
+        assert_eq!(iterations.matches("+ 1u").count(), 2, "{iterations}");
+        assert!(iterations.contains("f32("), "{iterations}");
+    }
+
+    #[test]
+    fn loops_are_found_at_any_depth() {
+        let with = "float f() { float x = 0.0; if (true) { while (x < 3.0) x += 1.0; } return x; }\n\
+                    void mainImage(out vec4 c, in vec2 p) { c = vec4(f()); }";
+        assert!(has_loops(&parse(with)) && !has_infinite_loop(&parse(with)));
+        let endless = with
+            .replace("x < 3.0", "true")
+            .replace("while (true) x += 1.0;", "for (;;) x += 1.0;");
+        assert!(has_infinite_loop(&parse(&endless)));
+        let without = "void mainImage(out vec4 c, in vec2 p) { c = vec4(p, 0.0, 1.0); }";
+        assert!(!has_loops(&parse(without)));
     }
 }

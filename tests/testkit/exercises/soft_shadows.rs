@@ -2,7 +2,7 @@
 
 use super::Edited;
 use super::sphere::{CAMERA, SPHERE};
-use crate::support::SOFT_SHADOWS;
+use crate::SOFT_SHADOWS;
 
 pub(super) static EDITED: Edited = Edited {
     exercise: &SOFT_SHADOWS,

@@ -2,7 +2,7 @@
 
 use super::Edited;
 use super::sphere::{CAMERA, SPHERE};
-use crate::support::DIFFUSE;
+use crate::DIFFUSE;
 
 pub(super) static EDITED: Edited = Edited {
     exercise: &DIFFUSE,

@@ -1,0 +1,273 @@
+//! Workarounds for drivers: [`QUIRKS`] lists all of them, and the files of this folder are those that the
+//! worker applies. Those that change the text or the words of every shader are applied by other crates.
+
+pub(crate) mod loop_cap;
+pub(crate) mod loop_probe;
+pub(crate) mod loop_steps;
+pub(crate) mod mesa_barriers;
+
+use std::process::Command;
+
+/// A family of drivers that share their faults.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DriverKind {
+    /// Mesa's software driver, whose adapter is named after its rasterizer llvmpipe.
+    Lavapipe,
+    /// `SwiftShader`, Chromium's software driver.
+    SwiftShader,
+}
+
+impl DriverKind {
+    /// A substring of its adapters' names.
+    #[must_use]
+    pub fn adapter_name(self) -> &'static str {
+        match self {
+            Self::Lavapipe => "llvmpipe",
+            Self::SwiftShader => "SwiftShader",
+        }
+    }
+
+    /// Whether an adapter belongs to this family.
+    #[must_use]
+    pub fn matches(self, adapter: &str) -> bool {
+        adapter.contains(self.adapter_name())
+    }
+}
+
+/// The drivers on which a workaround is applied.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scope {
+    /// All drivers: it costs little and changes no defined bit, and converted shaders run anywhere.
+    Everywhere,
+    /// The affected family of drivers, in all versions.
+    Affected,
+}
+
+/// A fault of a driver, and what is done about it.
+#[derive(Debug, Clone, Copy)]
+pub struct Quirk {
+    /// Its name in kebab case.
+    pub name: &'static str,
+    /// The affected family of drivers.
+    pub driver: DriverKind,
+    /// The affected versions, as far as they are known.
+    pub versions: &'static str,
+    /// What goes wrong without the workaround.
+    pub symptom: &'static str,
+    /// What is done.
+    pub workaround: &'static str,
+    /// The file that does it, from the root of the repository.
+    pub source: &'static str,
+    /// When it can be removed.
+    pub removal: &'static str,
+    /// Where it is applied.
+    pub scope: Scope,
+}
+
+impl Quirk {
+    /// Whether the workaround is applied on an adapter.
+    #[must_use]
+    pub fn applies_to(&self, adapter: &str) -> bool {
+        self.scope == Scope::Everywhere || self.driver.matches(adapter)
+    }
+}
+
+/// Why workarounds for Mesa 22.3 are kept.
+const AFTER_MESA_22: &str = "when Mesa 22.3, that of Debian 12, need not be supported any more";
+
+/// Loops terminated by force.
+pub const LOOP_CAP: Quirk = Quirk {
+    name: "loop-cap",
+    driver: DriverKind::Lavapipe,
+    versions: "Mesa before 23: 22.3.6 has the limit, 25.0.7 has none. Measured on each device",
+    symptom: "all loops of a pixel end after 65,535 iterations in total, without an error",
+    workaround: "the device's limit is measured; where loops may reach it, the frame is rendered again with \
+                 its loops instrumented, and a pixel in which one was terminated fails the shader",
+    source: "src/gpu/quirks/loop_cap.rs",
+    removal: AFTER_MESA_22,
+    scope: Scope::Affected,
+};
+
+/// Numbers hidden from Mesa's compiler.
+pub const OPAQUE_NUMBERS: Quirk = Quirk {
+    name: "opaque-numbers",
+    driver: DriverKind::Lavapipe,
+    versions: "Mesa 22.3.6; others were not measured",
+    symptom: "to see whether a condition is uniform, its compiler walks expressions of uniforms as trees and \
+              does not come to the end of an expanded `sin(cos(iTime))`; and it takes the product or \
+              quotient of a constant zero for zero even if it is NaN",
+    workaround: "in strict runs, numbers of the uniform block and zeros that are multiplied or divided are \
+                 combined by exclusive or with bits of `gl_FragCoord.z` that are 0",
+    source: "src/gpu/quirks/mesa_barriers.rs",
+    removal: "when `tests/suite/evaluator.rs` and `tests/suite/generated.rs` pass without it on the supported \
+              versions of Mesa",
+    scope: Scope::Affected,
+};
+
+/// All known quirks.
+pub const QUIRKS: [Quirk; 11] = [
+    LOOP_CAP,
+    OPAQUE_NUMBERS,
+    Quirk {
+        name: "loop-steps",
+        driver: DriverKind::Lavapipe,
+        versions: "Mesa 22.3.6; others were not measured",
+        symptom: "the step in SPIR-V's continue construct runs once too often if nothing continues the loop \
+                  and the stepped variable is initialized with a constant vector",
+        workaround: "steps move to the end of the body, in lowered GLSL and, by \
+                     `src/gpu/quirks/loop_steps.rs`, in modules from WGSL",
+        source: "src/translate/lower/loops.rs",
+        removal: AFTER_MESA_22,
+        scope: Scope::Everywhere,
+    },
+    Quirk {
+        name: "nesting",
+        driver: DriverKind::Lavapipe,
+        versions: "Mesa 22.3.6; others were not measured",
+        symptom: "conditions nested deeper than 80, or 79 with an `else`, and loops deeper than 80 run \
+                  whatever their condition is",
+        workaround: "deep statements are flattened under flags; what still nests too deep is not run",
+        source: "src/translate/lower/nesting.rs",
+        removal: "when `tests/suite/nesting.rs` passes without it on the supported versions of Mesa",
+        scope: Scope::Everywhere,
+    },
+    Quirk {
+        name: "half-of-constant",
+        driver: DriverKind::Lavapipe,
+        versions: "Mesa 22.3.6; others were not measured",
+        symptom: "the upper half of `unpackHalf2x16` of a constant is 0",
+        workaround: "strict lowering unpacks each half by itself",
+        source: "src/translate/lower/polyfill.rs",
+        removal: AFTER_MESA_22,
+        scope: Scope::Everywhere,
+    },
+    Quirk {
+        name: "switch-labels",
+        driver: DriverKind::Lavapipe,
+        versions: "Mesa 22.3.6; others were not measured",
+        symptom: "the device is lost at a `switch` of 50,000 labels",
+        workaround: "more than 20,000 labels are an error of the shader",
+        source: "src/glsl/check/statement.rs",
+        removal: "never: other drivers compare with each label, too",
+        scope: Scope::Everywhere,
+    },
+    Quirk {
+        name: "sign-of-zero",
+        driver: DriverKind::Lavapipe,
+        versions: "Mesa 22.3.6; Vulkan leaves the sign to all drivers without `SignedZeroInfNanPreserve`",
+        symptom: "a zero that an `if` or `?:` chooses, or that is `0.0 - x`, may lose its sign",
+        workaround: "the toolchain check takes both zeros for equal",
+        source: "src/verify/compare/check.rs",
+        removal: "when all supported drivers keep signs on request",
+        scope: Scope::Everywhere,
+    },
+    Quirk {
+        name: "runtime-directory",
+        driver: DriverKind::Lavapipe,
+        versions: "Mesa 22.3.6; others were not measured",
+        symptom: "a message on standard error where `XDG_RUNTIME_DIR` is not set",
+        workaround: "the worker's process has it set to the folder for temporary files",
+        source: "src/gpu/quirks/mod.rs",
+        removal: "when Mesa is silent without it",
+        scope: Scope::Everywhere,
+    },
+    Quirk {
+        name: "coarse-derivatives",
+        driver: DriverKind::SwiftShader,
+        versions: "the one that Chromium ships; SPIR-V leaves the precision to all drivers",
+        symptom: "`dFdx`, `dFdy` and `fwidth` are those of the quad's first row and column",
+        workaround: "strict words ask for fine derivatives",
+        source: "src/translate/backend/spirv/mod.rs",
+        removal: "never: the specification allows both",
+        scope: Scope::Everywhere,
+    },
+    Quirk {
+        name: "decorated-constants",
+        driver: DriverKind::SwiftShader,
+        versions: "the SPIRV-Tools that Chromium ships",
+        symptom: "its propagation of constants takes `sqrt`, `min` and `max` of constants for unknown if \
+                  they are decorated, and the other branch's constant wins",
+        workaround: "these functions, which are exact or correctly rounded, carry no `NoContraction`",
+        source: "src/translate/backend/spirv/mod.rs",
+        removal: "never: the decoration has no use there",
+        scope: Scope::Everywhere,
+    },
+    Quirk {
+        name: "inexact-functions",
+        driver: DriverKind::SwiftShader,
+        versions: "the one that Chromium ships",
+        symptom: "`fract` stays below 1, `step` of NaN is 0, `float(uint)` is rounded twice above 2³¹, and \
+                  `unpackUnorm2x16` multiplies by 1/65535",
+        workaround: "strict lowering expands them",
+        source: "src/translate/lower/polyfill.rs",
+        removal: "never: the specification allows other last bits",
+        scope: Scope::Everywhere,
+    },
+];
+
+/// Prepares the environment of a process that loads drivers.
+pub(crate) fn set_environment(command: &mut Command) {
+    if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
+        command.env("XDG_RUNTIME_DIR", std::env::temp_dir());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashSet;
+    use std::fmt::Write;
+    use std::path::Path;
+
+    use expect_test::expect_file;
+
+    use super::*;
+
+    #[test]
+    fn the_page_lists_every_quirk() {
+        let mut page =
+            "# Driver workarounds\n\nGenerated from `src/gpu/quirks` (`UPDATE_EXPECT=1 cargo test -p \
+                        toyproof-gpu`).\n"
+                .to_owned();
+        for quirk in QUIRKS {
+            let scope = match quirk.scope {
+                Scope::Everywhere => "all drivers",
+                Scope::Affected => "this driver",
+            };
+            let _ = write!(
+                page,
+                "\n## {}\n\n- Driver: {:?}\n- Versions: {}\n- Symptom: {}\n- Workaround, on {scope}: {} (`{}`)\n- Removal: {}\n",
+                quirk.name,
+                quirk.driver,
+                quirk.versions,
+                quirk.symptom,
+                quirk.workaround,
+                quirk.source,
+                quirk.removal,
+            );
+        }
+        expect_file!["../../../docs/drivers.md"].assert_eq(&page);
+    }
+
+    #[test]
+    fn names_are_unique_and_sources_exist() {
+        let names: HashSet<_> = QUIRKS.iter().map(|quirk| quirk.name).collect();
+        assert_eq!(names.len(), QUIRKS.len());
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+        for quirk in QUIRKS {
+            assert!(root.join(quirk.source).is_file(), "{}", quirk.source);
+        }
+    }
+
+    #[test]
+    fn workarounds_apply_where_they_are_needed() {
+        let lavapipe = "llvmpipe (LLVM 15.0.6, 256 bits)";
+        assert!(OPAQUE_NUMBERS.applies_to(lavapipe) && LOOP_CAP.applies_to(lavapipe));
+        assert!(!OPAQUE_NUMBERS.applies_to("SwiftShader Device (LLVM 10.0.0)"));
+        let everywhere = QUIRKS.iter().filter(|quirk| quirk.scope == Scope::Everywhere);
+        assert!(
+            everywhere
+                .into_iter()
+                .all(|quirk| quirk.applies_to("NVIDIA H200"))
+        );
+    }
+}

@@ -1,0 +1,131 @@
+//! Verification with a GPU: the worker renders while the evaluator and the tracer compare what it sends.
+
+use std::iter;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, Receiver, SyncSender};
+use std::thread;
+use std::time::Instant;
+
+use toyproof_diagnostic::Deadline;
+use toyproof_eval::{self as eval, Program, Refusal};
+use toyproof_gpu::{DrawOutput, SAFE_ITERATIONS};
+pub use toyproof_gpu::{Failure as GpuFailure, Worker};
+use toyproof_image::Image;
+use toyproof_translate::FloatMode;
+
+use crate::cpu::Evaluator;
+use crate::session::{IterationCount, VerifySession};
+use crate::{Case, EVALUATOR_TIME_FACTOR, Failure, Findings, Painter, join, notes, on_cpu, within};
+
+/// The capacity of the queue of GPU bands that wait to be compared: an image of 1920×1080. If a larger image
+/// has to wait, so does watching its loops.
+const MAX_QUEUED_BANDS: usize = 9;
+
+impl Painter {
+    fn of(drawn: DrawOutput) -> Self {
+        Self {
+            device: drawn.device,
+            translate: drawn.translate,
+            compile: drawn.compile,
+            draw: drawn.draw,
+        }
+    }
+}
+
+/// Verifies with a worker. `stop` ends the evaluator, whose `iteration_counts` tell whether loops are short.
+pub(super) fn verify(
+    worker: &mut Worker,
+    case: &Case,
+    program: Result<&Program, &Refusal>,
+    mut session: VerifySession,
+    iteration_counts: &Receiver<IterationCount>,
+    stop: &AtomicBool,
+    deadline: Instant,
+) -> Result<Findings, Failure> {
+    // They share the cores, but none waits for another's latency. The worker runs on this thread: its process
+    // ends with the thread that started it.
+    let comparing_session = &mut session;
+    let (drawn, compared) = thread::scope(|scope| {
+        let (sender, bands) = mpsc::sync_channel(MAX_QUEUED_BANDS);
+        let comparing = scope.spawn(move || within(case.pool, move || comparing_session.bands(Some(&bands))));
+        let drawn = draw(worker, case, iteration_counts, &sender);
+        let is_usable = |drawn: &DrawOutput| drawn.loop_truncated.is_none_or(|pixels| pixels == 0);
+        stop.store(!drawn.as_ref().is_ok_and(is_usable), Ordering::Relaxed);
+        drop(sender);
+        (drawn, join(comparing))
+    });
+    let drawn = match drawn {
+        Err(Failure::Gpu(failure)) if failure.is_slow_compilation() => {
+            return without_compiler(failure, case, program, deadline);
+        }
+        drawn => drawn?,
+    };
+    compared?;
+    // The evaluator found a loop that does not end, on a driver that may have truncated it and could not be
+    // watched.
+    if let (None, Err(failure @ (eval::Failure::Timeout { .. } | eval::Failure::TooOften { .. }))) =
+        (drawn.loop_truncated, &session.evaluator)
+    {
+        return Err(failure.clone().into());
+    }
+    // Where the driver could not be watched in time, the evaluator has counted the iterations.
+    let painter = match drawn.loop_truncated.unwrap_or(session.observed.beyond_cap) {
+        0 => Painter::of(drawn),
+        pixels => return Err(Failure::LoopTruncated(pixels)),
+    };
+    Ok(within(case.pool, || session.findings(Some(painter))))
+}
+
+/// Verifies with the evaluator alone because the driver's compiler exceeded the time limit: how long it takes
+/// does not show how long the shader runs. Fails if the evaluator cannot compile the shader either.
+fn without_compiler(
+    failure: GpuFailure,
+    case: &Case,
+    program: Result<&Program, &Refusal>,
+    deadline: Instant,
+) -> Result<Findings, Failure> {
+    let Ok(program) = program else {
+        return Err(failure.into());
+    };
+    let stop = AtomicBool::new(false);
+    let (counts, _) = mpsc::channel();
+    let evaluator = Evaluator::new(
+        program,
+        case,
+        case.timeout * EVALUATOR_TIME_FACTOR,
+        deadline,
+        &stop,
+    );
+    let mut findings = on_cpu(case, VerifySession::new(case, Ok(evaluator), deadline, counts))?;
+    findings.notes.push(notes::slow_compilation(case.timeout));
+    Ok(findings)
+}
+
+/// Renders on the GPU, sends the bands on, and watches the loops unless the evaluator shows that they are
+/// short.
+fn draw(
+    worker: &mut Worker,
+    case: &Case,
+    iteration_counts: &Receiver<IterationCount>,
+    bands: &SyncSender<Image>,
+) -> Result<DrawOutput, Failure> {
+    // A strict run has the evaluator's iteration counts, which are often known by now. Otherwise, no band is
+    // waited for longer than the driver would need to render the image again.
+    let are_short = |render_time| {
+        let mut counts = iter::from_fn(|| iteration_counts.recv_timeout(render_time).ok());
+        let last = counts.find(|counts| counts.most > SAFE_ITERATIONS || counts.is_last);
+        last.is_some_and(|counts| counts.most <= SAFE_ITERATIONS)
+    };
+    let send_band = |band| {
+        // If the receiver is gone, the comparison has failed and reports it.
+        let _ = bands.send(band);
+    };
+    let watch = |drawn: &DrawOutput, render_time| {
+        drawn.may_truncate_loops() && (case.float == FloatMode::Fast || !are_short(render_time))
+    };
+    let lowered = case
+        .float
+        .lower_within(case.checked, &Deadline::after(case.timeout))?;
+    let drawn = worker.draw_in_bands(lowered, case.frame.clone(), case.float, send_band, watch)?;
+    Ok(drawn)
+}

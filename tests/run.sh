@@ -1,0 +1,15 @@
+#!/bin/sh
+# Runs all tests, then prints how many were skipped, by what was missing. Run by `make test`.
+set -eu
+cd "$(dirname "$0")/.."
+TOYPROOF_SKIPPED=$(mktemp)
+export TOYPROOF_SKIPPED
+trap 'rm -f "$TOYPROOF_SKIPPED"' EXIT
+
+code=0
+cargo test --workspace "$@" || code=$?
+# A line is `skipped: TEST: REASON`; a test that lacks several things is counted under each.
+tests=$(cut -d ' ' -f 2 "$TOYPROOF_SKIPPED" | sort -u | wc -l)
+echo "tests skipped, in whole or in part: $((tests))"
+cut -d ' ' -f 3- "$TOYPROOF_SKIPPED" | sort | uniq -c
+exit $code

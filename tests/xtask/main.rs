@@ -1,0 +1,95 @@
+//! `cargo xtask`: tables and measurements of the documents, and expected texts of the tests.
+
+#![expect(clippy::print_stdout, reason = "a command prints")]
+
+mod corpus;
+mod faults;
+mod page;
+mod sensitivity;
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+
+use clap::Parser;
+
+#[derive(Debug, Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask")]
+enum Task {
+    /// Write the expected texts of the tests anew; read the difference before you commit it
+    Bless,
+    /// Print the name of each planted fault, as in `tests/suite/fault_names.txt`
+    FaultNames {
+        /// Only exercises whose names contain this
+        #[arg(default_value = "")]
+        exercise: String,
+    },
+    /// Print the names of pairs of planted faults, and the time taken
+    FaultPairs {
+        /// Only exercises whose names contain this
+        #[arg(default_value = "")]
+        exercise: String,
+    },
+    /// Print the smallest errors of scenes that are found, the table of docs/accuracy.md
+    Sensitivity,
+    /// Compare the bits of the evaluator and of the strict GPU run, for the shaders of a folder that read no channel
+    Corpus {
+        /// The folder of shaders
+        folder: PathBuf,
+        /// The maximum number of shaders
+        #[arg(long, default_value_t = usize::MAX)]
+        limit: usize,
+    },
+    /// Compare the WGSL of another program, with our bindings, with its source shaders
+    Conversions {
+        /// The folder of shaders
+        shaders: PathBuf,
+        /// The folder of WGSL files, with the same names
+        converted: PathBuf,
+    },
+    /// Measure how long Chromium takes to open a report
+    Page {
+        /// The report.html
+        file: PathBuf,
+        /// Write screenshots into this folder
+        #[arg(long)]
+        screenshots: Option<PathBuf>,
+    },
+    /// Run shaders: the process that other tasks start
+    #[command(hide = true)]
+    Worker,
+}
+
+fn main() -> ExitCode {
+    match Task::parse() {
+        Task::Bless => return bless(),
+        Task::FaultNames { exercise } => faults::print_names(&exercise),
+        Task::FaultPairs { exercise } => faults::print_pairs(&exercise),
+        Task::Sensitivity => sensitivity::print_table(),
+        Task::Corpus { folder, limit } => corpus::compare_bits(&folder, limit),
+        Task::Conversions { shaders, converted } => corpus::compare_conversions(&shaders, &converted),
+        Task::Page { file, screenshots } => page::measure(&file, screenshots.as_deref()),
+        Task::Worker => {
+            toyproof::gpu::serve(io::stdin().lock(), io::stdout().lock()).expect("the parent listens");
+        }
+    }
+    ExitCode::SUCCESS
+}
+
+/// Runs the tests with expected texts so that they write them.
+fn bless() -> ExitCode {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let tests: [&[&str]; 2] = [
+        &["--package", "toyproof-translate", "--lib", "wgsl"],
+        &["--test", "suite", "--", "ui", "snapshots"],
+    ];
+    for arguments in tests {
+        let mut test = Command::new(env!("CARGO"));
+        test.arg("test").args(arguments).env("UPDATE_EXPECT", "1");
+        let status = test.current_dir(&root).status().expect("cargo starts");
+        if !status.success() {
+            return ExitCode::FAILURE;
+        }
+    }
+    ExitCode::SUCCESS
+}
