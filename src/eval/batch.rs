@@ -13,6 +13,34 @@ pub(crate) const LANES: usize = 16;
 /// One component of [`LANES`] pixels.
 pub(crate) type Lanes<T> = [T; LANES];
 
+/// The storage of [`Lanes`], aligned to cache lines: of vectors that are not, half span two.
+#[repr(align(64))]
+pub(crate) struct Chunk<T>(Cell<Lanes<T>>);
+
+impl<T: Copy> Chunk<T> {
+    #[inline(always)]
+    pub(crate) fn new(lanes: Lanes<T>) -> Self {
+        Self(Cell::new(lanes))
+    }
+
+    #[inline(always)]
+    pub(crate) fn get(&self) -> Lanes<T> {
+        self.0.get()
+    }
+
+    #[inline(always)]
+    pub(crate) fn set(&self, lanes: Lanes<T>) {
+        self.0.set(lanes);
+    }
+
+    /// Returns the lanes one by one.
+    #[inline(always)]
+    pub(crate) fn lanes(&self) -> &[Cell<T>] {
+        let lanes: &Cell<[T]> = &self.0;
+        lanes.as_slice_of_cells()
+    }
+}
+
 /// Summary of a mask: a bit for each chunk of [`LANES`] pixels that has an active pixel, and whether all
 /// pixels are active.
 ///
@@ -27,12 +55,12 @@ pub(crate) struct Active {
 pub(crate) struct Batch<'a, N: Number> {
     /// The number of chunks in a row.
     pub(crate) width: usize,
-    pub(crate) floats: Vec<Cell<Lanes<N>>>,
-    pub(crate) words: Vec<Cell<Lanes<u32>>>,
+    pub(crate) floats: Vec<Chunk<N>>,
+    pub(crate) words: Vec<Chunk<u32>>,
     pub(crate) float_scalars: Vec<Cell<N>>,
     pub(crate) word_scalars: Vec<Cell<u32>>,
     /// All bits set where the pixel is active.
-    pub(crate) masks: Vec<Cell<Lanes<u32>>>,
+    pub(crate) masks: Vec<Chunk<u32>>,
     pub(crate) active: Vec<Cell<Active>>,
     pub(crate) noise: N::Noise,
     pub(crate) textures: &'a [Option<Texture<'a>>; 4],
@@ -45,7 +73,7 @@ pub(crate) struct Batch<'a, N: Number> {
     /// Loop iterations executed by all pixels together.
     pub(crate) iterations: Cell<u32>,
     /// Additional loop iterations of each pixel.
-    pub(crate) own_iterations: Vec<Cell<Lanes<u32>>>,
+    pub(crate) own_iterations: Vec<Chunk<u32>>,
     pub(crate) notes: RefCell<Notes>,
     /// The recorder of one pixel's execution, if a trace was requested.
     pub(crate) recorder: Option<Recorder<'a>>,
@@ -72,25 +100,25 @@ pub(crate) const FUEL_ITERATIONS: u32 = 1 << 12;
 impl<N: Number> Batch<'_, N> {
     /// Returns a row of floats.
     #[inline(always)]
-    pub(crate) fn float_row(&self, first: u32) -> &[Cell<Lanes<N>>] {
+    pub(crate) fn float_row(&self, first: u32) -> &[Chunk<N>] {
         &self.floats[first as usize..][..self.width]
     }
 
     /// Returns a row of words.
     #[inline(always)]
-    pub(crate) fn word_row(&self, first: u32) -> &[Cell<Lanes<u32>>] {
+    pub(crate) fn word_row(&self, first: u32) -> &[Chunk<u32>] {
         &self.words[first as usize..][..self.width]
     }
 
     /// Returns the lanes of a mask.
     #[inline(always)]
-    pub(crate) fn mask_row(&self, mask: u32) -> &[Cell<Lanes<u32>>] {
+    pub(crate) fn mask_row(&self, mask: u32) -> &[Chunk<u32>] {
         &self.masks[mask as usize * self.width..][..self.width]
     }
 
     /// Returns the largest number of loop iterations of any pixel.
     pub(crate) fn max_iterations(&self) -> u32 {
-        let own = self.own_iterations.iter().flat_map(Cell::get);
+        let own = self.own_iterations.iter().flat_map(Chunk::get);
         self.iterations.get() + own.max().unwrap_or(0)
     }
 

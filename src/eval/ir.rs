@@ -353,6 +353,9 @@ macro_rules! define {
         }
 
         impl Operation {
+            /// All operations, in the order of their discriminants.
+            pub(crate) const ALL: &[Self] = &[$(Self::$name,)*];
+
             /// Returns the kinds of the operands, one to three.
             pub(crate) fn operands(self) -> &'static [Kind] {
                 match self {

@@ -2,9 +2,11 @@
 
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
+use std::iter::repeat_with;
 
 use crate::batch::{
-    Active, Batch, Cancellation, FUEL_ITERATIONS, LANES, Lanes, Stop, TILE_COLUMNS, lane_at, lane_position,
+    Active, Batch, Cancellation, Chunk, FUEL_ITERATIONS, LANES, Lanes, Stop, TILE_COLUMNS, lane_at,
+    lane_position,
 };
 use crate::frame::Texture;
 use crate::frame::{DISCARDED, UNDEFINED};
@@ -100,15 +102,17 @@ impl<'a, N: Number> Job<'a, N> {
             chunks: u32::MAX >> (32 - width),
             all: true,
         };
-        let mut masks = vec![[0; LANES]; prepared.masks * width];
-        masks[..width].fill([u32::MAX; LANES]);
+        let masks = chunks([0; LANES], prepared.masks * width);
+        for chunk in &masks[..width] {
+            chunk.set([u32::MAX; LANES]);
+        }
         Batch {
             width,
-            floats: vec![Cell::new([N::default(); LANES]); prepared.float_rows * width],
-            words: vec![Cell::new([0; LANES]); prepared.word_rows * width],
+            floats: chunks([N::default(); LANES], prepared.float_rows * width),
+            words: chunks([0; LANES], prepared.word_rows * width),
             float_scalars: self.floats.iter().copied().map(Cell::new).collect(),
             word_scalars: self.words.iter().copied().map(Cell::new).collect(),
-            masks: masks.into_iter().map(Cell::new).collect(),
+            masks,
             active: active.into_iter().map(Cell::new).collect(),
             noise: self.settings.noise,
             textures: self.textures,
@@ -117,7 +121,7 @@ impl<'a, N: Number> Job<'a, N> {
             cancellation: self.limits,
             iteration_limit: self.settings.rounds,
             iterations: Cell::new(0),
-            own_iterations: vec![Cell::new([0; LANES]); width],
+            own_iterations: chunks([0; LANES], width),
             notes: RefCell::default(),
             recorder: None,
         }
@@ -294,6 +298,11 @@ impl<'a, N: Number> Job<'a, N> {
             ..Observations::default()
         });
     }
+}
+
+/// Returns chunks with the same lanes.
+fn chunks<T: Copy>(lanes: Lanes<T>, count: usize) -> Vec<Chunk<T>> {
+    repeat_with(|| Chunk::new(lanes)).take(count).collect()
 }
 
 /// Computes the initial scalars of all batches.

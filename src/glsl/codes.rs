@@ -90,7 +90,7 @@ codes! {
     UnknownExtension "W0002" "An `#extension` that does not exist",
     // Findings of lints in a shader without errors.
     Unwritten "W0003" "A variable that is read before it is written",
-    MaybeUnwritten "W0004" "A variable that is read and on some way there not written",
+    MaybeUnwritten "W0004" "A variable that is read in pixels that did not write it",
     SineHash "W0005" "Randomness from `fract(sin(x) * 43758.5453)`, which differs from GPU to GPU",
     Derivative "W0006" "A derivative where neighbouring pixels may have gone another way",
     ImplicitLod "W0007" "A texture lookup without a level where neighbouring pixels may have gone another way",
@@ -148,7 +148,7 @@ impl Code {
     /// Whether it reports the execution of a shader rather than its text.
     #[must_use]
     pub fn is_of_runs(self) -> bool {
-        self.as_str().starts_with("W06")
+        self.as_str().starts_with("W06") || self == Self::MaybeUnwritten
     }
 
     /// Makes a diagnostic of this kind at the place of use and, for text from a macro, at the spelling

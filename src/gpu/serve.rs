@@ -191,19 +191,19 @@ impl<W: Write> Server<W> {
         self.phase(Phase::Translating)?;
         let upside_down = matches!(&artifact, ShaderArtifact::Wgsl(hosted) if hosted.upside_down);
         let program = on_translator_thread(move || {
-            let module = match artifact {
+            let (words, channels) = match artifact {
                 ShaderArtifact::Wgsl(hosted) => {
                     let module =
                         ValidModule::of_wgsl(&hosted.text).map_err(|error| Failure::Reread(error.0))?;
-                    loop_steps::with_steps_last(&module).map_err(Failure::naga)?
+                    words_and_channels(&loop_steps::with_steps_last(&module).map_err(Failure::naga)?)?
                 }
-                ShaderArtifact::Lowered(lowered) => ValidModule::parse(&lowered).map_err(Failure::refused)?,
-                ShaderArtifact::Words(words, channels) => {
-                    let words = spirv::spelled(&words).map_err(Failure::naga)?;
-                    return Ok(Program::from_words(words, channels, FloatMode::Strict));
+                ShaderArtifact::Lowered(lowered) => {
+                    words_and_channels(&ValidModule::parse(&lowered).map_err(Failure::refused)?)?
                 }
+                ShaderArtifact::Words(words, channels) => (words, channels),
             };
-            Program::new(&module.spelled().map_err(Failure::naga)?, FloatMode::Strict)
+            let words = spirv::expanded(&words).map_err(Failure::naga)?;
+            Ok(Program::from_words(words, channels, FloatMode::Strict))
         })?;
         self.open(selector)?;
         let mut images = Vec::new();
@@ -281,6 +281,12 @@ impl<W: Write> Server<W> {
             None => Err(device_lost()),
         }
     }
+}
+
+/// The SPIR-V words of a module and the shapes of its textures.
+fn words_and_channels(module: &ValidModule) -> Result<(Vec<u32>, [Shape; 4]), Failure> {
+    let words = spirv::words(module).map_err(Failure::naga)?;
+    Ok((words, module.channels()))
 }
 
 fn device_lost() -> Failure {

@@ -44,6 +44,9 @@ pub struct Lints {
     /// Discriminants of ray–sphere formulas that lose digits, except those that the author allows. Whether
     /// the loss is visible depends on the scene.
     pub discriminants: Vec<Span>,
+    /// Warnings (W0004) about variables that are read and written on some paths only, each for a run in which
+    /// such a read is observed. They name the declaration in [`Diagnostic::related`].
+    pub maybe_uninitialized: Vec<Diagnostic>,
     /// Codes of run-time warnings that the author allows, with their scopes.
     pub allowed: Vec<(Code, Span)>,
 }
@@ -76,7 +79,7 @@ pub fn lint(files: &Files, checked: &Checked, deadline: &Deadline) -> Lints {
     randomness::run(&program, &mut findings);
     uniformity::run(&program, &mut findings);
     unused::run(&program, &mut findings);
-    uninit::run(&program, files, &mut findings);
+    uninit::run(&program, &mut findings);
     for quadratic in &quadratics {
         findings.add(Code::NearTangent, tree[quadratic.expr].at, "", |diagnostic| {
             diagnostic
@@ -87,6 +90,8 @@ pub fn lint(files: &Files, checked: &Checked, deadline: &Deadline) -> Lints {
     if within_deadline.is_ok() {
         // The findings of lints that exceeded the time limit are arbitrary, and are dropped.
         all.append(&mut findings.all);
+    } else {
+        findings.maybe_uninitialized.clear();
     }
     let mut allow_warnings = Vec::new();
     let allows = Allows::read(files, &checked.remarks, tree, &mut allow_warnings);
@@ -104,6 +109,7 @@ pub fn lint(files: &Files, checked: &Checked, deadline: &Deadline) -> Lints {
     Lints {
         warnings,
         discriminants: seeds.into_iter().filter_map(|seed| seed.span).collect(),
+        maybe_uninitialized: findings.maybe_uninitialized,
         allowed: allows.runtime_allows(),
     }
 }
@@ -121,6 +127,8 @@ fn lint_timeout(overdue: Overdue) -> Diagnostic {
 #[derive(Default)]
 struct Findings {
     all: Vec<Diagnostic>,
+    /// Findings that hold only if a run of the shader observes them.
+    maybe_uninitialized: Vec<Diagnostic>,
     /// Codes and source text already reported: a macro used many times is reported once.
     reported: HashSet<(Code, Place)>,
 }

@@ -249,13 +249,6 @@ pub(super) struct Shape {
 }
 
 impl Shape {
-    pub(super) fn of_variable(variable: VariableId) -> Self {
-        Self {
-            text: format!("{variable:?};"),
-            variables: vec![variable],
-        }
-    }
-
     pub(super) fn of(tree: &Tree, root: ExprId) -> Option<Self> {
         let mut shape = Self {
             text: String::new(),

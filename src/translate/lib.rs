@@ -52,6 +52,7 @@
 //! naga may panic, and drivers may crash or hang. `toyproof_gpu` runs both in a worker process.
 
 pub mod backend;
+mod inexact;
 pub mod lower;
 pub mod naga_ir;
 mod print;

@@ -268,7 +268,7 @@ pub enum Means {
         pixels: u64,
         /// The number of sets of random numbers that the shader was evaluated with; none for its one image.
         replicates: Option<usize>,
-        /// The ratio of the variances, where it exceeds [`MAX_VARIANCE_RATIO`].
+        /// The ratio of the variances, where it exceeds `MAX_VARIANCE_RATIO`.
         variance: Option<f64>,
     },
 }

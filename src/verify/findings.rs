@@ -20,7 +20,7 @@ const MAX_PAIRS: usize = 512;
 /// The largest number of pixels that do not agree whose colors are kept.
 const MAX_KEPT_COLORS: usize = 1 << 16;
 
-/// The results of [`verify`].
+/// The results of [`verify`](crate::verify).
 #[derive(Debug)]
 pub struct Findings {
     /// The verdict.

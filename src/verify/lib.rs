@@ -94,6 +94,11 @@
 //! The feature `gpu`, on by default, can be left out: the crate then needs no processes and compiles to
 //! WebAssembly, and [`Worker`] has no values.
 
+#![cfg_attr(
+    not(feature = "gpu"),
+    expect(dead_code, reason = "what only a GPU or a conversion needs")
+)]
+
 mod acne;
 pub mod compare;
 pub mod contain;

@@ -15,31 +15,19 @@ use super::{Case, CheckResult};
 use crate::compare::PixelStatus;
 use crate::debug::{Explanation, digits, explain};
 
-/// Reports what was observed, except what `warnings` of the lints report already. `excludes_pixels` says that
-/// pixels with undefined behavior are excluded.
-pub(super) fn notes(
-    observed: &Observations,
-    excludes_pixels: bool,
-    warnings: &[Diagnostic],
-) -> Vec<Diagnostic> {
-    let is_warned = |observed: &Observed| {
-        let codes = [Code::Unwritten, Code::MaybeUnwritten].map(Code::as_str);
-        let at = observed.site.at.span;
-        let is_same = |warning: &Diagnostic| {
-            let declared = warning.related.iter().any(|(span, _)| *span == at);
-            declared && codes.contains(&&*warning.code)
-        };
-        warnings.iter().any(is_same)
-    };
+/// Reports what was observed, except what the lints report already. `excludes_pixels` says that pixels with
+/// undefined behavior are excluded.
+pub(super) fn notes(observed: &Observations, excludes_pixels: bool, lints: &Lints) -> Vec<Diagnostic> {
     let mut notes = Vec::new();
     for observed in &observed.faults {
-        if observed.site.fault == Fault::NeverWritten && !is_warned(observed) {
-            notes.push(never_written(observed));
+        if observed.site.fault == Fault::NeverWritten {
+            notes.extend(never_written(observed, lints));
         } else if observed.site.fault.is_undefined() {
             notes.push(undefined(observed, excludes_pixels));
         }
     }
-    let is_warned = warnings
+    let is_warned = lints
+        .warnings
         .iter()
         .any(|warning| warning.code == Code::LongLoop.as_str());
     if observed.beyond_cap > 0 && !is_warned {
@@ -110,14 +98,23 @@ fn undefined(observed: &Observed, excludes_pixels: bool) -> Diagnostic {
     }
 }
 
-fn never_written(observed: &Observed) -> Diagnostic {
-    let message = format!(
-        "read before anything is written to it in {}: WebGL takes zero, other drivers anything",
-        pixels(observed)
-    );
-    Diagnostic::warning(Code::NeverWritten.as_str(), message)
-        .at(observed.site.at.span)
-        .note("give it a value where it is declared")
+/// Reports reads of a variable in pixels that did not write it: at the read that a lint suspects, otherwise at
+/// the declaration; not at all if a lint has reported the variable.
+fn never_written(observed: &Observed, lints: &Lints) -> Option<Diagnostic> {
+    let declared = observed.site.at.span;
+    let is_same = |warning: &&Diagnostic| warning.related.iter().any(|(span, _)| *span == declared);
+    let mut warnings = lints.warnings.iter();
+    if warnings.any(|warning| warning.code == Code::Unwritten.as_str() && is_same(&warning)) {
+        return None;
+    }
+    let message = format!("in {}", pixels(observed));
+    if let Some(suspected) = lints.maybe_uninitialized.iter().find(is_same) {
+        return Some(suspected.clone().note(format!("this was observed {message}")));
+    }
+    let message =
+        format!("read before anything is written to it {message}: WebGL takes zero, other drivers anything");
+    let diagnostic = Diagnostic::warning(Code::NeverWritten.as_str(), message).at(declared);
+    Some(diagnostic.note("give it a value where it is declared"))
 }
 
 /// Formats the number of pixels and the first of them.

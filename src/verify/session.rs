@@ -268,7 +268,7 @@ impl<'a> VerifySession<'a> {
                 findings.precision = Some(self.precision);
                 findings.toolchain = self.toolchain;
                 let (case, program) = (self.case, evaluator.program());
-                findings.notes = notes::notes(&self.observed, self.excludes_pixels, &case.lints.warnings);
+                findings.notes = notes::notes(&self.observed, self.excludes_pixels, case.lints);
                 let (not_finite, silhouettes, actual) = (self.not_finite, self.silhouettes, &findings.actual);
                 let notes = contain(Part::Notes, || {
                     let mut notes: Vec<_> = not_finite

@@ -195,6 +195,50 @@ fn wrong_examples_give_only_their_code_and_right_ones_none() {
     assert!(mistakes.is_empty(), "{}", mistakes.join("\n\n"));
 }
 
+/// The codes reported of a variable `a` of `mainImage` and its uses.
+fn codes_of(functions: &str, uses: &str) -> Vec<String> {
+    let text = format!(
+        "{functions} void mainImage(out vec4 c, in vec2 p) {{ c = vec4(0.0, 0.0, 0.0, 1.0);\n{uses}\n}}"
+    );
+    let mut files = Files::default();
+    let file = files.add(File::new("a.glsl", text));
+    let checked = glsl::check(&files, file, &glsl::Options::default()).unwrap();
+    let line = |reported: &Diagnostic| reported.span.map_or(0, |span| files.position(span).line);
+    let reported = seen(&files, &checked, None);
+    let codes = reported
+        .iter()
+        .map(|reported| format!("{}:{}", reported.code, line(reported)));
+    codes.collect()
+}
+
+#[test]
+fn a_read_of_an_uninitialized_variable_is_reported_once() {
+    let trace = "bool trace(vec2 p, out float t) { if (p.x < 3.0) return false; t = p.x; return true; }";
+    let none: [&str; 0] = [];
+    // Written and read under one condition.
+    assert_eq!(codes_of(trace, "float t;\nif (trace(p, t))\nc.x = t;"), none);
+    assert_eq!(
+        codes_of("", "float a; if (p.x < 3.0) a = 1.0;\nif (p.x < 2.0) c.x = a;"),
+        none
+    );
+    // Read without it.
+    assert_eq!(codes_of(trace, "float t;\ntrace(p, t);\nc.x = t;"), ["W0004:4"]);
+    assert_eq!(
+        codes_of("", "float a;\nif (p.x < 3.0) a = 1.0;\nc.x = a;"),
+        ["W0004:4"]
+    );
+    assert_eq!(
+        codes_of(
+            "",
+            "float a;\nif (p.x < 3.0) a = 1.0;\n// toyproof: allow(W0004)\nc.x = a;"
+        ),
+        none
+    );
+    // Written on no path, and in elements that are not told apart.
+    assert_eq!(codes_of("", "float a;\nc.x = a;"), ["W0003:3"]);
+    assert_eq!(codes_of("", "float a[2];\na[0] = 1.0; c.x = a[1];"), ["W0604:2"]);
+}
+
 #[test]
 fn a_code_is_explained_on_the_command_line() {
     let run = toyproof(Path::new("."), &["check", "--explain", "e0402"]);

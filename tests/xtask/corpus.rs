@@ -11,7 +11,7 @@ use toyproof::gpu::{AdapterSelector, ShaderArtifact, Worker};
 use toyproof::image::Frame;
 use toyproof::translate::wgsl::Style;
 use toyproof::translate::{FloatMode, lower_strict};
-use toyproof::verify::conversion::{frames, prove};
+use toyproof::verify::conversion::{Runner, compare_with_original, frames};
 use toyproof_testkit::differences;
 
 /// The time limit of an image.
@@ -124,8 +124,8 @@ pub(super) fn compare_conversions(folder: &Path, converted: &Path) {
             continue;
         };
         let written = ShaderArtifact::Wgsl(Style::Plain.hosted(&text));
-        match prove(
-            &mut worker,
+        match compare_with_original(
+            &mut Runner::Driver(&mut worker),
             &checked,
             vec![written],
             &frames(&checked),

@@ -192,10 +192,16 @@ impl<N: Number> Writer<'_, N> {
                 value,
             } => {
                 let kind = self.compiled.function.kind(value);
-                let (index, index_is_row) = self.value(index);
-                let (from, value_is_row) = self.value(value);
                 let (first, cells_are_rows) = self.first_indexed(cells, offset);
-                let run = ops::store_at(self.level, kind, cells_are_rows, index_is_row, value_is_row);
+                let [index, from] = [index, value].map(|operand| {
+                    let (place, is_row) = self.value(operand);
+                    if cells_are_rows {
+                        ops::row_or_scalar(place, is_row)
+                    } else {
+                        place
+                    }
+                });
+                let run = ops::store_at(self.level, kind, cells_are_rows);
                 self.push(run, from, [index, first, cells.count - 1 - offset], 0);
             }
             Step::Split {
@@ -262,8 +268,9 @@ impl<N: Number> Writer<'_, N> {
             first = self.value(a);
             second = if b == NONE { first } else { self.value(b) };
         }
-        let run = ops::check(self.level, predicate, [first.1, second.1]);
-        self.push(run, site, [first.0, second.0, 0], limit);
+        let run = ops::check(self.level, predicate, first.1 && second.1);
+        let [a, b] = [first, second].map(|(place, is_row)| ops::row_or_scalar(place, is_row));
+        self.push(run, site, [a, b, 0], limit);
     }
 
     /// Returns the first row or scalar that an index is added to, counted in rows, and whether it is a row.
@@ -285,8 +292,12 @@ impl<N: Number> Writer<'_, N> {
                 for (at, &operand) in operands.iter().enumerate().take(count) {
                     (places[at], rows[at]) = self.value(operand);
                 }
-                let run = ops::compute(self.level, operation, rows);
-                self.push(run, out, places, 0);
+                if rows.contains(&true) {
+                    let operands = [0, 1, 2].map(|at| ops::row_or_scalar(places[at], rows[at]));
+                    self.push(ops::compute(self.level, operation, rows), out, operands, 0);
+                } else {
+                    self.push(ops::compute_scalar(), out, places, operation as u32);
+                }
             }
             ValueDef::Load(cell) => {
                 let kind = function.cells[cell.0 as usize];

@@ -3,22 +3,22 @@
 use std::marker::PhantomData;
 
 use super::apply::{self, Of1, Of2, Of3, ty};
-use super::{Handler, Instruction, Level, One, Row, Run, Sink, Source, for_each_chunk, handler};
+use super::{Any, Component, Handler, Instruction, Level, One, Row, Run, Source, for_each_chunk, handler};
 use crate::batch::{Batch, LANES, Lanes};
 use crate::ir::{Operation, for_each_operation};
 use crate::number::Number;
 
-/// An operation with one operand from `A`, into a row.
-struct Rows1<O, A, T, R>(PhantomData<(O, A, T, R)>);
+/// An operation with one operand, a row.
+struct Rows1<O, T, R>(PhantomData<(O, T, R)>);
 
-impl<N: Number, O: Of1<N, T, R>, A: Source<N, T>, T: Copy, R: Sink<N>> Run<N> for Rows1<O, A, T, R> {
+impl<N: Number, O: Of1<N, T, R>, T: Component<N>, R: Component<N>> Run<N> for Rows1<O, T, R> {
     #[inline(always)]
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
-        let a = A::open(batch, instruction.operands[0]);
+        let a = T::row(batch, instruction.operands[0]);
         let out = R::row(batch, instruction.out);
         let noise = batch.noise;
         for_each_chunk!(batch, instruction.mask, chunk => {
-            let a = A::chunk(a, chunk);
+            let a = a[chunk].get();
             let mut result = [R::default(); LANES];
             for lane in 0..LANES {
                 result[lane] = O::apply(a[lane], noise);
@@ -29,7 +29,7 @@ impl<N: Number, O: Of1<N, T, R>, A: Source<N, T>, T: Copy, R: Sink<N>> Run<N> fo
     }
 }
 
-/// An operation with two operands, into a row.
+/// An operation with two operands, rows or scalars, into a row.
 struct Rows2<O, A, B, T, U, R>(PhantomData<(O, A, B, T, U, R)>);
 
 impl<N, O, A, B, T, U, R> Run<N> for Rows2<O, A, B, T, U, R>
@@ -38,14 +38,15 @@ where
     O: Of2<N, T, U, R>,
     A: Source<N, T>,
     B: Source<N, U>,
-    T: Copy,
-    U: Copy,
-    R: Sink<N>,
+    T: Component<N>,
+    U: Component<N>,
+    R: Component<N>,
 {
     #[inline(always)]
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
-        let a = A::open(batch, instruction.operands[0]);
-        let b = B::open(batch, instruction.operands[1]);
+        let (mut filled_a, mut filled_b) = (None, None);
+        let a = A::open(batch, instruction.operands[0], &mut filled_a);
+        let b = B::open(batch, instruction.operands[1], &mut filled_b);
         let out = R::row(batch, instruction.out);
         let noise = batch.noise;
         for_each_chunk!(batch, instruction.mask, chunk => {
@@ -60,7 +61,7 @@ where
     }
 }
 
-/// An operation with three operands, into a row.
+/// An operation with three operands, rows or scalars, into a row.
 struct Rows3<O, A, B, C, T, U, R>(PhantomData<(O, A, B, C, T, U, R)>);
 
 impl<N, O, A, B, C, T, U, R> Run<N> for Rows3<O, A, B, C, T, U, R>
@@ -70,15 +71,16 @@ where
     A: Source<N, T>,
     B: Source<N, U>,
     C: Source<N, U>,
-    T: Copy,
-    U: Copy,
-    R: Sink<N>,
+    T: Component<N>,
+    U: Component<N>,
+    R: Component<N>,
 {
     #[inline(always)]
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
-        let a = A::open(batch, instruction.operands[0]);
-        let b = B::open(batch, instruction.operands[1]);
-        let c = C::open(batch, instruction.operands[2]);
+        let (mut filled_a, mut filled_b, mut filled_c) = (None, None, None);
+        let a = A::open(batch, instruction.operands[0], &mut filled_a);
+        let b = B::open(batch, instruction.operands[1], &mut filled_b);
+        let c = C::open(batch, instruction.operands[2], &mut filled_c);
         let out = R::row(batch, instruction.out);
         let noise = batch.noise;
         for_each_chunk!(batch, instruction.mask, chunk => {
@@ -93,39 +95,45 @@ where
     }
 }
 
-/// An operation with one scalar operand.
-struct Scalar1<O, T, R>(PhantomData<(O, T, R)>);
+/// Any operation on scalars, into a scalar. `to` is the operation: scalars take so little of the time that one
+/// handler serves all.
+struct Scalars;
 
-impl<N: Number, O: Of1<N, T, R>, T: Sink<N>, R: Sink<N>> Run<N> for Scalar1<O, T, R> {
-    #[inline(always)]
+impl<N: Number> Run<N> for Scalars {
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
-        let a = T::scalar(batch, instruction.operands[0]).get();
-        R::scalar(batch, instruction.out).set(O::apply(a, batch.noise));
-        at + 1
-    }
-}
-
-struct Scalar2<O, T, U, R>(PhantomData<(O, T, U, R)>);
-
-impl<N: Number, O: Of2<N, T, U, R>, T: Sink<N>, U: Sink<N>, R: Sink<N>> Run<N> for Scalar2<O, T, U, R> {
-    #[inline(always)]
-    fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
-        let a = T::scalar(batch, instruction.operands[0]).get();
-        let b = U::scalar(batch, instruction.operands[1]).get();
-        R::scalar(batch, instruction.out).set(O::apply(a, b, batch.noise));
-        at + 1
-    }
-}
-
-struct Scalar3<O, T, U, R>(PhantomData<(O, T, U, R)>);
-
-impl<N: Number, O: Of3<N, T, U, U, R>, T: Sink<N>, U: Sink<N>, R: Sink<N>> Run<N> for Scalar3<O, T, U, R> {
-    #[inline(always)]
-    fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
-        let a = T::scalar(batch, instruction.operands[0]).get();
-        let b = U::scalar(batch, instruction.operands[1]).get();
-        let c = U::scalar(batch, instruction.operands[2]).get();
-        R::scalar(batch, instruction.out).set(O::apply(a, b, c, batch.noise));
+        let noise = batch.noise;
+        macro_rules! operand {
+            ($kind:ident, $index:literal) => {
+                <ty!($kind) as Component<N>>::scalar(batch, instruction.operands[$index]).get()
+            };
+        }
+        macro_rules! result {
+            ($name:ident($a:ident)) => {
+                <apply::$name as Of1<N, _, _>>::apply(operand!($a, 0), noise)
+            };
+            ($name:ident($a:ident, $b:ident)) => {
+                <apply::$name as Of2<N, _, _, _>>::apply(operand!($a, 0), operand!($b, 1), noise)
+            };
+            ($name:ident($a:ident, $b:ident, $c:ident)) => {
+                <apply::$name as Of3<N, _, _, _, _>>::apply(
+                    operand!($a, 0),
+                    operand!($b, 1),
+                    operand!($c, 2),
+                    noise,
+                )
+            };
+        }
+        macro_rules! select {
+            ($($name:ident($($operand:ident),+) $value:ident,)*) => {
+                match Operation::ALL[instruction.to as usize] {
+                    $(Operation::$name => {
+                        let result: ty!($value) = result!($name($($operand),+));
+                        <ty!($value) as Component<N>>::scalar(batch, instruction.out).set(result);
+                    })*
+                }
+            };
+        }
+        for_each_operation!(select);
         at + 1
     }
 }
@@ -150,67 +158,154 @@ impl<N: Number, const AXIS: usize> Run<N> for Difference<AXIS> {
     }
 }
 
-/// Returns the handler of an operation; `rows` says which operands are rows. The result is a row if any
-/// operand is.
+/// Returns the handler of any operation on scalars.
+pub(crate) fn compute_scalar<N: Number>() -> Handler<N> {
+    handler::<N, Scalars>(Level::Base)
+}
+
+/// Returns the handler of an operation into a row; `rows` says which operands are rows, as at least one is.
 pub(crate) fn compute<N: Number>(level: Level, operation: Operation, rows: [bool; 3]) -> Handler<N> {
-    macro_rules! forms {
+    // The operands of the operations in `frequent_mixed` are all rows here.
+    macro_rules! source {
+        (Add) => {
+            Row
+        };
+        (Sub) => {
+            Row
+        };
+        (Mul) => {
+            Row
+        };
+        (Div) => {
+            Row
+        };
+        (Min) => {
+            Row
+        };
+        (Max) => {
+            Row
+        };
+        (Less) => {
+            Row
+        };
+        (LessEqual) => {
+            Row
+        };
+        (MulAdd) => {
+            Row
+        };
+        (MulSub) => {
+            Row
+        };
+        (SubMul) => {
+            Row
+        };
+        (Select) => {
+            Row
+        };
+        ($name:ident) => {
+            Any
+        };
+    }
+    macro_rules! rows {
+        (DFdx(F) F) => {
+            Difference<1>
+        };
+        (DFdy(F) F) => {
+            Difference<2>
+        };
         ($name:ident($a:ident) $r:ident) => {
-            match rows {
-                [true, ..] => handler::<N, Rows1<apply::$name, Row, ty!($a), ty!($r)>>(level),
-                _ => handler::<N, Scalar1<apply::$name, ty!($a), ty!($r)>>(Level::Base),
-            }
+            Rows1<apply::$name, ty!($a), ty!($r)>
         };
         ($name:ident($a:ident, $b:ident) $r:ident) => {
-            match rows {
-                [true, true, _] => {
-                    handler::<N, Rows2<apply::$name, Row, Row, ty!($a), ty!($b), ty!($r)>>(level)
-                }
-                [true, false, _] => {
-                    handler::<N, Rows2<apply::$name, Row, One, ty!($a), ty!($b), ty!($r)>>(level)
-                }
-                [false, true, _] => {
-                    handler::<N, Rows2<apply::$name, One, Row, ty!($a), ty!($b), ty!($r)>>(level)
-                }
-                _ => handler::<N, Scalar2<apply::$name, ty!($a), ty!($b), ty!($r)>>(Level::Base),
-            }
+            Rows2<apply::$name, source!($name), source!($name), ty!($a), ty!($b), ty!($r)>
         };
-        ($name:ident($a:ident, $b:ident, $c:ident) $r:ident) => {{
-            match rows {
-                [true, true, true] => {
-                    handler::<N, Rows3<apply::$name, Row, Row, Row, ty!($a), ty!($b), ty!($r)>>(level)
-                }
-                [true, true, false] => {
-                    handler::<N, Rows3<apply::$name, Row, Row, One, ty!($a), ty!($b), ty!($r)>>(level)
-                }
-                [true, false, true] => {
-                    handler::<N, Rows3<apply::$name, Row, One, Row, ty!($a), ty!($b), ty!($r)>>(level)
-                }
-                [true, false, false] => {
-                    handler::<N, Rows3<apply::$name, Row, One, One, ty!($a), ty!($b), ty!($r)>>(level)
-                }
-                [false, true, true] => {
-                    handler::<N, Rows3<apply::$name, One, Row, Row, ty!($a), ty!($b), ty!($r)>>(level)
-                }
-                [false, true, false] => {
-                    handler::<N, Rows3<apply::$name, One, Row, One, ty!($a), ty!($b), ty!($r)>>(level)
-                }
-                [false, false, true] => {
-                    handler::<N, Rows3<apply::$name, One, One, Row, ty!($a), ty!($b), ty!($r)>>(level)
-                }
-                [false, false, false] => {
-                    handler::<N, Scalar3<apply::$name, ty!($a), ty!($b), ty!($r)>>(Level::Base)
-                }
-            }
-        }};
+        ($name:ident($a:ident, $b:ident, $c:ident) $r:ident) => {
+            Rows3<apply::$name, source!($name), source!($name), source!($name), ty!($a), ty!($b), ty!($r)>
+        };
     }
     macro_rules! select {
         ($($name:ident($($operand:ident),+) $value:ident,)*) => {
-            match (operation, rows[0]) {
-                (Operation::DFdx, true) => handler::<N, Difference<1>>(level),
-                (Operation::DFdy, true) => handler::<N, Difference<2>>(level),
-                $((Operation::$name, _) => forms!($name($($operand),+) $value),)*
+            match operation {
+                $(Operation::$name => handler::<N, rows!($name($($operand),+) $value)>(level),)*
             }
         };
     }
-    for_each_operation!(select)
+    frequent_mixed(level, operation, rows).unwrap_or_else(|| for_each_operation!(select))
+}
+
+/// Returns the handler of a frequent operation on rows and scalars. Scalars stay in registers there, which is
+/// up to a third faster than filling a chunk.
+fn frequent_mixed<N: Number>(level: Level, operation: Operation, rows: [bool; 3]) -> Option<Handler<N>> {
+    macro_rules! two {
+        ($name:ident $r:ident) => {
+            match rows {
+                [true, false, _] => handler::<N, Rows2<apply::$name, Row, One, N, N, ty!($r)>>(level),
+                [false, true, _] => handler::<N, Rows2<apply::$name, One, Row, N, N, ty!($r)>>(level),
+                _ => return None,
+            }
+        };
+    }
+    macro_rules! three {
+        ($name:ident($a:ident)) => {
+            match rows {
+                [true, true, false] => handler::<N, Rows3<apply::$name, Row, Row, One, ty!($a), N, N>>(level),
+                [true, false, true] => handler::<N, Rows3<apply::$name, Row, One, Row, ty!($a), N, N>>(level),
+                [true, false, false] => {
+                    handler::<N, Rows3<apply::$name, Row, One, One, ty!($a), N, N>>(level)
+                }
+                [false, true, true] => handler::<N, Rows3<apply::$name, One, Row, Row, ty!($a), N, N>>(level),
+                [false, true, false] => {
+                    handler::<N, Rows3<apply::$name, One, Row, One, ty!($a), N, N>>(level)
+                }
+                [false, false, true] => {
+                    handler::<N, Rows3<apply::$name, One, One, Row, ty!($a), N, N>>(level)
+                }
+                _ => return None,
+            }
+        };
+    }
+    Some(match operation {
+        Operation::Add => two!(Add F),
+        Operation::Sub => two!(Sub F),
+        Operation::Mul => two!(Mul F),
+        Operation::Div => two!(Div F),
+        Operation::Min => two!(Min F),
+        Operation::Max => two!(Max F),
+        Operation::Less => two!(Less W),
+        Operation::LessEqual => two!(LessEqual W),
+        Operation::MulAdd => three!(MulAdd(F)),
+        Operation::MulSub => three!(MulSub(F)),
+        Operation::SubMul => three!(SubMul(F)),
+        Operation::Select => three!(Select(W)),
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashSet;
+
+    use super::*;
+    use crate::number::RandomRounding;
+
+    /// Counts the handlers of operations in a number type.
+    fn count<N: Number>() -> usize {
+        let mut handlers = HashSet::from([compute_scalar::<N>() as usize]);
+        for level in [Level::Base, Level::detect()] {
+            for &operation in Operation::ALL {
+                for bits in 1..8_u8 {
+                    let rows = [1, 2, 4].map(|bit| bits & bit != 0);
+                    handlers.insert(compute::<N>(level, operation, rows) as usize);
+                }
+            }
+        }
+        handlers.len()
+    }
+
+    #[test]
+    fn at_most_700_handlers_are_instantiated() {
+        let counts = [count::<f32>(), count::<f64>(), count::<RandomRounding>()];
+        assert!(counts.iter().sum::<usize>() <= 700, "{counts:?}");
+    }
 }

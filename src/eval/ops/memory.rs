@@ -1,9 +1,10 @@
 //! Cells and textures: copies, masked stores, indexed accesses, and texture lookups.
 
-use std::cell::Cell;
 use std::marker::PhantomData;
 
-use super::{Handler, Instruction, Level, One, Row, Run, Sink, Source, for_each_chunk, handler};
+use super::{
+    Component, Handler, Instruction, Level, One, Operand, Row, Run, Source, for_each_chunk, handler,
+};
 use crate::batch::{Batch, LANES};
 use crate::frame::Texture;
 use crate::ir::Kind;
@@ -12,10 +13,11 @@ use crate::number::Number;
 /// Copies whole chunks that have an active pixel.
 struct Copy<A, T>(PhantomData<(A, T)>);
 
-impl<N: Number, A: Source<N, T>, T: Sink<N>> Run<N> for Copy<A, T> {
+impl<N: Number, A: Source<N, T>, T: Component<N>> Run<N> for Copy<A, T> {
     #[inline(always)]
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
-        let a = A::open(batch, instruction.operands[0]);
+        let mut filled = None;
+        let a = A::open(batch, instruction.operands[0], &mut filled);
         let out = T::row(batch, instruction.out);
         for_each_chunk!(batch, instruction.mask, chunk => {
             out[chunk].set(A::chunk(a, chunk));
@@ -26,7 +28,7 @@ impl<N: Number, A: Source<N, T>, T: Sink<N>> Run<N> for Copy<A, T> {
 
 struct CopyScalar<T>(PhantomData<T>);
 
-impl<N: Number, T: Sink<N>> Run<N> for CopyScalar<T> {
+impl<N: Number, T: Component<N>> Run<N> for CopyScalar<T> {
     #[inline(always)]
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
         let value = T::scalar(batch, instruction.operands[0]).get();
@@ -38,13 +40,14 @@ impl<N: Number, T: Sink<N>> Run<N> for CopyScalar<T> {
 /// Copies for the active pixels only.
 struct Store<A, T>(PhantomData<(A, T)>);
 
-impl<N: Number, A: Source<N, T>, T: Sink<N>> Run<N> for Store<A, T> {
+impl<N: Number, A: Source<N, T>, T: Component<N>> Run<N> for Store<A, T> {
     #[inline(always)]
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
         if batch.active[instruction.mask as usize].get().all {
             return Copy::<A, T>::run(batch, instruction, at);
         }
-        let a = A::open(batch, instruction.operands[0]);
+        let mut filled = None;
+        let a = A::open(batch, instruction.operands[0], &mut filled);
         let out = T::row(batch, instruction.out);
         let mask = batch.mask_row(instruction.mask);
         for_each_chunk!(batch, instruction.mask, chunk => {
@@ -71,7 +74,7 @@ pub(crate) fn copy<N: Number>(level: Level, kind: Kind, from_row: bool, to_row: 
     }
 }
 
-/// Returns the handler that stores into a row for the active pixels.
+/// Returns the handler that stores a row or a scalar into a row, for the active pixels.
 pub(crate) fn store<N: Number>(level: Level, kind: Kind, from_row: bool) -> Handler<N> {
     match (kind, from_row) {
         (Kind::Float, true) => handler::<N, Store<Row, N>>(level),
@@ -92,7 +95,7 @@ fn indexed_location<N: Number>(instruction: &Instruction<N>, index: u32) -> usiz
 /// Loads one of several rows by a uniform index.
 struct LoadRow<T>(PhantomData<T>);
 
-impl<N: Number, T: Sink<N>> Run<N> for LoadRow<T> {
+impl<N: Number, T: Component<N>> Run<N> for LoadRow<T> {
     #[inline(always)]
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
         let index = batch.word_scalars[instruction.operands[0] as usize].get();
@@ -108,7 +111,7 @@ impl<N: Number, T: Sink<N>> Run<N> for LoadRow<T> {
 /// Loads from rows, each pixel by its own index.
 struct GatherRows<T>(PhantomData<T>);
 
-impl<N: Number, T: Sink<N>> Run<N> for GatherRows<T> {
+impl<N: Number, T: Component<N>> Run<N> for GatherRows<T> {
     #[inline(always)]
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
         let index = batch.word_row(instruction.operands[0]);
@@ -118,8 +121,7 @@ impl<N: Number, T: Sink<N>> Run<N> for GatherRows<T> {
             let mut result = [T::default(); LANES];
             for lane in 0..LANES {
                 let row = T::row(batch, (indexed_location(instruction, index[lane]) * batch.width) as u32);
-                let lanes: &Cell<[T]> = &row[chunk];
-                result[lane] = lanes.as_slice_of_cells()[lane].get();
+                result[lane] = row[chunk].lanes()[lane].get();
             }
             out[chunk].set(result);
         });
@@ -130,7 +132,7 @@ impl<N: Number, T: Sink<N>> Run<N> for GatherRows<T> {
 /// Loads from scalars, each pixel by its own index.
 struct GatherScalars<T>(PhantomData<T>);
 
-impl<N: Number, T: Sink<N>> Run<N> for GatherScalars<T> {
+impl<N: Number, T: Component<N>> Run<N> for GatherScalars<T> {
     #[inline(always)]
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
         let index = batch.word_row(instruction.operands[0]);
@@ -150,7 +152,7 @@ impl<N: Number, T: Sink<N>> Run<N> for GatherScalars<T> {
 /// Loads one of several scalars by a uniform index.
 struct LoadScalar<T>(PhantomData<T>);
 
-impl<N: Number, T: Sink<N>> Run<N> for LoadScalar<T> {
+impl<N: Number, T: Component<N>> Run<N> for LoadScalar<T> {
     #[inline(always)]
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
         let index = batch.word_scalars[instruction.operands[0] as usize].get();
@@ -181,21 +183,21 @@ pub(crate) fn load_at<N: Number>(
 }
 
 /// Stores into rows, each active pixel by its own index.
-struct Scatter<I, A, T>(PhantomData<(I, A, T)>);
+struct Scatter<T>(PhantomData<T>);
 
-impl<N: Number, I: Source<N, u32>, A: Source<N, T>, T: Sink<N>> Run<N> for Scatter<I, A, T> {
+impl<N: Number, T: Component<N>> Run<N> for Scatter<T> {
     #[inline(always)]
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
-        let index = I::open(batch, instruction.operands[0]);
-        let value = A::open(batch, instruction.out);
+        let (mut filled_index, mut filled_value) = (None, None);
+        let index = Operand::<u32>::open(batch, instruction.operands[0], &mut filled_index);
+        let value = Operand::<T>::open(batch, instruction.out, &mut filled_value);
         let mask = batch.mask_row(instruction.mask);
         for_each_chunk!(batch, instruction.mask, chunk => {
-            let (index, value, mask) = (I::chunk(index, chunk), A::chunk(value, chunk), mask[chunk].get());
+            let (index, value, mask) = (index.chunk(chunk), value.chunk(chunk), mask[chunk].get());
             for lane in 0..LANES {
                 if mask[lane] != 0 {
                     let row = T::row(batch, (indexed_location(instruction, index[lane]) * batch.width) as u32);
-                    let lanes: &Cell<[T]> = &row[chunk];
-                    lanes.as_slice_of_cells()[lane].set(value[lane]);
+                    row[chunk].lanes()[lane].set(value[lane]);
                 }
             }
         });
@@ -205,7 +207,7 @@ impl<N: Number, I: Source<N, u32>, A: Source<N, T>, T: Sink<N>> Run<N> for Scatt
 
 struct StoreScalar<T>(PhantomData<T>);
 
-impl<N: Number, T: Sink<N>> Run<N> for StoreScalar<T> {
+impl<N: Number, T: Component<N>> Run<N> for StoreScalar<T> {
     #[inline(always)]
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
         let index = batch.word_scalars[instruction.operands[0] as usize].get();
@@ -215,25 +217,14 @@ impl<N: Number, T: Sink<N>> Run<N> for StoreScalar<T> {
     }
 }
 
-/// Returns the handler that stores into one of several cells; `out` is the stored value.
-pub(crate) fn store_at<N: Number>(
-    level: Level,
-    kind: Kind,
-    cells_are_rows: bool,
-    index_is_row: bool,
-    value_is_row: bool,
-) -> Handler<N> {
-    match (kind, cells_are_rows, index_is_row, value_is_row) {
-        (Kind::Float, true, true, true) => handler::<N, Scatter<Row, Row, N>>(level),
-        (Kind::Float, true, true, false) => handler::<N, Scatter<Row, One, N>>(level),
-        (Kind::Float, true, false, true) => handler::<N, Scatter<One, Row, N>>(level),
-        (Kind::Float, true, false, false) => handler::<N, Scatter<One, One, N>>(level),
-        (Kind::Float, false, ..) => handler::<N, StoreScalar<N>>(Level::Base),
-        (Kind::Word, true, true, true) => handler::<N, Scatter<Row, Row, u32>>(level),
-        (Kind::Word, true, true, false) => handler::<N, Scatter<Row, One, u32>>(level),
-        (Kind::Word, true, false, true) => handler::<N, Scatter<One, Row, u32>>(level),
-        (Kind::Word, true, false, false) => handler::<N, Scatter<One, One, u32>>(level),
-        (Kind::Word, false, ..) => handler::<N, StoreScalar<u32>>(Level::Base),
+/// Returns the handler that stores into one of several cells, which are rows or scalars; `out` is the stored
+/// value.
+pub(crate) fn store_at<N: Number>(level: Level, kind: Kind, cells_are_rows: bool) -> Handler<N> {
+    match (kind, cells_are_rows) {
+        (Kind::Float, true) => handler::<N, Scatter<N>>(level),
+        (Kind::Float, false) => handler::<N, StoreScalar<N>>(Level::Base),
+        (Kind::Word, true) => handler::<N, Scatter<u32>>(level),
+        (Kind::Word, false) => handler::<N, StoreScalar<u32>>(Level::Base),
     }
 }
 

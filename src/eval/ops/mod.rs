@@ -1,5 +1,5 @@
-//! The interpreter: each instruction holds the function that executes it, monomorphized for its operation,
-//! its operand forms, and the number type.
+//! The interpreter: each instruction holds the function that executes it, monomorphized for its operation, the
+//! number type and, of frequent operations, which operands are rows and which are scalars.
 //!
 //! Rows are copied out a chunk at a time and then written, so that the compiler knows that nothing aliases,
 //! and vectorizes. Chunks without active pixels are skipped.
@@ -11,12 +11,15 @@ mod memory;
 mod record;
 
 pub(crate) use apply::fold;
-pub(crate) use compute::compute;
+pub(crate) use compute::{compute, compute_scalar};
 pub(crate) use control::{copy_mask, iterate, jump, jump_if, jump_if_empty, remove, split};
 pub(crate) use memory::{copy, load_at, store, store_at, texel};
 pub(crate) use record::{check, record, record_event};
 
-use crate::batch::{Batch, Lanes};
+use std::cell::Cell;
+use std::slice;
+
+use crate::batch::{Batch, Chunk, LANES, Lanes};
 use crate::number::Number;
 
 /// An executable instruction.
@@ -113,75 +116,24 @@ macro_rules! for_each_chunk {
 }
 use for_each_chunk;
 
-/// An operand in a row: a value for each pixel.
-#[derive(Debug)]
-struct Row;
-
-/// A scalar operand: one value for all pixels.
-#[derive(Debug)]
-struct One;
-
-/// The source of an operand.
-trait Source<N: Number, T> {
-    /// The state that is looked up before the first chunk.
-    type Open<'a>: Copy;
-
-    fn open<'a>(batch: &'a Batch<'_, N>, operand: u32) -> Self::Open<'a>;
-    fn chunk(open: Self::Open<'_>, chunk: usize) -> Lanes<T>;
-}
-
-macro_rules! sources {
-    ($ty:ty, $row:ident, $scalars:ident) => {
-        impl<N: Number> Source<N, $ty> for Row {
-            type Open<'a> = &'a [std::cell::Cell<Lanes<$ty>>];
-
-            #[inline(always)]
-            fn open<'a>(batch: &'a Batch<'_, N>, operand: u32) -> Self::Open<'a> {
-                batch.$row(operand)
-            }
-
-            #[inline(always)]
-            fn chunk(open: Self::Open<'_>, chunk: usize) -> Lanes<$ty> {
-                open[chunk].get()
-            }
-        }
-
-        impl<N: Number> Source<N, $ty> for One {
-            type Open<'a> = $ty;
-
-            #[inline(always)]
-            fn open<'a>(batch: &'a Batch<'_, N>, operand: u32) -> Self::Open<'a> {
-                batch.$scalars[operand as usize].get()
-            }
-
-            #[inline(always)]
-            fn chunk(open: Self::Open<'_>, _: usize) -> Lanes<$ty> {
-                [open; crate::batch::LANES]
-            }
-        }
-    };
-}
-sources!(N, float_row, float_scalars);
-sources!(u32, word_row, word_scalars);
-
-/// The destination of a result.
-trait Sink<N: Number>: Sized + Copy + Default {
-    fn row<'a>(batch: &'a Batch<'_, N>, out: u32) -> &'a [std::cell::Cell<Lanes<Self>>];
-    fn scalar<'a>(batch: &'a Batch<'_, N>, out: u32) -> &'a std::cell::Cell<Self>;
+/// The type of a component: a float in the number type of the run, or a word.
+trait Component<N: Number>: Copy + Default + 'static {
+    fn row<'a>(batch: &'a Batch<'_, N>, row: u32) -> &'a [Chunk<Self>];
+    fn scalar<'a>(batch: &'a Batch<'_, N>, scalar: u32) -> &'a Cell<Self>;
     /// Returns `yes` where the mask is all bits, `no` where it is 0. Bit by bit: LLVM compiles a conditional
     /// to masked stores, which are many times slower on AMD processors.
     fn blend(mask: u32, yes: Self, no: Self) -> Self;
 }
 
-impl<N: Number> Sink<N> for N {
+impl<N: Number> Component<N> for N {
     #[inline(always)]
-    fn row<'a>(batch: &'a Batch<'_, N>, out: u32) -> &'a [std::cell::Cell<Lanes<N>>] {
-        batch.float_row(out)
+    fn row<'a>(batch: &'a Batch<'_, N>, row: u32) -> &'a [Chunk<N>] {
+        batch.float_row(row)
     }
 
     #[inline(always)]
-    fn scalar<'a>(batch: &'a Batch<'_, N>, out: u32) -> &'a std::cell::Cell<N> {
-        &batch.float_scalars[out as usize]
+    fn scalar<'a>(batch: &'a Batch<'_, N>, scalar: u32) -> &'a Cell<N> {
+        &batch.float_scalars[scalar as usize]
     }
 
     #[inline(always)]
@@ -190,19 +142,118 @@ impl<N: Number> Sink<N> for N {
     }
 }
 
-impl<N: Number> Sink<N> for u32 {
+impl<N: Number> Component<N> for u32 {
     #[inline(always)]
-    fn row<'a>(batch: &'a Batch<'_, N>, out: u32) -> &'a [std::cell::Cell<Lanes<u32>>] {
-        batch.word_row(out)
+    fn row<'a>(batch: &'a Batch<'_, N>, row: u32) -> &'a [Chunk<u32>] {
+        batch.word_row(row)
     }
 
     #[inline(always)]
-    fn scalar<'a>(batch: &'a Batch<'_, N>, out: u32) -> &'a std::cell::Cell<u32> {
-        &batch.word_scalars[out as usize]
+    fn scalar<'a>(batch: &'a Batch<'_, N>, scalar: u32) -> &'a Cell<u32> {
+        &batch.word_scalars[scalar as usize]
     }
 
     #[inline(always)]
     fn blend(mask: u32, yes: u32, no: u32) -> u32 {
         (yes & mask) | (no & !mask)
+    }
+}
+
+/// Marks operands that are scalars, in instructions that take rows as well.
+const SCALAR: u32 = 1 << 31;
+
+/// Encodes an operand that may be a row or a scalar.
+pub(crate) fn row_or_scalar(place: u32, is_row: bool) -> u32 {
+    if is_row { place } else { place | SCALAR }
+}
+
+/// An operand that may be a row or a scalar: the chunks of the row, or one chunk filled with the scalar. One
+/// handler serves all combinations of such operands.
+#[derive(Clone, Copy)]
+struct Operand<'a, T>(&'a [Chunk<T>]);
+
+impl<'a, T: Copy> Operand<'a, T> {
+    /// Looks an operand up; `filled` has space for the chunk of a scalar.
+    #[inline(always)]
+    fn open<N: Number>(batch: &'a Batch<'_, N>, operand: u32, filled: &'a mut Option<Chunk<T>>) -> Self
+    where
+        T: Component<N>,
+    {
+        let chunks = if operand & SCALAR == 0 {
+            T::row(batch, operand)
+        } else {
+            let scalar = T::scalar(batch, operand & !SCALAR).get();
+            slice::from_ref(filled.insert(Chunk::new([scalar; LANES])))
+        };
+        // Rows are never empty, which spares a check for each chunk.
+        assert!(!chunks.is_empty());
+        Self(chunks)
+    }
+
+    /// Returns a chunk. Their number is a power of two, so this is the first one for a scalar and the chunk
+    /// itself for a row.
+    #[inline(always)]
+    fn chunk(self, chunk: usize) -> Lanes<T> {
+        self.0[chunk & (self.0.len() - 1)].get()
+    }
+}
+
+/// How a handler reads an operand.
+trait Source<N: Number, T> {
+    /// What is looked up before the first chunk.
+    type Open<'a>: Copy;
+
+    fn open<'a>(batch: &'a Batch<'_, N>, operand: u32, filled: &'a mut Option<Chunk<T>>) -> Self::Open<'a>;
+    fn chunk(open: Self::Open<'_>, chunk: usize) -> Lanes<T>;
+}
+
+/// Reads a row or a scalar.
+struct Any;
+
+impl<N: Number, T: Component<N>> Source<N, T> for Any {
+    type Open<'a> = Operand<'a, T>;
+
+    #[inline(always)]
+    fn open<'a>(batch: &'a Batch<'_, N>, operand: u32, filled: &'a mut Option<Chunk<T>>) -> Operand<'a, T> {
+        Operand::open(batch, operand, filled)
+    }
+
+    #[inline(always)]
+    fn chunk(open: Operand<'_, T>, chunk: usize) -> Lanes<T> {
+        open.chunk(chunk)
+    }
+}
+
+/// Reads a row.
+struct Row;
+
+impl<N: Number, T: Component<N>> Source<N, T> for Row {
+    type Open<'a> = &'a [Chunk<T>];
+
+    #[inline(always)]
+    fn open<'a>(batch: &'a Batch<'_, N>, operand: u32, _: &'a mut Option<Chunk<T>>) -> &'a [Chunk<T>] {
+        T::row(batch, operand)
+    }
+
+    #[inline(always)]
+    fn chunk(open: &[Chunk<T>], chunk: usize) -> Lanes<T> {
+        open[chunk].get()
+    }
+}
+
+/// Reads a scalar, which stays in a register.
+struct One;
+
+impl<N: Number, T: Component<N>> Source<N, T> for One {
+    type Open<'a> = T;
+
+    #[inline(always)]
+    fn open<'a>(batch: &'a Batch<'_, N>, operand: u32, _: &'a mut Option<Chunk<T>>) -> T {
+        T::scalar(batch, operand & !SCALAR).get()
+    }
+
+    #[inline(always)]
+    fn chunk(open: T, _: usize) -> Lanes<T> {
+        [open; LANES]
     }
 }

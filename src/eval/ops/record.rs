@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use super::{Handler, Instruction, Level, One, Row, Run, Sink, Source, for_each_chunk, handler};
+use super::{Any, Component, Handler, Instruction, Level, Row, Run, Source, for_each_chunk, handler};
 use crate::batch::{Batch, LANES, any};
 use crate::ir::Kind;
 use crate::number::Number;
@@ -44,16 +44,17 @@ holds! {
 }
 
 /// Checks the active pixels. `out` is the site, `to` the predicate's limit.
-struct Check<P, A, B, T>(std::marker::PhantomData<(P, A, B, T)>);
+struct Check<P, S, T>(PhantomData<(P, S, T)>);
 
-impl<N: Number, P: Holds<N, T>, A: Source<N, T>, B: Source<N, T>, T: Copy> Run<N> for Check<P, A, B, T> {
+impl<N: Number, P: Holds<N, T>, S: Source<N, T>, T: Component<N>> Run<N> for Check<P, S, T> {
     #[inline(always)]
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
-        let a = A::open(batch, instruction.operands[0]);
-        let b = B::open(batch, instruction.operands[1]);
+        let (mut filled_a, mut filled_b) = (None, None);
+        let a = S::open(batch, instruction.operands[0], &mut filled_a);
+        let b = S::open(batch, instruction.operands[1], &mut filled_b);
         let mask = batch.mask_row(instruction.mask);
         for_each_chunk!(batch, instruction.mask, chunk => {
-            let (a, b, mask) = (A::chunk(a, chunk), B::chunk(b, chunk), mask[chunk].get());
+            let (a, b, mask) = (S::chunk(a, chunk), S::chunk(b, chunk), mask[chunk].get());
             let mut hit = [0; LANES];
             for lane in 0..LANES {
                 hit[lane] = mask[lane] & u32::from(P::holds(a[lane], b[lane], instruction.to)).wrapping_neg();
@@ -93,33 +94,32 @@ impl<N: Number> Run<N> for PartialQuad {
     }
 }
 
-/// Returns the handler of a check; `rows` says which operands are rows.
-pub(crate) fn check<N: Number>(level: Level, predicate: Predicate, rows: [bool; 2]) -> Handler<N> {
-    macro_rules! forms {
+/// Returns the handler of a check; `rows` says whether all operands are rows.
+pub(crate) fn check<N: Number>(level: Level, predicate: Predicate, rows: bool) -> Handler<N> {
+    macro_rules! form {
         ($name:ident, $ty:ty) => {
-            match rows {
-                [true, true] => handler::<N, Check<$name, Row, Row, $ty>>(level),
-                [true, false] => handler::<N, Check<$name, Row, One, $ty>>(level),
-                [false, true] => handler::<N, Check<$name, One, Row, $ty>>(level),
-                [false, false] => handler::<N, Check<$name, One, One, $ty>>(level),
+            if rows {
+                handler::<N, Check<$name, Row, $ty>>(level)
+            } else {
+                handler::<N, Check<$name, Any, $ty>>(level)
             }
         };
     }
     match predicate {
-        Predicate::AtLeast(_) => forms!(AtLeast, u32),
-        Predicate::Zero => forms!(Zero, u32),
-        Predicate::NotInt => forms!(NotInt, N),
-        Predicate::NotUint => forms!(NotUint, N),
-        Predicate::Unordered => forms!(Unordered, N),
-        Predicate::Equal => forms!(Equal, N),
-        Predicate::Greater => forms!(Greater, N),
-        Predicate::Negative => forms!(Negative, N),
-        Predicate::NotPositive => forms!(NotPositive, N),
-        Predicate::BeyondOne => forms!(BeyondOne, N),
-        Predicate::AtLeastOne => forms!(AtLeastOne, N),
-        Predicate::BelowOne => forms!(BelowOne, N),
-        Predicate::BothZero | Predicate::ConstantZeros => forms!(BothZero, N),
-        Predicate::PowUndefined => forms!(PowUndefined, N),
+        Predicate::AtLeast(_) => form!(AtLeast, u32),
+        Predicate::Zero => form!(Zero, u32),
+        Predicate::NotInt => form!(NotInt, N),
+        Predicate::NotUint => form!(NotUint, N),
+        Predicate::Unordered => form!(Unordered, N),
+        Predicate::Equal => form!(Equal, N),
+        Predicate::Greater => form!(Greater, N),
+        Predicate::Negative => form!(Negative, N),
+        Predicate::NotPositive => form!(NotPositive, N),
+        Predicate::BeyondOne => form!(BeyondOne, N),
+        Predicate::AtLeastOne => form!(AtLeastOne, N),
+        Predicate::BelowOne => form!(BelowOne, N),
+        Predicate::BothZero | Predicate::ConstantZeros => form!(BothZero, N),
+        Predicate::PowUndefined => form!(PowUndefined, N),
         Predicate::PartialQuad => handler::<N, PartialQuad>(level),
     }
 }
@@ -130,7 +130,7 @@ pub(crate) fn check<N: Number>(level: Level, predicate: Predicate, rows: [bool; 
 /// `out` is the event, `to` the component.
 struct Record<T>(PhantomData<T>);
 
-impl<N: Number, T: Sink<N> + TraceComponent> Run<N> for Record<T> {
+impl<N: Number, T: Component<N> + TraceComponent> Run<N> for Record<T> {
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
         if let Some(recorder) = active_recorder(batch, instruction) {
             let chunk = &T::row(batch, instruction.operands[0])[recorder.chunk()];
@@ -149,7 +149,7 @@ impl<N: Number, T: Sink<N> + TraceComponent> Run<N> for Record<T> {
 /// Records a scalar. A forced value changes it for all pixels, but only the traced pixel's results are used.
 struct RecordScalar<T>(PhantomData<T>);
 
-impl<N: Number, T: Sink<N> + TraceComponent> Run<N> for RecordScalar<T> {
+impl<N: Number, T: Component<N> + TraceComponent> Run<N> for RecordScalar<T> {
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
         if let Some(recorder) = active_recorder(batch, instruction) {
             let scalar = T::scalar(batch, instruction.operands[0]);

@@ -241,12 +241,12 @@ float intersectQuadric(Ray ray, Quadric quadric) {
     float t1 = a == 0.0 ? NO_HIT : q / a;
     float near = min(t0, t1);
     float z = o.z + near * d.z;
-    if («NearQuadricIsHit: ahead + near > «QuadricMinT: 0.00001» && z >= form.low && z <= form.high») {
+    if («NearQuadricIsHit: ahead + near > «NearQuadricMinT: 0.00001» && z >= form.low && z <= form.high») {
         return «NearQuadricT: ahead + near»;
     }
     float beyond = max(t0, t1);
     z = o.z + beyond * d.z;
-    if («FarQuadricIsHit: ahead + beyond > «QuadricMinT: 0.00001» && z >= form.low && z <= form.high») {
+    if («FarQuadricIsHit: ahead + beyond > «FarQuadricMinT: 0.00001» && z >= form.low && z <= form.high») {
         return «FarQuadricT: ahead + beyond»;
     }
     return NO_HIT;

@@ -39,8 +39,9 @@ slots! {
     FirstSphere SphereCount SphereColor SphereNormal IsNearer HitT HitPoint
     NearestHitSignature InitialT ReturnHit PrimaryRay PlaneMinT
     // Quadrics and checkers.
-    NearQuadricIsHit FarQuadricIsHit NearQuadricT FarQuadricT QuadricMinT RayInFrame OriginInFrame AxisFrame
-    QuadricNormal QuadricSide EllipsoidQ EllipsoidEnds ConeSlope ConeLow ParaboloidG HyperboloidK
+    NearQuadricIsHit FarQuadricIsHit NearQuadricT FarQuadricT NearQuadricMinT FarQuadricMinT
+    RayInFrame OriginInFrame AxisFrame QuadricNormal QuadricSide
+    EllipsoidQ EllipsoidEnds ConeSlope ConeLow ParaboloidG HyperboloidK
     CheckerSquare CheckerSum CheckerEven CheckerOdd
     // Grids.
     GridSteps GridStride GridStep NextCellIsX NextCellIsY CellSeed CellNumber

@@ -10,6 +10,7 @@ mod instruction_set;
 mod wide;
 
 use std::fmt::Debug;
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 use std::marker::PhantomData;
 
 use pulp::Scalar;

@@ -3,6 +3,7 @@
 
 use std::fmt::Write as _;
 
+use crate::TranslateError;
 use crate::backend::{Target, write_glsl};
 use crate::naga_ir::ValidModule;
 
@@ -83,7 +84,7 @@ pub fn as_shadertoy(text: &str) -> String {
 /// # Errors
 /// naga's message if it cannot write the module, or if its uniform block is not the one that
 /// [`crate::backend`] documents.
-pub fn shadertoy(module: &ValidModule) -> Result<String, String> {
+pub fn shadertoy(module: &ValidModule) -> Result<String, TranslateError> {
     let text = write_glsl(module)?;
     let naga = module.module();
     let mut values = Vec::new();
@@ -96,8 +97,9 @@ pub fn shadertoy(module: &ValidModule) -> Result<String, String> {
         }
         for member in members {
             let input = INPUTS.iter().find(|(offset, _)| *offset == member.offset);
-            let (_, value) =
-                input.ok_or_else(|| format!("the block has no input at byte {}", member.offset))?;
+            let (_, value) = input.ok_or_else(|| {
+                TranslateError::new(format_args!("the block has no input at byte {}", member.offset))
+            })?;
             values.push(*value);
         }
     }

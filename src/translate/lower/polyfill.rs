@@ -11,8 +11,9 @@ use toyproof_glsl::tree::{
     BinaryOp, BuiltIn, Constructor, Direction, ExprId, ExprKind, FunctionId, Item, Place, Scalar, Statement,
     StatementKind, Swizzle, Type, VariableId, VariableKind, walk,
 };
-use toyproof_math::{self as math, Binary, ExprGraph, FloatTerm, Kind, Matrix, Step, StepId, Unary};
+use toyproof_math::{Binary, ExprGraph, FloatTerm, Kind, Matrix, Step, StepId, Unary};
 
+use crate::inexact::{Definition, InexactFunction};
 use crate::lower::context::LoweringContext;
 
 /// An operation to expand, instantiated for the types of its arguments.
@@ -29,7 +30,7 @@ pub(super) enum Expansion {
 pub(super) fn lower_functions(cx: &mut LoweringContext) {
     cx.each_expression(|cx, id| match &cx.tree[id].kind {
         ExprKind::BuiltIn { function, arguments }
-            if is_expanded(*function) && !is_selection(cx, arguments) =>
+            if InexactFunction::of(*function, arguments.len()).is_some() && !is_selection(cx, arguments) =>
         {
             let (function, arguments) = (Expansion::Function(*function), arguments.clone());
             call(cx, id, function, arguments);
@@ -136,7 +137,7 @@ fn function(
         return id;
     }
     let (expansion, types) = &key;
-    let id = if is_componentwise(*expansion) && matches!(ty, Type::Vector(..)) {
+    let id = if is_componentwise(*expansion, types.len()) && matches!(ty, Type::Vector(..)) {
         componentwise_function(cx, *expansion, types, ty, at)
     } else {
         let id = declare(cx, *expansion, types, ty, at);
@@ -210,96 +211,17 @@ fn componentwise_function(
     id
 }
 
-/// Whether drivers may compute a function differently; exact functions stay built-in.
-fn is_expanded(function: BuiltIn) -> bool {
-    is_componentwise_builtin(function) || is_vector_builtin(function)
-}
-
-fn is_componentwise(expansion: Expansion) -> bool {
+fn is_componentwise(expansion: Expansion, arguments: usize) -> bool {
     match expansion {
-        Expansion::Function(function) => is_componentwise_builtin(function),
+        Expansion::Function(function) => InexactFunction::of(function, arguments)
+            .is_some_and(|function| function.definition.is_componentwise()),
         Expansion::FloatOfUint => true,
         Expansion::Product => false,
     }
 }
 
-fn is_componentwise_builtin(function: BuiltIn) -> bool {
-    use BuiltIn as B;
-    matches!(
-        function,
-        B::Radians
-            | B::Degrees
-            | B::Sin
-            | B::Cos
-            | B::Tan
-            | B::Asin
-            | B::Acos
-            | B::Atan
-            | B::Sinh
-            | B::Cosh
-            | B::Tanh
-            | B::Asinh
-            | B::Acosh
-            | B::Atanh
-            | B::Pow
-            | B::Exp
-            | B::Log
-            | B::Exp2
-            | B::Log2
-            | B::InverseSqrt
-            | B::Fract
-            | B::Mod
-            | B::Mix
-            | B::Step
-            | B::Smoothstep
-    )
-}
-
-fn is_vector_builtin(function: BuiltIn) -> bool {
-    use BuiltIn as B;
-    matches!(
-        function,
-        B::Length
-            | B::Distance
-            | B::Dot
-            | B::Cross
-            | B::Normalize
-            | B::Faceforward
-            | B::Reflect
-            | B::Refract
-            | B::Determinant
-            | B::Inverse
-            | B::UnpackSnorm2x16
-            | B::UnpackUnorm2x16
-            | B::UnpackHalf2x16
-    )
-}
-
 /// The body of a generated function.
 fn helper_body(cx: &LoweringContext, expansion: Expansion, types: &[Type], ty: Type) -> String {
-    const A: &str = PARAMETER_NAMES[0];
-    match expansion {
-        // Both halves are exact, so that only their sum is rounded.
-        Expansion::FloatOfUint => {
-            return format!("return float(int({A} >> 16u)) * 65536.0 + float(int({A} & 65535u));");
-        }
-        Expansion::Function(BuiltIn::UnpackUnorm2x16) => {
-            return format!(
-                "return vec2(float(int({A} & 65535u)) / 65535.0, float(int({A} >> 16u)) / 65535.0);"
-            );
-        }
-        Expansion::Function(BuiltIn::UnpackSnorm2x16) => {
-            return format!(
-                "return vec2(max(float(int({A} << 16u) >> 16u) / 32767.0, -1.0), \
-                 max(float(int({A}) >> 16u) / 32767.0, -1.0));"
-            );
-        }
-        // Mesa 22.3 takes the upper half of a constant for zero.
-        Expansion::Function(BuiltIn::UnpackHalf2x16) => {
-            return format!("return vec2(unpackHalf2x16({A}).x, unpackHalf2x16({A} >> 16u).x);");
-        }
-        Expansion::Function(_) | Expansion::Product => {}
-    }
     let graph = ExprGraph::default();
     let mut names = Vec::new();
     let mut arguments = Vec::new();
@@ -310,8 +232,20 @@ fn helper_body(cx: &LoweringContext, expansion: Expansion, types: &[Type], ty: T
         arguments.push((first..names.len()).map(|index| graph.argument(index)).collect());
     }
     let results = match expansion {
-        Expansion::Function(function) => apply(function, &arguments),
-        _ => product(&arguments, types),
+        Expansion::Function(function) => {
+            let function = InexactFunction::of(function, types.len());
+            match function.map(|function| function.definition) {
+                Some(Definition::Glsl(body)) => return body.to_owned(),
+                Some(definition) => apply(definition, &arguments),
+                None => Vec::new(),
+            }
+        }
+        Expansion::Product => product(&arguments, types),
+        // Both halves are exact, so that only their sum is rounded.
+        Expansion::FloatOfUint => {
+            let a = PARAMETER_NAMES[0];
+            return format!("return float(int({a} >> 16u)) * 65536.0 + float(int({a} & 65535u));");
+        }
     };
     let results: Vec<_> = results.into_iter().map(FloatTerm::id).collect();
     function_body(&graph, &results, &names, &cx.tree.type_name(ty))
@@ -330,60 +264,15 @@ fn components(ty: Type, name: &str) -> Vec<String> {
     }
 }
 
-/// The result of a function, as components; empty if the function is not expanded.
-fn apply<'a>(function: BuiltIn, arguments: &[Vec<FloatTerm<'a>>]) -> Vec<FloatTerm<'a>> {
-    use BuiltIn as B;
-    let one = |value| vec![value];
-    match (function, arguments) {
-        (B::Length, [v]) => one(math::length(v)),
-        (B::Distance, [a, b]) => one(math::distance(a, b)),
-        (B::Dot, [a, b]) => one(math::dot(a, b)),
-        (B::Cross, [a, b]) => match (&a[..], &b[..]) {
-            (&[a, b, c], &[x, y, z]) => math::cross([a, b, c], [x, y, z]).to_vec(),
-            _ => Vec::new(),
-        },
-        (B::Normalize, [v]) => math::normalize(v),
-        (B::Faceforward, [n, i, reference]) => math::faceforward(n, i, reference),
-        (B::Reflect, [i, n]) => math::reflect(i, n),
-        (B::Refract, [i, n, eta]) => math::refract(i, n, eta[0]),
-        (B::Determinant, [m]) => one(math::determinant(&Matrix::new(m, m.len().isqrt()))),
-        (B::Inverse, [m]) => math::inverse(&Matrix::new(m, m.len().isqrt())).components(),
-        (_, [x]) => apply_unary(function, x[0]).into_iter().collect(),
-        (B::Atan, [y, x]) => one(math::atan2(y[0], x[0])),
-        (B::Pow, [x, y]) => one(math::pow(x[0], y[0])),
-        (B::Mod, [x, y]) => one(math::modulo(x[0], y[0])),
-        (B::Step, [edge, x]) => one(math::step(edge[0], x[0])),
-        (B::Mix, [a, b, t]) => one(math::mix(a[0], b[0], t[0])),
-        (B::Smoothstep, [low, high, x]) => one(math::smoothstep(low[0], high[0], x[0])),
+/// The components of the result of a function.
+fn apply<'a>(definition: Definition<'a>, arguments: &[Vec<FloatTerm<'a>>]) -> Vec<FloatTerm<'a>> {
+    match (definition, arguments) {
+        (Definition::Unary(function), [a]) => vec![function(a[0])],
+        (Definition::Binary(function), [a, b]) => vec![function(a[0], b[0])],
+        (Definition::Ternary(function), [a, b, c]) => vec![function(a[0], b[0], c[0])],
+        (Definition::Vectors(function), _) => function(arguments),
         _ => Vec::new(),
     }
-}
-
-fn apply_unary(function: BuiltIn, x: FloatTerm<'_>) -> Option<FloatTerm<'_>> {
-    use BuiltIn as B;
-    Some(match function {
-        B::Radians => math::radians(x),
-        B::Degrees => math::degrees(x),
-        B::Sin => math::sin(x),
-        B::Cos => math::cos(x),
-        B::Tan => math::tan(x),
-        B::Asin => math::asin(x),
-        B::Acos => math::acos(x),
-        B::Atan => math::atan(x),
-        B::Sinh => math::sinh(x),
-        B::Cosh => math::cosh(x),
-        B::Tanh => math::tanh(x),
-        B::Asinh => math::asinh(x),
-        B::Acosh => math::acosh(x),
-        B::Atanh => math::atanh(x),
-        B::Exp => math::exp(x),
-        B::Log => math::log(x),
-        B::Exp2 => math::exp2(x),
-        B::Log2 => math::log2(x),
-        B::InverseSqrt => math::inverse_sqrt(x),
-        B::Fract => math::fract(x),
-        _ => return None,
-    })
 }
 
 /// `a·b` of a matrix and a matrix or vector.

@@ -1,7 +1,5 @@
 //! naga's modules, parsed from lowered GLSL or from WGSL, and validated.
 
-pub(crate) mod expand;
-
 use naga::front::glsl::{Frontend, Options};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{Module, ShaderStage};

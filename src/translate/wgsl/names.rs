@@ -3,6 +3,7 @@
 
 use std::collections::{HashMap, HashSet};
 
+use naga::keywords::wgsl::RESERVED_SET;
 use toyproof_glsl::tree::{BuiltIn, ExprKind, FunctionId, Item, StructId, Type, VariableId, walk};
 
 use super::style::Style;
@@ -160,171 +161,8 @@ fn type_label(cx: &LoweringContext, names: &Names, ty: Type) -> String {
         .join("_")
 }
 
-/// Keywords and reserved words (§15) that are free in GLSL.
-const RESERVED: &[&str] = &[
-    "NULL",
-    "Self",
-    "abstract",
-    "active",
-    "alias",
-    "alignas",
-    "alignof",
-    "as",
-    "asm",
-    "asm_fragment",
-    "async",
-    "attribute",
-    "auto",
-    "await",
-    "become",
-    "binding_array",
-    "cast",
-    "catch",
-    "class",
-    "co_await",
-    "co_return",
-    "co_yield",
-    "coherent",
-    "column_major",
-    "common",
-    "compile",
-    "compile_fragment",
-    "concept",
-    "const_assert",
-    "const_cast",
-    "consteval",
-    "constexpr",
-    "constinit",
-    "continuing",
-    "crate",
-    "debugger",
-    "decltype",
-    "delete",
-    "demote",
-    "demote_to_helper",
-    "diagnostic",
-    "do",
-    "dynamic_cast",
-    "enable",
-    "enum",
-    "explicit",
-    "export",
-    "extends",
-    "extern",
-    "external",
-    "fallthrough",
-    "filter",
-    "final",
-    "finally",
-    "fn",
-    "friend",
-    "from",
-    "fxgroup",
-    "get",
-    "goto",
-    "groupshared",
-    "highp",
-    "impl",
-    "implements",
-    "import",
-    "inline",
-    "instanceof",
-    "interface",
-    "layout",
-    "let",
-    "loop",
-    "lowp",
-    "macro",
-    "macro_rules",
-    "match",
-    "mediump",
-    "meta",
-    "mod",
-    "module",
-    "move",
-    "mut",
-    "mutable",
-    "namespace",
-    "new",
-    "nil",
-    "noexcept",
-    "noinline",
-    "nointerpolation",
-    "non_coherent",
-    "noncoherent",
-    "noperspective",
-    "null",
-    "nullptr",
-    "of",
-    "operator",
-    "override",
-    "package",
-    "packoffset",
-    "params",
-    "partition",
-    "pass",
-    "patch",
-    "pixelfragment",
-    "precise",
-    "precision",
-    "premerge",
-    "priv",
-    "protected",
-    "ptr",
-    "pub",
-    "public",
-    "readonly",
-    "ref",
-    "regardless",
-    "register",
-    "reinterpret_cast",
-    "require",
-    "requires",
-    "resource",
-    "restrict",
-    "self",
-    "set",
-    "shared",
-    "sizeof",
-    "smooth",
-    "snorm",
-    "static",
-    "static_assert",
-    "static_cast",
-    "std",
-    "subroutine",
-    "super",
-    "target",
-    "template",
-    "this",
-    "thread_local",
-    "throw",
-    "trait",
-    "try",
-    "type",
-    "typedef",
-    "typeid",
-    "typename",
-    "typeof",
-    "union",
-    "unless",
-    "unorm",
-    "unsafe",
-    "unsized",
-    "use",
-    "using",
-    "var",
-    "varying",
-    "virtual",
-    "volatile",
-    "wgsl",
-    "where",
-    "with",
-    "writeonly",
-    "yield",
-];
-
-/// Types and functions that WGSL predeclares and that printed code may use.
+/// Types and functions that WGSL predeclares and that printed code may use. Authors may redeclare all others of
+/// `naga::keywords::wgsl::BUILTIN_IDENTIFIERS`, which also lacks the aliases such as `vec2f`.
 const PREDECLARED: &[&str] = &[
     "abs",
     "acos",
@@ -338,6 +176,8 @@ const PREDECLARED: &[&str] = &[
     "atan2",
     "atanh",
     "atomic",
+    // naga's extension of WGSL.
+    "binding_array",
     "bitcast",
     "bool",
     "ceil",
@@ -381,6 +221,7 @@ const PREDECLARED: &[&str] = &[
     "pack2x16snorm",
     "pack2x16unorm",
     "pow",
+    "ptr",
     "radians",
     "reflect",
     "refract",
@@ -426,10 +267,7 @@ const PREDECLARED: &[&str] = &[
 
 /// Whether the name is unavailable to variables, functions and structures.
 pub(super) fn is_taken(word: &str) -> bool {
-    RESERVED.binary_search(&word).is_ok()
-        || PREDECLARED.contains(&word)
-        || word == "_"
-        || word.starts_with("__")
+    is_reserved(word) || PREDECLARED.contains(&word)
 }
 
 /// Whether a local variable may shadow a built-in function, if it is not called in the variable's scope. The
@@ -439,9 +277,10 @@ pub(super) fn may_be_hidden(word: &str) -> bool {
     BuiltIn::ALL.iter().any(|function| function.name() == word) && !PRINTED.contains(&word)
 }
 
-/// Whether the name is unavailable to members, which clash with nothing after a dot.
+/// Whether the name is unavailable to members too, which clash with nothing after a dot: a keyword or reserved
+/// word (§15).
 pub(super) fn is_reserved(word: &str) -> bool {
-    RESERVED.binary_search(&word).is_ok() || word == "_" || word.starts_with("__")
+    RESERVED_SET.contains(word) || word == "_" || word.starts_with("__")
 }
 
 /// The word itself if it is free, or the first free numbered one.
@@ -460,11 +299,6 @@ pub(super) fn stem(word: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn reserved_words_are_sorted() {
-        assert!(RESERVED.is_sorted());
-    }
 
     #[test]
     fn reserved_words_get_a_number() {

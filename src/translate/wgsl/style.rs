@@ -1,14 +1,16 @@
 //! The code around a shader: entry point, bindings and direction of y for each kind of host, and stand-ins
 //! for the hosts to run the result here. `docs/conversion.md` cites the hosts' documentation.
+//!
+//! The code is in `styles/`, as WGSL with two additions: `$name` stands for a value ([`fill`]), and a line that
+//! ends in `//? a b` is only printed if condition `a` or `b` holds.
 
-use std::collections::BTreeSet;
-use std::fmt::Write as _;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 use toyproof_glsl::tree::{Direction, ExprId, ExprKind, Input, SamplerShape, Swizzle, Type, VariableKind};
 
-use super::Unprintable;
 use super::writer::{Text, Writer};
+use super::{Unprintable, wrap};
 use crate::print::Order;
 
 /// The kind of host that WGSL is written for.
@@ -73,6 +75,26 @@ impl Style {
             Self::WgpuShadertoy => "wgpu-shadertoy",
             Self::ComputeToys => "compute-toys",
             Self::Bevy => "bevy",
+        }
+    }
+
+    /// The code around a shader.
+    fn template(self) -> &'static str {
+        match self {
+            Self::Plain => include_str!("styles/plain.wgsl"),
+            Self::WgpuShadertoy => include_str!("styles/wgpu_shadertoy.wgsl"),
+            Self::ComputeToys => include_str!("styles/compute_toys.wgsl"),
+            Self::Bevy => include_str!("styles/bevy.wgsl"),
+        }
+    }
+
+    /// The code of a stand-in for the host, around the printed module; none if the module is complete.
+    fn host_template(self) -> Option<&'static str> {
+        match self {
+            Self::Plain => None,
+            Self::WgpuShadertoy => Some(include_str!("styles/wgpu_shadertoy_host.wgsl")),
+            Self::ComputeToys => Some(include_str!("styles/compute_toys_host.wgsl")),
+            Self::Bevy => Some(include_str!("styles/bevy_host.wgsl")),
         }
     }
 
@@ -171,15 +193,15 @@ impl Writer<'_> {
         Some(Text::primary(code))
     }
 
-    /// Prints the code before the author's text.
-    pub(super) fn style_head(&mut self, order: &Order) -> Result<(), Unprintable> {
+    /// The code before and after the author's text.
+    pub(super) fn style_code(&self, order: &Order) -> Result<[String; 2], Unprintable> {
         let tree = &self.cx.tree;
         let mut inputs = BTreeSet::new();
-        let mut channels = Vec::new();
+        let mut channels = BTreeMap::new();
         for &id in &order.inputs {
             match (tree[id].kind, tree[id].ty) {
                 (VariableKind::Input(Input::Channel(channel)), Type::Sampler(sampler)) => {
-                    channels.push((channel, sampler));
+                    channels.insert(channel, sampler.shape);
                 }
                 (VariableKind::Input(input), _) => {
                     inputs.extend(MEMBERS.iter().position(|member| member.2 == input));
@@ -187,185 +209,127 @@ impl Writer<'_> {
                 _ => {}
             }
         }
-        if self.uses_derivatives && self.style == Style::Plain {
-            // GLSL allows derivatives in non-uniform control flow and leaves their values undefined. Other
-            // hosts put declarations before the text, after which directives are not allowed; they use naga,
+        self.check_host(&channels)?;
+        let main_image = self.cx.main_image;
+        let brings = tree[main_image].parameters.first().map(|&color| tree[color].kind);
+        let brings_color = brings == Some(VariableKind::Parameter(Direction::InOut));
+        let holds = |condition: &str| match condition {
+            // GLSL allows derivatives in non-uniform control flow and leaves their values undefined. Other hosts
+            // than ours put declarations before the text, after which directives are not allowed; they use naga,
             // which does not check this.
-            self.line("diagnostic(off, derivative_uniformity);");
-            self.line("");
+            "derivatives" => self.uses_derivatives,
+            "inputs" => !inputs.is_empty(),
+            "channels" => !channels.is_empty(),
+            "position" => self.reads_position,
+            "startup" => self.cx.startup_function.is_some(),
+            "inout" => brings_color,
+            "out" => !brings_color,
+            _ => channel_number(condition).is_some_and(|channel| channels.contains_key(&channel)),
+        };
+        let startup = self.cx.startup_function.map(|startup| self.function(startup));
+        let mut values = vec![
+            ("$members", members(&inputs)),
+            ("$startup", startup.unwrap_or_default().to_owned()),
+            ("$main_image", self.function(main_image).to_owned()),
+        ];
+        for (channel, name) in (0..).zip(["$shape0", "$shape1", "$shape2", "$shape3"]) {
+            let shape = channels.get(&channel).copied().and_then(dimension);
+            values.push((name, shape.unwrap_or_default().to_owned()));
         }
+        Ok(around_shader(self.style.template()).map(|part| {
+            let mut text = String::new();
+            for line in fill(part, holds, &values).lines() {
+                wrap::write_line(&mut text, line, 0);
+            }
+            text
+        }))
+    }
+
+    /// Checks that the host has everything that the shader reads.
+    fn check_host(&self, channels: &BTreeMap<u8, SamplerShape>) -> Result<(), Unprintable> {
+        let mut shapes = channels.values();
         match self.style {
-            Style::Plain => self.plain_head(&inputs, &channels)?,
-            Style::WgpuShadertoy => {}
-            Style::ComputeToys => {
-                if self.uses_derivatives {
-                    return Err(Unprintable("a derivative in a compute shader"));
-                }
-                if channels.iter().any(|&(channel, _)| channel > 1) {
-                    return Err(Unprintable("a channel that the host does not have"));
-                }
+            Style::ComputeToys if self.uses_derivatives => {
+                return Err(Unprintable("a derivative in a compute shader"));
             }
-            Style::Bevy => {
-                self.line("#import bevy_sprite::mesh2d_vertex_output::VertexOutput");
-                self.line("#import bevy_sprite::mesh2d_view_bindings::{globals, view}");
-                self.line("");
-                for &(channel, sampler) in &channels {
-                    self.channel("#{MATERIAL_BIND_GROUP}", 2 * channel, channel, sampler.shape)?;
-                }
+            Style::ComputeToys if channels.keys().any(|&channel| channel > 1) => {
+                return Err(Unprintable("a channel that the host does not have"));
             }
+            Style::Plain | Style::Bevy if shapes.clone().any(|&shape| dimension(shape).is_none()) => {
+                return Err(Unprintable("an array of textures"));
+            }
+            _ => {}
         }
-        if self.style != Style::Plain
-            && channels
-                .iter()
-                .any(|(_, sampler)| sampler.shape != SamplerShape::D2)
-        {
+        if self.style != Style::Plain && shapes.any(|&shape| shape != SamplerShape::D2) {
             return Err(Unprintable("a texture that the host does not have"));
         }
-        if self.reads_position {
-            self.line("var<private> gl_FragCoord: vec4f;");
-            self.line("");
-        }
         Ok(())
     }
+}
 
-    /// Prints the members of the uniform block that are read, and the channels.
-    fn plain_head(
-        &mut self,
-        inputs: &BTreeSet<usize>,
-        channels: &[(u8, toyproof_glsl::tree::Sampler)],
-    ) -> Result<(), Unprintable> {
-        if !inputs.is_empty() {
-            self.line("struct Inputs {");
-            // The first member is always declared, to keep the offsets of the others.
-            let mut members: Vec<usize> = inputs.iter().copied().collect();
-            if members.first() != Some(&0) {
-                members.insert(0, 0);
-            }
-            for (at, &member) in members.iter().enumerate() {
-                let (name, ty, _, offset, size) = MEMBERS[member];
-                let next = members.get(at + 1).map(|&next| MEMBERS[next].3);
-                // Only members with sizes of at least 16 bytes have an alignment of 16.
-                let natural = next.map(|next| {
-                    let align = if matches!(next, 32 | 96 | 160 | 176) {
-                        16
-                    } else {
-                        4
-                    };
-                    (offset + size).next_multiple_of(align)
-                });
-                let wide = if natural == next {
-                    String::new()
-                } else {
-                    format!("@size({}) ", next.unwrap_or(0) - offset)
-                };
-                self.line(&format!("    {wide}{name}: {ty},"));
-            }
-            self.line("}");
-            self.line("");
-            self.line("@group(0) @binding(0) var<uniform> inputs: Inputs;");
-        }
-        for &(channel, sampler) in channels {
-            self.channel("0", 1 + 2 * channel, channel, sampler.shape)?;
-        }
-        if !(inputs.is_empty() && channels.is_empty()) {
-            self.line("");
-        }
-        Ok(())
+/// Declares the members of the uniform block that are read.
+fn members(inputs: &BTreeSet<usize>) -> String {
+    // The first member is always declared, to keep the offsets of the others.
+    let mut members: Vec<usize> = inputs.iter().copied().collect();
+    if members.first() != Some(&0) {
+        members.insert(0, 0);
     }
-
-    fn channel(
-        &mut self,
-        group: &str,
-        binding: u8,
-        channel: u8,
-        shape: SamplerShape,
-    ) -> Result<(), Unprintable> {
-        let shape = match shape {
-            SamplerShape::D2 => "2d",
-            SamplerShape::D3 => "3d",
-            SamplerShape::Cube => "cube",
-            SamplerShape::D2Array => return Err(Unprintable("an array of textures")),
-        };
-        let (texture, sampler) = (self.style.texture(channel), self.style.sampler(channel));
-        self.line(&format!(
-            "@group({group}) @binding({binding}) var {texture}: texture_{shape}<f32>;"
-        ));
-        self.line(&format!(
-            "@group({group}) @binding({}) var {sampler}: sampler;",
-            binding + 1
-        ));
-        Ok(())
-    }
-
-    /// Prints the entry point.
-    pub(super) fn style_end(&mut self) {
-        let main_image = self.function(self.cx.main_image);
-        let begin = self
-            .cx
-            .startup_function
-            .map(|begin| format!("{}();", self.function(begin)));
-        let position = |writer: &mut Self, from: &str| {
-            if writer.reads_position {
-                writer.line(&format!("    gl_FragCoord = {from};"));
-            }
-        };
-        self.line("");
-        match self.style {
-            Style::Plain => {
-                self.line("@fragment");
-                self.line("fn main(@builtin(position) position: vec4f) -> @location(0) vec4f {");
-                position(self, "position");
-                self.body(begin, &format!("{main_image}(&color, position.xy);"));
-                self.line("    return vec4f(color.xyz, 1.0);");
-            }
-            Style::WgpuShadertoy => {
-                self.line("fn shader_main(frag_coord: vec2f) -> vec4f {");
-                position(self, "vec4f(frag_coord, 0.5, 1.0)");
-                self.body(begin, &format!("{main_image}(&color, frag_coord);"));
-                self.line("    return vec4f(color.xyz, 1.0);");
-            }
-            Style::ComputeToys => {
-                self.line(COMPUTE_ENTRY);
-                self.line("    let size = textureDimensions(screen);");
-                self.line("    if id.x >= size.x || id.y >= size.y {");
-                self.line("        return;");
-                self.line("    }");
-                self.line("    // Row 0 is the top here, and the bottom in GLSL.");
-                self.line("    let frag_coord = vec2f(f32(id.x) + 0.5, f32(size.y - id.y) - 0.5);");
-                position(self, "vec4f(frag_coord, 0.5, 1.0)");
-                self.body(begin, &format!("{main_image}(&color, frag_coord);"));
-                self.line("    // The screen holds linear colors; ShaderToy shows its values as they are.");
-                self.line(&format!("    {COMPUTE_STORE}"));
-            }
-            Style::Bevy => {
-                self.line(BEVY_ENTRY);
-                self.line("    // y points down here, and up in GLSL.");
-                self.line("    let pixel = in.position.xy - view.viewport.xy;");
-                self.line("    let frag_coord = vec2f(pixel.x, view.viewport.w - pixel.y);");
-                position(self, "vec4f(frag_coord, in.position.zw)");
-                self.body(begin, &format!("{main_image}(&color, frag_coord);"));
-                self.line("    // The view takes linear colors; ShaderToy shows its values as they are.");
-                self.line(&format!("    {BEVY_RETURN}"));
-            }
-        }
-        self.line("}");
-    }
-
-    fn body(&mut self, begin: Option<String>, call: &str) {
-        if let Some(begin) = begin {
-            self.line(&format!("    {begin}"));
-        }
-        let main_image = &self.cx.tree[self.cx.main_image];
-        let brings = main_image
-            .parameters
-            .first()
-            .map(|&color| self.cx.tree[color].kind);
-        self.line(match brings {
-            Some(VariableKind::Parameter(Direction::InOut)) => "    var color = vec4f(0.0, 0.0, 0.0, 1.0);",
-            _ => "    var color: vec4f;",
+    let declarations = members.iter().enumerate().map(|(at, &member)| {
+        let (name, ty, _, offset, size) = MEMBERS[member];
+        let next = members.get(at + 1).map(|&next| MEMBERS[next].3);
+        // Only members with sizes of at least 16 bytes have an alignment of 16.
+        let natural = next.map(|next| {
+            let align = if matches!(next, 32 | 96 | 160 | 176) {
+                16
+            } else {
+                4
+            };
+            (offset + size).next_multiple_of(align)
         });
-        self.line(&format!("    {call}"));
+        if natural == next {
+            format!("{name}: {ty},")
+        } else {
+            format!("@size({}) {name}: {ty},", next.unwrap_or(0) - offset)
+        }
+    });
+    declarations.collect::<Vec<_>>().join("\n    ")
+}
+
+/// The suffix of the type of a texture.
+fn dimension(shape: SamplerShape) -> Option<&'static str> {
+    match shape {
+        SamplerShape::D2 => Some("2d"),
+        SamplerShape::D3 => Some("3d"),
+        SamplerShape::Cube => Some("cube"),
+        SamplerShape::D2Array => None,
     }
+}
+
+/// The parts of a template before and after the shader.
+fn around_shader(template: &str) -> [&str; 2] {
+    let parts = template.split_once("$shader\n");
+    parts.map_or([template, ""], |(before, after)| [before, after])
+}
+
+/// Fills in a part of a template.
+fn fill(part: &str, holds: impl Fn(&str) -> bool, values: &[(&str, String)]) -> String {
+    let mut text = String::new();
+    for line in part.lines() {
+        let line = match line.split_once("//?") {
+            Some((_, conditions)) if !conditions.split_whitespace().any(&holds) => continue,
+            Some((line, _)) => line.trim_end(),
+            None => line,
+        };
+        let replace = |line: String, (name, value): &(&str, String)| line.replace(name, value);
+        text += &values.iter().fold(line.to_owned(), replace);
+        text.push('\n');
+    }
+    text
+}
+
+/// The channel in the name of a condition.
+fn channel_number(condition: &str) -> Option<u8> {
+    condition.strip_prefix("channel")?.parse().ok()
 }
 
 /// A complete WGSL module.
@@ -378,149 +342,128 @@ pub struct Hosted {
 }
 
 /// The uniform block of our host.
-const FRAME: &str = "
-struct ToyproofFrame {
-    resolution: vec3f,
-    time: f32,
-    time_delta: f32,
-    frame: i32,
-    @size(8) frame_rate: f32,
-    channel_time: array<vec4f, 4>,
-    channel_resolution: array<vec3f, 4>,
-    mouse: vec4f,
-    date: vec4f,
-    sample_rate: f32,
-}
-@group(0) @binding(0) var<uniform> toyproof_frame: ToyproofFrame;
-";
-
-const WGPU_SHADERTOY: [&str; 2] = [
-    "var<private> i_mouse: vec4f;
-var<private> i_date: vec4f;
-var<private> i_resolution: vec3f;
-var<private> i_time: f32;
-var<private> i_time_delta: f32;
-var<private> i_frame: u32;
-var<private> i_framerate: f32;
-",
-    "@fragment fn main(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    i_mouse = toyproof_frame.mouse;
-    i_date = toyproof_frame.date;
-    i_resolution = toyproof_frame.resolution;
-    i_time = toyproof_frame.time;
-    i_time_delta = toyproof_frame.time_delta;
-    i_frame = u32(toyproof_frame.frame);
-    i_framerate = toyproof_frame.frame_rate;
-    return shader_main(vec2f(position.x, i_resolution.y - position.y));
-}
-",
-];
-
-const COMPUTE_TOYS: [&str; 2] = [
-    "struct Time { frame: u32, elapsed: f32, delta: f32 }
-var<private> time: Time;
-var<private> toyproof_color: vec4f;
-fn toyproof_size() -> vec2u { return vec2u(toyproof_frame.resolution.xy); }
-",
-    "@fragment fn main(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    time = Time(u32(toyproof_frame.frame), toyproof_frame.time, toyproof_frame.time_delta);
-    main_image(vec3u(vec2u(position.xy), 0u));
-    return toyproof_color;
-}
-",
-];
-
-const BEVY: [&str; 2] = [
-    "struct VertexOutput { position: vec4f }
-struct View { viewport: vec4f }
-struct Globals { time: f32, delta_time: f32, frame_count: u32 }
-var<private> view: View;
-var<private> globals: Globals;
-",
-    "@fragment fn main(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    view = View(vec4f(0.0, 0.0, toyproof_frame.resolution.xy));
-    globals = Globals(toyproof_frame.time, toyproof_frame.time_delta, u32(toyproof_frame.frame));
-    return fragment(VertexOutput(position));
-}
-",
-];
+const FRAME: &str = include_str!("styles/frame.wgsl");
 
 impl Style {
     /// Embeds a shader printed in this style in a stand-in for its host, which reads our uniform block.
     #[must_use]
     pub fn hosted(self, text: &str) -> Hosted {
-        let [before, after] = match self {
-            Self::Plain => {
-                let text = text.to_owned();
-                return Hosted {
-                    text,
-                    upside_down: false,
-                };
-            }
-            Self::WgpuShadertoy => WGPU_SHADERTOY,
-            Self::ComputeToys => COMPUTE_TOYS,
-            Self::Bevy => BEVY,
+        let Some(host) = self.host_template() else {
+            return Hosted {
+                text: text.to_owned(),
+                upside_down: false,
+            };
         };
-        let mut channels = String::new();
-        if self != Self::Bevy {
-            for channel in 0..4 {
-                let (texture, sampler) = (self.texture(channel), self.sampler(channel));
-                if text.contains(&format!("{texture},")) {
-                    let at = 1 + 2 * channel;
-                    let _ = writeln!(
-                        channels,
-                        "@group(0) @binding({at}) var {texture}: texture_2d<f32>;"
-                    );
-                    if !channels.contains(&format!("var {sampler}:")) {
-                        let _ = writeln!(channels, "@group(0) @binding({}) var {sampler}: sampler;", at + 1);
-                    }
-                }
-            }
-        }
-        let text = format!("{FRAME}{before}{channels}{}{after}", self.adapted(text));
+        let reads = |condition: &str| {
+            channel_number(condition)
+                .is_some_and(|channel| text.contains(&format!("{},", self.texture(channel))))
+        };
+        let [before, after] = around_shader(host).map(|part| fill(part, reads, &[]));
         Hosted {
-            text,
+            text: format!("{FRAME}{before}{}{after}", self.adapted(text)),
             upside_down: true,
         }
     }
 
     /// Applies the host's preprocessor or pipeline where declarations are not sufficient.
     fn adapted(self, text: &str) -> String {
-        match self {
-            Self::Plain | Self::WgpuShadertoy => text.to_owned(),
-            Self::ComputeToys => text
-                .replace("textureDimensions(screen)", "toyproof_size()")
-                .replace(COMPUTE_ENTRY, "fn main_image(id: vec3u) {")
-                .replace(COMPUTE_STORE, "toyproof_color = vec4f(color.xyz, 1.0);"),
-            Self::Bevy => {
-                let lines = text
-                    .lines()
-                    .filter(|line| !line.starts_with("#import"))
-                    .map(|line| {
-                        let bound = line.strip_prefix("@group(#{MATERIAL_BIND_GROUP}) @binding(");
-                        match bound.and_then(|rest| rest.split_once(')')) {
-                            Some((binding, rest)) => {
-                                let binding = binding.parse::<u32>().unwrap_or(0) + 1;
-                                format!("@group(0) @binding({binding}){rest}\n")
-                            }
-                            None => format!("{line}\n"),
-                        }
-                    });
-                let text: String = lines.collect();
-                text.replace(BEVY_ENTRY, "fn fragment(in: VertexOutput) -> vec4f {")
-                    .replace(BEVY_RETURN, "return vec4f(color.xyz, 1.0);")
+        let mut text = text.to_owned();
+        if self == Self::Bevy {
+            let lines = text.lines().filter(|line| !line.starts_with("#import"));
+            text = lines.flat_map(|line| [line, "\n"]).collect();
+            for binding in 0..8 {
+                let bound = |group: &str, binding: u8| format!("@group({group}) @binding({binding})");
+                text = text.replace(
+                    &bound("#{MATERIAL_BIND_GROUP}", binding),
+                    &bound("0", binding + 1),
+                );
             }
+        }
+        let replace = |text: String, &(code, adapted): &(&str, &str)| text.replace(code, adapted);
+        self.adaptations().iter().fold(text, replace)
+    }
+
+    /// Code of the style's template, and the code that does the same without the host's pipeline.
+    fn adaptations(self) -> &'static [(&'static str, &'static str)] {
+        match self {
+            Self::Plain | Self::WgpuShadertoy => &[],
+            Self::ComputeToys => &[
+                ("textureDimensions(screen)", "toyproof_size()"),
+                (
+                    "@compute @workgroup_size(16, 16)\nfn main_image(@builtin(global_invocation_id) id: vec3u) {",
+                    "fn main_image(id: vec3u) {",
+                ),
+                (
+                    "textureStore(screen, vec2i(id.xy), vec4f(pow(saturate(color.xyz), vec3f(2.2)), 1.0));",
+                    "toyproof_color = vec4f(color.xyz, 1.0);",
+                ),
+            ],
+            Self::Bevy => &[
+                (
+                    "@fragment\nfn fragment(in: VertexOutput) -> @location(0) vec4f {",
+                    "fn fragment(in: VertexOutput) -> vec4f {",
+                ),
+                (
+                    "return vec4f(pow(saturate(color.xyz), vec3f(2.2)), 1.0);",
+                    "return vec4f(color.xyz, 1.0);",
+                ),
+            ],
         }
     }
 }
 
-/// The entry point for compute.toys.
-const COMPUTE_ENTRY: &str =
-    "@compute @workgroup_size(16, 16)\nfn main_image(@builtin(global_invocation_id) id: vec3u) {";
-/// The statement that writes a pixel: the screen has linear colors, while `ShaderToy` shows values unchanged.
-const COMPUTE_STORE: &str =
-    "textureStore(screen, vec2i(id.xy), vec4f(pow(saturate(color.xyz), vec3f(2.2)), 1.0));";
-/// The entry point for Bevy.
-const BEVY_ENTRY: &str = "@fragment\nfn fragment(in: VertexOutput) -> @location(0) vec4f {";
-/// The statement that returns a pixel: the view's texture is `Rgba8UnormSrgb`, which takes linear colors.
-const BEVY_RETURN: &str = "return vec4f(pow(saturate(color.xyz), vec3f(2.2)), 1.0);";
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn templates_have_known_conditions_and_values_only() {
+        const CONDITIONS: [&str; 7] = [
+            "derivatives",
+            "inputs",
+            "channels",
+            "position",
+            "startup",
+            "out",
+            "inout",
+        ];
+        const VALUES: [&str; 7] = [
+            "$members",
+            "$startup",
+            "$main_image",
+            "$shape0",
+            "$shape1",
+            "$shape2",
+            "$shape3",
+        ];
+        for style in Style::ALL {
+            let template = style.template();
+            let values = VALUES.map(|name| (name, String::new()));
+            for text in [Some(template), style.host_template()].into_iter().flatten() {
+                assert_eq!(text.matches("$shader\n").count(), 1, "{text}");
+                assert!(text.lines().all(|line| line.len() <= 110), "{text}");
+                for part in around_shader(text) {
+                    let known = |name: &str| {
+                        assert!(
+                            CONDITIONS.contains(&name)
+                                || channel_number(name).is_some_and(|number| number < 4),
+                            "{name}"
+                        );
+                        true
+                    };
+                    assert!(!fill(part, known, &values).contains('$'), "{part}");
+                }
+            }
+            for (code, _) in style.adaptations() {
+                assert!(template.contains(code), "{code}");
+            }
+        }
+    }
+
+    #[test]
+    fn lines_are_there_if_one_of_their_conditions_holds() {
+        let part = "a $x\nb //? no\nc($x, $x); //? no yes\n//? yes\nd // ?";
+        let filled = fill(part, |name| name == "yes", &[("$x", "1".to_owned())]);
+        assert_eq!(filled, "a 1\nc(1, 1);\n\nd // ?\n");
+    }
+}

@@ -216,6 +216,25 @@ fn unsupported_inputs_and_derivatives_are_refused() {
 }
 
 #[test]
+fn all_code_of_a_style_is_wgsl_in_its_host() {
+    let shader = "float steps = 0.0;
+        void mainImage(inout vec4 c, in vec2 p) {
+            steps += iTime + float(iFrame);
+            c += textureLod(iChannel0, p / iResolution.xy, 0.0) + textureLod(iChannel1, gl_FragCoord.zw, steps);
+        }";
+    for style in Style::ALL {
+        let text = print(shader, style);
+        let hosted = style.hosted(&text).text;
+        let read = crate::naga_ir::ValidModule::of_wgsl(&hosted);
+        assert!(read.is_ok(), "{}: {read:?}\n{hosted}", style.name());
+        assert!(
+            text.contains("gl_FragCoord = ") && text.contains("var color: vec4f = "),
+            "{text}"
+        );
+    }
+}
+
+#[test]
 fn dfdy_is_negated_where_y_points_down() {
     let shader = "void mainImage(out vec4 c, in vec2 p) { c = vec4(dFdy(p.y)); }";
     assert!(print(shader, Style::Plain).contains("vec4f(dpdy(p.y))"));

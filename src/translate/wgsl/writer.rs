@@ -144,7 +144,7 @@ impl<'a> Writer<'a> {
         type_name(self.cx, self.names, ty)
     }
 
-    /// Prints the whole text: the author's first comment, the style's head, the items and the entry point.
+    /// Prints the whole text: the author's first comment, and the items in the style's code.
     pub(super) fn write(mut self, order: &Order) -> Result<String, Unprintable> {
         let mut first = self
             .comments
@@ -157,10 +157,8 @@ impl<'a> Writer<'a> {
             self.item(item)?;
         }
         let items = std::mem::take(&mut self.out);
-        self.style_end();
-        let end = std::mem::take(&mut self.out);
-        self.style_head(order)?;
-        let mut text = first + &std::mem::take(&mut self.out);
+        let [head, end] = self.style_code(order)?;
+        let mut text = first + &head;
         if !self.macros.is_empty() {
             for declaration in self.macros.values() {
                 text.push_str(declaration);

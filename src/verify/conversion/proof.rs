@@ -279,16 +279,16 @@ impl Runner<'_> {
             Self::Evaluator => {
                 let upside_down = matches!(&artifact, ShaderArtifact::Wgsl(hosted) if hosted.upside_down);
                 let module = match artifact {
-                    ShaderArtifact::Wgsl(hosted) => {
-                        ValidModule::of_wgsl(&hosted.text).map_err(gpu::Failure::Reread)
-                    }
+                    ShaderArtifact::Wgsl(hosted) => ValidModule::of_wgsl(&hosted.text)
+                        .map_err(|error| gpu::Failure::Reread(error.to_string())),
                     ShaderArtifact::Lowered(lowered) => {
-                        ValidModule::parse(&lowered).map_err(gpu::Failure::Refused)
+                        ValidModule::parse(&lowered).map_err(|errors| gpu::Failure::Refused(errors.into()))
                     }
                     ShaderArtifact::Words(..) => return Err(Unproved::Binary),
                 };
-                let text =
-                    module.and_then(|module| roundtrip::shadertoy(&module).map_err(gpu::Failure::Naga));
+                let text = module.and_then(|module| {
+                    roundtrip::shadertoy(&module).map_err(|error| gpu::Failure::Naga(error.to_string()))
+                });
                 let written = read_shadertoy(&text.map_err(Failure::Gpu)?, timeout)?;
                 let stop = AtomicBool::new(false);
                 let singles = within(pool, || evaluate(&written, frames, timeout, &stop))?;

@@ -151,6 +151,9 @@ fn three_digits(value: f64) -> String {
     }
 }
 
+/// Sets a number of a scene.
+type Set = Box<dyn Fn(&mut Scene, f64) + Sync>;
+
 /// A number of the scene.
 struct SceneNumber {
     /// The name of the mistake of having another one.
@@ -158,7 +161,7 @@ struct SceneNumber {
     /// What the number is called.
     what: String,
     value: f64,
-    set: Box<dyn Fn(&mut Scene, f64) + Sync>,
+    set: Set,
 }
 
 impl SceneNumber {

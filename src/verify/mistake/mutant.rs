@@ -126,12 +126,16 @@ pub(super) fn variants(scene: &Scene) -> Vec<MarkedShader> {
     let Ok(mut shader) = export::marked_shader(scene) else {
         return Vec::new();
     };
-    let other_surfaces = [Slot::PlaneMinT, Slot::QuadricMinT, Slot::GridSteps];
+    let mut rewrites: Vec<&[(Slot, &str)]> = Vec::new();
+    let other_surfaces = [Slot::PlaneMinT, Slot::NearQuadricMinT, Slot::GridSteps];
     if !other_surfaces.into_iter().any(|slot| shader.has(slot)) {
-        let no_shadows = (scene.objects.len() == 1).then_some(NO_SHADOWS);
-        for edits in no_shadows.into_iter().chain([ANY_SPHERE, ANY_SPHERE_SOFT]) {
-            shader = shader.replaced(edits).unwrap_or(shader);
+        if scene.objects.len() == 1 {
+            rewrites.push(NO_SHADOWS);
         }
+        rewrites.extend([ANY_SPHERE, ANY_SPHERE_SOFT]);
+    }
+    for edits in rewrites {
+        shader = shader.replaced(edits).unwrap_or(shader);
     }
     let with_min_t = with_min_t(&shader);
     [Some(shader), with_min_t].into_iter().flatten().collect()
@@ -174,9 +178,8 @@ fn with_min_t(shader: &MarkedShader) -> Option<MarkedShader> {
         });
         return Some(at_surface.with_all(Slot::SphereMinT, "0.001"));
     }
-    shader
-        .has(Slot::QuadricMinT)
-        .then(|| shader.with_all(Slot::QuadricMinT, "0.001"))
+    let min_ts = [Slot::NearQuadricMinT, Slot::FarQuadricMinT];
+    shader.replaced(&min_ts.map(|slot| (slot, "0.001")))
 }
 
 /// Returns the shader with other ray epsilons: offsets of secondary rays and smallest t's, as shares of the
@@ -200,7 +203,12 @@ const OFFSETS: [Slot; 4] = [
     Slot::RefractionOffset,
     Slot::SampledOffset,
 ];
-const MIN_TS: [Slot; 3] = [Slot::SphereMinT, Slot::PlaneMinT, Slot::QuadricMinT];
+const MIN_TS: [Slot; 4] = [
+    Slot::SphereMinT,
+    Slot::PlaneMinT,
+    Slot::NearQuadricMinT,
+    Slot::FarQuadricMinT,
+];
 
 /// Offsets and smallest t's.
 const EPSILONS: [[f64; 2]; 9] = [

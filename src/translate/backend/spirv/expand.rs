@@ -1,23 +1,29 @@
-//! Expansion of instructions that drivers compute differently, in SPIR-V of any producer.
+//! Expansion of instructions that drivers compute differently, such as `sin` and matrix products, into
+//! operations that they compute alike, in SPIR-V of any producer.
 //!
-//! Each instruction such as `sin` or a matrix product becomes a call of a linked library function. All others
-//! remain unchanged.
+//! A module that still contains the author's functions can then be compared bit by bit with the evaluator's
+//! image. The expansions come from a library: a generated shader in strict form (`crate::lower_strict`), whose
+//! functions are linked into the module. Each expanded instruction becomes a call, and all others remain
+//! unchanged.
 
-use std::collections::{HashMap, HashSet};
-use std::ops::Range;
+use std::collections::HashMap;
+use std::fmt::Write as _;
 
 use ::spirv::{GlslStd450Op, Op};
+use toyproof_diagnostic::{Diagnostics, File, Files};
+use toyproof_glsl as glsl;
 
-use super::BOUND;
+use super::link::{self, Linker};
 use crate::TranslateError;
 use crate::backend::spirv::{HEADER_WORDS, has_type, instructions, opcode, words};
-use crate::naga_ir::expand::{self as library, Need, library};
+use crate::inexact::InexactFunction;
+use crate::naga_ir::ValidModule;
 
 /// Expands a module so that every operation has the same bits on all conforming drivers.
 ///
 /// # Errors
 /// If the library cannot be linked.
-pub fn spelled(spirv: &[u32]) -> Result<Vec<u32>, TranslateError> {
+pub fn expanded(spirv: &[u32]) -> Result<Vec<u32>, TranslateError> {
     if spirv.len() < HEADER_WORDS {
         return Err("these are no words of SPIR-V".into());
     }
@@ -34,7 +40,10 @@ pub fn spelled(spirv: &[u32]) -> Result<Vec<u32>, TranslateError> {
     }
     let library = words(&library(&needs)?)?;
     let mut linker = Linker::new(spirv, &library)?;
-    let calls = linker.link(needs.len())?;
+    let functions = linker.link(|name| name != MAIN_IMAGE)?;
+    let call = |need| functions.get(&need_name(need)).copied();
+    let calls: Option<Vec<u32>> = (0..needs.len()).map(call).collect();
+    let calls = calls.ok_or("a function of the library is missing")?;
     let mut expanded = spirv[..HEADER_WORDS].to_vec();
     for (at, instruction) in instructions(spirv) {
         match sites.get(&at) {
@@ -65,7 +74,7 @@ impl Types {
         let mut types = Self {
             names: HashMap::new(),
             of: HashMap::new(),
-            glsl: import(spirv),
+            glsl: link::import(spirv),
         };
         for (_, instruction) in instructions(spirv) {
             let of = |names: &HashMap<u32, String>, id, kinds: [(&str, &str); 2]| {
@@ -102,15 +111,14 @@ impl Types {
         let result = self.names.get(instruction.get(1)?)?;
         let (value, operands) = match (opcode(instruction)?, instruction.get(3..)?) {
             (Op::ExtInst, [set, number, operands @ ..]) if Some(*set) == self.glsl => {
-                (glsl_name(GlslStd450Op::from_u32(*number)?)?, operands)
+                let function = InexactFunction::of_extended(GlslStd450Op::from_u32(*number)?)?;
+                (function.built_in.name(), operands)
             }
-            (Op::Dot, operands) => ("dot", operands),
-            (Op::FMod, operands) => ("mod", operands),
             (Op::ConvertUToF, operands) => (result.as_str(), operands),
             (Op::MatrixTimesVector | Op::VectorTimesMatrix | Op::MatrixTimesMatrix, operands) => {
                 ("*", operands)
             }
-            _ => return None,
+            (op, operands) => (InexactFunction::of_core(op)?.built_in.name(), operands),
         };
         let types: Option<Vec<_>> = operands
             .iter()
@@ -129,292 +137,143 @@ impl Types {
     }
 }
 
-/// The GLSL name of a function whose last bits depend on the driver.
-fn glsl_name(function: GlslStd450Op) -> Option<&'static str> {
-    use GlslStd450Op as G;
-    Some(match function {
-        G::Radians => "radians",
-        G::Degrees => "degrees",
-        G::Sin => "sin",
-        G::Cos => "cos",
-        G::Tan => "tan",
-        G::Asin => "asin",
-        G::Acos => "acos",
-        G::Atan | G::Atan2 => "atan",
-        G::Sinh => "sinh",
-        G::Cosh => "cosh",
-        G::Tanh => "tanh",
-        G::Asinh => "asinh",
-        G::Acosh => "acosh",
-        G::Atanh => "atanh",
-        G::Pow => "pow",
-        G::Exp => "exp",
-        G::Log => "log",
-        G::Exp2 => "exp2",
-        G::Log2 => "log2",
-        G::InverseSqrt => "inversesqrt",
-        G::Fract => "fract",
-        G::FMix => "mix",
-        G::Step => "step",
-        G::SmoothStep => "smoothstep",
-        G::Length => "length",
-        G::Distance => "distance",
-        G::Cross => "cross",
-        G::Normalize => "normalize",
-        G::FaceForward => "faceforward",
-        G::Reflect => "reflect",
-        G::Refract => "refract",
-        G::Determinant => "determinant",
-        G::MatrixInverse => "inverse",
-        G::UnpackSnorm2x16 => "unpackSnorm2x16",
-        G::UnpackUnorm2x16 => "unpackUnorm2x16",
-        G::UnpackHalf2x16 => "unpackHalf2x16",
-        _ => return None,
-    })
+/// A library function: GLSL that computes its value from `a`, `b` and `c`, their types, and the type of the
+/// value.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Need {
+    value: String,
+    types: Vec<String>,
+    result: String,
 }
 
-/// The id of the import of GLSL's extended instructions.
-fn import(spirv: &[u32]) -> Option<u32> {
-    let mut all = instructions(spirv).map(|(_, instruction)| instruction);
-    let import = all.find(|instruction| {
-        opcode(instruction) == Some(Op::ExtInstImport) && text(&instruction[2..]) == "GLSL.std.450"
-    })?;
-    Some(import[1])
+impl Need {
+    /// Returns the index of this need in a list, which it is appended to if missing.
+    fn index_in(self, needs: &mut Vec<Self>) -> usize {
+        needs.iter().position(|known| *known == self).unwrap_or_else(|| {
+            needs.push(self);
+            needs.len() - 1
+        })
+    }
 }
 
-/// Decodes a string literal: bytes in words, up to a zero.
-fn text(words: &[u32]) -> String {
-    let bytes = words.iter().flat_map(|word| word.to_le_bytes());
-    let text: Vec<u8> = bytes.take_while(|&byte| byte != 0).collect();
-    String::from_utf8_lossy(&text).into_owned()
+/// The last function that is linked calls all others.
+const MAIN_IMAGE: &str = "mainImage";
+
+/// The name of the library function for the need with this index.
+fn need_name(index: usize) -> String {
+    format!("toyproof_need_{index}")
 }
 
-/// A type or constant without its id, to find equal declarations.
-type Declaration = Vec<u32>;
-
-/// Links library functions into a module. The library is written by naga and only has functions of plain
-/// values, so that few instructions need support; the module may come from any compiler.
-struct Linker<'a> {
-    library: &'a [u32],
-    /// The library's declarations of types and constants, by id.
-    declared: HashMap<u32, &'a [u32]>,
-    /// The ids of the library's functions and of the values in them.
-    local: HashSet<u32>,
-    /// The module's declarations.
-    known: HashMap<Declaration, u32>,
-    /// The module's ids, by the library's.
-    ids: HashMap<u32, u32>,
-    bound: u32,
-    /// Declarations to add to the module. The functions to add follow.
-    globals: Vec<u32>,
-    functions: Vec<u32>,
+/// Builds a strict shader with one function for each need.
+///
+/// # Errors
+/// Its first error message, in one line.
+fn library(needs: &[Need]) -> Result<ValidModule, TranslateError> {
+    let mut text = String::new();
+    let mut uses = String::new();
+    for (index, need) in needs.iter().enumerate() {
+        let parameters: Vec<_> = need
+            .types
+            .iter()
+            .zip(["a", "b", "c"])
+            .map(|(ty, name)| format!("{ty} {name}"))
+            .collect();
+        let arguments: Vec<_> = need.types.iter().map(|ty| format!("{ty}(p.x)")).collect();
+        let (Need { value, result, .. }, name) = (need, need_name(index));
+        let _ = writeln!(
+            text,
+            "{result} {name}({}) {{ return {value}; }}",
+            parameters.join(", ")
+        );
+        let _ = writeln!(uses, "{result} v{index} = {name}({});", arguments.join(", "));
+    }
+    let _ = writeln!(text, "void {MAIN_IMAGE}(out vec4 c, in vec2 p) {{\n{uses}}}");
+    let mut files = Files::default();
+    let file = files.add(File::new("<library>", &text));
+    let first = |errors: Diagnostics| {
+        let first = errors.first();
+        TranslateError(first.map_or_else(String::new, |error| error.message.clone()))
+    };
+    let checked = glsl::check(&files, file, &glsl::Options::default()).map_err(first)?;
+    ValidModule::parse(&crate::lower_strict(&checked)).map_err(first)
 }
 
-impl<'a> Linker<'a> {
-    fn new(spirv: &[u32], library: &'a [u32]) -> Result<Self, TranslateError> {
-        let declared =
-            instructions(library).filter_map(|(_, instruction)| Some((result(instruction)?, instruction)));
-        let code =
-            instructions(library).skip_while(|(_, instruction)| opcode(instruction) != Some(Op::Function));
-        let local = code.filter_map(|(_, instruction)| match opcode(instruction)? {
-            Op::Label => Some(instruction[1]),
-            op if has_type(op) => instruction.get(2).copied(),
-            _ => None,
-        });
-        let known = instructions(spirv).filter_map(|(_, instruction)| {
-            let id = result(instruction)?;
-            Some((without_id(instruction), id))
-        });
-        let glsl = import(library).map(|library_id| {
-            let module_id = import(spirv).ok_or("the module imports nothing of GLSL's")?;
-            Ok::<_, TranslateError>((library_id, module_id))
-        });
-        Ok(Self {
-            library,
-            declared: declared.collect(),
-            local: local.collect(),
-            known: known.collect(),
-            ids: glsl.transpose()?.into_iter().collect(),
-            bound: spirv[BOUND],
-            globals: Vec::new(),
-            functions: Vec::new(),
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn words_of_wgsl(text: &str) -> Vec<u32> {
+        words(&ValidModule::of_wgsl(text).unwrap()).unwrap()
+    }
+
+    /// The numbers of instructions with these opcodes in the module's own functions, which precede the library's.
+    fn counts<const N: usize>(spirv: &[u32], own: usize, ops: [Op; N]) -> [usize; N] {
+        let code = || {
+            let mut function = 0;
+            instructions(spirv)
+                .map(|(_, instruction)| instruction)
+                .filter(move |instruction| {
+                    function += usize::from(opcode(instruction) == Some(Op::Function));
+                    (1..=own).contains(&function)
+                })
+        };
+        ops.map(|op| {
+            code()
+                .filter(|instruction| opcode(instruction) == Some(op))
+                .count()
         })
     }
 
-    /// Translates all library functions. Returns the id of the function for each need.
-    fn link(&mut self, needs: usize) -> Result<Vec<u32>, TranslateError> {
-        let mut names = HashMap::new();
-        let mut calls = vec![None; needs];
-        for (_, instruction) in instructions(self.library) {
-            match opcode(instruction) {
-                Some(Op::Name) => {
-                    names.insert(instruction[1], text(&instruction[2..]));
+    #[test]
+    fn only_driver_dependent_operations_become_calls() {
+        let text = "
+            fn twice(x: f32) -> f32 { return sin(x) * 2.0; }
+            @fragment fn main(@builtin(position) p: vec4f) -> @location(0) vec4f {
+                var sum = vec2f();
+                for (var i = 0; i < 3; i++) {
+                    if p.x > 4.0 { sum += mat2x2f(p.xy, p.yx) * normalize(p.zw); }
+                    sum.x += twice(sum.y) + f32(u32(p.x)) + f32(dot(vec2i(i), vec2i(2)));
                 }
-                Some(Op::Function) => {
-                    let name = names.get(&instruction[2]).map(String::as_str).unwrap_or_default();
-                    // The functions that only call the others come last.
-                    if library::is_library_caller(name) {
-                        break;
-                    }
-                    let call = self.id(instruction[2])?;
-                    if let Some(need) = library::need_index(name).and_then(|need| calls.get_mut(need)) {
-                        *need = Some(call);
-                    }
-                    self.append(instruction)?;
-                }
-                _ if self.functions.is_empty() => {}
-                _ => self.append(instruction)?,
-            }
-        }
-        let calls: Option<Vec<_>> = calls.into_iter().collect();
-        calls.ok_or_else(|| "a function of the library is missing".into())
+                return vec4f(sum, sqrt(dot(p, p)), pow(p.x, 2.0));
+            }";
+        let plain = words_of_wgsl(text);
+        let expanded = expanded(&plain).unwrap();
+        let own = counts(&plain, usize::MAX, [Op::Function])[0];
+        let ops = [
+            Op::FunctionCall,
+            Op::ExtInst,
+            Op::MatrixTimesVector,
+            Op::ConvertUToF,
+            Op::ConvertSToF,
+            Op::Dot,
+        ];
+        let [calls, extended, product, from_uint, from_int, dot] = counts(&plain, own, ops);
+        assert_eq!([product, from_uint, from_int, dot], [1; 4]);
+        // `sin`, `normalize` and `pow`; `sqrt` and the clamping of `u32(p.x)` remain.
+        let after = [calls + 6, extended - 3, 0, 0, 1, 0];
+        assert_eq!(counts(&expanded, own, ops), after);
     }
 
-    /// Inserts the new declarations before the module's first function and appends the new functions.
-    fn linked(self, spirv: &[u32]) -> Vec<u32> {
-        let first = instructions(spirv).find(|(_, instruction)| opcode(instruction) == Some(Op::Function));
-        let first = first.map_or(spirv.len(), |(at, _)| at);
-        let mut linked = [&spirv[..first], &self.globals, &spirv[first..], &self.functions].concat();
-        linked[BOUND] = self.bound;
-        linked
+    #[test]
+    fn other_modules_do_not_change() {
+        let text = "@fragment fn main(@builtin(position) p: vec4f) -> @location(0) vec4f { return sqrt(p) + floor(p); }";
+        let plain = words_of_wgsl(text);
+        assert_eq!(expanded(&plain).unwrap(), plain);
     }
 
-    fn append(&mut self, instruction: &[u32]) -> Result<(), TranslateError> {
-        let translated = self.translate(instruction)?;
-        self.functions.extend(translated);
-        Ok(())
+    #[test]
+    fn the_library_has_all_functions_of_all_sizes() {
+        let text = "
+            fn of(x: f32) -> f32 { return length(vec2f(atan2(x, 2.0), fract(x))) + mix(x, 1.0, x); }
+            @fragment fn main(@builtin(position) p: vec4f) -> @location(0) vec4f {
+                let m = mat3x3f(p.xyz, p.yzx, cross(p.xyz, p.zxy));
+                return vec4f(transpose(m) * m * refract(p.xyz, p.yzw, 0.5) * determinant(m), of(p.x))
+                    + smoothstep(p, p.yzwx, p.wzyx) + unpack2x16float(u32(p.x)).xyxy;
+            }";
+        let expanded = expanded(&words_of_wgsl(text)).unwrap();
+        let types = Types::of(&expanded);
+        let left = instructions(&expanded).filter(|(_, instruction)| types.need(instruction).is_some());
+        // The library's own `unpackHalf2x16`, whose halves are exact.
+        assert_eq!(left.count(), 2);
     }
-
-    /// Translates an instruction to the module's ids.
-    fn translate(&mut self, instruction: &[u32]) -> Result<Vec<u32>, TranslateError> {
-        let mut words = instruction.to_vec();
-        let literals: HashSet<usize> = literal_words(instruction)?.collect();
-        for (at, word) in words.iter_mut().enumerate().skip(1) {
-            if !literals.contains(&at) {
-                *word = self.id(*word)?;
-            }
-        }
-        Ok(words)
-    }
-
-    /// Translates an id. Types and constants that the module has are not declared twice (section 2.8).
-    fn id(&mut self, library_id: u32) -> Result<u32, TranslateError> {
-        if let Some(&module_id) = self.ids.get(&library_id) {
-            return Ok(module_id);
-        }
-        let fresh = |linker: &mut Self| {
-            linker.bound += 1;
-            linker.bound - 1
-        };
-        let module_id = match self.declared.get(&library_id).copied() {
-            None if self.local.contains(&library_id) => fresh(self),
-            None => return Err("a function of the library refers to its surroundings".into()),
-            Some(declaration) => {
-                // A placeholder for its own id while its operands are translated.
-                self.ids.insert(library_id, 0);
-                let mut declaration = self.translate(declaration)?;
-                let key = without_id(&declaration);
-                if let Some(&known) = self.known.get(&key) {
-                    known
-                } else {
-                    let id = fresh(self);
-                    let at = result_at(&declaration).ok_or("a declaration of the library has no id")?;
-                    declaration[at] = id;
-                    self.globals.extend(&declaration);
-                    self.known.insert(key, id);
-                    id
-                }
-            }
-        };
-        self.ids.insert(library_id, module_id);
-        Ok(module_id)
-    }
-}
-
-/// The position of the id in a type or constant declaration.
-fn result_at(instruction: &[u32]) -> Option<usize> {
-    match opcode(instruction)? {
-        Op::TypeVoid
-        | Op::TypeBool
-        | Op::TypeInt
-        | Op::TypeFloat
-        | Op::TypeVector
-        | Op::TypeMatrix
-        | Op::TypePointer
-        | Op::TypeFunction => Some(1),
-        Op::Constant | Op::ConstantTrue | Op::ConstantFalse | Op::ConstantComposite | Op::ConstantNull => {
-            Some(2)
-        }
-        _ => None,
-    }
-}
-
-fn result(instruction: &[u32]) -> Option<u32> {
-    result_at(instruction).and_then(|at| instruction.get(at).copied())
-}
-
-fn without_id(instruction: &[u32]) -> Declaration {
-    let mut key = instruction.to_vec();
-    if let Some(at) = result_at(instruction) {
-        key.remove(at);
-    }
-    key
-}
-
-/// The words of an instruction that are not ids (section 3.49 of the specification).
-///
-/// # Errors
-/// If the instruction is not one that functions of plain values consist of.
-fn literal_words(instruction: &[u32]) -> Result<Range<usize>, TranslateError> {
-    let end = instruction.len();
-    let op = opcode(instruction);
-    Ok(match op.ok_or("an instruction that is not known")? {
-        Op::TypeInt | Op::TypeFloat => 2..end,
-        Op::TypeVector | Op::TypeMatrix | Op::Constant => 3..end,
-        Op::TypePointer | Op::SelectionMerge => 2..3,
-        Op::Function | Op::Variable | Op::LoopMerge => 3..4,
-        Op::ExtInst => 4..5,
-        Op::CompositeExtract => 4..end,
-        Op::CompositeInsert | Op::VectorShuffle => 5..end,
-        Op::TypeVoid
-        | Op::TypeBool
-        | Op::TypeFunction
-        | Op::ConstantTrue
-        | Op::ConstantFalse
-        | Op::ConstantComposite
-        | Op::ConstantNull
-        | Op::FunctionParameter
-        | Op::FunctionEnd
-        | Op::FunctionCall
-        | Op::Label
-        | Op::Branch
-        | Op::BranchConditional
-        | Op::Return
-        | Op::ReturnValue
-        | Op::Unreachable
-        | Op::Kill
-        | Op::Phi
-        | Op::Undef
-        | Op::Load
-        | Op::Store
-        | Op::AccessChain => end..end,
-        // All operands of arithmetic, comparisons, bit operations and conversions are ids.
-        op if is_arithmetic(op) => end..end,
-        op => return Err(TranslateError(format!("{op:?} in the library"))),
-    })
-}
-
-fn is_arithmetic(op: Op) -> bool {
-    let op = op as u32;
-    [
-        Op::VectorExtractDynamic as u32..=Op::VectorInsertDynamic as u32,
-        Op::CompositeConstruct as u32..=Op::CompositeConstruct as u32,
-        Op::CopyObject as u32..=Op::Transpose as u32,
-        Op::ConvertFToU as u32..=Op::Bitcast as u32,
-        Op::SNegate as u32..=Op::SMulExtended as u32,
-        Op::Any as u32..=Op::FUnordGreaterThanEqual as u32,
-        Op::ShiftRightLogical as u32..=Op::BitCount as u32,
-    ]
-    .iter()
-    .any(|range| range.contains(&op))
 }

@@ -1,11 +1,12 @@
 //! SPIR-V, and the decorations that make drivers evaluate arithmetic as written.
 
 mod expand;
+mod link;
 
 use std::collections::HashSet;
 
 use ::spirv::{Capability, Decoration, GlslStd450Op, Op};
-pub use expand::spelled;
+pub use expand::expanded;
 use naga::ShaderStage;
 use naga::back::spv::{BindingInfo, Options, PipelineOptions, WriterFlags, write_vec};
 

@@ -57,8 +57,8 @@ pub(super) static INTERSECTIONS: &[Mistake] = mistakes! {
 pub(super) static QUADRICS: &[Mistake] = mistakes! {
     "ends-not-tested": "does not end cylinders, cones and their like",
         [
-            NearQuadricIsHit = "ahead + near > «QuadricMinT»",
-            FarQuadricIsHit = "ahead + beyond > «QuadricMinT»",
+            NearQuadricIsHit = "ahead + near > «NearQuadricMinT»",
+            FarQuadricIsHit = "ahead + beyond > «FarQuadricMinT»",
         ];
     "only-the-nearer-root": "gives up where the nearer root lies beyond the ends, though the other may not",
         [FarQuadricIsHit = "false"];

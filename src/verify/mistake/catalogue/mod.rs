@@ -74,25 +74,45 @@ use mistakes;
 mod tests {
     use toyproof_diagnostic::{File, Files};
     use toyproof_glsl as glsl;
+    use toyproof_scene::{Scene, export};
 
     use super::*;
     use crate::mistake::exercises::{EXERCISES, scene_of};
     use crate::mistake::mutant::variants;
 
     /// Scenes with what no exercise has.
-    const OTHER_SCENES: [&str; 1] = [NESTED_MOTIONS];
+    const OTHER_SCENES: [&str; 3] = [NESTED_MOTIONS, BOTH_GLASSES, DIFFUSE_PATHS];
 
-    const NESTED_MOTIONS: &str = "[[motion]]\nname = \"a\"\naxis = [0, 1, 0]\nseconds = 2\n\
-         [[motion]]\nname = \"b\"\naxis = [0, 1, 0]\nseconds = 2\nwithin = \"a\"\n\
-         [[motion]]\nname = \"c\"\naxis = [0, 1, 0]\nseconds = 2\nwithin = \"b\"\n\
-         [[motion]]\nname = \"d\"\naxis = [0, 1, 0]\nseconds = 2\nwithin = \"c\"\n\
-         [[sphere]]\ncenter = [0, 0, -6]\nradius = 1\nmotion = \"d\"\n\
-         material = { model = \"facing\", color = [1, 1, 0] }\n";
+    const NESTED_MOTIONS: &str = r#"
+        motion = [
+            { name = "a", axis = [0, 1, 0], seconds = 2 },
+            { name = "b", axis = [0, 1, 0], seconds = 2, within = "a" },
+            { name = "c", axis = [0, 1, 0], seconds = 2, within = "b" },
+            { name = "d", axis = [0, 1, 0], seconds = 2, within = "c" },
+        ]
+        sphere = [
+            { center = [0, 0, -6], radius = 1, motion = "d", material = { model = "facing", color = [1, 1, 0] } },
+        ]
+    "#;
 
-    fn shaders() -> Vec<MarkedShader> {
+    const BOTH_GLASSES: &str = r#"
+        sphere = [
+            { center = [-2, 0, -6], radius = 1, material = { model = "glass", color = [1, 1, 0], ior = 1.5 } },
+            { center = [2, 0, -6], radius = 1, material = { model = "glass", color = [1, 1, 0], ior = 1.5, fresnel = "schlick" } },
+        ]
+    "#;
+
+    const DIFFUSE_PATHS: &str = r#"
+        film = { integrator = "path", max_depth = 3, samples = 2, sampler = "independent" }
+        sphere = [
+            { center = [0, 4, -6], radius = 1, material = { model = "emitter", color = [9, 9, 9] } },
+            { center = [0, 0, -6], radius = 1, material = { model = "diffuse", color = [1, 1, 0] } },
+        ]
+    "#;
+
+    fn scenes() -> impl Iterator<Item = Scene> {
         let exercises = EXERCISES.into_iter().map(|(_, text)| text);
-        let scenes = exercises.chain(OTHER_SCENES);
-        scenes.flat_map(|text| variants(&scene_of(text))).collect()
+        exercises.chain(OTHER_SCENES).map(scene_of)
     }
 
     fn is_valid(shader: &MarkedShader) -> bool {
@@ -103,7 +123,7 @@ mod tests {
 
     #[test]
     fn every_mistake_can_be_made_in_a_shader() {
-        let shaders = shaders();
+        let shaders: Vec<MarkedShader> = scenes().flat_map(|scene| variants(&scene)).collect();
         for mistake in all() {
             let mut mutants = shaders.iter().filter_map(|shader| mistake.apply(shader));
             assert!(mutants.any(|mutant| is_valid(&mutant)), "{mistake:?}");
@@ -112,7 +132,9 @@ mod tests {
 
     #[test]
     fn every_name_of_a_part_stands_for_one() {
-        let shaders = shaders();
+        let shaders: Vec<MarkedShader> = scenes()
+            .map(|scene| export::marked_shader(&scene).unwrap())
+            .collect();
         for &slot in Slot::ALL {
             assert!(shaders.iter().any(|shader| shader.has(slot)), "{slot:?}");
         }
