@@ -35,7 +35,7 @@
 //! | `verify` | the three checks and the verdict (without `gpu`: algorithm and precision) |
 //! | `gpu` | rendering on a Vulkan driver, in a worker process |
 //! | `lab` | measurements of stability, and of accuracy against time |
-//! | `report` | reports: JSON, HTML, JUnit, SARIF, CSV, Gradescope |
+//! | `report` | reports: JSON, HTML, `JUnit`, SARIF, CSV, Gradescope |
 //! | `cli` | the command line |
 //!
 //! # Example

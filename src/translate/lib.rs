@@ -73,7 +73,7 @@ use crate::lower::Passes;
 pub struct TranslateError(pub String);
 
 impl TranslateError {
-    fn new(message: impl ToString) -> Self {
+    fn new(message: impl std::fmt::Display) -> Self {
         Self(message.to_string())
     }
 }

@@ -94,7 +94,13 @@ pub enum Evidence {
         has_reference: bool,
     },
     /// The shader was checked.
-    Checked(CheckEvidence),
+    Checked(Box<CheckEvidence>),
+}
+
+impl From<CheckEvidence> for Evidence {
+    fn from(evidence: CheckEvidence) -> Self {
+        Self::Checked(Box::new(evidence))
+    }
 }
 
 /// The results of the three checks; none for a check that was not run.
@@ -293,16 +299,15 @@ pub fn decide(evidence: Evidence) -> (Verdict, Reason) {
             };
             (verdict, reason)
         }
-        Evidence::Checked(CheckEvidence {
-            self_intersection: Some(pixels),
-            ..
-        }) => (Verdict::Wrong, Reason::SelfIntersection(pixels)),
-        Evidence::Checked(CheckEvidence {
-            random_numbers: Some(random_numbers),
-            checks,
-            ..
-        }) => by_means(&random_numbers, &checks),
-        Evidence::Checked(CheckEvidence { checks, .. }) => by_checks(&checks),
+        Evidence::Checked(evidence) => {
+            if let Some(pixels) = evidence.self_intersection {
+                (Verdict::Wrong, Reason::SelfIntersection(pixels))
+            } else if let Some(random_numbers) = &evidence.random_numbers {
+                by_means(random_numbers, &evidence.checks)
+            } else {
+                by_checks(&evidence.checks)
+            }
+        }
     }
 }
 
@@ -483,7 +488,7 @@ mod tests {
     }
 
     fn decided(evidence: CheckEvidence) -> (Verdict, Reason) {
-        decide(Evidence::Checked(evidence))
+        decide(evidence.into())
     }
 
     fn verdict(checks: Checks) -> Verdict {

@@ -127,7 +127,7 @@ impl Findings {
             },
             ..CheckEvidence::default()
         };
-        self.decide(Evidence::Checked(evidence.clone()));
+        self.decide(evidence.clone().into());
         // A mistake that explains every pixel is reported whatever random numbers the shader uses. Pairs are
         // searched for only if the comparison of random pixels reaches no verdict: with other random numbers,
         // two mistakes do not render the image of the pair.
@@ -144,7 +144,7 @@ impl Findings {
             evidence.self_intersection =
                 acne::detect(expected.tracer(), case.frame.size, algorithm, precision);
             if evidence.self_intersection.is_some() {
-                self.decide(Evidence::Checked(evidence.clone()));
+                self.decide(evidence.clone().into());
                 self.mistake = Some(vec![acne::named()]);
             }
         }
@@ -183,7 +183,7 @@ impl Findings {
         };
         let precision = self.precision.as_ref();
         evidence.random_numbers = Some(compared.random_numbers);
-        (self.verdict, self.reason) = decide(Evidence::Checked(evidence.clone()));
+        (self.verdict, self.reason) = decide(evidence.clone().into());
         // The precision of the pixels that do not depend on random numbers costs samples of the scene, and
         // counts only where everything else agrees.
         if let (Verdict::Correct, Some(random_numbers), Some(precision)) =
@@ -191,7 +191,7 @@ impl Findings {
         {
             random_numbers.other_pixels.precision =
                 Some(sampled_rows.precision_of_others(algorithm, precision));
-            self.decide(Evidence::Checked(evidence.clone()));
+            self.decide(evidence.clone().into());
         }
         if let (Verdict::Wrong, Some(hypotheses), Some(reseeding)) =
             (self.verdict, case.hypotheses, compared.reseeding)

@@ -200,7 +200,7 @@ impl Subject {
             algorithm: Some(answer),
             ..Checks::default()
         };
-        let (verdict, _) = decide(Evidence::Checked(CheckEvidence {
+        let (verdict, _) = decide(Evidence::from(CheckEvidence {
             checks,
             ..CheckEvidence::default()
         }));

@@ -36,7 +36,7 @@ fn lints(text: &str) -> (Lints, Files) {
     (lint(&files, &checked, &Deadline::default()), files)
 }
 
-/// A shader with these functions and these statements of `mainImage`, which begin on line 2.
+/// A shader with these functions and these statements of `mainImage`, which begin on line 3.
 fn shader(functions: &str, statements: &str) -> String {
     format!(
         "{}\nvoid mainImage(out vec4 c, in vec2 f) {{ c = vec4(0.0);\n{statements}\n}}\n",
@@ -51,7 +51,8 @@ fn cases(table: &str) {
     let mut wrong = Vec::new();
     for line in table.lines().map(str::trim).filter(|line| !line.is_empty()) {
         let (wanted, text) = line.split_once(' ').unwrap();
-        let (functions, statements) = text.split_once('|').unwrap_or(("", text));
+        let text = format!(" {text} ");
+        let (functions, statements) = text.split_once(" | ").unwrap_or(("", &text));
         let (lints, _) = lints(&shader(functions, statements));
         let found = lints.warnings.iter().chain(&lints.maybe_uninitialized);
         let mut found: Vec<_> = found.map(|found| found.code.to_string()).collect();

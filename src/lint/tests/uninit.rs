@@ -63,6 +63,14 @@ fn uninitialized_reads() {
         -     float a; do { a = f.x; } while (a > 1.0); c.x = a;
         -     float a; int n = 0; while (true) { a = f.x; if (n++ > 3) break; } c.x = a;
         -     struct S { float a; }; S s[2]; void make() { s[0].a = 1.0; } | make(); c.x = s[1].a;
+        ",
+    );
+}
+
+#[test]
+fn reads_that_flags_and_calls_guard() {
+    cases(
+        "
         -     float never() { float a; return a; } |
         W0004 float a, least = 8.0; for (int i = 0; i < 3; i++) { float d = f.x * float(i); if (d < least) { least = d; a = 1.0; } } c.x = a;
         W0004 float a; int i = int(f.x); if (i == 0) a = 1.0; else if (i == 1) a = 2.0; c.x = a;
@@ -179,11 +187,11 @@ fn maybe_uninitialized_reads_wait_for_a_run() {
         panic!("{:#?}", lints.maybe_uninitialized);
     };
     assert_eq!(pdf.message, "`pdf` is read here and not written on all paths");
-    assert_eq!(files.position(pdf.span.unwrap()).line, 4);
+    assert_eq!(files.position(pdf.span.unwrap()).line, 5);
     let related: Vec<_> = pdf
         .related
         .iter()
         .map(|(span, label)| (files.position(*span).line, &**label))
         .collect();
-    assert_eq!(related, [(2, "declared here, without a value"), (4, "and here")]);
+    assert_eq!(related, [(3, "declared here, without a value"), (5, "and here")]);
 }

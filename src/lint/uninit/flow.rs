@@ -75,7 +75,7 @@ pub(super) fn analyze(
     analysis.block(body);
     analysis.flow.falls_off = analysis.state.is_reachable;
     analysis.leave();
-    analysis.summarize();
+    analysis.summarize(function);
     analysis.flow
 }
 
@@ -149,12 +149,13 @@ impl Analysis<'_> {
     }
 
     /// Concludes from the state at the exit.
-    fn summarize(&mut self) {
+    fn summarize(&mut self, function: FunctionId) {
         let tree = self.program.tree;
-        for (&parameter, &index) in &self.parameters {
-            if let Some(&slot) = self.slots.get(&parameter) {
-                let whole = self.layout.whole(tree[parameter].ty);
-                self.flow.parameters[index].unassigned = self.exit.unassigned(slot) & whole;
+        let parameters = &tree[function].parameters;
+        for (parameter, summary) in parameters.iter().zip(&mut self.flow.parameters) {
+            if let Some(&slot) = self.slots.get(parameter) {
+                let whole = self.layout.whole(tree[*parameter].ty);
+                summary.unassigned = self.exit.unassigned(slot) & whole;
             }
         }
         if let Some(color) = self.color

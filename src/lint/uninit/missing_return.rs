@@ -3,7 +3,9 @@
 use std::collections::HashSet;
 
 use toyproof_glsl::Code;
-use toyproof_glsl::tree::{BinaryOp, Block, ExprId, ExprKind, FunctionId, StatementKind, Value, walk};
+use toyproof_glsl::tree::{
+    BinaryOp, Block, Constant, ExprId, ExprKind, FunctionId, StatementKind, Value, walk,
+};
 
 use crate::Findings;
 use crate::program::{Program, Shape};
@@ -69,7 +71,7 @@ fn subjects(program: &Program, condition: ExprId) -> Vec<(Shape, Option<Shape>)>
                 let Some(subject) = Shape::of(tree, left) else {
                     continue;
                 };
-                let is_case = match program.constant(right).as_ref().map(|bound| bound.components()) {
+                let is_case = match program.constant(right).as_ref().map(Constant::components) {
                     // A number between two integers bounds an ID that is stored as a float.
                     Some(&[Value::Float(bound)]) => {
                         op == BinaryOp::Equal || bound > 1.0 && bound.fract() != 0.0

@@ -292,9 +292,12 @@ impl Runner<'_> {
                 let written = read_shadertoy(&text.map_err(Failure::Gpu)?, timeout)?;
                 let stop = AtomicBool::new(false);
                 let singles = within(pool, || evaluate(&written, frames, timeout, &stop))?;
-                let images = singles.into_iter().map(|single| match upside_down {
-                    true => single.image.upside_down(),
-                    false => single.image,
+                let images = singles.into_iter().map(|single| {
+                    if upside_down {
+                        single.image.upside_down()
+                    } else {
+                        single.image
+                    }
                 });
                 Ok((images.collect(), "toyproof's evaluator".to_owned()))
             }
@@ -310,12 +313,12 @@ pub(super) fn read_shadertoy(text: &str, timeout: Duration) -> Result<Checked, U
         deadline: Deadline::after(timeout),
         ..glsl::Options::default()
     };
-    glsl::check(&files, file, &options).map_err(|errors| match options.deadline.check() {
-        Err(overdue) => Unproved::Overdue(overdue),
-        Ok(()) => {
-            let first = errors.first().map(|error| short(error, &files));
-            Unproved::FrontEnd(first.unwrap_or_default())
+    glsl::check(&files, file, &options).map_err(|errors| {
+        if let Err(overdue) = options.deadline.check() {
+            return Unproved::Overdue(overdue);
         }
+        let first = errors.first().map(|error| short(error, &files));
+        Unproved::FrontEnd(first.unwrap_or_default())
     })
 }
 

@@ -264,10 +264,10 @@ mod tests {
     #[test]
     fn the_library_has_all_functions_of_all_sizes() {
         let text = "
-            fn of(x: f32) -> f32 { return length(vec2f(atan2(x, 2.0), fract(x))) + mix(x, 1.0, x); }
+            fn mixed(x: f32) -> f32 { return length(vec2f(atan2(x, 2.0), fract(x))) + mix(x, 1.0, x); }
             @fragment fn main(@builtin(position) p: vec4f) -> @location(0) vec4f {
                 let m = mat3x3f(p.xyz, p.yzx, cross(p.xyz, p.zxy));
-                return vec4f(transpose(m) * m * refract(p.xyz, p.yzw, 0.5) * determinant(m), of(p.x))
+                return vec4f(transpose(m) * m * refract(p.xyz, p.yzw, 0.5) * determinant(m), mixed(p.x))
                     + smoothstep(p, p.yzwx, p.wzyx) + unpack2x16float(u32(p.x)).xyxy;
             }";
         let expanded = expanded(&words_of_wgsl(text)).unwrap();
