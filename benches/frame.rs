@@ -90,5 +90,5 @@ fn through_the_worker(bencher: Bencher, exercise: &str) {
 #[divan::bench(args = EXERCISES, types = [f32, f64])]
 fn trace<T: Real>(bencher: Bencher, exercise: &str) {
     let tracer = Tracer::<T>::new(&scene(exercise));
-    bencher.bench(|| tracer.picture(|| ()));
+    bencher.bench(|| tracer.render(|| ()));
 }

@@ -181,8 +181,8 @@ fn beside_embree_and_lavapipe(program: Option<&Path>, counts: &[usize]) {
             [
                 time(|| single.surfaces()),
                 time(|| double.surfaces()),
-                time(|| single.picture(|| ())),
-                time(|| double.picture(|| ())),
+                time(|| single.render(|| ())),
+                time(|| double.render(|| ())),
                 theirs[0],
                 theirs[1],
                 gpu,
@@ -271,8 +271,8 @@ fn beside_povray(folder: &Path) {
     scene.film.sampler = Sampler::Center;
     let [f32, f64, theirs] = in_turns(|| {
         [
-            time(|| single.picture(|| ())),
-            time(|| double.picture(|| ())),
+            time(|| single.render(|| ())),
+            time(|| double.render(|| ())),
             povray(&scene, folder).map_or(f64::NAN, |seconds| 1e3 * seconds),
         ]
     });
@@ -381,10 +381,10 @@ fn features() {
         let (more32, more64) = (Tracer::<f32>::new(&scene), Tracer::<f64>::new(&scene));
         let [f32, with32, f64, with64] = in_turns(|| {
             [
-                time(|| single.picture(|| ())),
-                time(|| more32.picture(|| ())),
-                time(|| double.picture(|| ())),
-                time(|| more64.picture(|| ())),
+                time(|| single.render(|| ())),
+                time(|| more32.render(|| ())),
+                time(|| double.render(|| ())),
+                time(|| more64.render(|| ())),
             ]
         });
         println!(
@@ -410,7 +410,7 @@ fn growth(chart: &mut Scatter, name: &str, scenes: Vec<(f64, Scene)>) {
     let mut points = [Vec::new(), Vec::new()];
     for (at, scene) in scenes {
         let (single, double) = (Tracer::<f32>::new(&scene), Tracer::<f64>::new(&scene));
-        let times = in_turns(|| [time(|| single.picture(|| ())), time(|| double.picture(|| ()))]);
+        let times = in_turns(|| [time(|| single.render(|| ())), time(|| double.render(|| ()))]);
         println!("| {at} | {:.2} | {:.2} |", times[0], times[1]);
         for (points, time) in points.iter_mut().zip(times) {
             points.push((at, time));
@@ -507,8 +507,8 @@ fn threads(one: &rayon::ThreadPool) {
         pool.install(picture);
         1e3 * start.elapsed().as_secs_f64()
     };
-    let picture32 = || drop(single.picture(|| ()));
-    let picture64 = || drop(double.picture(|| ()));
+    let picture32 = || drop(single.render(|| ()));
+    let picture64 = || drop(double.render(|| ()));
     let [one32, two32, one64, two64] = in_turns(|| {
         [
             wall(one, &picture32),

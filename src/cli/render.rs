@@ -208,11 +208,11 @@ fn trace<T: Real>(
         Some(_) => ProgressBar::hidden(),
     };
     let Some(max_error) = args.max_error else {
-        let picture = tracer.picture(|| bar.inc(1));
+        let picture = tracer.render(|| bar.inc(1));
         bar.finish_and_clear();
         return picture;
     };
-    let (picture, spent) = tracer.picture_within(max_error, || bar.inc(1));
+    let (picture, spent) = tracer.render_adaptive(max_error, || bar.inc(1));
     bar.finish_and_clear();
     let [most, fewest] = spent.per_pixel;
     terminal.note(&format!(

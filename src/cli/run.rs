@@ -249,7 +249,7 @@ impl Runner<'_> {
         };
         let rendered = Program::within(checked, self.args.driver.timeout())
             .map_err(eval::Failure::from)
-            .and_then(|program| program.picture(&self.frame, self.frame.rows(), &settings));
+            .and_then(|program| program.render_rows(&self.frame, self.frame.rows(), &settings));
         match rendered {
             Ok(rendered) => {
                 let device = format!("the CPU, in {}", std::any::type_name::<N>());

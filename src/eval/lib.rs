@@ -80,6 +80,6 @@ pub use observe::{Fault, MESA_CAP, Observations, Observed, Site};
 pub use program::Program;
 pub use render::{Failure, Places, Rendered, RenderedF32, Settings, Substitute, UndefinedPolicy};
 pub use trace::{
-    Call, CallId, Event, EventId, ExecutionTrace, ForcedPrefix, PixelDebugger, TraceEvent, TraceSchema,
-    TraceValue, What,
+    Call, CallId, Event, EventId, EventKind, ExecutionTrace, ForcedPrefix, PixelDebugger, TraceEvent,
+    TraceSchema, TraceValue,
 };

@@ -183,7 +183,7 @@ pub struct Observations {
     /// The observed faults, in source order.
     pub faults: Vec<Observed>,
     /// The largest number of loop iterations of a pixel, all loops together.
-    pub most_rounds: u32,
+    pub max_iterations: u32,
     /// The number of pixels that exceed the 65,535 iterations after which Mesa before version 23 ends all
     /// loops of a pixel.
     pub beyond_cap: u64,
@@ -195,7 +195,7 @@ pub const MESA_CAP: u32 = 65_535;
 impl Observations {
     /// Adds the observations of a different part of the image.
     pub fn merge(&mut self, other: &Self) {
-        self.most_rounds = self.most_rounds.max(other.most_rounds);
+        self.max_iterations = self.max_iterations.max(other.max_iterations);
         self.beyond_cap += other.beyond_cap;
         for &new in &other.faults {
             match self.faults.iter_mut().find(|old| old.site == new.site) {

@@ -8,6 +8,7 @@ use toyproof_glsl::Checked;
 use toyproof_glsl::tree::Place;
 use toyproof_image::Frame;
 
+use crate::batch::Batch;
 use crate::build::{self, BuildOptions, Refusal, UndefinedMode, compile, with_stack};
 use crate::ir::AliasGroups;
 use crate::ir::Function;
@@ -15,13 +16,14 @@ use crate::lower::isel::Prepared;
 use crate::lower::linearize::{LinearCode, linearize};
 use crate::lower::regalloc::{Allocation, allocate_registers};
 use crate::number::{Number, RandomRounding};
-use crate::observe::Site;
+use crate::observe::{Observations, Site};
 use crate::opt::dce::eliminate_dead_code;
 use crate::opt::divergence::Divergence;
 use crate::opt::fuse::fuse;
 use crate::opt::gvn::number_values;
 use crate::render::{Substitute, UndefinedPolicy};
-use crate::trace::TraceSchema;
+use crate::tile::{BandError, Job};
+use crate::trace::{ExecutionTrace, ForcedPrefix, TraceSchema};
 
 /// A shader compiled for the CPU, for any number type, frame and size.
 #[derive(Debug)]
@@ -140,6 +142,28 @@ pub trait Backend: Sized {
     fn prepare(compiled: &Compiled, frame: &Frame) -> Prepared<Self>
     where
         Self: Number;
+
+    /// Renders the row of tiles whose lowest row of pixels is `first`.
+    #[doc(hidden)]
+    fn render_band(
+        job: &Job<'_, Self>,
+        batch: &mut Batch<'_, Self>,
+        first: u32,
+        output: (&mut [[Self; 3]], &mut [u8]),
+        wanted: Option<&[bool]>,
+    ) -> Result<Observations, BandError>
+    where
+        Self: Number;
+
+    /// Runs the tile of a pixel and records its trace.
+    #[doc(hidden)]
+    fn trace(
+        job: &Job<'_, Self>,
+        pixel: [u32; 2],
+        prefix: Option<ForcedPrefix<'_>>,
+    ) -> Result<ExecutionTrace, BandError>
+    where
+        Self: Number;
 }
 
 macro_rules! backends {
@@ -147,6 +171,24 @@ macro_rules! backends {
         impl Backend for $number {
             fn prepare(compiled: &Compiled, frame: &Frame) -> Prepared<Self> {
                 compiled.prepare(frame)
+            }
+
+            fn render_band(
+                job: &Job<'_, Self>,
+                batch: &mut Batch<'_, Self>,
+                first: u32,
+                output: (&mut [[Self; 3]], &mut [u8]),
+                wanted: Option<&[bool]>,
+            ) -> Result<Observations, BandError> {
+                job.render_band(batch, first, output, wanted)
+            }
+
+            fn trace(
+                job: &Job<'_, Self>,
+                pixel: [u32; 2],
+                prefix: Option<ForcedPrefix<'_>>,
+            ) -> Result<ExecutionTrace, BandError> {
+                job.trace(pixel, prefix)
             }
         }
     )*};

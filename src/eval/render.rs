@@ -51,7 +51,7 @@ pub struct Settings<'a, N: Number> {
     /// The seed of [`RandomRounding`](crate::RandomRounding); nothing for other number types.
     pub noise: N::Noise,
     /// The maximum number of loop iterations of a pixel, all loops together.
-    pub rounds: u32,
+    pub max_iterations: u32,
     /// The time at which to give up.
     pub deadline: Option<Instant>,
     /// A flag that other threads set to interrupt the run.
@@ -67,7 +67,7 @@ impl<N: Number> Default for Settings<'_, N> {
         Self {
             undefined: UndefinedPolicy::Observed,
             noise: N::Noise::default(),
-            rounds: 1 << 26,
+            max_iterations: 1 << 26,
             deadline: None,
             interrupt: None,
             wanted: None,
@@ -139,10 +139,10 @@ pub enum Failure {
     #[error(transparent)]
     Refused(#[from] Refusal),
     /// A pixel exceeded the limit of loop iterations.
-    #[error("a pixel ran more than {rounds} rounds of loops")]
+    #[error("a pixel ran more than {limit} rounds of loops")]
     TooOften {
         /// The limit.
-        rounds: u32,
+        limit: u32,
         /// The loop that ran last.
         at: Place,
     },
@@ -243,7 +243,7 @@ impl Program {
     ///
     /// # Errors
     /// As [`Self::render`].
-    pub fn picture<N: Number>(
+    pub fn render_rows<N: Number>(
         &self,
         frame: &Frame,
         rows: Range<u32>,
@@ -323,7 +323,7 @@ impl Program {
                     .wanted
                     .map(|wanted| &wanted[tiles * band..][..pixels.len()]);
                 let colors = &mut colors[..pixels.len()];
-                match job.render_band(batch, first, (colors, flags), wanted) {
+                match N::render_band(&job, batch, first, (colors, flags), wanted) {
                     Ok(observations) => {
                         for ((pixel, &color), &flag) in pixels.iter_mut().zip(&*colors).zip(&*flags) {
                             *pixel = keep(color, flag);
@@ -346,7 +346,7 @@ impl Program {
             all
         });
         match failure.into_inner().unwrap_or_else(PoisonError::into_inner) {
-            Some(error) => Err(error.failure(compiled, &limits, settings.rounds)),
+            Some(error) => Err(error.failure(compiled, &limits, settings.max_iterations)),
             None => Ok(observations),
         }
     }

@@ -21,17 +21,17 @@ use crate::trace::{ExecutionTrace, ForcedPrefix, Recorder};
 
 /// The reason why a band was not rendered.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum BandError {
+pub enum BandError {
     Late,
     Loop(Stop),
 }
 
 impl BandError {
     /// Converts to the error that callers see.
-    pub(crate) fn failure(self, compiled: &Compiled, limits: &Limits<'_>, rounds: u32) -> Failure {
+    pub(crate) fn failure(self, compiled: &Compiled, limits: &Limits<'_>, limit: u32) -> Failure {
         match self {
             Self::Loop(stop) if stop.over_limit => Failure::TooOften {
-                rounds,
+                limit,
                 at: compiled.loop_at(stop.id),
             },
             _ if limits.is_interrupted() => Failure::Interrupted,
@@ -48,7 +48,7 @@ const CHUNK_COLUMNS: usize = TILE_COLUMNS / 2;
 const CHUNK_ROWS: usize = LANES / CHUNK_COLUMNS;
 
 /// A frame that is being rendered.
-pub(crate) struct Job<'a, N: Number> {
+pub struct Job<'a, N: Number> {
     prepared: &'a Prepared<N>,
     textures: &'a [Option<Texture<'a>>; 4],
     limits: &'a Limits<'a>,
@@ -119,7 +119,7 @@ impl<'a, N: Number> Job<'a, N> {
             fuel: Cell::new(FUEL_ITERATIONS),
             stopped: Cell::new(None),
             cancellation: self.limits,
-            iteration_limit: self.settings.rounds,
+            iteration_limit: self.settings.max_iterations,
             iterations: Cell::new(0),
             own_iterations: chunks([0; LANES], width),
             notes: RefCell::default(),
@@ -267,7 +267,7 @@ impl<'a, N: Number> Job<'a, N> {
                     *pixel = color.map(|component| component[lane]);
                     *flag = if discarded[lane] != 0 { DISCARDED } else { 0 };
                     let iterations = iterations + own_iterations[lane];
-                    observations.most_rounds = observations.most_rounds.max(iterations);
+                    observations.max_iterations = observations.max_iterations.max(iterations);
                     observations.beyond_cap += u64::from(iterations > MESA_CAP);
                 }
             }
@@ -325,7 +325,7 @@ fn prologue<N: Number>(
         fuel: Cell::new(FUEL_ITERATIONS),
         stopped: Cell::new(None),
         cancellation: limits,
-        iteration_limit: settings.rounds,
+        iteration_limit: settings.max_iterations,
         iterations: Cell::new(0),
         own_iterations: Vec::new(),
         notes: RefCell::default(),

@@ -25,32 +25,32 @@ pub struct CallId(pub(crate) u32);
 #[derive(Debug, Clone, Copy)]
 pub struct Event {
     /// The kind of the event.
-    pub what: What,
+    pub kind: EventKind,
     /// The source location.
     pub at: Place,
     /// The type of the value; `void` if there is none.
     pub ty: Type,
     /// The call that contains it; none in `mainImage` and at global scope.
     pub call: Option<CallId>,
-    /// The [`What::LoopHeader`] event of the innermost enclosing loop.
+    /// The [`EventKind::LoopHeader`] event of the innermost enclosing loop.
     pub round: Option<EventId>,
 }
 
 /// The kind of an event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum What {
+pub enum EventKind {
     /// The variable, or part of one, at this location is assigned the value.
-    Stored(Place),
+    Assignment(Place),
     /// A subexpression has the value.
-    Part,
+    Subexpression,
     /// The condition of `if`, a loop, `?:`, `&&` or `||` has the value.
     Branch,
     /// An iteration of a loop begins.
     LoopHeader,
     /// A function returns the value.
-    Returned,
+    Return,
     /// A statement without a value is executed: `break`, `discard`.
-    Ran,
+    Statement,
 }
 
 /// An inlined function call.
@@ -86,8 +86,8 @@ impl TraceSchema {
 
     /// Returns the headers of the enclosing loops, outermost first; a loop header is last in its own list.
     #[must_use]
-    pub fn rounds(&self, id: EventId) -> Vec<EventId> {
-        let own = (self.event(id).what == What::LoopHeader).then_some(id);
+    pub fn loop_headers(&self, id: EventId) -> Vec<EventId> {
+        let own = (self.event(id).kind == EventKind::LoopHeader).then_some(id);
         let mut rounds: Vec<EventId> = own.into_iter().collect();
         let mut next = self.event(id).round;
         while let Some(round) = next {
@@ -121,7 +121,7 @@ pub enum TraceValue {
 #[derive(Debug, Clone, Default)]
 pub struct ExecutionTrace {
     /// The events in execution order.
-    pub happened: Vec<TraceEvent>,
+    pub events: Vec<TraceEvent>,
     /// The color of the pixel; none if it was discarded.
     pub color: Option<[f64; 3]>,
     /// Whether the trace was truncated because it was too long.
@@ -135,9 +135,9 @@ const MAX_TRACE_COMPONENTS: usize = 1 << 21;
 #[derive(Debug, Clone, Copy)]
 pub struct ForcedPrefix<'a> {
     /// The other trace.
-    pub story: &'a ExecutionTrace,
+    pub trace: &'a ExecutionTrace,
     /// The number of its events to force; clamped to its length.
-    pub events: usize,
+    pub length: usize,
 }
 
 /// Records the events of one lane of a batch.
@@ -157,8 +157,8 @@ impl<'a> Recorder<'a> {
             chunk: position / LANES,
             lane: position % LANES,
             forced: prefix.map_or(&[], |prefix| {
-                let happened = &prefix.story.happened;
-                &happened[..prefix.events.min(happened.len())]
+                let events = &prefix.trace.events;
+                &events[..prefix.length.min(events.len())]
             }),
             trace: RefCell::default(),
             recorded: Cell::new(0),
@@ -188,18 +188,18 @@ impl<'a> Recorder<'a> {
             return None;
         }
         if component == 0 {
-            trace.happened.push(TraceEvent {
+            trace.events.push(TraceEvent {
                 event: EventId(event),
                 values: Vec::new(),
             });
         }
-        let at = trace.happened.len().checked_sub(1)?;
+        let at = trace.events.len().checked_sub(1)?;
         let forced = self
             .forced
             .get(at)
             .filter(|forced| forced.event == EventId(event));
         let forced = forced.and_then(|forced| forced.values.get(component as usize).copied());
-        trace.happened[at].values.push(forced.unwrap_or(value));
+        trace.events[at].values.push(forced.unwrap_or(value));
         forced
     }
 
@@ -211,7 +211,7 @@ impl<'a> Recorder<'a> {
             trace.is_cut = true;
             return;
         }
-        trace.happened.push(TraceEvent {
+        trace.events.push(TraceEvent {
             event: EventId(event),
             values: Vec::new(),
         });
@@ -271,7 +271,7 @@ impl Program {
     ///
     /// # Errors
     /// If the shader is too large.
-    pub fn teller<'a, N: Number>(
+    pub fn pixel_debugger<'a, N: Number>(
         &'a self,
         frame: &'a Frame,
         settings: Settings<'a, N>,
@@ -289,7 +289,7 @@ impl Program {
 impl<'a, N: Number> PixelDebugger<'a, N> {
     /// Returns all events that may occur.
     #[must_use]
-    pub fn plot(&self) -> &'a TraceSchema {
+    pub fn schema(&self) -> &'a TraceSchema {
         &self.compiled.schema
     }
 
@@ -301,7 +301,7 @@ impl<'a, N: Number> PixelDebugger<'a, N> {
     ///
     /// # Panics
     /// If the pixel lies outside of the frame.
-    pub fn story(
+    pub fn trace(
         &self,
         pixel: [u32; 2],
         prefix: Option<ForcedPrefix<'_>>,
@@ -318,7 +318,7 @@ impl<'a, N: Number> PixelDebugger<'a, N> {
             settings,
             frame.size,
         );
-        job.trace(pixel, prefix)
-            .map_err(|end| end.failure(self.compiled, &limits, settings.rounds))
+        N::trace(&job, pixel, prefix)
+            .map_err(|end| end.failure(self.compiled, &limits, settings.max_iterations))
     }
 }

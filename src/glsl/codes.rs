@@ -123,14 +123,14 @@ pub fn overdue(overdue: Overdue) -> Diagnostic {
 }
 
 /// Maximum number of reported errors of one file, and of warnings.
-pub const MAX_TOLD: usize = 50;
+pub const MAX_REPORTED: usize = 50;
 
 /// Adds a diagnostic unless the limit for its severity is reached.
 pub(crate) fn push_limited(reported: &mut Vec<Diagnostic>, diagnostic: Diagnostic) {
     let alike = reported
         .iter()
         .filter(|other| other.severity == diagnostic.severity);
-    if alike.count() < MAX_TOLD {
+    if alike.count() < MAX_REPORTED {
         reported.push(diagnostic);
     }
 }
@@ -161,7 +161,7 @@ impl Code {
         };
         let diagnostic = diagnostic.at(place.span);
         if place.is_expanded() {
-            diagnostic.related(place.spelled, IN_MACRO)
+            diagnostic.related(place.spelling, IN_MACRO)
         } else {
             diagnostic
         }

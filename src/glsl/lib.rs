@@ -62,8 +62,8 @@ mod preprocess;
 mod token;
 pub mod tree;
 
-pub use codes::{Code, IN_MACRO, MAX_TOLD, overdue};
-pub use preprocess::Remark;
+pub use codes::{Code, IN_MACRO, MAX_REPORTED, overdue};
+pub use preprocess::ControlComment;
 use toyproof_diagnostic::{Deadline, Diagnostic, Diagnostics, FileId, Files, Severity};
 use tree::{FunctionId, SamplerShape, Tree};
 
@@ -102,7 +102,7 @@ pub struct Checked {
     /// The front end's warnings in source order, including those that the author allows: lints filter them.
     pub warnings: Vec<Diagnostic>,
     /// The `// toyproof:` comments, which control lints.
-    pub remarks: Vec<Remark>,
+    pub control_comments: Vec<ControlComment>,
 }
 
 impl Checked {
@@ -171,7 +171,7 @@ pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, 
                     main_image,
                     channels: channels.shapes,
                     warnings: all,
-                    remarks: text.remarks,
+                    control_comments: text.control_comments,
                 })
             }
             _ => {

@@ -5,7 +5,7 @@
 
 use toyproof_diagnostic::{Diagnostic, Files, Span};
 use toyproof_glsl::tree::{Block, Item, Tree, walk};
-use toyproof_glsl::{Code, IN_MACRO, Remark};
+use toyproof_glsl::{Code, ControlComment, IN_MACRO};
 
 /// The `allow`s of a shader.
 #[derive(Debug, Default)]
@@ -25,19 +25,19 @@ struct Allow {
 }
 
 impl Allows {
-    /// Reads the `allow` remarks of a file; appends warnings about malformed ones to `diagnostics`.
+    /// Reads the `allow` comments of a file; appends warnings about malformed ones to `diagnostics`.
     pub(super) fn read(
         files: &Files,
-        remarks: &[Remark],
+        control_comments: &[ControlComment],
         tree: &Tree,
         diagnostics: &mut Vec<Diagnostic>,
     ) -> Self {
-        if remarks.is_empty() {
+        if control_comments.is_empty() {
             return Self::default();
         }
         let extents = StatementExtents::of(tree);
         let mut all = Vec::new();
-        for remark in remarks {
+        for remark in control_comments {
             let scope = extents.scope_of(files, *remark);
             for name in code_spans(files, *remark, diagnostics) {
                 match Code::ALL.iter().find(|code| code.as_str() == files.text(name)) {
@@ -114,7 +114,7 @@ fn invalid_remark(at: Span, message: impl Into<String>) -> Diagnostic {
 }
 
 /// The spans of the codes between the parentheses.
-fn code_spans(files: &Files, remark: Remark, diagnostics: &mut Vec<Diagnostic>) -> Vec<Span> {
+fn code_spans(files: &Files, remark: ControlComment, diagnostics: &mut Vec<Diagnostic>) -> Vec<Span> {
     let text = files.text(remark.at);
     let inside = text
         .split_once(':')
@@ -173,7 +173,7 @@ impl StatementExtents {
     }
 
     /// The range of text that a remark covers.
-    fn scope_of(&self, files: &Files, remark: Remark) -> Span {
+    fn scope_of(&self, files: &Files, remark: ControlComment) -> Span {
         let text = files.get(remark.at.file).text();
         let line_end = |byte: u32| {
             let rest = &text[byte as usize..];
@@ -216,7 +216,7 @@ fn collect_statements(tree: &Tree, block: &Block, all: &mut Vec<(u32, u32)>) -> 
         let own = walk::own_expressions(tree, statement);
         let own = own.into_iter().map(|expr| tree[expr].at.span.end);
         let mut end = own.fold(statement.at.span.end, u32::max);
-        for body in walk::inner(statement) {
+        for body in walk::child_blocks(statement) {
             end = end.max(collect_statements(tree, body, all));
         }
         all.push((statement.at.span.start, end));

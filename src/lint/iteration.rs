@@ -179,7 +179,8 @@ impl Counter<'_, '_> {
             return constant.components() == [Value::Bool(true)];
         }
         // Only innermost loops are analyzed, so that nested bodies are not visited once per enclosing loop.
-        let is_innermost = |statement: &Statement| walk::inner(statement).is_empty() || !is_loop(statement);
+        let is_innermost =
+            |statement: &Statement| walk::child_blocks(statement).is_empty() || !is_loop(statement);
         let mut innermost = true;
         walk::each(body, &mut |statement| innermost &= is_innermost(statement));
         if !innermost {
@@ -220,12 +221,14 @@ fn has_exit(block: &Block, break_exits: bool) -> bool {
     block.iter().any(|statement| match &statement.kind {
         StatementKind::Break => break_exits,
         StatementKind::Return(_) | StatementKind::Discard => true,
-        StatementKind::Switch { .. } => walk::inner(statement)
+        StatementKind::Switch { .. } => walk::child_blocks(statement)
             .into_iter()
             .any(|body| has_exit(body, false)),
         _ => {
             let own = break_exits && !is_loop(statement);
-            walk::inner(statement).into_iter().any(|body| has_exit(body, own))
+            walk::child_blocks(statement)
+                .into_iter()
+                .any(|body| has_exit(body, own))
         }
     })
 }

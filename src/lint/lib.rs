@@ -33,7 +33,7 @@ use allow::Allows;
 use program::Program;
 use toyproof_diagnostic::{Deadline, Diagnostic, Files, Overdue, Severity, Span};
 use toyproof_glsl::tree::Place;
-use toyproof_glsl::{Checked, Code, MAX_TOLD};
+use toyproof_glsl::{Checked, Code, MAX_REPORTED};
 
 /// The lints' findings about a valid shader.
 #[derive(Debug, Clone, Default)]
@@ -94,7 +94,7 @@ pub fn lint(files: &Files, checked: &Checked, deadline: &Deadline) -> Lints {
         findings.maybe_uninitialized.clear();
     }
     let mut allow_warnings = Vec::new();
-    let allows = Allows::read(files, &checked.remarks, tree, &mut allow_warnings);
+    let allows = Allows::read(files, &checked.control_comments, tree, &mut allow_warnings);
     let mut remaining = allows.filter(all);
     remaining.append(&mut allow_warnings);
     if let Err(overdue) = within_deadline {
@@ -105,7 +105,7 @@ pub fn lint(files: &Files, checked: &Checked, deadline: &Deadline) -> Lints {
     let (seeds, mut warnings): (Vec<_>, Vec<_>) = remaining
         .into_iter()
         .partition(|diagnostic| diagnostic.code == Code::NearTangent.as_str());
-    warnings.truncate(MAX_TOLD);
+    warnings.truncate(MAX_REPORTED);
     Lints {
         warnings,
         discriminants: seeds.into_iter().filter_map(|seed| seed.span).collect(),
@@ -142,7 +142,7 @@ impl Findings {
         message: impl Into<String>,
         finish: impl FnOnce(Diagnostic) -> Diagnostic,
     ) {
-        if self.reported.insert((code, Place::plain(at.spelled))) {
+        if self.reported.insert((code, Place::plain(at.spelling))) {
             self.all.push(finish(code.at(at, message)));
         }
     }

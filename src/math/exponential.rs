@@ -143,7 +143,7 @@ pub fn pow<F: Float>(x: F, y: F) -> F {
 
 /// Whether it is positive, finite and normal.
 #[inline(always)]
-fn is_positive_normal<F: Float>(x: F) -> F::Truth {
+fn is_positive_normal<F: Float>(x: F) -> F::Bool {
     let bits = x.to_bits() - 0x0080_0000;
     bits.less(bits.literal(0x7F00_0000))
 }

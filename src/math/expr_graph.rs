@@ -78,7 +78,7 @@ pub enum Kind {
     /// An unsigned integer.
     Bits,
     /// A boolean.
-    Truth,
+    Bool,
 }
 
 /// A straight-line sequence of steps without duplicates.
@@ -196,7 +196,7 @@ terms! {
     /// A term of type integer.
     BitsTerm;
     /// A term of type boolean.
-    TruthTerm;
+    BoolTerm;
 }
 
 macro_rules! operators {
@@ -255,7 +255,7 @@ impl Neg for FloatTerm<'_> {
 }
 
 impl<'a> Number for FloatTerm<'a> {
-    type Truth = TruthTerm<'a>;
+    type Bool = BoolTerm<'a>;
 
     fn literal(self, value: f64) -> Self {
         Term::new(self.0.graph, Step::Float((value as f32).to_bits()), Kind::Float).into()
@@ -273,11 +273,11 @@ impl<'a> Number for FloatTerm<'a> {
         self.0.unary(Unary::Floor, Kind::Float).into()
     }
 
-    fn less(self, other: Self) -> TruthTerm<'a> {
-        self.0.binary(Binary::Less, other.0, Kind::Truth).into()
+    fn less(self, other: Self) -> BoolTerm<'a> {
+        self.0.binary(Binary::Less, other.0, Kind::Bool).into()
     }
 
-    fn select(condition: TruthTerm<'a>, yes: Self, no: Self) -> Self {
+    fn select(condition: BoolTerm<'a>, yes: Self, no: Self) -> Self {
         condition.0.select(yes.0, no.0, Kind::Float).into()
     }
 }
@@ -305,7 +305,7 @@ impl<'a> Float for FloatTerm<'a> {
 }
 
 impl<'a> Bits for BitsTerm<'a> {
-    type Truth = TruthTerm<'a>;
+    type Bool = BoolTerm<'a>;
 
     fn literal(self, value: u32) -> Self {
         Term::new(self.0.graph, Step::Bits(value), Kind::Bits).into()
@@ -319,35 +319,35 @@ impl<'a> Bits for BitsTerm<'a> {
         self >> by
     }
 
-    fn less(self, other: Self) -> TruthTerm<'a> {
-        self.0.binary(Binary::Less, other.0, Kind::Truth).into()
+    fn less(self, other: Self) -> BoolTerm<'a> {
+        self.0.binary(Binary::Less, other.0, Kind::Bool).into()
     }
 
-    fn select(condition: TruthTerm<'a>, yes: Self, no: Self) -> Self {
+    fn select(condition: BoolTerm<'a>, yes: Self, no: Self) -> Self {
         condition.0.select(yes.0, no.0, Kind::Bits).into()
     }
 }
 
-impl BitAnd for TruthTerm<'_> {
+impl BitAnd for BoolTerm<'_> {
     type Output = Self;
 
     fn bitand(self, other: Self) -> Self {
-        self.0.binary(Binary::And, other.0, Kind::Truth).into()
+        self.0.binary(Binary::And, other.0, Kind::Bool).into()
     }
 }
 
-impl BitOr for TruthTerm<'_> {
+impl BitOr for BoolTerm<'_> {
     type Output = Self;
 
     fn bitor(self, other: Self) -> Self {
-        self.0.binary(Binary::Or, other.0, Kind::Truth).into()
+        self.0.binary(Binary::Or, other.0, Kind::Bool).into()
     }
 }
 
-impl Not for TruthTerm<'_> {
+impl Not for BoolTerm<'_> {
     type Output = Self;
 
     fn not(self) -> Self {
-        self.0.unary(Unary::Not, Kind::Truth).into()
+        self.0.unary(Unary::Not, Kind::Bool).into()
     }
 }

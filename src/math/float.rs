@@ -10,7 +10,7 @@ pub trait Number:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
     /// The result of a comparison.
-    type Truth: Copy + BitAnd<Output = Self::Truth> + BitOr<Output = Self::Truth> + Not<Output = Self::Truth>;
+    type Bool: Copy + BitAnd<Output = Self::Bool> + BitOr<Output = Self::Bool> + Not<Output = Self::Bool>;
 
     /// The constant `value`, rounded to this type.
     #[must_use]
@@ -29,11 +29,11 @@ pub trait Number:
     fn floor(self) -> Self;
 
     /// `self < other`; false if one is NaN.
-    fn less(self, other: Self) -> Self::Truth;
+    fn less(self, other: Self) -> Self::Bool;
 
     /// `yes` if `condition` holds, otherwise `no`. Both have been computed.
     #[must_use]
-    fn select(condition: Self::Truth, yes: Self, no: Self) -> Self;
+    fn select(condition: Self::Bool, yes: Self, no: Self) -> Self;
 
     /// GLSL's `min`: `other` if it is less.
     #[must_use]
@@ -51,7 +51,7 @@ pub trait Number:
 macro_rules! number {
     ($float:ty) => {
         impl Number for $float {
-            type Truth = bool;
+            type Bool = bool;
 
             #[inline]
             fn literal(self, value: f64) -> Self {
@@ -96,7 +96,7 @@ number!(f64);
 /// No result depends on operations with denormal operands or results, since drivers flush them and Rust does
 /// not; tests verify that.
 pub trait Float:
-    Number<Truth = <Self::Bits as Bits>::Truth>
+    Number<Bool = <Self::Bits as Bits>::Bool>
     + Add<f32, Output = Self>
     + Sub<f32, Output = Self>
     + Mul<f32, Output = Self>
@@ -131,7 +131,7 @@ pub trait Bits:
     + Shr<u32, Output = Self>
 {
     /// The result of a comparison.
-    type Truth: Copy + BitAnd<Output = Self::Truth> + BitOr<Output = Self::Truth> + Not<Output = Self::Truth>;
+    type Bool: Copy + BitAnd<Output = Self::Bool> + BitOr<Output = Self::Bool> + Not<Output = Self::Bool>;
 
     /// The constant `value`.
     #[must_use]
@@ -146,11 +146,11 @@ pub trait Bits:
     fn right(self, by: Self) -> Self;
 
     /// `self < other`
-    fn less(self, other: Self) -> Self::Truth;
+    fn less(self, other: Self) -> Self::Bool;
 
     /// `yes` if `condition` holds, otherwise `no`.
     #[must_use]
-    fn select(condition: Self::Truth, yes: Self, no: Self) -> Self;
+    fn select(condition: Self::Bool, yes: Self, no: Self) -> Self;
 }
 
 /// A native 32-bit integer.
@@ -177,7 +177,7 @@ impl Float for f32 {
 }
 
 impl Bits for Word {
-    type Truth = bool;
+    type Bool = bool;
 
     #[inline]
     fn literal(self, value: u32) -> Self {
@@ -283,14 +283,14 @@ pub(super) fn negate_if<F: Float>(x: F, bits: F::Bits) -> F {
 
 /// Whether |x| < `limit`.
 #[inline(always)]
-pub(super) fn is_below<F: Float>(x: F, limit: f32) -> F::Truth {
+pub(super) fn is_below<F: Float>(x: F, limit: f32) -> F::Bool {
     let magnitude = magnitude(x);
     magnitude.less(magnitude.literal(limit.to_bits()))
 }
 
 /// Whether it is zero or denormal.
 #[inline(always)]
-pub(super) fn is_zero<F: Float>(x: F) -> F::Truth {
+pub(super) fn is_zero<F: Float>(x: F) -> F::Bool {
     is_below(x, f32::MIN_POSITIVE)
 }
 
@@ -303,13 +303,13 @@ pub(super) fn flushed<F: Float>(x: F) -> F {
 
 /// Whether it is neither infinite nor NaN.
 #[inline(always)]
-pub(super) fn is_finite<F: Float>(x: F) -> F::Truth {
+pub(super) fn is_finite<F: Float>(x: F) -> F::Bool {
     is_below(x, f32::INFINITY)
 }
 
 /// Whether it is NaN.
 #[inline(always)]
-pub(super) fn is_nan<F: Float>(x: F) -> F::Truth {
+pub(super) fn is_nan<F: Float>(x: F) -> F::Bool {
     let magnitude = magnitude(x);
     magnitude.literal(INFINITY_BITS).less(magnitude)
 }

@@ -50,7 +50,7 @@ pub fn tan<F: Float>(x: F) -> F {
 }
 
 #[inline(always)]
-fn is_odd<F: Float>(quadrant: F::Bits) -> F::Truth {
+fn is_odd<F: Float>(quadrant: F::Bits) -> F::Bool {
     let even = quadrant & 1;
     even.literal(0).less(even)
 }
@@ -239,7 +239,7 @@ fn angle_minus<F: Float>(whole: f64, hi: F, lo: F) -> F {
 /// Intermediate results of asin and acos.
 struct Arcsine<F: Float> {
     /// Whether |x| > ½.
-    outer: F::Truth,
+    outer: F::Bool,
     /// √((1 − |x|)/2)
     root: TwoFloat<F>,
     /// asin(t) − t, where t is `root` if `outer`, otherwise |x|.

@@ -90,7 +90,7 @@ impl<F: Float> TwoFloat<F> {
 
     /// `yes` if `condition` holds, otherwise `no`.
     #[inline(always)]
-    pub(super) fn select(condition: F::Truth, yes: Self, no: Self) -> Self {
+    pub(super) fn select(condition: F::Bool, yes: Self, no: Self) -> Self {
         Self {
             hi: F::select(condition, yes.hi, no.hi),
             lo: F::select(condition, yes.lo, no.lo),

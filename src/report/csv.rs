@@ -1,7 +1,7 @@
 //! `report.csv`: a row per shader, for spreadsheets (RFC 4180).
 
 use toyproof_diagnostic::Severity;
-use toyproof_verify::compare::Answer;
+use toyproof_verify::compare::CheckSummary;
 
 use super::{Mark, Record, Rubric};
 
@@ -61,9 +61,9 @@ fn row(record: &Record, rubric: Option<&Rubric>) -> [String; COLUMNS.len()] {
             .count()
             .to_string()
     };
-    let number = |check: &Option<Answer>, of: fn(&Answer) -> u64| cell(check.as_ref().map(of));
-    let max_abs = |check: &Option<Answer>| cell(check.as_ref().map(|answer| answer.max_abs));
-    let image = record.picture.as_ref();
+    let number = |check: &Option<CheckSummary>, of: fn(&CheckSummary) -> u64| cell(check.as_ref().map(of));
+    let max_abs = |check: &Option<CheckSummary>| cell(check.as_ref().map(|answer| answer.max_abs));
+    let image = record.comparison.as_ref();
     let answers = [&record.algorithm, &record.precision];
     [
         escape_formula(&record.shader),
@@ -75,7 +75,7 @@ fn row(record: &Record, rubric: Option<&Rubric>) -> [String; COLUMNS.len()] {
         sum(|mark| mark.of),
         cell(answers.into_iter().flatten().map(|answer| answer.pixels).next()),
         number(&record.algorithm, |answer| answer.differing),
-        number(&record.algorithm, |answer| answer.undecided),
+        number(&record.algorithm, |answer| answer.ill_conditioned),
         number(&record.algorithm, |answer| answer.undefined),
         max_abs(&record.algorithm),
         number(&record.precision, |answer| answer.differing),

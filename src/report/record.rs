@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{self as diagnostic, Files};
-use toyproof_verify::compare::{Answer, Comparison};
+use toyproof_verify::compare::{CheckSummary, Comparison};
 use toyproof_verify::mistake::Named;
 use toyproof_verify::{CheckResult, Evidence, Failure, Findings, Verdict, decide};
 
@@ -65,15 +65,16 @@ pub struct Record {
     pub reason: String,
     /// The shader in f64 against the scene; null without a scene.
     #[serde(rename = "maths")]
-    pub algorithm: Option<Answer>,
+    pub algorithm: Option<CheckSummary>,
     /// The shader in f32 against the shader in f64.
     #[serde(rename = "rounding")]
-    pub precision: Option<Answer>,
+    pub precision: Option<CheckSummary>,
     /// The GPU's image against the CPU's, bit by bit; null where no GPU rendered, or where it was free to
     /// rearrange arithmetic.
-    pub toolchain: Option<Answer>,
+    pub toolchain: Option<CheckSummary>,
     /// The image against the reference; null if either is missing.
-    pub picture: Option<Comparison>,
+    #[serde(rename = "picture")]
+    pub comparison: Option<Comparison>,
     /// The known mistake, or the two, that explain a wrong image; null if none does.
     pub mistake: Option<Mistake>,
     /// The diagnostics on the shader and its scene.
@@ -94,7 +95,7 @@ impl Record {
             algorithm: None,
             precision: None,
             toolchain: None,
-            picture: None,
+            comparison: None,
             mistake: None,
             diagnostics: Vec::new(),
             seconds: Seconds::default(),
@@ -103,23 +104,23 @@ impl Record {
 
     /// Adds the findings, apart from their notes.
     pub fn set_findings(&mut self, findings: &Findings, files: &Files) {
-        let answer = |check: &Option<CheckResult>| check.as_ref().map(|check| check.answer.clone());
+        let answer = |check: &Option<CheckResult>| check.as_ref().map(|check| check.summary.clone());
         self.verdict = findings.verdict;
         self.reason = reason(findings, files);
         self.mistake = findings.mistake.as_deref().map(Mistake::new);
         self.algorithm = answer(&findings.algorithm);
         self.precision = answer(&findings.precision);
         self.toolchain = answer(&findings.toolchain);
-        self.picture = findings
-            .picture
+        self.comparison = findings
+            .comparison
             .as_ref()
             .map(|(comparison, _)| comparison.clone());
         let seconds = &mut self.seconds;
         seconds.eval = Some(findings.eval.as_secs_f64());
         seconds.trace = findings.trace.map(|trace| trace.as_secs_f64());
-        if let Some(painter) = &findings.painter {
-            seconds.translate = Some(painter.translate.as_secs_f64());
-            seconds.gpu = Some((painter.compile + painter.draw).as_secs_f64());
+        if let Some(gpu_run) = &findings.gpu_run {
+            seconds.translate = Some(gpu_run.translate.as_secs_f64());
+            seconds.gpu = Some((gpu_run.compile + gpu_run.draw).as_secs_f64());
         }
     }
 
@@ -196,7 +197,7 @@ impl Seconds {
 pub(super) mod samples {
     use toyproof_diagnostic::{self as diagnostic, File, Files, Severity};
     use toyproof_verify::Verdict;
-    use toyproof_verify::compare::Answer;
+    use toyproof_verify::compare::CheckSummary;
 
     use crate::report::{Record, Rubric, Seconds};
 
@@ -210,7 +211,7 @@ pub(super) mod samples {
             algorithm: None,
             precision: None,
             toolchain: None,
-            picture: None,
+            comparison: None,
             mistake: None,
             diagnostics: Vec::new(),
             seconds: Seconds {
@@ -222,11 +223,11 @@ pub(super) mod samples {
     }
 
     /// An answer over 1,000 pixels, of which the given numbers differ, are undecided and are undefined.
-    pub(in crate::report) fn question([differing, undecided, undefined]: [u64; 3]) -> Answer {
-        Answer {
+    pub(in crate::report) fn question([differing, ill_conditioned, undefined]: [u64; 3]) -> CheckSummary {
+        CheckSummary {
             pixels: 1000,
             differing,
-            undecided,
+            ill_conditioned,
             undefined,
             tied: 0,
             max_abs: 0.25,
@@ -302,12 +303,12 @@ mod tests {
         let black = toyproof_image::Image::new(1, 1, vec![[0.0; 4]]);
         let white = toyproof_image::Image::new(1, 1, vec![[1.0; 4]]);
         let (comparison, _) = toyproof_verify::compare::compare(&black, &white);
-        let answer = Answer::new(&black, &white, &[toyproof_verify::compare::PixelStatus::Differs]);
+        let answer = CheckSummary::new(&black, &white, &[toyproof_verify::compare::PixelStatus::Differs]);
         let with_checks = Record {
             algorithm: Some(answer.clone()),
             precision: Some(answer.clone()),
             toolchain: Some(answer),
-            picture: Some(comparison),
+            comparison: Some(comparison),
             ..record(Verdict::Ok)
         };
         let mut records = every_verdict();

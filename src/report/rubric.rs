@@ -5,8 +5,8 @@ use std::ops::Range;
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 use toyproof_diagnostic::{Diagnostic, Diagnostics, FileId, Files, Span};
-use toyproof_scene::of_toml;
-use toyproof_verify::compare::Answer;
+use toyproof_scene::toml_diagnostic;
+use toyproof_verify::compare::CheckSummary;
 use toyproof_verify::{MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABLE, Verdict};
 
 use super::{Record, details, terminal};
@@ -91,7 +91,7 @@ impl Rubric {
     /// The first syntax or schema error of the TOML, or all values that are out of range.
     pub fn parse(files: &Files, file: FileId) -> Result<Self, Diagnostics> {
         let document: Document = toml::from_str(files.get(file).text())
-            .map_err(|error| Diagnostics::new(vec![of_toml("E0503", &error, files, file)], files))?;
+            .map_err(|error| Diagnostics::new(vec![toml_diagnostic("E0503", &error, files, file)], files))?;
         let mut errors = Vec::new();
         let mut parser = Parser {
             file,
@@ -266,7 +266,7 @@ fn rounding(check: CheckPoints, record: &Record) -> Mark {
     let ill_conditioned = record
         .algorithm
         .as_ref()
-        .map_or(0.0, |answer: &Answer| answer.share(answer.undecided));
+        .map_or(0.0, |answer: &CheckSummary| answer.share(answer.ill_conditioned));
     let lost = answer.share(answer.differing).max(ill_conditioned);
     check.mark(
         name,

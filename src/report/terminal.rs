@@ -7,7 +7,7 @@ use std::fmt;
 use anstyle::{AnsiColor, Style};
 use toyproof_diagnostic::{Json, grouped, magnitude, plural};
 use toyproof_verify::Verdict;
-use toyproof_verify::compare::{Answer, Comparison, Pixel};
+use toyproof_verify::compare::{CheckSummary, Comparison, Pixel};
 
 use super::Record;
 
@@ -22,7 +22,11 @@ pub fn line(record: &Record) -> String {
         errors(record).unwrap_or_else(|| record.reason.clone())
     )];
     let questions = [
-        ("maths", &record.algorithm, algorithm as fn(&Answer) -> String),
+        (
+            "maths",
+            &record.algorithm,
+            algorithm as fn(&CheckSummary) -> String,
+        ),
         ("rounding", &record.precision, precision),
         ("toolchain", &record.toolchain, toolchain),
     ];
@@ -43,7 +47,7 @@ pub fn line(record: &Record) -> String {
     if let Some(why) = record.skipped_toolchain_reason() {
         lines.push(format!("toolchain: not asked, {why}"));
     }
-    if let Some(image) = &record.picture {
+    if let Some(image) = &record.comparison {
         lines.push(format!("picture: {}", numbers(image)));
     }
     lines.join(&format!("\n{:13}", ""))
@@ -122,7 +126,7 @@ fn style(verdict: Verdict) -> Style {
     Style::new().fg_color(Some(color.into())).bold()
 }
 
-pub(super) fn algorithm(answer: &Answer) -> String {
+pub(super) fn algorithm(answer: &CheckSummary) -> String {
     question(
         answer,
         ["differs", "differ"],
@@ -134,7 +138,7 @@ pub(super) fn algorithm(answer: &Answer) -> String {
     )
 }
 
-pub(super) fn precision(answer: &Answer) -> String {
+pub(super) fn precision(answer: &CheckSummary) -> String {
     question(
         answer,
         ["is", "are"],
@@ -143,7 +147,7 @@ pub(super) fn precision(answer: &Answer) -> String {
     )
 }
 
-fn toolchain(answer: &Answer) -> String {
+fn toolchain(answer: &CheckSummary) -> String {
     let difference = format!(
         "not to the bit what the shader says (by at most {})",
         magnitude(answer.max_abs)
@@ -153,7 +157,7 @@ fn toolchain(answer: &Answer) -> String {
 
 /// Describes how many pixels differ or are ill-conditioned, with the first of them, and how many were left
 /// out. Of two verb forms, the first is singular.
-fn question(answer: &Answer, verb: [&str; 2], differ: &str, add_image: [&str; 2]) -> String {
+fn question(answer: &CheckSummary, verb: [&str; 2], differ: &str, add_image: [&str; 2]) -> String {
     let mut parts = Vec::new();
     let of = |count: u64, [one, many]: [&str; 2]| {
         let (of, total) = (grouped(count), grouped(answer.pixels));
@@ -162,8 +166,8 @@ fn question(answer: &Answer, verb: [&str; 2], differ: &str, add_image: [&str; 2]
     if answer.differing > 0 {
         parts.push(format!("{} {differ}", of(answer.differing, verb)));
     }
-    if answer.undecided > 0 {
-        parts.push(of(answer.undecided, add_image));
+    if answer.ill_conditioned > 0 {
+        parts.push(of(answer.ill_conditioned, add_image));
     }
     if let (Some(part), Some(pixel)) = (parts.first_mut(), &answer.first) {
         part.push_str(", first ");

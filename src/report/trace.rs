@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use serde::{Serialize, Serializer};
 use toyproof_diagnostic::{Files, Span, grouped};
-use toyproof_eval::{Event, TraceSchema, TraceValue, What};
+use toyproof_eval::{Event, EventKind, TraceSchema, TraceValue};
 use toyproof_glsl::tree::{Scalar, Tree, Type};
 use toyproof_verify::debug::{Explanation, Step, digits};
 
@@ -84,7 +84,7 @@ impl PixelTrace {
     /// Resolves the positions and names of an explanation.
     #[must_use]
     pub fn new(subject: &Subject<'_>, explanation: &Explanation<'_>) -> Self {
-        let schema = explanation.plot;
+        let schema = explanation.schema;
         let lines = explanation
             .steps
             .iter()
@@ -97,7 +97,7 @@ impl PixelTrace {
             size: subject.size,
             f32: explanation.single.map(color),
             f64: explanation.double.map(color),
-            parts_at: explanation.parting,
+            parts_at: explanation.divergence,
             cause_at: explanation.cause,
             not_finite_at: explanation.not_finite,
             cut: explanation.is_cut,
@@ -118,8 +118,8 @@ impl Line {
         let Subject { files, tree, .. } = *subject;
         let event = schema.event(step.event);
         let at = files.position(event.at.span);
-        let name = match event.what {
-            What::Stored(target) => Some(one_line(files.text(target.span))),
+        let name = match event.kind {
+            EventKind::Assignment(target) => Some(one_line(files.text(target.span))),
             _ => None,
         };
         let (function, calls) = calls(subject, schema, event);
@@ -130,22 +130,22 @@ impl Line {
         let (single, double) = (values(&step.single), values(&step.double));
         let count = single.as_ref().or(double.as_ref()).map_or(0, Vec::len);
         Self {
-            what: match event.what {
-                What::Stored(_) => "stored",
-                What::Part => "part",
-                What::Branch => "branch",
-                What::LoopHeader => "round",
-                What::Returned => "returned",
-                What::Ran => "ran",
+            what: match event.kind {
+                EventKind::Assignment(_) => "stored",
+                EventKind::Subexpression => "part",
+                EventKind::Branch => "branch",
+                EventKind::LoopHeader => "round",
+                EventKind::Return => "returned",
+                EventKind::Statement => "ran",
             },
             line: at.line,
             column: at.column,
-            source: whole_line(files, event.at.span),
+            source: source_line(files, event.at.span),
             text: one_line(files.text(event.at.span)),
             name,
             function,
             calls,
-            rounds: step.rounds(),
+            rounds: step.iterations(),
             components: if count == 0 {
                 Vec::new()
             } else {
@@ -176,7 +176,7 @@ fn calls(subject: &Subject<'_>, schema: &TraceSchema, event: &Event) -> (String,
 }
 
 /// The line that a span starts in.
-fn whole_line(files: &Files, span: Span) -> String {
+fn source_line(files: &Files, span: Span) -> String {
     let text = files.get(span.file).text();
     let (before, after) = text.split_at(span.start as usize);
     let start = before.rfind('\n').map_or(0, |at| at + 1);

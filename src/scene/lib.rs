@@ -26,7 +26,7 @@ mod shape;
 
 use std::ops::Range;
 
-pub use file::{of_toml, parse};
+pub use file::{parse, toml_diagnostic};
 pub use film::{Camera, Figure, Film, Integrator, Outline, Projection, Sampler, ToneMap};
 pub use material::{Background, Checker, Disney, Fresnel, Light, Material, Model};
 pub use motion::{FrameTime, Motion, Period};

@@ -24,11 +24,11 @@ pub(super) fn tone_map<T: Real>(film: &Film, component: T) -> T {
 }
 
 /// Inverts [`tone_map`]; infinite for values that the operator cannot produce.
-pub(super) fn inverse_tone_map(film: &Film, developed: f64) -> f64 {
+pub(super) fn inverse_tone_map(film: &Film, tone_mapped: f64) -> f64 {
     let mapped = if film.gamma == 1.0 {
-        developed
+        tone_mapped
     } else {
-        developed.max(0.0).powf(film.gamma)
+        tone_mapped.max(0.0).powf(film.gamma)
     };
     match film.tone_map {
         ToneMap::None => mapped,
@@ -73,7 +73,7 @@ impl Tracer<f64> {
 
     /// Computes the mean of the samples of the pixel at (x, y), y up, with the scene's number of samples and
     /// the `independent` sampler. Each `set` has different random numbers; set 0 is the scene's own. The
-    /// result is not tone-mapped; see [`developed`](Self::developed).
+    /// result is not tone-mapped; see [`tone_mapped`](Self::tone_mapped).
     #[must_use]
     pub fn resampled_mean(&self, [x, y]: [u32; 2], set: u32) -> [f64; 3] {
         let count = self.film.samples;
@@ -96,26 +96,26 @@ impl Tracer<f64> {
     /// Like [`resampled_mean`](Self::resampled_mean), but tone-mapped.
     #[must_use]
     pub fn resampled(&self, pixel: [u32; 2], set: u32) -> [f64; 3] {
-        self.developed(self.resampled_mean(pixel, set))
+        self.tone_mapped(self.resampled_mean(pixel, set))
     }
 
     /// Computes [`resampled_mean`](Self::resampled_mean) for all pixels of up to [`RESAMPLED_ROWS`] rows from
-    /// `bottom` on, row by row. The results are not tone-mapped; see [`developed`](Self::developed).
+    /// `bottom` on, row by row. The results are not tone-mapped; see [`tone_mapped`](Self::tone_mapped).
     #[must_use]
-    pub fn redrawn_rows(&self, bottom: u32, set: u32) -> Vec<[f64; 3]> {
+    pub fn resampled_rows(&self, bottom: u32, set: u32) -> Vec<[f64; 3]> {
         let means = self.means(bottom, Sampler::Independent, set);
         means.into_iter().map(Vector::to_array).collect()
     }
 
     /// Tone-maps the mean of a pixel's samples to a color in [0, 1].
     #[must_use]
-    pub fn developed(&self, mean: [f64; 3]) -> [f64; 3] {
+    pub fn tone_mapped(&self, mean: [f64; 3]) -> [f64; 3] {
         mean.map(|component| tone_map(&self.film, component).clamp(0.0, 1.0))
     }
 
     /// Inverts the tone mapping; infinite for colors that it cannot produce.
     #[must_use]
-    pub fn undeveloped(&self, color: [f64; 3]) -> [f64; 3] {
+    pub fn inverse_tone_mapped(&self, color: [f64; 3]) -> [f64; 3] {
         color.map(|component| inverse_tone_map(&self.film, component))
     }
 
@@ -160,7 +160,7 @@ pub struct SamplingCost {
 }
 
 /// A tile: its corner, size, colors in row order, and cost.
-type AdaptiveTile = ([u32; 2], [u32; 2], Vec<[f64; 3]>, SamplingCost);
+pub(super) type AdaptiveTile = ([u32; 2], [u32; 2], Vec<[f64; 3]>, SamplingCost);
 
 impl<T: Real> Tracer<T> {
     /// Renders the image with enough samples in each tile of 16×16 pixels to bring its estimated error below
@@ -169,17 +169,15 @@ impl<T: Real> Tracer<T> {
     /// to [0, 1]. The number of samples of the scene's film is ignored. Its sampler must be stochastic.
     ///
     /// `row_done` is called once per row of the image.
-    pub fn picture_within(&self, max_error: f64, row_done: impl Fn() + Sync) -> (Image, SamplingCost) {
+    pub fn render_adaptive(&self, max_error: f64, row_done: impl Fn() + Sync) -> (Image, SamplingCost) {
         let [width, height] = self.film.size;
         let bands: Vec<Vec<AdaptiveTile>> = (0..height.div_ceil(ADAPTIVE_TILE_SIDE))
             .into_par_iter()
             .map(|band| {
                 let tiles = (0..width.div_ceil(ADAPTIVE_TILE_SIDE))
                     .map(|column| {
-                        self.adaptive_tile(
-                            [column * ADAPTIVE_TILE_SIDE, band * ADAPTIVE_TILE_SIDE],
-                            max_error,
-                        )
+                        let corner = [column * ADAPTIVE_TILE_SIDE, band * ADAPTIVE_TILE_SIDE];
+                        T::adaptive_tile(self, corner, max_error)
                     })
                     .collect();
                 (0..ADAPTIVE_TILE_SIDE.min(height - band * ADAPTIVE_TILE_SIDE)).for_each(|_| row_done());
@@ -206,7 +204,7 @@ impl<T: Real> Tracer<T> {
         (Image::new(width, height, pixels), total)
     }
 
-    fn adaptive_tile(&self, corner: [u32; 2], max_error: f64) -> AdaptiveTile {
+    pub(super) fn adaptive_tile(&self, corner: [u32; 2], max_error: f64) -> AdaptiveTile {
         let [width, height] = self.film.size;
         let size = [
             ADAPTIVE_TILE_SIDE.min(width - corner[0]),
@@ -277,9 +275,9 @@ mod tests {
                 gamma,
             };
             for component in [0.01, 0.3, 1.0, 7.0] {
-                let developed = tone_map(&film, component);
-                assert!((inverse_tone_map(&film, developed) - component).abs() < 1e-9 * component);
-                let rise = tone_map(&film, component + 1e-6) - developed;
+                let tone_mapped = tone_map(&film, component);
+                assert!((inverse_tone_map(&film, tone_mapped) - component).abs() < 1e-9 * component);
+                let rise = tone_map(&film, component + 1e-6) - tone_mapped;
                 assert!((rise / 1e-6 / tone_map_slope(&film, component) - 1.0).abs() < 1e-3);
             }
         }

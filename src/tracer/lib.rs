@@ -38,6 +38,7 @@ mod world;
 
 use std::ops::Range;
 
+use film::AdaptiveTile;
 pub use film::{RESAMPLED_ROWS, SamplingCost};
 pub use ray_epsilon::{Acne, ColorRange, EpsilonFamily, EpsilonSet, LightPolicy, RayEpsilon, RayEpsilons};
 use rayon::prelude::*;
@@ -74,6 +75,67 @@ enum Kernel<T: Real> {
     Shapes(World<T, Shape<T>>),
 }
 
+/// The number types that the tracer is compiled for. Its inner loops are instantiated in this crate once, not
+/// in each crate that renders.
+pub trait Backend: Sized {
+    /// Creates a tracer, which may reuse the topology of the sphere tree of another moment.
+    #[doc(hidden)]
+    fn create(
+        scene: &Scene,
+        frame_time: FrameTime,
+        level: Level,
+        previous: Option<Spheres<Self>>,
+    ) -> Tracer<Self>
+    where
+        Self: Real;
+
+    /// Renders the row of tiles whose lowest row of pixels is `bottom`.
+    #[doc(hidden)]
+    fn band(tracer: &Tracer<Self>, bottom: u32, pixels: &mut [[f32; 4]])
+    where
+        Self: Real;
+
+    /// Renders a pixel.
+    #[doc(hidden)]
+    fn pixel(tracer: &Tracer<Self>, pixel: [u32; 2]) -> [Self; 3]
+    where
+        Self: Real;
+
+    /// Renders a tile with enough samples.
+    #[doc(hidden)]
+    fn adaptive_tile(tracer: &Tracer<Self>, corner: [u32; 2], max_error: f64) -> AdaptiveTile
+    where
+        Self: Real;
+}
+
+macro_rules! backends {
+    ($($number:ty),*) => {$(
+        impl Backend for $number {
+            fn create(
+                scene: &Scene,
+                frame_time: FrameTime,
+                level: Level,
+                previous: Option<Spheres<Self>>,
+            ) -> Tracer<Self> {
+                Tracer::with_level(scene, frame_time, level, previous)
+            }
+
+            fn band(tracer: &Tracer<Self>, bottom: u32, pixels: &mut [[f32; 4]]) {
+                tracer.band(bottom, pixels);
+            }
+
+            fn pixel(tracer: &Tracer<Self>, pixel: [u32; 2]) -> [Self; 3] {
+                tracer.pixel_color(pixel)
+            }
+
+            fn adaptive_tile(tracer: &Tracer<Self>, corner: [u32; 2], max_error: f64) -> AdaptiveTile {
+                tracer.adaptive_tile(corner, max_error)
+            }
+        }
+    )*};
+}
+backends!(f32, f64);
+
 impl<T: Real> Tracer<T> {
     /// Creates a tracer for the first moment of `scene`. All numbers are rounded to `T` once, here.
     #[must_use]
@@ -84,7 +146,7 @@ impl<T: Real> Tracer<T> {
     /// Creates a tracer for the given moment of `scene`.
     #[must_use]
     pub fn at(scene: &Scene, frame_time: FrameTime) -> Self {
-        Self::with_level(scene, frame_time, Level::best(), None)
+        T::create(scene, frame_time, Level::best(), None)
     }
 
     /// Creates a tracer for a different moment of the same scene and reuses the topology of the sphere tree.
@@ -94,7 +156,7 @@ impl<T: Real> Tracer<T> {
             Kernel::Spheres(world) => world.spheres,
             Kernel::Shapes(world) => world.spheres,
         };
-        Self::with_level(scene, frame_time, self.level, Some(spheres))
+        T::create(scene, frame_time, self.level, Some(spheres))
     }
 
     fn with_level(scene: &Scene, frame_time: FrameTime, level: Level, previous: Option<Spheres<T>>) -> Self {
@@ -120,7 +182,7 @@ impl<T: Real> Tracer<T> {
     }
 
     /// Renders the whole image, unclamped. `row_done` is called once per row, from any thread.
-    pub fn picture(&self, row_done: impl Fn() + Sync) -> Image {
+    pub fn render(&self, row_done: impl Fn() + Sync) -> Image {
         self.rows(0..self.film.size[1], row_done)
     }
 
@@ -132,7 +194,7 @@ impl<T: Real> Tracer<T> {
             .par_chunks_mut(width as usize * tile::TILE_SIDE as usize)
             .with_max_len(1);
         bands.enumerate().for_each(|(band, pixels)| {
-            self.band(rows.start + band as u32 * tile::TILE_SIDE, pixels);
+            T::band(self, rows.start + band as u32 * tile::TILE_SIDE, pixels);
             (0..pixels.len() / width as usize).for_each(|_| row_done());
         });
         Image::new(width, height, pixels)
@@ -141,11 +203,15 @@ impl<T: Real> Tracer<T> {
     /// Renders the pixel at (x, y), where y points up: the tone-mapped mean of its samples.
     #[must_use]
     pub fn pixel(&self, x: u32, y: u32) -> [T; 3] {
+        T::pixel(self, [x, y])
+    }
+
+    fn pixel_color(&self, pixel: [u32; 2]) -> [T; 3] {
         let mut sum = T::Vec3::ZERO;
         let count = self.film.samples;
         for index in 0..count {
             let sample = Sample {
-                pixel: [x, y],
+                pixel,
                 index,
                 count,
                 set: 0,

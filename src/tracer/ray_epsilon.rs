@@ -292,7 +292,7 @@ pub type EpsilonFamily = Vec<RayEpsilon>;
 impl Tracer<f64> {
     /// Renders the pixel at (x, y) with the given epsilons. The components are tone-mapped but not clamped.
     #[must_use]
-    pub fn styled(&self, [x, y]: [u32; 2], epsilons: &RayEpsilons) -> [f64; 3] {
+    pub fn pixel_with_epsilons(&self, [x, y]: [u32; 2], epsilons: &RayEpsilons) -> [f64; 3] {
         let count = self.film.samples;
         let mut sum = glam::DVec3::ZERO;
         for index in 0..count {
@@ -311,7 +311,7 @@ impl Tracer<f64> {
     /// Returns the families of epsilons that a shader of the scene may use: offsets along the normal or along
     /// the ray, smallest t, or offset and smallest t together, each with all light policies.
     #[must_use]
-    pub fn style_families(&self) -> Vec<EpsilonFamily> {
+    pub fn epsilon_families(&self) -> Vec<EpsilonFamily> {
         let lengths = usual_lengths(self.max_offset);
         let constructors: [fn(f64) -> RayEpsilon; 4] = [
             |offset| RayEpsilon {

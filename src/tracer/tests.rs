@@ -146,8 +146,8 @@ fn f32_and_f64_agree_to_f32_accuracy() {
         ),
         ball("[-1, 1, -4]", "0.7", "{ model = \"facing\", color = [1, 0, 0] }")
     );
-    let single = Tracer::<f32>::new(&scene(&text)).picture(|| ());
-    let double = Tracer::<f64>::new(&scene(&text)).picture(|| ());
+    let single = Tracer::<f32>::new(&scene(&text)).render(|| ());
+    let double = Tracer::<f64>::new(&scene(&text)).render(|| ());
     for (a, b) in single.pixels().iter().zip(double.pixels()) {
         for (a, b) in a.iter().zip(b) {
             assert!((a - b).abs() < 2e-5, "{a} {b}");
@@ -399,9 +399,9 @@ fn spread_samples_need_fewer() {
 fn adaptive_sampling_meets_the_error_bound() {
     let mut scene = exercise("09", [48, 32]);
     scene.film.sampler = Sampler::Sobol;
-    let (image, cost) = Tracer::<f64>::new(&scene).picture_within(0.004, || ());
+    let (image, cost) = Tracer::<f64>::new(&scene).render_adaptive(0.004, || ());
     scene.film.samples = 4096;
-    let reference = Tracer::<f64>::new(&scene).picture(|| ());
+    let reference = Tracer::<f64>::new(&scene).render(|| ());
     let error = root_mean_square_error(&image, &reference);
     assert!(error < 0.004 && cost.error <= 0.004, "{error} {cost:?}");
     let [most, fewest] = cost.per_pixel;
@@ -421,8 +421,8 @@ fn every_sampler_and_sample_count_gives_finite_images() {
                 scene.film.sampler = sampler;
                 scene.film.samples = samples;
                 let label = format!("{name} {sampler:?} {samples}");
-                assert!(finite(&Tracer::<f64>::new(&scene).picture(|| ())), "{label}");
-                assert!(finite(&Tracer::<f32>::new(&scene).picture(|| ())), "{label}, f32");
+                assert!(finite(&Tracer::<f64>::new(&scene).render(|| ())), "{label}");
+                assert!(finite(&Tracer::<f32>::new(&scene).render(|| ())), "{label}, f32");
             }
         }
     }
@@ -460,14 +460,14 @@ fn assert_same_bits<T: Real>(name: &str, scene: &Scene) {
     let tracers: Vec<_> = Level::all()
         .map(|level| Tracer::<T>::with_level(scene, FrameTime::default(), level, None))
         .collect();
-    let expected = bits(&tracers[0].picture(|| ()));
+    let expected = bits(&tracers[0].render(|| ()));
     for tracer in &tracers {
         for threads in [1, 3] {
             let pool = rayon::ThreadPoolBuilder::new()
                 .num_threads(threads)
                 .build()
                 .unwrap();
-            let image = pool.install(|| tracer.picture(|| ()));
+            let image = pool.install(|| tracer.render(|| ()));
             assert!(
                 bits(&image) == expected,
                 "{name}: {:?}, {threads} threads",
@@ -573,8 +573,8 @@ fn refitted_tree_renders_the_same_as_a_new_one() {
     let mut images = Vec::new();
     for frame in [1, 2, 9, 20, 21, 0] {
         moved = moved.moved(&scene, at(frame));
-        let image = moved.picture(|| ());
-        let rebuilt = Tracer::<f64>::at(&scene, at(frame)).picture(|| ());
+        let image = moved.render(|| ());
+        let rebuilt = Tracer::<f64>::at(&scene, at(frame)).render(|| ());
         assert_eq!(image.pixels(), rebuilt.pixels(), "frame {frame}");
         images.push(rebuilt);
     }

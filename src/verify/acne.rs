@@ -40,15 +40,15 @@ pub(super) fn detect(
     }
     // In f64, rounding decides the color where there is acne, and not where there is another mistake.
     let decided_by_rounding =
-        |check: &&CheckResult| check.answer.undecided - check.answer.tied > check.answer.differing;
+        |check: &&CheckResult| check.summary.ill_conditioned - check.summary.tied > check.summary.differing;
     let algorithm = algorithm.into_iter().filter(decided_by_rounding);
     let algorithm = algorithm.map(|check| (check, MAX_UNSTABLE, MIN_EXPLAINED_SHARE_IN_DOUBLE));
     let precision = precision
         .into_iter()
         .map(|check| (check, MIN_SHARE_IN_SINGLE, MIN_EXPLAINED_SHARE));
     algorithm.chain(precision).find_map(|(check, least, most)| {
-        let answer = &check.answer;
-        let differing = Share::of(answer, answer.differing + answer.undecided - answer.tied);
+        let answer = &check.summary;
+        let differing = Share::of(answer, answer.differing + answer.ill_conditioned - answer.tied);
         if differing.ratio() <= least {
             return None;
         }
@@ -65,9 +65,9 @@ pub(super) fn detect(
 /// Returns ill-conditioned pixels spread over the image, or differing ones if there are none, among those
 /// whose colors are kept.
 fn pixels_to_examine(check: &CheckResult, size: [u32; 2]) -> Vec<[u32; 2]> {
-    let is_undecided = check.statuses.contains(&PixelStatus::Undecided);
+    let is_undecided = check.statuses.contains(&PixelStatus::IllConditioned);
     let status = if is_undecided {
-        PixelStatus::Undecided
+        PixelStatus::IllConditioned
     } else {
         PixelStatus::Differs
     };
@@ -105,7 +105,7 @@ impl DifferingPixel {
         let is_jittered = tracer.sampler() == Some(Sampler::SineHash);
         epsilons.iter().any(|epsilons| {
             let other = tracer
-                .styled(self.pixel, epsilons)
+                .pixel_with_epsilons(self.pixel, epsilons)
                 .map(|part| part.clamp(0.0, 1.0));
             let is_mixed = |i: usize| {
                 let (least, most) = (other[i].min(exact[i]), other[i].max(exact[i]));

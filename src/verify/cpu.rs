@@ -97,7 +97,7 @@ impl<'a> Evaluator<'a> {
         report_iterations: impl FnOnce(u32),
     ) -> Result<Band, Failure> {
         let single = self.render_as::<f32>(rows, UndefinedPolicy::Observed, &self.single[0])?;
-        report_iterations(single.observations.most_rounds);
+        report_iterations(single.observations.max_iterations);
         let mut undefined = self.undefined_pixels::<f32>(rows, &single, &self.single[1]);
         let double = self.render_as::<f64>(rows, UndefinedPolicy::Observed, &self.double[0])?;
         let undefined_in_double = self.undefined_pixels::<f64>(rows, &double, &self.double[1]);
@@ -123,7 +123,7 @@ impl<'a> Evaluator<'a> {
                 wanted: Some(wanted),
                 ..Settings::default()
             };
-            let rendered = self.program.picture(self.case.frame, rows.clone(), &settings);
+            let rendered = self.program.render_rows(self.case.frame, rows.clone(), &settings);
             rendered.ok().map(|rendered| rendered.image)
         })
     }
@@ -178,7 +178,7 @@ impl<'a> Evaluator<'a> {
                 interrupt: Some(self.stop),
                 ..Settings::default()
             };
-            self.program.picture(self.case.frame, rows.clone(), &settings)
+            self.program.render_rows(self.case.frame, rows.clone(), &settings)
         })
     }
 }

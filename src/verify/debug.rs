@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use toyproof_eval::{
-    EventId, ExecutionTrace, Failure, ForcedPrefix, Number, PixelDebugger, Program, Settings, TraceEvent,
-    TraceSchema, TraceValue, What,
+    EventId, EventKind, ExecutionTrace, Failure, ForcedPrefix, Number, PixelDebugger, Program, Settings,
+    TraceEvent, TraceSchema, TraceValue,
 };
 use toyproof_image::Frame;
 
@@ -14,7 +14,7 @@ use crate::compare::SEEN;
 #[derive(Debug, Clone)]
 pub struct Explanation<'a> {
     /// The schema of the events.
-    pub plot: &'a TraceSchema,
+    pub schema: &'a TraceSchema,
     /// The pixel's color in f32; none if it is discarded.
     pub single: Option<[f64; 3]>,
     /// The same in f64.
@@ -23,7 +23,7 @@ pub struct Explanation<'a> {
     /// other.
     pub steps: Vec<Step>,
     /// The first step where the two diverge by more than [`BOUND`].
-    pub parting: Option<usize>,
+    pub divergence: Option<usize>,
     /// The step that causes a visible difference of the colors.
     pub cause: Option<usize>,
     /// The step in which f32 first has a NaN, or, where the color is infinite, an infinity.
@@ -42,11 +42,11 @@ pub fn explain<'a>(
     pixel: [u32; 2],
     deadline: Option<Instant>,
 ) -> Result<Explanation<'a>, Failure> {
-    let singles = program.teller(frame, settings::<f32>(deadline))?;
-    let doubles = program.teller(frame, settings::<f64>(deadline))?;
-    let schema = doubles.plot();
-    let single = singles.story(pixel, None)?;
-    let double = doubles.story(pixel, None)?;
+    let singles = program.pixel_debugger(frame, settings::<f32>(deadline))?;
+    let doubles = program.pixel_debugger(frame, settings::<f64>(deadline))?;
+    let schema = doubles.schema();
+    let single = singles.trace(pixel, None)?;
+    let double = doubles.trace(pixel, None)?;
     let cause = find_cause(&doubles, pixel, &single, &double)?;
     let steps = merge(schema, &single, &double);
     let infinite = single
@@ -60,10 +60,10 @@ pub fn explain<'a>(
     };
     let first = |is_bad| steps.iter().position(|step| has_value(step, is_bad));
     Ok(Explanation {
-        plot: schema,
+        schema,
         single: single.color,
         double: double.color,
-        parting: first_divergence(schema, &steps, false),
+        divergence: first_divergence(schema, &steps, false),
         cause: cause.and_then(|position| steps.iter().position(|step| step.position == position)),
         not_finite: first(f64::is_nan).or_else(|| first(f64::is_infinite).filter(|_| infinite)),
         is_cut: single.is_cut || double.is_cut,
@@ -94,7 +94,7 @@ pub struct Step {
 impl Step {
     /// The iteration of each enclosing loop, the outermost first, from 1.
     #[must_use]
-    pub fn rounds(&self) -> Vec<u32> {
+    pub fn iterations(&self) -> Vec<u32> {
         let rounds = self.position.iter().map(|&(_, iteration)| iteration);
         rounds.filter(|&iteration| iteration > 0).collect()
     }
@@ -166,8 +166,8 @@ struct PositionTracker<'a> {
 
 impl PositionTracker<'_> {
     fn position(&mut self, event: EventId) -> TracePosition {
-        let enclosing = self.schema.rounds(event);
-        let is_loop_header = self.schema.event(event).what == What::LoopHeader;
+        let enclosing = self.schema.loop_headers(event);
+        let is_loop_header = self.schema.event(event).kind == EventKind::LoopHeader;
         let known = self.loops.iter().zip(&enclosing);
         let same = known
             .take_while(|((running, _), iteration)| running == *iteration)
@@ -202,14 +202,13 @@ fn merge(schema: &TraceSchema, single: &ExecutionTrace, double: &ExecutionTrace)
         let Some((position, event)) = [&single, &double]
             .into_iter()
             .flatten()
-            .map(|(position, happened)| (position.clone(), happened.event))
+            .map(|(position, event)| (position.clone(), event.event))
             .next()
         else {
             return steps;
         };
-        let values = |happened: Option<(TracePosition, &TraceEvent)>| {
-            happened.map(|(_, happened)| happened.values.clone())
-        };
+        let values =
+            |event: Option<(TracePosition, &TraceEvent)>| event.map(|(_, event)| event.values.clone());
         steps.push(Step {
             event,
             position,
@@ -222,15 +221,15 @@ fn merge(schema: &TraceSchema, single: &ExecutionTrace, double: &ExecutionTrace)
 /// The events of a trace with their positions.
 fn with_positions<'a>(
     schema: &'a TraceSchema,
-    story: &'a ExecutionTrace,
+    trace: &'a ExecutionTrace,
 ) -> std::iter::Peekable<impl Iterator<Item = (TracePosition, &'a TraceEvent)>> {
     let mut tracker = PositionTracker {
         schema,
         loops: TracePosition::new(),
     };
-    let happened = story.happened.iter();
-    happened
-        .map(move |happened| (tracker.position(happened.event), happened))
+    let events = trace.events.iter();
+    events
+        .map(move |event| (tracker.position(event.event), event))
         .peekable()
 }
 
@@ -249,7 +248,7 @@ fn diverges(schema: &TraceSchema, step: &Step, flushed: bool) -> bool {
         return true;
     }
     // Counters and packed values follow from floats; only the branches that depend on them count.
-    let decides = schema.event(step.event).what == What::Branch;
+    let decides = schema.event(step.event).kind == EventKind::Branch;
     let (mut scale, mut most) = (0.0f64, 0.0f64);
     for pair in step.pairs() {
         match pair {
@@ -284,17 +283,17 @@ fn find_cause(
     if whole <= SEEN {
         return Ok(None);
     }
-    let forced = |events| {
-        doubles.story(
+    let forced = |length| {
+        doubles.trace(
             pixel,
             Some(ForcedPrefix {
-                story: single,
-                events,
+                trace: single,
+                length,
             }),
         )
     };
     // With `differs` forced events, the color still differs by half as much; with `agrees`, it does not.
-    let (mut differs, mut agrees) = (0, single.happened.len());
+    let (mut differs, mut agrees) = (0, single.events.len());
     while agrees - differs > 1 {
         let middle = usize::midpoint(differs, agrees);
         if color_distance(single, &forced(middle)?) >= whole.min(1.0) / 2.0 {
@@ -303,9 +302,9 @@ fn find_cause(
             agrees = middle;
         }
     }
-    let steps = merge(doubles.plot(), single, &forced(differs)?);
-    let parting = first_divergence(doubles.plot(), &steps, true);
-    let step = parting.map(|at| &steps[at]);
+    let steps = merge(doubles.schema(), single, &forced(differs)?);
+    let divergence = first_divergence(doubles.schema(), &steps, true);
+    let step = divergence.map(|at| &steps[at]);
     // Without a diverging value, the event that made the difference itself.
     let step = step.or_else(|| steps.iter().filter(|step| step.single.is_some()).nth(differs));
     Ok(step.map(|step| step.position.clone()))

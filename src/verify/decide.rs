@@ -9,7 +9,7 @@ use toyproof_glsl::Code;
 use toyproof_scene::Sampler;
 
 use crate::Failure;
-use crate::compare::{Answer, MeanTest, RARE_EVENT_VARIANCE_RATIO, REPLICATES, ReplicateTest, SEEN};
+use crate::compare::{CheckSummary, MeanTest, RARE_EVENT_VARIANCE_RATIO, REPLICATES, ReplicateTest, SEEN};
 
 /// The verdict on a shader, in the order of precedence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -107,11 +107,11 @@ impl From<CheckEvidence> for Evidence {
 #[derive(Debug, Clone, Default)]
 pub struct Checks {
     /// The shader in f64 against the tracer in f64.
-    pub algorithm: Option<Answer>,
+    pub algorithm: Option<CheckSummary>,
     /// The image in f32 against the shader in f64.
-    pub precision: Option<Answer>,
+    pub precision: Option<CheckSummary>,
     /// The GPU in f32 against the CPU in f32, in bits.
-    pub toolchain: Option<Answer>,
+    pub toolchain: Option<CheckSummary>,
 }
 
 /// The results of the checks, and of the tests that a difference calls for.
@@ -172,7 +172,7 @@ pub struct Share {
 impl Share {
     /// Returns `count` pixels of those of a check.
     #[must_use]
-    pub fn of(check: &Answer, count: u64) -> Self {
+    pub fn of(check: &CheckSummary, count: u64) -> Self {
         Self {
             count,
             of: check.pixels,
@@ -181,7 +181,7 @@ impl Share {
 
     /// Returns the pixels that differ in a check.
     #[must_use]
-    pub fn differing(check: &Answer) -> Self {
+    pub fn differing(check: &CheckSummary) -> Self {
         Self::of(check, check.differing)
     }
 
@@ -358,7 +358,7 @@ fn by_checks(checks: &Checks) -> (Verdict, Reason) {
     if undefined.ratio() > MAX_UNDEFINED {
         return (Verdict::Inconclusive, Reason::Undefined(undefined));
     }
-    let ill_conditioned = Share::of(algorithm, algorithm.undecided - algorithm.tied);
+    let ill_conditioned = Share::of(algorithm, algorithm.ill_conditioned - algorithm.tied);
     if ill_conditioned.ratio() > MAX_UNSTABLE {
         return (Verdict::Unstable, Reason::IllConditioned(ill_conditioned));
     }
@@ -370,7 +370,7 @@ fn by_checks(checks: &Checks) -> (Verdict, Reason) {
     let tied = checks.precision.as_ref().map_or(0, |precision| precision.tied);
     let reason = Reason::Agrees {
         differing,
-        excluded: algorithm.undecided + algorithm.undefined,
+        excluded: algorithm.ill_conditioned + algorithm.undefined,
         tied: algorithm.tied.max(tied),
     };
     (Verdict::Correct, reason)
@@ -468,14 +468,14 @@ mod tests {
     use super::*;
 
     /// The result of a check of 10,000 pixels.
-    fn answer([differing, undecided, undefined]: [u64; 3], max_abs: f64) -> Answer {
-        Answer {
+    fn answer([differing, ill_conditioned, undefined]: [u64; 3], max_abs: f64) -> CheckSummary {
+        CheckSummary {
             pixels: 10_000,
             differing,
-            undecided,
+            ill_conditioned,
             undefined,
             max_abs,
-            ..Answer::default()
+            ..CheckSummary::default()
         }
     }
 

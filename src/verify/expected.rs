@@ -135,14 +135,14 @@ impl Expected {
         }
     }
 
-    /// [`Tracer::style_families`]
+    /// [`Tracer::epsilon_families`]
     pub(super) fn families(&self) -> &[EpsilonFamily] {
-        self.families.get_or_init(|| self.tracer.style_families())
+        self.families.get_or_init(|| self.tracer.epsilon_families())
     }
 
-    /// [`Tracer::styled`]
-    pub(super) fn styled(&self, x: u32, y: u32, epsilons: &RayEpsilons) -> [f64; 3] {
-        self.tracer.styled([x, y], epsilons)
+    /// [`Tracer::pixel_with_epsilons`]
+    pub(super) fn pixel_with_epsilons(&self, x: u32, y: u32, epsilons: &RayEpsilons) -> [f64; 3] {
+        self.tracer.pixel_with_epsilons([x, y], epsilons)
     }
 
     /// Whether the reference itself changes color in a pixel when the scene's numbers are perturbed by a few
@@ -214,7 +214,7 @@ mod tests {
         });
         let band = expected.rows(&rows);
         assert!(bands.iter().all(|other| Arc::ptr_eq(other, &band)));
-        assert_eq!(*band, expected.tracer.picture(|| ()));
+        assert_eq!(*band, expected.tracer.render(|| ()));
         assert_eq!(expected.bytes(), 64 * 36 * 16);
     }
 

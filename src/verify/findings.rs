@@ -7,7 +7,7 @@ use toyproof_diagnostic::{Diagnostic, Span};
 use toyproof_eval::{self as eval, Program};
 use toyproof_image::{Image, Rgb8Image};
 
-use crate::compare::{self, Answer, Comparison, DiffLevel, PixelStatus};
+use crate::compare::{self, CheckSummary, Comparison, DiffLevel, PixelStatus};
 use crate::contain::{Panic, Part, contain};
 use crate::decide::{CheckEvidence, Checks, Evidence, MAX_UNSTABLE, Reason, Share, Verdict, decide};
 use crate::mistake::Named;
@@ -34,13 +34,13 @@ pub struct Findings {
     /// The toolchain check; only for strict runs on a GPU.
     pub toolchain: Option<CheckResult>,
     /// The comparison of the shader's image with the reference.
-    pub picture: Option<(Comparison, Vec<DiffLevel>)>,
+    pub comparison: Option<(Comparison, Vec<DiffLevel>)>,
     /// The tracer's image.
     pub reference: Option<Rgb8Image>,
     /// The GPU's image, or the evaluator's in f32 without a GPU.
     pub actual: Rgb8Image,
     /// The GPU and its times; none if the evaluator rendered the image.
-    pub painter: Option<Painter>,
+    pub gpu_run: Option<GpuRun>,
     /// Observations of the run, with their lines.
     pub notes: Vec<Diagnostic>,
     /// Where the shader loses precision, if float32 is not enough and the place could be found; a note or a
@@ -60,7 +60,7 @@ pub struct Findings {
 
 /// The GPU that rendered an image, and its times.
 #[derive(Debug, Clone)]
-pub struct Painter {
+pub struct GpuRun {
     /// Adapter and driver.
     pub device: String,
     /// Time for naga to parse, validate and write.
@@ -75,9 +75,9 @@ pub struct Painter {
 #[derive(Debug, Default)]
 pub struct CheckResult {
     /// The counts.
-    pub answer: Answer,
+    pub summary: CheckSummary,
     /// The difference level of each pixel, bottom row first.
-    pub marks: Vec<DiffLevel>,
+    pub diff_levels: Vec<DiffLevel>,
     /// The status of each pixel.
     pub(super) statuses: Vec<PixelStatus>,
     /// The shader's colors in pixels that do not agree, by pixel index.
@@ -87,13 +87,14 @@ pub struct CheckResult {
 impl CheckResult {
     /// Adds the band above the first `height` rows.
     pub(super) fn extend(&mut self, expected: &Image, actual: &Image, statuses: &[PixelStatus], height: u32) {
-        self.answer
-            .extend(&Answer::new(expected, actual, statuses), height);
-        self.marks.extend(compare::marks(expected, actual, statuses));
+        self.summary
+            .extend(&CheckSummary::new(expected, actual, statuses), height);
+        self.diff_levels
+            .extend(compare::diff_levels(expected, actual, statuses));
         let offset = self.statuses.len();
         let differing = statuses.iter().enumerate();
-        let differing =
-            differing.filter(|&(_, &status)| matches!(status, PixelStatus::Differs | PixelStatus::Undecided));
+        let differing = differing
+            .filter(|&(_, &status)| matches!(status, PixelStatus::Differs | PixelStatus::IllConditioned));
         let capacity = MAX_KEPT_COLORS.saturating_sub(self.actual.len());
         self.actual.extend(differing.take(capacity).map(|(at, _)| {
             let [r, g, b, _] = actual.pixels()[at];
@@ -118,7 +119,7 @@ impl Findings {
         deadline: Instant,
         sampled_rows: Option<&SampledRows>,
     ) {
-        let answer = |check: &Option<CheckResult>| check.as_ref().map(|check| check.answer.clone());
+        let answer = |check: &Option<CheckResult>| check.as_ref().map(|check| check.summary.clone());
         let mut evidence = CheckEvidence {
             checks: Checks {
                 algorithm: answer(&self.algorithm),
@@ -217,7 +218,7 @@ impl Findings {
     fn explain_few_pixels(&mut self, case: &Case, program: &Program) {
         if let (Verdict::Correct, Some(hypotheses), Some(algorithm)) =
             (self.verdict, case.hypotheses, &self.algorithm)
-            && algorithm.answer.differing > 0
+            && algorithm.summary.differing > 0
         {
             let differing = notes::sample_pixels(algorithm, case.frame.size, usize::MAX);
             let named = contain(Part::Mistake, || hypotheses.explaining(program, &differing));
@@ -227,7 +228,7 @@ impl Findings {
 
     /// Searches for the line in which float32 loses precision, where it is not enough.
     fn locate_loss_of_precision(&mut self, case: &Case, program: &Program, deadline: Instant) {
-        let differs_often = |check: &CheckResult| Share::differing(&check.answer).ratio() > MAX_UNSTABLE;
+        let differs_often = |check: &CheckResult| Share::differing(&check.summary).ratio() > MAX_UNSTABLE;
         let loses_precision =
             self.verdict == Verdict::Ok && self.precision.as_ref().is_some_and(differs_often);
         if self.verdict != Verdict::Unstable && !loses_precision {

@@ -143,7 +143,7 @@ pub use self::decide::{
     OtherRandomNumbers, Reason, Share, Verdict, decide,
 };
 pub use self::expected::Expected;
-pub use self::findings::{CheckResult, Findings, Painter};
+pub use self::findings::{CheckResult, Findings, GpuRun};
 pub use self::notes::unbound;
 pub use self::on_gpu::{GpuFailure, Worker};
 use crate::contain::Panic;

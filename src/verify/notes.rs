@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use toyproof_diagnostic::{Diagnostic, Severity, Span, grouped, plural};
-use toyproof_eval::{Fault, MESA_CAP, Observations, Observed, Program, TraceValue, What};
+use toyproof_eval::{EventKind, Fault, MESA_CAP, Observations, Observed, Program, TraceValue};
 use toyproof_glsl::tree::{ExprKind, Input, SamplerShape, VariableKind};
 use toyproof_glsl::{Checked, Code};
 use toyproof_image::{Frame, Image};
@@ -198,7 +198,7 @@ impl NotFinite {
             if count == 1 { "pixel" } else { "pixels" },
             value.unwrap_or_default(),
         );
-        let span = explained.plot.event(step.event).at.span;
+        let span = explained.schema.event(step.event).at.span;
         Some(
             Diagnostic::warning(Code::NotFinite.as_str(), message)
                 .at(span)
@@ -215,7 +215,7 @@ pub(super) fn sample_pixels(check: &CheckResult, size: [u32; 2], max_count: usiz
         let statuses = check.statuses.iter().enumerate();
         statuses.filter(move |&(_, &own)| own == status).map(|(at, _)| at)
     };
-    let statuses = [PixelStatus::Differs, PixelStatus::Undecided];
+    let statuses = [PixelStatus::Differs, PixelStatus::IllConditioned];
     let status = statuses.into_iter().find(|&status| of(status).next().is_some());
     let Some(status) = status else {
         return Vec::new();
@@ -234,10 +234,10 @@ pub(super) fn sample_pixels(check: &CheckResult, size: [u32; 2], max_count: usiz
 
 fn diagnostic(explanation: &Explanation<'_>, [x, y]: [u32; 2]) -> Option<(Span, Diagnostic)> {
     let step = &explanation.steps[explanation.cause?];
-    let event = explanation.plot.event(step.event);
+    let event = explanation.schema.event(step.event);
     let at = format!("at ({x}, {y})");
     let message = match step.worst() {
-        Some((_, single, double)) if event.what == What::Branch => {
+        Some((_, single, double)) if event.kind == EventKind::Branch => {
             let branch = |value| matches!(value, TraceValue::Word(word) if word != 0);
             format!(
                 "float32 decides otherwise here: {at} this is {}, and {} in double precision",

@@ -15,13 +15,13 @@ use toyproof_translate::FloatMode;
 
 use crate::cpu::Evaluator;
 use crate::session::{IterationCount, VerifySession};
-use crate::{Case, EVALUATOR_TIME_FACTOR, Failure, Findings, Painter, join, notes, on_cpu, within};
+use crate::{Case, EVALUATOR_TIME_FACTOR, Failure, Findings, GpuRun, join, notes, on_cpu, within};
 
 /// The capacity of the queue of GPU bands that wait to be compared: an image of 1920×1080. If a larger image
 /// has to wait, so does watching its loops.
 const MAX_QUEUED_BANDS: usize = 9;
 
-impl Painter {
+impl GpuRun {
     fn of(drawn: DrawOutput) -> Self {
         Self {
             device: drawn.device,
@@ -69,11 +69,11 @@ pub(super) fn verify(
         return Err(failure.clone().into());
     }
     // Where the driver could not be watched in time, the evaluator has counted the iterations.
-    let painter = match drawn.loop_truncated.unwrap_or(session.observed.beyond_cap) {
-        0 => Painter::of(drawn),
+    let gpu_run = match drawn.loop_truncated.unwrap_or(session.observed.beyond_cap) {
+        0 => GpuRun::of(drawn),
         pixels => return Err(Failure::LoopTruncated(pixels)),
     };
-    Ok(within(case.pool, || session.findings(Some(painter))))
+    Ok(within(case.pool, || session.findings(Some(gpu_run))))
 }
 
 /// Verifies with the evaluator alone because the driver's compiler exceeded the time limit: how long it takes

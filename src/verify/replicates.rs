@@ -84,9 +84,9 @@ impl TracedPixel {
 
     /// Whether the pixel's color depends on random numbers.
     fn differs(&self, tracer: &Tracer<f64>) -> bool {
-        let first = tracer.developed(self.selection[0]);
+        let first = tracer.tone_mapped(self.selection[0]);
         let mut others = self.selection.iter().chain(&self.halves);
-        others.any(|&other| differs(first, tracer.developed(other)))
+        others.any(|&other| differs(first, tracer.tone_mapped(other)))
     }
 }
 
@@ -190,13 +190,13 @@ pub(super) fn is_random(
     let differs = |at: usize| {
         let [x, y] = [columns[at % columns.len()], rows[at / columns.len()]];
         let status = algorithm.statuses[y as usize * size[0] as usize + x as usize];
-        matches!(status, PixelStatus::Differs | PixelStatus::Undecided)
+        matches!(status, PixelStatus::Differs | PixelStatus::IllConditioned)
     };
     let differing: Vec<usize> = (0..unsalted.len()).filter(|&at| differs(at)).collect();
     Reseeding::all().into_iter().any(|reseeding| {
         shader.salted(reseeding, 1).is_some_and(|other| {
             let changes = |&&at: &&usize| {
-                let [a, b] = [&unsalted, &other].map(|own| own[at].developed);
+                let [a, b] = [&unsalted, &other].map(|own| own[at].tone_mapped);
                 (0..3).any(|i| (a[i] - b[i]).abs() > MIN_RANDOM_CHANGE)
             };
             let changed = differing.iter().filter(changes).count();
@@ -238,7 +238,7 @@ pub(super) fn noisy_pixels(
     let [columns, rows] = places.pixels();
     let pixels = (0..columns.len() * rows.len()).into_par_iter().map(|at| {
         let pixel = [columns[at % columns.len()], rows[at / columns.len()]];
-        let own: Vec<_> = salted.iter().map(|set| set[at].developed).collect();
+        let own: Vec<_> = salted.iter().map(|set| set[at].tone_mapped).collect();
         let reference: Vec<_> = (1..=count).map(|set| tracer.resampled(pixel, set)).collect();
         let variances = [&own, &reference].map(|all| variance(all));
         NoisyPixel {
@@ -259,7 +259,7 @@ fn uses_scene_numbers(
 ) -> bool {
     let of_each = (0..pixels.len()).into_par_iter().map(|at| {
         let [x, y] = pixels[at];
-        let reference = tracer.undeveloped(tracer.pixel(x, y));
+        let reference = tracer.inverse_tone_mapped(tracer.pixel(x, y));
         let (mean, selected) = (traced[at].mean(), variance(&traced[at].selection));
         let mut sums = [0.0; 3];
         for i in 0..3 {
@@ -294,7 +294,7 @@ fn places(size: [u32; 2], tracer: &Tracer<f64>) -> Places {
 #[derive(Clone, Copy)]
 struct ShaderPixel {
     /// The color as it is shown.
-    developed: [f64; 3],
+    tone_mapped: [f64; 3],
     /// The mean of its samples, by the inverse of the tone map.
     mean: [f64; 3],
 }
@@ -326,9 +326,9 @@ impl ReplicatedShader<'_> {
     fn shader_pixels(&self, image: &Image) -> Vec<ShaderPixel> {
         let own = |&[r, g, b, _]: &[f32; 4]| {
             let color = [r, g, b].map(f64::from);
-            let mean = self.tracer.undeveloped(color);
+            let mean = self.tracer.inverse_tone_mapped(color);
             ShaderPixel {
-                developed: color.map(|part| part.clamp(0.0, 1.0)),
+                tone_mapped: color.map(|part| part.clamp(0.0, 1.0)),
                 // NaN becomes the largest mean, which agrees with nothing.
                 mean: mean.map(|part| {
                     if part.abs() < MAX_SAMPLE_MEAN {
@@ -365,7 +365,7 @@ impl ReplicatedShader<'_> {
             is_random_in_scene[at]
                 || sets
                     .iter()
-                    .any(|set| differs(set[at].developed, sets[0][at].developed))
+                    .any(|set| differs(set[at].tone_mapped, sets[0][at].tone_mapped))
         };
         let smoothed = smoothed_variance(&weight_sets, self.places.pixels()[0].len());
         // A rare event: it occurs in the scene's own samples and in no other set, or sometimes in the
@@ -376,7 +376,7 @@ impl ReplicatedShader<'_> {
                 (own.mean[i] - traced.mean()[i]).abs()
                     <= MAX_RARE_DEVIATION * smoothed[at][i].sqrt() + EXACT_TOLERANCE
             };
-            differs(self.tracer.pixel(x, y), self.tracer.developed(traced.mean())) || (0..3).all(is_noise)
+            differs(self.tracer.pixel(x, y), self.tracer.tone_mapped(traced.mean())) || (0..3).all(is_noise)
         };
         let fixed = (0..pixels.len())
             .filter(|&at| status(pixels[at]) == PixelStatus::Differs && !is_random(at) && !is_rare(at))
@@ -434,9 +434,9 @@ impl ReplicatedShader<'_> {
     ) -> Option<Vec<Vec<ShaderPixel>>> {
         let distance = |own: &[ShaderPixel]| {
             let pixels = own.iter().zip(traced).map(|(own, traced)| {
-                let reference = self.tracer.developed(traced.mean());
+                let reference = self.tracer.tone_mapped(traced.mean());
                 (0..3)
-                    .map(|i| (own.developed[i] - reference[i]).powi(2))
+                    .map(|i| (own.tone_mapped[i] - reference[i]).powi(2))
                     .sum::<f64>()
             });
             pixels.sum::<f64>()
@@ -446,7 +446,7 @@ impl ReplicatedShader<'_> {
             let (mut all, mut changed) = (0, 0);
             for at in random {
                 all += 1;
-                changed += usize::from(differs(unsalted[at].developed, other[at].developed));
+                changed += usize::from(differs(unsalted[at].tone_mapped, other[at].tone_mapped));
             }
             changed as f64 >= MIN_CHANGED_SHARE * f64::from(all) && all > 0
         };
@@ -501,8 +501,8 @@ fn smoothed_variance(sets: &[Vec<ShaderPixel>], width: usize) -> Vec<[f64; 3]> {
 /// Whether the shader clamps its samples to white, which changes their mean.
 fn clamps_samples(tracer: &Tracer<f64>, sets: &[Vec<ShaderPixel>], traced: &[TracedPixel]) -> bool {
     let is_above = |color: &[f64; 3]| {
-        let developed = tracer.developed(*color);
-        (0..3).any(|i| color[i] > 1.0 && developed[i] >= 1.0)
+        let tone_mapped = tracer.tone_mapped(*color);
+        (0..3).any(|i| color[i] > 1.0 && tone_mapped[i] >= 1.0)
     };
     let shader_is_above = sets.iter().flatten().any(|own| is_above(&own.mean));
     !shader_is_above && traced.iter().any(|traced| traced.selection.iter().any(is_above))
@@ -518,7 +518,7 @@ fn is_white(
     clamps_samples: bool,
 ) -> bool {
     let own_mean = self::mean(own);
-    let [shown, own_shown] = [mean, own_mean].map(|mean| tracer.developed(mean));
+    let [shown, own_shown] = [mean, own_mean].map(|mean| tracer.tone_mapped(mean));
     let is_beyond = |mean: f64, variance: f64| mean + 3.0 * variance.sqrt() > 1.0;
     let variances = [traced.variance, variance(own)];
     (0..3).any(|i| {

@@ -21,7 +21,7 @@ use crate::expected::NumberType;
 use crate::notes::{self, NotFinite};
 use crate::silhouette_precision::{self, SilhouetteBand};
 use crate::stochastic::SampledRows;
-use crate::{Case, CheckResult, Expected, Failure, Findings, Painter, join, timed};
+use crate::{Case, CheckResult, Expected, Failure, Findings, GpuRun, join, timed};
 
 /// The message after each band.
 #[derive(Debug, Clone, Copy)]
@@ -46,7 +46,7 @@ pub(super) struct VerifySession<'a> {
     mixed: Mixed,
     precision: CheckResult,
     toolchain: Option<CheckResult>,
-    picture: Option<(Comparison, Vec<DiffLevel>)>,
+    comparison: Option<(Comparison, Vec<DiffLevel>)>,
     actual: Rgb8Image,
     reference: Option<Rgb8Image>,
     not_finite: NotFinite,
@@ -86,7 +86,7 @@ impl<'a> VerifySession<'a> {
             mixed: Mixed::of(u64::from(width) * u64::from(height)),
             precision: CheckResult::default(),
             toolchain: None,
-            picture: None,
+            comparison: None,
             actual: empty(),
             reference: case.expected.map(|_| empty()),
             not_finite: NotFinite::default(),
@@ -175,8 +175,8 @@ impl<'a> VerifySession<'a> {
             if let (Some(reference), Some(image)) = (reference, &mut self.reference) {
                 image.extend(reference);
                 let (comparison, marks) = compare::compare(reference, actual);
-                match &mut self.picture {
-                    None => self.picture = Some((comparison, marks)),
+                match &mut self.comparison {
+                    None => self.comparison = Some((comparison, marks)),
                     Some((whole, all)) => {
                         whole.extend(&comparison, offset);
                         all.extend(marks);
@@ -241,18 +241,18 @@ impl<'a> VerifySession<'a> {
         self.algorithm.extend(reference, &band.double, &statuses, offset);
     }
 
-    /// Returns the findings; `painter` is the GPU that rendered the image.
-    pub(super) fn findings(self, painter: Option<Painter>) -> Findings {
+    /// Returns the findings; `gpu_run` is the GPU that rendered the image.
+    pub(super) fn findings(self, gpu_run: Option<GpuRun>) -> Findings {
         let mut findings = Findings {
             verdict: Verdict::Ok,
             reason: Reason::NoReference,
             algorithm: None,
             precision: None,
             toolchain: None,
-            picture: self.picture,
+            comparison: self.comparison,
             reference: self.reference,
             actual: self.actual,
-            painter,
+            gpu_run,
             notes: Vec::new(),
             cause: None,
             mistake: None,
@@ -308,8 +308,8 @@ impl Reference for FromRow<'_> {
     fn families(&self) -> &[EpsilonFamily] {
         self.expected.families()
     }
-    fn styled(&self, x: u32, y: u32, epsilons: &RayEpsilons) -> [f64; 3] {
-        self.expected.styled(x, self.offset + y, epsilons)
+    fn pixel_with_epsilons(&self, x: u32, y: u32, epsilons: &RayEpsilons) -> [f64; 3] {
+        self.expected.pixel_with_epsilons(x, self.offset + y, epsilons)
     }
     fn samples(&self) -> u32 {
         self.expected.tracer().samples()

@@ -13,7 +13,7 @@ use toyproof_image::Image;
 use toyproof_scene::Sampler;
 use toyproof_tracer::{RESAMPLED_ROWS, Tracer};
 
-use crate::compare::{Answer, EXACT_TOLERANCE, PixelStatus, RandomPixel, means, uses_scene_numbers};
+use crate::compare::{CheckSummary, EXACT_TOLERANCE, PixelStatus, RandomPixel, means, uses_scene_numbers};
 use crate::decide::{Checks, MAX_VARIANCE_RATIO, MeanComparison, OtherRandomNumbers};
 use crate::mistake::NoisyPixel;
 use crate::notes::sample_pixels;
@@ -152,11 +152,11 @@ impl<'a> SampledRows<'a> {
                 return None;
             }
         };
-        let without_differing = Answer {
+        let without_differing = CheckSummary {
             differing: 0,
-            undecided: 0,
+            ill_conditioned: 0,
             tied: 0,
-            ..algorithm.answer.clone()
+            ..algorithm.summary.clone()
         };
         let random_numbers = OtherRandomNumbers {
             sampler: self.sampler,
@@ -176,17 +176,21 @@ impl<'a> SampledRows<'a> {
 
     /// Returns the precision check without the pixels that differ from the scene, and without random ones: in
     /// float32, the same formula may yield other random numbers.
-    pub(super) fn precision_of_others(&self, algorithm: &CheckResult, precision: &CheckResult) -> Answer {
+    pub(super) fn precision_of_others(
+        &self,
+        algorithm: &CheckResult,
+        precision: &CheckResult,
+    ) -> CheckSummary {
         let width = self.size[0] as usize;
         let statuses = precision.statuses.iter().zip(&algorithm.statuses);
         let left = statuses.enumerate().filter(|&(at, (&precision, &algorithm))| {
             precision == PixelStatus::Differs
-                && !matches!(algorithm, PixelStatus::Differs | PixelStatus::Undecided)
+                && !matches!(algorithm, PixelStatus::Differs | PixelStatus::IllConditioned)
                 && !self.is_random([(at % width) as u32, (at / width) as u32])
         });
-        Answer {
+        CheckSummary {
             differing: left.count() as u64,
-            ..precision.answer.clone()
+            ..precision.summary.clone()
         }
     }
 
@@ -268,11 +272,11 @@ struct SampleSets<'a> {
 
 impl<'a> SampleSets<'a> {
     fn of(tracer: &'a Tracer<f64>, bottom: u32, sets: Range<u32>) -> Self {
-        let means: Vec<_> = sets.map(|set| tracer.redrawn_rows(bottom, set)).collect();
-        let developed = |means: &Vec<_>| means.iter().map(|&mean| tracer.developed(mean)).collect();
+        let means: Vec<_> = sets.map(|set| tracer.resampled_rows(bottom, set)).collect();
+        let tone_mapped = |means: &Vec<_>| means.iter().map(|&mean| tracer.tone_mapped(mean)).collect();
         Self {
             tracer,
-            colors: means.iter().map(developed).collect(),
+            colors: means.iter().map(tone_mapped).collect(),
             means,
         }
     }
@@ -304,7 +308,7 @@ impl<'a> SampleSets<'a> {
 
     /// How much brighter a pixel is if the samples of all sets are averaged before the tone map.
     fn tone_map_bias(&self, at: usize) -> [f64; 3] {
-        let together = self.tracer.developed(mean(&self.means, at));
+        let together = self.tracer.tone_mapped(mean(&self.means, at));
         let mean = self.mean(at);
         [0, 1, 2].map(|i| together[i] - mean[i])
     }

@@ -27,13 +27,13 @@ fn assert_trace_ends_with_color<N: Number>(exercise: &Exercise) {
         .render::<N>(&frame, &Settings::default())
         .unwrap()
         .framebuffer;
-    let teller = program.teller::<N>(&frame, Settings::default()).unwrap();
+    let pixel_debugger = program.pixel_debugger::<N>(&frame, Settings::default()).unwrap();
     for pixel @ [x, y] in PIXELS {
-        let story = teller.story(pixel, None).unwrap();
+        let trace = pixel_debugger.trace(pixel, None).unwrap();
         let rendered = painting.get(x, y).map(|part| part.to_f64().to_bits());
-        let reported = story.color.unwrap().map(f64::to_bits);
+        let reported = trace.color.unwrap().map(f64::to_bits);
         assert_eq!(reported, rendered, "{} at {pixel:?}", exercise.name);
-        assert!(story.is_cut || !story.happened.is_empty());
+        assert!(trace.is_cut || !trace.events.is_empty());
     }
 }
 
@@ -50,21 +50,25 @@ fn traces_end_with_the_rendered_color() {
 fn fully_forced_traces_end_with_the_same_color() {
     for exercise in EVERY_EXERCISE {
         let (program, frame) = (program(exercise.shader), frame(exercise));
-        let singles = program.teller::<f32>(&frame, Settings::default()).unwrap();
-        let doubles = program.teller::<f64>(&frame, Settings::default()).unwrap();
+        let singles = program
+            .pixel_debugger::<f32>(&frame, Settings::default())
+            .unwrap();
+        let doubles = program
+            .pixel_debugger::<f64>(&frame, Settings::default())
+            .unwrap();
         for pixel in PIXELS {
-            let single = singles.story(pixel, None).unwrap();
+            let single = singles.trace(pixel, None).unwrap();
             let lead = ForcedPrefix {
-                story: &single,
-                events: single.happened.len(),
+                trace: &single,
+                length: single.events.len(),
             };
-            let led = doubles.story(pixel, Some(lead)).unwrap();
+            let led = doubles.trace(pixel, Some(lead)).unwrap();
             if single.is_cut {
                 continue;
             }
             assert_eq!(
-                led.happened.len(),
-                single.happened.len(),
+                led.events.len(),
+                single.events.len(),
                 "{} at {pixel:?}",
                 exercise.name
             );
@@ -165,8 +169,8 @@ fn explain_follows_uniform_and_shared_values() {
             "json",
         ];
         let run = toyproof(folder.path(), &arguments);
-        let story: Value = serde_json::from_str(&run.stdout).unwrap();
-        let cause = &story["steps"][story["cause_at"].as_u64().unwrap() as usize];
+        let trace: Value = serde_json::from_str(&run.stdout).unwrap();
+        let cause = &trace["steps"][trace["cause_at"].as_u64().unwrap() as usize];
         assert_eq!(cause["line"], line, "{body}\n{cause}");
     }
 }

@@ -162,7 +162,7 @@ fn the_evaluator_checks_shaders_that_the_driver_cannot_compile_in_time() {
     let minute = Duration::from_secs(60);
     let findings = judge("COMPILING; exec sleep 60", &checked(SPHERE.shader), minute).unwrap();
     assert_eq!(findings.verdict, Verdict::Ok);
-    assert!(findings.toolchain.is_none() && findings.precision.is_some() && findings.painter.is_none());
+    assert!(findings.toolchain.is_none() && findings.precision.is_some() && findings.gpu_run.is_none());
     let note = findings.notes.iter().find(|note| note.code == "W0606").unwrap();
     assert!(
         note.message.contains("takes longer than 60 s to compile"),

@@ -771,7 +771,7 @@ fn every_rewrite_stays_correct() {
         return;
     }
     let outcomes = &*OUTCOMES;
-    let undecided = |outcome: &&Outcome| algorithm(&outcome.findings).undecided;
+    let undecided = |outcome: &&Outcome| algorithm(&outcome.findings).ill_conditioned;
     if let Some(most) = outcomes.iter().max_by_key(undecided) {
         eprintln!(
             "{} rewrites; “{}” of {} leaves most undecided: {:.2} % of the pixels",

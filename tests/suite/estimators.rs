@@ -253,7 +253,7 @@ fn deviation(actual_image: &Image, scene: &Scene) -> [f64; 2] {
 
 /// Compares the tracer's image of `scene` with estimates of `other`.
 fn compare(scene: &Scene, other: &Scene) -> [f64; 2] {
-    let actual_image = Tracer::<f64>::new(scene).picture(|| ());
+    let actual_image = Tracer::<f64>::new(scene).render(|| ());
     deviation(&actual_image, other)
 }
 

@@ -669,7 +669,7 @@ fn divergent_pixels_have_the_same_bits_as_on_the_gpu() {
 #[test]
 fn endless_loops_are_stopped() {
     let settings = Settings::<f32> {
-        rounds: 1 << 16,
+        max_iterations: 1 << 16,
         ..Settings::default()
     };
     for body in [
@@ -714,7 +714,7 @@ fn iterations_of_unrolled_and_other_loops_are_counted() {
     for (body, rounds) in bodies {
         let program = Program::new(&checked("", body).unwrap()).unwrap();
         let rendered = program.render::<f32>(&frame, &Settings::default()).unwrap();
-        assert_eq!(rendered.observations.most_rounds, rounds, "{body}");
+        assert_eq!(rendered.observations.max_iterations, rounds, "{body}");
     }
 }
 

@@ -96,7 +96,7 @@ static CASES: &[Case] = &[
     ),
     // Constants that Mesa 22.3 folds, also if they are stored in a variable first.
     (
-        Pass::Elementary,
+        Pass::InexactFunctions,
         "",
         "uint u = 0xC000BC00u; o.x = unpackHalf2x16(u).y;",
         -2.0,

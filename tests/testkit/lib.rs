@@ -30,7 +30,7 @@ use toyproof::lint::{Lints, lint};
 use toyproof::scene::{self, FrameTime, Scene};
 use toyproof::tracer::Tracer;
 use toyproof::translate::FloatMode;
-use toyproof::verify::compare::Answer;
+use toyproof::verify::compare::CheckSummary;
 use toyproof::verify::mistake::Hypotheses;
 use toyproof::verify::{Case, Expected, Findings, verify};
 
@@ -126,8 +126,8 @@ pub const SIZE: [u32; 2] = [160, 90];
 const SMALL: [u32; 2] = [48, 27];
 
 /// The answer of the algorithm check: every test here has a scene.
-pub fn algorithm(findings: &Findings) -> &Answer {
-    &findings.algorithm.as_ref().expect("there is a scene").answer
+pub fn algorithm(findings: &Findings) -> &CheckSummary {
+    &findings.algorithm.as_ref().expect("there is a scene").summary
 }
 
 /// The numbers behind a verdict, for people.
@@ -138,12 +138,12 @@ pub fn numbers(findings: &Findings) -> String {
         ("toolchain", &findings.toolchain),
     ];
     let format_errors = questions.into_iter().filter_map(|(name, requested)| {
-        let answer = &requested.as_ref()?.answer;
+        let answer = &requested.as_ref()?.summary;
         let percent = |count| 100.0 * answer.share(count);
         Some(format!(
             "{name} {:.2} % differ, {:.2} % undecided, {:.2} % undefined, by at most {:.1e}",
             percent(answer.differing),
-            percent(answer.undecided),
+            percent(answer.ill_conditioned),
             percent(answer.undefined),
             answer.max_abs
         ))

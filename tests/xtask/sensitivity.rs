@@ -5,7 +5,7 @@ use toyproof::eval::{Number, Program, RandomRounding, Seed, Settings};
 use toyproof::image::{Frame, Image};
 use toyproof::scene::{FrameTime, Point, Projection, Scene, Shape};
 use toyproof::tracer::{ColorRange, EpsilonFamily, EpsilonSet, RayEpsilons, Tracer};
-use toyproof::verify::compare::{Answer, Mixed, PERTURBATIONS, Reference, algorithm};
+use toyproof::verify::compare::{CheckSummary, Mixed, PERTURBATIONS, Reference, algorithm};
 use toyproof::verify::{CheckEvidence, Checks, Evidence, Verdict, decide};
 use toyproof_testkit::{EXERCISES, Exercise, checked, frame, scene};
 
@@ -101,7 +101,7 @@ fn length(v: Point) -> f64 {
 }
 
 fn rendered<N: Number>(program: &Program, frame: &Frame, settings: Settings<N>) -> Image {
-    program.picture(frame, frame.rows(), &settings).unwrap().image
+    program.render_rows(frame, frame.rows(), &settings).unwrap().image
 }
 
 /// The spheres, sorted by apparent size, the largest first.
@@ -129,8 +129,8 @@ impl Reference for Traced {
     fn families(&self) -> &[EpsilonFamily] {
         &self.families
     }
-    fn styled(&self, x: u32, y: u32, styles: &RayEpsilons) -> [f64; 3] {
-        self.tracer.styled([x, y], styles)
+    fn pixel_with_epsilons(&self, x: u32, y: u32, styles: &RayEpsilons) -> [f64; 3] {
+        self.tracer.pixel_with_epsilons([x, y], styles)
     }
     fn samples(&self) -> u32 {
         self.tracer.samples()
@@ -183,19 +183,19 @@ impl Subject {
     /// Returns whether the shader would be `wrong` if this were its scene.
     fn is_wrong(&self, scene: &Scene) -> bool {
         let tracer = Tracer::<f64>::at(scene, self.frame_time);
-        let expected = tracer.picture(|| ());
+        let expected = tracer.render(|| ());
         let standings = algorithm(
             &expected,
             &self.exact,
             &vec![false; self.exact.pixels().len()],
             &Traced {
-                families: tracer.style_families(),
+                families: tracer.epsilon_families(),
                 tracer,
             },
             &mut Mixed::of(self.exact.pixels().len() as u64),
             |seed, _| self.perturbed.get(seed as usize).cloned(),
         );
-        let answer = Answer::new(&expected, &self.exact, &standings);
+        let answer = CheckSummary::new(&expected, &self.exact, &standings);
         let checks = Checks {
             algorithm: Some(answer),
             ..Checks::default()

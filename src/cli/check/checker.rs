@@ -152,16 +152,16 @@ impl Outcome {
 
     fn set_findings(&mut self, findings: &Findings, files: &Files) {
         self.record.set_findings(findings, files);
-        if let Some(painter) = &findings.painter {
+        if let Some(gpu_run) = &findings.gpu_run {
             self.messages.push(Message::Detail(format!(
                 "{}: translated in {:.4} s, compiled in {:.3} s, painted in {:.3} s on {}",
                 self.record.shader,
-                painter.translate.as_secs_f64(),
-                painter.compile.as_secs_f64(),
-                painter.draw.as_secs_f64(),
-                painter.device
+                gpu_run.translate.as_secs_f64(),
+                gpu_run.compile.as_secs_f64(),
+                gpu_run.draw.as_secs_f64(),
+                gpu_run.device
             )));
-            self.device = Some(painter.device.clone());
+            self.device = Some(gpu_run.device.clone());
         }
     }
 

@@ -34,7 +34,7 @@ pub(super) const IMAGES: [ImageKind; 6] = [
     ImageKind {
         suffix: "-difference.png",
         make: |findings| {
-            let (_, marks) = findings.picture.as_ref()?;
+            let (_, marks) = findings.comparison.as_ref()?;
             Some(difference(findings, marks, SEEN_BY_EYE))
         },
     },
@@ -53,8 +53,8 @@ pub(super) const IMAGES: [ImageKind; 6] = [
 ];
 
 fn check<'a>(findings: &Findings, check: Option<&CheckResult>, legend: Legend) -> Option<Cow<'a, Rgb8Image>> {
-    let check = check.filter(|check| !check.answer.is_same())?;
-    Some(difference(findings, &check.marks, legend))
+    let check = check.filter(|check| !check.summary.is_same())?;
+    Some(difference(findings, &check.diff_levels, legend))
 }
 
 fn difference<'a>(findings: &Findings, marks: &[DiffLevel], legend: Legend) -> Cow<'a, Rgb8Image> {

@@ -28,7 +28,9 @@ impl Builder<'_> {
         let call = self.name_call(function, at);
         let parameters = &tree[function].parameters;
         let mut passed = Vec::with_capacity(arguments.len());
-        let last_acting = arguments.iter().rposition(|&argument| walk::acts(tree, argument));
+        let last_acting = arguments
+            .iter()
+            .rposition(|&argument| walk::has_side_effects(tree, argument));
         for (at, (&argument, &parameter)) in arguments.iter().zip(parameters).enumerate() {
             let may_change = last_acting.is_some_and(|last| at < last);
             passed.push(self.pass(argument, parameter, may_change)?);

@@ -7,7 +7,7 @@ use super::place::{component_count, indexed_element, member_offset, scalar_kind}
 use super::{Builder, Result};
 use crate::ir::Operation;
 use crate::ir::{NONE, Node, Value};
-use crate::trace::What;
+use crate::trace::EventKind;
 
 /// The maximum number of nodes of an operand of `?:`, `&&` or `||` that is computed for all pixels instead of
 /// being branched over.
@@ -50,7 +50,7 @@ impl Builder<'_> {
     /// Returns the value of a branch condition.
     pub(super) fn condition(&mut self, expr: ExprId) -> Result<Value> {
         let value = self.scalar(expr)?;
-        self.trace_event(What::Branch, self.at(expr), Type::BOOL, &[value]);
+        self.trace_event(EventKind::Branch, self.at(expr), Type::BOOL, &[value]);
         Ok(value)
     }
 
@@ -241,8 +241,8 @@ impl Builder<'_> {
             let old = self.read(&place);
             values = self.binary_operator(op, types, &old, &values, self.at(whole));
         }
-        let what = What::Stored(self.at(target));
-        self.trace_event(what, self.at(whole), types.0, &values);
+        let kind = EventKind::Assignment(self.at(target));
+        self.trace_event(kind, self.at(whole), types.0, &values);
         self.write(&place, &values);
         Ok(values)
     }
@@ -263,7 +263,7 @@ impl Builder<'_> {
         };
         let new: Vec<Value> = old.iter().map(|&old| self.binary(operation, old, one)).collect();
         let at = self.at(target);
-        self.trace_event(What::Stored(at), at, ty, &new);
+        self.trace_event(EventKind::Assignment(at), at, ty, &new);
         self.write(&place, &new);
         Ok(if postfix { old } else { new })
     }

@@ -10,7 +10,7 @@ use super::{Builder, InlinedCall, UndefinedMode};
 use crate::ir::{Cell, Cells, Kind, NONE, Node, Operation, Value, ValueDef};
 use crate::observe::{Fault, Predicate, Site, SiteId};
 use crate::render::Substitute;
-use crate::trace::{Call, CallId, Event, EventId, What};
+use crate::trace::{Call, CallId, Event, EventId, EventKind};
 
 /// The number substituted for undefined results: in range of every index, and rarely a genuine result.
 const SUBSTITUTE_NUMBER: f64 = 0.5;
@@ -293,13 +293,13 @@ const MAX_TRACED_COMPONENTS: usize = 16;
 
 impl Builder<'_> {
     /// Emits an event with a value.
-    pub(super) fn trace_event(&mut self, what: What, at: Place, ty: Type, values: &[Value]) {
+    pub(super) fn trace_event(&mut self, kind: EventKind, at: Place, ty: Type, values: &[Value]) {
         if !self.options.trace {
             return;
         }
         let id = self.schema.events.len() as u32;
         self.schema.events.push(Event {
-            what,
+            kind,
             at,
             ty,
             call: self.call_stack.last().and_then(|frame| frame.call),
@@ -337,7 +337,7 @@ impl Builder<'_> {
             _ => false,
         };
         if is_made && component_count(tree, tree[expr].ty) > 0 {
-            self.trace_event(What::Part, tree[expr].at, tree[expr].ty, values);
+            self.trace_event(EventKind::Subexpression, tree[expr].at, tree[expr].ty, values);
         }
     }
 
@@ -345,7 +345,7 @@ impl Builder<'_> {
     pub(super) fn begin_iteration(&mut self, at: Place) {
         if self.options.trace {
             let id = EventId(self.schema.events.len() as u32);
-            self.trace_event(What::LoopHeader, at, Type::Void, &[]);
+            self.trace_event(EventKind::LoopHeader, at, Type::Void, &[]);
             self.loop_headers.push(id);
         }
     }
@@ -366,7 +366,7 @@ impl Builder<'_> {
                 && let Location::Cells(cells) = self.location(parameter)
             {
                 let values = self.load_all(cells);
-                self.trace_event(What::Stored(at), at, variable.ty, &values);
+                self.trace_event(EventKind::Assignment(at), at, variable.ty, &values);
             }
         }
     }

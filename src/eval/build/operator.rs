@@ -349,7 +349,7 @@ impl Not for BoolTerm<'_> {
 }
 
 impl<'a> Number for Term<'a> {
-    type Truth = BoolTerm<'a>;
+    type Bool = BoolTerm<'a>;
 
     fn literal(self, value: f64) -> Self {
         let value = self.writer.borrow_mut().push(ValueDef::Float(value.to_bits()));

@@ -9,7 +9,7 @@ use super::place::Location;
 use super::{Builder, Result};
 use crate::ir::Block as Nodes;
 use crate::ir::{Cell, Node, Operation, Scope, Value, ValueDef};
-use crate::trace::What;
+use crate::trace::EventKind;
 
 impl Builder<'_> {
     pub(super) fn block(&mut self, block: &Block) -> Result<()> {
@@ -59,7 +59,7 @@ impl Builder<'_> {
             StatementKind::Return(value) => {
                 if let Some(value) = value {
                     let values = self.expression(*value)?;
-                    self.trace_event(What::Returned, statement.at, self.ty(*value), &values);
+                    self.trace_event(EventKind::Return, statement.at, self.ty(*value), &values);
                     if let Some(frame) = self.call_stack.last() {
                         self.store_all(frame.result, &values);
                     }
@@ -79,7 +79,7 @@ impl Builder<'_> {
     }
 
     fn trace_statement(&mut self, at: Place) {
-        self.trace_event(What::Ran, at, Type::Void, &[]);
+        self.trace_event(EventKind::Statement, at, Type::Void, &[]);
     }
 
     fn push_break(&self, scope: Option<Scope>) {
@@ -107,7 +107,7 @@ impl Builder<'_> {
             && self.tree[variable].value.is_none()
         {
             let whole = at.to(self.at(initializer));
-            self.trace_event(What::Stored(at), whole, ty, &values);
+            self.trace_event(EventKind::Assignment(at), whole, ty, &values);
         }
         self.store_all(cells, &values);
         let local = self.tree[variable].kind == VariableKind::Local;

@@ -123,7 +123,7 @@ impl Checker<'_> {
             Some(fixit) => fixit,
             None => format!("this is {}, not {}", self.quoted_type(from), self.quoted_type(to)),
         };
-        let diagnostic = diagnostic.related(self.tree[operand].at.spelled, label);
+        let diagnostic = diagnostic.related(self.tree[operand].at.spelling, label);
         match self.conversion_note(from, to) {
             Some(note) if !diagnostic.notes.contains(&note) => diagnostic.note(note),
             _ => diagnostic,

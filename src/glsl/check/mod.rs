@@ -28,7 +28,7 @@ pub(crate) use self::statement::Labels;
 use self::types::Extent;
 pub(crate) use self::types::{Members, Size, Specifier};
 use crate::Options;
-use crate::codes::{Code, IN_MACRO, MAX_TOLD, push_limited};
+use crate::codes::{Code, IN_MACRO, MAX_REPORTED, push_limited};
 use crate::keywords::Interner;
 use crate::preprocess::Preprocessed;
 use crate::token::Symbol;
@@ -89,7 +89,7 @@ impl<'a> Checker<'a> {
 
     /// Whether the limit on reported errors is reached.
     pub(crate) fn is_full(&self) -> bool {
-        self.errors.len() >= MAX_TOLD
+        self.errors.len() >= MAX_REPORTED
     }
 
     /// Reports an error; an error in the body of a macro is reported at its first use only.

@@ -290,7 +290,7 @@ impl Parser<'_> {
     /// The decimal number that two integers with a comma but no space between them probably stand for.
     fn decimal_comma(&self, comma: usize) -> Option<String> {
         let three = self.tokens.get(comma.checked_sub(1)?..comma + 2)?;
-        let adjoin = |pair: &[Token]| pair[0].at.spelled.end == pair[1].at.spelled.start;
+        let adjoin = |pair: &[Token]| pair[0].at.spelling.end == pair[1].at.spelling.start;
         let is_comma = three[1].kind == TokenKind::Punctuator(Punctuator::Comma);
         if !is_comma || !three.windows(2).all(adjoin) {
             return None;
@@ -314,7 +314,7 @@ impl Parser<'_> {
         let commas = || (start..self.at.min(self.tokens.len() - 1)).filter(is_comma);
         // If no comma is followed by a space and no number has a point, the author means integers.
         let is_spaced =
-            |index: usize| self.tokens[index].at.spelled.end != self.tokens[index + 1].at.spelled.start;
+            |index: usize| self.tokens[index].at.spelling.end != self.tokens[index + 1].at.spelling.start;
         let has_point = |index: usize| match self.tokens[index].kind {
             TokenKind::Number(text) => self.interner.text(text).contains('.'),
             _ => false,

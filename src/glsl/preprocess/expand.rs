@@ -113,7 +113,7 @@ impl Preprocessor<'_> {
                 result.push(PpToken {
                     at: Place {
                         span: used.span,
-                        spelled: token.at.spelled,
+                        spelling: token.at.spelling,
                     },
                     ..*token
                 });

@@ -21,7 +21,7 @@ pub(super) struct PpToken {
 
 /// A `// toyproof: …` comment.
 #[derive(Debug, Clone, Copy)]
-pub struct Remark {
+pub struct ControlComment {
     /// Its span, from the `//` to the end of the line.
     pub at: Span,
     /// Whether only comments precede it in the file.
@@ -40,7 +40,7 @@ pub(super) struct Lexer<'a> {
     /// Whether a token other than a newline was read.
     begun: bool,
     /// The `// toyproof:` comments so far.
-    pub(super) remarks: Vec<Remark>,
+    pub(super) control_comments: Vec<ControlComment>,
 }
 
 impl<'a> Lexer<'a> {
@@ -51,7 +51,7 @@ impl<'a> Lexer<'a> {
             at: 0,
             scratch: String::new(),
             begun: false,
-            remarks: Vec::new(),
+            control_comments: Vec::new(),
         }
     }
 
@@ -155,7 +155,7 @@ impl<'a> Lexer<'a> {
             .starts_with("toyproof:")
         {
             let before = self.text[..start].trim_end_matches([' ', '\t']);
-            self.remarks.push(Remark {
+            self.control_comments.push(ControlComment {
                 at: Span::new(self.file, start as u32, self.at as u32),
                 first: !self.begun,
                 alone: before.is_empty() || before.ends_with(['\n', '\r']),

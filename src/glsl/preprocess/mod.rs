@@ -16,7 +16,7 @@ use toyproof_diagnostic::{Deadline, Diagnostic, FileId, Files};
 
 use self::condition::Group;
 use self::expand::Stream;
-pub use self::lexer::Remark;
+pub use self::lexer::ControlComment;
 use self::lexer::{Lexer, PpToken};
 use self::macros::Macro;
 use super::codes::{Code, push_limited};
@@ -33,7 +33,7 @@ pub(crate) struct Preprocessed {
     /// The texts of the tokens.
     pub(crate) interner: Interner,
     /// The `// toyproof:` comments.
-    pub(crate) remarks: Vec<Remark>,
+    pub(crate) control_comments: Vec<ControlComment>,
     /// Errors and warnings.
     pub(crate) diagnostics: Vec<Diagnostic>,
     /// Whether errors made so much of the text unusable that the rest must not be parsed.
@@ -121,7 +121,7 @@ pub(crate) fn preprocess(files: &Files, file: FileId, deadline: &Deadline) -> Pr
     Preprocessed {
         tokens,
         interner: preprocessor.interner,
-        remarks: preprocessor.lexer.remarks,
+        control_comments: preprocessor.lexer.control_comments,
         incomplete: preprocessor.gave_up || any_of(&LOSES_TEXT),
         lacks_names: any_of(&LOSES_NAMES),
         diagnostics,
@@ -219,10 +219,10 @@ impl<'a> Preprocessor<'a> {
     /// The next token of the file; executes directives and skips inactive groups on the way.
     fn next_of_text(&mut self) -> PpToken {
         loop {
-            let remarks = self.lexer.remarks.len();
+            let control_comments = self.lexer.control_comments.len();
             let token = self.lex();
             if !self.is_active() {
-                self.lexer.remarks.truncate(remarks);
+                self.lexer.control_comments.truncate(control_comments);
             }
             match token.kind {
                 TokenKind::Newline => self.line_start = true,

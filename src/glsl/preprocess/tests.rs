@@ -171,7 +171,7 @@ fn tokens_keep_their_use_and_spelling() {
     let result = preprocess(&files, file, &Deadline::default());
     let reported: Vec<_> = result.tokens[..7]
         .iter()
-        .map(|token| (files.text(token.at.span), files.text(token.at.spelled)))
+        .map(|token| (files.text(token.at.span), files.text(token.at.spelling)))
         .collect();
     assert_eq!(
         reported,

@@ -400,7 +400,7 @@ fn every_expression_has_one_parent_and_fits_it() {
 #[test]
 fn places_of_statements_and_literals_match_the_text() {
     let Checked { tree, .. } = checked(false);
-    let spelled = |at: Place| &TEXT[at.spelled.start as usize..at.spelled.end as usize];
+    let spelled = |at: Place| &TEXT[at.spelling.start as usize..at.spelling.end as usize];
     for expr in roots(&tree).into_iter().flat_map(|root| tree.postorder(root)) {
         if let ExprKind::Literal(literal) = &tree[expr].kind
             && tree[expr].at.span.end as usize <= TEXT.len()

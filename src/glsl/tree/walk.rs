@@ -9,7 +9,7 @@ use crate::tree::{
 
 /// The blocks directly inside a statement, in order; the `init` of a `for` is one.
 #[must_use]
-pub fn inner(statement: &Statement) -> Vec<&Block> {
+pub fn child_blocks(statement: &Statement) -> Vec<&Block> {
     match &statement.kind {
         StatementKind::Block(body)
         | StatementKind::While { body, .. }
@@ -22,7 +22,7 @@ pub fn inner(statement: &Statement) -> Vec<&Block> {
 }
 
 /// The blocks directly inside a statement that can contain any statement: not the `init` of a `for`.
-pub fn inner_mut(statement: &mut Statement) -> Vec<&mut Block> {
+pub fn statement_blocks_mut(statement: &mut Statement) -> Vec<&mut Block> {
     match &mut statement.kind {
         StatementKind::Block(body)
         | StatementKind::While { body, .. }
@@ -42,7 +42,7 @@ pub fn inner_mut(statement: &mut Statement) -> Vec<&mut Block> {
 pub fn each<'a>(block: &'a [Statement], visit: &mut dyn FnMut(&'a Statement)) {
     for statement in block {
         visit(statement);
-        for body in inner(statement) {
+        for body in child_blocks(statement) {
             each(body, visit);
         }
     }
@@ -53,7 +53,7 @@ pub fn each<'a>(block: &'a [Statement], visit: &mut dyn FnMut(&'a Statement)) {
 pub fn rebuild(block: Block, change: &mut dyn FnMut(Statement, &mut Block)) -> Block {
     let mut out = Block::with_capacity(block.len());
     for mut statement in block {
-        for body in inner_mut(&mut statement) {
+        for body in statement_blocks_mut(&mut statement) {
             *body = rebuild(std::mem::take(body), change);
         }
         change(statement, &mut out);
@@ -118,7 +118,7 @@ pub fn roots(tree: &Tree, block: &Block) -> Vec<ExprId> {
 /// Whether evaluating an expression has side effects or may take long: it contains an assignment, a call of a
 /// user function, or a built-in function with an `out` parameter.
 #[must_use]
-pub fn acts(tree: &Tree, root: ExprId) -> bool {
+pub fn has_side_effects(tree: &Tree, root: ExprId) -> bool {
     any(tree, root, |kind| match kind {
         ExprKind::Assign { .. } | ExprKind::Step { .. } | ExprKind::Call { .. } => true,
         ExprKind::BuiltIn { function, .. } => function.out_parameter().is_some(),
@@ -144,7 +144,7 @@ pub fn continues(block: &Block) -> bool {
     block.iter().any(|statement| match &statement.kind {
         StatementKind::Continue => true,
         StatementKind::For { .. } | StatementKind::While { .. } | StatementKind::DoWhile { .. } => false,
-        _ => inner(statement).into_iter().any(continues),
+        _ => child_blocks(statement).into_iter().any(continues),
     })
 }
 
@@ -180,7 +180,7 @@ pub fn mentions(tree: &Tree, root: ExprId, variable: VariableId) -> bool {
 /// global one.
 #[must_use]
 pub fn may_change(tree: &Tree, value: ExprId, path: ExprId) -> bool {
-    if !acts(tree, value) {
+    if !has_side_effects(tree, value) {
         return false;
     }
     let nodes = tree.postorder(path).into_iter();

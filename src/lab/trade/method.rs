@@ -214,7 +214,7 @@ impl RenderContext<'_> {
 
 fn render_traced<T: Real>(scene: &Scene, frame: &Frame) -> (Image, Duration) {
     let start = Instant::now();
-    let image = Tracer::<T>::at(scene, RenderContext::frame_time(frame)).picture(|| ());
+    let image = Tracer::<T>::at(scene, RenderContext::frame_time(frame)).render(|| ());
     (image, start.elapsed())
 }
 

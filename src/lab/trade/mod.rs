@@ -146,7 +146,7 @@ pub fn study(subject: Subject, interrupt: &AtomicBool, progress: impl Fn(f64)) -
     let background = scene.map(background);
     let background = background.map(|scene| {
         let tracer = toyproof_tracer::Tracer::<f64>::at(&scene, RenderContext::frame_time(frame));
-        tracer.picture(|| ())
+        tracer.render(|| ())
     });
     let samples = scene.map_or(1.0, |scene| f64::from(scene.film.samples));
     let mut methods = scene.map_or_else(Vec::new, method::scene_methods);

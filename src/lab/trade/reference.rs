@@ -32,7 +32,7 @@ impl Reference {
     pub(super) fn of_scene(scene: &Scene, frame: &Frame, time: Duration) -> Self {
         let frame_time = RenderContext::frame_time(frame);
         if !Requirements::of(scene).samples {
-            let image = Tracer::<f64>::at(scene, frame_time).picture(|| ());
+            let image = Tracer::<f64>::at(scene, frame_time).render(|| ());
             // The effect of f64 rounding is estimated by moving the eye by a few units in the last place.
             let mut perturbed_scene = scene.clone();
             let size = perturbed_scene
@@ -43,7 +43,7 @@ impl Reference {
             perturbed_scene.camera.eye = perturbed_scene.camera.eye.map(|x| x + 4.0 * f64::EPSILON * size);
             let error = rmse(
                 &image,
-                &Tracer::<f64>::at(&perturbed_scene, frame_time).picture(|| ()),
+                &Tracer::<f64>::at(&perturbed_scene, frame_time).render(|| ()),
             );
             return Self {
                 image,
@@ -59,7 +59,7 @@ impl Reference {
         let mut best: Option<Self> = None;
         for target in TARGET_ERRORS {
             let before = start.elapsed();
-            let (image, spent) = tracer.picture_within(target, || ());
+            let (image, spent) = tracer.render_adaptive(target, || ());
             best = Some(Self {
                 image,
                 error: spent.error,
@@ -77,7 +77,7 @@ impl Reference {
         }
         // [`TARGET_ERRORS`] is not empty, so `best` is set.
         best.unwrap_or_else(|| Self {
-            image: tracer.picture(|| ()),
+            image: tracer.render(|| ()),
             error: 1.0,
             description: String::new(),
         })

@@ -317,7 +317,7 @@ impl Neg for Flushing {
 }
 
 impl Number for Flushing {
-    type Truth = bool;
+    type Bool = bool;
 
     fn literal(self, value: f64) -> Self {
         Self(value as f32)

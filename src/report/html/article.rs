@@ -1,7 +1,7 @@
 //! One shader on the page: its verdict, its checks, its images and its messages.
 
 use toyproof_diagnostic::{Json, grouped, magnitude};
-use toyproof_verify::compare::{Answer, Pixel};
+use toyproof_verify::compare::{CheckSummary, Pixel};
 
 use super::{Exhibit, Text, verdict};
 use crate::report::Record;
@@ -73,7 +73,7 @@ fn questions(record: &Record) -> String {
     )
 }
 
-fn answer_cells(answer: &Answer) -> String {
+fn answer_cells(answer: &CheckSummary) -> String {
     let first = answer.first.as_ref().filter(|_| answer.first != answer.worst);
     let named = [("worst", answer.worst.as_ref()), ("first", first)];
     let named: Vec<_> = named
@@ -85,7 +85,7 @@ fn answer_cells(answer: &Answer) -> String {
          <td>{}</td>",
         grouped(answer.differing),
         grouped(answer.pixels),
-        grouped(answer.undecided),
+        grouped(answer.ill_conditioned),
         grouped(answer.undefined),
         magnitude(answer.max_abs),
         named.join(" ")

@@ -27,7 +27,7 @@ pub struct Exhibit {
 #[derive(Debug)]
 pub struct Gallery {
     step: u32,
-    pictures: Vec<Vec<u8>>,
+    images: Vec<Vec<u8>>,
     places: HashMap<[u8; 32], usize>,
     exhibits: Vec<Exhibit>,
     bytes: usize,
@@ -40,7 +40,7 @@ impl Gallery {
     pub fn new(step: u32) -> Self {
         Self {
             step,
-            pictures: Vec::new(),
+            images: Vec::new(),
             places: HashMap::new(),
             exhibits: Vec::new(),
             bytes: 0,
@@ -52,10 +52,10 @@ impl Gallery {
         let place = *self
             .places
             .entry(Sha256::digest(&png).into())
-            .or_insert(self.pictures.len());
-        if place == self.pictures.len() {
+            .or_insert(self.images.len());
+        if place == self.images.len() {
             self.bytes += png.len();
-            self.pictures.push(png);
+            self.images.push(png);
         }
         place
     }
@@ -75,8 +75,8 @@ impl Gallery {
         self.step
     }
 
-    pub(super) fn pictures(&self) -> &[Vec<u8>] {
-        &self.pictures
+    pub(super) fn images(&self) -> &[Vec<u8>] {
+        &self.images
     }
 
     pub(super) fn exhibits(&self) -> &[Exhibit] {

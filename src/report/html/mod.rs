@@ -13,7 +13,7 @@ use sha2::{Digest, Sha256};
 use toyproof_diagnostic::printable;
 use toyproof_image::quantize;
 use toyproof_verify::Verdict;
-use toyproof_verify::compare::{Answer, IN_BITS, Legend, SEEN_BY_EYE};
+use toyproof_verify::compare::{CheckSummary, IN_BITS, Legend, SEEN_BY_EYE};
 
 pub use self::gallery::{Exhibit, Gallery, MAX_IMAGE_BYTES, subsample};
 use super::{Record, Report, Rubric, plain, summary};
@@ -107,7 +107,7 @@ fn pictures(gallery: &Gallery) -> String {
         "eye": entries(SEEN_BY_EYE),
         "bits": entries(IN_BITS),
     });
-    let pictures = gallery.pictures().iter().enumerate();
+    let pictures = gallery.images().iter().enumerate();
     let pictures: Vec<_> = pictures
         .map(|(index, png)| {
             let data = STANDARD.encode(png);
@@ -186,7 +186,7 @@ fn row(index: usize, record: &Record, rubric: Option<&Rubric>) -> String {
 }
 
 /// Formats the share of the pixels of a check that differ.
-fn share(answer: Option<&Answer>) -> String {
+fn share(answer: Option<&CheckSummary>) -> String {
     let percent = answer.map(|answer| 100.0 * answer.share(answer.differing));
     let shown = match percent {
         None => "<span class=\"none\" title=\"not asked\">–</span>".to_owned(),

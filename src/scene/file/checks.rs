@@ -181,7 +181,12 @@ impl Checks {
 
 /// Converts an error of the TOML parser or of deserialization to a diagnostic.
 #[must_use]
-pub fn of_toml(code: &'static str, error: &::toml::de::Error, files: &Files, file: FileId) -> Diagnostic {
+pub fn toml_diagnostic(
+    code: &'static str,
+    error: &::toml::de::Error,
+    files: &Files,
+    file: FileId,
+) -> Diagnostic {
     let lines: Vec<_> = error.message().lines().map(str::trim).collect();
     let bytes = error.span().unwrap_or_default();
     let span = span(file, bytes);

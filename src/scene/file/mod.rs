@@ -10,7 +10,7 @@ use serde::Deserialize;
 use toml::Spanned;
 use toyproof_diagnostic::{Diagnostics, FileId, Files};
 
-pub use self::checks::of_toml;
+pub use self::checks::toml_diagnostic;
 use self::checks::{Checks, Triple};
 use self::surface::Names;
 use super::{Background, Integrator, Light, Model, Object, Scattered, Scene, Shape};
@@ -22,7 +22,7 @@ use super::{Background, Integrator, Light, Model, Object, Scattered, Scene, Shap
 pub fn parse(files: &Files, file: FileId) -> Result<Scene, Diagnostics> {
     let text = files.get(file).text();
     let document: Document = toml::from_str(text)
-        .map_err(|error| Diagnostics::new(vec![of_toml("E0501", &error, files, file)], files))?;
+        .map_err(|error| Diagnostics::new(vec![toml_diagnostic("E0501", &error, files, file)], files))?;
     let mut checks = Checks::new(file);
     let scene = document.check(&mut checks);
     checks.finish(scene, files)

@@ -41,7 +41,7 @@ pub(super) struct NumberedSphere<T> {
 
 /// The spheres of a scene.
 #[derive(Debug)]
-pub(super) struct Spheres<T> {
+pub struct Spheres<T> {
     tree: Tree<T>,
     level: Level,
 }

@@ -378,7 +378,7 @@ pub(super) fn remove_dead_code(cx: &mut LoweringContext) {
 
 fn without_dead_code(mut block: Block) -> Block {
     for statement in &mut block {
-        for body in walk::inner_mut(statement) {
+        for body in walk::statement_blocks_mut(statement) {
             *body = without_dead_code(std::mem::take(body));
         }
     }

@@ -231,7 +231,7 @@ fn zero_declarations(cx: &mut LoweringContext, block: &Block, in_loop: bool) {
             statement.kind,
             StatementKind::For { .. } | StatementKind::While { .. } | StatementKind::DoWhile { .. }
         );
-        for body in walk::inner(statement) {
+        for body in walk::child_blocks(statement) {
             zero_declarations(cx, body, in_loop || loops);
         }
     }

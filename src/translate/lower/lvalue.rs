@@ -39,7 +39,7 @@ pub(super) fn hoist_indices(cx: &mut LoweringContext, lvalue: ExprId, hoist: Hoi
             continue;
         };
         let needed = match hoist {
-            Hoist::Effectful => walk::acts(&cx.tree, index),
+            Hoist::Effectful => walk::has_side_effects(&cx.tree, index),
             Hoist::NonConstant => !cx.tree[index].constant,
         };
         if needed {
@@ -112,7 +112,9 @@ fn order_access(cx: &mut LoweringContext, operation: ExprId, path: ExprId, acces
         _ => None,
     });
     let operands = indices.chain([root]);
-    let acts = operands.clone().any(|operand| walk::acts(&cx.tree, operand));
+    let acts = operands
+        .clone()
+        .any(|operand| walk::has_side_effects(&cx.tree, operand));
     let changing = operands.filter(|&operand| operand != root && !cx.tree[operand].constant);
     // The base is computed in place from variables that an index may change.
     let root_is_computed = !cx.tree[root].constant && !matches!(cx.tree[root].kind, ExprKind::Variable(_));
@@ -274,8 +276,8 @@ fn write_through_copy(cx: &mut LoweringContext, id: ExprId, discarded: &HashSet<
         return;
     };
     let mut steps = Vec::new();
-    let acting = value.filter(|&value| walk::acts(&cx.tree, value));
-    if acting.is_some() || walk::acts(&cx.tree, target) {
+    let acting = value.filter(|&value| walk::has_side_effects(&cx.tree, value));
+    if acting.is_some() || walk::has_side_effects(&cx.tree, target) {
         hoist_indices(cx, target, Hoist::NonConstant, &mut steps);
     }
     if let Some(value) = acting {
@@ -391,7 +393,7 @@ fn copy_in_out(cx: &mut LoweringContext, call: ExprId, arguments: &[(ExprId, Dir
     // Once one value is in a temporary, all must be: whatever stays in the call is evaluated last.
     let acting = arguments
         .iter()
-        .any(|&(argument, _)| walk::acts(&cx.tree, argument));
+        .any(|&(argument, _)| walk::has_side_effects(&cx.tree, argument));
     let (mut before, mut copied, mut after) = (Vec::new(), Vec::new(), Vec::new());
     for ((&(argument, direction), needs_copy), read_last) in arguments.iter().zip(needs_copy).zip(read_last) {
         if acting && read_last {

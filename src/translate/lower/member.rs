@@ -237,7 +237,7 @@ fn read(cx: &mut LoweringContext, id: ExprId) {
     // The path is repeated for each element.
     let path = lvalue::path_nodes(&cx.tree, id);
     if let Some(&root) = path.last()
-        && walk::acts(&cx.tree, root)
+        && walk::has_side_effects(&cx.tree, root)
     {
         steps.push(lvalue::move_to_temporary(cx, root, "structure"));
     }
@@ -269,7 +269,7 @@ fn read_elements(cx: &mut LoweringContext, path: ExprId) -> ExprId {
 /// Writes a narrow array element by element.
 fn write(cx: &mut LoweringContext, id: ExprId, target: ExprId, value: ExprId, discarded: bool) {
     let mut steps = Vec::new();
-    let hoist = if walk::acts(&cx.tree, value) {
+    let hoist = if walk::has_side_effects(&cx.tree, value) {
         Hoist::NonConstant
     } else {
         Hoist::Effectful

@@ -89,7 +89,7 @@ passes! {
     /// `&&` and `||` with an effect on the right.
     ShortCircuit = operator::lower_short_circuit,
     /// Built-in functions whose last bits depend on the driver; for strict shaders only.
-    Elementary = polyfill::lower_functions,
+    InexactFunctions = polyfill::lower_functions,
     /// `modf`, `matrixCompMult`, `outerProduct`, `inverse`.
     MissingBuiltIns = builtin::lower_missing,
     /// `dot` and other geometric functions of scalars.
@@ -160,7 +160,9 @@ impl Passes {
     /// Every pass that naga and the drivers need.
     #[must_use]
     pub fn all() -> Self {
-        Self::strict().without(Pass::Elementary).without(Pass::Products)
+        Self::strict()
+            .without(Pass::InexactFunctions)
+            .without(Pass::Products)
     }
 
     /// All passes, including those that make a shader's bits the same on every driver.

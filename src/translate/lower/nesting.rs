@@ -227,7 +227,7 @@ impl DepthVisitor<'_> {
             StatementKind::Switch { .. } => depth.in_condition(),
             _ => depth.in_loop(),
         };
-        for body in walk::inner(statement) {
+        for body in walk::child_blocks(statement) {
             leaves |= self.block(body, inner);
         }
         leaves

@@ -106,7 +106,7 @@ pub(super) fn lower_short_circuit(cx: &mut LoweringContext) {
         else {
             return;
         };
-        if !walk::acts(&cx.tree, right) {
+        if !walk::has_side_effects(&cx.tree, right) {
             return;
         }
         let constant = cx.build_at(id).literal(Value::Bool(op == BinaryOp::Or));

@@ -24,7 +24,7 @@ pub(super) enum Expansion {
     /// `*` of matrices and vectors.
     Product,
     /// The conversion of a `uint` to the nearest float.
-    FloatOfUint,
+    UintToFloat,
 }
 
 pub(super) fn lower_functions(cx: &mut LoweringContext) {
@@ -41,7 +41,7 @@ pub(super) fn lower_functions(cx: &mut LoweringContext) {
                 if let (Some(Scalar::Uint), Some(float)) = (ty.scalar(), ty.with_scalar(Scalar::Float)) {
                     let value = cx.build_at(argument).detach(argument);
                     cx.tree[argument].ty = float;
-                    call(cx, argument, Expansion::FloatOfUint, vec![value]);
+                    call(cx, argument, Expansion::UintToFloat, vec![value]);
                 }
             }
         }
@@ -161,7 +161,7 @@ fn declare(
     let name = match expansion {
         Expansion::Function(function) => function.name(),
         Expansion::Product => "product",
-        Expansion::FloatOfUint => "float",
+        Expansion::UintToFloat => "float",
     };
     let parameters: Vec<_> = types
         .iter()
@@ -215,7 +215,7 @@ fn is_componentwise(expansion: Expansion, arguments: usize) -> bool {
     match expansion {
         Expansion::Function(function) => InexactFunction::of(function, arguments)
             .is_some_and(|function| function.definition.is_componentwise()),
-        Expansion::FloatOfUint => true,
+        Expansion::UintToFloat => true,
         Expansion::Product => false,
     }
 }
@@ -242,7 +242,7 @@ fn helper_body(cx: &LoweringContext, expansion: Expansion, types: &[Type], ty: T
         }
         Expansion::Product => product(&arguments, types),
         // Both halves are exact, so that only their sum is rounded.
-        Expansion::FloatOfUint => {
+        Expansion::UintToFloat => {
             let a = PARAMETER_NAMES[0];
             return format!("return float(int({a} >> 16u)) * 65536.0 + float(int({a} & 65535u));");
         }
@@ -348,7 +348,7 @@ impl Writer<'_> {
         let ty = match kind {
             Kind::Float => "float",
             Kind::Bits => "uint",
-            Kind::Truth => "bool",
+            Kind::Bool => "bool",
         };
         let value = self.expression(step);
         let _ = write!(self.lines, "{ty} {} = {value};\n    ", name(id));
@@ -383,7 +383,7 @@ impl Writer<'_> {
                 }
             }
             Step::Binary(operation, a, b) => {
-                let is_bool = self.graph.step(a).1 == Kind::Truth;
+                let is_bool = self.graph.step(a).1 == Kind::Bool;
                 let symbol = match operation {
                     Binary::Add => "+",
                     Binary::Subtract => "-",

@@ -43,7 +43,7 @@ fn emit_effects(cx: &mut LoweringContext, root: ExprId, out: &mut Block) {
         let at = cx.tree[id].at;
         match cx.tree[id].kind {
             ExprKind::Sequence { first, second } => pending.extend([second, first]),
-            ExprKind::Conditional { condition, yes, no } if walk::acts(&cx.tree, id) => {
+            ExprKind::Conditional { condition, yes, no } if walk::has_side_effects(&cx.tree, id) => {
                 hoist_leading(cx, condition, out);
                 let [body, otherwise] = [yes, no].map(|branch| {
                     let mut body = Block::new();
@@ -57,7 +57,7 @@ fn emit_effects(cx: &mut LoweringContext, root: ExprId, out: &mut Block) {
                     at,
                 });
             }
-            _ if walk::acts(&cx.tree, id) => {
+            _ if walk::has_side_effects(&cx.tree, id) => {
                 hoist_leading(cx, id, out);
                 out.push(Statement {
                     kind: StatementKind::Expression(id),

@@ -134,7 +134,7 @@ impl<'a> Comments<'a> {
             .iter()
             .map(|&c| char::from(b"rgba"[usize::from(c)]))
             .collect();
-        let written = self.text(at.spelled).and_then(|text| text.rsplit('.').next());
+        let written = self.text(at.spelling).and_then(|text| text.rsplit('.').next());
         if written.is_some_and(|written| written.trim() == color) {
             color
         } else {
@@ -152,10 +152,10 @@ impl<'a> Comments<'a> {
 
     /// Whether a place is the entire replacement text of `#define NAME`.
     pub(super) fn is_whole_macro(&self, name: &str, at: Place) -> bool {
-        let text = self.files.get(at.spelled.file).text();
+        let text = self.files.get(at.spelling.file).text();
         let (Some(before), Some(after)) = (
-            text.get(..at.spelled.start as usize),
-            text.get(at.spelled.end as usize..),
+            text.get(..at.spelling.start as usize),
+            text.get(at.spelling.end as usize..),
         ) else {
             return false;
         };

@@ -54,7 +54,7 @@ impl Writer<'_> {
     fn assign(&mut self, op: Option<BinaryOp>, target: ExprId, value: ExprId) -> Result<(), Unprintable> {
         let tree = &self.cx.tree;
         let types = (tree[target].ty, tree[value].ty);
-        if self.branch_operands(value).is_some() && !walk::acts(tree, target) {
+        if self.branch_operands(value).is_some() && !walk::has_side_effects(tree, target) {
             return self.print_if(value, &mut |writer, value| writer.assign(op, target, value));
         }
         let is_swizzle =

@@ -92,7 +92,7 @@ impl Writer<'_> {
     pub(super) fn values(&mut self, ids: &[ExprId]) -> Result<Vec<Text>, Unprintable> {
         let mut texts: Vec<Text> = Vec::new();
         for &id in ids {
-            if self.hoists(id) && walk::acts(&self.cx.tree, id) {
+            if self.hoists(id) && walk::has_side_effects(&self.cx.tree, id) {
                 for (text, &earlier) in texts.iter_mut().zip(ids) {
                     if !self.is_invariant(earlier) {
                         *text = self.bind(text);
@@ -433,7 +433,7 @@ impl Writer<'_> {
         let ExprKind::Conditional { condition, yes, no } = self.cx.tree[id].kind else {
             return Err(Unprintable("a choice"));
         };
-        let acts = walk::acts(&self.cx.tree, condition);
+        let acts = walk::has_side_effects(&self.cx.tree, condition);
         let condition = self.value(condition)?;
         // `select` lists the branches before the condition, and evaluates them first.
         let condition = if acts && !(self.is_invariant(yes) && self.is_invariant(no)) {

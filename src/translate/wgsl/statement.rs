@@ -299,7 +299,7 @@ pub(super) fn has_break(block: &Block) -> bool {
         | StatementKind::While { .. }
         | StatementKind::DoWhile { .. }
         | StatementKind::Switch { .. } => false,
-        _ => walk::inner(statement).into_iter().any(has_break),
+        _ => walk::child_blocks(statement).into_iter().any(has_break),
     })
 }
 

@@ -25,7 +25,7 @@ pub trait Reference: Sync {
     /// All ray epsilons that a shader may have.
     fn families(&self) -> &[EpsilonFamily];
     /// The color of a pixel for these ray epsilons.
-    fn styled(&self, x: u32, y: u32, epsilons: &RayEpsilons) -> [f64; 3];
+    fn pixel_with_epsilons(&self, x: u32, y: u32, epsilons: &RayEpsilons) -> [f64; 3];
     /// The number of samples of a pixel, to which its cost is proportional.
     fn samples(&self) -> u32;
     /// Whether the shader takes derivatives, and the pixel's quad lies across an edge.
@@ -173,7 +173,7 @@ pub fn algorithm(
             if *status == PixelStatus::Differs
                 && Pixel::at(index, actual, &perturbed).difference() > EXACT_TOLERANCE
             {
-                *status = PixelStatus::Undecided;
+                *status = PixelStatus::IllConditioned;
                 changed = true;
             }
         }
@@ -264,7 +264,7 @@ fn fit_epsilons(
 
 /// Whether a pixel has the reference's color for these ray epsilons.
 fn matches_epsilons(reference: &impl Reference, pixel: &Pixel, epsilons: &RayEpsilons) -> bool {
-    let color = reference.styled(pixel.x, pixel.y, epsilons);
+    let color = reference.pixel_with_epsilons(pixel.x, pixel.y, epsilons);
     (0..3).all(|i| {
         let [own, other] = [f64::from(pixel.actual[i]), color[i]].map(|part| part.clamp(0.0, 1.0));
         (own - other).abs() <= EXACT_TOLERANCE
@@ -283,7 +283,7 @@ fn matches_any_family(reference: &impl Reference, pixel: &Pixel) -> bool {
     reference.families().iter().any(|family| {
         let colors = family
             .iter()
-            .map(|&epsilon| reference.styled(pixel.x, pixel.y, &RayEpsilons::alike(epsilon)));
+            .map(|&epsilon| reference.pixel_with_epsilons(pixel.x, pixel.y, &RayEpsilons::alike(epsilon)));
         let colors: Vec<_> = colors
             .map(|color| color.map(|part| part.clamp(0.0, 1.0)))
             .collect();
@@ -325,7 +325,7 @@ mod tests {
         tied: fn(u32) -> bool,
         families: Vec<EpsilonFamily>,
         /// The color by x and offset.
-        styled: fn(u32, f64) -> f64,
+        pixel_with_epsilons: fn(u32, f64) -> f64,
     }
 
     fn black<H: Fn(u32, EpsilonSet) -> ColorRange + Sync>(range: H) -> Black<H> {
@@ -334,7 +334,7 @@ mod tests {
             edge: |_| false,
             tied: |_| false,
             families: Vec::new(),
-            styled: |_, _| 0.0,
+            pixel_with_epsilons: |_, _| 0.0,
         }
     }
 
@@ -345,8 +345,8 @@ mod tests {
         fn families(&self) -> &[EpsilonFamily] {
             &self.families
         }
-        fn styled(&self, x: u32, _: u32, epsilons: &RayEpsilons) -> [f64; 3] {
-            [(self.styled)(x, epsilons.other.offset), 0.0, 0.0]
+        fn pixel_with_epsilons(&self, x: u32, _: u32, epsilons: &RayEpsilons) -> [f64; 3] {
+            [(self.pixel_with_epsilons)(x, epsilons.other.offset), 0.0, 0.0]
         }
         fn samples(&self) -> u32 {
             1
@@ -398,7 +398,7 @@ mod tests {
             [
                 PixelStatus::Agrees,
                 PixelStatus::Agrees,
-                PixelStatus::Undecided,
+                PixelStatus::IllConditioned,
                 PixelStatus::Differs,
                 PixelStatus::Undefined
             ]
@@ -476,7 +476,7 @@ mod tests {
         // Every color results from an offset of 0.7, and from no other.
         let reference = Black {
             families: offsets(),
-            styled: |x, offset| (offset * f64::from(x % 7 + 1)).sin().abs(),
+            pixel_with_epsilons: |x, offset| (offset * f64::from(x % 7 + 1)).sin().abs(),
             ..black(|_, _| point(0.0))
         };
         let reds: Vec<f32> = (0..1000u32)
@@ -514,7 +514,7 @@ mod tests {
         // Brightest at an offset of one half, black at both ends.
         let reference = Black {
             families: offsets(),
-            styled: |_, offset| offset * (1.0 - offset),
+            pixel_with_epsilons: |_, offset| offset * (1.0 - offset),
             ..black(|_, _| point(0.0))
         };
         let mut reds = [0.0; 1000];

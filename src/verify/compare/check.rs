@@ -25,7 +25,7 @@ pub enum PixelStatus {
     /// It agrees with the reference.
     Agrees,
     /// It differs, but might not with another rounding of the same operations: it is ill-conditioned.
-    Undecided,
+    IllConditioned,
     /// It differs, and so does the scene itself when its numbers are perturbed by less than a shader's
     /// precision: an edge passes through the pixel's sample.
     Tied,
@@ -37,13 +37,14 @@ pub enum PixelStatus {
 
 /// The result of a check over the whole image.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Answer {
+pub struct CheckSummary {
     /// Pixels in the image.
     pub pixels: u64,
     /// Pixels that differ.
     pub differing: u64,
     /// Pixels that differ, but are ill-conditioned in f64.
-    pub undecided: u64,
+    #[serde(rename = "undecided")]
+    pub ill_conditioned: u64,
     /// The undecided pixels that are ill-conditioned in the scene itself, whatever the shader.
     #[serde(skip)]
     pub tied: u64,
@@ -58,7 +59,7 @@ pub struct Answer {
     pub worst: Option<Pixel>,
 }
 
-impl Answer {
+impl CheckSummary {
     /// Counts the statuses of all pixels, bottom row first, of two images of one size.
     ///
     /// # Panics
@@ -72,7 +73,7 @@ impl Answer {
         let reported = if differing > 0 {
             PixelStatus::Differs
         } else {
-            PixelStatus::Undecided
+            PixelStatus::IllConditioned
         };
         let mut first = None;
         let mut worst: Option<(f64, Pixel)> = None;
@@ -94,7 +95,7 @@ impl Answer {
         Self {
             pixels: statuses.len() as u64,
             differing,
-            undecided: count(PixelStatus::Undecided) + count(PixelStatus::Tied),
+            ill_conditioned: count(PixelStatus::IllConditioned) + count(PixelStatus::Tied),
             tied: count(PixelStatus::Tied),
             undefined: count(PixelStatus::Undefined),
             max_abs,
@@ -117,7 +118,7 @@ impl Answer {
         }
         self.pixels += above.pixels;
         self.differing += above.differing;
-        self.undecided += above.undecided;
+        self.ill_conditioned += above.ill_conditioned;
         self.tied += above.tied;
         self.undefined += above.undefined;
         self.max_abs = self.max_abs.max(above.max_abs);
@@ -132,15 +133,15 @@ impl Answer {
     /// Whether no pixel differs or is undecided.
     #[must_use]
     pub fn is_same(&self) -> bool {
-        self.differing + self.undecided == 0
+        self.differing + self.ill_conditioned == 0
     }
 }
 
 /// Returns the difference level of each pixel for the image of a check.
 #[must_use]
-pub fn marks(expected: &Image, actual: &Image, statuses: &[PixelStatus]) -> Vec<DiffLevel> {
+pub fn diff_levels(expected: &Image, actual: &Image, statuses: &[PixelStatus]) -> Vec<DiffLevel> {
     let mark = |(index, status): (usize, &PixelStatus)| match status {
-        PixelStatus::Undecided | PixelStatus::Tied => DiffLevel::UNDECIDED,
+        PixelStatus::IllConditioned | PixelStatus::Tied => DiffLevel::ILL_CONDITIONED,
         PixelStatus::Undefined => DiffLevel::UNDEFINED,
         PixelStatus::Agrees | PixelStatus::Differs => {
             DiffLevel::by(Pixel::at(index, expected, actual).difference() as f32)
@@ -212,14 +213,14 @@ mod tests {
 
     #[test]
     fn undefined_pixels_are_not_counted_otherwise() {
-        use PixelStatus::{Agrees, Differs, Undecided, Undefined};
+        use PixelStatus::{Agrees, Differs, IllConditioned, Undefined};
         let (a, b) = (row(&[0.0; 5]), row(&[1.0, 0.0, 0.25, 0.5, 0.375]));
-        let answer = Answer::new(&a, &b, &[Undefined, Agrees, Differs, Differs, Undecided]);
+        let answer = CheckSummary::new(&a, &b, &[Undefined, Agrees, Differs, Differs, IllConditioned]);
         assert_eq!(
             (
                 answer.pixels,
                 answer.differing,
-                answer.undecided,
+                answer.ill_conditioned,
                 answer.undefined
             ),
             (5, 2, 1, 1)
@@ -232,18 +233,28 @@ mod tests {
 
     #[test]
     fn the_result_of_bands_is_that_of_the_whole_image() {
-        use PixelStatus::{Agrees, Differs, Undecided, Undefined};
+        use PixelStatus::{Agrees, Differs, IllConditioned, Undefined};
         let column = |reds: &[f32]| Image::new(1, reds.len() as u32, row(reds).pixels().to_vec());
         let reds = [0.9, 0.5, 0.2, 0.7, 0.7, 0.0];
-        let all = [Undecided, Undefined, Differs, Undecided, Differs, Agrees];
+        let all = [
+            IllConditioned,
+            Undefined,
+            Differs,
+            IllConditioned,
+            Differs,
+            Agrees,
+        ];
         // Differing pixels are reported even if undecided ones are below them; without any, the undecided
         // ones are.
-        for statuses in [all, all.map(|own| if own == Differs { Undecided } else { own })] {
-            let whole = Answer::new(&column(&[0.0; 6]), &column(&reds), &statuses);
+        for statuses in [
+            all,
+            all.map(|own| if own == Differs { IllConditioned } else { own }),
+        ] {
+            let whole = CheckSummary::new(&column(&[0.0; 6]), &column(&reds), &statuses);
             for height in 0..=reds.len() {
                 let part = |rows: std::ops::Range<usize>| {
                     let black = column(&[0.0; 6][rows.clone()]);
-                    Answer::new(&black, &column(&reds[rows.clone()]), &statuses[rows])
+                    CheckSummary::new(&black, &column(&reds[rows.clone()]), &statuses[rows])
                 };
                 let mut answer = part(0..height);
                 answer.extend(&part(height..reds.len()), height as u32);
@@ -254,8 +265,8 @@ mod tests {
 
     #[test]
     fn the_first_undecided_pixel_is_reported_where_none_differs() {
-        use PixelStatus::{Agrees, Undecided};
-        let answer = Answer::new(&row(&[0.0; 2]), &row(&[0.0, 0.1]), &[Agrees, Undecided]);
+        use PixelStatus::{Agrees, IllConditioned};
+        let answer = CheckSummary::new(&row(&[0.0; 2]), &row(&[0.0, 0.1]), &[Agrees, IllConditioned]);
         assert_eq!(answer.first.map(|pixel| pixel.x), Some(1));
         assert!(!answer.is_same() && answer.differing == 0);
     }

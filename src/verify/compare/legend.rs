@@ -15,7 +15,7 @@ const COOL: [[f32; 3]; 4] = [
 /// Warm colors of the decades above it, up to 1: visible differences.
 const WARM: [[f32; 3]; 3] = [[0.75, 0.55, 0.1], [0.95, 0.35, 0.1], [1.0, 0.1, 0.1]];
 /// The color of an ill-conditioned pixel: it differs, but might not with another rounding of its operations.
-const UNDECIDED: [f32; 3] = [0.8, 0.35, 1.0];
+const ILL_CONDITIONED: [f32; 3] = [0.8, 0.35, 1.0];
 /// The color of an excluded pixel, which depends on undefined behavior.
 const UNDEFINED: [f32; 3] = [0.3, 0.3, 0.3];
 const TEXT_COLOR: [f32; 3] = [0.85, 0.85, 0.85];
@@ -30,7 +30,7 @@ pub struct DiffLevel(u8);
 
 impl DiffLevel {
     /// Ill-conditioned.
-    pub const UNDECIDED: Self = Self(u8::MAX);
+    pub const ILL_CONDITIONED: Self = Self(u8::MAX);
     /// Excluded.
     pub const UNDEFINED: Self = Self(u8::MAX - 1);
 
@@ -101,7 +101,7 @@ impl Legend {
     /// The color of a level.
     fn color(self, level: DiffLevel) -> [f32; 3] {
         match level {
-            DiffLevel::UNDECIDED => UNDECIDED,
+            DiffLevel::ILL_CONDITIONED => ILL_CONDITIONED,
             DiffLevel::UNDEFINED => UNDEFINED,
             _ => {
                 let mut exceeded = self.decades().rev().filter(|&(decade, _)| level.exceeds(decade));
@@ -131,7 +131,7 @@ impl Legend {
             .decades()
             .map(|(decade, color)| (format!("> 1e{decade}"), color))
             .collect();
-        entries.push(("undecided".to_owned(), UNDECIDED));
+        entries.push(("undecided".to_owned(), ILL_CONDITIONED));
         entries.push(("undefined".to_owned(), UNDEFINED));
         entries
     }
@@ -207,7 +207,7 @@ mod tests {
         assert_eq!(color(0.5), WARM[2]);
         assert_eq!(color(7.0), WARM[2]);
         assert_eq!(color(f32::NAN), WARM[2]);
-        assert_eq!(LEGEND.color(DiffLevel::UNDECIDED), UNDECIDED);
+        assert_eq!(LEGEND.color(DiffLevel::ILL_CONDITIONED), ILL_CONDITIONED);
         let bit_exact = Legend { tolerance: 1e-6 };
         assert_eq!(bit_exact.color(DiffLevel::by(1.1e-10)), COOL[0]);
         assert_eq!(bit_exact.color(DiffLevel::by(1.0)), WARM[2]);

@@ -14,7 +14,9 @@ mod mean;
 mod replicate;
 
 pub use algorithm::{Mixed, PERTURBATIONS, Reference, algorithm};
-pub use check::{Answer, EXACT_TOLERANCE, PixelStatus, SEEN, TOLERANCE, marks, precision, toolchain};
+pub use check::{
+    CheckSummary, EXACT_TOLERANCE, PixelStatus, SEEN, TOLERANCE, diff_levels, precision, toolchain,
+};
 pub use images::{Comparison, Pixel, compare};
 pub use legend::{DiffLevel, IN_BITS, Legend, SEEN_BY_EYE, difference};
 pub(crate) use mean::{MIN_SHARED_CORRELATION, MIN_STANDARD_DEVIATION};

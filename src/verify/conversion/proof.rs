@@ -16,7 +16,7 @@ use toyproof_translate::FloatMode;
 use toyproof_translate::backend::roundtrip;
 use toyproof_translate::naga_ir::ValidModule;
 
-use crate::compare::{self, Answer};
+use crate::compare::{self, CheckSummary};
 use crate::cpu::{Evaluator, Single};
 use crate::{Case, EVALUATOR_TIME_FACTOR, Failure, TOTAL_TIME_FACTOR, join, within};
 
@@ -36,7 +36,7 @@ pub enum Runner<'a> {
 #[derive(Debug, Clone)]
 pub struct Proof {
     /// One comparison for each frame.
-    pub answers: Vec<Answer>,
+    pub frames: Vec<CheckSummary>,
     /// The device that rendered it.
     pub device: String,
     /// The reference.
@@ -67,7 +67,7 @@ impl Proof {
     /// The number of pixels of all frames.
     #[must_use]
     pub fn pixels(&self) -> u64 {
-        self.answers.iter().map(|answer| answer.pixels).sum()
+        self.frames.iter().map(|answer| answer.pixels).sum()
     }
 
     /// The number of pixels that have the same bits.
@@ -79,7 +79,7 @@ impl Proof {
     /// The largest difference of a component.
     #[must_use]
     pub fn max_abs(&self) -> f64 {
-        self.answers
+        self.frames
             .iter()
             .map(|answer| answer.max_abs)
             .fold(0.0, f64::max)
@@ -88,13 +88,13 @@ impl Proof {
     /// The number of pixels that differ.
     #[must_use]
     pub fn differing(&self) -> u64 {
-        self.answers.iter().map(|answer| answer.differing).sum()
+        self.frames.iter().map(|answer| answer.differing).sum()
     }
 
     /// The number of pixels that depend on undefined behavior.
     #[must_use]
     pub fn undefined(&self) -> u64 {
-        self.answers.iter().map(|answer| answer.undefined).sum()
+        self.frames.iter().map(|answer| answer.undefined).sum()
     }
 }
 
@@ -205,10 +205,10 @@ pub fn compare_with_original(
         let pictures = expected.iter().zip(&images).zip(&singles);
         let answers = pictures.map(|((expected, rendered), single)| {
             let statuses = compare::toolchain(expected, rendered, &single.undefined);
-            Answer::new(expected, rendered, &statuses)
+            CheckSummary::new(expected, rendered, &statuses)
         });
         Proof {
-            answers: answers.collect(),
+            frames: answers.collect(),
             device,
             against,
             undefined_at: singles.iter().map(|single| single.undefined.clone()).collect(),

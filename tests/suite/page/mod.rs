@@ -448,7 +448,7 @@ fn a_page_of_500_shaders_shows_one_at_a_time() {
             algorithm: None,
             precision: None,
             toolchain: None,
-            picture: None,
+            comparison: None,
             mistake: None,
             diagnostics: Vec::new(),
             seconds: Seconds::default(),

@@ -130,7 +130,7 @@ impl Differences {
             scene.camera.eye[1] += y;
             Tracer::<f64>::new(&scene)
         });
-        let ours = tracer.picture(|| ());
+        let ours = tracer.render(|| ());
         let mut apart = Self::default();
         for y in 0..scene.film.size[1] {
             for x in 0..scene.film.size[0] {

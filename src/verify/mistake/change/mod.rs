@@ -133,7 +133,7 @@ mod tests {
             .image();
         let mut scene = scene.clone();
         scene.film.size = size;
-        let traced = Tracer::<f64>::at(&scene, frame_time).picture(|| ());
+        let traced = Tracer::<f64>::at(&scene, frame_time).render(|| ());
         let pairs = rendered.pixels().iter().zip(traced.pixels());
         let differs = |(a, b): &(&[f32; 4], &[f32; 4])| (0..3).any(|i| (a[i] - b[i]).abs() > 0.01);
         pairs.filter(differs).count()
