@@ -52,7 +52,7 @@ pub(crate) struct Active {
 }
 
 /// Registers and masks. They are `Cell`s because instructions read and write them by index.
-pub struct Batch<'a, N: Number> {
+pub(crate) struct Batch<'a, N: Number> {
     /// The number of chunks in a row.
     pub(crate) width: usize,
     pub(crate) floats: Vec<Chunk<N>>,
@@ -81,7 +81,7 @@ pub struct Batch<'a, N: Number> {
 
 /// The reason why a batch ended early.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Stop {
+pub(crate) struct Stop {
     /// The loop that was running.
     pub(crate) id: u32,
     /// Whether the iteration limit was exceeded, rather than the time limit.

@@ -8,8 +8,8 @@ use toyproof_glsl::Checked;
 use toyproof_glsl::tree::Place;
 use toyproof_image::Frame;
 
-use crate::batch::Batch;
 use crate::build::{self, BuildOptions, Refusal, UndefinedMode, compile, with_stack};
+use crate::frame::target_color;
 use crate::ir::AliasGroups;
 use crate::ir::Function;
 use crate::lower::isel::Prepared;
@@ -21,9 +21,8 @@ use crate::opt::dce::eliminate_dead_code;
 use crate::opt::divergence::Divergence;
 use crate::opt::fuse::fuse;
 use crate::opt::gvn::number_values;
-use crate::render::{Substitute, UndefinedPolicy};
-use crate::tile::{BandError, Job};
-use crate::trace::{ExecutionTrace, ForcedPrefix, TraceSchema};
+use crate::render::{Failure, Part, Settings, Substitute, UndefinedPolicy};
+use crate::trace::{ExecutionTrace, ForcedPrefix, PixelDebugger, TraceSchema};
 
 /// A shader compiled for the CPU, for any number type, frame and size.
 #[derive(Debug)]
@@ -143,25 +142,39 @@ pub trait Backend: Sized {
     where
         Self: Number;
 
-    /// Renders the row of tiles whose lowest row of pixels is `first`.
+    /// Renders a part of a frame, rounded to f32.
     #[doc(hidden)]
-    fn render_band(
-        job: &Job<'_, Self>,
-        batch: &mut Batch<'_, Self>,
-        first: u32,
-        output: (&mut [[Self; 3]], &mut [u8]),
-        wanted: Option<&[bool]>,
-    ) -> Result<Observations, BandError>
+    fn fill_rounded(
+        program: &Program,
+        frame: &Frame,
+        part: Part<'_>,
+        settings: &Settings<'_, Self>,
+        pixels: &mut [[f32; 4]],
+        flags: &mut [u8],
+    ) -> Result<Observations, Failure>
     where
         Self: Number;
 
-    /// Runs the tile of a pixel and records its trace.
+    /// Renders a part of a frame in this number type.
+    #[doc(hidden)]
+    fn fill(
+        program: &Program,
+        frame: &Frame,
+        part: Part<'_>,
+        settings: &Settings<'_, Self>,
+        pixels: &mut [[Self; 3]],
+        flags: &mut [u8],
+    ) -> Result<Observations, Failure>
+    where
+        Self: Number;
+
+    /// Records the trace of a pixel.
     #[doc(hidden)]
     fn trace(
-        job: &Job<'_, Self>,
+        debugger: &PixelDebugger<'_, Self>,
         pixel: [u32; 2],
         prefix: Option<ForcedPrefix<'_>>,
-    ) -> Result<ExecutionTrace, BandError>
+    ) -> Result<ExecutionTrace, Failure>
     where
         Self: Number;
 }
@@ -173,22 +186,34 @@ macro_rules! backends {
                 compiled.prepare(frame)
             }
 
-            fn render_band(
-                job: &Job<'_, Self>,
-                batch: &mut Batch<'_, Self>,
-                first: u32,
-                output: (&mut [[Self; 3]], &mut [u8]),
-                wanted: Option<&[bool]>,
-            ) -> Result<Observations, BandError> {
-                job.render_band(batch, first, output, wanted)
+            fn fill_rounded(
+                program: &Program,
+                frame: &Frame,
+                part: Part<'_>,
+                settings: &Settings<'_, Self>,
+                pixels: &mut [[f32; 4]],
+                flags: &mut [u8],
+            ) -> Result<Observations, Failure> {
+                program.fill(frame, part, settings, pixels, flags, target_color)
+            }
+
+            fn fill(
+                program: &Program,
+                frame: &Frame,
+                part: Part<'_>,
+                settings: &Settings<'_, Self>,
+                pixels: &mut [[Self; 3]],
+                flags: &mut [u8],
+            ) -> Result<Observations, Failure> {
+                program.fill(frame, part, settings, pixels, flags, |color, _| color)
             }
 
             fn trace(
-                job: &Job<'_, Self>,
+                debugger: &PixelDebugger<'_, Self>,
                 pixel: [u32; 2],
                 prefix: Option<ForcedPrefix<'_>>,
-            ) -> Result<ExecutionTrace, BandError> {
-                job.trace(pixel, prefix)
+            ) -> Result<ExecutionTrace, Failure> {
+                debugger.run(pixel, prefix)
             }
         }
     )*};

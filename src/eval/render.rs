@@ -13,7 +13,7 @@ use toyproof_image::{Frame, Image};
 use crate::batch::Cancellation;
 use crate::build::Refusal;
 use crate::frame::Texture;
-use crate::frame::{Framebuffer, UNDEFINED, target_color};
+use crate::frame::{Framebuffer, UNDEFINED};
 use crate::number::Number;
 use crate::observe::Observations;
 use crate::program::Program;
@@ -213,7 +213,7 @@ pub struct RenderedF32 {
 }
 
 /// The part of a frame that is evaluated.
-enum Part<'a> {
+pub enum Part<'a> {
     Rows(Range<u32>),
     Places(&'a Places),
 }
@@ -231,7 +231,7 @@ impl Program {
         let mut framebuffer = Framebuffer::new(frame.size);
         let (pixels, flags) = framebuffer.parts_mut();
         let part = Part::Rows(frame.rows());
-        let observations = self.fill(frame, part, settings, pixels, flags, |color, _| color)?;
+        let observations = N::fill(self, frame, part, settings, pixels, flags)?;
         Ok(Rendered {
             framebuffer,
             observations,
@@ -252,14 +252,8 @@ impl Program {
         let size = [frame.size[0], rows.len() as u32];
         let mut pixels = vec![[0.0; 4]; size[0] as usize * size[1] as usize];
         let mut flags = vec![0; pixels.len()];
-        let observations = self.fill(
-            frame,
-            Part::Rows(rows),
-            settings,
-            &mut pixels,
-            &mut flags,
-            target_color,
-        )?;
+        let part = Part::Rows(rows);
+        let observations = N::fill_rounded(self, frame, part, settings, &mut pixels, &mut flags)?;
         Ok(RenderedF32 {
             image: Image::new(size[0], size[1], pixels),
             undefined: flags.into_iter().map(|flag| flag & UNDEFINED != 0).collect(),
@@ -281,20 +275,14 @@ impl Program {
         let mut pixels = vec![[0.0; 4]; size[0] as usize * size[1] as usize];
         let mut flags = vec![0; pixels.len()];
         if !pixels.is_empty() {
-            self.fill(
-                frame,
-                Part::Places(places),
-                settings,
-                &mut pixels,
-                &mut flags,
-                target_color,
-            )?;
+            let part = Part::Places(places);
+            N::fill_rounded(self, frame, part, settings, &mut pixels, &mut flags)?;
         }
         Ok(Image::new(size[0], size[1], pixels))
     }
 
     /// Renders a part; `keep` converts the color and flags of each pixel to its stored value.
-    fn fill<N: Number, P: Send>(
+    pub(crate) fn fill<N: Number, P: Send>(
         &self,
         frame: &Frame,
         part: Part<'_>,
@@ -323,7 +311,7 @@ impl Program {
                     .wanted
                     .map(|wanted| &wanted[tiles * band..][..pixels.len()]);
                 let colors = &mut colors[..pixels.len()];
-                match N::render_band(&job, batch, first, (colors, flags), wanted) {
+                match job.render_band(batch, first, (colors, flags), wanted) {
                     Ok(observations) => {
                         for ((pixel, &color), &flag) in pixels.iter_mut().zip(&*colors).zip(&*flags) {
                             *pixel = keep(color, flag);

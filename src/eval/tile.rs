@@ -21,7 +21,7 @@ use crate::trace::{ExecutionTrace, ForcedPrefix, Recorder};
 
 /// The reason why a band was not rendered.
 #[derive(Debug, Clone, Copy)]
-pub enum BandError {
+pub(crate) enum BandError {
     Late,
     Loop(Stop),
 }
@@ -48,7 +48,7 @@ const CHUNK_COLUMNS: usize = TILE_COLUMNS / 2;
 const CHUNK_ROWS: usize = LANES / CHUNK_COLUMNS;
 
 /// A frame that is being rendered.
-pub struct Job<'a, N: Number> {
+pub(crate) struct Job<'a, N: Number> {
     prepared: &'a Prepared<N>,
     textures: &'a [Option<Texture<'a>>; 4],
     limits: &'a Limits<'a>,

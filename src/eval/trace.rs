@@ -306,6 +306,14 @@ impl<'a, N: Number> PixelDebugger<'a, N> {
         pixel: [u32; 2],
         prefix: Option<ForcedPrefix<'_>>,
     ) -> Result<ExecutionTrace, Failure> {
+        N::trace(self, pixel, prefix)
+    }
+
+    pub(crate) fn run(
+        &self,
+        pixel: [u32; 2],
+        prefix: Option<ForcedPrefix<'_>>,
+    ) -> Result<ExecutionTrace, Failure> {
         let (frame, settings) = (self.frame, &self.settings);
         assert!(pixel[0] < frame.size[0] && pixel[1] < frame.size[1], "{pixel:?}");
         let textures = frame.channels.each_ref().map(|image| image.as_ref().map(Texture));
@@ -318,7 +326,7 @@ impl<'a, N: Number> PixelDebugger<'a, N> {
             settings,
             frame.size,
         );
-        N::trace(&job, pixel, prefix)
+        job.trace(pixel, prefix)
             .map_err(|end| end.failure(self.compiled, &limits, settings.max_iterations))
     }
 }
