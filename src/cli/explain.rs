@@ -109,7 +109,7 @@ fn print_trace(args: &Args, shader: &Shader, checked: &Checked, frame: &Frame, t
         Ok(explanation) => explanation,
         Err(failure) => return not_evaluated(&failure, shader, terminal),
     };
-    let subject = report::Subject {
+    let subject = report::TracedPixel {
         shader: &shader.name,
         files: &shader.files,
         tree: &checked.tree,

@@ -92,7 +92,7 @@ pub fn nearest<'c>(name: &str, candidates: impl IntoIterator<Item = &'c str>) ->
     let lower = name.to_lowercase();
     let distance = |candidate: &str| match candidate {
         _ if candidate == name || candidate.is_empty() => None,
-        // A different index is a different name: `p1` is not `p2`.
+        // Names of up to two letters get no suggestion but another case.
         _ if length.abs_diff(candidate.len()) > length / 3 => None,
         _ if candidate.eq_ignore_ascii_case(name) => Some(0),
         _ => Some(strsim::osa_distance(&lower, &candidate.to_lowercase())),

@@ -17,7 +17,7 @@ use crate::frame::{Framebuffer, UNDEFINED};
 use crate::number::Number;
 use crate::observe::Observations;
 use crate::program::Program;
-use crate::tile::Job;
+use crate::tile::FrameJob;
 
 /// The treatment of operations that GLSL leaves undefined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -299,7 +299,7 @@ impl Program {
             Part::Rows(rows) => ([frame.size[0], rows.end], rows.start, None),
             Part::Places(places) => (places.size(), 0, Some(places)),
         };
-        let job = Job::new(compiled, &prepared, &textures, &limits, settings, size).at(places);
+        let job = FrameJob::new(compiled, &prepared, &textures, &limits, settings, size).at(places);
         let failure = Mutex::new(None);
         let band = size[0] as usize * job.rows();
         let bands = pixels.par_chunks_mut(band).zip(flags.par_chunks_mut(band));

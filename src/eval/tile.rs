@@ -1,4 +1,5 @@
-//! Execution of tiles: a batch is initialized and run for each, and its output is stored.
+//! Renders tiles. A *band* is a row of tiles; the pixels of a tile are one *batch*, which is stored in *chunks* of
+//! [`LANES`] pixels.
 
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
@@ -22,23 +23,23 @@ use crate::trace::{ExecutionTrace, ForcedPrefix, Recorder};
 /// The reason why a band was not rendered.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum BandError {
-    Late,
-    Loop(Stop),
+    Cancelled,
+    LoopStopped(Stop),
 }
 
 impl BandError {
     /// Converts to the error that callers see.
     pub(crate) fn failure(self, compiled: &Compiled, limits: &Limits<'_>, limit: u32) -> Failure {
         match self {
-            Self::Loop(stop) if stop.over_limit => Failure::TooOften {
+            Self::LoopStopped(stop) if stop.over_limit => Failure::TooOften {
                 limit,
                 at: compiled.loop_at(stop.id),
             },
             _ if limits.is_interrupted() => Failure::Interrupted,
-            Self::Loop(stop) => Failure::Timeout {
+            Self::LoopStopped(stop) => Failure::Timeout {
                 at: compiled.loop_at(stop.id),
             },
-            Self::Late => Failure::TimeUp,
+            Self::Cancelled => Failure::TimeUp,
         }
     }
 }
@@ -48,7 +49,7 @@ const CHUNK_COLUMNS: usize = TILE_COLUMNS / 2;
 const CHUNK_ROWS: usize = LANES / CHUNK_COLUMNS;
 
 /// A frame that is being rendered.
-pub(crate) struct Job<'a, N: Number> {
+pub(crate) struct FrameJob<'a, N: Number> {
     prepared: &'a Prepared<N>,
     textures: &'a [Option<Texture<'a>>; 4],
     limits: &'a Limits<'a>,
@@ -61,7 +62,7 @@ pub(crate) struct Job<'a, N: Number> {
     places: Option<&'a Places>,
 }
 
-impl<'a, N: Number> Job<'a, N> {
+impl<'a, N: Number> FrameJob<'a, N> {
     pub(crate) fn new(
         compiled: &'a Compiled,
         prepared: &'a Prepared<N>,
@@ -138,7 +139,7 @@ impl<'a, N: Number> Job<'a, N> {
         let mut observations = Observations::default();
         for left in (0..self.size[0]).step_by(TILE_COLUMNS) {
             if self.limits.is_cancelled() {
-                return Err(BandError::Late);
+                return Err(BandError::Cancelled);
             }
             if wanted.is_some_and(|wanted| !self.is_wanted(left, wanted)) {
                 continue;
@@ -147,7 +148,7 @@ impl<'a, N: Number> Job<'a, N> {
             self.begin_tile(batch, corner);
             run(batch, &self.prepared.code);
             if let Some(stop) = batch.stopped.take() {
-                return Err(BandError::Loop(stop));
+                return Err(BandError::LoopStopped(stop));
             }
             self.end_tile(batch, corner, pixels, flags, &mut observations);
         }
@@ -177,7 +178,7 @@ impl<'a, N: Number> Job<'a, N> {
         self.begin_tile(&mut batch, corner);
         run(&batch, &self.prepared.code);
         if let Some(stop) = batch.stopped.take() {
-            return Err(BandError::Loop(stop));
+            return Err(BandError::LoopStopped(stop));
         }
         let mut trace = batch
             .recorder

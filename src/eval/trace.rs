@@ -11,7 +11,7 @@ use crate::lower::isel::Prepared;
 use crate::number::Number;
 use crate::program::{Compiled, Program};
 use crate::render::{Failure, Limits, Settings};
-use crate::tile::Job;
+use crate::tile::FrameJob;
 
 /// Identifies an event of a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -318,7 +318,7 @@ impl<'a, N: Number> PixelDebugger<'a, N> {
         assert!(pixel[0] < frame.size[0] && pixel[1] < frame.size[1], "{pixel:?}");
         let textures = frame.channels.each_ref().map(|image| image.as_ref().map(Texture));
         let limits = Limits::of(settings);
-        let job = Job::new(
+        let job = FrameJob::new(
             self.compiled,
             &self.prepared,
             &textures,

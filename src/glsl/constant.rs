@@ -16,13 +16,13 @@ const MAX_SCALARS: usize = 1 << 18;
 
 impl Tree {
     /// The value of a constant expression; none if it is not constant or has no known value. Takes constant
-    /// time for expressions cached by [`Self::keep_value`].
+    /// time for expressions cached by [`Self::cache_value`].
     #[must_use]
     pub fn value(&self, root: ExprId) -> Option<Constant> {
         if !self[root].constant {
             return None;
         }
-        if let Some(known) = self.kept_value(root) {
+        if let Some(known) = self.cached_value(root) {
             return known;
         }
         // Operands are evaluated before their users, so their values are on top of this stack. A loop handles
@@ -37,7 +37,7 @@ impl Tree {
                 values.push(self.value_of(expr, operands));
             } else if !self[expr].constant {
                 values.push(None);
-            } else if let Some(known) = self.kept_value(expr) {
+            } else if let Some(known) = self.cached_value(expr) {
                 values.push(known);
             } else {
                 pending.push((expr, true));
@@ -54,7 +54,7 @@ impl Tree {
     /// Computes the value of an expression from those of its operands, and caches it. Called for each new
     /// expression, operands first, this keeps the total time proportional to the size of the tree. A later
     /// rewrite must preserve the value, or clear [`Expr::constant`](super::tree::Expr::constant).
-    pub fn keep_value(&mut self, expr: ExprId) {
+    pub fn cache_value(&mut self, expr: ExprId) {
         let is_literal = matches!(self[expr].kind, ExprKind::Literal(_));
         if self[expr].constant && !is_literal {
             let value = self.value(expr);
@@ -63,7 +63,7 @@ impl Tree {
     }
 
     /// Clears the cache, after a rewrite that may change values.
-    pub fn forget_values(&mut self) {
+    pub fn clear_cached_values(&mut self) {
         self.values.clear();
     }
 
@@ -72,7 +72,7 @@ impl Tree {
         clippy::option_option,
         reason = "a value that is not known, and one that there is not"
     )]
-    fn kept_value(&self, expr: ExprId) -> Option<Option<Constant>> {
+    fn cached_value(&self, expr: ExprId) -> Option<Option<Constant>> {
         match &self[expr].kind {
             ExprKind::Literal(literal) => Some(Some(Constant::scalar(literal.value))),
             _ => self.values.get(&expr).cloned(),

@@ -247,13 +247,13 @@ fn adjugate<N: Number>(m: &Matrix<N>) -> (Matrix<N>, N) {
             let columns = columns.collect();
             (Matrix { columns }, dot(&a, &rows[0]))
         }
-        m => adjugate_of_four(m),
+        m => adjugate_4x4(m),
     }
 }
 
 /// The adjugate and the determinant of a 4×4 matrix, from the 2×2 minors of the first two and of the last two
 /// columns (Laplace expansion).
-fn adjugate_of_four<N: Number>(m: &[Vec<N>]) -> (Matrix<N>, N) {
+fn adjugate_4x4<N: Number>(m: &[Vec<N>]) -> (Matrix<N>, N) {
     const PAIRS: [(usize, usize); 6] = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
     let minors = |c: usize| PAIRS.map(|(i, j)| m[c][i] * m[c + 1][j] - m[c + 1][i] * m[c][j]);
     let [s0, s1, s2, s3, s4, s5] = minors(0);

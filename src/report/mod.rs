@@ -21,7 +21,7 @@ pub use rubric::{Mark, Rubric, Visibility};
 pub use sarif::sarif;
 pub use terminal::{Tally, line, place, summary};
 use terminal::{details, plain};
-pub use trace::{PixelTrace, Subject};
+pub use trace::{PixelTrace, TracedPixel};
 
 // The explanation of each diagnostic code: a section of `docs/diagnostics.md`.
 

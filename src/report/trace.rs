@@ -20,7 +20,8 @@ pub struct PixelTrace {
     f32: Option<[Component; 3]>,
     f64: Option<[Component; 3]>,
     /// The index of the first step where the two differ; null if none does.
-    parts_at: Option<usize>,
+    #[serde(rename = "parts_at")]
+    divergence_at: Option<usize>,
     /// The index of the step that causes a visible difference of the colors; null if there is none.
     cause_at: Option<usize>,
     /// The index of the first step with a NaN in f32, or with an infinity if the color is infinite; null if
@@ -28,15 +29,15 @@ pub struct PixelTrace {
     not_finite_at: Option<usize>,
     /// Whether the last steps are missing because there were too many.
     cut: bool,
-    steps: Vec<Line>,
+    steps: Vec<TraceStep>,
 }
 
 /// One step.
 #[derive(Debug, Serialize)]
-#[expect(clippy::struct_field_names, reason = "the names are those of the JSON")]
-struct Line {
+struct TraceStep {
     /// `stored`, `part`, `branch`, `round`, `returned` or `ran`.
-    what: &'static str,
+    #[serde(rename = "what")]
+    kind: &'static str,
     line: usize,
     column: usize,
     /// The whole line.
@@ -51,7 +52,8 @@ struct Line {
     /// The lines of the enclosing calls, outermost first.
     calls: Vec<usize>,
     /// The iteration of each enclosing loop, outermost first, from 1.
-    rounds: Vec<u32>,
+    #[serde(rename = "rounds")]
+    iterations: Vec<u32>,
     /// The accessors of the components, as appended to the variable's name: `.x`.
     components: Vec<String>,
     /// The values in f32; null if the step did not run in f32.
@@ -67,7 +69,7 @@ struct Line {
 
 /// The pixel that is traced.
 #[derive(Debug, Clone, Copy)]
-pub struct Subject<'a> {
+pub struct TracedPixel<'a> {
     /// The shader's name.
     pub shader: &'a str,
     /// Its source files.
@@ -83,12 +85,12 @@ pub struct Subject<'a> {
 impl PixelTrace {
     /// Resolves the positions and names of an explanation.
     #[must_use]
-    pub fn new(subject: &Subject<'_>, explanation: &Explanation<'_>) -> Self {
+    pub fn new(subject: &TracedPixel<'_>, explanation: &Explanation<'_>) -> Self {
         let schema = explanation.schema;
         let lines = explanation
             .steps
             .iter()
-            .map(|step| Line::new(subject, schema, step));
+            .map(|step| TraceStep::new(subject, schema, step));
         let color = |color: [f64; 3]| color.map(Component::Float);
         Self {
             version: 1,
@@ -97,7 +99,7 @@ impl PixelTrace {
             size: subject.size,
             f32: explanation.single.map(color),
             f64: explanation.double.map(color),
-            parts_at: explanation.divergence,
+            divergence_at: explanation.divergence,
             cause_at: explanation.cause,
             not_finite_at: explanation.not_finite,
             cut: explanation.is_cut,
@@ -113,9 +115,9 @@ impl PixelTrace {
     }
 }
 
-impl Line {
-    fn new(subject: &Subject<'_>, schema: &TraceSchema, step: &Step) -> Self {
-        let Subject { files, tree, .. } = *subject;
+impl TraceStep {
+    fn new(subject: &TracedPixel<'_>, schema: &TraceSchema, step: &Step) -> Self {
+        let TracedPixel { files, tree, .. } = *subject;
         let event = schema.event(step.event);
         let at = files.position(event.at.span);
         let name = match event.kind {
@@ -130,7 +132,7 @@ impl Line {
         let (single, double) = (values(&step.single), values(&step.double));
         let count = single.as_ref().or(double.as_ref()).map_or(0, Vec::len);
         Self {
-            what: match event.kind {
+            kind: match event.kind {
                 EventKind::Assignment(_) => "stored",
                 EventKind::Subexpression => "part",
                 EventKind::Branch => "branch",
@@ -145,7 +147,7 @@ impl Line {
             name,
             function,
             calls,
-            rounds: step.iterations(),
+            iterations: step.iterations(),
             components: if count == 0 {
                 Vec::new()
             } else {
@@ -160,7 +162,7 @@ impl Line {
 }
 
 /// The function that contains an event, and the lines of the calls that lead to it.
-fn calls(subject: &Subject<'_>, schema: &TraceSchema, event: &Event) -> (String, Vec<usize>) {
+fn calls(subject: &TracedPixel<'_>, schema: &TraceSchema, event: &Event) -> (String, Vec<usize>) {
     let mut lines = Vec::new();
     let mut next = event.call;
     while let Some(id) = next {
@@ -306,7 +308,7 @@ impl PixelTrace {
         let mut skipped = 0;
         for (index, line) in self.steps.iter().enumerate() {
             let mark = self.mark(index);
-            if line.what == "part" && !whole && mark.is_none() {
+            if line.kind == "part" && !whole && mark.is_none() {
                 continue;
             }
             if !whole && !self.is_near(index) {
@@ -327,7 +329,7 @@ impl PixelTrace {
 
     fn is_near(&self, index: usize) -> bool {
         let from_end = self.steps.len() - index;
-        let marked = [self.parts_at, self.cause_at, self.not_finite_at];
+        let marked = [self.divergence_at, self.cause_at, self.not_finite_at];
         let near = |step: usize| step.abs_diff(index) <= CONTEXT_STEPS;
         index < CONTEXT_STEPS || from_end <= CONTEXT_STEPS || marked.into_iter().flatten().any(near)
     }
@@ -335,20 +337,20 @@ impl PixelTrace {
     /// Summarizes where the two first differ, and the cause of a visible difference.
     fn headline(&self) -> String {
         let mut text = String::new();
-        match self.parts_at {
+        match self.divergence_at {
             None => text.push_str("  they never part: float32 is enough here\n"),
             Some(at) => {
                 let _ = writeln!(text, "  they first part in {}", self.steps[at].difference());
             }
         }
         if let Some(at) = self.cause_at {
-            let _ = match self.parts_at {
+            let _ = match self.divergence_at {
                 Some(first) if first == at => writeln!(text, "  and that is what is seen"),
                 _ => writeln!(text, "  what is seen comes of {}", self.steps[at].difference()),
             };
         }
         if let Some(at) = self.not_finite_at {
-            let Line {
+            let TraceStep {
                 line,
                 column,
                 text: source,
@@ -367,14 +369,14 @@ impl PixelTrace {
         let is = |step: Option<usize>| step == Some(index);
         match () {
             () if is(self.cause_at) => Some("  <- what is seen comes of this"),
-            () if is(self.parts_at) => Some("  <- here they part"),
+            () if is(self.divergence_at) => Some("  <- here they part"),
             () if is(self.not_finite_at) => Some("  <- no longer finite"),
             () => None,
         }
     }
 }
 
-impl Line {
+impl TraceStep {
     /// Describes how the two differ at this step.
     fn difference(&self) -> String {
         let place = format!("line {}, column {}", self.line, self.column);
@@ -410,7 +412,7 @@ impl Writer {
         }
     }
 
-    fn line(&mut self, line: &Line, mark: &str) {
+    fn line(&mut self, line: &TraceStep, mark: &str) {
         self.heading(line);
         let indent = "  ".repeat(line.calls.len() + 1);
         let only = match (&line.f32, &line.f64) {
@@ -421,11 +423,11 @@ impl Writer {
         let count = line.components.len();
         if count == 0 {
             if !mark.is_empty() || !only.is_empty() {
-                let _ = writeln!(self.text, "      {indent}{}{only}{mark}", line.what);
+                let _ = writeln!(self.text, "      {indent}{}{only}{mark}", line.kind);
             }
             return;
         }
-        let name = match line.what {
+        let name = match line.kind {
             "branch" => "?",
             "returned" => "return",
             "part" => &line.text,
@@ -457,8 +459,8 @@ impl Writer {
     }
 
     /// Writes the source line, if it differs from the previous heading.
-    fn heading(&mut self, line: &Line) {
-        let here = (line.line, line.calls.clone(), line.rounds.clone());
+    fn heading(&mut self, line: &TraceStep) {
+        let here = (line.line, line.calls.clone(), line.iterations.clone());
         if self.last.as_ref() == Some(&here) {
             return;
         }
@@ -473,8 +475,8 @@ impl Writer {
                 line.function
             );
         }
-        let round = match line.rounds.last() {
-            Some(round) if line.what == "round" => format!("   (round {round})"),
+        let round = match line.iterations.last() {
+            Some(round) if line.kind == "round" => format!("   (round {round})"),
             _ => String::new(),
         };
         let _ = writeln!(self.text, "{:>5} {indent}{}{round}", line.line, line.source);

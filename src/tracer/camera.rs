@@ -1,4 +1,4 @@
-//! The course's cameras, and screen-space figures, which cover the scene.
+//! Camera rays of a pinhole or of a parallel projection, and the 2D figures that are drawn over the scene.
 
 #![expect(
     clippy::inline_always,
@@ -12,16 +12,17 @@ use crate::ray::Ray;
 use crate::real::{Real, Vector};
 use crate::spheres::{Origins, PACKET_RAYS, Packet};
 
+/// A camera, with its constants in the tracer's number type.
 #[derive(Debug)]
 pub(super) struct Camera<T: Real> {
     eye: T::Vec3,
-    projection: View<T>,
+    projection: ScreenProjection<T>,
     width: T,
     height: T,
 }
 
 #[derive(Debug)]
-enum View<T> {
+enum ScreenProjection<T> {
     Pinhole { screen_distance: T },
     Parallel { half_width: T },
 }
@@ -32,10 +33,10 @@ impl<T: Real> Camera<T> {
         Self {
             eye: T::Vec3::from_f64(scene.camera.eye),
             projection: match scene.camera.projection {
-                Projection::Pinhole { screen_distance } => View::Pinhole {
+                Projection::Pinhole { screen_distance } => ScreenProjection::Pinhole {
                     screen_distance: T::from_f64(screen_distance),
                 },
-                Projection::Parallel { width } => View::Parallel {
+                Projection::Parallel { width } => ScreenProjection::Parallel {
                     half_width: T::from_f64(0.5 * width),
                 },
             },
@@ -63,7 +64,7 @@ impl<T: Real> Camera<T> {
     /// Creates the ray through a point of the screen.
     pub(super) fn ray(&self, [x, y]: [T; 2]) -> Ray<T> {
         let (origin, direction) = match self.projection {
-            View::Pinhole { screen_distance } => {
+            ScreenProjection::Pinhole { screen_distance } => {
                 let mut direction = [[T::zero()]; 3];
                 let kernel = PinholeDirections {
                     x: &[x],
@@ -75,7 +76,7 @@ impl<T: Real> Camera<T> {
                 let [[x], [y], [z]] = direction;
                 (self.eye, T::Vec3::new(x, y, z))
             }
-            View::Parallel { .. } => (
+            ScreenProjection::Parallel { .. } => (
                 self.parallel_origin([x, y]),
                 T::Vec3::from_f64(PARALLEL_DIRECTION),
             ),
@@ -91,7 +92,7 @@ impl<T: Real> Camera<T> {
     pub(super) fn packet(&self, [x, y]: &[[T; PACKET_RAYS]; 2], level: Level) -> Packet<T> {
         let mut directions = PARALLEL_DIRECTION.map(|component| [T::from_f64(component); PACKET_RAYS]);
         let origins = match self.projection {
-            View::Pinhole { screen_distance } => {
+            ScreenProjection::Pinhole { screen_distance } => {
                 let kernel = PinholeDirections {
                     x,
                     y,
@@ -101,7 +102,7 @@ impl<T: Real> Camera<T> {
                 T::run(level, kernel);
                 Origins::Shared(self.eye.to_array())
             }
-            View::Parallel { .. } => {
+            ScreenProjection::Parallel { .. } => {
                 let start = |at: usize, axis: usize| self.parallel_origin([x[at], y[at]]).to_array()[axis];
                 Origins::Each([0, 1, 2].map(|axis| std::array::from_fn(|at| start(at, axis))))
             }
@@ -112,8 +113,8 @@ impl<T: Real> Camera<T> {
     /// Returns the origin of a parallel ray.
     fn parallel_origin(&self, [x, y]: [T; 2]) -> T::Vec3 {
         let half_width = match self.projection {
-            View::Parallel { half_width } => half_width,
-            View::Pinhole { .. } => T::zero(),
+            ScreenProjection::Parallel { half_width } => half_width,
+            ScreenProjection::Pinhole { .. } => T::zero(),
         };
         self.eye + T::Vec3::new(x * half_width, y * half_width, T::zero())
     }

@@ -62,7 +62,7 @@ impl Reseeding {
         for id in ids {
             self.change(tree, id, salt);
         }
-        tree.forget_values();
+        tree.clear_cached_values();
         checked
     }
 

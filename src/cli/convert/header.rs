@@ -17,7 +17,7 @@ pub(super) fn insert(bytes: &mut Vec<u8>, target: Target, name: &str, status: &P
     let at = match target {
         Target::Spirv => {
             if let Some(words) = spirv::of_bytes(bytes) {
-                *bytes = spirv::bytes(&spirv::with_note(&words, &head(name, status)));
+                *bytes = spirv::bytes(&spirv::with_note(&words, &header_text(name, status)));
             }
             return;
         }
@@ -27,11 +27,11 @@ pub(super) fn insert(bytes: &mut Vec<u8>, target: Target, name: &str, status: &P
             .map_or(0, |end| end + 1),
         Target::Wgsl | Target::Msl | Target::Hlsl => 0,
     };
-    let head = head(name, status);
+    let head = header_text(name, status);
     bytes.splice(at..at, head.into_bytes());
 }
 
-fn head(name: &str, status: &ProofStatus) -> String {
+fn header_text(name: &str, status: &ProofStatus) -> String {
     // A name may contain anything, even a line break, which would end the comment.
     let name: String = name
         .chars()

@@ -2,7 +2,7 @@
 
 use toyproof_glsl::tree::{BuiltIn, ExprId, Input, Place, Sampler, Scalar, Type};
 
-use super::place::{Target, component_count};
+use super::lvalue::{LValue, component_count};
 use super::{Builder, Result};
 use crate::ir::{Kind, Lookup, NONE, Operation, Value, ValueDef};
 use crate::observe::{Fault, Predicate};
@@ -21,7 +21,7 @@ impl Builder<'_> {
         let mut whole = None;
         for (at, &argument) in arguments.iter().enumerate() {
             if function.out_parameter() == Some(at) {
-                whole = self.target(argument)?;
+                whole = self.lvalue(argument)?;
                 values.push(Vec::new());
             } else {
                 values.push(self.expression(argument)?);
@@ -142,7 +142,7 @@ impl Builder<'_> {
     }
 
     /// Splits into integral parts, which are stored to `whole`, and fractional parts.
-    fn modf(&mut self, values: &[Value], whole: Option<&Target>) -> Vec<Value> {
+    fn modf(&mut self, values: &[Value], whole: Option<&LValue>) -> Vec<Value> {
         let before: Vec<Value> = values.iter().map(|&x| self.unary(Operation::Trunc, x)).collect();
         if let Some(whole) = whole {
             self.write(whole, &before);

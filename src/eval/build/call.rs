@@ -4,7 +4,7 @@ use toyproof_glsl::tree::{
     Direction, ExprId, ExprKind, FunctionId, Place, Type, VariableId, VariableKind, walk,
 };
 
-use super::place::{Location, Target};
+use super::lvalue::{LValue, Location};
 use super::{Builder, InlinedCall, Result};
 use crate::ir::{Cells, Node, Value};
 use crate::trace::CallId;
@@ -13,8 +13,8 @@ use crate::trace::CallId;
 struct Argument {
     values: Vec<Value>,
     /// The part of a variable that is copied in when the call begins, if the values are not read before.
-    copy_in: Option<Target>,
-    copy_out: Option<Target>,
+    copy_in: Option<LValue>,
+    copy_out: Option<LValue>,
 }
 
 impl Builder<'_> {
@@ -76,7 +76,7 @@ impl Builder<'_> {
 
     /// Returns the cells of an argument that the function can access in place: they are contiguous, and no
     /// other name refers to them during the call.
-    fn shared_cells(&self, target: &Target, arguments: &[ExprId], at: usize) -> Option<Cells> {
+    fn shared_cells(&self, target: &LValue, arguments: &[ExprId], at: usize) -> Option<Cells> {
         let root = self.tree.root_variable(arguments[at])?;
         let own = matches!(
             self.tree[root].kind,
@@ -101,7 +101,7 @@ impl Builder<'_> {
         }
         let direction = direction(self.tree[parameter].kind);
         let copy_in = if direction == Direction::In && may_change {
-            self.target(argument)?
+            self.lvalue(argument)?
         } else {
             None
         };
@@ -116,7 +116,7 @@ impl Builder<'_> {
                 copy_out: None,
             });
         }
-        let copy_out = self.target(argument)?;
+        let copy_out = self.lvalue(argument)?;
         Ok(Argument {
             values: self.zeros(ty),
             copy_in: copy_out.clone().filter(|_| direction == Direction::InOut),

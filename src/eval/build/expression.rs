@@ -2,8 +2,8 @@
 
 use toyproof_glsl::tree::{BinaryOp, ExprId, ExprKind, Scalar, StepOp, Type};
 
-use super::place::Location;
-use super::place::{component_count, indexed_element, member_offset, scalar_kind};
+use super::lvalue::Location;
+use super::lvalue::{component_count, indexed_element, member_offset, scalar_kind};
 use super::{Builder, Result};
 use crate::ir::Operation;
 use crate::ir::{NONE, Node, Value};
@@ -89,7 +89,7 @@ impl Builder<'_> {
                 Location::Channel(_) => Vec::new(),
             },
             ExprKind::Swizzle { .. } | ExprKind::Member { .. } | ExprKind::Index { .. } => {
-                match self.target(expr)? {
+                match self.lvalue(expr)? {
                     Some(target) => self.read(&target),
                     None => Vec::new(),
                 }
@@ -233,7 +233,7 @@ impl Builder<'_> {
         whole: ExprId,
     ) -> Result<Vec<Value>> {
         let types = (self.ty(target), self.ty(value));
-        let Some(place) = self.target(target)? else {
+        let Some(place) = self.lvalue(target)? else {
             return self.expression(value);
         };
         let mut values = self.expression(value)?;
@@ -249,7 +249,7 @@ impl Builder<'_> {
 
     fn step(&mut self, op: StepOp, postfix: bool, target: ExprId) -> Result<Vec<Value>> {
         let ty = self.ty(target);
-        let Some(place) = self.target(target)? else {
+        let Some(place) = self.lvalue(target)? else {
             return self.expression(target);
         };
         let old = self.read(&place);

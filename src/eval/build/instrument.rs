@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 use toyproof_glsl::tree::{Direction, ExprId, ExprKind, FunctionId, Place, Tree, Type, VariableId};
 
 use super::call::direction;
-use super::place::{Location, component_count};
+use super::lvalue::{Location, component_count};
 use super::{Builder, InlinedCall, UndefinedMode};
 use crate::ir::{Cell, Cells, Kind, NONE, Node, Operation, Value, ValueDef};
 use crate::observe::{Fault, Predicate, Site, SiteId};

@@ -4,8 +4,8 @@ mod builtin;
 mod call;
 mod expression;
 mod instrument;
+mod lvalue;
 mod operator;
-mod place;
 mod statement;
 
 use std::cell::RefCell;
@@ -17,8 +17,8 @@ use toyproof_glsl::Checked;
 use toyproof_glsl::tree::{Direction, ExprId, FunctionId, Item, Place, Tree, Type, VariableId, VariableKind};
 
 use self::instrument::{WrittenFlags, out_arguments};
+use self::lvalue::{Location, component_count, scalar_kind};
 use self::operator::Term;
-use self::place::{Location, component_count, scalar_kind};
 use crate::ir::{Block, Cell, Cells, Function, LoopId, NONE, Node, Scope, Value, ValueDef};
 use crate::ir::{Kind, Operation};
 use crate::observe::{Predicate, Site, SiteId};

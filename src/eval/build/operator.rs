@@ -6,7 +6,7 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 use toyproof_glsl::tree::{BinaryOp, Constructor, ExprId, Place, Scalar, Type, UnaryOp};
 use toyproof_math::Number;
 
-use super::place::{component_count, scalar_kind};
+use super::lvalue::{component_count, scalar_kind};
 use super::{Builder, IrWriter, Result};
 use crate::ir::{Kind, NONE, Operation, Value, ValueDef};
 use crate::observe::{Fault, Predicate};

@@ -5,7 +5,7 @@ use toyproof_glsl::tree::{
     VariableKind,
 };
 
-use super::place::Location;
+use super::lvalue::Location;
 use super::{Builder, Result};
 use crate::ir::Block as Nodes;
 use crate::ir::{Cell, Node, Operation, Scope, Value, ValueDef};

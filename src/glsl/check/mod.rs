@@ -137,7 +137,7 @@ impl<'a> Checker<'a> {
             at,
         };
         let id = self.tree.exprs.push(expr);
-        self.tree.keep_value(id);
+        self.tree.cache_value(id);
         id
     }
 

@@ -17,7 +17,7 @@ pub struct HeatMap {
     pub panels: Vec<Panel>,
 }
 
-/// A color for values at or min a bound.
+/// A color for values at or above a lower bound.
 #[derive(Debug, Clone)]
 pub struct Band {
     /// The lower bound.

@@ -1,4 +1,5 @@
-//! The image: samples and their mean, tone map, camera, figures, background, and random numbers.
+//! GLSL of `mainImage` and what it calls: samples and their mean, tone map, camera, figures, background, random
+//! numbers. `«Name: text»` marks a [slot](super::slot).
 
 use std::fmt::Write;
 

@@ -12,7 +12,7 @@ use toyproof_diagnostic::{Diagnostics, FileId, Files};
 
 pub use self::checks::toml_diagnostic;
 use self::checks::{Checks, Triple};
-use self::surface::Names;
+use self::surface::MotionNames;
 use super::{Background, Integrator, Light, Model, Object, Scattered, Scene, Shape};
 
 /// Parses a scene.
@@ -176,12 +176,12 @@ fn needs_a_sampler(what: &str) -> String {
 /// A table that describes surfaces.
 trait Surface {
     /// Returns the surfaces, and the bytes of the file that name their model.
-    fn check(self, names: &Names, checks: &mut Checks) -> (Vec<Object>, std::ops::Range<usize>);
+    fn check(self, names: &MotionNames, checks: &mut Checks) -> (Vec<Object>, std::ops::Range<usize>);
 }
 
 /// Collects surfaces and checks them against the film.
 struct Surfaces<'a> {
-    names: &'a Names,
+    names: &'a MotionNames,
     checks: &'a mut Checks,
     objects: Vec<Object>,
     scatters: Vec<Scattered>,
@@ -242,7 +242,7 @@ impl Surfaces<'_> {
 }
 
 impl LightTable {
-    fn check(self, names: &Names, checks: &mut Checks) -> Light {
+    fn check(self, names: &MotionNames, checks: &mut Checks) -> Light {
         Light {
             position: checks.point("position", Some(self.position), [0.0; 3]),
             color: checks.color("color", self.color, [1.0; 3]),

@@ -1,4 +1,4 @@
-//! `[[sphere]]` and the other tables of surfaces, their materials, and `[[motion]]`
+//! The tables of the scene file for surfaces (`[[sphere]]` and others), for their materials, and for motions.
 
 use std::ops::Range;
 
@@ -72,7 +72,7 @@ pub(super) struct ScatterTable {
 fn object(
     shape: Shape,
     (material, motion): (MaterialTable, Option<Spanned<String>>),
-    names: &Names,
+    names: &MotionNames,
     checks: &mut Checks,
 ) -> (Vec<Object>, Range<usize>) {
     let (material, place) = material.check(checks);
@@ -92,7 +92,7 @@ fn quadric(origin: (&str, Triple), axis: Option<Triple>, kind: QuadricKind, chec
 }
 
 impl Surface for SphereTable {
-    fn check(self, names: &Names, checks: &mut Checks) -> (Vec<Object>, Range<usize>) {
+    fn check(self, names: &MotionNames, checks: &mut Checks) -> (Vec<Object>, Range<usize>) {
         let shape = Shape::Sphere {
             center: checks.point("center", Some(self.center), [0.0; 3]),
             radius: checks.positive("radius", &self.radius),
@@ -102,7 +102,7 @@ impl Surface for SphereTable {
 }
 
 impl Surface for PlaneTable {
-    fn check(self, names: &Names, checks: &mut Checks) -> (Vec<Object>, Range<usize>) {
+    fn check(self, names: &MotionNames, checks: &mut Checks) -> (Vec<Object>, Range<usize>) {
         let shape = Shape::Plane {
             point: checks.point("point", Some(self.point), [0.0; 3]),
             normal: checks.direction("normal", self.normal, UP),
@@ -112,7 +112,7 @@ impl Surface for PlaneTable {
 }
 
 impl Surface for EllipsoidTable {
-    fn check(self, names: &Names, checks: &mut Checks) -> (Vec<Object>, Range<usize>) {
+    fn check(self, names: &MotionNames, checks: &mut Checks) -> (Vec<Object>, Range<usize>) {
         let radii = *self.radii.get_ref();
         if !radii.iter().all(|radius| radius.is_finite() && *radius > 0.0) {
             checks.refuse(
@@ -144,7 +144,7 @@ macro_rules! axial_tables {
         }
 
         impl Surface for $table {
-            fn check(self, names: &Names, checks: &mut Checks) -> (Vec<Object>, Range<usize>) {
+            fn check(self, names: &MotionNames, checks: &mut Checks) -> (Vec<Object>, Range<usize>) {
                 let kind = QuadricKind::$kind {
                     radius: checks.positive("radius", &self.radius),
                     height: checks.positive("height", &self.height),
@@ -163,7 +163,7 @@ axial_tables! {
 }
 
 impl Surface for HyperboloidTable {
-    fn check(self, names: &Names, checks: &mut Checks) -> (Vec<Object>, Range<usize>) {
+    fn check(self, names: &MotionNames, checks: &mut Checks) -> (Vec<Object>, Range<usize>) {
         let waist = checks.positive("waist", &self.waist);
         let radius = checks.positive("radius", &self.radius);
         if waist >= radius {
@@ -182,7 +182,7 @@ impl Surface for HyperboloidTable {
 
 impl ScatterTable {
     /// Returns the scatter, and the bytes of the file that name its model.
-    pub(super) fn check(self, names: &Names, checks: &mut Checks) -> (Scatter, Range<usize>) {
+    pub(super) fn check(self, names: &MotionNames, checks: &mut Checks) -> (Scatter, Range<usize>) {
         let cells = *self.cells.get_ref();
         let number: u64 = cells
             .iter()
@@ -285,7 +285,7 @@ impl MaterialTable {
     pub(super) fn check(self, checks: &mut Checks) -> (Material, Range<usize>) {
         let place = self.model.span();
         let name = *self.model.get_ref();
-        self.refuse_foreign(name, checks);
+        self.reject_keys_of_other_models(name, checks);
         let model = match name {
             ModelName::Facing => Model::Facing,
             ModelName::Lambert => Model::Lambert,
@@ -337,7 +337,7 @@ impl MaterialTable {
         ]
     }
 
-    fn refuse_foreign(&self, name: ModelName, checks: &mut Checks) {
+    fn reject_keys_of_other_models(&self, name: ModelName, checks: &mut Checks) {
         if name != ModelName::Glossy {
             checks.refuse_key("exponent", self.exponent.as_ref(), "glossy", name.name());
         }
@@ -396,9 +396,9 @@ pub(super) struct MotionTable {
 }
 
 /// The names of motions, in file order.
-pub(super) struct Names(Vec<String>);
+pub(super) struct MotionNames(Vec<String>);
 
-impl Names {
+impl MotionNames {
     /// Returns the index of the motion with that name.
     pub(super) fn find(&self, name: Option<Spanned<String>>, checks: &mut Checks) -> Option<usize> {
         let name = name?;
@@ -418,8 +418,8 @@ impl Names {
     }
 }
 
-pub(super) fn check_motions(tables: Vec<MotionTable>, checks: &mut Checks) -> (Vec<Motion>, Names) {
-    let mut names = Names(Vec::new());
+pub(super) fn check_motions(tables: Vec<MotionTable>, checks: &mut Checks) -> (Vec<Motion>, MotionNames) {
+    let mut names = MotionNames(Vec::new());
     let mut motions = Vec::new();
     for table in tables {
         let place = table.name.span();

@@ -16,7 +16,7 @@ use crate::lower::context::LoweringContext;
 
 pub(super) fn run(cx: &mut LoweringContext) {
     cx.each_expression_postorder(|cx, id| {
-        cx.tree.keep_value(id);
+        cx.tree.cache_value(id);
         for value in forwarded_constants(&cx.tree, id) {
             make_opaque(cx, value);
         }

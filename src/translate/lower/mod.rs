@@ -89,7 +89,7 @@ passes! {
     /// `&&` and `||` with an effect on the right.
     ShortCircuit = operator::lower_short_circuit,
     /// Built-in functions whose last bits depend on the driver; for strict shaders only.
-    InexactFunctions = polyfill::lower_functions,
+    InexactFunctions = polyfill::expand_inexact_functions,
     /// `modf`, `matrixCompMult`, `outerProduct`, `inverse`.
     MissingBuiltIns = builtin::lower_missing,
     /// `dot` and other geometric functions of scalars.
@@ -109,7 +109,7 @@ passes! {
     /// Compound assignments whose right side changes their target.
     Compounds = lvalue::lower_compound_assignments,
     /// Matrix products, whose sums are ordered by the driver; for strict shaders only.
-    Products = polyfill::lower_products,
+    Products = polyfill::expand_matrix_products,
     /// `-x` of unsigned integers.
     Negations = operator::lower_negation,
     /// `%`.

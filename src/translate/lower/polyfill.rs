@@ -27,7 +27,7 @@ pub(super) enum Expansion {
     UintToFloat,
 }
 
-pub(super) fn lower_functions(cx: &mut LoweringContext) {
+pub(super) fn expand_inexact_functions(cx: &mut LoweringContext) {
     cx.each_expression(|cx, id| match &cx.tree[id].kind {
         ExprKind::BuiltIn { function, arguments }
             if InexactFunction::of(*function, arguments.len()).is_some() && !is_selection(cx, arguments) =>
@@ -57,7 +57,7 @@ fn is_selection(cx: &LoweringContext, arguments: &[ExprId]) -> bool {
 }
 
 /// Expands `*` of matrices and vectors.
-pub(super) fn lower_products(cx: &mut LoweringContext) {
+pub(super) fn expand_matrix_products(cx: &mut LoweringContext) {
     cx.each_expression(|cx, id| match cx.tree[id].kind {
         ExprKind::Binary {
             op: BinaryOp::Multiply,

@@ -8,7 +8,7 @@ use toyproof_scene::{FrameTime, Model, Projection, Scene, Shape};
 
 use super::Named;
 use crate::mistake::mutant::{Mutant, MutantSource};
-use crate::mistake::thumbnail::{WrongImage, differs, max_left_over};
+use crate::mistake::thumbnail::{WrongImage, differs, max_unexplained};
 
 /// A number that may be wrong.
 struct Parameter {
@@ -105,7 +105,7 @@ fn best_value(parameter: &Parameter, wrong_image: &WrongImage, correct: &Image) 
     };
     let pixels = correct.pixels().len();
     let out_of_reach = (0..pixels).filter(is_out_of_reach).count() as u64;
-    if out_of_reach > max_left_over(wrong_image.differing, pixels) {
+    if out_of_reach > max_unexplained(wrong_image.differing, pixels) {
         return None;
     }
     let from = |image: &Image| distance(image, wrong_image.small);

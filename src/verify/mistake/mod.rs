@@ -22,7 +22,9 @@ use toyproof_scene::{FrameTime, Scene};
 use crate::decide::MAX_DIFFERING;
 use crate::mistake::mutant::{Mutant, MutantSource, render};
 pub use crate::mistake::stochastic::NoisyPixel;
-use crate::mistake::thumbnail::{Thumbnail, View, WrongImage, differing, max_left_over, pixels, work};
+use crate::mistake::thumbnail::{
+    Thumbnail, View, WrongImage, cost_per_pixel, differing, max_unexplained, pixels,
+};
 
 /// A mistake that explains a wrong image.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -111,7 +113,7 @@ impl Hypotheses {
     /// comparing is small enough.
     #[must_use]
     pub fn of(scene: &Scene, frame: &Frame) -> Option<Self> {
-        let small = View::of(frame, SMALL_SIDE, SMALL_WORK / work(scene));
+        let small = View::of(frame, SMALL_SIDE, SMALL_WORK / cost_per_pixel(scene));
         let is_enough = small.pixels() >= u64::from(MIN_VIEW_PIXELS).min(pixels(frame));
         is_enough.then(|| Self::in_size(scene, small, Some(OnceLock::new())))
     }
@@ -156,7 +158,7 @@ impl Hypotheses {
     /// Returns the hypotheses for images large enough to distinguish mistakes where few pixels are wrong.
     fn fine(&self, frame: &Frame) -> Option<&Self> {
         let fine = self.fine.as_ref()?;
-        let work = u64::from(FINE_FACTOR * FINE_FACTOR) * SMALL_WORK / work(&self.scene);
+        let work = u64::from(FINE_FACTOR * FINE_FACTOR) * SMALL_WORK / cost_per_pixel(&self.scene);
         let large = View::of(frame, FINE_FACTOR * SMALL_SIDE, work);
         let has_more_pixels = large.pixels() > self.small.pixels();
         has_more_pixels.then(|| {
@@ -233,14 +235,14 @@ impl Hypotheses {
             return None;
         }
         // General mistakes first: of those that render the same image, they claim least.
-        let thumbnail = Thumbnail::at(student, &self.correct, &self.small)?;
+        let thumbnail = Thumbnail::render(student, &self.correct, &self.small)?;
         let mut likely = pair::likely(self.general.iter().chain(&self.wrong), &wrong_image, correct);
         likely.truncate(pairs);
         likely.chunks(PAIR_BATCH).find_map(|pairs| {
             let rendered: Vec<Mutant> = pairs
                 .par_iter()
                 .filter_map(|&pair| pair::both(pair, self.frame_time))
-                .filter(|pair| thumbnail.may_explain(pair) && wrong_image.left_over(pair).is_some())
+                .filter(|pair| thumbnail.may_explain(pair) && wrong_image.unexplained_pixels(pair).is_some())
                 .collect();
             wrong_image
                 .matching(&rendered)
@@ -251,11 +253,11 @@ impl Hypotheses {
 
     /// Returns the mistakes if they explain a larger image as well, perhaps with other ray epsilons.
     fn confirm(&self, mutant: &Mutant, student: &Program, frame: &Frame) -> Option<Vec<Named>> {
-        let large = View::of(frame, u32::MAX, LARGE_WORK / work(&self.scene));
+        let large = View::of(frame, u32::MAX, LARGE_WORK / cost_per_pixel(&self.scene));
         let wrong = render(student, &large)?;
         let correct = self.correct.first()?.source.render(&large)?;
         let all = differing(&wrong, &correct);
-        let limit = max_left_over(all, wrong.pixels().len());
+        let limit = max_unexplained(all, wrong.pixels().len());
         drop(correct);
         let explains = |mutant: &Mutant| {
             let image = mutant.source.render(&large);

@@ -52,7 +52,7 @@ impl View {
 const SURFACES_PER_WORK: usize = 8;
 
 /// The work of a pixel.
-pub(super) fn work(scene: &Scene) -> u64 {
+pub(super) fn cost_per_pixel(scene: &Scene) -> u64 {
     let rays = match scene.film.integrator {
         Integrator::Path => 2 * u64::from(scene.film.max_depth),
         Integrator::Whitted => 1,
@@ -95,12 +95,13 @@ pub(super) fn differing(one: &Image, other: &Image) -> u64 {
 
 /// The largest shares of the wrong pixels, and of all pixels, that a mistake may leave unexplained: other ray
 /// epsilons shift the edges of shadows and of reflections.
-const MAX_LEFT_OVER_OF_WRONG: f64 = 0.05;
-const MAX_LEFT_OVER_OF_ALL: f64 = 0.005;
+const MAX_UNEXPLAINED_SHARE_OF_WRONG: f64 = 0.05;
+const MAX_UNEXPLAINED_SHARE_OF_ALL: f64 = 0.005;
 
 /// The largest number of pixels that may remain unexplained.
-pub(super) fn max_left_over(differing: u64, pixels: usize) -> u64 {
-    let share = (differing as f64 * MAX_LEFT_OVER_OF_WRONG).min(pixels as f64 * MAX_LEFT_OVER_OF_ALL);
+pub(super) fn max_unexplained(differing: u64, pixels: usize) -> u64 {
+    let share =
+        (differing as f64 * MAX_UNEXPLAINED_SHARE_OF_WRONG).min(pixels as f64 * MAX_UNEXPLAINED_SHARE_OF_ALL);
     share.floor() as u64
 }
 
@@ -121,21 +122,23 @@ pub(super) struct WrongImage<'a> {
 
 impl WrongImage<'_> {
     /// The number of pixels that a mutant does not explain, if they are few.
-    pub(super) fn left_over(&self, mutant: &Mutant) -> Option<u64> {
-        let left_over = differing(self.small, mutant.image(self.view)?);
-        (left_over <= max_left_over(self.differing, self.small.pixels().len())).then_some(left_over)
+    pub(super) fn unexplained_pixels(&self, mutant: &Mutant) -> Option<u64> {
+        let unexplained_pixels = differing(self.small, mutant.image(self.view)?);
+        (unexplained_pixels <= max_unexplained(self.differing, self.small.pixels().len()))
+            .then_some(unexplained_pixels)
     }
 
     /// Returns near misses: mutants that leave few pixels more than they may, which other ray epsilons might
     /// explain.
     pub(super) fn near_misses<'s>(&self, mutants: impl Iterator<Item = &'s Mutant>) -> Vec<&'s Mutant> {
-        let limit = NEAR_MISS_FACTOR * max_left_over(self.differing, self.small.pixels().len()).max(1);
+        let limit = NEAR_MISS_FACTOR * max_unexplained(self.differing, self.small.pixels().len()).max(1);
         let near_misses = mutants.filter_map(|mutant| {
-            let left_over = differing(self.small, mutant.image(self.view)?);
-            (left_over <= limit && left_over < self.differing).then_some((left_over, mutant))
+            let unexplained_pixels = differing(self.small, mutant.image(self.view)?);
+            (unexplained_pixels <= limit && unexplained_pixels < self.differing)
+                .then_some((unexplained_pixels, mutant))
         });
         let mut near_misses: Vec<_> = near_misses.collect();
-        near_misses.sort_by_key(|&(left_over, _)| left_over);
+        near_misses.sort_by_key(|&(unexplained_pixels, _)| unexplained_pixels);
         near_misses
             .into_iter()
             .map(|(_, mutant)| mutant)
@@ -147,13 +150,16 @@ impl WrongImage<'_> {
     pub(super) fn matching<'s>(&self, mutants: &'s [Mutant]) -> Vec<&'s Mutant> {
         let all = mutants.par_iter();
         let all: Vec<_> = all
-            .filter_map(|mutant| Some((self.left_over(mutant)?, mutant)))
+            .filter_map(|mutant| Some((self.unexplained_pixels(mutant)?, mutant)))
             .collect();
-        let least = all.iter().map(|&(left_over, _)| left_over).min();
+        let least = all
+            .iter()
+            .map(|&(unexplained_pixels, _)| unexplained_pixels)
+            .min();
         let mut best: Vec<&Mutant> = Vec::new();
-        for (left_over, mutant) in all {
+        for (unexplained_pixels, mutant) in all {
             let is_new = best.iter().all(|other| other.names().ne(mutant.names()));
-            if Some(left_over) == least && is_new {
+            if Some(unexplained_pixels) == least && is_new {
                 best.push(mutant);
             }
         }
@@ -179,7 +185,7 @@ pub(super) struct Thumbnail {
 
 impl Thumbnail {
     /// Renders a thumbnail of the student's shader; none if that fails.
-    pub(super) fn at(student: &Program, correct_images: &[Mutant], view: &View) -> Option<Self> {
+    pub(super) fn render(student: &Program, correct_images: &[Mutant], view: &View) -> Option<Self> {
         let view = View::of(&view.frame, THUMBNAIL_SIDE, u64::MAX);
         let image = render(student, &view)?;
         let correct = correct_images.first()?.source.render(&view)?;

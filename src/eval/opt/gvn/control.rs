@@ -50,7 +50,7 @@ impl ValueNumbering<'_> {
                 self.merge_paths(paths);
             } else {
                 self.reachable = true;
-                self.forget_all(self.changes.of_scope(template));
+                self.invalidate_stores(self.changes.of_scope(template));
             }
         }
         if leaves == 0 {
@@ -61,7 +61,7 @@ impl ValueNumbering<'_> {
     }
 
     /// Rewrites a break of all active pixels.
-    pub(super) fn leave(&mut self, template: Scope, out: &mut Block) {
+    pub(super) fn rewrite_break(&mut self, template: Scope, out: &mut Block) {
         let scope = self.record_exit(template);
         self.reachable = false;
         out.push(Node::Break(scope));
@@ -125,7 +125,7 @@ pub(super) struct OpenLoop {
 
 impl ValueNumbering<'_> {
     /// Rewrites a loop that is not unrolled.
-    pub(super) fn repeat(&mut self, id: LoopId, body: &[Node], out: &mut Block) {
+    pub(super) fn rewrite_loop(&mut self, id: LoopId, body: &[Node], out: &mut Block) {
         let part = self.changes.of_loop(id);
         for at in part.clone() {
             if let Change::Computed(value) = self.changes.get(at) {
@@ -141,7 +141,7 @@ impl ValueNumbering<'_> {
                         self.cell_values.set(cell, None);
                     }
                 }
-                Change::StoredAt(cells) => self.forget(cells),
+                Change::StoredAt(cells) => self.invalidate(cells),
             }
         }
         self.open_loops.push(OpenLoop {
@@ -155,12 +155,12 @@ impl ValueNumbering<'_> {
     }
 
     /// Forgets all cells that a part of the function stores to.
-    pub(super) fn forget_all(&mut self, part: Range<usize>) {
+    pub(super) fn invalidate_stores(&mut self, part: Range<usize>) {
         for at in part {
             match self.changes.get(at) {
                 Change::Computed(_) => {}
                 Change::Stored(cell, _) => self.cell_values.set(cell, None),
-                Change::StoredAt(cells) => self.forget(cells),
+                Change::StoredAt(cells) => self.invalidate(cells),
             }
         }
     }

@@ -114,7 +114,7 @@ impl ValueNumbering<'_> {
                 if let Some(nodes) = self.unroll(body) {
                     out.extend(nodes);
                 } else {
-                    self.repeat(*id, body, out);
+                    self.rewrite_loop(*id, body, out);
                 }
             }
             // Only nodes without blocks are cloned: unreachable blocks cost nothing, however often they are
@@ -137,11 +137,11 @@ impl ValueNumbering<'_> {
                 if let Some(index) = self.known_word(index) {
                     self.store(cells.clamped(offset, index), value, out);
                 } else {
-                    self.forget(cells);
+                    self.invalidate(cells);
                     out.push(node);
                 }
             }
-            Node::Break(scope) => self.leave(scope, out),
+            Node::Break(scope) => self.rewrite_break(scope, out),
             Node::BreakIf {
                 scope,
                 condition,
@@ -150,7 +150,7 @@ impl ValueNumbering<'_> {
                 if let Some(word) = self.known_word(condition) {
                     self.budget.decide(self.depths[scope.0 as usize]);
                     if (word != 0) == when {
-                        self.leave(scope, out);
+                        self.rewrite_break(scope, out);
                     }
                 } else {
                     let scope = self.record_exit(scope);
@@ -215,7 +215,7 @@ impl ValueNumbering<'_> {
         }
     }
 
-    fn forget(&mut self, cells: Cells) {
+    fn invalidate(&mut self, cells: Cells) {
         let Some(group) = self.groups.find(Cell(cells.first)) else {
             return;
         };

@@ -21,7 +21,7 @@ pub(super) enum Location {
 
 /// A part of a variable: an l-value.
 #[derive(Debug, Clone)]
-pub(super) struct Target {
+pub(super) struct LValue {
     ty: Type,
     /// The first of its cells.
     first: u32,
@@ -90,7 +90,7 @@ impl Builder<'_> {
 
     /// Returns the part of a variable that an expression denotes, and evaluates its indices; none if it
     /// denotes none, or one that is not in cells.
-    pub(super) fn target(&mut self, expr: ExprId) -> Result<Option<Target>> {
+    pub(super) fn lvalue(&mut self, expr: ExprId) -> Result<Option<LValue>> {
         let mut path = Vec::new();
         let mut part = expr;
         let variable = loop {
@@ -108,7 +108,7 @@ impl Builder<'_> {
         let Location::Cells(cells) = self.location(variable) else {
             return Ok(None);
         };
-        let mut target = Target {
+        let mut target = LValue {
             ty: self.tree[variable].ty,
             first: cells.first,
             swizzle: None,
@@ -121,7 +121,7 @@ impl Builder<'_> {
     }
 
     /// Narrows a target by one selection.
-    fn narrow(&mut self, target: &mut Target, step: ExprId) -> Result<()> {
+    fn narrow(&mut self, target: &mut LValue, step: ExprId) -> Result<()> {
         let ty = self.ty(step);
         match self.tree[step].kind {
             ExprKind::Member { member, .. } => {
@@ -155,7 +155,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    fn index_at(&mut self, target: &mut Target, index: Value) {
+    fn index_at(&mut self, target: &mut LValue, index: Value) {
         let (element, count) = indexed_element(self.tree, target.ty);
         let size = component_count(self.tree, element) as u32;
         let (scaled, reach) = match target.swizzle.take() {
@@ -209,7 +209,7 @@ impl Builder<'_> {
     }
 
     /// Returns the cells of a part, if they are contiguous and not indexed dynamically.
-    pub(super) fn contiguous_cells(&self, target: &Target) -> Option<Cells> {
+    pub(super) fn contiguous_cells(&self, target: &LValue) -> Option<Cells> {
         (target.swizzle.is_none() && target.index.is_none()).then(|| Cells {
             first: target.first,
             count: component_count(self.tree, target.ty) as u32,
@@ -217,7 +217,7 @@ impl Builder<'_> {
     }
 
     /// Returns the cells of a part, before the dynamic index is added.
-    fn cells_of(&self, target: &Target) -> Vec<u32> {
+    fn cells_of(&self, target: &LValue) -> Vec<u32> {
         match &target.swizzle {
             Some(swizzle) => swizzle.iter().map(|&at| target.first + at).collect(),
             None => (target.first..)
@@ -227,7 +227,7 @@ impl Builder<'_> {
     }
 
     /// Loads the values of a part.
-    pub(super) fn read(&mut self, target: &Target) -> Vec<Value> {
+    pub(super) fn read(&mut self, target: &LValue) -> Vec<Value> {
         let cells = self.cells_of(target);
         self.check_written(target.ty, &cells, target.index);
         cells
@@ -245,7 +245,7 @@ impl Builder<'_> {
     }
 
     /// Stores values to a part.
-    pub(super) fn write(&self, target: &Target, values: &[Value]) {
+    pub(super) fn write(&self, target: &LValue, values: &[Value]) {
         for (cell, &value) in self.cells_of(target).into_iter().zip(values) {
             self.mark_written(cell, target.index);
             self.push(match target.index {
@@ -273,7 +273,7 @@ impl Builder<'_> {
         let cells = self.allocate_type(ty)?;
         self.store_all(cells, values);
         let index = self.clamped_index(index, count)?;
-        let mut target = Target {
+        let mut target = LValue {
             ty,
             first: cells.first,
             swizzle: None,
