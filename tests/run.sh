@@ -1,5 +1,6 @@
 #!/bin/sh
-# Runs all tests, then prints how many were skipped, by what was missing. Run by `make test`.
+# Runs all tests, in the profile of `make demo`, whose dependencies it reuses; then prints how many were skipped, by
+# what was missing. Run by `make test`.
 set -eu
 cd "$(dirname "$0")/.."
 TOYPROOF_SKIPPED=$(mktemp)
@@ -7,7 +8,7 @@ export TOYPROOF_SKIPPED
 trap 'rm -f "$TOYPROOF_SKIPPED"' EXIT
 
 code=0
-cargo test --workspace "$@" || code=$?
+cargo test --release --workspace "$@" || code=$?
 # A line is `skipped: TEST: REASON`; a test that lacks several things is counted under each.
 tests=$(cut -d ' ' -f 2 "$TOYPROOF_SKIPPED" | sort -u | wc -l)
 echo "tests skipped, in whole or in part: $((tests))"

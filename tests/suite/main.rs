@@ -11,7 +11,6 @@ mod bad_input;
 mod batch;
 mod browser;
 mod commands;
-#[cfg(debug_assertions)]
 mod containment;
 mod conversion;
 mod debug;
