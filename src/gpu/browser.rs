@@ -121,7 +121,7 @@ impl Chromium {
         let answer = connection.call(&format!("toyproof({job})"), self.timeout)?;
         if let Some(reason) = answer["refused"].as_str() {
             // A browser that lost its context cannot render any more.
-            if !reason.contains("context lost") {
+            if answer["contextLost"] == false {
                 self.live = Some(connection);
             }
             return Err(Failure::Refused(
