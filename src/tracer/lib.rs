@@ -186,7 +186,7 @@ impl<T: Real> Tracer<T> {
         self.rows(0..self.film.size[1], row_done)
     }
 
-    /// Renders the given rows, with `row_done` as in [`Tracer::picture`].
+    /// Renders the given rows, with `row_done` as in [`Tracer::render`].
     pub fn rows(&self, rows: Range<u32>, row_done: impl Fn() + Sync) -> Image {
         let (width, height) = (self.film.size[0], rows.len() as u32);
         let mut pixels = vec![[0.0, 0.0, 0.0, 1.0]; width as usize * height as usize];
