@@ -199,7 +199,7 @@ fn first_error(diagnostics: &[Diagnostic], files: &Files) -> String {
     )
 }
 
-/// The message on a shader whose loops the driver truncated in so many pixels.
+/// The message on a shader of which the driver truncated the loops of `pixels` pixels.
 #[must_use]
 pub fn loop_truncated(pixels: u64) -> String {
     format!(

@@ -1,5 +1,6 @@
-//! The course's shaders as `toyproof convert` writes them, in `tests/snapshots/LANGUAGE`, so that a change of the generated
-//! code is seen where the change is reviewed. `UPDATE_EXPECT=1 cargo test --test suite snapshots` writes them anew.
+//! The course's shaders as `toyproof convert` writes them, in `tests/snapshots/LANGUAGE`, so that a change of
+//! the generated code is seen where the change is reviewed. `UPDATE_EXPECT=1 cargo test --test suite snapshots`
+//! writes them anew.
 
 use std::fs;
 use std::path::Path;

@@ -1,5 +1,6 @@
-//! Compiler messages: `tests/ui/*.glsl` holds typical mistakes of students, and beside each the whole text that a terminal
-//! shows. `UPDATE_EXPECT=1 cargo test --test suite ui` writes the texts anew; read them aloud before you keep them.
+//! Compiler messages: `tests/ui/*.glsl` holds typical mistakes of students, and beside each the whole text
+//! that a terminal shows. `UPDATE_EXPECT=1 cargo test --test suite ui` writes the texts anew; read them aloud
+//! before you keep them.
 
 use std::fs;
 use std::path::{Path, PathBuf};

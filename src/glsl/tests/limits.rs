@@ -400,12 +400,12 @@ fn every_expression_has_one_parent_and_fits_it() {
 #[test]
 fn places_of_statements_and_literals_match_the_text() {
     let Checked { tree, .. } = checked(false);
-    let spelled = |at: Place| &TEXT[at.spelling.start as usize..at.spelling.end as usize];
+    let spelling = |at: Place| &TEXT[at.spelling.start as usize..at.spelling.end as usize];
     for expr in roots(&tree).into_iter().flat_map(|root| tree.postorder(root)) {
         if let ExprKind::Literal(literal) = &tree[expr].kind
             && tree[expr].at.span.end as usize <= TEXT.len()
         {
-            assert_eq!(spelled(tree[expr].at), &*literal.text);
+            assert_eq!(spelling(tree[expr].at), &*literal.text);
         }
     }
     let (_, hash) = tree
@@ -417,7 +417,7 @@ fn places_of_statements_and_literals_match_the_text() {
         .body
         .iter()
         .flatten()
-        .map(|statement| spelled(statement.at))
+        .map(|statement| spelling(statement.at))
         .collect();
     assert_eq!(
         statements,

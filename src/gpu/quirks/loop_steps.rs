@@ -1,5 +1,5 @@
-//! Steps of loops that Mesa executes once too often, in shaders that come from WGSL. `lower::loops::move_steps` of
-//! `toyproof_translate` does the same for GLSL.
+//! Steps of loops that Mesa executes once too often, in shaders that come from WGSL.
+//! `lower::loops::move_steps` of `toyproof_translate` does the same for GLSL.
 
 use naga::{Block, Statement};
 use toyproof_translate::TranslateError;
