@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("{} takes {} parameters", function.name, function.parameters.len());
     }
     for warning in &lint(&files, &checked, &Deadline::default()).warnings {
-        eprint!("{}", human(warning, &files, false));
+        eprint!("{}", human(warning, &files, None, false));
     }
     Ok(())
 }

@@ -1,12 +1,11 @@
-//! The `toyproof` command: parses, dispatches and exits.
+//! The `toyproof` command: runs the command line and exits.
 
 use std::process::ExitCode;
 
-use clap::Parser;
-use toyproof::cli::{Cli, Exit};
+use toyproof::cli::{self, Exit};
 
 fn main() -> ExitCode {
-    match Cli::parse().run() {
+    match cli::run(std::env::args_os()) {
         Exit::Success => ExitCode::SUCCESS,
         Exit::ShaderFault => ExitCode::from(1),
         Exit::Error => ExitCode::from(2),

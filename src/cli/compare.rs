@@ -2,23 +2,25 @@
 
 use std::path::PathBuf;
 
-use toyproof_diagnostic::{grouped, magnitude, path_name};
+use toyproof_diagnostic::{grouped, magnitude, path_name, plural};
 use toyproof_image::{self as image};
 use toyproof_verify::compare::{Legend, TOLERANCE, compare};
 
 use super::inputs::may_write;
 use super::{Exit, Terminal};
 
-/// Compare two pictures: exit code 0 if they agree, 1 if they differ
+/// Compare two images: exit code 0 if they agree, 1 if they differ
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Example:\n  toyproof compare reference.png mine.png --diff difference.png")]
+#[command(after_long_help = "\
+Example:
+  toyproof compare reference.png mine.png --diff difference.png")]
 pub(super) struct Args {
-    /// The picture that is expected (.png, .exr)
+    /// The expected image (.png, .exr)
     a: PathBuf,
-    /// The picture that is judged
+    /// The actual image (.png, .exr)
     b: PathBuf,
-    /// Draw where and how much they differ
-    #[arg(long, value_name = "PICTURE")]
+    /// Write an image that shows where and by how much they differ
+    #[arg(long, value_name = "IMAGE")]
     diff: Option<PathBuf>,
 }
 
@@ -40,7 +42,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     if a.size() != b.size() {
         let [[aw, ah], [bw, bh]] = [a.size(), b.size()];
         terminal.error(format_args!(
-            "{} has {aw}×{ah} pixels and {} has {bw}×{bh}; only pictures of one size can be compared",
+            "{} has {aw}×{ah} pixels and {} has {bw}×{bh}; only images of equal size can be compared",
             path_name(&args.a),
             path_name(&args.b)
         ));
@@ -67,12 +69,13 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let pixels = grouped(comparison.pixels);
     match comparison.differing {
         0 => terminal.result(&format!(
-            "all {pixels} pixels agree, to {}",
+            "all {pixels} pixels agree to within {}",
             magnitude(comparison.max_abs)
         )),
         differing => terminal.result(&format!(
-            "{} of {pixels} pixels differ by more than {TOLERANCE}, by at most {:.4} ({} in 8 bits)",
+            "{} of {pixels} pixels {} by more than {TOLERANCE}; the largest difference is {:.4} ({} of 255)",
             grouped(differing),
+            plural(differing, "differs", "differ"),
             comparison.max_abs,
             comparison.max_8bit
         )),

@@ -1,136 +1,110 @@
 //! `toyproof explain`
 
-use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use toyproof_diagnostic::{nearest, wrap};
 
-use toyproof_diagnostic::{Deadline, path_name};
-use toyproof_eval::{Failure, Program};
-use toyproof_glsl::Checked;
-use toyproof_image::Frame;
-use toyproof_scene::Scene;
-use toyproof_verify::debug::explain;
-
-use super::check::References;
-use super::inputs::{Format, FrameArgs, LanguageArgs, parse_time_limit};
-use super::run::not_evaluated;
-use super::shader::{Shader, Unusable, find};
 use super::{Exit, Terminal};
-use crate::cli::files::{Input, ReadError};
-use crate::report;
+use crate::report::{self, Explanation};
 
-/// Tell what one pixel does, line by line, in f32 beside f64, and where the two part
+/// Explain a diagnostic code or a mistake, and how to fix it
 #[derive(Debug, clap::Args)]
-#[command(
-    after_help = "Example:\n  toyproof explain glsl/03-shading.glsl --pixel 320,180\n\n\
-                        Pixels are counted as ShaderToy does: from the left, and from the bottom up."
-)]
+#[command(after_long_help = "\
+Examples:
+  toyproof explain E0301
+  toyproof explain far-root
+  toyproof explain --list
+
+To trace one pixel of a shader, use `toyproof debug`.")]
 pub(super) struct Args {
-    /// The shader: a file, or - for standard input
-    shader: PathBuf,
-    /// The pixel, from the left and from the bottom
-    #[arg(long, value_name = "X,Y", value_parser = parse_pixel, allow_hyphen_values = true)]
-    pixel: [u32; 2],
-    /// `human` shows what each line stores and decides (`-v`: every step, with the parts of expressions),
-    /// `json` everything
-    #[arg(long, value_enum, default_value_t = Format::Human)]
-    format: Format,
-    #[command(flatten)]
-    language: LanguageArgs,
-    /// Stop after this long (10s, 500ms, 2m)
-    #[arg(long, value_name = "TIME", default_value = "10s", value_parser = parse_time_limit)]
-    timeout: Duration,
-    #[command(flatten)]
-    frame: FrameArgs,
+    /// Codes such as E0301 and W0602, or mistakes such as far-root
+    #[arg(required_unless_present = "list", value_name = "CODE")]
+    codes: Vec<String>,
+    /// List all codes and mistakes
+    #[arg(long, exclusive = true)]
+    list: bool,
 }
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
-    let found = find(std::slice::from_ref(&args.shader), terminal);
-    let [input] = found.as_slice() else {
-        terminal.error(format_args!(
-            "{} holds several shaders; explain takes one",
-            path_name(&args.shader)
-        ));
-        return Exit::Error;
-    };
-    let frame = match frame(args, input) {
-        Ok(frame) => frame,
-        Err(error) => {
-            terminal.error(error);
-            return Exit::Error;
+    if args.list {
+        for explanation in report::explanations() {
+            terminal.result(&format!("{}  {}", explanation.code, explanation.title));
         }
-    };
-    let shader = Shader::load(input, &args.language, Deadline::after(args.timeout));
-    terminal.diagnostics(&shader.lints.warnings, &shader.files);
-    match &shader.checked {
-        Ok(checked) => print_trace(args, &shader, checked, &frame, terminal),
-        Err(Unusable::Invalid(diagnostics)) => {
-            terminal.diagnostics(diagnostics, &shader.files);
-            Exit::ShaderFault
+        return Exit::Success;
+    }
+    let mut exit = Exit::Success;
+    for (index, code) in args.codes.iter().enumerate() {
+        if index > 0 {
+            terminal.result("");
         }
-        Err(Unusable::Unreadable(error)) => {
-            terminal.error(error);
-            Exit::Error
+        match report::explain(code) {
+            Some(explanation) => print(&explanation, terminal),
+            None => {
+                report_unknown(code, terminal);
+                exit = Exit::Error;
+            }
         }
+    }
+    exit
+}
+
+fn print(explanation: &Explanation, terminal: &Terminal) {
+    let Explanation { code, title, text } = explanation;
+    terminal.paragraph(&format!("{code}: {title}"));
+    terminal.result("");
+    terminal.result(&plain(text, terminal.width()));
+}
+
+fn report_unknown(code: &str, terminal: &Terminal) {
+    terminal.error(format_args!("unknown code `{code}`"));
+    let codes: Vec<_> = report::explanations().map(|explanation| explanation.code).collect();
+    match nearest(code, codes.iter().map(AsRef::as_ref)) {
+        Some(near) => terminal.help(format_args!("did you mean `{near}`?")),
+        None if code.contains(['.', '/']) => terminal.help(
+            "`explain` takes codes; to trace one pixel of a shader: toyproof debug SHADER --pixel X,Y",
+        ),
+        None => terminal.help("`toyproof explain --list` lists all codes and mistakes"),
     }
 }
 
-/// The frame, in the size that the arguments give, else that of the scene beside the shader.
-fn frame(args: &Args, input: &Result<Input, ReadError>) -> Result<Frame, String> {
-    let mut frame = args.frame.frame()?;
-    let reference = input
-        .as_ref()
-        .ok()
-        .and_then(|found| References::new(None).find(found));
-    let scene: Option<Scene> = reference.and_then(|reference| reference.scene.ok());
-    if let (None, Some(scene)) = (args.frame.size, scene) {
-        frame.size = scene.film.size;
+/// Converts Markdown for a terminal: paragraphs are wrapped, and fenced code is indented.
+fn plain(text: &str, width: Option<usize>) -> String {
+    let mut lines = Vec::new();
+    let mut paragraph: Vec<&str> = Vec::new();
+    let mut is_fenced = false;
+    let end = |paragraph: &mut Vec<&str>, lines: &mut Vec<String>| {
+        if !paragraph.is_empty() {
+            lines.push(wrap("", 0, &paragraph.join(" "), width));
+            paragraph.clear();
+        }
+    };
+    for line in text.lines() {
+        let is_fence = line.starts_with("```");
+        if is_fenced && !is_fence {
+            lines.push(format!("    {line}").trim_end().to_owned());
+            continue;
+        }
+        if is_fence || line.is_empty() {
+            end(&mut paragraph, &mut lines);
+        }
+        match line {
+            _ if is_fence => is_fenced = !is_fenced,
+            "" => lines.push(String::new()),
+            line => paragraph.push(line),
+        }
     }
-    let ([x, y], [width, height]) = (args.pixel, frame.size);
-    if x >= width || y >= height {
-        return Err(format!(
-            "there is no pixel ({x}, {y}) in a picture of {width}x{height}; the last is ({}, {})",
-            width - 1,
-            height - 1
-        ));
-    }
-    Ok(frame)
+    end(&mut paragraph, &mut lines);
+    lines.join("\n")
 }
 
-fn print_trace(args: &Args, shader: &Shader, checked: &Checked, frame: &Frame, terminal: &Terminal) -> Exit {
-    let spinner = terminal.spinner(&shader.name);
-    let deadline = Instant::now() + args.timeout;
-    let program = Program::within(checked, args.timeout).map_err(Failure::from);
-    let explained = match &program {
-        Ok(program) => explain(program, frame, args.pixel, Some(deadline)),
-        Err(failure) => Err(failure.clone()),
-    };
-    spinner.finish_and_clear();
-    let explanation = match explained {
-        Ok(explanation) => explanation,
-        Err(failure) => return not_evaluated(&failure, shader, terminal),
-    };
-    let subject = report::TracedPixel {
-        shader: &shader.name,
-        files: &shader.files,
-        tree: &checked.tree,
-        pixel: args.pixel,
-        size: frame.size,
-    };
-    let trace = report::PixelTrace::new(&subject, &explanation);
-    match args.format {
-        Format::Json if !terminal.bytes(trace.json().as_bytes()) => return Exit::Error,
-        Format::Json => {}
-        Format::Human => terminal.result(&trace.human(terminal.is_verbose())),
-    }
-    Exit::Success
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-fn parse_pixel(text: &str) -> Result<[u32; 2], String> {
-    let parts = text
-        .split_once(',')
-        .map(|(x, y)| (x.trim().parse(), y.trim().parse()));
-    match parts {
-        Some((Ok(x), Ok(y))) => Ok([x, y]),
-        _ => Err("a pixel is two whole numbers: X,Y from the left and from the bottom".to_owned()),
+    #[test]
+    fn paragraphs_wrap_and_code_is_indented() {
+        let text = "one two\nthree four\n\nWrong:\n```glsl\nint  a = 1.0;\n\nx\n```\nend";
+        assert_eq!(
+            plain(text, Some(20)),
+            "one two three four\n\nWrong:\n    int  a = 1.0;\n\n    x\nend"
+        );
     }
 }

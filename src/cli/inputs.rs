@@ -12,7 +12,7 @@ use toyproof_image::output::Originals;
 use toyproof_image::{self as image, Frame, Image, check_size};
 use toyproof_translate::FloatMode;
 
-use super::Terminal;
+use super::{Terminal, WORKER};
 
 /// The longest time limit.
 const MAX_TIME_LIMIT: Duration = Duration::from_secs(24 * 60 * 60);
@@ -22,16 +22,15 @@ pub(super) fn may_write(path: &Path, originals: &Originals, terminal: &Terminal)
     let loses = originals.would_lose(path);
     if loses {
         let path = path_name(path);
-        terminal.error(format_args!(
-            "{path}: this is an input, and would be lost; give the output another name"
-        ));
+        terminal.error(format_args!("{path} is an input and would be overwritten"));
+        terminal.help("give the output another name with -o");
     }
     !loses
 }
 
-/// What ShaderToy's inputs are set to.
+/// The values of ShaderToy's inputs.
 #[derive(Debug, Clone, clap::Args)]
-#[command(next_help_heading = "The frame")]
+#[command(next_help_heading = "Frame")]
 pub(super) struct FrameArgs {
     /// Width and height in pixels [default: the scene's, else 640x360]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
@@ -42,23 +41,23 @@ pub(super) struct FrameArgs {
     /// iFrame
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(i32).range(0..), allow_negative_numbers = true)]
     frame: i32,
-    /// iMouse, in pixels
+    /// iMouse, in pixels [default: 0,0,0,0]
     #[arg(long, value_name = "X,Y[,Z,W]", value_parser = parse_mouse, allow_hyphen_values = true)]
     mouse: Option<[f32; 4]>,
     /// iDate: year, month from 0 to 11, day, seconds since midnight
     #[arg(long, value_name = "Y,M,D,S", value_parser = parse_date, allow_hyphen_values = true)]
     date: Option<[f32; 4]>,
-    /// A picture (.png, .exr) or `noise` for iChannel0
+    /// The texture of iChannel0: an image (.png, .exr) or `noise` [default: black]
     #[arg(long, value_name = "FILE|noise")]
     channel0: Option<PathBuf>,
-    /// The same for iChannel1
-    #[arg(long, value_name = "FILE|noise")]
+    /// The texture of iChannel1
+    #[arg(long, value_name = "FILE|noise", hide_short_help = true)]
     channel1: Option<PathBuf>,
-    /// The same for iChannel2
-    #[arg(long, value_name = "FILE|noise")]
+    /// The texture of iChannel2
+    #[arg(long, value_name = "FILE|noise", hide_short_help = true)]
     channel2: Option<PathBuf>,
-    /// The same for iChannel3
-    #[arg(long, value_name = "FILE|noise")]
+    /// The texture of iChannel3
+    #[arg(long, value_name = "FILE|noise", hide_short_help = true)]
     channel3: Option<PathBuf>,
 }
 
@@ -68,6 +67,30 @@ impl FrameArgs {
         let channels = [&self.channel0, &self.channel1, &self.channel2, &self.channel3];
         let named = channels.into_iter().flatten();
         named.filter(|path| path.as_os_str() != "noise")
+    }
+
+    /// The flags that set this frame, for a command that the user may run; channels are left out.
+    pub(super) fn flags(&self) -> Vec<String> {
+        let list = |numbers: [f32; 4]| numbers.map(|number| number.to_string()).join(",");
+        let mut flags = Vec::new();
+        if let Some([width, height]) = self.size {
+            flags.push(format!("--size {width}x{height}"));
+        }
+        if self.time != 0.0 {
+            flags.push(format!("--time {}", self.time));
+        }
+        if self.frame != 0 {
+            flags.push(format!("--frame {}", self.frame));
+        }
+        flags.extend(self.mouse.map(|mouse| format!("--mouse {}", list(mouse))));
+        flags.extend(self.date.map(|date| format!("--date {}", list(date))));
+        let channels = [&self.channel0, &self.channel1, &self.channel2, &self.channel3];
+        for (index, channel) in channels.into_iter().enumerate() {
+            if let Some(path) = channel {
+                flags.push(format!("--channel{index} {}", shell_word(&path_name(path))));
+            }
+        }
+        flags
     }
 
     /// The frame with its channels loaded; its size is the flag's or the default.
@@ -96,34 +119,40 @@ impl FrameArgs {
     }
 }
 
-/// What a shader may say.
+/// The accepted language, and the treatment of warnings.
 #[derive(Debug, Clone, clap::Args)]
-#[command(next_help_heading = "The shader")]
+#[command(next_help_heading = "Shader")]
 pub(super) struct LanguageArgs {
-    /// Take what desktop GLSL allows and WebGL2 refuses: globals set from uniforms, integers where floats
-    /// belong
+    /// Accept desktop-GLSL extensions that WebGL 2 rejects
+    ///
+    /// Accepted are global variables initialized from uniforms, and integers where floats are expected.
     #[arg(long)]
     lenient: bool,
-    /// Take warnings for errors: `warnings` for all, or a code (W0005); `// toyproof: allow(W0005)` in the
-    /// shader goes before it
+    /// Treat warnings as errors: `warnings` for all, or a code such as W0005
+    ///
+    /// A comment `// toyproof: allow(W0005)` in the shader takes precedence.
     #[arg(long, value_name = "warnings|CODE", value_parser = parse_deny)]
     deny: Vec<Deny>,
 }
 
 /// Where and how the shader runs.
 #[derive(Debug, Clone, clap::Args)]
-#[command(next_help_heading = "The driver")]
+#[command(next_help_heading = "Device")]
 pub(super) struct DriverArgs {
-    /// `auto` (lavapipe where it is installed, else the first driver, else the CPU), `lavapipe`, `cpu` for
-    /// toyproof's own evaluator, or words of an adapter's name
-    #[arg(long, value_name = "ADAPTER", default_value = "auto", value_parser = parse_device)]
-    on: DeviceSelector,
-    /// `strict` (unless you say otherwise) holds the driver to the arithmetic as written and spells `sin`
-    /// and the like in operations that have the same bits everywhere; `fast` lets it rearrange, with
-    /// functions of its own. What `convert` writes is spelled only if you ask for `strict`
-    #[arg(long, value_enum)]
+    /// The device that runs shaders: `auto`, `lavapipe`, `cpu`, or a substring of an adapter's name
+    ///
+    /// `auto` is lavapipe where it is installed, else the first Vulkan driver, else the CPU. `cpu` is toyproof's
+    /// own evaluator: it needs no driver, and the toolchain check is skipped.
+    #[arg(long, alias = "on", value_name = "DEVICE", default_value = "auto", value_parser = parse_device)]
+    device: DeviceSelector,
+    /// The float arithmetic: `strict` (the default) or `fast`
+    ///
+    /// strict: no reassociation or contraction; sin, pow and the like are expanded to operations with the same
+    /// bits on every device. fast: native functions, and the driver may rearrange arithmetic. `convert` uses
+    /// native functions unless `--float strict` is given.
+    #[arg(long, value_enum, value_name = "MODE", hide_possible_values = true)]
     float: Option<Float>,
-    /// Stop a shader after this long (10s, 500ms, 2m)
+    /// The time limit for one shader: seconds, or a number with a unit (500ms, 2m)
     #[arg(long, value_name = "TIME", default_value = "10s", value_parser = parse_time_limit)]
     timeout: Duration,
 }
@@ -155,7 +184,7 @@ impl Deny {
     }
 }
 
-/// What goes to standard output.
+/// The form of standard output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum Format {
     Human,
@@ -186,6 +215,11 @@ impl LanguageArgs {
         }
     }
 
+    /// The flags that set these options, for a command that the user may run.
+    pub(super) fn flags(&self) -> Option<String> {
+        self.lenient.then(|| "--lenient".to_owned())
+    }
+
     pub(super) fn denied(&self) -> &[Deny] {
         &self.deny
     }
@@ -205,14 +239,14 @@ impl DriverArgs {
         self.timeout
     }
 
-    /// Creates the worker that runs shaders on a GPU; none for `--on cpu`.
+    /// Creates the worker that runs shaders on a GPU; none for `--device cpu`.
     pub(super) fn worker(&self) -> Result<Option<Worker>, String> {
         self.worker_for(1)
     }
 
     /// Like [`Self::worker`], with a time limit for several images.
     pub(super) fn worker_for(&self, images: u32) -> Result<Option<Worker>, String> {
-        match &self.on {
+        match &self.device {
             DeviceSelector::Cpu => Ok(None),
             DeviceSelector::Gpu(on) => worker(on.clone(), self.timeout * images).map(Some),
         }
@@ -225,7 +259,7 @@ impl DriverArgs {
 
     /// Returns whether the evaluator may replace a missing driver.
     pub(super) fn may_fall_back(&self) -> bool {
-        self.on == DeviceSelector::Gpu(AdapterSelector::Auto)
+        self.device == DeviceSelector::Gpu(AdapterSelector::Auto)
     }
 }
 
@@ -233,19 +267,35 @@ impl DriverArgs {
 pub(super) fn worker(on: AdapterSelector, timeout: Duration) -> Result<Worker, String> {
     let program = std::env::current_exe()
         .map_err(|error| format!("cannot find the program itself to run it as a worker: {error}"))?;
-    Ok(Worker::new(program, vec!["worker".to_owned()], on, timeout))
+    Ok(Worker::new(program, vec![WORKER.to_owned()], on, timeout))
 }
 
-/// Parses a time limit.
+/// Parses a time limit: seconds, or numbers with units.
 pub(super) fn parse_time_limit(text: &str) -> Result<Duration, String> {
-    let time = humantime::parse_duration(text).map_err(|error| error.to_string())?;
+    let seconds = text.parse().ok().and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+    let time = match seconds.map_or_else(|| humantime::parse_duration(text), Ok) {
+        Ok(time) => time,
+        Err(_) => return Err("expected seconds or a number with a unit: 10, 500ms, 2m".to_owned()),
+    };
     if time > MAX_TIME_LIMIT {
-        return Err("nobody waits longer than a day".to_owned());
+        return Err("the longest time limit is 24 hours".to_owned());
     }
     if time.is_zero() {
-        return Err("nothing is done in no time: it must be more than 0".to_owned());
+        return Err("the time limit must be above 0".to_owned());
     }
     Ok(time)
+}
+
+/// Quotes an argument for a shell, if needed.
+pub(super) fn shell_word(text: &str) -> String {
+    let is_plain = |character: char| character.is_alphanumeric() || "-_./:,+@%=".contains(character);
+    if !text.is_empty() && text.chars().all(is_plain) {
+        text.to_owned()
+    } else if cfg!(windows) {
+        format!("\"{text}\"")
+    } else {
+        format!("'{}'", text.replace('\'', "'\\''"))
+    }
 }
 
 /// Parses the time of a frame, in seconds.
@@ -259,10 +309,10 @@ pub(super) fn parse_seconds<T: FromStr + Into<f64> + Copy>(text: &str) -> Result
 pub(super) fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let (width, height) = text
         .split_once(['x', 'X', '×'])
-        .ok_or("a size is written 640x360")?;
+        .ok_or("expected WIDTHxHEIGHT, such as 640x360")?;
     let side = |side: &str| {
         side.parse::<u64>()
-            .map_err(|_| format!("“{side}” is no number of pixels"))
+            .map_err(|_| format!("`{side}` is not a number of pixels"))
     };
     check_size(side(width)?, side(height)?).map_err(|error| error.to_string())
 }
@@ -276,7 +326,7 @@ pub(super) fn parse_device(text: &str) -> Result<DeviceSelector, String> {
 
 pub(super) fn parse_adapter(text: &str) -> Result<AdapterSelector, String> {
     Ok(match text {
-        "" => return Err("name an adapter, or say auto".to_owned()),
+        "" => return Err("expected auto, lavapipe, cpu, or a part of an adapter's name".to_owned()),
         "auto" => AdapterSelector::Auto,
         "lavapipe" => AdapterSelector::Lavapipe,
         name => AdapterSelector::Named(name.to_owned()),
@@ -291,14 +341,14 @@ fn parse_deny(text: &str) -> Result<Deny, String> {
         .iter()
         .find(|code| code.as_str().starts_with('W') && code.as_str().eq_ignore_ascii_case(text));
     code.map(|&code| Deny::Code(code))
-        .ok_or_else(|| "say `warnings`, or a warning's code such as W0005".to_owned())
+        .ok_or_else(|| "expected `warnings` or the code of a warning, such as W0005".to_owned())
 }
 
 fn parse_numbers(text: &str) -> Result<Vec<f32>, String> {
     text.split(',')
         .map(|part| match f32::from_str(part.trim()) {
             Ok(number) if number.is_finite() => Ok(number),
-            _ => Err(format!("“{part}” is no number")),
+            _ => Err(format!("`{}` is not a number", part.trim())),
         })
         .collect()
 }
@@ -307,16 +357,16 @@ fn parse_mouse(text: &str) -> Result<[f32; 4], String> {
     match parse_numbers(text)?[..] {
         [x, y] => Ok([x, y, 0.0, 0.0]),
         [x, y, z, w] => Ok([x, y, z, w]),
-        _ => Err("a mouse is two or four numbers: X,Y or X,Y,Z,W".to_owned()),
+        _ => Err("expected two or four numbers: X,Y or X,Y,Z,W".to_owned()),
     }
 }
 
 fn parse_date(text: &str) -> Result<[f32; 4], String> {
-    let expected = "a date is four numbers: year, month from 0 (January) to 11, day, seconds";
+    let expected = "expected four numbers: year, month from 0 (January) to 11, day, seconds";
     match parse_numbers(text)?[..] {
         [year, month, day, seconds] if (0.0..=11.0).contains(&month) => Ok([year, month, day, seconds]),
         [_, month, ..] if !(0.0..=11.0).contains(&month) => {
-            Err(format!("there is no month {month}: {expected}"))
+            Err(format!("the month {month} is out of range; {expected}"))
         }
         _ => Err(expected.to_owned()),
     }
@@ -355,7 +405,13 @@ mod tests {
                 .iter()
                 .all(|bad| parse_seconds::<f32>(bad).is_err())
         );
-        assert!(parse_time_limit("0s").is_err() && parse_time_limit("500ms").is_ok());
+        assert_eq!(parse_time_limit("2.5"), Ok(Duration::from_millis(2500)));
+        assert_eq!(parse_time_limit("500ms"), Ok(Duration::from_millis(500)));
+        for bad in ["0s", "0", "-1", "nan", "inf", "25h", "soon", ""] {
+            assert!(parse_time_limit(bad).is_err(), "{bad}");
+        }
+        assert_eq!(shell_word("a/b-1.glsl"), "a/b-1.glsl");
+        assert_eq!(shell_word("Grüße.glsl"), "Grüße.glsl");
         assert!(
             parse_mouse("1,2,3").is_err() && parse_date("2026,1").is_err() && parse_numbers("1,b").is_err()
         );

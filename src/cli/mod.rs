@@ -4,6 +4,7 @@
 mod check;
 mod compare;
 mod convert;
+mod debug;
 mod doctor;
 mod explain;
 mod files;
@@ -15,61 +16,75 @@ mod run;
 mod scenes;
 mod sequence;
 mod shader;
+mod shell;
 mod stress;
 mod terminal;
 mod trade;
 
+use std::ffi::OsString;
 use std::io;
 use std::panic;
 use std::thread::{self, JoinHandle};
 
-use clap::{Parser, Subcommand};
+use clap::{ColorChoice, CommandFactory, FromArgMatches, Parser, Subcommand};
 use toyproof_gpu as gpu;
 use toyproof_verify::contain::{Part, contain};
 
 use self::terminal::Terminal;
 
-/// Checks, renders and converts ShaderToy shaders.
+/// Check, render and convert ShaderToy shaders
+///
+/// `check` compares shaders with a reference in double precision and states for each difference whether the
+/// algorithm, float32 precision or the toolchain (naga and the driver) causes it. `render` renders reference
+/// images, `run` runs shaders, and `convert` translates them to WGSL, SPIR-V, Metal, HLSL or GLSL ES.
 #[derive(Debug, Parser)]
-#[command(version, about, propagate_version = true, max_term_width = 110)]
+#[command(
+    name = "toyproof",
+    version,
+    propagate_version = true,
+    max_term_width = 110,
+    after_long_help = EXAMPLES,
+)]
 pub struct Cli {
     #[command(subcommand)]
     command: Command,
-    /// Say more: times, and the driver that ran
-    #[arg(short, long, global = true)]
+    /// Print more: the numbers of all checks, times, the driver
+    #[arg(short, long, global = true, help_heading = "Output")]
     verbose: bool,
-    /// Say nothing but results
-    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    /// Print results and errors only, one line each
+    #[arg(short, long, global = true, conflicts_with = "verbose", help_heading = "Output")]
     quiet: bool,
+    /// Color the output: `auto` on terminals, unless NO_COLOR is set
+    #[arg(long, global = true, value_name = "WHEN", default_value = "auto", help_heading = "Output")]
+    color: ColorChoice,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  toyproof scenes --write course           write the built-in scenes and shaders to a folder
+  toyproof check course --out report       check a folder of shaders, with a report page
+  toyproof check mine.glsl --scene 02-sphere
+  toyproof render 12-whitted -o whitted.png
+  toyproof convert mine.glsl -o mine.wgsl --verify
+
+Exit code: 0 on success, 1 if a shader is at fault or images differ, 2 for any other error.";
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Compare what shaders paint with the reference tracer, and give a verdict on each
     Check(check::Args),
-    /// Render a scene with the reference tracer
     Render(render::Args),
-    /// Run shaders and keep the pictures that they paint
     Run(run::Args),
-    /// Translate shaders to WGSL, SPIR-V, Metal, HLSL or GLSL ES
     Convert(convert::Args),
-    /// Tell what one pixel does, in f32 beside f64, line by line
+    Debug(debug::Args),
     Explain(explain::Args),
-    /// Find out where formulas for rays and surfaces fail: numerical stability at the extremes
-    Stress(stress::Args),
-    /// Measure what accuracy costs: every way to a picture, with its time and its error
-    Trade(trade::Args),
-    /// Compare two pictures
     Compare(compare::Args),
-    /// Write the shader that paints a scene
+    Trade(trade::Args),
+    Stress(stress::Args),
     Export(render::ExportArgs),
-    /// List the course's scenes and shaders, or write them to a folder
     Scenes(scenes::Args),
-    /// Say which Vulkan drivers are installed, what is missing and how to get it
     Doctor(doctor::Args),
-    /// Serve as the worker process of another command
-    #[command(hide = true)]
-    Worker,
+    Completions(shell::CompletionsArgs),
+    Man(shell::ManArgs),
 }
 
 /// The exit status of a command; the codes have the meanings that they have in grep, diff and cmp.
@@ -83,10 +98,51 @@ pub enum Exit {
     Error,
 }
 
+/// The argument with which this program serves as the worker process of a command. It is not a command, so that
+/// it is neither listed nor suggested.
+pub const WORKER: &str = "__worker";
+
+/// Runs the program with these arguments, of which the first is the program's name.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Exit {
+    let arguments: Vec<_> = arguments.into_iter().collect();
+    if arguments.get(1).is_some_and(|argument| argument == WORKER) {
+        return serve_worker();
+    }
+    let parsed = Cli::command()
+        .color(requested_color(&arguments))
+        .try_get_matches_from(&arguments)
+        .and_then(|matches| Cli::from_arg_matches(&matches));
+    match parsed {
+        Ok(cli) => cli.run(),
+        Err(error) => {
+            // Help and the version are no errors; if they cannot be printed, nothing can.
+            let _ = error.print();
+            if error.use_stderr() { Exit::Error } else { Exit::Success }
+        }
+    }
+}
+
+/// The value of `--color`, if it is valid, for the messages on arguments that cannot be parsed.
+fn requested_color(arguments: &[OsString]) -> ColorChoice {
+    let texts: Vec<_> = arguments.iter().filter_map(|argument| argument.to_str()).collect();
+    let separate = texts.windows(2).find(|pair| pair[0] == "--color").map(|pair| pair[1]);
+    let joined = texts.iter().find_map(|text| text.strip_prefix("--color="));
+    match separate.or(joined) {
+        Some("always") => ColorChoice::Always,
+        Some("never") => ColorChoice::Never,
+        _ => ColorChoice::Auto,
+    }
+}
+
 impl Cli {
     /// Runs the command that the arguments name.
-    #[must_use]
-    pub fn run(self) -> Exit {
+    fn run(self) -> Exit {
+        match self.color {
+            ColorChoice::Auto => anstream::ColorChoice::Auto,
+            ColorChoice::Always => anstream::ColorChoice::Always,
+            ColorChoice::Never => anstream::ColorChoice::Never,
+        }
+        .write_global();
         let terminal = Terminal::new(self.quiet, self.verbose);
         if std::env::var_os("RUST_BACKTRACE").is_none() {
             panic::set_hook(Box::new(Terminal::print_panic));
@@ -106,14 +162,16 @@ impl Command {
             Self::Render(args) => render::run(args, terminal),
             Self::Run(args) => run::run(args, terminal),
             Self::Convert(args) => convert::run(args, terminal),
+            Self::Debug(args) => debug::run(args, terminal),
             Self::Explain(args) => explain::run(args, terminal),
-            Self::Stress(args) => stress::run(args, terminal),
-            Self::Trade(args) => trade::run(args, terminal),
             Self::Compare(args) => compare::run(args, terminal),
+            Self::Trade(args) => trade::run(args, terminal),
+            Self::Stress(args) => stress::run(args, terminal),
             Self::Export(args) => render::export(args, terminal),
             Self::Scenes(args) => scenes::run(args, terminal),
             Self::Doctor(args) => doctor::run(args, terminal),
-            Self::Worker => serve_worker(),
+            Self::Completions(args) => shell::completions(args, terminal),
+            Self::Man(args) => shell::man(args, terminal),
         }
     }
 }

@@ -10,7 +10,6 @@ use toyproof_lab::stress::{self, Report, Settings, formula};
 
 use super::inputs::{DriverArgs, LanguageArgs};
 use super::shader::{Shader, Unusable, find};
-use super::terminal::watch_interrupts;
 use super::{Exit, Terminal};
 
 /// Find out where formulas for rays and surfaces fail: numerical stability at the extremes
@@ -70,7 +69,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         Ok(worker) => worker,
         Err(exit) => return exit,
     };
-    let interrupted = watch_interrupts("stopping; nothing is written");
+    let interrupted = terminal.watch_interrupts("stopping; nothing is written");
     match &args.shader {
         Some(shader) => examine(args, shader, worker.as_mut(), &interrupted, terminal),
         None => study(args, worker.as_mut(), &interrupted, terminal),

@@ -1,6 +1,7 @@
 //! All output to the terminal.
 
 use std::collections::BTreeMap;
+use std::fmt::Display;
 use std::io::{self, Write};
 use std::panic::PanicHookInfo;
 use std::path::Path;
@@ -8,21 +9,28 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+use anstream::{AutoStream, ColorChoice};
 use anstyle::{AnsiColor, Style};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use toyproof_diagnostic::{self as diagnostic, Diagnostic, Files, Severity};
+use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
+use terminal_size::terminal_size_of;
+use toyproof_diagnostic::{self as diagnostic, Diagnostic, Files, Severity, path_name, wrap};
 use toyproof_image::output;
 use toyproof_verify::contain;
 
 /// The number of warnings of one code that are shown for one shader.
 const WARNINGS_SHOWN: usize = 3;
 
-/// Prints to standard output and standard error. Colors are stripped in files, in pipes, and where `NO_COLOR`
-/// is set.
+/// The widest line of wrapped text, in columns: longer lines are hard to read.
+const MAX_WIDTH: usize = 120;
+
+/// Prints to standard output and standard error. Colors are stripped in files, in pipes, with `--color never`
+/// and where `NO_COLOR` is set; text is wrapped on terminals only.
 #[derive(Debug)]
 pub(super) struct Terminal {
     quiet: bool,
     verbose: bool,
+    /// The progress bars, which make room for other output.
+    bars: MultiProgress,
     /// Whether writing to standard output failed.
     write_failed: AtomicBool,
     /// Whether the reader of standard output has closed it.
@@ -35,9 +43,15 @@ pub(super) struct Terminal {
 )]
 impl Terminal {
     pub(super) fn new(quiet: bool, verbose: bool) -> Self {
+        let target = if quiet {
+            ProgressDrawTarget::hidden()
+        } else {
+            ProgressDrawTarget::stderr()
+        };
         Self {
             quiet,
             verbose,
+            bars: MultiProgress::with_draw_target(target),
             write_failed: AtomicBool::new(false),
             closed: AtomicBool::new(false),
         }
@@ -52,20 +66,38 @@ impl Terminal {
         self.verbose
     }
 
+    pub(super) fn is_quiet(&self) -> bool {
+        self.quiet
+    }
+
     /// Whether writing to standard output failed.
     pub(super) fn has_failed(&self) -> bool {
         self.write_failed.load(Ordering::Relaxed)
     }
 
+    /// The width of standard output in columns, at most [`MAX_WIDTH`]; none if it is not a terminal.
+    pub(super) fn width(&self) -> Option<usize> {
+        let (width, _) = terminal_size_of(io::stdout())?;
+        Some(usize::from(width.0).min(MAX_WIDTH))
+    }
+
     /// Prints a result on standard output.
     pub(super) fn result(&self, text: &str) {
-        self.check_write(writeln!(anstream::stdout().lock(), "{text}"));
+        self.bars
+            .suspend(|| self.check_write(writeln!(anstream::stdout().lock(), "{text}")));
+    }
+
+    /// Prints a paragraph on standard output, wrapped at the terminal's width.
+    pub(super) fn paragraph(&self, text: &str) {
+        self.result(&wrap("", 0, text, self.width()));
     }
 
     /// Writes bytes to standard output; returns whether that succeeded.
     pub(super) fn bytes(&self, bytes: &[u8]) -> bool {
-        let mut stdout = io::stdout().lock();
-        self.check_write(stdout.write_all(bytes).and_then(|()| stdout.flush()))
+        self.bars.suspend(|| {
+            let mut stdout = io::stdout().lock();
+            self.check_write(stdout.write_all(bytes).and_then(|()| stdout.flush()))
+        })
     }
 
     /// Reports the first failed write to standard output. A closed pipe is not an error: the reader has all
@@ -86,38 +118,55 @@ impl Terminal {
         }
     }
 
+    /// Prints on standard error, beside the progress bars.
+    fn message(&self, text: &str) {
+        self.bars.suspend(|| {
+            let _ = writeln!(anstream::stderr().lock(), "{text}");
+        });
+    }
+
+    /// Prints on standard error a label, such as `error`, and a sentence.
+    fn labeled(&self, label: &str, color: AnsiColor, text: impl Display) {
+        let style = Style::new().fg_color(Some(color.into())).bold();
+        let prefix = format!("{style}{label}{style:#}: ");
+        self.message(&wrap(&prefix, label.len() + 2, &text.to_string(), stderr_width()));
+    }
+
     /// Prints a note on standard error, except with `--quiet`.
     pub(super) fn note(&self, text: &str) {
         if !self.quiet {
-            let _ = writeln!(anstream::stderr().lock(), "{text}");
+            self.message(&wrap("", 0, text, stderr_width()));
         }
     }
 
     /// Prints a detail on standard error, only with `--verbose`.
     pub(super) fn detail(&self, text: &str) {
         if self.verbose {
-            let _ = writeln!(anstream::stderr().lock(), "{text}");
+            self.note(text);
+        }
+    }
+
+    /// Confirms on standard error that a file was written, with facts such as its size; except with
+    /// `--quiet`, and for standard output.
+    pub(super) fn confirm(&self, path: &Path, facts: &str) {
+        if path != Path::new("-") {
+            self.note(&format!("{}  {facts}", path_name(path)));
         }
     }
 
     /// Prints a warning on standard error.
-    pub(super) fn warn(&self, text: impl std::fmt::Display) {
-        let style = Style::new().fg_color(Some(AnsiColor::Yellow.into())).bold();
-        let _ = writeln!(anstream::stderr().lock(), "{style}warning{style:#}: {text}");
+    pub(super) fn warn(&self, text: impl Display) {
+        self.labeled("warning", AnsiColor::Yellow, text);
     }
 
     /// Prints an error on standard error.
-    pub(super) fn error(&self, text: impl std::fmt::Display) {
-        let style = Style::new().fg_color(Some(AnsiColor::Red.into())).bold();
-        let _ = writeln!(anstream::stderr().lock(), "{style}error{style:#}: {text}");
+    pub(super) fn error(&self, text: impl Display) {
+        self.labeled("error", AnsiColor::Red, text);
     }
 
-    /// Prints how the program reacts to an interrupt.
-    pub(super) fn print_interrupt(message: &str) {
-        let _ = writeln!(
-            anstream::stderr().lock(),
-            "{message}; interrupt again to stop at once"
-        );
+    /// Prints a way out of an error on standard error.
+    pub(super) fn help(&self, text: impl Display) {
+        self.labeled("help", AnsiColor::Cyan, text);
     }
 
     /// Prints the location of a panic; its consequence is reported where it is caught.
@@ -134,7 +183,7 @@ impl Terminal {
     /// `--verbose`, only the first [`WARNINGS_SHOWN`] warnings of each code are shown, and the others
     /// counted.
     pub(super) fn diagnostics(&self, diagnostics: &[Diagnostic], files: &Files) {
-        let mut stderr = anstream::stderr().lock();
+        let mut text = String::new();
         let mut warnings: BTreeMap<&str, usize> = BTreeMap::new();
         for diagnostic in diagnostics {
             if diagnostic.severity == Severity::Warning && !self.verbose {
@@ -144,19 +193,19 @@ impl Terminal {
                     continue;
                 }
             }
-            let _ = if self.quiet {
-                writeln!(stderr, "{}", diagnostic::short(diagnostic, files))
+            text += &if self.quiet {
+                diagnostic::short(diagnostic, files) + "\n"
             } else {
-                write!(stderr, "{}", diagnostic::human(diagnostic, files, true))
+                diagnostic::human(diagnostic, files, stderr_width(), true)
             };
         }
         for (code, count) in warnings {
             if let more @ 1.. = count.saturating_sub(WARNINGS_SHOWN) {
-                let _ = writeln!(
-                    stderr,
-                    "{more} more of {code}: --verbose shows them, `toyproof check --explain {code}` tells of it"
-                );
+                text += &format!("{more} more {code}: -v shows all; `toyproof explain {code}` explains it\n");
             }
+        }
+        if !text.is_empty() {
+            self.message(text.trim_end_matches('\n'));
         }
     }
 
@@ -185,48 +234,69 @@ impl Terminal {
         written.is_ok()
     }
 
-    /// Shows a progress bar, on a terminal only.
+    /// Shows a progress bar with a label that names what is counted, on a terminal only.
     pub(super) fn bar(&self, steps: u64, label: &str) -> ProgressBar {
-        let bar = self.progress(ProgressBar::with_draw_target(
-            Some(steps),
-            ProgressDrawTarget::stderr(),
-        ));
+        let bar = self.bars.add(ProgressBar::new(steps));
+        let template = "{prefix} {human_pos}/{human_len} {wide_bar} {per_sec}, ETA {eta}  {msg}";
         bar.set_style(
-            ProgressStyle::with_template("{msg} {wide_bar} {percent} % {eta}")
-                .unwrap_or_else(|_| ProgressStyle::default_bar()),
+            ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar()),
         );
-        bar.set_message(label.to_owned());
+        bar.set_prefix(label.to_owned());
         bar
     }
 
     /// Shows a spinner with a label, on a terminal only.
     pub(super) fn spinner(&self, label: &str) -> ProgressBar {
-        let spinner = self.progress(ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr()));
+        let spinner = self.bars.add(ProgressBar::new_spinner());
         spinner.set_message(label.to_owned());
         spinner.enable_steady_tick(Duration::from_millis(100));
         spinner
     }
 
-    fn progress(&self, bar: ProgressBar) -> ProgressBar {
-        if self.quiet {
-            bar.set_draw_target(ProgressDrawTarget::hidden());
+    /// Returns the text as a progress bar can show it: without colors where standard error has none.
+    pub(super) fn bar_text(&self, text: &impl Display) -> String {
+        let text = text.to_string();
+        match AutoStream::choice(&io::stderr()) {
+            ColorChoice::Never => anstream::adapter::strip_str(&text).to_string(),
+            _ => text,
         }
-        bar
+    }
+
+    /// Handles interrupts (Ctrl-C): the first prints `message` and sets the returned flag, the second exits at
+    /// once.
+    pub(super) fn watch_interrupts(&self, message: &'static str) -> Arc<AtomicBool> {
+        let interrupted = Arc::new(AtomicBool::new(false));
+        let flag = Arc::clone(&interrupted);
+        let bars = self.bars.clone();
+        // If no handler can be installed, an interrupt ends the program.
+        let _ = ctrlc::set_handler(move || {
+            if flag.swap(true, Ordering::Relaxed) {
+                let _ = bars.clear();
+                #[expect(clippy::exit, reason = "the user asked twice")]
+                std::process::exit(130);
+            }
+            bars.suspend(|| {
+                let _ = writeln!(
+                    anstream::stderr().lock(),
+                    "interrupted: {message}; interrupt again to stop at once"
+                );
+            });
+        });
+        interrupted
     }
 }
 
-/// Handles interrupts (Ctrl-C): the first prints `message` and sets the returned flag, the second exits at
-/// once.
-pub(super) fn watch_interrupts(message: &'static str) -> Arc<AtomicBool> {
-    let interrupted = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&interrupted);
-    // If no handler can be installed, an interrupt ends the program.
-    let _ = ctrlc::set_handler(move || {
-        Terminal::print_interrupt(message);
-        if flag.swap(true, Ordering::Relaxed) {
-            #[expect(clippy::exit, reason = "the user asked twice")]
-            std::process::exit(130);
-        }
-    });
-    interrupted
+/// The width of standard error in columns, at most [`MAX_WIDTH`]; none if it is not a terminal.
+fn stderr_width() -> Option<usize> {
+    let (width, _) = terminal_size_of(io::stderr())?;
+    Some(usize::from(width.0).min(MAX_WIDTH))
+}
+
+/// Formats the size of a file: 231 kB.
+pub(super) fn file_size(bytes: usize) -> String {
+    match bytes {
+        0..1_000 => format!("{bytes} bytes"),
+        1_000..1_000_000 => format!("{:.0} kB", bytes as f64 / 1e3),
+        _ => format!("{:.1} MB", bytes as f64 / 1e6),
+    }
 }

@@ -16,7 +16,6 @@ use super::check::References;
 use super::inputs::{FrameArgs, LanguageArgs, parse_adapter, parse_time_limit, worker};
 use super::render::load_scene;
 use super::shader::{Shader, Unusable, find};
-use super::terminal::watch_interrupts;
 use super::{Exit, Terminal};
 use crate::cli::files;
 
@@ -59,7 +58,7 @@ fn parse_max_error(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
-    let interrupted = watch_interrupts("stopping; nothing is written");
+    let interrupted = terminal.watch_interrupts("stopping; nothing is written");
     match measure(args, &interrupted, terminal) {
         Ok(report) => print_report(&report, args, terminal),
         Err(exit) => exit,

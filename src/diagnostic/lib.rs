@@ -12,6 +12,7 @@
 
 mod deadline;
 mod file;
+mod layout;
 mod render;
 mod text;
 
@@ -22,6 +23,7 @@ use serde::{Deserialize, Serialize};
 
 pub use self::deadline::{Deadline, Overdue};
 pub use self::file::{File, FileId, Files, Position, Span};
+pub use self::layout::{columns, display_width, wrap};
 pub use self::render::{Json, human, json, short};
 pub use self::text::{grouped, magnitude, nearest, path_name, plural, printable, printable_lines};
 

@@ -8,14 +8,15 @@ use codespan_reporting::term::{self};
 use serde::{Deserialize, Serialize};
 
 use super::{Diagnostic, Severity};
-use crate::Files;
+use crate::{Files, wrap};
 
 /// Maximum length of a displayed source line in bytes; a longer line would bury the message.
 const MAX_SHOWN_LINE_BYTES: usize = 400;
 
-/// Renders the message with its source line, a caret and notes; with ANSI colors if `color`.
+/// Renders the message with its source line, a caret and notes, which are wrapped at `width` columns, if any;
+/// with ANSI colors if `color`.
 #[must_use]
-pub fn human(diagnostic: &Diagnostic, files: &Files, color: bool) -> String {
+pub fn human(diagnostic: &Diagnostic, files: &Files, width: Option<usize>, color: bool) -> String {
     let level = match diagnostic.severity {
         Severity::Error => Level::Error,
         Severity::Warning => Level::Warning,
@@ -44,7 +45,7 @@ pub fn human(diagnostic: &Diagnostic, files: &Files, color: bool) -> String {
         .with_code(diagnostic.code.as_ref())
         .with_message(&diagnostic.message)
         .with_labels(labels)
-        .with_notes(diagnostic.notes.clone());
+        .with_notes(diagnostic.notes.iter().map(|note| wrap_note(note, width)).collect());
     let mut buffer = if color { Buffer::ansi() } else { Buffer::no_color() };
     // Writing to memory fails only for a span outside its file; the one-line form then still reports the
     // error.
@@ -52,6 +53,15 @@ pub fn human(diagnostic: &Diagnostic, files: &Files, color: bool) -> String {
         return short(diagnostic, files) + "\n";
     }
     String::from_utf8_lossy(&buffer.into_inner()).into_owned()
+}
+
+/// The columns that precede each line of a note.
+const NOTE_INDENT: usize = 8;
+
+fn wrap_note(note: &str, width: Option<usize>) -> String {
+    let width = width.map(|width| width.saturating_sub(NOTE_INDENT));
+    let lines = note.lines().map(|line| wrap("", 0, line, width));
+    lines.collect::<Vec<_>>().join("\n")
 }
 
 /// Formats `file:line:column: error[E0001]: message`, which editors parse.
@@ -138,13 +148,13 @@ mod tests {
     #[test]
     fn the_human_form_shows_the_line_a_caret_and_the_note() {
         let (diagnostic, files) = example();
-        let text = human(&diagnostic, &files, false);
+        let text = human(&diagnostic, &files, None, false);
         assert!(text.contains("error[E0100]: unknown variable `é`"), "{text}");
         assert!(text.contains("a.glsl:2:3"), "{text}");
         assert!(text.contains("^ not declared"), "{text}");
         assert!(text.contains("= declare it first"), "{text}");
         assert!(!text.contains('\u{1b}'));
-        assert!(human(&diagnostic, &files, true).contains('\u{1b}'));
+        assert!(human(&diagnostic, &files, None, true).contains('\u{1b}'));
     }
 
     #[test]
@@ -173,7 +183,7 @@ mod tests {
             .at(Span::new(id, 9_000, 9_001))
             .note("break it");
         assert_eq!(
-            human(&diagnostic, &files, false),
+            human(&diagnostic, &files, None, false),
             "a.glsl:1:9001: error[E0100]: no\n  = break it\n"
         );
     }
@@ -186,7 +196,7 @@ mod tests {
             start: 3000,
             ..diagnostic.span.unwrap()
         };
-        let text = human(&diagnostic.at(span), &files, false);
+        let text = human(&diagnostic.at(span), &files, None, false);
         assert!(text.contains("unknown variable"), "{text}");
     }
 }

@@ -1,86 +1,123 @@
-//! The sentence that states the reason of a verdict.
+//! The reason of a verdict in words: one short sentence, and the details below it.
 
-use toyproof_diagnostic::{Diagnostic, Files, Severity, grouped, plural};
+use toyproof_diagnostic::{Diagnostic, Files, Severity, Span, grouped, plural, printable};
 use toyproof_eval as eval;
 use toyproof_gpu as gpu;
 use toyproof_scene::Sampler;
 use toyproof_verify::{Failure, Findings, MAX_DIFFERING, Means, Reason, Share, Verdict};
 
-use super::Mistake;
+/// The reason of a verdict.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Statement {
+    /// One short sentence.
+    pub reason: String,
+    /// Further sentences, the most important first.
+    pub details: Vec<String>,
+}
 
-/// Formats why a verdict was reached, in one sentence, with what explains it: the mistake, the line that loses
-/// precision. `files` are those of the shader.
+impl Statement {
+    fn new(reason: impl Into<String>) -> Self {
+        Self {
+            reason: reason.into(),
+            details: Vec::new(),
+        }
+    }
+
+    fn detail(mut self, detail: impl Into<String>) -> Self {
+        self.details.push(detail.into());
+        self
+    }
+}
+
+/// States why a verdict was reached, with what the images show beside it. `files` are those of the shader.
 #[must_use]
-pub fn reason(findings: &Findings, files: &Files) -> String {
-    let mut sentence = phrase(&findings.reason, files);
-    let mut add = |part: String| {
-        sentence.push_str("; ");
-        sentence.push_str(&part);
-    };
+pub fn state(findings: &Findings, files: &Files) -> Statement {
+    let mut statement = state_reason(&findings.reason, files);
     if let Some(mistake) = &findings.tolerated_mistake {
-        add(format!("they are what a tracer paints that {}", mistake.says));
+        statement
+            .details
+            .push(format!("a known mistake explains these pixels: {}", mistake.says));
     }
     if let (Verdict::Wrong, None, Some(color)) =
         (findings.verdict, &findings.mistake, findings.actual.only_color())
     {
-        add(match color {
+        statement.details.push(match color {
             [0, 0, 0] => "every pixel is black".to_owned(),
-            [r, g, b] => format!("every pixel has one colour, ({r}, {g}, {b}) of 255"),
+            [r, g, b] => format!("every pixel has the same color, ({r}, {g}, {b}) of 255"),
         });
     }
     if let (Verdict::Unstable, Some(cause)) = (findings.verdict, findings.cause) {
         let at = files.position(cause);
-        add(format!("it is lost in line {}, column {}", at.line, at.column));
+        statement.details.push(format!(
+            "most precision is lost at line {}, column {}: {}",
+            at.line,
+            at.column,
+            excerpt(files, cause)
+        ));
     }
-    if let Some(mistake) = findings.mistake.as_deref().map(Mistake::new) {
-        add(mistake.says);
-    }
-    sentence
+    statement
 }
 
-/// Formats the reason alone.
-pub(super) fn phrase(reason: &Reason, files: &Files) -> String {
+/// The longest quoted piece of source text, in characters.
+const MAX_EXCERPT: usize = 60;
+
+/// The source text of a span on one line, in backticks.
+fn excerpt(files: &Files, span: Span) -> String {
+    let words: Vec<_> = files.text(span).split_whitespace().collect();
+    let text = words.join(" ");
+    let shown: String = text.chars().take(MAX_EXCERPT).collect();
+    let rest = if shown.len() < text.len() { " …" } else { "" };
+    format!("`{}`{rest}", printable(&shown))
+}
+
+/// States the reason alone.
+pub(super) fn state_reason(reason: &Reason, files: &Files) -> Statement {
     match reason {
-        Reason::NoImage(failure) => without_image(failure, files),
-        Reason::NotEvaluated {
-            failure,
-            has_reference: true,
-        } => format!("the shader could not be evaluated on the CPU: {failure}"),
-        Reason::NotEvaluated { failure, .. } => {
-            format!("the shader paints; it could not be evaluated on the CPU: {failure}")
-        }
-        Reason::ToolchainDiffers(differing) => format!(
-            "{} {} not what the shader says: naga, the driver or toyproof broke it, and it is not the shader's fault",
+        Reason::NoImage(failure) => Statement::new(without_image(failure, files)),
+        Reason::NotEvaluated { failure, .. } => Statement::new(format!(
+            "the shader renders, but cannot be evaluated on the CPU: {failure}"
+        ))
+        .detail("the algorithm and precision checks need the CPU evaluator"),
+        Reason::ToolchainDiffers(differing) => Statement::new(format!(
+            "{} {} on the GPU from the same float32 arithmetic on the CPU {}",
             pixels(*differing),
-            plural(differing.count, "is", "are")
-        ),
-        Reason::NoReference => "the shader paints; there is no scene to compare it with".to_owned(),
-        Reason::AlgorithmDiffers(pixels) => format!("{}: it is the mathematics", differing(*pixels)),
-        Reason::SelfIntersection(Share { count, of }) => format!(
-            "in {} of {} pixels rounding decides whether a ray meets the surface that it starts from",
-            grouped(*count),
-            grouped(*of)
-        ),
-        Reason::Undefined(undefined) => format!(
-            "in {} the shader does what GLSL leaves undefined, so that cannot be compared",
-            pixels(*undefined)
-        ),
-        Reason::IllConditioned(ill_conditioned) => format!(
-            "the mathematics may be right, but {} {} by a hair even in double precision: a rounding error decides",
-            pixels(*ill_conditioned),
-            plural(ill_conditioned.count, "hangs", "hang")
-        ),
-        Reason::Imprecise(imprecise) => format!(
-            "the mathematics is right, but float32 is not enough for it here: {} {} visibly another colour than in \
-             double precision",
-            pixels(*imprecise),
-            plural(imprecise.count, "is", "are")
-        ),
+            plural(differing.count, "differs", "differ"),
+            percentage(*differing)
+        ))
+        .detail("naga, the driver or toyproof is at fault, not the shader"),
+        Reason::NoReference => Statement::new("rendered; there is no scene to compare it with"),
+        Reason::AlgorithmDiffers(share) => Statement::new(differing(*share)),
+        Reason::SelfIntersection(share) => Statement::new(format!(
+            "{} {} on rounding errors {}",
+            pixels(*share),
+            plural(share.count, "depends", "depend"),
+            percentage(*share)
+        )),
+        Reason::Undefined(share) => Statement::new(format!(
+            "{} {} on undefined behavior {}",
+            pixels(*share),
+            plural(share.count, "depends", "depend"),
+            percentage(*share)
+        ))
+        .detail("these pixels cannot be compared, and the others are too few for a verdict"),
+        Reason::IllConditioned(share) => Statement::new(format!(
+            "{} {} ill-conditioned {}",
+            pixels(*share),
+            plural(share.count, "is", "are"),
+            percentage(*share)
+        ))
+        .detail("a change of 1 ULP changes their color, even in double precision"),
+        Reason::Imprecise(share) => Statement::new(format!(
+            "correct in double precision; {} {} in float32 {}",
+            pixels(*share),
+            plural(share.count, "differs", "differ"),
+            percentage(*share)
+        )),
         &Reason::Agrees {
             differing,
             excluded,
             tied,
-        } => agrees(differing, excluded) + &at_edges(tied),
+        } => agrees(differing, excluded, tied),
         &Reason::OtherRandomNumbers {
             differing,
             sampler,
@@ -89,40 +126,38 @@ pub(super) fn phrase(reason: &Reason, files: &Files) -> String {
     }
 }
 
-fn agrees(differing: Share, excluded: u64) -> String {
+fn agrees(differing: Share, excluded: u64, tied: u64) -> Statement {
     let Share { count, of } = differing;
-    match (count, excluded) {
-        (0, 0) => format!("all {} pixels agree with the scene", grouped(of)),
-        (0, excluded) => format!(
-            "all pixels agree with the scene but {} that cannot be decided",
-            grouped(excluded)
-        ),
-        _ => format!(
-            "{} of {} pixels {} from the scene, fewer than the {} that are allowed",
-            grouped(count),
-            grouped(of),
-            plural(count, "differs", "differ"),
-            grouped((of as f64 * MAX_DIFFERING) as u64 + 1)
-        ),
-    }
-}
-
-fn at_edges(tied: u64) -> String {
+    let statement = match (count, excluded) {
+        (0, 0) => Statement::new(format!("all {} pixels agree with the reference", grouped(of))),
+        (0, excluded) => Statement::new(format!(
+            "{} of {} pixels agree with the reference; the others are ill-conditioned or undefined",
+            grouped(of.saturating_sub(excluded)),
+            grouped(of)
+        )),
+        _ => Statement::new(format!(
+            "{} from the reference, within the tolerance of {} %",
+            of_all(differing, ["differs", "differ"]),
+            100.0 * MAX_DIFFERING
+        )),
+    };
     match tied {
-        0 => String::new(),
-        tied => format!(
-            "; in {} an edge of the scene itself passes through the pixel's sample",
-            grouped(tied)
-        ),
+        0 => statement,
+        tied => statement.detail(format!(
+            "in {} {} an edge of the scene passes exactly through the sample point",
+            grouped(tied),
+            plural(tied, "pixel", "pixels")
+        )),
     }
 }
 
-fn by_means(pixels: Share, sampler: Sampler, means: Means) -> String {
-    let differs = format!(
-        "{}, only where the samples' random numbers decide: it draws others than the scene, whose sampler is `{}`",
-        differing(pixels),
+fn by_means(pixels: Share, sampler: Sampler, means: Means) -> Statement {
+    let other_numbers = format!(
+        "{} because the shader uses other random numbers than the scene's sampler, `{}`; means were compared instead",
+        of_all(pixels, ["differs", "differ"]),
         sampler.name()
     );
+    let noise = |variance: f64| format!("its noise has {variance:.1} times the variance of the scene's sampler");
     match means {
         Means::Different {
             at: [x, y],
@@ -131,28 +166,33 @@ fn by_means(pixels: Share, sampler: Sampler, means: Means) -> String {
             let much = match deviations {
                 None => String::new(),
                 Some(deviations) if deviations.is_finite() => {
-                    format!(", by {deviations:.0} standard deviations")
+                    format!(" by {deviations:.0} standard deviations")
                 }
-                Some(_) => ", and nothing random is left to explain it".to_owned(),
+                Some(_) => ", and the shader is not random there".to_owned(),
             };
-            format!("{differs}; but there its mean is another too, most of all around ({x}, {y}){much}")
+            Statement::new(format!(
+                "the mean color differs from the reference, most around pixel ({x}, {y}){much}"
+            ))
+            .detail(other_numbers)
         }
-        Means::FewerSamples { own, scene, variance } => format!(
-            "{differs}; the mean is the same, but it takes fewer samples, {own} where the scene has {scene}: its noise \
-             has {variance:.1} times the variance"
-        ),
-        Means::Correlated => format!(
-            "random: {differs}, and what they do in neighbouring pixels has much in common, so that means cannot be \
-             compared. Draw as docs/scenes.md tells, or start each pixel's numbers from its place"
-        ),
-        Means::TooNoisy { variance } => format!(
-            "random: {differs}, and its noise has {variance:.0} times the variance of the scene's own sampler: too much \
-             to compare means, as where directions seldom meet a light. Sample the lights as well, or take more samples"
-        ),
-        Means::Underpowered => format!(
-            "random: {differs}, and samples or pixels are too few to compare means. Draw as docs/scenes.md tells, give \
-             the scene the sampler that draws as the shader does, or ask for a larger picture"
-        ),
+        Means::FewerSamples { own, scene, variance } => Statement::new(format!(
+            "right in the mean, but with {own} {} per pixel instead of {scene}",
+            plural(u64::from(own), "sample", "samples")
+        ))
+        .detail(noise(variance))
+        .detail(other_numbers),
+        Means::Correlated => {
+            Statement::new("the random numbers of neighboring pixels are correlated, so means cannot be compared")
+                .detail("seed the random numbers of each pixel from its coordinates, or use the scene's sampler")
+                .detail(other_numbers)
+        }
+        Means::TooNoisy { variance } => Statement::new("too noisy to compare means with the reference")
+            .detail(noise(variance))
+            .detail("sample the lights directly, or take more samples per pixel")
+            .detail(other_numbers),
+        Means::Underpowered => Statement::new("too few samples or pixels to compare means with the reference")
+            .detail("check a larger image, or use the scene's sampler")
+            .detail(other_numbers),
         Means::Same {
             within,
             pixels,
@@ -162,13 +202,13 @@ fn by_means(pixels: Share, sampler: Sampler, means: Means) -> String {
             let sets = replicates.map_or_else(String::new, |sets| {
                 format!(", with {sets} sets of random numbers")
             });
-            let noise = variance.map_or_else(String::new, |variance| {
-                format!("; its noise has {variance:.1} times the variance of the scene's own sampler")
-            });
-            format!(
-                "the same in the mean, to within {within:.4} over {} pixels{sets}; {differs}{noise}",
+            let mut statement = Statement::new(format!(
+                "the mean of {} pixels agrees with the reference to within {within:.4}",
                 grouped(pixels)
-            )
+            ))
+            .detail(other_numbers + &sets);
+            statement.details.extend(variance.map(noise));
+            statement
         }
     }
 }
@@ -187,23 +227,25 @@ fn without_image(failure: &Failure, files: &Files) -> String {
     }
 }
 
-/// The first error, and its position.
+/// The only error with its position, or the number of errors.
 fn first_error(diagnostics: &[Diagnostic], files: &Files) -> String {
-    let error = diagnostics.iter().find(|one| one.severity == Severity::Error);
-    error.map_or_else(
-        || "it does not compile".to_owned(),
-        |first| match first.span.map(|span| files.position(span)) {
-            Some(at) => format!("{} (line {}, column {})", first.message, at.line, at.column),
-            None => first.message.clone(),
+    let errors = diagnostics.iter().filter(|one| one.severity == Severity::Error);
+    let errors: Vec<_> = errors.collect();
+    match errors[..] {
+        [] => "the shader does not compile".to_owned(),
+        [only] => match only.span.map(|span| files.position(span)) {
+            Some(at) => format!("{} (line {}, column {})", only.message, at.line, at.column),
+            None => only.message.clone(),
         },
-    )
+        _ => format!("{} errors", grouped(errors.len() as u64)),
+    }
 }
 
 /// The message on a shader of which the driver truncated the loops of `pixels` pixels.
 #[must_use]
 pub fn loop_truncated(pixels: u64) -> String {
     format!(
-        "a loop never ends, or runs longer than this driver allows: it was ended by force in {} {} \
+        "a loop does not end, or exceeds the driver's limit on iterations: it was cut off in {} {} \
          (Mesa before 23 stops at 65,535 iterations)",
         grouped(pixels),
         plural(pixels, "pixel", "pixels")
@@ -222,20 +264,34 @@ pub fn failure_position(failure: &eval::Failure, files: &Files) -> String {
     }
 }
 
-/// Formats how many pixels differ from the scene.
+/// States how many pixels differ from the reference.
 fn differing(share: Share) -> String {
-    format!(
-        "{} {} from the scene even in exact arithmetic",
-        pixels(share),
-        plural(share.count, "differs", "differ")
-    )
+    if share.count == share.of {
+        format!("all {} pixels differ from the reference", grouped(share.of))
+    } else {
+        format!(
+            "{} from the reference {}",
+            of_all(share, ["differs", "differ"]),
+            percentage(share)
+        )
+    }
+}
+
+/// Formats a subject and its verb: “1 of 230,400 pixels differs”.
+fn of_all(share: Share, [one, many]: [&str; 2]) -> String {
+    format!("{} {}", pixels(share), plural(share.count, one, many))
 }
 
 fn pixels(share: Share) -> String {
-    format!(
-        "{} of {} pixels ({:.2} %)",
-        grouped(share.count),
-        grouped(share.of),
-        100.0 * share.ratio()
-    )
+    format!("{} of {} pixels", grouped(share.count), grouped(share.of))
+}
+
+/// Formats a share in parentheses, with one decimal.
+fn percentage(share: Share) -> String {
+    let percent = 100.0 * share.ratio();
+    if percent < 0.1 && share.count > 0 {
+        "(under 0.1 %)".to_owned()
+    } else {
+        format!("({percent:.1} %)")
+    }
 }

@@ -6,7 +6,7 @@ use toyproof_verify::compare::{CheckSummary, Comparison};
 use toyproof_verify::mistake::Named;
 use toyproof_verify::{CheckResult, Evidence, Failure, Findings, Verdict, decide};
 
-use super::reason::{phrase, reason};
+use super::reason::{Statement, state, state_reason};
 
 /// The JSON Schema of a [`Report`].
 pub const SCHEMA: &str = include_str!("verdict.schema.json");
@@ -26,7 +26,7 @@ impl Report {
     #[must_use]
     pub fn new(device: Option<String>, shaders: Vec<Record>) -> Self {
         Self {
-            version: 1,
+            version: 2,
             tool: format!("toyproof {}", env!("CARGO_PKG_VERSION")),
             device,
             shaders,
@@ -34,7 +34,8 @@ impl Report {
     }
 
     /// The adapter and its driver; none if nothing ran on any.
-    pub(super) fn device(&self) -> Option<&str> {
+    #[must_use]
+    pub fn device(&self) -> Option<&str> {
         self.device.as_deref()
     }
 
@@ -61,19 +62,23 @@ pub struct Record {
     pub scene: Option<String>,
     /// The verdict.
     pub verdict: Verdict,
-    /// Why, in one sentence.
+    /// Why, in one short sentence.
     pub reason: String,
+    /// Further sentences on the reason, the most important first.
+    #[serde(default)]
+    pub details: Vec<String>,
+    /// The command that shows more; null if there is nothing to show.
+    #[serde(default)]
+    pub help: Option<String>,
     /// The shader in f64 against the scene; null without a scene.
-    #[serde(rename = "maths")]
     pub algorithm: Option<CheckSummary>,
     /// The shader in f32 against the shader in f64.
-    #[serde(rename = "rounding")]
     pub precision: Option<CheckSummary>,
     /// The GPU's image against the CPU's, bit by bit; null where no GPU rendered, or where it was free to
     /// rearrange arithmetic.
     pub toolchain: Option<CheckSummary>,
     /// The image against the reference; null if either is missing.
-    #[serde(rename = "picture")]
+    #[serde(rename = "image")]
     pub comparison: Option<Comparison>,
     /// The known mistake, or the two, that explain a wrong image; null if none does.
     pub mistake: Option<Mistake>,
@@ -92,6 +97,8 @@ impl Record {
             scene: None,
             verdict: Verdict::Error,
             reason: String::new(),
+            details: Vec::new(),
+            help: None,
             algorithm: None,
             precision: None,
             toolchain: None,
@@ -106,7 +113,7 @@ impl Record {
     pub fn set_findings(&mut self, findings: &Findings, files: &Files) {
         let answer = |check: &Option<CheckResult>| check.as_ref().map(|check| check.summary.clone());
         self.verdict = findings.verdict;
-        self.reason = reason(findings, files);
+        self.set_statement(state(findings, files));
         self.mistake = findings.mistake.as_deref().map(Mistake::new);
         self.algorithm = answer(&findings.algorithm);
         self.precision = answer(&findings.precision);
@@ -128,43 +135,59 @@ impl Record {
     pub fn set_failure(&mut self, failure: Failure, files: &Files) {
         let (verdict, because) = decide(Evidence::NoImage(failure));
         self.verdict = verdict;
-        self.reason = phrase(&because, files);
+        self.set_statement(state_reason(&because, files));
+    }
+
+    fn set_statement(&mut self, statement: Statement) {
+        (self.reason, self.details) = (statement.reason, statement.details);
     }
 
     /// The reason why the toolchain check did not run although other checks did.
     pub(super) fn skipped_toolchain_reason(&self) -> Option<&'static str> {
         let others = self.algorithm.is_some() || self.precision.is_some();
         (others && self.toolchain.is_none()).then_some(if self.seconds.gpu.is_some() {
-            "since the driver was free to rearrange arithmetic"
+            "not run: --float fast lets the driver rearrange arithmetic"
         } else {
-            "since the shader ran on the CPU and on no GPU"
+            "not run: no GPU rendered the shader"
         })
     }
 }
 
-/// A mistake that explains a wrong image.
-#[derive(Debug, Serialize, Deserialize)]
+/// The mistake that explains a wrong image.
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Mistake {
     /// Its name, such as `far-root`; for two combined mistakes both names: `no-aspect+gamma`.
     pub id: String,
-    /// Its meaning, in one sentence.
-    pub says: String,
+    /// What is wrong in the shader, in one sentence.
+    pub text: String,
+    /// Whether it describes the image, which many mistakes may cause, and not a mistake.
+    pub is_symptom: bool,
+    /// Other mistakes that render the same image, the most likely first.
+    pub alternatives: Vec<Alternative>,
+}
+
+/// Another mistake that renders the same image.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Alternative {
+    /// Its name.
+    pub id: String,
+    /// What is wrong in the shader, in one sentence.
+    pub text: String,
 }
 
 impl Mistake {
     /// Combines the recognized mistakes.
     #[must_use]
     pub fn new(named: &[Named]) -> Self {
-        let (ids, says): (Vec<_>, Vec<_>) = named
+        let (ids, texts): (Vec<_>, Vec<_>) = named
             .iter()
             .map(|mistake| (mistake.name, mistake.says.as_ref()))
             .unzip();
         Self {
             id: ids.join("+"),
-            says: format!(
-                "the picture is what a tracer paints that {}",
-                says.join(", and that ")
-            ),
+            text: texts.join("; and "),
+            is_symptom: false,
+            alternatives: Vec::new(),
         }
     }
 }
@@ -208,6 +231,8 @@ pub(super) mod samples {
             scene: Some("scene.toml".to_owned()),
             verdict,
             reason: format!("it is {verdict}"),
+            details: Vec::new(),
+            help: None,
             algorithm: None,
             precision: None,
             toolchain: None,

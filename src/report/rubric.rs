@@ -249,7 +249,7 @@ fn maths(check: CheckPoints, record: &Record) -> Mark {
     let passed =
         answer.share(answer.differing) <= MAX_DIFFERING && answer.share(answer.undefined) <= MAX_UNDEFINED;
     let lost = answer.share(answer.differing + answer.undefined);
-    let mistake = record.mistake.iter().map(|mistake| mistake.says.clone());
+    let mistake = record.mistake.iter().map(|mistake| mistake.text.clone());
     let why: Vec<_> = [or_no_difference(terminal::algorithm(answer))]
         .into_iter()
         .chain(mistake)

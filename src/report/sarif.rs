@@ -1,5 +1,6 @@
 //! `report.sarif`: the diagnostics, for editors and code hosts (SARIF 2.1.0).
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
@@ -22,20 +23,20 @@ const ENCODE_IN_PATH: &AsciiSet = &NON_ALPHANUMERIC
 const VERDICTS: [(Verdict, &str, &str); 3] = [
     (
         Verdict::Wrong,
-        "A shader that does not paint its scene",
-        "In more than 0.1 % of the pixels the shader differs from the scene even in double precision: the mathematics is another. \
-         `toyproof explain SHADER --pixel X,Y` tells what it does in one of them.",
+        "The shader's image differs from the reference",
+        "More than 0.1 % of the pixels differ from the reference in double precision, so the algorithm is wrong. \
+         `toyproof debug SHADER --pixel X,Y` traces one of them.",
     ),
     (
         Verdict::Unstable,
-        "A shader that float32 is not enough for",
-        "The mathematics is right, but the picture that a GPU paints is visibly another than in double precision, or hangs on \
-         rounding errors. Write the formula so that it does not subtract what is nearly equal; `toyproof explain` names the line.",
+        "float32 is not precise enough for the shader",
+        "The algorithm is right, but in float32 more than 0.3 % of the pixels visibly differ, or are ill-conditioned. Avoid the \
+         subtraction of nearly equal numbers; `toyproof debug SHADER --pixel X,Y` shows where precision is lost.",
     ),
     (
         Verdict::Timeout,
-        "A shader that takes too long",
-        "The shader never ends, or takes longer than `--timeout`. Give each loop a bound.",
+        "The shader exceeds the time limit",
+        "A loop does not end, or the shader takes longer than `--timeout`. Limit the number of iterations of each loop.",
     ),
 ];
 
@@ -93,16 +94,16 @@ struct Rules {
 
 impl Rules {
     /// Returns the index of a rule, adding it if it is new.
-    fn index_of(&mut self, id: &str, about: Option<(&'static str, &'static str)>) -> usize {
+    fn index_of(&mut self, id: &str, about: Option<(&'static str, Cow<'static, str>)>) -> usize {
         if let Some(index) = self.indices.get(id) {
             return *index;
         }
         self.indices.insert(id.to_owned(), self.rules.len());
         self.rules.push(Rule {
             id: id.to_owned(),
-            short_description: about.map(|(title, _)| Message::new(title.to_owned())),
+            short_description: about.as_ref().map(|(title, _)| Message::new((*title).to_owned())),
             help: about.map(|(_, help)| Help {
-                text: help,
+                text: help.clone(),
                 markdown: help,
             }),
         });
@@ -139,7 +140,7 @@ fn verdict_result(
             .map(terminal::place),
     );
     SarifResult {
-        rule_index: rules.index_of(&id, Some((title, help))),
+        rule_index: rules.index_of(&id, Some((title, help.into()))),
         rule_id: id,
         level: Severity::Error,
         message: Message::new(lines.join("\n")),
@@ -190,8 +191,8 @@ struct Rule {
 
 #[derive(Serialize)]
 struct Help {
-    text: &'static str,
-    markdown: &'static str,
+    text: Cow<'static, str>,
+    markdown: Cow<'static, str>,
 }
 
 #[derive(Serialize)]

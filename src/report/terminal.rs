@@ -5,74 +5,297 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use anstyle::{AnsiColor, Style};
-use toyproof_diagnostic::{Json, grouped, magnitude, plural};
+use toyproof_diagnostic::{Json, Severity, columns, display_width, grouped, magnitude, plural, wrap};
 use toyproof_verify::Verdict;
 use toyproof_verify::compare::{CheckSummary, Comparison, Pixel};
 
-use super::Record;
+use super::{Mistake, Record};
 
-/// Formats one shader: verdict, name, reason, and a line for each check that found a difference.
-#[must_use]
-pub fn line(record: &Record) -> String {
-    let style = style(record.verdict);
-    let mut lines = vec![format!(
-        "{style}{:<12}{style:#} {}: {}",
-        record.verdict,
-        record.shader,
-        errors(record).unwrap_or_else(|| record.reason.clone())
-    )];
-    let questions = [
-        (
-            "maths",
-            &record.algorithm,
-            algorithm as fn(&CheckSummary) -> String,
-        ),
-        ("rounding", &record.precision, precision),
-        ("toolchain", &record.toolchain, toolchain),
-    ];
-    let answered = questions
-        .iter()
-        .filter_map(|(name, answer, describe)| Some((*name, answer.as_ref()?, describe)));
-    let mut same = Vec::new();
-    for (name, answer, describe) in answered {
-        if answer.is_same() && answer.undefined == 0 {
-            same.push(name);
-        } else {
-            lines.push(format!("{name}: {}", describe(answer)));
+/// How much is printed of each shader.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Detail {
+    /// The verdict, the name and the reason: one line.
+    Short,
+    /// Also the likely mistake and the command that shows more.
+    Normal,
+    /// Also the numbers of the three checks.
+    Full,
+}
+
+/// The layout of the lines of one run.
+#[derive(Debug, Clone, Copy)]
+pub struct Layout {
+    /// How much is printed.
+    pub detail: Detail,
+    /// The width of the column of names, in terminal columns.
+    pub names: usize,
+    /// The width of the terminal in columns; none where lines are not wrapped, as in a file.
+    pub width: Option<usize>,
+    /// Whether errors are listed below the shader, as they are where their source lines are not shown.
+    pub lists_errors: bool,
+}
+
+/// The widest column of names; longer names move their reasons to the right.
+const MAX_NAME_COLUMN: usize = 40;
+
+/// The width of the column of verdicts.
+const VERDICT_COLUMN: usize = 13;
+
+impl Layout {
+    /// The layout for shaders of these names.
+    #[must_use]
+    pub fn new<'a>(
+        names: impl IntoIterator<Item = &'a str>,
+        width: Option<usize>,
+        detail: Detail,
+        lists_errors: bool,
+    ) -> Self {
+        let names = names.into_iter().map(display_width).max().unwrap_or(0);
+        Self {
+            detail,
+            names: names.min(MAX_NAME_COLUMN),
+            width,
+            lists_errors,
         }
     }
-    if !same.is_empty() {
-        lines.push(format!("{}: no difference", list(&same)));
+
+    /// A result: a colored label, the name and a sentence, wrapped below each other.
+    #[must_use]
+    pub fn row(&self, (label, style): (&str, Style), name: &str, sentence: &str) -> String {
+        let spaces = |used: usize, column: usize| " ".repeat(column.saturating_sub(used).max(1));
+        let prefix = format!(
+            "{style}{label}{style:#}{}{name}{} ",
+            spaces(display_width(label), VERDICT_COLUMN),
+            spaces(display_width(name), self.names + 1)
+        );
+        // Where long names leave little room, sentences continue below the name.
+        let column = VERDICT_COLUMN + self.names + 2;
+        let indent = match self.width {
+            Some(width) if column > width / 2 => VERDICT_COLUMN,
+            _ => column,
+        };
+        wrap(&prefix, indent, sentence, self.width)
+    }
+
+    /// A line below a result.
+    #[must_use]
+    pub fn below(&self, label: &str, sentence: &str) -> String {
+        let indent = " ".repeat(VERDICT_COLUMN);
+        let hang = VERDICT_COLUMN + display_width(label);
+        wrap(&format!("{indent}{label}"), hang, sentence, self.width)
+    }
+}
+
+/// Formats one shader: verdict, name and reason, and below them what the layout asks for.
+#[must_use]
+pub fn lines(record: &Record, layout: &Layout) -> String {
+    let errors = errors(record);
+    let reason = match errors.len() {
+        0 => record.reason.clone(),
+        _ if layout.detail == Detail::Short => record.reason.clone(),
+        // The errors themselves are beside this line.
+        1 => "1 error".to_owned(),
+        count => format!("{} errors", grouped(count as u64)),
+    };
+    let label = record.verdict.to_string();
+    let mut lines = vec![layout.row((&label, style(record.verdict)), &record.shader, &reason)];
+    if layout.detail >= Detail::Normal {
+        if layout.lists_errors {
+            lines.extend(error_lines(&errors, &record.shader, layout));
+        }
+        lines.extend(record.details.iter().map(|detail| layout.below("", detail)));
+        if let Some(mistake) = &record.mistake {
+            lines.extend(mistake_lines(mistake, layout));
+        }
+    }
+    if layout.detail >= Detail::Full {
+        lines.extend(check_lines(record).iter().map(|line| layout.below("", line)));
+    }
+    if layout.detail >= Detail::Normal
+        && let Some(help) = &record.help
+    {
+        lines.push(layout.below("help: ", help));
+    }
+    lines.join("\n")
+}
+
+fn errors(record: &Record) -> Vec<&Json> {
+    let diagnostics = record.diagnostics.iter();
+    diagnostics
+        .filter(|diagnostic| diagnostic.severity == Severity::Error)
+        .collect()
+}
+
+/// The most errors of one shader that are listed.
+const MAX_LISTED_ERRORS: usize = 5;
+
+/// A line for each error: position, message and code.
+fn error_lines(errors: &[&Json], shader: &str, layout: &Layout) -> Vec<String> {
+    let place = |error: &Json| {
+        let position = match (error.line, error.column) {
+            (Some(line), Some(column)) => format!("{line}:{column}"),
+            _ => String::new(),
+        };
+        match &error.file {
+            Some(file) if file != shader => format!("{file}:{position}"),
+            _ => position,
+        }
+    };
+    let shown = &errors[..errors.len().min(MAX_LISTED_ERRORS)];
+    let places: Vec<_> = shown.iter().map(|error| place(error)).collect();
+    let column = places.iter().map(String::len).max().unwrap_or(0);
+    let mut lines: Vec<_> = shown
+        .iter()
+        .zip(&places)
+        .map(|(error, place)| {
+            layout.below(
+                &format!("{place:<column$}  "),
+                &format!("{} [{}]", error.message, error.code),
+            )
+        })
+        .collect();
+    if let more @ 1.. = errors.len() - shown.len() {
+        lines.push(layout.below("", &format!("and {} more", grouped(more as u64))));
+    }
+    lines
+}
+
+/// The likely mistake, or a ranked list if others explain the image as well.
+fn mistake_lines(mistake: &Mistake, layout: &Layout) -> Vec<String> {
+    let label = if mistake.is_symptom {
+        "symptom"
+    } else {
+        "likely mistake"
+    };
+    if mistake.alternatives.is_empty() {
+        return vec![layout.below(&format!("{label}: "), &mistake.text)];
+    }
+    let all = std::iter::once(&mistake.text).chain(mistake.alternatives.iter().map(|other| &other.text));
+    let ranked = all
+        .enumerate()
+        .map(|(rank, text)| layout.below(&format!("  {}. ", rank + 1), text));
+    let heading = layout.below("", &format!("{label}, one of these (most likely first):"));
+    std::iter::once(heading).chain(ranked).collect()
+}
+
+/// The table of the checks, and the comparison of the images.
+fn check_lines(record: &Record) -> Vec<String> {
+    let checks = [
+        ("algorithm", &record.algorithm),
+        ("precision", &record.precision),
+        ("toolchain", &record.toolchain),
+    ];
+    let header = [
+        "check",
+        "pixels off",
+        "ill-conditioned",
+        "undefined",
+        "largest",
+        "first at",
+        "expected → actual",
+    ];
+    let rows: Vec<_> = checks
+        .iter()
+        .filter_map(|(name, check)| Some(check_row(name, check.as_ref()?)))
+        .collect();
+    let mut lines = Vec::new();
+    if !rows.is_empty() {
+        let header = header.map(str::to_owned);
+        lines.extend(columns(&[vec![header.to_vec()], rows].concat(), &[1, 2, 3, 4]));
     }
     if let Some(why) = record.skipped_toolchain_reason() {
-        lines.push(format!("toolchain: not asked, {why}"));
+        lines.push(format!("toolchain  {why}"));
     }
     if let Some(image) = &record.comparison {
-        lines.push(format!("picture: {}", numbers(image)));
+        lines.push(format!("image      {}", image_line(image)));
     }
-    lines.join(&format!("\n{:13}", ""))
+    lines
 }
 
-/// The number of errors and the first position, instead of the first message: all are printed in full beside
-/// this line.
-fn errors(record: &Record) -> Option<String> {
-    let places: Vec<_> = record.diagnostics.iter().filter_map(Json::error_place).collect();
-    let first = places.iter().flatten().next();
-    let (count, which) = match places.len() {
-        0 => return None,
-        1 => ("1 error".to_owned(), "in"),
-        count => (format!("{count} errors"), "the first in"),
+fn check_row(name: &str, check: &CheckSummary) -> Vec<String> {
+    let (first, colors) = match &check.first {
+        Some(pixel) => (format!("({}, {})", pixel.x, pixel.y), pixel_colors(pixel)),
+        None => (String::new(), String::new()),
     };
-    Some(match first {
-        Some((line, column)) => format!("{count}, {which} line {line}, column {column}"),
-        None => count,
-    })
+    vec![
+        name.to_owned(),
+        grouped(check.differing),
+        grouped(check.ill_conditioned),
+        grouped(check.undefined),
+        magnitude(check.max_abs),
+        first,
+        colors,
+    ]
 }
 
-/// Formats everything that is reported on a shader, without colors: [`line`], and each diagnostic with its
-/// notes.
+/// The expected and the actual color, with as many decimals as show the difference.
+fn pixel_colors(pixel: &Pixel) -> String {
+    let color = |[r, g, b]: [f32; 3], decimals: usize| format!("({r:.decimals$}, {g:.decimals$}, {b:.decimals$})");
+    let colors = |decimals| (color(pixel.expected, decimals), color(pixel.actual, decimals));
+    let (mut expected, mut actual) = colors(3);
+    if expected == actual {
+        (expected, actual) = colors(9);
+    }
+    format!("{expected} → {actual}")
+}
+
+/// Formats a pixel: its position, the expected and the actual color.
+#[must_use]
+pub fn place(pixel: &Pixel) -> String {
+    format!("at ({}, {}): {}", pixel.x, pixel.y, pixel_colors(pixel))
+}
+
+fn image_line(image: &Comparison) -> String {
+    match image.differing_8bit {
+        0 => format!(
+            "all {} pixels are equal to the reference in 8 bits",
+            grouped(image.pixels)
+        ),
+        count => format!(
+            "{} of {} pixels {} from the reference in 8 bits, by at most {} {}",
+            grouped(count),
+            grouped(image.pixels),
+            plural(count, "differs", "differ"),
+            image.max_8bit,
+            plural(u64::from(image.max_8bit), "level", "levels"),
+        ),
+    }
+}
+
+/// Describes the result of the algorithm check.
+pub(super) fn algorithm(check: &CheckSummary) -> String {
+    describe_check(check, "from the reference")
+}
+
+/// Describes the result of the precision check.
+pub(super) fn precision(check: &CheckSummary) -> String {
+    describe_check(check, "visibly between float32 and double precision")
+}
+
+/// Describes how many pixels differ, are ill-conditioned and were left out.
+fn describe_check(check: &CheckSummary, from: &str) -> String {
+    let of = |count: u64| format!("{} of {} pixels", grouped(count), grouped(check.pixels));
+    let mut parts = Vec::new();
+    if check.differing > 0 {
+        let differ = plural(check.differing, "differs", "differ");
+        parts.push(format!("{} {differ} {from}", of(check.differing)));
+    }
+    if check.ill_conditioned > 0 {
+        let are = plural(check.ill_conditioned, "is", "are");
+        parts.push(format!("{} {are} ill-conditioned", of(check.ill_conditioned)));
+    }
+    if check.undefined > 0 {
+        let depend = plural(check.undefined, "depends", "depend");
+        parts.push(format!("{} {depend} on undefined behavior", of(check.undefined)));
+    }
+    parts.join("; ")
+}
+
+/// Formats everything that is reported on a shader, without colors and unwrapped: all lines, and each
+/// diagnostic with its notes.
 pub(super) fn details(record: &Record) -> String {
-    let mut lines = vec![plain(&line(record))];
+    let layout = Layout::new([record.shader.as_str()], None, Detail::Full, false);
+    let mut lines = vec![plain(&lines(record, &layout))];
     for diagnostic in &record.diagnostics {
         lines.push(diagnostic.to_string());
         lines.extend(diagnostic.notes.iter().map(|note| format!("  = {note}")));
@@ -90,6 +313,16 @@ pub(super) fn plain(text: &str) -> String {
 pub struct Tally(BTreeMap<Reverse<Verdict>, u64>);
 
 impl Tally {
+    /// Counts the verdicts of these records.
+    #[must_use]
+    pub fn of(records: &[Record]) -> Self {
+        let mut tally = Self::default();
+        for record in records {
+            tally.add(record.verdict);
+        }
+        tally
+    }
+
     /// Counts one more shader.
     pub fn add(&mut self, verdict: Verdict) {
         *self.0.entry(Reverse(verdict)).or_default() += 1;
@@ -100,7 +333,7 @@ impl fmt::Display for Tally {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let counts = self.0.iter().map(|(Reverse(verdict), count)| {
             let style = style(*verdict);
-            format!("{count} {style}{verdict}{style:#}")
+            format!("{} {style}{verdict}{style:#}", grouped(*count))
         });
         f.write_str(&counts.collect::<Vec<_>>().join(", "))
     }
@@ -109,14 +342,12 @@ impl fmt::Display for Tally {
 /// Formats the number of shaders and their tally.
 #[must_use]
 pub fn summary(records: &[Record]) -> String {
-    let mut tally = Tally::default();
-    for record in records {
-        tally.add(record.verdict);
-    }
-    let noun = if records.len() == 1 { "shader" } else { "shaders" };
-    format!("{} {noun}: {tally}", records.len())
+    let count = records.len() as u64;
+    let noun = plural(count, "shader", "shaders");
+    format!("{} {noun}: {}", grouped(count), Tally::of(records))
 }
 
+/// The color of a verdict.
 fn style(verdict: Verdict) -> Style {
     let color = match verdict {
         Verdict::Correct | Verdict::Ok => AnsiColor::Green,
@@ -126,103 +357,85 @@ fn style(verdict: Verdict) -> Style {
     Style::new().fg_color(Some(color.into())).bold()
 }
 
-pub(super) fn algorithm(answer: &CheckSummary) -> String {
-    question(
-        answer,
-        ["differs", "differ"],
-        "from the scene",
-        [
-            "hangs by a hair, so that a rounding error decides",
-            "hang by a hair, so that a rounding error decides them",
-        ],
-    )
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::record::samples::{correct, invalid, record};
 
-pub(super) fn precision(answer: &CheckSummary) -> String {
-    question(
-        answer,
-        ["is", "are"],
-        "visibly another colour in float32 than in double precision",
-        ["cannot be told"; 2],
-    )
-}
-
-fn toolchain(answer: &CheckSummary) -> String {
-    let difference = format!(
-        "not to the bit what the shader says (by at most {})",
-        magnitude(answer.max_abs)
-    );
-    question(answer, ["is", "are"], &difference, ["cannot be told"; 2])
-}
-
-/// Describes how many pixels differ or are ill-conditioned, with the first of them, and how many were left
-/// out. Of two verb forms, the first is singular.
-fn question(answer: &CheckSummary, verb: [&str; 2], differ: &str, add_image: [&str; 2]) -> String {
-    let mut parts = Vec::new();
-    let of = |count: u64, [one, many]: [&str; 2]| {
-        let (of, total) = (grouped(count), grouped(answer.pixels));
-        format!("{of} of {total} pixels {}", plural(count, one, many))
-    };
-    if answer.differing > 0 {
-        parts.push(format!("{} {differ}", of(answer.differing, verb)));
+    fn text(record: &Record, detail: Detail, width: Option<usize>) -> String {
+        let layout = Layout::new([record.shader.as_str()], width, detail, true);
+        plain(&lines(record, &layout))
     }
-    if answer.ill_conditioned > 0 {
-        parts.push(of(answer.ill_conditioned, add_image));
-    }
-    if let (Some(part), Some(pixel)) = (parts.first_mut(), &answer.first) {
-        part.push_str(", first ");
-        part.push_str(&place(pixel));
-        if let Some(worst) = &answer.worst
-            && worst.difference() > 10.0 * pixel.difference()
-        {
-            part.push_str(", most ");
-            part.push_str(&place(worst));
-        }
-    }
-    if answer.undefined > 0 {
-        parts.push(format!(
-            "{} left out, where the shader does what GLSL leaves undefined",
-            grouped(answer.undefined)
-        ));
-    }
-    parts.join("; ")
-}
 
-fn list(names: &[&str]) -> String {
-    match names {
-        [] => String::new(),
-        [one] => (*one).to_owned(),
-        [rest @ .., last] => format!("{} and {last}", rest.join(", ")),
+    fn wrong() -> Record {
+        let mut wrong = record(Verdict::Wrong);
+        wrong.shader = "mai/homework2.glsl".to_owned();
+        wrong.reason = "9,423 of 57,600 pixels differ from the reference (16.4 %)".to_owned();
+        wrong.mistake = Some(Mistake {
+            id: "no-clamp".to_owned(),
+            text: "N·L is not clamped to 0".to_owned(),
+            is_symptom: false,
+            alternatives: Vec::new(),
+        });
+        wrong.help = Some("toyproof explain no-clamp".to_owned());
+        wrong
     }
-}
 
-fn numbers(image: &Comparison) -> String {
-    let levels = match image.differing_8bit {
-        0 => "equal to the reference in 8 bits".to_owned(),
-        count => format!(
-            "{} {} from the reference in 8 bits, by at most {} {}",
-            grouped(count),
-            plural(count, "pixel differs", "pixels differ"),
-            image.max_8bit,
-            plural(u64::from(image.max_8bit), "level", "levels"),
-        ),
-    };
-    format!(
-        "{levels}; as floats by at most {}, {} on average",
-        magnitude(image.max_abs),
-        magnitude(image.mean_abs)
-    )
-}
+    #[test]
+    fn a_shader_is_one_line_with_what_explains_it_below() {
+        assert_eq!(
+            text(&wrong(), Detail::Normal, None),
+            "wrong        mai/homework2.glsl  9,423 of 57,600 pixels differ from the reference (16.4 %)\n\
+             \x20            likely mistake: N·L is not clamped to 0\n\
+             \x20            help: toyproof explain no-clamp"
+        );
+        assert_eq!(text(&wrong(), Detail::Short, None).lines().count(), 1);
+    }
 
-/// Describes a pixel: its position, the expected and the actual color.
-#[must_use]
-pub fn place(pixel: &Pixel) -> String {
-    let color = |[r, g, b]: [f32; 3]| format!("({r:.4}, {g:.4}, {b:.4})");
-    format!(
-        "at ({}, {}): expected {}, got {}",
-        pixel.x,
-        pixel.y,
-        color(pixel.expected),
-        color(pixel.actual)
-    )
+    #[test]
+    fn lines_wrap_at_the_terminals_width_with_a_hanging_indent() {
+        let wrapped = text(&wrong(), Detail::Normal, Some(70));
+        assert!(wrapped.lines().all(|line| display_width(line) <= 70), "{wrapped}");
+        assert_eq!(
+            wrapped.lines().nth(1),
+            Some("                                 reference (16.4 %)")
+        );
+    }
+
+    #[test]
+    fn errors_are_listed_with_their_positions() {
+        assert_eq!(
+            text(&invalid(), Detail::Normal, None),
+            "invalid      invalid  1 error\n             a.glsl:2:3  unknown name [E0301]"
+        );
+    }
+
+    #[test]
+    fn other_explanations_are_ranked_and_symptoms_are_labeled() {
+        let mut several = wrong();
+        let mistake = several.mistake.as_mut().unwrap();
+        mistake.alternatives.push(crate::report::Alternative {
+            id: "b".to_owned(),
+            text: "second".to_owned(),
+        });
+        let shown = text(&several, Detail::Normal, None);
+        assert!(
+            shown.contains("likely mistake, one of these (most likely first):\n               1. N·L"),
+            "{shown}"
+        );
+        assert!(shown.contains("\n               2. second\n"), "{shown}");
+        let mut symptom = wrong();
+        symptom.mistake.as_mut().unwrap().is_symptom = true;
+        assert!(text(&symptom, Detail::Normal, None).contains("symptom: N·L"));
+    }
+
+    #[test]
+    fn the_table_of_checks_is_aligned() {
+        let mut record = correct();
+        record.algorithm.as_mut().unwrap().differing = 1234;
+        let shown = text(&record, Detail::Full, None);
+        let starts: Vec<_> = shown.lines().skip(1).take(3).map(|line| line.find("  ")).collect();
+        assert!(starts.iter().all(|start| *start == starts[0]), "{shown}");
+        assert!(shown.contains("algorithm       1,234"), "{shown}");
+    }
 }

@@ -181,7 +181,7 @@ fn wrong_examples_give_only_their_code_and_right_ones_none() {
             if codes != wanted {
                 let lines: Vec<_> = reported
                     .iter()
-                    .map(|reported| human(reported, &files, false))
+                    .map(|reported| human(reported, &files, None, false))
                     .collect();
                 mistakes.push(format!(
                     "{} {}\n{}",

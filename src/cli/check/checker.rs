@@ -7,13 +7,13 @@ use std::time::SystemTime;
 
 use rayon::ThreadPool;
 use sha2::{Digest, Sha256};
-use toyproof_diagnostic::{self as diagnostic, Deadline, Diagnostic, Files, path_name};
+use toyproof_diagnostic::{self as diagnostic, Deadline, Diagnostic, Files, Severity, path_name};
 use toyproof_gpu::Worker;
 use toyproof_image as image;
 use toyproof_image::{Frame, output};
 use toyproof_scene::Scene;
 use toyproof_verify::contain::{Part, contain};
-use toyproof_verify::{Case, Failure, Findings, verify};
+use toyproof_verify::{Case, Failure, Findings, Verdict, verify};
 
 use super::Args;
 use super::images::IMAGES;
@@ -22,7 +22,8 @@ use crate::cli::files::{Input, ReadError};
 use crate::cli::names::{Names, with_suffix};
 use crate::cli::shader::{Shader, Unusable, denied};
 use crate::cli::{Terminal, files, pool};
-use crate::report::Record;
+use crate::cli::inputs::shell_word;
+use crate::report::{self, Record};
 
 /// A shader to check.
 pub(super) struct Submission {
@@ -132,8 +133,6 @@ pub(super) struct Outcome {
     pub(super) record: Record,
     pub(super) messages: Vec<Message>,
     pub(super) device: Option<String>,
-    /// Whether no driver is usable.
-    pub(super) is_without_driver: bool,
     /// Whether something failed that the verdict does not show.
     pub(super) failed: bool,
 }
@@ -145,7 +144,6 @@ impl Outcome {
             record,
             messages: Vec::new(),
             device: None,
-            is_without_driver: false,
             failed: false,
         }
     }
@@ -154,7 +152,7 @@ impl Outcome {
         self.record.set_findings(findings, files);
         if let Some(gpu_run) = &findings.gpu_run {
             self.messages.push(Message::Detail(format!(
-                "{}: translated in {:.4} s, compiled in {:.3} s, painted in {:.3} s on {}",
+                "{}: translated in {:.4} s, compiled in {:.3} s, rendered in {:.3} s on {}",
                 self.record.shader,
                 gpu_run.translate.as_secs_f64(),
                 gpu_run.compile.as_secs_f64(),
@@ -167,7 +165,9 @@ impl Outcome {
 
     fn set_failure(&mut self, failure: Failure, files: &Files) {
         self.report(failure.diagnostics(), files);
-        self.is_without_driver = matches!(&failure, Failure::Gpu(failure) if failure.is_without_driver());
+        if matches!(&failure, Failure::Gpu(failure) if failure.is_without_driver()) {
+            self.record.help = Some("toyproof doctor".to_owned());
+        }
         self.record.set_failure(failure, files);
     }
 
@@ -241,7 +241,41 @@ impl<'a> Checker<'a> {
             }
             (Err(failure), _) => outcome.set_failure(failure, &shader.files),
         }
+        if outcome.record.help.is_none() {
+            outcome.record.help = self.help(&outcome.record);
+        }
         outcome
+    }
+
+    /// The command that shows more of a fault.
+    fn help(&self, record: &Record) -> Option<String> {
+        let explain = |code: &str| Some(format!("toyproof explain {code}"));
+        let check = match record.verdict {
+            Verdict::Wrong => match &record.mistake {
+                Some(mistake) => return explain(&mistake.id.replace('+', " ")),
+                None => &record.algorithm,
+            },
+            Verdict::Unstable if record.algorithm.as_ref().is_some_and(|check| check.ill_conditioned > 0) => {
+                &record.algorithm
+            }
+            Verdict::Unstable => &record.precision,
+            Verdict::Invalid => {
+                let mut diagnostics = record.diagnostics.iter();
+                let error = diagnostics.find(|one| one.severity == Severity::Error)?;
+                return explain(&report::explain(&error.code)?.code);
+            }
+            _ => return None,
+        };
+        let check = check.as_ref()?;
+        let pixel = check.worst.as_ref().or(check.first.as_ref())?;
+        let mut command = vec!["toyproof debug".to_owned(), shell_word(&record.shader)];
+        command.push(format!("--pixel {},{}", pixel.x, pixel.y));
+        if let Some(scene) = &self.args.scene {
+            command.push(format!("--scene {}", shell_word(&path_name(scene))));
+        }
+        command.extend(self.args.frame.flags());
+        command.extend(self.args.language.flags());
+        Some(command.join(" "))
     }
 
     fn verify(
@@ -288,7 +322,7 @@ impl<'a> Checker<'a> {
         {
             if !self.fell_back.swap(true, Ordering::Relaxed) {
                 outcome.messages.push(Message::Warning(format!(
-                    "{failure}; shaders are evaluated on the CPU instead, without the toolchain check (`toyproof doctor` tests the drivers)"
+                    "{failure}; shaders are evaluated on the CPU, without the toolchain check (see `toyproof doctor`)"
                 )));
             }
             context.worker = None;
@@ -317,11 +351,11 @@ impl<'a> Checker<'a> {
 
 /// Writes the images, and removes stale ones of an earlier run.
 fn keep(out: &Path, stem: &Path, findings: Option<&Findings>, outcome: &mut Outcome) {
-    for picture in IMAGES {
-        let path = with_suffix(stem, picture.suffix);
+    for kind in IMAGES {
+        let path = with_suffix(stem, kind.suffix);
         let encoded = contain(Part::Image, || {
-            let picture = findings.and_then(picture.make)?;
-            Some(image::encode_shown(&picture, &path))
+            let shown = findings.and_then(kind.make)?;
+            Some(image::encode_shown(&shown, &path))
         });
         let kept = match encoded {
             Ok(Some(Ok(bytes))) => output::write_inside(out, &path, &bytes),

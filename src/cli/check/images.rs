@@ -39,11 +39,11 @@ pub(super) const IMAGES: [ImageKind; 6] = [
         },
     },
     ImageKind {
-        suffix: "-maths.png",
+        suffix: "-algorithm.png",
         make: |findings| check(findings, findings.algorithm.as_ref(), SEEN_BY_EYE),
     },
     ImageKind {
-        suffix: "-rounding.png",
+        suffix: "-precision.png",
         make: |findings| check(findings, findings.precision.as_ref(), SEEN_BY_EYE),
     },
     ImageKind {

@@ -8,59 +8,64 @@ mod reports;
 use std::num::NonZero;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
 
-use toyproof_diagnostic::{grouped, nearest, path_name, plural};
+use clap::ValueEnum;
+use toyproof_diagnostic::{Severity, grouped, path_name, plural};
 use toyproof_verify::Verdict;
 use toyproof_verify::contain::{Part, contain};
 
-use self::checker::{Checker, Outcome, Submission, WorkerContext};
+use self::checker::{Checker, Message, Outcome, Submission, WorkerContext};
 use self::images::IMAGES;
 pub(super) use self::reference::References;
 use self::reports::Results;
-use super::inputs::{DriverArgs, Format, FrameArgs, LanguageArgs};
+use super::inputs::{DriverArgs, FrameArgs, LanguageArgs};
 use super::names::Names;
 use super::pool::{self, InOrder};
 use super::shader::find;
-use super::terminal::watch_interrupts;
 use super::{Exit, Terminal};
-use crate::report::{self, Explanation, Record, Report, Rubric};
+use crate::report::{self, Detail, Layout, Record, Report, Rubric};
 
-/// Compare what shaders paint with the reference tracer, and give a verdict on each
+/// Check shaders against a reference, and give a verdict on each
 ///
-/// The scene of a shader is the one that --scene names, else the .toml beside it. A shader without a scene is
-/// `ok` if it paints.
+/// The reference of a shader is the scene that --scene names, else the .toml file beside the shader. A shader
+/// without one is `ok` if it renders: nothing is compared.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Examples:\n  toyproof check glsl --out out\n  \
-                        toyproof check homework.glsl --scene glsl/02-sphere.toml --format json\n\n\
-                        Exit code: 0 if every shader is correct or ok, 1 if one is not, 2 if there was other trouble.")]
+#[command(after_long_help = "\
+Examples:
+  toyproof scenes --write course && toyproof check course --out report
+  toyproof check homework --scene 02-sphere --out marks --rubric rubric.toml
+  toyproof check mine.glsl --scene scene.toml --format json
+
+Exit code: 0 if every shader is correct or ok, 1 if one is not, 2 for any other error.")]
 pub(super) struct Args {
     /// Shaders: files, folders, or - for standard input
-    #[arg(required_unless_present = "explain")]
+    #[arg(required = true)]
     shaders: Vec<PathBuf>,
-    /// Say what a code such as E0301 means, with examples, and do nothing else
-    #[arg(long, value_name = "CODE", exclusive = true)]
-    explain: Option<String>,
-    /// The scene of all these shaders
-    #[arg(long, value_name = "SCENE.toml")]
+    /// The scene to compare with: a file, or a name that `toyproof scenes` lists
+    #[arg(long, value_name = "SCENE")]
     scene: Option<PathBuf>,
-    /// Write the pictures (reference, actual, difference), verdict.json, results.jsonl, report.html,
-    /// report.csv, junit.xml and report.sarif into this folder
-    #[arg(long, value_name = "DIR")]
+    /// Write images and reports into this folder
+    ///
+    /// For each shader: the images NAME-actual.png, NAME-reference.png, NAME-difference.png, and
+    /// NAME-algorithm.png, NAME-precision.png and NAME-toolchain.png where a check finds differences. For all:
+    /// report.html, report.csv, verdict.json, junit.xml and report.sarif.
+    #[arg(long, value_name = "DIR", help_heading = "Reports")]
     out: Option<PathBuf>,
-    /// Take over what an earlier run into the same folder found, where shader, scene and flags are still the
-    /// same
-    #[arg(long, requires = "out")]
+    /// Reuse results of an earlier run into the same folder
+    ///
+    /// A result is reused if shader, scene and flags are unchanged. The earlier run may have been interrupted.
+    #[arg(long, requires = "out", help_heading = "Reports")]
     resume: bool,
-    /// Points for each question; the marks go into results.json, as Gradescope takes them, and into
-    /// report.csv
-    #[arg(long, value_name = "RUBRIC.toml", requires = "out")]
+    /// Points for compiling and for each check, for report.csv and Gradescope's results.json
+    #[arg(long, value_name = "RUBRIC.toml", requires = "out", help_heading = "Reports")]
     rubric: Option<PathBuf>,
-    /// Check so many shaders at a time [default: as many as there are cores]
+    /// The form of standard output
+    #[arg(long, value_enum, default_value_t = CheckFormat::Human, help_heading = "Output")]
+    format: CheckFormat,
+    /// The number of shaders that are checked at a time [default: the number of cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256), allow_negative_numbers = true)]
     jobs: Option<u16>,
-    /// What goes to standard output
-    #[arg(long, value_enum, default_value_t = Format::Human)]
-    format: Format,
     #[command(flatten)]
     frame: FrameArgs,
     #[command(flatten)]
@@ -69,10 +74,21 @@ pub(super) struct Args {
     driver: DriverArgs,
 }
 
+/// The form of standard output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum CheckFormat {
+    /// A verdict for each shader, with what explains it
+    Human,
+    /// A line `file:line:column: error[E0100]: message` for each diagnostic, for editors
+    Short,
+    /// verdict.json
+    Json,
+}
+
+/// The largest number of shaders whose errors and warnings are shown with their source lines.
+const MAX_WITH_SOURCE: usize = 3;
+
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
-    if let Some(code) = &args.explain {
-        return explain_code(code, terminal);
-    }
     // A worker is created and dropped here, so that wrong arguments are reported before any work starts.
     let frame = match args.driver.worker().and_then(|_| args.frame.frame()) {
         Ok(frame) => frame,
@@ -90,11 +106,10 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             Ok(opened) => {
                 if let broken @ 1.. = opened.broken as u64 {
                     terminal.warn(format_args!(
-                        "{} {} of results.jsonl cannot be read and {} skipped: what {} of is checked again",
+                        "{} {} of results.jsonl cannot be read; {} checked again",
                         grouped(broken),
                         plural(broken, "line", "lines"),
-                        plural(broken, "was", "were"),
-                        plural(broken, "it told", "they told"),
+                        plural(broken, "its shader is", "their shaders are"),
                     ));
                 }
                 results = Some(opened);
@@ -109,7 +124,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         .into_iter()
         .chain([reports::RESULTS_NAME])
         .collect();
-    let mut names = Names::new(&IMAGES.map(|picture| picture.suffix), &reserved);
+    let mut names = Names::new(&IMAGES.map(|kind| kind.suffix), &reserved);
     let references = References::new(args.scene.as_deref());
     let submissions: Vec<Submission> = find(&args.shaders, terminal)
         .into_iter()
@@ -123,11 +138,28 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         order: InOrder::default(),
         records: Vec::new(),
         device: None,
-        is_without_driver: false,
         failed: false,
+        layout: layout(&submissions, args.format, terminal),
+        has_sources: submissions.len() <= MAX_WITH_SOURCE,
+        hidden_warnings: 0,
+        start: Instant::now(),
     };
     batch.check(&submissions, &Checker::new(args, &references, frame));
     batch.finish(&submissions)
+}
+
+/// The layout of the lines of all shaders.
+fn layout(submissions: &[Submission], format: CheckFormat, terminal: &Terminal) -> Layout {
+    let detail = match (terminal.is_quiet(), terminal.is_verbose()) {
+        (true, _) => Detail::Short,
+        (_, true) => Detail::Full,
+        _ => Detail::Normal,
+    };
+    let names = submissions.iter().map(|submission| submission.name.as_str());
+    let lists_errors = submissions.len() > MAX_WITH_SOURCE;
+    // Each line of the short form is one diagnostic.
+    let width = terminal.width().filter(|_| format == CheckFormat::Human);
+    Layout::new(names, width, detail, lists_errors)
 }
 
 /// A run over all shaders of one command.
@@ -140,18 +172,24 @@ struct Batch<'a> {
     /// The reported records, in order, each with the index of its submission.
     records: Vec<(usize, Record)>,
     device: Option<String>,
-    /// Whether no driver is usable.
-    is_without_driver: bool,
     /// Whether something failed that no verdict shows.
     failed: bool,
+    layout: Layout,
+    /// Whether errors and warnings are shown with their source lines.
+    has_sources: bool,
+    /// The number of warnings that were not shown.
+    hidden_warnings: u64,
+    start: Instant,
 }
 
 impl Batch<'_> {
     fn check(&mut self, submissions: &[Submission], checker: &Checker) {
-        let stop = watch_interrupts("finishing the shader in hand");
+        let stop = self
+            .terminal
+            .watch_interrupts("the shaders in progress are finished first");
         let bar = match submissions {
             [one] => self.terminal.spinner(&one.name),
-            several => self.terminal.bar(several.len() as u64, "checking"),
+            several => self.terminal.bar(several.len() as u64, "shaders"),
         };
         let mut tally = report::Tally::default();
         let mut todo = Vec::new();
@@ -171,10 +209,10 @@ impl Batch<'_> {
         if reused > 0 {
             let of = submissions.len();
             self.terminal.note(&format!(
-                "{} of {} {} taken over from an earlier run",
+                "{} of {} {} reused from an earlier run",
                 grouped(reused as u64),
                 grouped(of as u64),
-                plural(of as u64, "shader is", "shaders are")
+                plural(of as u64, "result is", "results are")
             ));
         }
         let threads = match self.args.jobs {
@@ -191,9 +229,9 @@ impl Batch<'_> {
             |index, outcome| {
                 tally.add(outcome.record.verdict);
                 bar.inc(1);
-                bar.set_message(tally.to_string());
+                bar.set_message(self.terminal.bar_text(&tally));
                 self.keep(&submissions[index], &outcome);
-                bar.suspend(|| self.take(index, outcome));
+                self.take(index, outcome);
                 if self.terminal.is_closed() {
                     // Nobody reads further results; the shaders in progress are finished.
                     stop.store(true, Ordering::Relaxed);
@@ -206,17 +244,19 @@ impl Batch<'_> {
             for (index, outcome) in std::mem::take(&mut self.order).rest() {
                 self.report_outcome(index, outcome);
             }
-            let how = match self.args.out {
-                Some(_) => "; the same command with --resume goes on",
-                None => "",
-            };
             let why = if self.terminal.is_closed() {
                 "standard output was closed"
             } else {
                 "interrupted"
             };
-            self.terminal
-                .error(format_args!("{why}; what was done is kept{how}"));
+            self.terminal.error(format_args!(
+                "{why} after {} of {} shaders",
+                grouped(self.records.len() as u64),
+                grouped(submissions.len() as u64)
+            ));
+            if self.args.out.is_some() {
+                self.terminal.help("the same command with --resume checks the others");
+            }
             self.failed = true;
         }
     }
@@ -240,23 +280,43 @@ impl Batch<'_> {
     /// Prints the messages and the result line of a shader.
     fn report_outcome(&mut self, index: usize, outcome: Outcome) {
         for message in &outcome.messages {
-            message.print(self.terminal);
+            self.print(message);
         }
-        if self.args.format == Format::Human {
-            match contain(Part::Summary, || report::line(&outcome.record)) {
-                Ok(line) => self.terminal.result(&line),
+        match self.args.format {
+            CheckFormat::Human => match contain(Part::Summary, || report::lines(&outcome.record, &self.layout)) {
+                Ok(lines) => self.terminal.result(&lines),
                 Err(panic) => {
                     let Record { shader, verdict, .. } = &outcome.record;
                     self.terminal.result(&format!("{verdict:<12} {shader}"));
                     self.terminal.error(format_args!("{shader}: {panic}"));
                     self.failed = true;
                 }
+            },
+            CheckFormat::Short => {
+                for diagnostic in &outcome.record.diagnostics {
+                    self.terminal.result(&diagnostic.to_string());
+                }
             }
+            CheckFormat::Json => {}
         }
         self.failed |= outcome.failed;
-        self.is_without_driver |= outcome.is_without_driver;
         self.device = outcome.device.or(self.device.take());
         self.records.push((index, outcome.record));
+    }
+
+    /// Prints a message. Of many shaders, diagnostics are not shown with their source lines: errors are listed
+    /// below their shader, and warnings are counted.
+    fn print(&mut self, message: &Message) {
+        match message {
+            Message::Diagnostics(diagnostics, _)
+                if !self.terminal.is_verbose() && (!self.has_sources || self.terminal.is_quiet()) =>
+            {
+                let warnings = diagnostics.iter().filter(|one| one.severity == Severity::Warning);
+                self.hidden_warnings += warnings.count() as u64;
+            }
+            Message::Diagnostics(..) if self.args.format == CheckFormat::Short => {}
+            message => message.print(self.terminal),
+        }
     }
 
     fn finish(self, submissions: &[Submission]) -> Exit {
@@ -267,8 +327,9 @@ impl Batch<'_> {
             records,
             device,
             results,
-            is_without_driver,
             mut failed,
+            hidden_warnings,
+            start,
             ..
         } = self;
         let (reported, records): (Vec<_>, Vec<_>) = records
@@ -276,10 +337,10 @@ impl Batch<'_> {
             .map(|(index, record)| (&submissions[index], record))
             .unzip();
         let report = Report::new(device, records);
-        if args.format == Format::Human {
-            terminal.note(&report::summary(report.shaders()));
-        } else {
-            failed |= !terminal.bytes(report.json().as_bytes());
+        match args.format {
+            CheckFormat::Human => print_summary(&report, hidden_warnings, start.elapsed(), terminal),
+            CheckFormat::Short => {}
+            CheckFormat::Json => failed |= !terminal.bytes(report.json().as_bytes()),
         }
         if let Some(out) = &args.out {
             // Before the reports are written, which would create the folder again.
@@ -287,19 +348,16 @@ impl Batch<'_> {
             let written = reports::write(&report, &reported, rubric.as_ref(), out, terminal);
             match is_there {
                 Ok(()) if written => {
-                    terminal.note(&format!("pictures and reports are in {}", path_name(out)));
+                    terminal.note(&format!("report: {}", path_name(&out.join("report.html"))));
                 }
                 Ok(()) => failed = true,
                 Err(error) => {
                     terminal.error(format_args!(
-                        "results and pictures were removed while they were written: {error}; run the command again"
+                        "results were removed while they were written: {error}; run the command again"
                     ));
                     failed = true;
                 }
             }
-        }
-        if is_without_driver {
-            terminal.detail("`toyproof doctor` tells more of the drivers");
         }
         let verdicts = || report.shaders().iter().map(|record| record.verdict);
         if failed || verdicts().any(|verdict| verdict == Verdict::Error) {
@@ -312,33 +370,31 @@ impl Batch<'_> {
     }
 }
 
-/// Prints the explanation of a diagnostic code: `toyproof check --explain CODE`.
-fn explain_code(code: &str, terminal: &Terminal) -> Exit {
-    let Some(Explanation { code, title, text }) = report::explain(code) else {
-        let codes = report::explanations().map(|explanation| explanation.code);
-        let hint = match nearest(code, codes) {
-            Some(near) => format!("did you mean {near}?"),
-            None => "codes are E or W and four digits, as in error[E0301]".to_owned(),
-        };
-        terminal.error(format_args!("there is no code {code}; {hint}"));
-        return Exit::Error;
-    };
-    terminal.result(&format!("{code}: {title}\n\n{}", plain(text)));
-    Exit::Success
-}
-
-/// Converts Markdown for a terminal: fenced code is indented instead.
-fn plain(text: &str) -> String {
-    let mut fenced = false;
-    let mut lines = Vec::new();
-    for line in text.lines() {
-        if line.starts_with("```") {
-            fenced = !fenced;
-        } else if fenced {
-            lines.push(format!("    {line}"));
-        } else {
-            lines.push(line.to_owned());
-        }
+/// Prints the tally of all shaders, and warns of shaders that were compared with nothing.
+fn print_summary(report: &Report, hidden_warnings: u64, elapsed: Duration, terminal: &Terminal) {
+    let records = report.shaders();
+    let device = report.device().map(|device| format!(", {device}")).unwrap_or_default();
+    let several = if records.len() > 1 { "\n" } else { "" };
+    terminal.note(&format!(
+        "{several}{} ({:.1} s{device})",
+        report::summary(records),
+        elapsed.as_secs_f64()
+    ));
+    if hidden_warnings > 0 {
+        terminal.note(&format!(
+            "{} {}; -v shows them",
+            grouped(hidden_warnings),
+            plural(hidden_warnings, "warning", "warnings")
+        ));
     }
-    lines.join("\n")
+    let without = records.iter().filter(|record| record.verdict == Verdict::Ok).count() as u64;
+    // Of a single shader, its reason says so.
+    if without > 0 && records.len() > 1 {
+        terminal.warn(format_args!(
+            "nothing was compared for {} {}: no scene was given",
+            grouped(without),
+            plural(without, "shader", "shaders")
+        ));
+        terminal.help("name a scene with --scene, or put NAME.toml beside NAME.glsl");
+    }
 }

@@ -30,7 +30,7 @@ pub(super) struct Settings<'a> {
 /// The processes and the thread pool that a thread owns.
 pub(super) struct WorkerContext {
     translator: Worker,
-    /// Runs the conversion; none for `--on cpu`.
+    /// Runs the conversion; none for `--device cpu`.
     runner: Option<Worker>,
     browser: Option<Chromium>,
     /// The evaluator's pool, if several threads convert.
@@ -144,7 +144,7 @@ impl Settings<'_> {
             Some(Ok(proved)) => ProofStatus::Proved(proved),
             Some(Err(unproved)) => ProofStatus::NotProved(unproved.to_string()),
             None if self.verify => ProofStatus::NotProved(
-                "to prove a conversion takes a Vulkan driver, and --on cpu asks for none".to_owned(),
+                "verification needs a Vulkan driver, which --device cpu excludes".to_owned(),
             ),
             None => ProofStatus::NotRequested,
         };

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use toyproof_diagnostic::grouped;
+use toyproof_diagnostic::{grouped, plural};
 use toyproof_translate::backend::{Target, spirv};
 use toyproof_verify::conversion::{Against, FRAMES, Proof, Proved, Rgb8Comparison};
 
@@ -45,8 +45,8 @@ fn header_text(name: &str, status: &ProofStatus) -> String {
             let names: Vec<_> = readers.run.iter().map(ToString::to_string).collect();
             let _ = writeln!(
                 head,
-                "// Proved: this file, read again by {} and run on {},",
-                names.join(" and by "),
+                "// Proved: this file, as read by {} and run on {},",
+                names.join(" and "),
                 proof.device
             );
             settings(&mut head, proof);
@@ -56,16 +56,16 @@ fn header_text(name: &str, status: &ProofStatus) -> String {
             if let Some((name, shown)) = &readers.browser {
                 let _ = writeln!(
                     head,
-                    "// {name} on SwiftShader paints in these frames what it paints of the original with WebGL 2: {}.",
+                    "// {name} on SwiftShader renders these frames as it renders the original with WebGL 2: {}.",
                     describe_browser(*shown)
                 );
             }
         }
         ProofStatus::Proved(Proved::Source(proof)) => {
             head.push_str(
-                "// Proved is what this text was written from, not the text itself: nothing here reads it.\n",
+                "// Proved is the module that this text was written from; no compiler for the text was installed.\n",
             );
-            let _ = writeln!(head, "// That, run on {},", proof.device);
+            let _ = writeln!(head, "// The module, run on {},", proof.device);
             settings(&mut head, proof);
         }
         ProofStatus::NotProved(why) => {
@@ -83,8 +83,8 @@ fn header_text(name: &str, status: &ProofStatus) -> String {
 /// Appends what it was compared with, in which frames, and how many pixels were left out.
 fn settings(head: &mut String, proof: &Proof) {
     let against = match proof.against {
-        Against::Evaluator => "paints what toyproof's evaluator paints of the original in float32",
-        Against::StrictRun => "paints what the original paints there when held to its arithmetic",
+        Against::Evaluator => "renders the same image as toyproof's evaluator renders of the original in float32",
+        Against::StrictRun => "renders the same image as the original does there with strict arithmetic",
     };
     let frames: Vec<_> = FRAMES
         .iter()
@@ -93,10 +93,10 @@ fn settings(head: &mut String, proof: &Proof) {
     let _ = writeln!(head, "// {against}: {}.", describe_proof(proof));
     let channels = match proof.against {
         Against::Evaluator => "",
-        Against::StrictRun => "; flat channels hold noise",
+        Against::StrictRun => "; 2D channels hold noise",
     };
     let _ = writeln!(head, "// Frames: {}{channels}.", frames.join(", "));
-    head.push_str("// Functions whose last bits the target leaves open, sin and the like, were the evaluator's own for that.\n");
+    head.push_str("// Functions with implementation-defined precision, such as sin, were replaced by the evaluator's.\n");
 }
 
 /// Describes the difference between a browser's images.
@@ -107,7 +107,7 @@ pub(super) fn describe_browser(shown: Rgb8Comparison) -> String {
         levels => format!(" by more than {levels}/255"),
     };
     format!(
-        "no colour of {} pixels, as shown, differs{by}",
+        "none of {} displayed pixels differs{by}",
         grouped(shown.pixels)
     )
 }
@@ -116,14 +116,17 @@ pub(super) fn describe_browser(shown: Rgb8Comparison) -> String {
 pub(super) fn describe_proof(proof: &Proof) -> String {
     let undefined = match proof.undefined() {
         0 => String::new(),
-        left_out => format!(
-            ", {} left out where GLSL leaves the value undefined",
-            grouped(left_out)
+        undefined => format!(
+            "; {} {} on undefined behavior and {} left out",
+            grouped(undefined),
+            plural(undefined, "depends", "depend"),
+            plural(undefined, "was", "were")
         ),
     };
     format!(
-        "all {} pixels equal to the bit{undefined}",
-        grouped(proof.equal())
+        "{} of {} pixels equal, bit for bit{undefined}",
+        grouped(proof.equal()),
+        grouped(proof.pixels())
     )
 }
 
@@ -151,7 +154,7 @@ mod tests {
             describe_browser(shown)
         });
         assert!(
-            messages[0].ends_with("57,600 pixels, as shown, differs"),
+            messages[0].ends_with("57,600 displayed pixels differs"),
             "{messages:?}"
         );
         assert!(

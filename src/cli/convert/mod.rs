@@ -4,12 +4,16 @@ mod conversion;
 mod header;
 
 use std::fmt::Write as _;
+use std::io::{self, IsTerminal};
 use std::num::NonZero;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
+use std::time::Instant;
 
+use anstyle::{AnsiColor, Style as TextStyle};
 use clap::ValueEnum;
-use toyproof_diagnostic::{grouped, path_name, plural};
+use serde::Serialize;
+use toyproof_diagnostic::{self as diagnostic, grouped, path_name, plural};
 use toyproof_gpu::browser;
 use toyproof_translate::FloatMode;
 use toyproof_translate::backend::Target;
@@ -17,55 +21,62 @@ use toyproof_translate::wgsl::Style;
 use toyproof_verify::conversion::{Converter, Proved};
 
 use self::conversion::{ConvertedFile, ProofStatus, Refusal, Settings};
-use super::inputs::{DriverArgs, LanguageArgs, may_write};
+use super::inputs::{DriverArgs, Format, LanguageArgs, may_write};
 use super::names::{Names, with_suffix};
 use super::pool::{self, InOrder};
 use super::shader::{Shader, find};
-use super::terminal::watch_interrupts;
 use super::{Exit, Terminal};
 use crate::cli::files::{Input, ReadError};
+use crate::report::{Detail, Layout};
 
 const HOSTS: &str = "\
 Examples:
-  toyproof convert glsl/02-sphere.glsl -o sphere.wgsl --verify
-  toyproof convert glsl -o converted --to spv
+  toyproof convert mine.glsl > mine.wgsl
+  toyproof convert mine.glsl -o mine.wgsl --verify
+  toyproof convert shaders -o converted --to spv
 
-What a host feeds the result: entry point `main`, colour at location 0. Group 0, binding 0 is a block of 208 bytes \
+Interface of the result: entry point `main`, color at location 0. Group 0, binding 0 is a uniform block of 208 bytes \
 (std140): iResolution at byte 0, iTime 12, iTimeDelta 16, iFrame 20, iFrameRate 24, iChannelTime[4] 32 and \
-iChannelResolution[4] 96 (16 bytes each), iMouse 160, iDate 176, iSampleRate 192. The texture of channel K is \
-binding 1+2K, its sampler 2+2K; only those that the shader uses are declared.
+iChannelResolution[4] 96 (16 bytes each), iMouse 160, iDate 176, iSampleRate 192. The texture of channel K is at \
+binding 1+2K, its sampler at 2+2K; only those that the shader uses are declared.
 
-Exit code: 0 if every shader was written (and proved, with --verify), 1 if one is at fault, 2 if there was other \
-trouble, as where a conversion is not proved.";
+Exit code: 0 if every shader was written (with --verify: and proved), 1 if a shader is at fault, 2 for any other \
+error, such as a conversion that is not proved.";
 
-/// Translate shaders to WGSL, SPIR-V, Metal, HLSL or GLSL ES
+/// Convert shaders to WGSL, SPIR-V, Metal, HLSL or GLSL ES
+///
+/// A single shader is written to standard output unless -o is given.
 #[derive(Debug, clap::Args)]
-#[command(after_help = HOSTS)]
+#[command(after_long_help = HOSTS)]
 pub(super) struct Args {
     /// Shaders: files, folders, or - for standard input
     #[arg(required = true)]
     shaders: Vec<PathBuf>,
-    /// A file (.wgsl .spv .metal .hlsl .frag), a folder for several, or - for standard output
+    /// The output: a file (.wgsl .spv .metal .hlsl .frag), a folder, or - for standard output
     #[arg(short, long, value_name = "FILE|DIR")]
-    output: PathBuf,
-    /// The language; needed with a folder and with -
-    #[arg(long, value_enum)]
+    output: Option<PathBuf>,
+    /// The target language [default: by the extension of the output, else wgsl]
+    #[arg(long, value_enum, value_name = "LANGUAGE")]
     to: Option<To>,
-    /// Run what was converted and compare it with the shader, pixel by pixel; write it only if they are
-    /// equal to the bit
-    #[arg(long)]
-    verify: bool,
-    /// Have Chromium paint it too: WGSL with WebGPU, or GLSL with WebGL 2, beside the shader itself with
-    /// WebGL 2, on its software driver; as shown, no color may differ by more than 1/255
-    #[arg(long, requires = "verify")]
-    browser: bool,
-    /// The kind of host that WGSL is for: entry point, bindings, direction of y
+    /// The kind of host that WGSL is written for: entry point, bindings, direction of y
     #[arg(long, value_enum, default_value_t = StyleName::Plain)]
     style: StyleName,
-    /// Write also what could not be proved; its header says so
-    #[arg(long, requires = "verify")]
+    /// Run the result and compare it with the shader; write it only if all pixels are equal, bit for bit
+    #[arg(long, help_heading = "Verification")]
+    verify: bool,
+    /// Also run it in Chromium, which must show colors within 1/255 of the shader's
+    ///
+    /// WGSL runs with WebGPU, GLSL with WebGL 2, both on Chromium's software driver. The shader itself runs
+    /// with WebGL 2.
+    #[arg(long, requires = "verify", help_heading = "Verification")]
+    browser: bool,
+    /// Write the output even if verification fails; a comment in it says so
+    #[arg(long, requires = "verify", help_heading = "Verification")]
     force: bool,
-    /// Convert so many shaders at a time [default: as many as there are cores]
+    /// The form of the results; `json` needs an output other than standard output
+    #[arg(long, value_enum, default_value_t = Format::Human, help_heading = "Output", hide_possible_values = true)]
+    format: Format,
+    /// The number of shaders that are converted at a time [default: the number of cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256), allow_negative_numbers = true)]
     jobs: Option<u16>,
     #[command(flatten)]
@@ -81,7 +92,7 @@ pub(super) enum To {
     Metal,
     Hlsl,
     Glsl,
-    /// The GLSL that naga is fed
+    /// The GLSL 450 that naga reads
     Lowered,
 }
 
@@ -89,11 +100,11 @@ pub(super) enum To {
 pub(super) enum StyleName {
     /// A fragment shader with the bindings below; row 0 of its target is the bottom
     Plain,
-    /// `shader_main` for the Python package of that name
+    /// A `shader_main` function for the Python package wgpu-shadertoy
     WgpuShadertoy,
     /// A compute shader for compute.toys
     ComputeToys,
-    /// A Material2d of Bevy
+    /// A fragment shader for a Material2d of Bevy
     Bevy,
 }
 
@@ -146,47 +157,56 @@ impl To {
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let inputs = find(&args.shaders, terminal);
-    let standard = args.output == Path::new("-");
-    let of_extension = (!standard && !args.output.is_dir())
-        .then(|| To::of(&args.output))
-        .flatten();
     let several = inputs.len() > 1 || args.shaders.iter().any(|path| path.is_dir());
-    let Some(to) = args.to.or(of_extension) else {
-        terminal.error(format_args!(
-            "{}: say the language with --to, or end the file's name in .wgsl, .spv, .metal, .hlsl or .frag",
-            path_name(&args.output)
-        ));
+    let Some(output) = output(args, several, terminal) else {
         return Exit::Error;
     };
-    if let Some(of) = of_extension
-        && !to.may_end_as(of)
-    {
-        terminal.error(format_args!(
-            "{} ends as {} does, and --to says {}; leave --to out, or give the file another ending",
-            path_name(&args.output),
-            of.name(),
-            to.name()
-        ));
+    let standard = output == Path::new("-");
+    let of_extension = (!standard && !output.is_dir()).then(|| To::of(&output)).flatten();
+    let to = match (args.to, of_extension) {
+        (Some(to), Some(of)) if !to.may_end_as(of) => {
+            terminal.error(format_args!(
+                "the extension of {} means {}, but --to is {}",
+                path_name(&output),
+                of.name(),
+                to.name()
+            ));
+            terminal.help("leave out --to, or give the output another extension");
+            return Exit::Error;
+        }
+        (to, of) => to.or(of),
+    };
+    let Some(to) = to.or((standard || several || output.is_dir()).then_some(To::Wgsl)) else {
+        terminal.error(format_args!("unknown language of {}", path_name(&output)));
+        terminal.help("give it an extension (.wgsl .spv .metal .hlsl .frag), or name the language with --to");
+        return Exit::Error;
+    };
+    if several && (standard || of_extension.is_some()) {
+        needs_folder(&output, terminal);
         return Exit::Error;
     }
-    if several && (standard || of_extension.is_some()) {
-        terminal.error(format_args!(
-            "several shaders need a folder to go to, not {}",
-            path_name(&args.output)
-        ));
+    if standard && to == To::Spv && io::stdout().is_terminal() {
+        terminal.error("SPIR-V is binary and is not written to a terminal");
+        terminal.help("name a file with -o");
+        return Exit::Error;
+    }
+    if standard && args.format == Format::Json {
+        terminal.error("--format json needs standard output, and so does the converted shader");
+        terminal.help("name a file or a folder with -o");
         return Exit::Error;
     }
     if args.style != StyleName::Plain && to != To::Wgsl {
-        terminal.error("--style is for WGSL");
+        terminal.error("--style applies to WGSL only");
         return Exit::Error;
     }
     if args.browser && !matches!(to, To::Wgsl | To::Glsl) {
-        terminal.error("--browser is for WGSL and GLSL, which browsers run");
+        terminal.error("--browser applies to WGSL and GLSL, the languages that browsers run");
         return Exit::Error;
     }
     let browser = args.browser.then(browser::find).flatten();
     if args.browser && browser.is_none() {
-        terminal.error("--browser needs Chromium, and none is installed here (apt-get install chromium)");
+        terminal.error("--browser needs Chromium, which is not installed");
+        terminal.help("on Debian: apt-get install chromium");
         return Exit::Error;
     }
     // People read converted shaders: by default they keep the author's functions.
@@ -212,13 +232,13 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         .jobs
         .map_or_else(cores, usize::from)
         .clamp(1, inputs.len().max(1));
-    let one = standard || (!several && !args.output.is_dir());
+    let one = standard || (!several && !output.is_dir());
     let suffix = format!(".{}", to.extension());
     let mut names = Names::new(&[&suffix], &[]);
     let jobs = inputs.into_iter().map(|input| {
         let path = match (one, &input) {
-            (true, _) | (false, Err(_)) => args.output.clone(),
-            (false, Ok(found)) => with_suffix(&args.output.join(names.assign(found)), &suffix),
+            (true, _) | (false, Err(_)) => output.clone(),
+            (false, Ok(found)) => with_suffix(&output.join(names.assign(found)), &suffix),
         };
         Job { input, path }
     });
@@ -230,21 +250,49 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     if !jobs.iter().all(|job| may_write(&job.path, &originals, terminal)) {
         return Exit::Error;
     }
+    let names = jobs.iter().map(Job::name).collect::<Vec<_>>();
+    let names = names.iter().map(String::as_str);
     Batch {
         args,
         terminal,
+        layout: Layout::new(names, terminal.width(), Detail::Normal, false),
+        to,
+        output,
         several,
         threads,
         exit: Exit::Success,
         tally: Tally::default(),
+        rows: Vec::new(),
+        start: Instant::now(),
     }
     .convert(&jobs, &settings)
+}
+
+/// Returns the output that the arguments name, or its default; prints an error if several shaders have none.
+fn output(args: &Args, several: bool, terminal: &Terminal) -> Option<PathBuf> {
+    match &args.output {
+        Some(output) => Some(output.clone()),
+        None if several => {
+            needs_folder(Path::new("-"), terminal);
+            None
+        }
+        None => Some(PathBuf::from("-")),
+    }
 }
 
 /// A shader and its output path.
 struct Job {
     input: Result<Input, ReadError>,
     path: PathBuf,
+}
+
+impl Job {
+    fn name(&self) -> String {
+        match &self.input {
+            Ok(input) => input.name(),
+            Err(error) => error.name(),
+        }
+    }
 }
 
 fn cores() -> usize {
@@ -264,11 +312,54 @@ struct Tally {
 struct Batch<'a> {
     args: &'a Args,
     terminal: &'a Terminal,
+    layout: Layout,
+    to: To,
+    output: PathBuf,
     several: bool,
     /// The number of shaders converted at a time.
     threads: usize,
     exit: Exit,
     tally: Tally,
+    /// The results so far, for JSON.
+    rows: Vec<Row>,
+    start: Instant,
+}
+
+/// The result of one shader, as JSON has it.
+#[derive(Debug, Serialize)]
+struct Row {
+    shader: String,
+    /// The file; null if none was written.
+    output: Option<String>,
+    status: Status,
+    /// What was proved, or why nothing was.
+    message: String,
+    diagnostics: Vec<diagnostic::Json>,
+}
+
+/// The status of a conversion.
+#[derive(Debug, Clone, Copy, Serialize)]
+#[serde(rename_all = "lowercase")]
+enum Status {
+    /// Written, without a proof, since none was requested.
+    Converted,
+    Proved,
+    Unproved,
+    /// Not converted.
+    Refused,
+}
+
+impl Status {
+    /// Its name and color on the terminal.
+    fn label(self) -> (&'static str, TextStyle) {
+        let (label, color) = match self {
+            Self::Converted => ("converted", AnsiColor::Green),
+            Self::Proved => ("proved", AnsiColor::Green),
+            Self::Unproved => ("unproved", AnsiColor::Yellow),
+            Self::Refused => ("refused", AnsiColor::Red),
+        };
+        (label, TextStyle::new().fg_color(Some(color.into())).bold())
+    }
 }
 
 /// A shader, its result, and whether its file was written.
@@ -276,11 +367,13 @@ type Finished = (Shader, Result<ConvertedFile, Refusal>, bool);
 
 impl Batch<'_> {
     fn convert(mut self, jobs: &[Job], settings: &Settings) -> Exit {
-        let stop = watch_interrupts("finishing the shaders in hand");
+        let stop = self
+            .terminal
+            .watch_interrupts("the shaders in progress are finished first");
         let threads = self.threads;
         let bar = match jobs {
-            [one] => self.terminal.spinner(&path_name(&one.path)),
-            several => self.terminal.bar(several.len() as u64, "converting"),
+            [one] => self.terminal.spinner(&one.name()),
+            several => self.terminal.bar(several.len() as u64, "shaders"),
         };
         let mut order: InOrder<(usize, Finished)> = InOrder::default();
         let todo: Vec<usize> = (0..jobs.len()).collect();
@@ -292,13 +385,11 @@ impl Batch<'_> {
             |context, index| settings.convert(context, &jobs[index].input),
             |index, (shader, mut converted)| {
                 bar.inc(1);
-                bar.suspend(|| {
-                    // The file is written at once; its messages wait for their turn.
-                    let written = self.write(&jobs[index], &mut converted);
-                    for (index, done) in order.take(index, (index, (shader, converted, written))) {
-                        self.finish(&jobs[index], done);
-                    }
-                });
+                // The file is written at once; its messages wait for their turn.
+                let written = self.write(&jobs[index], &mut converted);
+                for (index, done) in order.take(index, (index, (shader, converted, written))) {
+                    self.finish(&jobs[index], done);
+                }
             },
         );
         bar.finish_and_clear();
@@ -306,10 +397,18 @@ impl Batch<'_> {
             self.finish(&jobs[index], done);
         }
         if stop.load(Ordering::Relaxed) {
-            self.terminal.error("interrupted; what was done is kept");
+            self.terminal.error(format_args!(
+                "interrupted after {} of {} shaders",
+                grouped(self.rows.len() as u64),
+                grouped(jobs.len() as u64)
+            ));
             self.exit = Exit::Error;
         }
-        if self.several && self.args.verify {
+        if self.args.format == Format::Json {
+            // Strings, lists and options always serialize.
+            let json = serde_json::to_string_pretty(&self.rows).unwrap_or_default() + "\n";
+            self.terminal.bytes(json.as_bytes());
+        } else if self.several {
             self.print_tally();
         }
         self.exit
@@ -320,7 +419,7 @@ impl Batch<'_> {
         match converted {
             Ok(converted) if converted.status.is_proved() || self.args.force => {
                 let bytes = std::mem::take(&mut converted.bytes);
-                self.terminal.write_output(&self.args.output, &job.path, &bytes)
+                self.terminal.write_output(&self.output, &job.path, &bytes)
             }
             _ => false,
         }
@@ -328,84 +427,90 @@ impl Batch<'_> {
 
     /// Reports the result of one shader.
     fn finish(&mut self, job: &Job, (shader, converted, written): Finished) {
-        self.terminal.diagnostics(&shader.lints.warnings, &shader.files);
+        let mut diagnostics = shader.lints.warnings;
         self.tally.written += usize::from(written);
-        let exit = match converted {
-            Ok(converted) => self.report_status(job, &converted, written),
+        let (status, message, exit) = match converted {
+            Ok(converted) => self.status(&converted, written),
             Err(refusal) => {
-                self.tally.refused += 1;
                 let exit = refusal.exit();
-                match refusal {
-                    Refusal::Diagnostics(diagnostics, _) => {
-                        self.terminal.diagnostics(&diagnostics, &shader.files);
-                        self.print_row("refused", job, "see above");
+                let message = match refusal {
+                    Refusal::Diagnostics(errors, _) => {
+                        let count = errors.len() as u64;
+                        diagnostics.extend(errors);
+                        format!("{} {}", grouped(count), plural(count, "error", "errors"))
                     }
-                    Refusal::Message(why, _) => {
-                        if self.args.verify {
-                            self.print_row("refused", job, &why);
-                        } else {
-                            self.terminal.error(format_args!("{}: {why}", shader.name));
-                        }
-                    }
-                    Refusal::Unreadable(why) => self.terminal.error(why),
-                }
-                exit
+                    Refusal::Message(why, _) | Refusal::Unreadable(why) => why,
+                };
+                (Status::Refused, message, exit)
             }
         };
         self.exit = self.exit.max(exit);
+        match status {
+            Status::Converted => {}
+            Status::Proved => self.tally.proved += 1,
+            Status::Unproved => self.tally.unproved += 1,
+            Status::Refused => self.tally.refused += 1,
+        }
+        if self.args.format == Format::Human {
+            self.terminal.diagnostics(&diagnostics, &shader.files);
+            self.print_row(status, job, &message);
+        }
+        self.rows.push(Row {
+            shader: job.name(),
+            output: written.then(|| path_name(&job.path)),
+            status,
+            message,
+            diagnostics: diagnostics
+                .iter()
+                .map(|one| diagnostic::json(one, &shader.files))
+                .collect(),
+        });
     }
 
-    fn report_status(&mut self, job: &Job, converted: &ConvertedFile, written: bool) -> Exit {
-        match &converted.status {
-            ProofStatus::NotRequested => {}
+    fn status(&self, converted: &ConvertedFile, written: bool) -> (Status, String, Exit) {
+        let exit = if written && converted.status.is_proved() {
+            Exit::Success
+        } else {
+            Exit::Error
+        };
+        let (status, message) = match &converted.status {
+            ProofStatus::NotRequested => (Status::Converted, String::new()),
             ProofStatus::Proved(Proved::File(proof, readers)) => {
-                self.tally.proved += 1;
                 let mut message = header::describe_proof(proof);
                 if let Some((_, shown)) = readers.browser {
                     let _ = write!(message, "; in Chromium {}", header::describe_browser(shown));
                 }
                 if let Some(why) = &converted.fallback {
-                    let _ = write!(message, "; in naga's words: {why}");
+                    let _ = write!(message, "; written by naga, since toyproof's writer failed: {why}");
                 }
-                self.print_row("proved", job, &message);
+                (Status::Proved, message)
             }
             ProofStatus::Proved(Proved::Source(proof)) => {
-                self.tally.proved += 1;
-                let equal = header::describe_proof(proof);
-                self.print_row(
-                    "meaning proved",
-                    job,
-                    &format!("{equal}; nothing here reads the text itself"),
+                let language = self.to.name();
+                let message = format!(
+                    "{}, up to naga's {language} writer; install glslang-tools to verify the text too",
+                    header::describe_proof(proof)
                 );
+                (Status::Proved, message)
+            }
+            ProofStatus::NotProved(why) if written => {
+                (Status::Unproved, format!("{why}; written because of --force"))
             }
             ProofStatus::NotProved(why) => {
-                self.tally.unproved += 1;
-                let kept = if written {
-                    "written all the same"
-                } else {
-                    "not written"
-                };
-                self.print_row("not proved", job, &format!("{why}; {kept}"));
+                (Status::Unproved, format!("{why}; not written (--force writes it anyway)"))
             }
-        }
-        if written && converted.status.is_proved() {
-            Exit::Success
-        } else {
-            Exit::Error
-        }
+        };
+        (status, message, exit)
     }
 
-    /// Prints a line of the proof table: on standard output, unless the conversion goes there.
-    fn print_row(&self, state: &str, job: &Job, message: &str) {
-        if !self.args.verify {
-            return;
+    /// Prints the result of a shader; a shader that was only converted is confirmed by the path of its file.
+    fn print_row(&self, status: Status, job: &Job, message: &str) {
+        let row = self.layout.row(status.label(), &job.name(), message);
+        match status {
+            Status::Converted if self.output == Path::new("-") => {}
+            Status::Converted => self.terminal.note(&format!("{row} → {}", path_name(&job.path))),
+            _ => self.print(&row),
         }
-        let name = job
-            .input
-            .as_ref()
-            .map_or_else(|_| path_name(&job.path), Input::name);
-        let line = format!("{state:<15}{name}: {message}");
-        self.line(&line);
     }
 
     fn print_tally(&self) {
@@ -415,20 +520,44 @@ impl Batch<'_> {
             written,
             refused,
         } = self.tally;
-        let all = proved + unproved + refused;
-        let counts = [all, proved, unproved, refused, written].map(|count| grouped(count as u64));
-        let [all_, proved, unproved, refused, written] = counts;
-        self.line(&format!(
-            "{all_} {}: {proved} proved, {unproved} not proved, {refused} refused; {written} written",
-            plural(all as u64, "shader", "shaders")
+        let counts = [
+            (proved, "proved".to_owned()),
+            (unproved, "unproved".to_owned()),
+            (refused, "refused".to_owned()),
+            (written, format!("written to {}", path_name(&self.output))),
+        ];
+        let counts: Vec<_> = counts
+            .iter()
+            .filter(|(count, _)| *count > 0)
+            .map(|(count, label)| format!("{} {label}", grouped(*count as u64)))
+            .collect();
+        let all = self.rows.len() as u64;
+        self.terminal.note(&format!(
+            "\n{} {}: {} ({:.1} s)",
+            grouped(all),
+            plural(all, "shader", "shaders"),
+            counts.join(", "),
+            self.start.elapsed().as_secs_f64()
         ));
     }
 
-    fn line(&self, line: &str) {
-        if self.args.output == Path::new("-") {
+    /// Prints a line: on standard output, unless the conversion goes there.
+    fn print(&self, line: &str) {
+        if self.output == Path::new("-") {
             self.terminal.note(line);
         } else {
             self.terminal.result(line);
         }
     }
+}
+
+/// Reports that several shaders cannot be written to one file.
+fn needs_folder(output: &Path, terminal: &Terminal) {
+    let output = if output == Path::new("-") {
+        "standard output".to_owned()
+    } else {
+        path_name(output)
+    };
+    terminal.error(format_args!("several shaders cannot be written to {output}"));
+    terminal.help("name a folder with -o");
 }

@@ -43,9 +43,8 @@ pub struct CheckSummary {
     /// Pixels that differ.
     pub differing: u64,
     /// Pixels that differ, but are ill-conditioned in f64.
-    #[serde(rename = "undecided")]
     pub ill_conditioned: u64,
-    /// The undecided pixels that are ill-conditioned in the scene itself, whatever the shader.
+    /// The ones that are ill-conditioned in the scene itself, whatever the shader.
     #[serde(skip)]
     pub tied: u64,
     /// Pixels that are excluded because their color depends on undefined behavior.
@@ -53,7 +52,7 @@ pub struct CheckSummary {
     /// The largest absolute difference of a component of colors clamped to [0, 1], over all pixels that are
     /// not undefined.
     pub max_abs: f64,
-    /// The first differing pixel: lowest y, then lowest x; if none differs, the first undecided one.
+    /// The first differing pixel: lowest y, then lowest x; if none differs, the first ill-conditioned one.
     pub first: Option<Pixel>,
     /// The one with the largest difference among those.
     pub worst: Option<Pixel>,

@@ -145,6 +145,15 @@ pub enum Unproved {
         /// Its position: file, line and column.
         at: String,
     },
+    /// A channel is a cube map or a volume, which are black in the compared frames, so that what is read from it
+    /// cannot be observed.
+    #[error("iChannel{channel} is {shape}, which is black here, so what is read from it cannot be compared")]
+    Unobserved {
+        /// The number of the channel.
+        channel: usize,
+        /// The kind of texture.
+        shape: &'static str,
+    },
     /// The browser cannot be given one of the channels.
     #[error("a channel that is not flat cannot be fed to Chromium yet")]
     BrowserChannel,
@@ -171,7 +180,7 @@ impl Unproved {
     #[must_use]
     pub fn is_of_shader(&self) -> bool {
         match self {
-            Self::NoDriver(_) | Self::Overdue(_) | Self::FullyUndefined { .. } => true,
+            Self::NoDriver(_) | Self::Overdue(_) | Self::FullyUndefined { .. } | Self::Unobserved { .. } => true,
             Self::Run(failure) => matches!(
                 failure,
                 Failure::Cpu(_)
@@ -210,6 +219,9 @@ impl Prover<'_> {
         let is_unread = readings.is_empty();
         if let (true, Written::Naga { lowered, .. }) = (is_unread, written) {
             readings.push((Reader::Naga, ShaderArtifact::Lowered(lowered.clone())));
+        }
+        if let Some(unobserved) = unobserved(source.checked) {
+            return Err(unobserved);
         }
         let frames = frames(source.checked);
         let (run, proof) = self.run(source, readings, &frames)?;
@@ -308,6 +320,19 @@ impl Prover<'_> {
         // There is a proof for each reader, and at least one reader.
         Ok((readers, proofs.swap_remove(0)))
     }
+}
+
+/// The first channel whose texture is black in the compared frames.
+fn unobserved(checked: &Checked) -> Option<Unproved> {
+    let channels = checked.channels.iter().enumerate();
+    channels
+        .filter_map(|(channel, shape)| match shape {
+            SamplerShape::Cube => Some((channel, "a cube map")),
+            SamplerShape::D3 => Some((channel, "a volume texture")),
+            SamplerShape::D2 | SamplerShape::D2Array => None,
+        })
+        .map(|(channel, shape)| Unproved::Unobserved { channel, shape })
+        .next()
 }
 
 /// The reason why no conversion of a shader can be proved, if every pixel depends on undefined behavior.

@@ -1,0 +1,141 @@
+//! `toyproof debug`
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use toyproof_diagnostic::{Deadline, path_name};
+use toyproof_eval::{Failure, Program};
+use toyproof_glsl::Checked;
+use toyproof_image::Frame;
+use toyproof_scene::Scene;
+use toyproof_verify::debug;
+
+use super::check::References;
+use super::inputs::{Format, FrameArgs, LanguageArgs, parse_time_limit};
+use super::run::not_evaluated;
+use super::shader::{Shader, Unusable, find};
+use super::{Exit, Terminal};
+use crate::cli::files::{Input, ReadError};
+use crate::report;
+
+/// Trace one pixel of a shader line by line, in f32 beside f64
+///
+/// Pixels are counted as on ShaderToy: from the left and from the bottom, from 0.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  toyproof debug mine.glsl --pixel 320,180
+  toyproof debug mine.glsl --pixel 320,180 --scene 03-shading -v")]
+pub(super) struct Args {
+    /// The shader: a file, or - for standard input
+    shader: PathBuf,
+    /// The pixel, from the left and from the bottom, from 0
+    #[arg(long, value_name = "X,Y", value_parser = parse_pixel, allow_hyphen_values = true)]
+    pixel: [u32; 2],
+    /// The scene whose size the image has [default: the .toml file beside the shader]
+    #[arg(long, value_name = "SCENE")]
+    scene: Option<PathBuf>,
+    /// The form of standard output: `human` shows what each line stores and decides (-v: every
+    /// subexpression), `json` everything
+    #[arg(long, value_enum, default_value_t = Format::Human, help_heading = "Output", hide_possible_values = true)]
+    format: Format,
+    #[command(flatten)]
+    language: LanguageArgs,
+    /// The time limit: seconds, or a number with a unit (500ms, 2m)
+    #[arg(long, value_name = "TIME", default_value = "10s", value_parser = parse_time_limit)]
+    timeout: Duration,
+    #[command(flatten)]
+    frame: FrameArgs,
+}
+
+pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
+    let found = find(std::slice::from_ref(&args.shader), terminal);
+    let [input] = found.as_slice() else {
+        terminal.error(format_args!(
+            "{} contains several shaders; `debug` takes one",
+            path_name(&args.shader)
+        ));
+        return Exit::Error;
+    };
+    let frame = match frame(args, input) {
+        Ok(frame) => frame,
+        Err(error) => {
+            terminal.error(error);
+            return Exit::Error;
+        }
+    };
+    let shader = Shader::load(input, &args.language, Deadline::after(args.timeout));
+    terminal.diagnostics(&shader.lints.warnings, &shader.files);
+    match &shader.checked {
+        Ok(checked) => print_trace(args, &shader, checked, &frame, terminal),
+        Err(Unusable::Invalid(diagnostics)) => {
+            terminal.diagnostics(diagnostics, &shader.files);
+            Exit::ShaderFault
+        }
+        Err(Unusable::Unreadable(error)) => {
+            terminal.error(error);
+            Exit::Error
+        }
+    }
+}
+
+/// The frame, in the size that the arguments give, else that of the scene beside the shader.
+fn frame(args: &Args, input: &Result<Input, ReadError>) -> Result<Frame, String> {
+    let mut frame = args.frame.frame()?;
+    let reference = input
+        .as_ref()
+        .ok()
+        .and_then(|found| References::new(args.scene.as_deref()).find(found));
+    let scene: Option<Scene> = reference.and_then(|reference| reference.scene.ok());
+    if let (None, Some(scene)) = (args.frame.size, scene) {
+        frame.size = scene.film.size;
+    }
+    let ([x, y], [width, height]) = (args.pixel, frame.size);
+    if x >= width || y >= height {
+        return Err(format!(
+            "pixel ({x}, {y}) is outside the image of {width}x{height} pixels; the last is ({}, {})",
+            width - 1,
+            height - 1
+        ));
+    }
+    Ok(frame)
+}
+
+fn print_trace(args: &Args, shader: &Shader, checked: &Checked, frame: &Frame, terminal: &Terminal) -> Exit {
+    let spinner = terminal.spinner(&shader.name);
+    let deadline = Instant::now() + args.timeout;
+    let program = Program::within(checked, args.timeout).map_err(Failure::from);
+    let traced = match &program {
+        Ok(program) => debug::explain(program, frame, args.pixel, Some(deadline)),
+        Err(failure) => Err(failure.clone()),
+    };
+    spinner.finish_and_clear();
+    let traced = match traced {
+        Ok(traced) => traced,
+        Err(failure) => return not_evaluated(&failure, shader, terminal),
+    };
+    let subject = report::TracedPixel {
+        shader: &shader.name,
+        files: &shader.files,
+        tree: &checked.tree,
+        pixel: args.pixel,
+        size: frame.size,
+    };
+    let trace = report::PixelTrace::new(&subject, &traced);
+    match args.format {
+        Format::Json if !terminal.bytes(trace.json().as_bytes()) => return Exit::Error,
+        Format::Json => {}
+        Format::Human => terminal.result(&trace.human(terminal.is_verbose())),
+    }
+    Exit::Success
+}
+
+fn parse_pixel(text: &str) -> Result<[u32; 2], String> {
+    let parts = text
+        .split_once(',')
+        .map(|(x, y)| (x.trim().parse(), y.trim().parse()));
+    match parts {
+        Some((Ok(x), Ok(y))) => Ok([x, y]),
+        _ => Err("expected two integers, X,Y, from the left and from the bottom".to_owned()),
+    }
+}

@@ -1,0 +1,64 @@
+//! `toyproof completions` and `toyproof man`: what a shell and `man` show of the command line.
+
+use std::fs;
+use std::path::PathBuf;
+
+use clap::CommandFactory;
+use clap_complete::Shell;
+use clap_mangen::Man;
+use toyproof_diagnostic::path_name;
+
+use super::{Cli, Exit, Terminal};
+
+/// Print a completion script for a shell
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  toyproof completions bash > ~/.local/share/bash-completion/completions/toyproof
+  toyproof completions fish > ~/.config/fish/completions/toyproof.fish
+  toyproof completions zsh > ~/.zfunc/_toyproof")]
+pub(super) struct CompletionsArgs {
+    /// The shell
+    #[arg(value_enum)]
+    shell: Shell,
+}
+
+pub(super) fn completions(args: &CompletionsArgs, terminal: &Terminal) -> Exit {
+    let mut script = Vec::new();
+    clap_complete::generate(args.shell, &mut Cli::command(), "toyproof", &mut script);
+    exit(terminal.bytes(&script))
+}
+
+/// Print the manual page, or write the pages of all commands to a folder
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  toyproof man | man -l -
+  toyproof man -o /usr/local/share/man/man1")]
+pub(super) struct ManArgs {
+    /// Write one page for each command into this folder
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+}
+
+pub(super) fn man(args: &ManArgs, terminal: &Terminal) -> Exit {
+    let Some(folder) = &args.output else {
+        let mut page = Vec::new();
+        // Writing to memory does not fail.
+        let _ = Man::new(Cli::command()).render(&mut page);
+        return exit(terminal.bytes(&page));
+    };
+    let written = fs::create_dir_all(folder).and_then(|()| clap_mangen::generate_to(Cli::command(), folder));
+    match written {
+        Ok(()) => terminal.confirm(folder, "manual pages of all commands"),
+        Err(error) => {
+            terminal.error(format_args!("cannot write to {}: {error}", path_name(folder)));
+            return Exit::Error;
+        }
+    }
+    Exit::Success
+}
+
+fn exit(succeeded: bool) -> Exit {
+    if succeeded { Exit::Success } else { Exit::Error }
+}
