@@ -3,158 +3,244 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use serde::Serialize;
 use toyproof_diagnostic::{grouped, path_name};
 use toyproof_gpu::{
     AdapterSelector, Driver, Failure, INSTALL_HINT, LoopCap, is_pinned_by_user, lavapipe_manifest, manifests,
     pinned,
 };
 
-use super::inputs::{self, DeviceSelector};
+use super::inputs::{self, DeviceSelector, Format};
 use super::{Exit, Terminal};
 
-/// Say which Vulkan drivers are installed, which is chosen and why, what is missing and how to get it
+/// List the Vulkan drivers, the one that is used, and what is missing
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Example:\n  toyproof doctor")]
+#[command(after_long_help = "Example:\n  toyproof doctor --device lavapipe")]
 pub(super) struct Args {
-    /// The adapter that a command would be given; `cpu` for toyproof's own evaluator, which needs none
-    #[arg(long, value_name = "ADAPTER", default_value = "auto", value_parser = inputs::parse_device)]
-    on: DeviceSelector,
+    /// The device that a command would be given: `auto`, `lavapipe`, `cpu`, or a substring of an adapter's name
+    #[arg(long, alias = "on", value_name = "DEVICE", default_value = "auto", value_parser = inputs::parse_device)]
+    device: DeviceSelector,
+    /// The form of standard output
+    #[arg(long, value_enum, default_value_t = Format::Human, help_heading = "Output", hide_possible_values = true)]
+    format: Format,
 }
 
 /// The time limit for loading all drivers together, and then for each alone.
 const TIME_LIMIT: Duration = Duration::from_secs(20);
 
-/// The message on a machine without drivers.
-const NO_DRIVER_MESSAGE: &str = "\nChosen: none. `check`, `run` and `explain` work all the same, on the CPU. `check` then tells whether a shader's \
-                       mathematics is the scene's and whether float32 is enough for it; the toolchain question, whether a GPU paints what \
-                       the shader says, is not asked.";
+/// What is known of the drivers of this machine.
+#[derive(Debug, Serialize)]
+struct Report {
+    tool: String,
+    /// The manifests of the installed drivers.
+    manifests: Vec<String>,
+    /// Whether the environment selects the drivers that are loaded.
+    is_pinned: bool,
+    /// The selected device: a driver's name, or `cpu`; null if there is none.
+    selected: Option<String>,
+    /// Why it is selected.
+    reason: Option<&'static str>,
+    /// The drivers that start, the selected one first.
+    drivers: Vec<DriverReport>,
+    /// Why no driver can be used.
+    error: Option<String>,
+    /// For each manifest, whether its driver starts alone; empty if all start together.
+    tests: Vec<DriverTest>,
+}
 
-/// The message for `--on cpu`.
-const EVALUATOR_MESSAGE: &str = "\nChosen, because --on cpu asks for it: toyproof's own evaluator, which needs no driver. `check` does not ask the \
-                         toolchain question with it.";
+/// A driver that starts.
+#[derive(Debug, Serialize)]
+struct DriverReport {
+    name: String,
+    version: String,
+    is_software: bool,
+    filters_float32: bool,
+    /// The Vulkan names of its float controls for 32 bits.
+    float_controls: Vec<String>,
+    /// The number of iterations after which it cuts off loops; null if it did not in the test, or the test
+    /// failed.
+    loop_limit: Option<u32>,
+}
+
+/// The test of one driver.
+#[derive(Debug, Serialize)]
+struct DriverTest {
+    manifest: String,
+    /// Why it does not start; null if it does.
+    error: Option<String>,
+}
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
-    let manifests = manifests();
-    terminal.result("Vulkan drivers installed:");
-    for path in &manifests {
-        terminal.result(&format!("  {}", path_name(path)));
-    }
-    if manifests.is_empty() {
-        terminal.result("  none");
-    }
-    if is_pinned_by_user() {
-        terminal.result(
-            "  VK_DRIVER_FILES or VK_ICD_FILENAMES is set: only the drivers that it names are loaded",
-        );
-    }
-    let on = match &args.on {
-        DeviceSelector::Gpu(on) => on,
-        DeviceSelector::Cpu => {
-            terminal.result(EVALUATOR_MESSAGE);
-            return Exit::Success;
-        }
-    };
-    let worker = match inputs::worker(on.clone(), TIME_LIMIT) {
-        Ok(worker) => worker,
+    let report = match examine(&args.device) {
+        Ok(report) => report,
         Err(error) => {
             terminal.error(error);
             return Exit::Error;
         }
     };
+    match args.format {
+        Format::Human => report.print(terminal),
+        Format::Json => {
+            // Strings, lists and options always serialize.
+            let json = serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
+            terminal.bytes(json.as_bytes());
+        }
+    }
+    if report.error.is_some() { Exit::Error } else { Exit::Success }
+}
+
+/// Starts all drivers together, and each alone if that fails.
+fn examine(device: &DeviceSelector) -> Result<Report, String> {
+    let manifests = manifests();
+    let mut report = Report {
+        tool: format!("toyproof {}", env!("CARGO_PKG_VERSION")),
+        manifests: manifests.iter().map(|path| path_name(path)).collect(),
+        is_pinned: is_pinned_by_user(),
+        selected: None,
+        reason: None,
+        drivers: Vec::new(),
+        error: None,
+        tests: Vec::new(),
+    };
+    let adapter = match device {
+        DeviceSelector::Gpu(adapter) => adapter,
+        DeviceSelector::Cpu => {
+            report.selected = Some("cpu".to_owned());
+            report.reason = Some("named by --device");
+            return Ok(report);
+        }
+    };
+    let worker = inputs::worker(adapter.clone(), TIME_LIMIT)?;
     match worker.with_all_drivers().probe() {
         Ok(drivers) => {
-            if let Some(chosen) = drivers.first() {
-                terminal.result(&format!("\nChosen, {}:", selection_reason(on, chosen)));
+            if let Some(selected) = drivers.first() {
+                report.selected = Some(selected.name.clone());
+                report.reason = Some(selection_reason(adapter, selected));
             }
-            for (index, driver) in drivers.iter().enumerate() {
-                if index == 1 {
-                    terminal.result("\nOthers (--on takes words of a name):");
-                }
-                terminal.result(&describe(driver));
-            }
-            if lavapipe_manifest().is_none() {
-                terminal.result(&format!(
-                    "\nlavapipe, on which every figure of this tool was measured, is missing; {INSTALL_HINT}"
-                ));
-            }
-            Exit::Success
+            report.drivers = drivers.into_iter().map(DriverReport::new).collect();
         }
         Err(failure) => {
             if let Failure::NotStarted(_) = failure {
-                report_broken(&candidates(manifests), terminal);
+                // Those that the Vulkan loader would load.
+                let loaded = pinned().unwrap_or(manifests);
+                report.tests = loaded.into_iter().map(test_alone).collect();
             }
-            if *on == AdapterSelector::Auto {
-                terminal.result(NO_DRIVER_MESSAGE);
+            report.error = Some(failure.to_string());
+        }
+    }
+    Ok(report)
+}
+
+/// Starts one driver alone.
+fn test_alone(manifest: PathBuf) -> DriverTest {
+    let name = path_name(&manifest);
+    let worker = inputs::worker(AdapterSelector::Auto, TIME_LIMIT);
+    let probed = worker.and_then(|worker| {
+        let mut worker = worker.with_manifest(manifest);
+        worker.probe().map_err(|failure| failure.to_string())
+    });
+    DriverTest {
+        manifest: name,
+        error: probed.err(),
+    }
+}
+
+fn selection_reason(adapter: &AdapterSelector, selected: &Driver) -> &'static str {
+    match adapter {
+        AdapterSelector::Auto if selected.is_lavapipe() => {
+            "the default: lavapipe renders the same bits on every machine"
+        }
+        AdapterSelector::Auto if is_pinned_by_user() => "named by the environment",
+        AdapterSelector::Auto => "the first driver; lavapipe is not installed",
+        AdapterSelector::Lavapipe | AdapterSelector::Named(_) => "named by --device",
+    }
+}
+
+impl DriverReport {
+    fn new(driver: Driver) -> Self {
+        Self {
+            loop_limit: match driver.loop_cap {
+                Some(LoopCap::After(count)) => Some(count),
+                Some(LoopCap::NoneUpTo(_)) | None => None,
+            },
+            name: driver.name,
+            version: driver.version,
+            is_software: driver.software,
+            filters_float32: driver.float32_filterable,
+            float_controls: driver.float_controls,
+        }
+    }
+
+    fn print(&self, terminal: &Terminal) {
+        let kind = if self.is_software { "runs on the CPU" } else { "runs on a GPU" };
+        terminal.result(&format!("  {}", self.name));
+        terminal.result(&format!("    driver          {} ({kind})", self.version));
+        if let Some(limit) = self.loop_limit {
+            terminal.result(&format!(
+                "    loops           cut off after {} iterations (Mesa before 23); `check` reports where",
+                grouped(u64::from(limit))
+            ));
+        }
+        if !self.filters_float32 {
+            terminal.result("    textures        float32 textures are not filtered");
+        }
+        if terminal.is_verbose() {
+            let controls = match &self.float_controls[..] {
+                [] => "none".to_owned(),
+                names => names.join(", "),
+            };
+            terminal.result(&format!("    float controls  {controls}"));
+        }
+    }
+}
+
+impl Report {
+    fn print(&self, terminal: &Terminal) {
+        let selected = self.selected.as_deref().unwrap_or("none");
+        let reason = self.reason.map(|reason| format!(" ({reason})")).unwrap_or_default();
+        terminal.result(&format!("Selected device: {selected}{reason}"));
+        if selected == "cpu" {
+            terminal.paragraph("toyproof's own evaluator needs no driver; `check` skips the toolchain check.");
+        }
+        if !self.drivers.is_empty() {
+            terminal.result("\nVulkan devices:");
+            for driver in &self.drivers {
+                driver.print(terminal);
             }
-            terminal.error(failure);
-            Exit::Error
+        }
+        terminal.result("\nInstalled Vulkan drivers:");
+        for manifest in &self.manifests {
+            terminal.result(&format!("  {manifest}"));
+        }
+        if self.manifests.is_empty() {
+            terminal.result("  none");
+        }
+        if self.is_pinned {
+            terminal.result("  VK_DRIVER_FILES or VK_ICD_FILENAMES is set: only the drivers named there are loaded");
+        }
+        if !self.tests.is_empty() {
+            terminal.result("\nEach driver alone:");
+            for DriverTest { manifest, error } in &self.tests {
+                terminal.result(&format!("  {manifest}: {}", error.as_deref().unwrap_or("starts")));
+            }
+        }
+        if let Some(error) = &self.error {
+            terminal.result("");
+            terminal.error(error);
+            if !self.tests.is_empty() {
+                terminal.help(
+                    "remove or update the driver that does not start, or name another: \
+                     VK_DRIVER_FILES=MANIFEST.json toyproof …",
+                );
+            }
+            terminal.note(
+                "`check`, `run` and `debug` work without a driver, on the CPU; the toolchain check is skipped.",
+            );
+        } else if selected != "cpu" && lavapipe_manifest().is_none() {
+            terminal.result("");
+            terminal.paragraph(&format!(
+                "lavapipe, which renders the same bits on every machine, is not installed; {INSTALL_HINT}"
+            ));
         }
     }
-}
-
-/// The manifests of the drivers that the Vulkan loader would load.
-fn candidates(installed: Vec<PathBuf>) -> Vec<PathBuf> {
-    match pinned() {
-        None => installed,
-        Some(pinned) => pinned,
-    }
-}
-
-/// Starts each driver alone, to find those that do not start.
-fn report_broken(manifests: &[PathBuf], terminal: &Terminal) {
-    terminal.result("\nEach driver alone:");
-    for manifest in manifests {
-        let path = path_name(manifest);
-        let alone = inputs::worker(AdapterSelector::Auto, TIME_LIMIT)
-            .map(|worker| worker.with_manifest(manifest.clone()).probe());
-        match alone {
-            Ok(Ok(_)) => terminal.result(&format!("  {path}: starts")),
-            Ok(Err(failure)) => terminal.result(&format!("  {path}: {failure}")),
-            Err(error) => terminal.result(&format!("  {path}: {error}")),
-        }
-    }
-    terminal.result(
-        "  Remove or update a driver that does not start, or name another: VK_DRIVER_FILES=MANIFEST.json toyproof …",
-    );
-}
-
-fn selection_reason(on: &AdapterSelector, chosen: &Driver) -> String {
-    match on {
-        AdapterSelector::Auto if chosen.is_lavapipe() => {
-            "because lavapipe gives the same bits on every machine".to_owned()
-        }
-        AdapterSelector::Auto if is_pinned_by_user() => "because the environment names it".to_owned(),
-        AdapterSelector::Auto => "because it comes first".to_owned(),
-        AdapterSelector::Lavapipe => "because --on lavapipe asks for it".to_owned(),
-        AdapterSelector::Named(name) => format!("because --on “{name}” asks for it"),
-    }
-}
-
-fn describe(driver: &Driver) -> String {
-    let yes = |is: bool| if is { "yes" } else { "no" };
-    let controls = match &driver.float_controls[..] {
-        [] => "none".to_owned(),
-        names => names.join(", "),
-    };
-    let loops = match driver.loop_cap {
-        None => "could not be measured".to_owned(),
-        Some(LoopCap::NoneUpTo(tried)) => format!(
-            "run to their end (tried {} iterations)",
-            grouped(u64::from(tried))
-        ),
-        Some(LoopCap::After(count)) => {
-            format!(
-                "are ended by force after {} iterations of a pixel (Mesa before 23); `check` tells which",
-                grouped(u64::from(count))
-            )
-        }
-    };
-    format!(
-        "  {}\n    driver: {}\n    runs on the CPU: {}\n    float32 textures filtered: {}\n    \
-         float controls, 32 bits: {controls}\n    loops: {loops}",
-        driver.name,
-        driver.version,
-        yes(driver.software),
-        yes(driver.float32_filterable),
-    )
 }

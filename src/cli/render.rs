@@ -6,54 +6,59 @@ use std::time::Instant;
 
 use clap::ValueEnum;
 use indicatif::ProgressBar;
-use toyproof_diagnostic::{Files, grouped, magnitude, path_name};
+use toyproof_diagnostic::{Files, grouped, magnitude, path_name, plural};
 use toyproof_image::{self as image, Image};
 use toyproof_scene::{self as scene, FrameTime, Requirements, Sampler, Scene};
 use toyproof_tracer::{Real, Tracer};
 
 use super::inputs::may_write;
+use super::run::{Precision, default_image};
 use super::sequence::{self, Frames, Sequence};
+use super::terminal::file_size;
 use super::{Exit, Terminal, inputs};
 use crate::cli::files;
 
 /// Render a scene with the reference tracer
 #[derive(Debug, clap::Args)]
-#[command(
-    after_help = "Examples:\n  toyproof render glsl/02-sphere.toml -o reference.png\n  \
-                        toyproof render scene.toml -o reference.exr --size 1920x1080 --samples 64\n  \
-                        toyproof render scene.toml -o reference.png --sampler sobol --max-error 0.002\n  \
-                        toyproof render glsl/11-animation.toml -o frames/orrery.png --frames 0..479"
-)]
+#[command(after_long_help = "\
+Examples:
+  toyproof render 12-whitted -o whitted.png
+  toyproof render scene.toml -o scene.exr --size 1920x1080 --samples 64
+  toyproof render 09-soft-shadows --sampler sobol --max-error 0.002
+  toyproof render 11-animation -o frames/orrery.png --frames 0..479")]
 pub(super) struct Args {
-    /// The scene, in TOML
+    /// The scene: a file, or a name that `toyproof scenes` lists
     scene: PathBuf,
-    /// The picture: .png (8 bits) or .exr (floats)
-    #[arg(short, long, value_name = "PICTURE")]
-    output: PathBuf,
-    /// The number type that it is traced in
-    #[arg(long, value_enum, default_value_t = Precision::F64)]
+    /// The image: .png (8 bits), .exr (floats), or - for PNG on standard output [default: SCENE.png in the
+    /// current folder]
+    #[arg(short, long, value_name = "IMAGE")]
+    output: Option<PathBuf>,
+    /// The number type that the tracer computes with
+    #[arg(long, value_enum, default_value_t = Precision::F64, hide_possible_values = true, value_name = "f32|f64")]
     precision: Precision,
-    /// Samples in each pixel [default: the scene's]
+    /// Samples per pixel [default: the scene's]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65_536), allow_negative_numbers = true)]
     samples: Option<u32>,
-    /// Where samples lie in a pixel, and what lights and surfaces draw [default: the scene's]
+    /// The sampler of pixels, lights and materials [default: the scene's]
     #[arg(long, value_enum, value_name = "NAME")]
     sampler: Option<SamplerName>,
-    /// Take samples until the estimated error of every tile of 16x16 pixels is below this, in [0, 1], and
-    /// say how many it took; needs a sampler that draws
+    /// Take samples until the estimated error is below this, from 0 to 1
+    ///
+    /// The error is estimated for every tile of 16x16 pixels. This needs a stochastic sampler.
     #[arg(long, value_name = "ERROR", value_parser = parse_max_error, conflicts_with = "samples", allow_negative_numbers = true)]
     max_error: Option<f64>,
     /// Width and height in pixels [default: the scene's]
     #[arg(long, value_name = "WxH", value_parser = inputs::parse_size)]
     size: Option<[u32; 2]>,
-    /// The time in seconds, where anything moves by it
+    /// The time of animated scenes, in seconds
     #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = inputs::parse_seconds::<f64>, allow_negative_numbers = true)]
     time: f64,
-    /// The number of the frame, where anything moves by it
+    /// The frame number of animated scenes
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(i32).range(0..), allow_negative_numbers = true)]
     frame: i32,
-    /// All frames from A to B, at 60 a second, each into a file with its number; a sequence that was
-    /// interrupted goes on where it stopped
+    /// Render frames A to B, at 60 frames per second, into numbered files
+    ///
+    /// The number is inserted before the extension. The same command resumes an interrupted sequence.
     #[arg(long, value_name = "A..B", value_parser = sequence::parse_frames, conflicts_with_all = ["frame", "time"])]
     frames: Option<Frames>,
 }
@@ -86,12 +91,6 @@ fn parse_max_error(text: &str) -> Result<f64, String> {
     }
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum Precision {
-    F32,
-    F64,
-}
-
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let Some(mut scene) = load_scene(&args.scene, terminal) else {
         return Exit::Error;
@@ -103,10 +102,17 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     if !scene.film.sampler.draws()
         && (requirements.soft_shadows || requirements.path_tracing || args.max_error.is_some())
     {
-        terminal.error("this needs a sampler that draws: --sampler independent, stratified or sobol");
+        let what = if args.max_error.is_some() {
+            "--max-error"
+        } else {
+            "this scene"
+        };
+        terminal.error(format_args!("{what} needs a stochastic sampler"));
+        terminal.help("choose --sampler independent, stratified or sobol");
         return Exit::Error;
     }
     terminal.detail(&format!("the scene requires {requirements}"));
+    let output = args.output.clone().unwrap_or_else(|| default_image(&args.scene));
     let mut previous = PreviousTracers::default();
     let succeeded = match args.frames {
         None => {
@@ -114,16 +120,17 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
                 frame: args.frame,
                 time: args.time,
             };
-            render_frame(&scene, frame_time, &mut previous, (args, &args.output), terminal)
+            render_frame(&scene, frame_time, &mut previous, (args, &output), terminal)
         }
-        Some(_) if args.output == Path::new("-") => {
-            terminal.error(sequence::NEEDS_FILE);
+        Some(_) if output == Path::new("-") => {
+            terminal.error("standard output takes a single image");
+            terminal.help("name a file with -o");
             false
         }
         Some(frames) => {
             // Identifies what is rendered: a record of a different scene or settings is ignored.
             let fingerprint = format!("{scene:?} {:?} {:?}", args.precision, args.max_error);
-            let sequence = Sequence::resume(frames, &args.output, &fingerprint, terminal);
+            let sequence = Sequence::resume(frames, &output, &fingerprint, terminal);
             sequence.render(terminal, |one| {
                 let frame_time = FrameTime {
                     frame: one.frame,
@@ -152,18 +159,43 @@ fn render_frame(
     terminal: &Terminal,
 ) -> bool {
     let start = Instant::now();
-    let picture = match args.precision {
+    let rendered = match args.precision {
         Precision::F32 => trace(scene, frame_time, &mut previous.single, args, terminal),
         Precision::F64 => trace(scene, frame_time, &mut previous.double, args, terminal),
     };
-    terminal.detail(&format!("traced in {:.3} s", start.elapsed().as_secs_f64()));
-    match image::encode(&picture, path) {
-        Ok(bytes) => terminal.write(path, &bytes),
+    let format = if path == Path::new("-") {
+        Path::new("-.png")
+    } else {
+        path
+    };
+    let bytes = match image::encode(&rendered, format) {
+        Ok(bytes) => bytes,
         Err(error) => {
             terminal.error(error);
-            false
+            return false;
         }
+    };
+    let written = terminal.write(path, &bytes);
+    // The frames of a sequence are confirmed together.
+    if written && args.frames.is_none() {
+        let [width, height] = rendered.size();
+        let samples = match args.max_error {
+            Some(error) => format!("error below {error}"),
+            None => format!(
+                "{} {} per pixel",
+                grouped(u64::from(scene.film.samples)),
+                plural(u64::from(scene.film.samples), "sample", "samples")
+            ),
+        };
+        let facts = format!(
+            "{width}×{height}, {samples}, {}, {}, {:.1} s",
+            args.precision.name(),
+            file_size(bytes.len()),
+            start.elapsed().as_secs_f64()
+        );
+        terminal.confirm(path, &facts);
     }
+    written
 }
 
 /// Reads a scene from its file; prints the errors.
@@ -171,8 +203,9 @@ pub(super) fn load_scene(path: &Path, terminal: &Terminal) -> Option<Scene> {
     if files::is_shader(path) {
         let path = path_name(path);
         terminal.error(format_args!(
-            "{path} is a shader, and `render` takes a scene; paint the shader with `toyproof run {path} -o PICTURE`"
+            "{path} is a shader, but a scene is expected here"
         ));
+        terminal.help(format_args!("to run a shader: toyproof run {path} -o IMAGE"));
         return None;
     }
     let mut files = Files::default();
@@ -203,40 +236,41 @@ fn trace<T: Real>(
     let tracer = &*previous.insert(tracer);
     let rows = u64::from(scene.film.size[1]);
     let bar = match args.frames {
-        None => terminal.bar(rows, "tracing"),
+        None => terminal.bar(rows, "rows"),
         // The sequence has its own progress bar.
         Some(_) => ProgressBar::hidden(),
     };
     let Some(max_error) = args.max_error else {
-        let picture = tracer.render(|| bar.inc(1));
+        let rendered = tracer.render(|| bar.inc(1));
         bar.finish_and_clear();
-        return picture;
+        return rendered;
     };
-    let (picture, spent) = tracer.render_adaptive(max_error, || bar.inc(1));
+    let (rendered, spent) = tracer.render_adaptive(max_error, || bar.inc(1));
     bar.finish_and_clear();
     let [most, fewest] = spent.per_pixel;
     terminal.note(&format!(
-        "{} samples, {} to {} in a pixel; the largest estimated error of a tile is {}",
+        "{} samples, {} to {} per pixel; the largest estimated error of a tile is {}",
         grouped(spent.samples),
         grouped(u64::from(fewest)),
         grouped(u64::from(most)),
         magnitude(spent.error)
     ));
-    picture
+    rendered
 }
 
-/// Write the shader that paints a scene
+/// Write a ShaderToy shader that renders a scene
+///
+/// The shader is written to standard output unless -o is given.
 #[derive(Debug, clap::Args)]
-#[command(
-    after_help = "Example:\n  toyproof export glsl/04-many-objects.toml -o mine.glsl\n  \
-                        toyproof check mine.glsl --scene glsl/04-many-objects.toml\n\n\
-                        Exit code: 0, or 2 if the scene uses what cannot be exported yet."
-)]
+#[command(after_long_help = "\
+Examples:
+  toyproof export 04-many-objects -o mine.glsl
+  toyproof check mine.glsl --scene 04-many-objects")]
 pub(super) struct ExportArgs {
-    /// The scene, in TOML
+    /// The scene: a file, or a name that `toyproof scenes` lists
     scene: PathBuf,
-    /// The shader (.glsl, or - for standard output)
-    #[arg(short, long, value_name = "SHADER")]
+    /// The shader (.glsl), or - for standard output
+    #[arg(short, long, value_name = "SHADER", default_value = "-", hide_default_value = true)]
     output: PathBuf,
 }
 
@@ -248,7 +282,10 @@ pub(super) fn export(args: &ExportArgs, terminal: &Terminal) -> Exit {
         return Exit::Error;
     };
     match scene::export::shader(&scene) {
-        Ok(text) if terminal.write(&args.output, text.as_bytes()) => Exit::Success,
+        Ok(text) if terminal.write(&args.output, text.as_bytes()) => {
+            terminal.confirm(&args.output, &file_size(text.len()));
+            Exit::Success
+        }
         Ok(_) => Exit::Error,
         Err(error) => {
             terminal.error(format_args!("{}: {error}", path_name(&args.scene)));

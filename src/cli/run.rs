@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::ValueEnum;
+use serde::Serialize;
 use toyproof_diagnostic::{Deadline, path_name};
 use toyproof_eval::{self as eval, Number, Program, Settings, UndefinedPolicy};
 use toyproof_glsl::{self as glsl, Checked};
@@ -12,33 +13,39 @@ use toyproof_gpu::{DrawOutput, Failure, Worker};
 use toyproof_image::{self as image, Frame, Image};
 use toyproof_verify::unbound;
 
-use super::inputs::{DriverArgs, FrameArgs, LanguageArgs, may_write};
+use super::inputs::{DriverArgs, Format, FrameArgs, LanguageArgs, may_write};
 use super::names::{Names, with_suffix};
 use super::sequence::{self, Frames, Sequence};
 use super::shader::{Shader, Unusable, find};
+use super::terminal::file_size;
 use super::{Exit, Terminal};
 use crate::report;
 
-/// Run shaders and keep the pictures that they paint
+/// Run shaders and save their images
 #[derive(Debug, clap::Args)]
-#[command(
-    after_help = "Examples:\n  toyproof run glsl/02-sphere.glsl -o sphere.png --time 1.5\n  \
-                        toyproof run glsl -o pictures\n  \
-                        toyproof run glsl/02-sphere.glsl -o sphere.exr --on cpu --precision f64\n  \
-                        toyproof run glsl/11-animation.glsl -o frames/orrery.png --frames 0..479"
-)]
+#[command(after_long_help = "\
+Examples:
+  toyproof run mine.glsl -o mine.png --time 1.5
+  toyproof run mine.glsl -o mine.exr --precision f64
+  toyproof run mine.glsl -o frames/mine.png --frames 0..479
+  toyproof run shaders -o images")]
 pub(super) struct Args {
     /// Shaders: files, folders, or - for standard input
     #[arg(required = true)]
     shaders: Vec<PathBuf>,
-    /// A picture (.png, .exr, or - for PNG on standard output), or a folder for several
-    #[arg(short, long, value_name = "PICTURE|DIR")]
-    output: PathBuf,
-    /// The number type of every float; f64 runs on the CPU: the shader's mathematics without its rounding
-    #[arg(long, value_enum, default_value_t = Precision::F32)]
+    /// The image (.png or .exr), a folder, or - for PNG on standard output [default: NAME.png in the current
+    /// folder]
+    #[arg(short, long, value_name = "IMAGE|DIR")]
+    output: Option<PathBuf>,
+    /// The number type of floats; f64 runs on the CPU
+    #[arg(long, value_enum, default_value_t = Precision::F32, hide_possible_values = true, value_name = "f32|f64")]
     precision: Precision,
-    /// All frames from A to B, at 60 a second, each into a file with its number; a sequence that was
-    /// interrupted goes on where it stopped
+    /// The form of the results; `json` needs an output other than standard output
+    #[arg(long, value_enum, default_value_t = Format::Human, help_heading = "Output", hide_possible_values = true)]
+    format: Format,
+    /// Render frames A to B, at 60 frames per second, into numbered files
+    ///
+    /// The number is inserted before the extension. The same command resumes an interrupted sequence.
     #[arg(long, value_name = "A..B", value_parser = sequence::parse_frames, conflicts_with_all = ["frame", "time"])]
     frames: Option<Frames>,
     #[command(flatten)]
@@ -49,10 +56,20 @@ pub(super) struct Args {
     driver: DriverArgs,
 }
 
+/// The number type of floats.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Precision {
+pub(super) enum Precision {
     F32,
     F64,
+}
+
+impl Precision {
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::F32 => "f32",
+            Self::F64 => "f64",
+        }
+    }
 }
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
@@ -65,36 +82,43 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     };
     let inputs = find(&args.shaders, terminal);
     let several = inputs.len() > 1 || args.shaders.iter().any(|path| path.is_dir());
-    let standard = args.output == Path::new("-");
-    if several && (standard || args.output.extension().is_some()) {
-        terminal.error(format_args!(
-            "several shaders need a folder to go to, not {}",
-            path_name(&args.output)
-        ));
+    let output = match (&args.output, &inputs[..]) {
+        (Some(output), _) => output.clone(),
+        (None, [Ok(input)]) if !several => default_image(&input.relative),
+        (None, _) => PathBuf::from("."),
+    };
+    let standard = output == Path::new("-");
+    if several && (standard || output.extension().is_some()) {
+        let output = path_name(&output);
+        terminal.error(format_args!("several images cannot be written to {output}"));
+        terminal.help("name a folder with -o");
         return Exit::Error;
     }
-    if standard && args.frames.is_some() {
-        terminal.error(sequence::NEEDS_FILE);
+    if standard && (args.frames.is_some() || args.format == Format::Json) {
+        terminal.error("standard output takes a single image and nothing else");
+        terminal.help("name a file with -o");
         return Exit::Error;
     }
-    let one = standard || (!several && !args.output.is_dir());
+    let one = standard || (!several && !output.is_dir());
     let mut names = Names::new(&[".png"], &[]);
     let mut exit = Exit::Success;
     let channels = args.frame.files().map(PathBuf::as_path).collect();
-    if !may_write(&args.output, &channels, terminal) {
+    if !may_write(&output, &channels, terminal) {
         return Exit::Error;
     }
     let mut runner = Runner {
         args,
         terminal,
+        output: &output,
         worker: worker.filter(|_| args.precision == Precision::F32),
         frame,
+        images: Vec::new(),
     };
     for input in &inputs {
         let shader = Shader::load(input, &args.language, Deadline::after(args.driver.timeout()));
         let path = match (one, input) {
-            (true, _) | (false, Err(_)) => args.output.clone(),
-            (false, Ok(found)) => with_suffix(&args.output.join(names.assign(found)), ".png"),
+            (true, _) | (false, Err(_)) => output.clone(),
+            (false, Ok(found)) => with_suffix(&output.join(names.assign(found)), ".png"),
         };
         terminal.diagnostics(&shader.lints.warnings, &shader.files);
         if let Ok(checked) = &shader.checked {
@@ -107,21 +131,57 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
                 spinner.finish_and_clear();
                 rendered.map_or_else(
                     |exit| exit,
-                    |rendered| write_image(&rendered, &path, &args.output, terminal),
+                    |rendered| runner.write(&rendered, &shader.name, &path, true),
                 )
             }
             Some(frames) => runner.sequence(&shader, frames, &path),
         });
     }
+    if args.format == Format::Json {
+        // Strings and numbers always serialize.
+        let json = serde_json::to_string_pretty(&runner.images).unwrap_or_default() + "\n";
+        terminal.bytes(json.as_bytes());
+    }
     exit
+}
+
+/// The default name of an image, in the current folder.
+pub(super) fn default_image(input: &Path) -> PathBuf {
+    Path::new(input.file_name().unwrap_or_default()).with_extension("png")
+}
+
+/// An image that was written, as JSON has it.
+#[derive(Debug, Serialize)]
+struct WrittenImage {
+    shader: String,
+    output: String,
+    size: [u32; 2],
+    /// `iFrame`
+    frame: i32,
+    /// `iTime`, in seconds.
+    time: f32,
+    precision: &'static str,
+    device: String,
+    seconds: f64,
+}
+
+/// An image, and what rendered it.
+struct Rendered {
+    image: Image,
+    device: String,
+    seconds: f64,
 }
 
 struct Runner<'a> {
     args: &'a Args,
     terminal: &'a Terminal,
+    /// The file, or the folder.
+    output: &'a Path,
     /// None where the evaluator renders.
     worker: Option<Worker>,
     frame: Frame,
+    /// The written images.
+    images: Vec<WrittenImage>,
 }
 
 impl Runner<'_> {
@@ -134,7 +194,7 @@ impl Runner<'_> {
             self.frame.frame = one.frame;
             self.frame.time = one.time as f32;
             exit = match self.render(shader) {
-                Ok(rendered) => write_image(&rendered, &one.path, &self.args.output, self.terminal),
+                Ok(rendered) => self.write(&rendered, &shader.name, &one.path, false),
                 Err(exit) => exit,
             };
             exit == Exit::Success
@@ -165,7 +225,7 @@ impl Runner<'_> {
     }
 
     /// Renders the shader; prints the error on failure.
-    fn render(&mut self, shader: &Shader) -> Result<Image, Exit> {
+    fn render(&mut self, shader: &Shader) -> Result<Rendered, Exit> {
         let checked = match &shader.checked {
             Ok(checked) => checked,
             Err(Unusable::Invalid(diagnostics)) => {
@@ -191,7 +251,7 @@ impl Runner<'_> {
             match worker.draw(lowered, self.frame.clone(), float) {
                 Err(failure) if failure.is_without_driver() && self.args.driver.may_fall_back() => {
                     self.terminal
-                        .warn(format_args!("{failure}; shaders run on the CPU"));
+                        .warn(format_args!("{failure}; shaders are evaluated on the CPU"));
                     self.worker = None;
                 }
                 result => return self.draw_result(result, shader),
@@ -203,7 +263,7 @@ impl Runner<'_> {
         }
     }
 
-    fn draw_result(&self, drawn: Result<DrawOutput, Failure>, shader: &Shader) -> Result<Image, Exit> {
+    fn draw_result(&self, drawn: Result<DrawOutput, Failure>, shader: &Shader) -> Result<Rendered, Exit> {
         match drawn {
             Ok(DrawOutput {
                 loop_truncated: Some(pixels @ 1..),
@@ -216,10 +276,11 @@ impl Runner<'_> {
                 ));
                 Err(Exit::ShaderFault)
             }
-            Ok(drawn) => {
-                self.report_time(&shader.name, drawn.draw.as_secs_f64(), &drawn.device);
-                Ok(drawn.image())
-            }
+            Ok(drawn) => Ok(Rendered {
+                seconds: drawn.draw.as_secs_f64(),
+                device: drawn.device.clone(),
+                image: drawn.image(),
+            }),
             Err(Failure::Invalid(diagnostics)) => {
                 self.terminal.diagnostics(&diagnostics, &shader.files);
                 Err(Exit::ShaderFault)
@@ -240,7 +301,7 @@ impl Runner<'_> {
         }
     }
 
-    fn evaluate<N: Number>(&self, checked: &Checked, shader: &Shader) -> Result<Image, Exit> {
+    fn evaluate<N: Number>(&self, checked: &Checked, shader: &Shader) -> Result<Rendered, Exit> {
         let start = Instant::now();
         let settings = Settings::<N> {
             undefined: UndefinedPolicy::Plain,
@@ -252,17 +313,52 @@ impl Runner<'_> {
             .and_then(|program| program.render_rows(&self.frame, self.frame.rows(), &settings));
         match rendered {
             Ok(rendered) => {
-                let device = format!("the CPU, in {}", std::any::type_name::<N>());
-                self.report_time(&shader.name, start.elapsed().as_secs_f64(), &device);
-                Ok(rendered.image)
+                Ok(Rendered {
+                    image: rendered.image,
+                    device: "CPU".to_owned(),
+                    seconds: start.elapsed().as_secs_f64(),
+                })
             }
             Err(failure) => Err(not_evaluated(&failure, shader, self.terminal)),
         }
     }
 
-    fn report_time(&self, name: &str, seconds: f64, device: &str) {
-        self.terminal
-            .detail(&format!("{name}: painted in {seconds:.3} s on {device}"));
+    /// Writes an image, and confirms it unless it is one of a sequence.
+    fn write(&mut self, rendered: &Rendered, shader: &str, path: &Path, confirms: bool) -> Exit {
+        let format = if path == Path::new("-") {
+            Path::new("-.png")
+        } else {
+            path
+        };
+        let bytes = match image::encode(&rendered.image, format) {
+            Ok(bytes) => bytes,
+            Err(error) => {
+                self.terminal.error(error);
+                return Exit::Error;
+            }
+        };
+        if !self.terminal.write_output(self.output, path, &bytes) {
+            return Exit::Error;
+        }
+        let [width, height] = rendered.image.size();
+        let precision = self.args.precision.name();
+        let Rendered { device, seconds, .. } = rendered;
+        if confirms {
+            let size = file_size(bytes.len());
+            let facts = format!("{width}×{height}, {precision} on {device}, {size}, {seconds:.2} s");
+            self.terminal.confirm(path, &facts);
+        }
+        self.images.push(WrittenImage {
+            shader: shader.to_owned(),
+            output: path_name(path),
+            size: [width, height],
+            frame: self.frame.frame,
+            time: self.frame.time,
+            precision,
+            device: device.clone(),
+            seconds: *seconds,
+        });
+        Exit::Success
     }
 }
 
@@ -276,20 +372,4 @@ pub(super) fn not_evaluated(failure: &eval::Failure, shader: &Shader, terminal: 
     terminal.error(format_args!("{}: {failure}{position}", shader.name));
     let ours = matches!(failure, eval::Failure::Refused(_));
     if ours { Exit::Error } else { Exit::ShaderFault }
-}
-
-fn write_image(rendered: &Image, path: &Path, output: &Path, terminal: &Terminal) -> Exit {
-    let format = if path == Path::new("-") {
-        Path::new("-.png")
-    } else {
-        path
-    };
-    match image::encode(rendered, format) {
-        Ok(bytes) if terminal.write_output(output, path, &bytes) => Exit::Success,
-        Ok(_) => Exit::Error,
-        Err(error) => {
-            terminal.error(error);
-            Exit::Error
-        }
-    }
 }

@@ -1,8 +1,10 @@
 //! Image sequences: the numbers of their frames, their files, and which are still to be rendered.
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
+use std::time::Instant;
 
-use toyproof_diagnostic::grouped;
+use toyproof_diagnostic::{grouped, plural};
 use toyproof_image::FRAME_RATE;
 
 use super::Terminal;
@@ -14,12 +16,9 @@ pub(super) struct Frames {
     last: i32,
 }
 
-/// The error for a sequence that goes to standard output.
-pub(super) const NEEDS_FILE: &str = "a sequence needs a file to go to, whose name the numbers are added to";
-
 /// Parses A..B.
 pub(super) fn parse_frames(text: &str) -> Result<Frames, String> {
-    let expected = "expected the first and the last frame as A..B, with 0 ≤ A ≤ B";
+    let expected = "expected A..B, the first and the last frame, with 0 ≤ A ≤ B";
     let (first, last) = text.split_once("..").ok_or(expected)?;
     match (first.parse(), last.parse()) {
         (Ok(first), Ok(last)) if 0 <= first && first <= last => Ok(Frames { first, last }),
@@ -84,7 +83,7 @@ impl Sequence {
         let existing = made.filter(|one| one.path.is_file()).count() as u64;
         if existing > 0 {
             let (existing, count) = (grouped(existing), grouped(frames.count()));
-            terminal.note(&format!("{existing} of {count} frames are there already"));
+            terminal.note(&format!("resuming: {existing} of {count} frames exist already"));
         }
         Self {
             record,
@@ -96,11 +95,25 @@ impl Sequence {
         }
     }
 
-    /// Renders the missing frames in order until one fails; returns whether all succeeded.
+    /// Renders the missing frames in order until one fails or the user interrupts; returns whether all
+    /// succeeded.
     pub(super) fn render(self, terminal: &Terminal, mut frame: impl FnMut(&SequenceFrame) -> bool) -> bool {
-        let bar = terminal.bar(self.frames.count() - self.existing, "frames");
+        let start = Instant::now();
+        let interrupted = terminal.watch_interrupts("the frame in progress is finished first");
+        let bar = terminal.bar(self.frames.count(), "frames");
+        bar.set_position(self.existing);
+        bar.reset_eta();
         let is_missing = |one: &SequenceFrame| i64::from(one.frame) >= self.next || !one.path.is_file();
         for one in self.frames.numbered(&self.output).filter(is_missing) {
+            if interrupted.load(Ordering::Relaxed) {
+                terminal.error(format_args!(
+                    "interrupted after {} of {} frames",
+                    grouped(bar.position()),
+                    grouped(self.frames.count())
+                ));
+                terminal.help("the same command renders the others");
+                return false;
+            }
             if !frame(&one) {
                 return false;
             }
@@ -113,6 +126,17 @@ impl Sequence {
         bar.finish_and_clear();
         // The sequence is complete, so no record is needed.
         let _ = std::fs::remove_file(&self.record);
+        terminal.confirm(
+            &self.output,
+            &format!(
+                "{} {} (-{:04} to -{:04}), {:.1} s",
+                grouped(self.frames.count()),
+                plural(self.frames.count(), "frame", "frames"),
+                self.frames.first,
+                self.frames.last,
+                start.elapsed().as_secs_f64()
+            ),
+        );
         true
     }
 }

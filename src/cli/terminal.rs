@@ -5,8 +5,8 @@ use std::fmt::Display;
 use std::io::{self, Write};
 use std::panic::PanicHookInfo;
 use std::path::Path;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
 use anstream::{AutoStream, ColorChoice};
@@ -31,6 +31,7 @@ pub(super) struct Terminal {
     verbose: bool,
     /// The progress bars, which make room for other output.
     bars: MultiProgress,
+    interrupts: Interrupts,
     /// Whether writing to standard output failed.
     write_failed: AtomicBool,
     /// Whether the reader of standard output has closed it.
@@ -52,6 +53,7 @@ impl Terminal {
             quiet,
             verbose,
             bars: MultiProgress::with_draw_target(target),
+            interrupts: Interrupts::default(),
             write_failed: AtomicBool::new(false),
             closed: AtomicBool::new(false),
         }
@@ -236,6 +238,7 @@ impl Terminal {
 
     /// Shows a progress bar with a label that names what is counted, on a terminal only.
     pub(super) fn bar(&self, steps: u64, label: &str) -> ProgressBar {
+        self.handle_interrupts();
         let bar = self.bars.add(ProgressBar::new(steps));
         let template = "{prefix} {human_pos}/{human_len} {wide_bar} {per_sec}, ETA {eta}  {msg}";
         bar.set_style(
@@ -247,6 +250,7 @@ impl Terminal {
 
     /// Shows a spinner with a label, on a terminal only.
     pub(super) fn spinner(&self, label: &str) -> ProgressBar {
+        self.handle_interrupts();
         let spinner = self.bars.add(ProgressBar::new_spinner());
         spinner.set_message(label.to_owned());
         spinner.enable_steady_tick(Duration::from_millis(100));
@@ -262,28 +266,46 @@ impl Terminal {
         }
     }
 
-    /// Handles interrupts (Ctrl-C): the first prints `message` and sets the returned flag, the second exits at
-    /// once.
+    /// Lets the command finish what is in progress when the user interrupts it (Ctrl-C): the first interrupt
+    /// prints `message` and sets the returned flag, the second exits at once.
     pub(super) fn watch_interrupts(&self, message: &'static str) -> Arc<AtomicBool> {
-        let interrupted = Arc::new(AtomicBool::new(false));
-        let flag = Arc::clone(&interrupted);
+        self.handle_interrupts();
+        let _ = self.interrupts.message.set(message);
+        Arc::clone(&self.interrupts.flag)
+    }
+
+    /// Handles interrupts, so that no progress bar is left behind on the terminal.
+    fn handle_interrupts(&self) {
         let bars = self.bars.clone();
-        // If no handler can be installed, an interrupt ends the program.
-        let _ = ctrlc::set_handler(move || {
-            if flag.swap(true, Ordering::Relaxed) {
-                let _ = bars.clear();
-                #[expect(clippy::exit, reason = "the user asked twice")]
-                std::process::exit(130);
-            }
-            bars.suspend(|| {
-                let _ = writeln!(
-                    anstream::stderr().lock(),
-                    "interrupted: {message}; interrupt again to stop at once"
-                );
+        let Interrupts { message, flag, is_handled } = &self.interrupts;
+        let (message, flag) = (Arc::clone(message), Arc::clone(flag));
+        is_handled.get_or_init(|| {
+            // If no handler can be installed, an interrupt ends the program.
+            let _ = ctrlc::set_handler(move || match message.get() {
+                Some(message) if !flag.swap(true, Ordering::Relaxed) => bars.suspend(|| {
+                    let _ = writeln!(
+                        anstream::stderr().lock(),
+                        "interrupted: {message}; interrupt again to stop at once"
+                    );
+                }),
+                _ => {
+                    let _ = bars.clear();
+                    #[expect(clippy::exit, reason = "the user wants the program to end now")]
+                    std::process::exit(130);
+                }
             });
         });
-        interrupted
     }
+}
+
+/// The handling of interrupts.
+#[derive(Debug, Default)]
+struct Interrupts {
+    /// What the program does before it ends; not set if it ends at once.
+    message: Arc<OnceLock<&'static str>>,
+    /// Whether the user has interrupted the program.
+    flag: Arc<AtomicBool>,
+    is_handled: OnceLock<()>,
 }
 
 /// The width of standard error in columns, at most [`MAX_WIDTH`]; none if it is not a terminal.
