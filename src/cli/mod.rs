@@ -41,7 +41,6 @@ use self::terminal::Terminal;
 #[command(
     name = "toyproof",
     version,
-    propagate_version = true,
     max_term_width = 110,
     after_long_help = EXAMPLES,
 )]

@@ -21,6 +21,7 @@ pub(super) use self::reference::References;
 use self::reports::Results;
 use super::inputs::{DriverArgs, FrameArgs, LanguageArgs};
 use super::names::Names;
+use super::inputs::short_device;
 use super::pool::{self, InOrder};
 use super::shader::find;
 use super::{Exit, Terminal};
@@ -373,13 +374,15 @@ impl Batch<'_> {
 /// Prints the tally of all shaders, and warns of shaders that were compared with nothing.
 fn print_summary(report: &Report, hidden_warnings: u64, elapsed: Duration, terminal: &Terminal) {
     let records = report.shaders();
-    let device = report.device().map(|device| format!(", {device}")).unwrap_or_default();
-    let several = if records.len() > 1 { "\n" } else { "" };
-    terminal.note(&format!(
-        "{several}{} ({:.1} s{device})",
-        report::summary(records),
-        elapsed.as_secs_f64()
-    ));
+    let device = report.device().map(|device| format!(", {}", short_device(device)));
+    if records.len() > 1 {
+        terminal.note(&format!(
+            "\n{} ({:.1} s{})",
+            report::summary(records),
+            elapsed.as_secs_f64(),
+            device.unwrap_or_default()
+        ));
+    }
     if hidden_warnings > 0 {
         terminal.note(&format!(
             "{} {}; -v shows them",
