@@ -46,11 +46,11 @@ fn shaders_that_overflow_driver_counters() {
     );
     let messages = ["invalid", "E0411", "nested too deeply", "in line 1, column"];
     expect(
-        &check(&text, &["--on", "lavapipe", "--size", "16x9"]),
+        &check(&text, &["--device", "lavapipe", "--size", "16x9"]),
         1,
         &messages,
     );
-    expect(&check(&text, &["--on", "cpu", "--size", "16x9"]), 0, &["ok"]);
+    expect(&check(&text, &["--device", "cpu", "--size", "16x9"]), 0, &["ok"]);
 }
 
 #[test]
@@ -250,7 +250,7 @@ fn out_of_range_numbers_have_our_own_messages() {
         (&["run", "s.glsl", "-o", "s.png", "--time", "inf"], "finite"),
         (&["check", "s.glsl", "--date", "2020,12,1,0"], "no month 12"),
         (&["check", "s.glsl", "--timeout", "0s"], "more than 0"),
-        (&["explain", "s.glsl", "--pixel", "-1,0"], "two whole numbers"),
+        (&["debug", "s.glsl", "--pixel", "-1,0"], "expected two integers"),
         (
             &["render", "s.toml", "-o", "s.png", "--max-error", "-1"],
             "above 0",
@@ -337,8 +337,8 @@ fn no_vulkan_driver() {
         // The evaluator replaces it, unless a driver is requested.
         (&["check", "s.glsl"][..], 0),
         (&["run", "s.glsl", "-o", "s.png"], 0),
-        (&["check", "s.glsl", "--on", "lavapipe"], 2),
-        (&["run", "s.glsl", "-o", "s.png", "--on", "lavapipe"], 2),
+        (&["check", "s.glsl", "--device", "lavapipe"], 2),
+        (&["run", "s.glsl", "-o", "s.png", "--device", "lavapipe"], 2),
         (&["doctor"], 2),
     ] {
         let mut command = command(folder.path());
@@ -360,7 +360,7 @@ fn an_unknown_adapter() {
     if !require_driver() {
         return;
     }
-    let run = check(&format!("{MAIN} {{ c = vec4(0.5); }}"), &["--on", "Voodoo"]);
+    let run = check(&format!("{MAIN} {{ c = vec4(0.5); }}"), &["--device", "Voodoo"]);
     expect(
         &run,
         2,

@@ -111,7 +111,7 @@ fn a_shader_has_the_same_verdict_alone_and_in_a_batch() {
         }
     }
     let check = |what: &str| {
-        let arguments = ["check", what, "--on", "cpu", "--size", "64x36", "--out", "out"];
+        let arguments = ["check", what, "--device", "cpu", "--size", "64x36", "--out", "out"];
         toyproof(folder.path(), &arguments);
         records(folder.path())
     };
@@ -193,7 +193,7 @@ fn plain_images_and_sample_counts_are_named() {
             "a.glsl",
             "--scene",
             "scene.toml",
-            "--on",
+            "--device",
             "cpu",
             "--size",
             "160x90",
@@ -224,7 +224,7 @@ fn endless_neighbors_do_not_cause_a_timeout() {
         &[
             "check",
             ".",
-            "--on",
+            "--device",
             "cpu",
             "--jobs",
             "4",
@@ -338,10 +338,10 @@ fn stale_images_are_removed() {
     let folder = homework(3);
     check(folder.path(), &[]);
     let exists = |name: &str| folder.path().join("out").join(name).is_file();
-    assert!(exists("002-actual.png") && exists("002-maths.png"));
+    assert!(exists("002-actual.png") && exists("002-algorithm.png"));
     fs::write(folder.path().join("hw/002.glsl"), SPHERE.shader).unwrap();
     check(folder.path(), &[]);
-    assert!(exists("002-actual.png") && !exists("002-maths.png"));
+    assert!(exists("002-actual.png") && !exists("002-algorithm.png"));
     fs::write(folder.path().join("hw/002.glsl"), "void main").unwrap();
     check(folder.path(), &[]);
     assert!(!exists("002-actual.png"));

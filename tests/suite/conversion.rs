@@ -338,12 +338,12 @@ fn proved_files_are_written_with_a_header() {
     );
 
     fs::remove_file(&out).unwrap();
-    let run = convert(&["--on", "cpu"]);
+    let run = convert(&["--device", "cpu"]);
     assert_eq!(run.code, 2);
     assert!(run.stdout.contains("takes a Vulkan driver"), "{}", run.stdout);
     assert!(!out.exists(), "what is not proved is not written");
 
-    let run = convert(&["--on", "cpu", "--force"]);
+    let run = convert(&["--device", "cpu", "--force"]);
     assert_eq!(run.code, 2, "it is still not proved");
     assert!(fs::read_to_string(&out).unwrap().contains("// NOT PROVED: "));
 }

@@ -53,5 +53,6 @@ mod submissions;
 mod trade;
 mod ui;
 mod unstable;
+mod wording;
 
 use toyproof_testkit as support;

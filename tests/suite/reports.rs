@@ -108,7 +108,7 @@ fn marks_need_a_rubric_and_one_submission_needs_no_name() {
             "hw/ann.glsl",
             "--scene",
             "scene.toml",
-            "--on",
+            "--device",
             "cpu",
             "--size",
             "64x36",
