@@ -18,7 +18,7 @@ pub fn reason(findings: &Findings, files: &Files) -> String {
         sentence.push_str(&part);
     };
     if let Some(mistake) = &findings.tolerated_mistake {
-        add(format!("they are what a tracer paints that {}", mistake.says));
+        add(Mistake::new(mistake).says);
     }
     if let (Verdict::Wrong, None, Some(color)) =
         (findings.verdict, &findings.mistake, findings.actual.only_color())
@@ -32,7 +32,7 @@ pub fn reason(findings: &Findings, files: &Files) -> String {
         let at = files.position(cause);
         add(format!("it is lost in line {}, column {}", at.line, at.column));
     }
-    if let Some(mistake) = findings.mistake.as_deref().map(Mistake::new) {
+    if let Some(mistake) = findings.mistake.as_ref().map(Mistake::new) {
         add(mistake.says);
     }
     sentence

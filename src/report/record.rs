@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{self as diagnostic, Files};
 use toyproof_verify::compare::{CheckSummary, Comparison};
-use toyproof_verify::mistake::Named;
+use toyproof_verify::mistake::Diagnosis;
 use toyproof_verify::{CheckResult, Evidence, Failure, Findings, Verdict, decide};
 
 use super::reason::{phrase, reason};
@@ -107,7 +107,7 @@ impl Record {
         let answer = |check: &Option<CheckResult>| check.as_ref().map(|check| check.summary.clone());
         self.verdict = findings.verdict;
         self.reason = reason(findings, files);
-        self.mistake = findings.mistake.as_deref().map(Mistake::new);
+        self.mistake = findings.mistake.as_ref().map(Mistake::new);
         self.algorithm = answer(&findings.algorithm);
         self.precision = answer(&findings.precision);
         self.toolchain = answer(&findings.toolchain);
@@ -145,7 +145,7 @@ impl Record {
 /// A mistake that explains a wrong image.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Mistake {
-    /// Its name, such as `far-root`; for two combined mistakes both names: `no-aspect+gamma`.
+    /// Its name, such as `far-root`; for two combined mistakes both names: `no-aspect+no-gamma`.
     pub id: String,
     /// Its meaning, in one sentence.
     pub says: String,
@@ -154,17 +154,12 @@ pub struct Mistake {
 impl Mistake {
     /// Combines the recognized mistakes.
     #[must_use]
-    pub fn new(named: &[Named]) -> Self {
-        let (ids, says): (Vec<_>, Vec<_>) = named
-            .iter()
-            .map(|mistake| (mistake.name, mistake.says.as_ref()))
-            .unzip();
+    pub fn new(diagnosis: &Diagnosis) -> Self {
+        let mistakes = diagnosis.mistakes.iter();
+        let descriptions: Vec<_> = mistakes.map(|mistake| mistake.description.as_ref()).collect();
         Self {
-            id: ids.join("+"),
-            says: format!(
-                "the picture is what a tracer paints that {}",
-                says.join(", and that ")
-            ),
+            id: diagnosis.id(),
+            says: format!("likely mistake: {}", descriptions.join("; and ")),
         }
     }
 }
