@@ -215,20 +215,20 @@ mod tests {
     fn undefined_pixels_are_not_counted_otherwise() {
         use PixelStatus::{Agrees, Differs, IllConditioned, Undefined};
         let (a, b) = (row(&[0.0; 5]), row(&[1.0, 0.0, 0.25, 0.5, 0.375]));
-        let answer = CheckSummary::new(&a, &b, &[Undefined, Agrees, Differs, Differs, IllConditioned]);
+        let summary = CheckSummary::new(&a, &b, &[Undefined, Agrees, Differs, Differs, IllConditioned]);
         assert_eq!(
             (
-                answer.pixels,
-                answer.differing,
-                answer.ill_conditioned,
-                answer.undefined
+                summary.pixels,
+                summary.differing,
+                summary.ill_conditioned,
+                summary.undefined
             ),
             (5, 2, 1, 1)
         );
-        assert_eq!(answer.max_abs, 0.5);
-        assert_eq!(answer.first.map(|pixel| pixel.x), Some(2));
-        assert_eq!(answer.worst.map(|pixel| pixel.x), Some(3));
-        assert!(!answer.is_same());
+        assert_eq!(summary.max_abs, 0.5);
+        assert_eq!(summary.first.map(|pixel| pixel.x), Some(2));
+        assert_eq!(summary.worst.map(|pixel| pixel.x), Some(3));
+        assert!(!summary.is_same());
     }
 
     #[test]
@@ -256,9 +256,9 @@ mod tests {
                     let black = column(&[0.0; 6][rows.clone()]);
                     CheckSummary::new(&black, &column(&reds[rows.clone()]), &statuses[rows])
                 };
-                let mut answer = part(0..height);
-                answer.extend(&part(height..reds.len()), height as u32);
-                assert_eq!(answer, whole, "{height}");
+                let mut summary = part(0..height);
+                summary.extend(&part(height..reds.len()), height as u32);
+                assert_eq!(summary, whole, "{height}");
             }
         }
     }
@@ -266,9 +266,9 @@ mod tests {
     #[test]
     fn the_first_undecided_pixel_is_reported_where_none_differs() {
         use PixelStatus::{Agrees, IllConditioned};
-        let answer = CheckSummary::new(&row(&[0.0; 2]), &row(&[0.0, 0.1]), &[Agrees, IllConditioned]);
-        assert_eq!(answer.first.map(|pixel| pixel.x), Some(1));
-        assert!(!answer.is_same() && answer.differing == 0);
+        let summary = CheckSummary::new(&row(&[0.0; 2]), &row(&[0.0, 0.1]), &[Agrees, IllConditioned]);
+        assert_eq!(summary.first.map(|pixel| pixel.x), Some(1));
+        assert!(!summary.is_same() && summary.differing == 0);
     }
 
     #[test]

@@ -1,6 +1,6 @@
-//! Finds the mistake that explains a wrong image: the image is compared with those of mutants, tracers with one
-//! classic mistake, and with two at once where no single one explains it. A mistake replaces parts of the shader that
-//! renders the scene (`catalogue`), changes the scene (`change`), or is one wrong number (`fit`).
+//! Finds the mistake that explains a wrong image: the image is compared with those of mutants, tracers with
+//! one classic mistake, and with two at once where no single one explains it. A mistake replaces parts of the
+//! shader that renders the scene (`catalogue`), changes the scene (`change`), or is one wrong number (`fit`).
 
 mod catalogue;
 mod change;

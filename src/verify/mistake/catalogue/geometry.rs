@@ -20,7 +20,8 @@ pub(super) static INTERSECTIONS: &[Mistake] = mistakes! {
     "hit-behind-origin": "hits behind the ray's origin (negative t) are accepted", [NearRootIsHit = "true"];
     "radius-not-squared": "the sphere's radius is not squared in the quadratic",
         [Discriminant = "sphere.radius - dot(closest, closest)"];
-    "discriminant-without-sqrt": "the square root of the discriminant is missing", [DiscriminantRoot = "disc"];
+    "discriminant-without-sqrt": "the square root of the discriminant is missing",
+        [DiscriminantRoot = "disc"];
     "sign-of-b": "b has the wrong sign: center − origin is used instead of origin − center",
         [CenterToOrigin = "sphere.center - ray.origin"];
     "last-hit": "the last sphere that a ray hits is kept instead of the nearest",
@@ -81,12 +82,14 @@ pub(super) static QUADRICS: &[Mistake] = mistakes! {
         [QuadricNormal = "normalize(point - quadric.origin)"];
     "normal-without-linear-term": "the linear term of the quadric's equation is missing in the normal",
         [QuadricNormal = "normalize(quadric.axes * (quadric.form.q * p))"];
-    "cone-slope-ignored": "the cone's slope is always 45°: its radius and height are ignored", [ConeSlope = "-1.0"];
+    "cone-slope-ignored": "the cone's slope is always 45°: its radius and height are ignored",
+        [ConeSlope = "-1.0"];
     "both-nappes": "both halves (nappes) of the cone are visible", [ConeLow = "-height"];
     "paraboloid-too-wide": "the factor 2 of the linear term is wrong in the paraboloid's equation",
         [ParaboloidG = "-radius * radius / height"],
         [ParaboloidG = "-2.0 * radius * radius / height"];
-    "hyperboloid-of-two-sheets": "the hyperboloid has two sheets: its constant term has the wrong sign", [HyperboloidK = "waist * waist"];
+    "hyperboloid-of-two-sheets": "the hyperboloid has two sheets: its constant term has the wrong sign",
+        [HyperboloidK = "waist * waist"];
     "quadric-normal-reversed": "the normal of quadrics points away from the ray's origin",
         [QuadricSide = "-faceforward(normal, direction, normal)"];
     "normal-not-flipped": "the normal of open surfaces is not flipped toward the ray's origin",
@@ -131,7 +134,8 @@ pub(super) static GRIDS: &[Mistake] = mistakes! {
         [CellSeed = "grid.seed - 1u + «CellNumber»"],
         [CellSeed = "«CellNumber»"],
         [CellSeed = "1u + «CellNumber»"];
-    "spheres-at-cell-centers": "spheres lie at the centers of their cells instead of random positions", [CellPlace = "0.5"];
+    "spheres-at-cell-centers": "spheres lie at the centers of their cells instead of random positions",
+        [CellPlace = "0.5"];
     "position-range-too-large": "the range of a sphere's position in its cell is too large: the radius is not subtracted on both sides",
         [CellRoom = "grid.spacing"],
         [CellRoom = "grid.spacing - radius"];
@@ -139,7 +143,8 @@ pub(super) static GRIDS: &[Mistake] = mistakes! {
         [CellRadius = "0.5 * (grid.small + grid.large) + 0.0 * draw()"];
     "random-coordinates-reversed": "random coordinates are sampled in the order z, y, x instead of x, y, z",
         [CellPlace = "vec3(z, y, x)"];
-    "random-colors-reversed": "random color components are sampled in the order b, g, r instead of r, g, b", [CellColor = "vec3(b, g, r)"];
+    "random-colors-reversed": "random color components are sampled in the order b, g, r instead of r, g, b",
+        [CellColor = "vec3(b, g, r)"];
     "hash-shift-missing": "the last shift of the hash function is missing", [HashResult = "word"];
 };
 
@@ -152,7 +157,8 @@ pub(super) static NORMALS: &[Mistake] = mistakes! {
         [SphereNormal = "normalize(spheres[i].center - hit.point)"];
     "normal-from-world-origin": "the normal is computed from the world's origin instead of the sphere's center",
         [SphereNormal = "normalize(hit.point)"];
-    "normal-is-ray-direction": "the negated ray direction is used as the normal", [SphereNormal = "-ray.direction"];
+    "normal-is-ray-direction": "the negated ray direction is used as the normal",
+        [SphereNormal = "-ray.direction"];
 };
 
 /// Motions.
@@ -163,8 +169,10 @@ pub(super) static MOTIONS: &[Mistake] = mistakes! {
     "sine-and-cosine-swapped": "the sine and the cosine of the rotation angle are swapped",
         [AngleCosine = "«AngleSine»", AngleSine = "«AngleCosine»"];
     "angle-in-turns": "the rotation angle is in turns instead of radians", [RotationAngle = "fract(turns)"];
-    "angle-in-degrees": "the rotation angle is in degrees instead of radians", [RotationAngle = "360.0 * fract(turns)"];
-    "angle-with-pi": "the rotation angle uses π instead of 2π per turn", [RotationAngle = "3.14159265359 * fract(turns)"];
+    "angle-in-degrees": "the rotation angle is in degrees instead of radians",
+        [RotationAngle = "360.0 * fract(turns)"];
+    "angle-with-pi": "the rotation angle uses π instead of 2π per turn",
+        [RotationAngle = "3.14159265359 * fract(turns)"];
     "rotation-about-origin": "the rotation is about the world's origin instead of the pivot",
         [RotationAboutPivot = "rotate(p, axis, «RotationAngle»)"];
     "pivot-not-added-back": "the pivot is not added back after the rotation",

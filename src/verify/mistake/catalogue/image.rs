@@ -20,7 +20,8 @@ pub(super) static CAMERA: &[Mistake] = mistakes! {
         ],
         [ScreenX = "float(int(fragCoord.x) / int(iResolution.x)) * 2.0 - 1.0"],
         [ScreenY = "(float(int(fragCoord.y) / int(iResolution.y)) * 2.0 - 1.0)"];
-    "upside-down": "the image is upside down: y is negated", [ScreenY = "(1.0 - fragCoord.y / iResolution.y * 2.0)"];
+    "upside-down": "the image is upside down: y is negated",
+        [ScreenY = "(1.0 - fragCoord.y / iResolution.y * 2.0)"];
     "mirrored": "the image is mirrored: x is negated", [ScreenX = "1.0 - fragCoord.x / iResolution.x * 2.0"];
     "not-centered": "screen coordinates run from 0 to 1 instead of −1 to 1",
         [ScreenX = "fragCoord.x / iResolution.x", ScreenY = "(fragCoord.y / iResolution.y)"];
@@ -28,7 +29,7 @@ pub(super) static CAMERA: &[Mistake] = mistakes! {
         [ScreenX = "fragCoord.x / iResolution.x - 0.5", ScreenY = "(fragCoord.y / iResolution.y - 0.5)"];
     "pixel-corner": "rays pass through the corners of pixels instead of their centers",
         [AspectStatement = "fragCoord -= 0.5;\n    …"];
-    "half-pixel-twice": "0.5 is added to `fragCoord`, which already is the pixel's center",
+    "half-pixel-twice": "half a pixel is added to `fragCoord`, which already is the pixel's center",
         [AspectStatement = "fragCoord += 0.5;\n    …"],
         [ScreenY = "((fragCoord.y + 0.5) / iResolution.y * 2.0 - 1.0)"],
         [ScreenX = "(fragCoord.x + 0.5) / iResolution.x * 2.0 - 1.0"];
@@ -38,9 +39,11 @@ pub(super) static CAMERA: &[Mistake] = mistakes! {
         [AspectStatement = "fragCoord.y += 1.0;\n    …"],
         [AspectStatement = "fragCoord.y -= 1.0;\n    …"],
         [AspectStatement = "fragCoord += 1.0;\n    …"];
-    "screen-behind-camera": "the screen is behind the camera: the z of ray directions is positive", [ScreenZ = "«ScreenDistance»"];
+    "screen-behind-camera": "the screen is behind the camera: the z of ray directions is positive",
+        [ScreenZ = "«ScreenDistance»"];
     "screen-at-1": "the screen distance is 1 instead of the scene's", [ScreenZ = "-1.0"];
-    "one-ray-for-all": "all pixels cast the same ray: its origin does not depend on the pixel", [ParallelOffset = "vec3(0.0)"];
+    "one-ray-for-all": "all pixels cast the same ray: its origin does not depend on the pixel",
+        [ParallelOffset = "vec3(0.0)"];
 };
 
 /// Samples, tone map and gamma.
@@ -48,10 +51,12 @@ pub(super) static FILM: &[Mistake] = mistakes! {
     "no-gamma": "gamma correction is missing", [GammaStatement = ""];
     "gamma-inverted": "gamma correction uses the exponent γ instead of 1/γ",
         [GammaExponent = "«Gamma»"];
-    "gamma-of-2": "gamma correction uses the square root instead of the scene's gamma", [GammaStatement = "color = sqrt(color);"];
+    "gamma-of-2": "gamma correction uses the square root instead of the scene's gamma",
+        [GammaStatement = "color = sqrt(color);"];
     "extra-gamma": "colors are raised to the power 1/2.2, which the scene does not do",
         [FinalColor = "pow(color, vec3(1.0 / 2.2))"];
-    "extra-inverse-gamma": "colors are raised to the power 2.2, which the scene does not do", [FinalColor = "pow(color, vec3(2.2))"];
+    "extra-inverse-gamma": "colors are raised to the power 2.2, which the scene does not do",
+        [FinalColor = "pow(color, vec3(2.2))"];
     "no-tone-map": "tone mapping is missing", [ToneMapStatement = ""];
     "extra-tone-map": "the tone map c / (c + 1) is applied, which the scene does not do",
         [FinalColor = "color / (color + 1.0)"];
@@ -75,8 +80,10 @@ pub(super) static FILM: &[Mistake] = mistakes! {
         ];
     "red-blue-swapped": "red and blue are swapped", [FinalColor = "color.zyx"];
     "samples-not-averaged": "the sum of the samples is not divided by their number", [MeanStatement = ""];
-    "sample-loop-too-short": "the sum has one sample fewer than its divisor", [SampleCondition = "i < SAMPLES - 1"];
-    "sample-loop-too-long": "the sum has one sample more than its divisor", [SampleCondition = "i <= SAMPLES"];
+    "sample-loop-too-short": "the sum has one sample fewer than its divisor",
+        [SampleCondition = "i < SAMPLES - 1"];
+    "sample-loop-too-long": "the sum has one sample more than its divisor",
+        [SampleCondition = "i <= SAMPLES"];
     "one-sample-fewer": "the number of samples is one less than the scene's",
         [SampleCondition = "i < SAMPLES - 1", MeanDivisor = "SAMPLES - 1"];
     "one-sample-more": "the number of samples is one more than the scene's",
@@ -121,7 +128,8 @@ pub(super) static BACKGROUND: &[Mistake] = mistakes! {
 /// Figures on the screen.
 pub(super) static FIGURES: &[Mistake] = mistakes! {
     "disk-radius-not-squared": "the disk's radius is not squared", [DiskFunction = "dot(d, d) - radius"];
-    "disk-inside-out": "the outside of the disk is filled: its function has the wrong sign", [DiskFunction = "radius * radius - dot(d, d)"];
+    "disk-inside-out": "the outside of the disk is filled: its function has the wrong sign",
+        [DiskFunction = "radius * radius - dot(d, d)"];
     "wave-filled-above": "the area above the wave is filled instead of the area below it",
         [WaveFunction = "height + amplitude * sin(frequency * p.x) - p.y"],
         [WaveFunction = "height - p.y + amplitude * sin(frequency * p.x)"];

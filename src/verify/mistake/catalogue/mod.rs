@@ -53,8 +53,9 @@ pub(super) fn all() -> impl Iterator<Item = &'static Mistake> {
     topics.into_iter().flatten()
 }
 
-/// `id: description, [Part = template, OtherPart = template];`. A mistake that can be made in several ways, or that
-/// concerns different parts of different shaders, has alternatives: `id: description, [edits], [other edits];`
+/// `id: description, [Part = template, OtherPart = template];`. A mistake that can be made in several ways, or
+/// that concerns different parts of different shaders, has alternatives: `id: description, [edits], [other
+/// edits];`
 macro_rules! mistakes {
     ($($id:literal: $description:literal, $([$($slot:ident = $template:expr),* $(,)?]),+;)*) => {
         &[$($($crate::mistake::catalogue::Mistake {

@@ -51,7 +51,8 @@ pub(super) static LIGHTS: &[Mistake] = mistakes! {
 /// Shadows of point lights.
 pub(super) static SHADOWS: &[Mistake] = mistakes! {
     "no-shadows": "shadows are missing", [LitAndVisible = "«Lit»"];
-    "shadow-beyond-light": "shadow rays do not stop at the light, so objects behind it cast shadows", [ShadowLength = "NO_HIT"];
+    "shadow-beyond-light": "shadow rays do not stop at the light, so objects behind it cast shadows",
+        [ShadowLength = "NO_HIT"];
     "shadow-rays-too-short": "shadow rays have length 1 instead of the distance to the light",
         [ShadowLength = "1.0"];
     "shadow-rays-reversed": "shadow rays point away from the light", [ShadowVector = "origin - light"];
@@ -63,7 +64,8 @@ pub(super) static SHADOWS: &[Mistake] = mistakes! {
         [
             LightStatement = "if (cosine > 0.0 && !(«Visible»)) {\n            return vec3(0.0);\n        }\n        if (cosine > 0.0) {\n            «LightSum»\n        }",
         ];
-    "shadow-from-camera": "shadow rays start at the camera instead of the hit point", [ShadowOrigin = "vec3(0.0)"];
+    "shadow-from-camera": "shadow rays start at the camera instead of the hit point",
+        [ShadowOrigin = "vec3(0.0)"];
 };
 
 /// Lights with a radius.
@@ -72,13 +74,16 @@ pub(super) static SOFT_LIGHTS: &[Mistake] = mistakes! {
         [LightSample = "normalize(axis)"];
     "hemisphere-sampled": "directions are sampled in the hemisphere around the light's axis instead of the light's cone",
         [ConeCosine = "1.0 - u"];
-    "cone-edge-only": "directions are sampled only on the edge of the light's cone", [ConeCosine = "1.0 - depth"];
+    "cone-edge-only": "directions are sampled only on the edge of the light's cone",
+        [ConeCosine = "1.0 - depth"];
     "angle-uniform": "the angle to the light's axis is sampled uniformly instead of its cosine",
         [ConeCosine = "cos(u * asin(sqrt(sine2)))"];
-    "light-radius-not-squared": "the light's radius is not squared in the size of its cone", [LightRadiusSquared = "light.radius"];
+    "light-radius-not-squared": "the light's radius is not squared in the size of its cone",
+        [LightRadiusSquared = "light.radius"];
     "random-numbers-swapped": "the two random numbers are swapped: the first one sets the azimuth instead of the cosine",
         [ConeUStatement = "«ConeVStatement»", ConeVStatement = "«ConeUStatement»"];
-    "azimuth-half-circle": "the azimuth covers only half a circle: π is used instead of 2π", [Turn = "3.14159265359 * turn"];
+    "azimuth-half-circle": "the azimuth covers only half a circle: π is used instead of 2π",
+        [Turn = "3.14159265359 * turn"];
     "azimuth-without-2-pi": "the azimuth is not multiplied by 2π", [Turn = "turn"];
     "azimuth-in-degrees": "the azimuth is in degrees instead of radians", [Turn = "360.0 * turn"];
     "cosine-to-light-center": "N·L is computed with the direction to the light's center instead of the sampled direction",
@@ -89,15 +94,18 @@ pub(super) static SOFT_LIGHTS: &[Mistake] = mistakes! {
 
 /// Burley's BRDF.
 pub(super) static DISNEY: &[Mistake] = mistakes! {
-    "diffuse-instead-of-disney": "a diffuse BRDF is used instead of the Disney BRDF", [ViewBrdf = "hit.color / PI"];
+    "diffuse-instead-of-disney": "a diffuse BRDF is used instead of the Disney BRDF",
+        [ViewBrdf = "hit.color / PI"];
     "view-direction-reversed": "the view direction is reversed", [ShadeView = "ray.direction"];
     "roughness-not-squared": "the roughness is not squared to obtain α",
         [RoughnessX = "m.roughness", RoughnessY = "m.roughness"];
     "tangents-swapped": "tangent and bitangent are swapped",
         [HalfVectorX = "«HalfVectorY»", HalfVectorY = "«HalfVectorX»"];
     "anisotropy-ignored": "the parameter `anisotropic` is ignored", [Anisotropy = "1.0"];
-    "diffuse-on-metal": "metals have a diffuse part: the factor 1 − metallic is missing", [DiffuseLobe = "«BaseAndSheen»"];
-    "metal-highlights-not-tinted": "the specular color of metals is not the base color", [SpecularColor = "dielectric"];
+    "diffuse-on-metal": "metals have a diffuse part: the factor 1 − metallic is missing",
+        [DiffuseLobe = "«BaseAndSheen»"];
+    "metal-highlights-not-tinted": "the specular color of metals is not the base color",
+        [SpecularColor = "dielectric"];
     "schlick-fourth-power": "Schlick's weight uses the fourth power instead of the fifth",
         [SchlickWeight = "square(square(m))"];
     "fresnel-with-n-dot-h": "the Fresnel term uses N·H instead of L·H",
@@ -108,11 +116,13 @@ pub(super) static DISNEY: &[Mistake] = mistakes! {
     "no-clear-coat": "the clear coat is missing", [SpecularAndCoat = "f * d * g"];
     "clear-coat-distribution": "the clear coat uses the distribution of the specular lobe (GTR2) instead of GTR1",
         [CoatDistribution = "trowbridgeReitz(nH, dot(x, middle), dot(y, middle), 0.25, 0.25)"];
-    "clear-coat-gloss-ignored": "the parameter `clearcoatGloss` is ignored", [CoatDistribution = "berry(nH, 0.1)"];
+    "clear-coat-gloss-ignored": "the parameter `clearcoatGloss` is ignored",
+        [CoatDistribution = "berry(nH, 0.1)"];
     "no-specular": "the specular lobe is missing", [SpecularAndCoat = "coat"];
     "shadowing-squared": "the shadowing–masking term G is squared", [Shadowing = "square(…)"];
     "no-shadowing": "the shadowing–masking term G is missing", [SpecularAndCoat = "f * d + coat"];
-    "pi-missing-in-diffuse": "the diffuse part of the Disney BRDF is not divided by π", [BaseOverPi = "color"];
+    "pi-missing-in-diffuse": "the diffuse part of the Disney BRDF is not divided by π",
+        [BaseOverPi = "color"];
     "half-vector-not-normalized": "the half vector is not normalized", [HalfVector = "(light + view)"];
     "specular-tint-ignored": "the parameter `specularTint` is ignored", [SpecularTint = "vec3(1.0)"];
 };

@@ -29,7 +29,8 @@ pub(super) static MIRRORS: &[Mistake] = mistakes! {
     "reflection-origin-unchanged": "reflected rays start at the origin of the incoming ray instead of the hit point",
         [ReflectedOrigin = "ray.origin"],
         [SampledOrigin = "ray.origin"];
-    "reflection-along-normal": "the normal is used as the reflected direction", [ReflectedDirection = "hit.normal"];
+    "reflection-along-normal": "the normal is used as the reflected direction",
+        [ReflectedDirection = "hit.normal"];
     "one-bounce-fewer": "paths end one bounce before the scene's maximum depth",
         [MirrorDepth = "depth < MAX_DEPTH - 1"];
     "one-bounce-only": "only one reflection is followed", [MirrorDepth = "depth < 2"];
@@ -49,7 +50,8 @@ pub(super) static MIRRORS: &[Mistake] = mistakes! {
 pub(super) static GLASS: &[Mistake] = mistakes! {
     "ior-ratio-inverted": "the ratio of the refractive indices is inverted",
         [EtaEntering = "«EtaLeaving»", EtaLeaving = "«EtaEntering»"];
-    "ior-always-entering": "rays that leave the glass use the ratio of refractive indices of rays that enter it", [EtaLeaving = "1.0 / hit.ior"];
+    "ior-always-entering": "rays that leave the glass use the ratio of refractive indices of rays that enter it",
+        [EtaLeaving = "1.0 / hit.ior"];
     "normal-not-flipped-inside": "the normal is not flipped where rays leave the glass",
         [
             GlassCosine = "-dot(ray.direction, hit.normal)",
@@ -61,7 +63,8 @@ pub(super) static GLASS: &[Mistake] = mistakes! {
     "refraction-sign": "a sign is wrong in the refracted direction η d + (η cos θᵢ − cos θₜ) n",
         [Refracted = "normalize(eta * ray.direction + (eta * cosine + beyond) * side)"],
         [Refracted = "eta * ray.direction + (eta * cosine + beyond) * side", Discriminant = TEXTBOOK];
-    "no-refraction": "rays are not refracted: they pass straight through glass", [Refracted = "ray.direction"];
+    "no-refraction": "rays are not refracted: they pass straight through glass",
+        [Refracted = "ray.direction"];
     "no-glass-reflection": "the Fresnel reflectance of glass is always 0", [ReflectedShare = "0.0"];
     "glass-reflects-half": "the Fresnel reflectance of glass is always 0.5", [ReflectedShare = "0.5"];
     "constant-reflectance": "the Fresnel reflectance at normal incidence is used at every angle",
@@ -76,7 +79,8 @@ pub(super) static GLASS: &[Mistake] = mistakes! {
     "glass-color-ignored": "the color of the glass is ignored",
         [GlassColor = "(hit.model == GLASS ? vec3(1.0) : hit.color)"],
         [GlassColor = "(hit.model == SCHLICK ? vec3(1.0) : hit.color)"];
-    "no-total-internal-reflection": "total internal reflection is missing: such rays are lost", [TotalReflection = ""];
+    "no-total-internal-reflection": "total internal reflection is missing: such rays are lost",
+        [TotalReflection = ""];
 };
 
 /// Path tracing.
@@ -114,7 +118,8 @@ pub(super) static PATHS: &[Mistake] = mistakes! {
         [PathIsAtEnd = "false"];
     "throughput-replaced": "the throughput is replaced at each bounce instead of multiplied",
         [PathStatement = "throughput = «PathFactor»;"];
-    "light-visibility-missing": "emitters are sampled without a shadow ray, so they shine through objects", [EmitterHidden = "cosine <= 0.0"];
+    "light-visibility-missing": "emitters are sampled without a shadow ray, so they shine through objects",
+        [EmitterHidden = "cosine <= 0.0"];
     "pi-missing-in-paths": "the diffuse BRDF is not divided by π, either for sampled emitters or in the throughput",
         [EmitterDiffuseBrdf = "hit.color"],
         [PathDiffuseBrdf = "hit.color"];

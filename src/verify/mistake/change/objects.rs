@@ -2,7 +2,7 @@
 
 use toyproof_scene::{Fresnel, Model, Scene, Shape};
 
-use super::{Changes, ordinal, place};
+use super::{Changes, place};
 
 /// The largest number of surfaces of a scene in which a missing one is searched for.
 const MAX_MISSING: usize = 64;
@@ -118,12 +118,10 @@ pub(super) fn no_lights(changes: &mut Changes) {
 pub(super) fn lights(changes: &mut Changes) {
     let lights = changes.scene.lights.clone();
     for (index, light) in lights.iter().enumerate() {
-        let which = match lights.len() {
-            1 => "the light".to_owned(),
-            _ => format!("the {} light", ordinal(index)),
-        };
+        let position = place(light.position);
+        let which = format!("the light at {position}");
         if lights.len() > 1 {
-            let description = format!("the light at {} is missing", place(light.position));
+            let description = format!("{which} is missing");
             changes.add("light-missing", description, |scene| {
                 scene.lights.remove(index);
             });
@@ -146,7 +144,7 @@ pub(super) fn lights(changes: &mut Changes) {
             scene.lights[index].shadow = true;
         });
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-            let description = format!("the {name} of {which}'s position has the wrong sign");
+            let description = format!("the {name} of the light's position {position} has the wrong sign");
             changes.add("light-sign", description, |scene| {
                 let along = &mut scene.lights[index].position[axis];
                 *along = -*along;
