@@ -45,18 +45,18 @@ pub(super) fn notes(observed: &Observations, excludes_pixels: bool, lints: &Lint
 /// Reports the channels that a shader reads but the frame has no image for, each at its first use.
 #[must_use]
 pub fn unbound(checked: &Checked, lints: &Lints, frame: &Frame) -> Vec<Diagnostic> {
-    let mut named = [None; 4];
+    let mut first_uses = [None; 4];
     for (_, expr) in checked.tree.exprs.iter() {
         if let ExprKind::Variable(variable) = expr.kind
             && let VariableKind::Input(Input::Channel(channel)) = checked.tree[variable].kind
         {
-            named[usize::from(channel)].get_or_insert(expr.at.span);
+            first_uses[usize::from(channel)].get_or_insert(expr.at.span);
         }
     }
-    let named = (0..)
-        .zip(named)
+    let first_uses = (0..)
+        .zip(first_uses)
         .filter_map(|(channel, span)| Some((channel, span?)));
-    let unbound = named.filter_map(|(channel, span): (usize, _)| {
+    let unbound = first_uses.filter_map(|(channel, span): (usize, _)| {
         let note = match checked.channels[channel] {
             SamplerShape::D2 if frame.channels[channel].is_some() => return None,
             SamplerShape::D2 => {
@@ -140,17 +140,17 @@ pub(super) fn cause(
     check: &CheckResult,
 ) -> Option<Diagnostic> {
     let deadline = deadline.min(Instant::now() + case.timeout);
-    let mut named = BTreeMap::<u32, (u64, Diagnostic)>::new();
+    let mut causes = BTreeMap::<u32, (u64, Diagnostic)>::new();
     for pixel in sample_pixels(check, case.frame.size, MAX_EXPLAINED_PIXELS) {
         let explained = explain(program, case.frame, pixel, Some(deadline));
         let diagnostic = explained
             .ok()
             .and_then(|explanation| diagnostic(&explanation, pixel));
         if let Some((span, diagnostic)) = diagnostic {
-            named.entry(span.start).or_insert((0, diagnostic)).0 += 1;
+            causes.entry(span.start).or_insert((0, diagnostic)).0 += 1;
         }
     }
-    let most = named.into_values().max_by_key(|&(votes, _)| votes);
+    let most = causes.into_values().max_by_key(|&(votes, _)| votes);
     most.map(|(_, diagnostic)| diagnostic)
 }
 

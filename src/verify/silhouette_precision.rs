@@ -192,7 +192,7 @@ mod tests {
 
     const SIZE: [u32; 2] = [320, 180];
     const TEXTBOOK: &str = "float k = dot(f, f) - 1.0; float disc = b * b - k;";
-    const RECENTRED: &str = "vec3 h = f - b * d; float disc = 1.0 - dot(h, h);";
+    const RECENTERED: &str = "vec3 h = f - b * d; float disc = 1.0 - dot(h, h);";
 
     /// A shader that is white where rays hit the sphere of radius 1 around (0.1, 0.05, −distance), and its
     /// scene.
@@ -299,7 +299,7 @@ mod tests {
                 "{distance} {band:?} {offset}"
             );
 
-            let (checked, discriminants, _) = case(RECENTRED, distance, &camera, &ray);
+            let (checked, discriminants, _) = case(RECENTERED, distance, &camera, &ray);
             assert!(discriminants.is_empty());
             assert_eq!(render::<f32>(&checked), render::<f64>(&checked), "{distance}");
         }

@@ -45,7 +45,7 @@ pub struct CheckSummary {
     /// Pixels that differ, but are ill-conditioned in f64.
     #[serde(rename = "undecided")]
     pub ill_conditioned: u64,
-    /// The undecided pixels that are ill-conditioned in the scene itself, whatever the shader.
+    /// The ill-conditioned pixels that are so in the scene itself, whatever the shader.
     #[serde(skip)]
     pub tied: u64,
     /// Pixels that are excluded because their color depends on undefined behavior.
@@ -53,7 +53,7 @@ pub struct CheckSummary {
     /// The largest absolute difference of a component of colors clamped to [0, 1], over all pixels that are
     /// not undefined.
     pub max_abs: f64,
-    /// The first differing pixel: lowest y, then lowest x; if none differs, the first undecided one.
+    /// The first differing pixel: lowest y, then lowest x; if none differs, the first ill-conditioned one.
     pub first: Option<Pixel>,
     /// The one with the largest difference among those.
     pub worst: Option<Pixel>,
@@ -130,7 +130,7 @@ impl CheckSummary {
         count as f64 / self.pixels.max(1) as f64
     }
 
-    /// Whether no pixel differs or is undecided.
+    /// Whether no pixel differs or is ill-conditioned.
     #[must_use]
     pub fn is_same(&self) -> bool {
         self.differing + self.ill_conditioned == 0
@@ -244,8 +244,8 @@ mod tests {
             Differs,
             Agrees,
         ];
-        // Differing pixels are reported even if undecided ones are below them; without any, the undecided
-        // ones are.
+        // Differing pixels are reported even if ill-conditioned ones are below them; without any, the
+        // ill-conditioned ones are.
         for statuses in [
             all,
             all.map(|own| if own == Differs { IllConditioned } else { own }),
@@ -264,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_undecided_pixel_is_reported_where_none_differs() {
+    fn the_first_ill_conditioned_pixel_is_reported_where_none_differs() {
         use PixelStatus::{Agrees, IllConditioned};
         let summary = CheckSummary::new(&row(&[0.0; 2]), &row(&[0.0, 0.1]), &[Agrees, IllConditioned]);
         assert_eq!(summary.first.map(|pixel| pixel.x), Some(1));

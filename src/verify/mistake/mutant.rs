@@ -1,4 +1,4 @@
-//! Mutants: tracers with mistakes in them, and the ways in which students write the shader without a mistake.
+//! Mutants: tracers with mistakes in them, and the variants of the shader that students write without a mistake.
 
 use crate::mistake::KnownMistake;
 use crate::mistake::catalogue::Mistake;

@@ -103,9 +103,9 @@ pub(super) static QUADRICS: &[Mistake] = mistakes! {
         [CheckerSum = "square.y"];
     "checker-truncated": "the checker truncates toward 0, so its squares are twice as wide at the axes",
         [CheckerSquare = "trunc(point.xz / side)"];
-    "checker-too-large": "the squares of the checker are twice as large",
+    "checker-too-large": "the squares of the checker are twice as large as the scene's",
         [CheckerSquare = "floor(point.xz / (2.0 * side))"];
-    "checker-too-small": "the squares of the checker are half as large",
+    "checker-too-small": "the squares of the checker are half as large as the scene's",
         [CheckerSquare = "floor(point.xz / (0.5 * side))"];
     "checker-multiplied": "the position is multiplied by the side of the checker's squares instead of divided by it",
         [CheckerSquare = "floor(point.xz * side)"];

@@ -45,7 +45,7 @@ pub(super) static LIGHTS: &[Mistake] = mistakes! {
     "pi-multiplied": "the diffuse BRDF is multiplied by π instead of divided by it",
         [DiffuseBrdf = "hit.color * PI"],
         [DiffuseCase = "hit.color * PI"];
-    "cosine-squared": "the cosine N·L is multiplied in twice", [LightTerm = "… * cosine"];
+    "cosine-squared": "the cosine N·L is applied twice", [LightTerm = "… * cosine"];
 };
 
 /// Shadows of point lights.
