@@ -428,3 +428,32 @@ mod exercises {
         parse(&files, file).unwrap()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::exercises::scenes;
+    use super::*;
+
+    #[test]
+    fn alternatives_are_few_and_not_repeated() {
+        let scene = scenes().next().unwrap();
+        let mutant = |id, description: &'static str| {
+            let source = MutantSource::Scene(Box::new(scene.clone()), FrameTime::default());
+            Mutant::new(vec![KnownMistake::new(id, description)], source)
+        };
+        let first = mutant("a", "one");
+        let others = [
+            mutant("a", "two"),
+            mutant("b", "one"),
+            mutant("c", "three"),
+            mutant("c", "four"),
+            mutant("d", "five"),
+            mutant("e", "six"),
+            mutant("f", "seven"),
+        ];
+        let diagnosis = Diagnosis::new(&first, &others.iter().collect::<Vec<_>>());
+        assert_eq!(diagnosis.id(), "a");
+        let alternatives: Vec<_> = diagnosis.alternatives.iter().map(|known| known.id).collect();
+        assert_eq!(alternatives, ["c", "d", "e"]);
+    }
+}
