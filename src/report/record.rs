@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{self as diagnostic, Files};
 use toyproof_verify::compare::{CheckSummary, Comparison};
-use toyproof_verify::mistake::Named;
+use toyproof_verify::mistake::Diagnosis;
 use toyproof_verify::{CheckResult, Evidence, Failure, Findings, Verdict, decide};
 
 use super::reason::{Statement, state, state_reason};
@@ -114,7 +114,7 @@ impl Record {
         let answer = |check: &Option<CheckResult>| check.as_ref().map(|check| check.summary.clone());
         self.verdict = findings.verdict;
         self.set_statement(state(findings, files));
-        self.mistake = findings.mistake.as_deref().map(Mistake::new);
+        self.mistake = findings.mistake.as_ref().map(Mistake::new);
         self.algorithm = answer(&findings.algorithm);
         self.precision = answer(&findings.precision);
         self.toolchain = answer(&findings.toolchain);
@@ -156,7 +156,7 @@ impl Record {
 /// The mistake that explains a wrong image.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Mistake {
-    /// Its name, such as `far-root`; for two combined mistakes both names: `no-aspect+gamma`.
+    /// Its name, such as `far-root`; for two combined mistakes both names: `no-aspect+no-gamma`.
     pub id: String,
     /// What is wrong in the shader, in one sentence.
     pub text: String,
@@ -178,16 +178,17 @@ pub struct Alternative {
 impl Mistake {
     /// Combines the recognized mistakes.
     #[must_use]
-    pub fn new(named: &[Named]) -> Self {
-        let (ids, texts): (Vec<_>, Vec<_>) = named
-            .iter()
-            .map(|mistake| (mistake.name, mistake.says.as_ref()))
-            .unzip();
+    pub fn new(diagnosis: &Diagnosis) -> Self {
+        let texts = diagnosis.mistakes.iter().map(|mistake| mistake.description.as_ref());
+        let alternatives = diagnosis.alternatives.iter().map(|other| Alternative {
+            id: other.id.to_owned(),
+            text: other.description.to_string(),
+        });
         Self {
-            id: ids.join("+"),
-            text: texts.join("; and "),
-            is_symptom: false,
-            alternatives: Vec::new(),
+            id: diagnosis.id(),
+            text: texts.collect::<Vec<_>>().join("; and "),
+            is_symptom: diagnosis.mistakes.iter().all(|mistake| mistake.is_symptom),
+            alternatives: alternatives.collect(),
         }
     }
 }

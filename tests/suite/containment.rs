@@ -66,7 +66,7 @@ fn a_panic_affects_only_its_part() {
     let named = sound
         .stdout
         .lines()
-        .filter(|line| line.contains("paints that"))
+        .filter(|line| line.contains("likely mistake: "))
         .count();
     assert_eq!(named, 2, "{}", sound.stdout);
 

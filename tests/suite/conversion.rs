@@ -358,7 +358,7 @@ fn unprovable_shaders_name_the_operation_and_position() {
     fs::write(folder.path().join("a.glsl"), text).unwrap();
     let run = toyproof(folder.path(), &["convert", "a.glsl", "--verify", "-o", "a.wgsl"]);
     assert_eq!(run.code, 2, "{}", run.stderr);
-    let why = "every pixel hangs on what GLSL leaves undefined: `pow` of a negative base, or of zero to zero or less at a.glsl:2:17; not written";
+    let why = "every pixel depends on undefined behavior: `pow` of a negative base, or of zero to zero or less at a.glsl:2:17; not written";
     assert!(run.stdout.contains(why), "{}", run.stdout);
 }
 

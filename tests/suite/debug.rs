@@ -194,7 +194,10 @@ fn explain_locates_the_origin_of_a_nan() {
         &["check", "nan.glsl", "--device", "cpu", "--size", "8x8"],
     );
     assert!(
-        run.stderr.contains("W0603") && run.stderr.contains("in 64 pixels, first at (0, 0)"),
+        run.stderr.contains("W0603")
+            && run
+                .stderr
+                .contains("of 64 pixels NaN or infinite, first at (0, 0)"),
         "{}",
         run.stderr
     );
