@@ -23,10 +23,11 @@ mod motion;
 mod perturb;
 mod requirements;
 mod shape;
+pub mod toml_reader;
 
 use std::ops::Range;
 
-pub use file::{parse, toml_diagnostic};
+pub use file::parse;
 pub use film::{Camera, Figure, Film, Integrator, Outline, Projection, Sampler, ToneMap};
 pub use material::{Background, Checker, Disney, Fresnel, Light, Material, Model};
 pub use motion::{FrameTime, Motion, Period};
