@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use toyproof_diagnostic::grouped;
-use toyproof_image::check_size;
+use toyproof_image::{MAX_PIXELS, MAX_SIDE, check_size};
 
 use super::super::{Color, Point};
 use crate::toml_reader::{Located, Table, Value};
@@ -129,8 +129,13 @@ impl Table<'_, '_> {
             return default;
         }
         let [width, height] = located.value.map(|side| side as u64);
-        check_size(width, height).unwrap_or_else(|error| {
-            self.reject(located.span, error.to_string(), "");
+        check_size(width, height).unwrap_or_else(|_| {
+            let problem = format!(
+                "must be at most {} pixels in each direction and {} pixels in all",
+                grouped(u64::from(MAX_SIDE)),
+                grouped(MAX_PIXELS)
+            );
+            self.reject_value(key, &located, &problem);
             default
         })
     }

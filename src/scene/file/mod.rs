@@ -103,9 +103,10 @@ fn scene(document: &mut Table) -> Scene {
         document.reject(
             span,
             message,
-            "glass splits each ray into two, so the time doubles with each segment",
+            "lower `max_depth`: glass splits each ray into two, so each segment doubles the time",
         );
     }
+    document.report_unknown_keys();
     if document.is_valid() && objects.is_empty() && figures.is_empty() && background.is_none() {
         let help = "add a surface such as [[sphere]], a [[figure]] or a [background]";
         document.reject(document.span(), "the scene is empty", help);
@@ -166,7 +167,7 @@ impl Surfaces<'_> {
             }
             _ if self.film.integrator == Integrator::Whitted => {}
             Model::Emitter if !is_sphere => {
-                let message = "an emitter must be a sphere with `integrator = \"path\"`";
+                let message = "with `integrator = \"path\"`, an emitter must be a sphere";
                 table.reject(model, message, "use [[sphere]]");
             }
             Model::Diffuse | Model::Glossy { .. } | Model::Mirror | Model::Emitter => {}

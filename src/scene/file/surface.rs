@@ -215,16 +215,15 @@ const PLACEHOLDER: Material = Material {
     checker: None,
 };
 
+const MATERIAL_EXAMPLE: &str = "material = { model = \"lambert\", color = [1.0, 0.5, 0.2] }";
+const CHECKER_EXAMPLE: &str = "checker = { color = [1.0, 1.0, 1.0], size = 1.0 }";
+
 /// Reads the material of a surface, and where its model stands.
 fn material(surface: &mut Table) -> (Material, Option<Span>) {
-    if !surface.has("material") {
-        let help = "add `material = { model = \"lambert\", color = [1.0, 0.5, 0.2] }`";
-        surface.report_missing("material", help);
-    }
-    let material = surface.table("material", |table| {
+    let material = surface.required_table("material", MATERIAL_EXAMPLE, |table| {
         let name = table.required_choice("model", "material model", &MODELS);
         let color = table.color("color");
-        let checker = table.table("checker", |table| Checker {
+        let checker = table.inline_table("checker", CHECKER_EXAMPLE, |table| Checker {
             color: table.color("color"),
             size: table.positive("size"),
         });

@@ -138,6 +138,8 @@ pub struct Table<'r, 't> {
     entries: DeTable<'t>,
     /// The keys that were looked for, each with how it is written.
     known: Vec<(&'static str, String)>,
+    /// The required keys that were not found, each with advice.
+    missing: Vec<(&'static str, String)>,
     errors_before: usize,
 }
 
@@ -149,6 +151,7 @@ impl<'r, 't> Table<'r, 't> {
             span,
             entries,
             known: Vec::new(),
+            missing: Vec::new(),
             errors_before: reader.error_count.get(),
         }
     }
@@ -229,9 +232,8 @@ impl<'r, 't> Table<'r, 't> {
         match T::read(&value) {
             Ok(value) => Some(Located { value, span }),
             Err(mismatch) => {
-                let text = value.get_ref().as_str().unwrap_or_default();
-                let help = if mismatch.is_quoted(text) {
-                    format!("remove the quotes: `{key} = {text}`")
+                let help = if mismatch.is_number_in_quotes {
+                    "remove the quotes around the number".to_owned()
                 } else {
                     format!("for example `{key} = {}`", T::EXAMPLE)
                 };
@@ -247,15 +249,15 @@ impl<'r, 't> Table<'r, 't> {
         let count = self.reader.error_count.get();
         let value = self.optional(key);
         if value.is_none() && self.reader.error_count.get() == count {
-            self.report_missing(key, &format!("add `{key} = {}`", T::EXAMPLE));
+            self.report_missing(key, format!("add `{key} = {}`", T::EXAMPLE));
         }
         value
     }
 
-    /// Reports a missing key.
-    pub fn report_missing(&self, key: &str, help: &str) {
-        let message = format!("missing key `{key}` in {}", self.place.name());
-        self.reject_form(self.span, message, help);
+    /// Reports a missing key, unless an unknown one looks like a misspelling of it.
+    fn report_missing(&mut self, key: &'static str, help: String) {
+        self.missing.push((key, help));
+        self.reader.error_count.set(self.reader.error_count.get() + 1);
     }
 
     /// Returns the choice that a string names; `what` is the noun for it. None if the key is missing, or is
@@ -289,7 +291,7 @@ impl<'r, 't> Table<'r, 't> {
             let names: Vec<_> = names.iter().map(String::as_str).collect();
             let example = choices.first().map_or("", |(name, _)| name);
             let help = format!("add `{key} = \"{example}\"`; the choices are {}", list_of(&names));
-            self.report_missing(key, &help);
+            self.report_missing(key, help);
         }
         self.choice(key, what, choices)
     }
@@ -299,31 +301,58 @@ impl<'r, 't> Table<'r, 't> {
         self.entries = DeTable::new();
     }
 
-    /// Reads a table that may be missing: `[key]`, or `key = { … }` within another table.
+    /// Reads a table that must be there, as it is in the example: `key = { … }`.
+    pub fn required_table<T>(
+        &mut self,
+        key: &'static str,
+        example: &str,
+        read: impl FnOnce(&mut Table) -> T,
+    ) -> Option<T> {
+        if !self.has(key) {
+            self.report_missing(key, format!("add `{example}`"));
+        }
+        self.inline_table(key, example, read)
+    }
+
+    /// Reads a table that may be missing: `[key]`.
     pub fn table<T>(&mut self, key: &'static str, read: impl FnOnce(&mut Table) -> T) -> Option<T> {
-        let place = match self.place {
-            Place::Root => Place::One(key),
-            _ => Place::Inline(key),
-        };
+        let help = format!("write `[{key}]` on a line of its own, and its keys below");
+        self.table_at(Place::One(key), key, &help, read)
+    }
+
+    /// Reads a table that may be missing, and is written as in the example: `key = { … }`.
+    pub fn inline_table<T>(
+        &mut self,
+        key: &'static str,
+        example: &str,
+        read: impl FnOnce(&mut Table) -> T,
+    ) -> Option<T> {
+        self.table_at(Place::Inline(key), key, &format!("for example `{example}`"), read)
+    }
+
+    fn table_at<T>(
+        &mut self,
+        place: Place,
+        key: &'static str,
+        help: &str,
+        read: impl FnOnce(&mut Table) -> T,
+    ) -> Option<T> {
         let value = self.take(key, place)?;
         let span = self.reader.span(value.span());
         match value.into_inner() {
-            DeValue::Table(entries) => Some(Table::new(self.reader, place, span, entries).read(read)),
+            DeValue::Table(entries) => {
+                return Some(Table::new(self.reader, place, span, entries).read(read));
+            }
             DeValue::Array(_) if matches!(place, Place::One(_)) => {
-                let message = format!("[{key}] can be given only once");
-                self.reject_form(span, message, &format!("write `[{key}]`, with single brackets"));
-                None
+                let help = format!("write `[{key}]`, with single brackets");
+                self.reject_form(span, format!("[{key}] can be given only once"), &help);
             }
             other => {
                 let message = format!("`{key}` must be a table, found {}", describe(&other));
-                let help = match place {
-                    Place::Inline(_) => format!("for example `{key} = {{ … }}`"),
-                    _ => format!("write `[{key}]` on a line of its own, and its keys below"),
-                };
-                self.reject_form(span, message, &help);
-                None
+                self.reject_form(span, message, help);
             }
         }
+        None
     }
 
     /// Reads all tables `[[key]]`, in the order of the file.
@@ -374,39 +403,45 @@ impl<'r, 't> Table<'r, 't> {
         }
     }
 
-    fn report_unknown_keys(&self) {
-        let is_root = matches!(self.place, Place::Root);
-        for (name, value) in &self.entries {
-            let key = name.get_ref().as_ref();
-            let span = self.reader.span(name.span());
-            let mut renamed = self.reader.format.renamed.iter();
-            let present = renamed.find(|(former, _)| *former == key);
-            let present = present.filter(|(_, present)| self.known.iter().any(|(known, _)| known == present));
-            if let Some((_, present)) = present {
-                let message = format!("unknown key `{key}`; it is now called `{present}`");
-                self.reject_form(span, message, &format!("replace `{key}` with `{present}`"));
-                continue;
-            }
-            let message = match value.get_ref() {
-                _ if !is_root => format!("unknown key `{key}` in {}", self.place.name()),
-                DeValue::Table(_) => format!("unknown table [{key}]"),
-                DeValue::Array(all) if all.iter().any(|one| one.get_ref().is_table()) => {
-                    format!("unknown table [[{key}]]")
-                }
-                _ => format!("unknown key `{key}`"),
-            };
-            let help = if !is_root && self.reader.top_level.borrow().contains(&key) {
-                format!("`{key}` belongs at the top of the file, above the first table")
-            } else {
-                suggestion(
-                    key,
-                    self.known
-                        .iter()
-                        .map(|(known, written)| (*known, written.clone())),
-                )
-            };
-            self.reject_form(span, message, &help);
+    /// Reports the entries that have not been read, and the required ones that were not found.
+    pub fn report_unknown_keys(&mut self) {
+        let unknown = std::mem::take(&mut self.entries);
+        for (name, value) in &unknown {
+            self.report_unknown_key(name.get_ref(), self.reader.span(name.span()), value.get_ref());
         }
+        for (key, help) in std::mem::take(&mut self.missing) {
+            let mut unknown = unknown.keys();
+            if !unknown.any(|name| nearest(name.get_ref(), [key]).is_some()) {
+                let message = format!("missing key `{key}` in {}", self.place.name());
+                self.reject_form(self.span, message, &help);
+            }
+        }
+    }
+
+    fn report_unknown_key(&self, key: &str, span: Span, value: &DeValue) {
+        let is_root = matches!(self.place, Place::Root);
+        let mut renamed = self.reader.format.renamed.iter();
+        let renamed = renamed
+            .find(|(former, present)| *former == key && self.known.iter().any(|(known, _)| known == present));
+        if let Some((_, present)) = renamed {
+            let message = format!("unknown key `{key}`; it is now called `{present}`");
+            return self.reject_form(span, message, &format!("replace `{key}` with `{present}`"));
+        }
+        let message = match value {
+            _ if !is_root => format!("unknown key `{key}` in {}", self.place.name()),
+            DeValue::Table(_) => format!("unknown table [{key}]"),
+            DeValue::Array(all) if all.iter().any(|one| one.get_ref().is_table()) => {
+                format!("unknown table [[{key}]]")
+            }
+            _ => format!("unknown key `{key}`"),
+        };
+        let help = if !is_root && self.reader.top_level.borrow().contains(&key) {
+            format!("`{key}` belongs at the top of the file, above the first table")
+        } else {
+            let known = self.known.iter();
+            suggestion(key, known.map(|(known, written)| (*known, written.clone())))
+        };
+        self.reject_form(span, message, &help);
     }
 }
 

@@ -160,9 +160,7 @@ impl<'t> Site<'t> {
             "invalid float"
             | "invalid exponent"
             | "redundant numeric sign"
-            | "`_` may only go between digits" => {
-                self.word_error("is not a number", "write numbers as `1.0` or `1e-3`")
-            }
+            | "`_` may only go between digits" => self.not_a_number(),
             reason if reason.starts_with("cannot recurse") => at(
                 "lists and tables are nested too deeply",
                 "write them without nesting",
@@ -181,6 +179,20 @@ impl<'t> Site<'t> {
         (word, message, help.to_owned())
     }
 
+    fn not_a_number(&self) -> (Range<usize>, String, String) {
+        let word = &self.text[self.word()];
+        if word.ends_with(';') {
+            self.word_error("is not a number", "remove the `;`")
+        } else if word.starts_with(char::is_alphabetic) {
+            self.word_error(
+                "is not a value",
+                "write a number, a string in quotes, `true` or `false`",
+            )
+        } else {
+            self.word_error("is not a number", "write numbers as `1.0` or `1e-3`")
+        }
+    }
+
     /// A value is missing, or is a word without quotes.
     fn unquoted(&self) -> (Range<usize>, String, String) {
         let written = self.text[self.bytes.clone()].trim();
@@ -196,7 +208,7 @@ impl<'t> Site<'t> {
             let help = "write a list as `[1.0, 2.0, 3.0]`";
             (bytes, "missing `,` in a list".to_owned(), help.to_owned())
         } else if written.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) {
-            self.word_error("is not a number", "write numbers as `1.0` or `1e-3`")
+            self.not_a_number()
         } else {
             let help = format!("write `\"{written}\"`");
             (bytes, format!("`{written}` is not in quotes"), help)
@@ -216,8 +228,10 @@ impl<'t> Site<'t> {
                 "write a list in square brackets: `[{}]`",
                 value.trim_matches(['(', ')'])
             )
+        } else if value.matches(',').count() == 1 && value.replace(',', "").parse::<f64>().is_ok() {
+            format!("write decimals with a point: `{}`", value.replace(',', "."))
         } else if value.contains(',') && !value.contains(['=', '[', '{']) {
-            format!("write a list in brackets, `[{value}]`, and decimals with a point, `1.5`")
+            format!("write a list in square brackets: `[{value}]`")
         } else {
             "write each key on a line of its own".to_owned()
         };

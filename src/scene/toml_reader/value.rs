@@ -12,22 +12,25 @@ pub struct Mismatch {
     pub(super) bytes: Range<usize>,
     /// What it is.
     pub(super) found: String,
-    /// Whether a number was expected.
-    is_number_expected: bool,
+    /// Whether it would be right without its quotes.
+    pub(super) is_number_in_quotes: bool,
 }
 
 impl Mismatch {
-    fn of(value: &Spanned<DeValue>, is_number_expected: bool) -> Self {
+    fn of(value: &Spanned<DeValue>) -> Self {
         Self {
             bytes: value.span(),
             found: describe(value.get_ref()),
-            is_number_expected,
+            is_number_in_quotes: false,
         }
     }
 
-    /// Whether the value would be right without its quotes.
-    pub(super) fn is_quoted(&self, text: &str) -> bool {
-        self.is_number_expected && text.parse::<f64>().is_ok()
+    fn of_number(value: &Spanned<DeValue>) -> Self {
+        let text = value.get_ref().as_str();
+        Self {
+            is_number_in_quotes: text.is_some_and(|text| text.parse::<f64>().is_ok()),
+            ..Self::of(value)
+        }
     }
 }
 
@@ -73,7 +76,7 @@ impl Value for f64 {
             DeValue::Float(float) => float.as_str().parse().ok(),
             _ => None,
         };
-        number.ok_or_else(|| Mismatch::of(value, true))
+        number.ok_or_else(|| Mismatch::of_number(value))
     }
 }
 
@@ -86,7 +89,7 @@ impl Value for i64 {
             DeValue::Integer(integer) => integer_value(integer),
             _ => None,
         };
-        number.ok_or_else(|| Mismatch::of(value, true))
+        number.ok_or_else(|| Mismatch::of_number(value))
     }
 }
 
@@ -108,10 +111,7 @@ impl Value for bool {
     const EXAMPLE: &'static str = "true";
 
     fn read(value: &Spanned<DeValue>) -> Result<Self, Mismatch> {
-        value
-            .get_ref()
-            .as_bool()
-            .ok_or_else(|| Mismatch::of(value, false))
+        value.get_ref().as_bool().ok_or_else(|| Mismatch::of(value))
     }
 }
 
@@ -121,24 +121,24 @@ impl Value for String {
 
     fn read(value: &Spanned<DeValue>) -> Result<Self, Mismatch> {
         let text = value.get_ref().as_str().map(str::to_owned);
-        text.ok_or_else(|| Mismatch::of(value, false))
+        text.ok_or_else(|| Mismatch::of(value))
     }
 }
 
 /// Reads a list of exactly `N` values.
 fn list<T: Value + Copy, const N: usize>(value: &Spanned<DeValue>, unit: T) -> Result<[T; N], Mismatch> {
     let DeValue::Array(values) = value.get_ref() else {
-        return Err(Mismatch::of(value, false));
+        return Err(Mismatch::of(value));
     };
     if values.len() != N {
         return Err(Mismatch {
             found: values.len().to_string(),
-            ..Mismatch::of(value, false)
+            ..Mismatch::of(value)
         });
     }
     let mut all = [unit; N];
     for (into, value) in all.iter_mut().zip(values.iter()) {
-        *into = T::read(value).map_err(|_| Mismatch::of(value, false))?;
+        *into = T::read(value)?;
     }
     Ok(all)
 }
