@@ -9,6 +9,7 @@ mod explain;
 mod files;
 mod inputs;
 mod names;
+mod new;
 mod pool;
 mod render;
 mod run;
@@ -63,6 +64,8 @@ enum Command {
     Compare(compare::Args),
     /// Write the shader that paints a scene
     Export(render::ExportArgs),
+    /// Create a new file from a template
+    New(new::Args),
     /// List the course's scenes and shaders, or write them to a folder
     Scenes(scenes::Args),
     /// Say which Vulkan drivers are installed, what is missing and how to get it
@@ -111,6 +114,7 @@ impl Command {
             Self::Trade(args) => trade::run(args, terminal),
             Self::Compare(args) => compare::run(args, terminal),
             Self::Export(args) => render::export(args, terminal),
+            Self::New(args) => new::run(args, terminal),
             Self::Scenes(args) => scenes::run(args, terminal),
             Self::Doctor(args) => doctor::run(args, terminal),
             Self::Worker => serve_worker(),

@@ -12,6 +12,7 @@ use toyproof_scene::{self as scene, FrameTime, Requirements, Sampler, Scene};
 use toyproof_tracer::{Real, Tracer};
 
 use super::inputs::may_write;
+use super::scenes::read_scene;
 use super::sequence::{self, Frames, Sequence};
 use super::{Exit, Terminal, inputs};
 use crate::cli::files;
@@ -166,7 +167,7 @@ fn render_frame(
     }
 }
 
-/// Reads a scene from its file; prints the errors.
+/// Reads a scene, given by its file or by the name of a built-in scene; prints the errors.
 pub(super) fn load_scene(path: &Path, terminal: &Terminal) -> Option<Scene> {
     if files::is_shader(path) {
         let path = path_name(path);
@@ -176,7 +177,7 @@ pub(super) fn load_scene(path: &Path, terminal: &Terminal) -> Option<Scene> {
         return None;
     }
     let mut files = Files::default();
-    let file = match files::read_text(path) {
+    let file = match read_scene(path) {
         Ok(text) => files.add(text),
         Err(error) => {
             terminal.error(error);

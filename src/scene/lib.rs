@@ -23,6 +23,7 @@ mod motion;
 mod perturb;
 mod requirements;
 mod shape;
+mod template;
 pub mod toml_reader;
 
 use std::ops::Range;
@@ -33,6 +34,7 @@ pub use material::{Background, Checker, Disney, Fresnel, Light, Material, Model}
 pub use motion::{FrameTime, Motion, Period};
 pub use requirements::Requirements;
 pub use shape::{Equation, Quadric, QuadricKind, Scatter, Scattered, Shape, unit};
+pub use template::template;
 
 /// A color, linear RGB; each component ≥ 0, nominally in [0, 1].
 pub type Color = [f64; 3];

@@ -425,7 +425,7 @@ impl<'r, 't> Table<'r, 't> {
             .find(|(former, present)| *former == key && self.known.iter().any(|(known, _)| known == present));
         if let Some((_, present)) = renamed {
             let message = format!("unknown key `{key}`; it is now called `{present}`");
-            return self.reject_form(span, message, &format!("replace `{key}` with `{present}`"));
+            return self.reject_form(span, message, "");
         }
         let message = match value {
             _ if !is_root => format!("unknown key `{key}` in {}", self.place.name()),
