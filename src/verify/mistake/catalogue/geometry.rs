@@ -136,7 +136,7 @@ pub(super) static GRIDS: &[Mistake] = mistakes! {
         [CellRoom = "grid.spacing"],
         [CellRoom = "grid.spacing - radius"];
     "radii-alike": "makes all spheres of the grid equally large",
-        [CellRadius = "0.5 * (grid.small + grid.large) + 0.0 * draw()"];
+        [CellRadius = "0.5 * (grid.minRadius + grid.maxRadius) + 0.0 * cellRandom()"];
     "coordinates-drawn-backwards": "draws the place from z to x, not from x to z",
         [CellPlace = "vec3(z, y, x)"];
     "colours-drawn-backwards": "draws blue first and red last", [CellColor = "vec3(b, g, r)"];
