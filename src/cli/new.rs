@@ -9,7 +9,10 @@ use super::{Exit, Terminal};
 
 /// Create a new file from a template
 #[derive(Debug, clap::Args)]
-#[command(arg_required_else_help = true)]
+#[command(
+    arg_required_else_help = true,
+    after_help = "Example:\n  toyproof new scene week1"
+)]
 pub(super) struct Args {
     #[command(subcommand)]
     what: What,

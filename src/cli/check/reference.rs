@@ -37,9 +37,16 @@ impl References {
 
     /// Checks the scene that `--scene` names, if any, and prints what is wrong with it.
     pub(super) fn is_usable(&self, terminal: &Terminal) -> bool {
-        let Some((_, text)) = &self.named else {
+        let Some((path, text)) = &self.named else {
             return true;
         };
+        if files::is_shader(path) {
+            let name = path_name(path);
+            terminal.error(format_args!(
+                "{name} is a shader; `--scene` takes a scene file or the name of a scene"
+            ));
+            return false;
+        }
         let mut files = Files::default();
         match text {
             Err(error) => terminal.error(error),
