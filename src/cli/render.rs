@@ -101,7 +101,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     scene.film.samples = args.samples.unwrap_or(scene.film.samples);
     scene.film.sampler = args.sampler.map_or(scene.film.sampler, Sampler::from);
     let requirements = Requirements::of(&scene);
-    if !scene.film.sampler.draws()
+    if !scene.film.sampler.is_stochastic()
         && (requirements.soft_shadows || requirements.path_tracing || args.max_error.is_some())
     {
         terminal.error("this needs a sampler that draws: --sampler independent, stratified or sobol");

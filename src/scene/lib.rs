@@ -58,7 +58,7 @@ pub struct Scene {
     pub camera: Camera,
     /// The radiance of rays that hit nothing.
     pub background: Background,
-    /// Figures drawn on the screen itself, the last on top.
+    /// Figures on the screen, in front of all surfaces, the last on top.
     pub figures: Vec<Figure>,
     /// The lights.
     pub lights: Vec<Light>,

@@ -1,5 +1,5 @@
-//! GLSL of `mainImage` and what it calls: samples and their mean, tone map, camera, figures, background, random
-//! numbers. `«Name: text»` marks a [slot](super::slot).
+//! GLSL of `mainImage` and what it calls: samples and their mean, tone map, camera, figures, background,
+//! random numbers. `«Name: text»` marks a [slot](super::slot).
 
 use std::fmt::Write;
 
@@ -71,7 +71,7 @@ fn post_process(scene: &Scene) -> String {
 
 // The camera.
 
-/// Returns `pixelColor`, the color at a point of the image: a figure on the screen, or the color along the ray.
+/// Returns `pixelColor`, the color at a point of the image: that of a figure, or of the ray.
 pub(super) fn camera_function(scene: &Scene) -> String {
     let eye = vector(scene.camera.eye);
     let ray = match scene.camera.projection {

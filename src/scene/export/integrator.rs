@@ -123,7 +123,7 @@ stack[top++] = Branch(mirrored, «ReflectedThroughput: throughput * share», bra
     }
 }
 
-const FRESNEL: &str = "// The reflectance by Fresnel's equations; eta is the index of refraction on this side divided by that on the other.
+const FRESNEL: &str = "// The reflectance by Fresnel's equations; eta is the ratio of this side's and the other side's index of refraction.
 float fresnel(float eta, float cosine, float beyond) {
     float across = (eta * cosine - beyond) / (eta * cosine + beyond);
     float along = (cosine - eta * beyond) / (cosine + eta * beyond);
@@ -132,7 +132,7 @@ float fresnel(float eta, float cosine, float beyond) {
 ";
 
 const SCHLICK: &str =
-    "// Schlick's approximation of the reflectance, with the cosine on the side of the smaller index of refraction.
+    "// Schlick's approximation of the reflectance; the cosine is that on the side of the smaller index.
 float schlick(float eta, float cosine, float beyond) {
     float f0 = (1.0 - eta) * (1.0 - eta) / ((1.0 + eta) * (1.0 + eta));
     float m = 1.0 - (eta < 1.0 ? cosine : beyond);

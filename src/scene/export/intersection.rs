@@ -116,7 +116,7 @@ const INTERSECT_PLANE: &str = "float intersectPlane(Ray ray, Plane plane) {
 // Quadrics.
 
 pub(super) const QUADRIC_FORM: &str =
-    "// q.x x^2 + q.y y^2 + q.z z^2 + 2 g z + k = 0 for low <= z <= high, in the local coordinates of a quadric.
+    "// q.x x^2 + q.y y^2 + q.z z^2 + 2 g z + k = 0 for low <= z <= high, in local coordinates.
 struct Form {
     vec3 q;
     float g;
@@ -347,7 +347,7 @@ float intersectGrid(Ray ray, Grid grid, out Sphere sphere) {
         return NO_HIT;
     }
     ivec3 stride = «GridStride: ivec3(sign(direction))»;
-    // For each axis, the t at which the ray leaves the cell, and the distance in t between two cell boundaries.
+    // For each axis, the t at which the ray leaves the cell, and the distance in t between cell boundaries.
     vec3 next = (grid.corner + grid.spacing * vec3(cell + max(stride, 0)) - ray.origin) / direction;
     vec3 step = «GridStep: grid.spacing / abs(direction)»;
     int steps = grid.cells.x + grid.cells.y + grid.cells.z;

@@ -416,7 +416,7 @@ const POINT: &str = "    if (light.radius == 0.0) {
 ";
 
 const SAMPLE_LIGHT: &str =
-    "// Samples a direction in the cone that the light subtends; distance is the distance to the light along it.
+    "// Samples a direction in the cone that the light subtends, and returns the distance along it.
 vec3 sampleLight(Light light, vec3 point, out float distance) {
 POINT
     vec3 axis = light.position - point;

@@ -81,7 +81,7 @@ fn scene(document: &mut Table) -> Scene {
             );
         }
         if let Some(span) = integrator
-            && !film.sampler.draws()
+            && !film.sampler.is_stochastic()
             && !objects.is_empty()
         {
             document.reject(
@@ -194,7 +194,7 @@ fn light(table: &mut Table, film: &Film, names: &MotionNames) -> Light {
             help,
         );
     } else if let Some(span) = radius_span
-        && !film.sampler.draws()
+        && !film.sampler.is_stochastic()
     {
         table.reject(
             span,

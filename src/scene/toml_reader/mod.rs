@@ -1,5 +1,5 @@
-//! TOML files with a fixed set of keys, such as scenes and rubrics. Every error has a span, a message in terms of
-//! the file, and a way out.
+//! TOML files with a fixed set of keys, such as scenes and rubrics. Every error has a span, a message in
+//! terms of the file, and advice.
 
 mod syntax;
 mod value;
@@ -48,8 +48,8 @@ pub struct Reader<'t> {
     error_count: Cell<usize>,
 }
 
-/// Reads a file whose root table `read` takes apart. All errors are reported at once, in the order of the file,
-/// except that after an error in the syntax nothing else is read.
+/// Reads a file by passing its root table to `read`. All errors are reported at once, in the order of the
+/// file, except that nothing else is read after a syntax error.
 ///
 /// # Errors
 /// Those of the file.
@@ -278,8 +278,8 @@ impl<'r, 't> Table<'r, 't> {
         None
     }
 
-    /// Returns the choice that the string of a required key names; none if it is missing or none of the choices,
-    /// which is reported.
+    /// Returns the choice that the string of a required key names; none if it is missing or none of the
+    /// choices, which is reported.
     pub fn required_choice<T: Copy>(
         &mut self,
         key: &'static str,
@@ -391,8 +391,8 @@ impl<'r, 't> Table<'r, 't> {
         all
     }
 
-    /// Rejects keys that belong to another choice than the one that was made: `owner` and `actual` name choices
-    /// of `what`, such as a projection.
+    /// Rejects keys that belong to the choice `owner` of `what`, such as a projection, where `actual` was
+    /// chosen.
     pub fn reject_keys(&mut self, keys: &[&str], what: &str, owner: &str, actual: &str) {
         for key in keys {
             if let Some((name, _)) = self.entries.remove_entry(*key) {
@@ -445,7 +445,7 @@ impl<'r, 't> Table<'r, 't> {
     }
 }
 
-/// Returns the advice for a name that is not among the known ones, each of which comes with how it is written.
+/// Returns the advice for an unknown name; each known name comes with how it is written.
 fn suggestion(name: &str, known: impl Iterator<Item = (&'static str, String)>) -> String {
     let known: Vec<_> = known.collect();
     match nearest(name, known.iter().map(|(known, _)| *known)) {
