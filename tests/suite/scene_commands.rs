@@ -1,9 +1,16 @@
 //! Scenes by name, and `toyproof new scene`.
 
 use std::fs;
+use std::path::Path;
+
+use toyproof::diagnostic::{File, Files};
+use toyproof::scene;
 
 use crate::program::toyproof;
 use crate::support::SPHERE;
+
+/// The reference of the scene format.
+const REFERENCE: &str = "docs/scenes.md";
 
 #[test]
 fn built_in_scenes_are_accepted_by_name_and_files_come_first() {
@@ -147,4 +154,30 @@ fn a_new_scene_never_overwrites() {
         "{}",
         run.stderr
     );
+}
+
+#[test]
+fn examples_of_the_reference_are_scenes_and_its_images_exist() {
+    let page = fs::read_to_string(REFERENCE).unwrap();
+    let examples: Vec<_> = page
+        .split("```toml\n")
+        .skip(1)
+        .map(|rest| rest.split("```").next().unwrap())
+        .collect();
+    assert!(examples.len() >= 3, "{}", examples.len());
+    for text in examples {
+        let mut files = Files::default();
+        let file = files.add(File::new("example.toml", text));
+        scene::parse(&files, file).unwrap();
+    }
+    let folder = Path::new(REFERENCE).parent().unwrap();
+    let images: Vec<_> = page
+        .split("](images/")
+        .skip(1)
+        .map(|rest| rest.split(')').next().unwrap())
+        .collect();
+    assert!(images.len() > 15, "{}", images.len());
+    for image in images {
+        assert!(folder.join("images").join(image).is_file(), "{image}");
+    }
 }

@@ -138,6 +138,32 @@ fn each_error_has_its_place_message_and_advice() {
 }
 
 #[test]
+fn scenes_cut_or_changed_anywhere_are_read_or_reported() {
+    for block in BROKEN_SCENES.split("\n\n") {
+        let (text, _) = block.split_once("\n--> ").unwrap();
+        for (at, _) in text.char_indices() {
+            let (before, after) = text.split_at(at);
+            let _ = read(before);
+            for inserted in ["“", "\"", "[", "{", "=", ",", "\r", "\u{1}", "\n"] {
+                let _ = read(&format!("{before}{inserted}{after}"));
+            }
+        }
+    }
+}
+
+#[test]
+fn only_the_first_of_many_errors_are_reported() {
+    let text: String = (0..1000).map(|key| format!("unknown{key} = 1\n")).collect();
+    let errors = read(&text).unwrap_err();
+    assert_eq!(errors.len(), 20);
+    assert!(
+        errors[19].ends_with("note: 980 more errors are not shown"),
+        "{}",
+        errors[19]
+    );
+}
+
+#[test]
 fn british_spellings_of_keys_are_accepted() {
     let british = SPHERE.replace("center", "centre").replace("color", "colour");
     assert_ne!(british, SPHERE);

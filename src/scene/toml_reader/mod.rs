@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
-use toyproof_diagnostic::{Diagnostic, Diagnostics, FileId, Files, Span, nearest};
+use toyproof_diagnostic::{Diagnostic, Diagnostics, FileId, Files, Span, grouped, nearest, plural};
 
 pub use self::value::Value;
 use self::value::describe;
@@ -48,6 +48,9 @@ pub struct Reader<'t> {
     error_count: Cell<usize>,
 }
 
+/// The maximum number of errors that are reported for one file.
+const MAX_ERRORS: usize = 20;
+
 /// Reads a file by passing its root table to `read`. All errors are reported at once, in the order of the
 /// file, except that nothing else is read after a syntax error.
 ///
@@ -82,6 +85,15 @@ pub fn read<T>(
         return Ok(value);
     }
     errors.sort_by_key(|error| error.span.map(|span| span.start));
+    let omitted = errors.len().saturating_sub(MAX_ERRORS) as u64;
+    if omitted > 0 {
+        errors.truncate(MAX_ERRORS);
+        let last = errors.pop().map(|last| {
+            let noun = plural(omitted, "error is", "errors are");
+            last.note(format!("note: {} more {noun} not shown", grouped(omitted)))
+        });
+        errors.extend(last);
+    }
     Err(Diagnostics::new(errors, files))
 }
 
