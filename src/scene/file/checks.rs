@@ -56,11 +56,11 @@ impl Table<'_, '_> {
     }
 
     pub(super) fn positive(&mut self, key: &'static str) -> f64 {
-        self.checked(key, None, not_positive, 1.0)
+        self.checked(key, None, |x| not_positive(*x), 1.0)
     }
 
     pub(super) fn positive_or(&mut self, key: &'static str, default: f64) -> f64 {
-        self.checked(key, Some(default), not_positive, default)
+        self.checked(key, Some(default), |x| not_positive(*x), default)
     }
 
     /// Returns a number from 0 to 1.
@@ -83,7 +83,7 @@ impl Table<'_, '_> {
 
     /// Returns the radii along three axes.
     pub(super) fn radii(&mut self, key: &'static str) -> Point {
-        let problem = |radii: &Point| radii.iter().find_map(not_positive);
+        let problem = |radii: &Point| radii.iter().copied().find_map(not_positive);
         self.checked(key, None, problem, [1.0; 3])
     }
 
@@ -141,9 +141,9 @@ impl Table<'_, '_> {
     }
 }
 
-fn not_positive(x: &f64) -> Option<&'static str> {
+fn not_positive(x: f64) -> Option<&'static str> {
     let problem = if x.is_finite() { POSITIVE } else { FINITE };
-    (!(x.is_finite() && *x > 0.0)).then_some(problem)
+    (!(x.is_finite() && x > 0.0)).then_some(problem)
 }
 
 fn not_finite(numbers: &[f64]) -> Option<&'static str> {

@@ -13,8 +13,11 @@ const MAX_SCATTER: u64 = 65_536;
 /// The default axis: upright.
 const UP: Point = [0.0, 1.0, 0.0];
 
+/// Reads the shape of a surface from its table.
+type ReadShape = fn(&mut Table) -> Shape;
+
 /// The tables that describe one surface each, and what reads their shape.
-pub(super) const SHAPES: [(&str, fn(&mut Table) -> Shape); 7] = [
+pub(super) const SHAPES: [(&str, ReadShape); 7] = [
     ("sphere", sphere),
     ("plane", plane),
     ("ellipsoid", ellipsoid),
@@ -40,11 +43,7 @@ pub(super) const SHAPES: [(&str, fn(&mut Table) -> Shape); 7] = [
 ];
 
 /// Reads a surface, and where its model stands.
-pub(super) fn object(
-    table: &mut Table,
-    names: &MotionNames,
-    shape: fn(&mut Table) -> Shape,
-) -> (Object, Option<Span>) {
+pub(super) fn object(table: &mut Table, names: &MotionNames, shape: ReadShape) -> (Object, Option<Span>) {
     let shape = shape(table);
     let (material, model) = material(table);
     let object = Object {

@@ -12,19 +12,14 @@ fn read(text: &str) -> Result<Scene, Vec<String>> {
 /// `line:column code message`, and the notes on lines of their own.
 fn described(error: &Diagnostic, files: &Files) -> String {
     let at = files.position(error.span.unwrap());
-    let notes: String = error
-        .notes
-        .iter()
-        .map(|note| {
-            format!(
-                "
-    {note}"
-            )
-        })
-        .collect();
+    let notes: Vec<_> = error.notes.iter().map(|note| format!("\n    {note}")).collect();
     format!(
-        "{}:{} {} {}{notes}",
-        at.line, at.column, error.code, error.message
+        "{}:{} {} {}{}",
+        at.line,
+        at.column,
+        error.code,
+        error.message,
+        notes.concat()
     )
 }
 
@@ -153,8 +148,8 @@ fn scenes_cut_or_changed_anywhere_are_read_or_reported() {
 
 #[test]
 fn only_the_first_of_many_errors_are_reported() {
-    let text: String = (0..1000).map(|key| format!("unknown{key} = 1\n")).collect();
-    let errors = read(&text).unwrap_err();
+    let lines: Vec<_> = (0..1000).map(|key| format!("unknown{key} = 1\n")).collect();
+    let errors = read(&lines.concat()).unwrap_err();
     assert_eq!(errors.len(), 20);
     assert!(
         errors[19].ends_with("note: 980 more errors are not shown"),

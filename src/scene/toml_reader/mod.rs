@@ -460,17 +460,12 @@ impl<'r, 't> Table<'r, 't> {
 /// Returns the advice for an unknown name; each known name comes with how it is written.
 fn suggestion(name: &str, known: impl Iterator<Item = (&'static str, String)>) -> String {
     let known: Vec<_> = known.collect();
-    match nearest(name, known.iter().map(|(known, _)| *known)) {
-        Some(near) => {
-            let written = known.iter().find(|(known, _)| *known == near);
-            let written = written.map_or("", |(_, written)| written.as_str());
-            format!("did you mean {written}?")
-        }
-        None => {
-            let written = known.iter().map(|(_, written)| written.as_str());
-            format!("expected {}", list_of(&written.collect::<Vec<_>>()))
-        }
+    let near = nearest(name, known.iter().map(|(known, _)| *known));
+    if let Some((_, written)) = known.iter().find(|(known, _)| Some(*known) == near) {
+        return format!("did you mean {written}?");
     }
+    let written: Vec<_> = known.iter().map(|(_, written)| written.as_str()).collect();
+    format!("expected {}", list_of(&written))
 }
 
 /// Joins alternatives: "a", "a or b", "a, b or c".

@@ -94,29 +94,7 @@ impl<'t> Site<'t> {
                 )
             }
             "unexpected key or value" => self.trailing(),
-            "duplicate key" => {
-                let name = &self.text[bytes.clone()];
-                if line.starts_with("[[") {
-                    let message = format!("[[{name}]] conflicts with an earlier `{name}`");
-                    (
-                        bytes,
-                        message,
-                        format!("write every table of this name as `[[{name}]]`"),
-                    )
-                } else if line.starts_with('[') {
-                    (
-                        bytes,
-                        format!("[{name}] is given twice"),
-                        "merge the two tables".to_owned(),
-                    )
-                } else {
-                    (
-                        bytes,
-                        format!("`{name}` is given twice"),
-                        "remove one of the two".to_owned(),
-                    )
-                }
-            }
+            "duplicate key" => self.duplicate(),
             "unclosed table" => at("missing `]` at the end of a table header", "write `[name]`"),
             "unclosed array table" => at("missing `]]` at the end of a table header", "write `[[name]]`"),
             "unclosed array" | "missing comma between array elements" => at(
@@ -170,6 +148,28 @@ impl<'t> Site<'t> {
             }
             _ => (bytes, format!("invalid TOML: {message}"), String::new()),
         }
+    }
+
+    /// A key or a table is given twice.
+    fn duplicate(self) -> (Range<usize>, String, String) {
+        let name = &self.text[self.bytes.clone()];
+        let (message, help) = if self.line().starts_with("[[") {
+            (
+                format!("[[{name}]] conflicts with an earlier `{name}`"),
+                format!("write every table of this name as `[[{name}]]`"),
+            )
+        } else if self.line().starts_with('[') {
+            (
+                format!("[{name}] is given twice"),
+                "merge the two tables".to_owned(),
+            )
+        } else {
+            (
+                format!("`{name}` is given twice"),
+                "remove one of the two".to_owned(),
+            )
+        };
+        (self.bytes, message, help)
     }
 
     /// The word around the mark is wrong.
