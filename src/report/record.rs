@@ -305,10 +305,10 @@ pub(super) mod samples {
     }
 
     impl Rubric {
-        /// A rubric without partial points for `compiles`, `maths` and `rounding`.
-        pub(in crate::report) fn of(compiles: f64, maths: f64, rounding: f64) -> Self {
+        /// A rubric without partial points for `compiles`, `algorithm` and `precision`.
+        pub(in crate::report) fn of(compiles: f64, algorithm: f64, precision: f64) -> Self {
             let text = format!(
-                "compiles.points = {compiles:?}\nmaths.points = {maths:?}\nrounding.points = {rounding:?}"
+                "compiles.points = {compiles:?}\nalgorithm.points = {algorithm:?}\nprecision.points = {precision:?}"
             );
             let mut files = Files::default();
             let file = files.add(File::new("r.toml", text));

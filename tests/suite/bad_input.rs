@@ -180,29 +180,26 @@ fn bytes_that_are_not_text() {
 fn invalid_scenes() {
     let whole = format!("{MAIN} {{ c = vec4(0.0); }}");
     for (scene, words) in [
-        (
-            "colour = 1\n".to_owned(),
-            ["unknown field `colour`", "s.toml:1:1"],
-        ),
+        ("hue = 1\n".to_owned(), ["unknown key `hue`", "s.toml:1:1"]),
         (
             SPHERE.replace("-6.0", "nan"),
-            ["center must be three finite numbers", "s.toml:2:10"],
+            ["`center` must be finite, found [0.0, 0.0, nan]", "s.toml:2:10"],
         ),
         (
             SPHERE.replace("1.5", "0.0"),
-            ["radius must be a finite number above 0, not 0", "s.toml:3:10"],
+            ["`radius` must be greater than 0, found 0.0", "s.toml:3:10"],
         ),
         (
             "title = \"soon\"\n".to_owned(),
-            ["this scene shows nothing", "s.toml:1:1"],
+            ["the scene is empty", "s.toml:1:1"],
         ),
         (
             "[film]\nsize = [0, 0]\n".to_owned(),
-            ["nothing to show", "s.toml:2:8"],
+            ["`size` must be at least 1 pixel", "s.toml:2:8"],
         ),
         (
             "[film]\nsize = [100000, 100000]\n".to_owned(),
-            ["too large", "s.toml:2:8"],
+            ["`size` must be at most 16,384 pixels", "s.toml:2:8"],
         ),
     ] {
         let folder = folder(&[("s.glsl", &whole), ("s.toml", &scene)]);

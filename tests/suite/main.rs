@@ -46,6 +46,7 @@ mod random_draws;
 mod reports;
 mod requirements;
 mod rules;
+mod scene_commands;
 mod snapshots;
 mod stress;
 mod strict;

@@ -31,7 +31,7 @@ fn folders_named_like_reports_or_images_do_no_harm() {
     }
     write(folder.path(), "hw/good-actual.png/x.glsl", SHADER);
     write(folder.path(), "hw/good.glsl", SHADER);
-    write(folder.path(), "rubric.toml", "[rounding]\npoints = 1\n");
+    write(folder.path(), "rubric.toml", "[precision]\npoints = 1\n");
     let arguments = ["check", "hw", "--out", "out", "--rubric", "rubric.toml"];
     let run = toyproof(folder.path(), &[&arguments[..], &FLAGS].concat());
     assert_eq!(run.code, 0, "{}", run.stderr);

@@ -101,6 +101,10 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let Ok(rubric) = reports::rubric(args, terminal) else {
         return Exit::Error;
     };
+    let references = References::new(args.scene.as_deref());
+    if !references.is_usable(terminal) {
+        return Exit::Error;
+    }
     let mut results = None;
     if let Some(out) = &args.out {
         match Results::open(out, args.resume) {
@@ -126,7 +130,6 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         .chain([reports::RESULTS_NAME])
         .collect();
     let mut names = Names::new(&IMAGES.map(|kind| kind.suffix), &reserved);
-    let references = References::new(args.scene.as_deref());
     let submissions: Vec<Submission> = find(&args.shaders, terminal)
         .into_iter()
         .map(|input| Submission::new(input, args, &references, &mut names))

@@ -140,7 +140,7 @@ pub(super) static GRIDS: &[Mistake] = mistakes! {
         [CellRoom = "grid.spacing"],
         [CellRoom = "grid.spacing - radius"];
     "equal-radii": "all spheres of the grid have the same radius",
-        [CellRadius = "0.5 * (grid.small + grid.large) + 0.0 * draw()"];
+        [CellRadius = "0.5 * (grid.minRadius + grid.maxRadius) + 0.0 * cellRandom()"];
     "random-coordinates-reversed": "random coordinates are sampled in the order z, y, x instead of x, y, z",
         [CellPlace = "vec3(z, y, x)"];
     "random-colors-reversed": "random color components are sampled in the order b, g, r instead of r, g, b",
