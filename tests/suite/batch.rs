@@ -154,7 +154,7 @@ fn killed_runs_resume_without_losing_or_repeating_work() {
     fs::write(&path, text).unwrap();
     let last = check(folder.path(), &["--resume"]);
     assert!(
-        last.stderr.contains("are taken over from an earlier run"),
+        last.stderr.contains("are reused from an earlier run"),
         "{}",
         last.stderr
     );
@@ -183,7 +183,7 @@ fn plain_images_and_sample_counts_are_named() {
     let more = exercise.shader.replace(count, "i <= SAMPLES;");
     let less = exercise.shader.replace("SAMPLES = 4", "SAMPLES = 3");
     for (text, words) in [
-        (black, "; every pixel is black"),
+        (black, "\n             every pixel is black"),
         (more, "takes one sample more than it divides by"),
         (less, "takes one sample less than the scene"),
     ] {
@@ -311,7 +311,7 @@ fn changed_shaders_are_checked_again() {
     check(folder.path(), &[]);
     let again = check(folder.path(), &["--resume"]);
     assert!(
-        again.stderr.contains("4 of 4 shaders are taken over"),
+        again.stderr.contains("4 of 4 results are reused"),
         "{}",
         again.stderr
     );

@@ -314,7 +314,7 @@ fn sequences_are_numbered_and_resume() {
     fs::write(file("s-0000.exr"), "kept").unwrap();
     let resumed = render("");
     assert_eq!(resumed.code, 0, "{}", resumed.stderr);
-    let words = "2 of 4 frames are there already";
+    let words = "2 of 4 frames exist already";
     assert!(resumed.stderr.contains(words), "{}", resumed.stderr);
     assert_eq!(fs::read(file("s-0000.exr")).unwrap(), b"kept");
     assert!(!file("s.sequence").exists());
@@ -487,7 +487,7 @@ fn several_shaders_need_a_folder() {
     assert_eq!(run.code, 2);
     assert!(
         run.stderr
-            .contains("several shaders need a folder to go to, not all.wgsl"),
+            .contains("several shaders cannot be written to all.wgsl"),
         "{}",
         run.stderr
     );
@@ -501,7 +501,7 @@ fn images_of_several_shaders_need_a_folder() {
         let run = toyproof(folder.path(), &["run", glsl.to_str().unwrap(), "-o", output]);
         assert_eq!(run.code, 2);
         assert!(
-            run.stderr.contains("several shaders need a folder"),
+            run.stderr.contains("several images cannot be written to"),
             "{}",
             run.stderr
         );

@@ -254,8 +254,8 @@ fn a_code_is_explained_on_the_command_line() {
         run.stdout
     );
     for (code, words) in [
-        ("E0420", "error: there is no code E0420; did you mean E0"),
-        ("nonsense", "codes are E or W and four digits"),
+        ("E0420", "error: unknown code `E0420`\nhelp: did you mean `E0"),
+        ("nonsense", "`toyproof explain --list` lists all"),
     ] {
         let run = toyproof(Path::new("."), &["explain", code]);
         assert_eq!(run.code, 2);

@@ -260,7 +260,7 @@ fn a_batch_continues_without_a_failed_driver() {
                 let run = with_driver(does, &check);
                 assert_eq!(run.code, 0, "{does}: {run:?}");
                 assert_eq!(
-                    run.stderr.matches("evaluated on the CPU instead").count(),
+                    run.stderr.matches("shaders are evaluated on the CPU").count(),
                     1,
                     "{does}: {run:?}"
                 );

@@ -147,7 +147,7 @@ fn broken_lines_of_an_earlier_run_are_skipped_and_counted() {
         "{again:?}"
     );
     assert!(
-        again.stderr.contains("2 of 2 shaders are taken over"),
+        again.stderr.contains("2 of 2 results are reused"),
         "{again:?}"
     );
 }
@@ -190,7 +190,7 @@ fn a_batch_ends_when_its_output_is_closed() {
     let stderr = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2), "{stderr}");
     assert!(
-        stderr.contains("standard output was closed; what was done is kept"),
+        stderr.contains("standard output was closed after "),
         "{stderr}"
     );
     let kept = results(folder.path());
