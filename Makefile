@@ -31,10 +31,10 @@ setup:
 bench:
 	XDG_RUNTIME_DIR=$${XDG_RUNTIME_DIR:-/tmp} cargo bench
 
-# Writes docs/accuracy/ and the parts of docs/accuracy.md that are measured anew.
+# Writes docs/evidence/accuracy/ and the parts of docs/evidence/accuracy.md that are measured anew.
 accuracy:
 	cargo build --release
-	sh docs/accuracy/regenerate.sh ./target/release/toyproof
+	sh docs/evidence/accuracy/regenerate.sh ./target/release/toyproof
 
 # Until it finds something or is stopped; needs a nightly compiler and cargo-fuzz. The code is safe Rust: no sanitizer.
 fuzz:

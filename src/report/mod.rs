@@ -23,10 +23,10 @@ pub use terminal::{Tally, line, place, summary};
 use terminal::{details, plain};
 pub use trace::{PixelTrace, TracedPixel};
 
-// The explanation of each diagnostic code: a section of `docs/diagnostics.md`.
+// The explanation of each diagnostic code: a section of `docs/guide/diagnostics.md`.
 
 /// The page; this is its only copy.
-const PAGE: &str = include_str!("../../docs/diagnostics.md");
+const PAGE: &str = include_str!("../../docs/guide/diagnostics.md");
 
 /// The start of a section; `CODE: title` follows.
 const HEADING: &str = "\n## ";

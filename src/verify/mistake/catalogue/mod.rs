@@ -142,10 +142,10 @@ mod tests {
 
     #[test]
     fn every_mistake_is_documented() {
-        let pages = include_str!("../../../../docs/mistakes.md");
+        let pages = include_str!("../../../../docs/guide/mistakes.md");
         for mistake in all() {
             let row = format!("| `{}` | {} |", mistake.name, mistake.says);
-            assert!(pages.contains(&row), "docs/mistakes.md lacks {row}");
+            assert!(pages.contains(&row), "docs/guide/mistakes.md lacks {row}");
         }
     }
 }
