@@ -1,5 +1,5 @@
 #!/bin/sh
-# Writes the pictures in docs/evidence/accuracy and the parts of docs/accuracy.md between marks anew: `make accuracy`.
+# Regenerates the images in docs/evidence/accuracy and the marked parts of docs/evidence/accuracy.md: `make accuracy`.
 set -eu
 program=$1
 out=docs/evidence/accuracy
