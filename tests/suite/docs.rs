@@ -110,8 +110,9 @@ fn assumed_files() -> tempfile::TempDir {
     folder
 }
 
-/// Runs the `$ …` lines of a page in one folder; for lines with `make`, only the target is looked up.
-fn run_commands(page: &Path) -> usize {
+/// Runs the `$ …` lines of a page in one folder; for lines with `make`, only the target is looked up. Returns
+/// their number, and adds a line to `failures` for each that ends with another exit code.
+fn run_commands(page: &Path, failures: &mut Vec<String>) -> usize {
     let folder = assumed_files();
     let program = Path::new(env!("CARGO_BIN_EXE_toyproof")).parent().unwrap();
     let path = format!("{}:{}", program.display(), env::var("PATH").unwrap());
@@ -140,13 +141,10 @@ fn run_commands(page: &Path) -> usize {
                     .env("PATH", &path);
             }
             let output = shell.output().unwrap();
-            assert_eq!(
-                output.status.code(),
-                Some(block.exit_code),
-                "{}: {line}: {}",
-                page.display(),
-                String::from_utf8_lossy(&output.stderr)
-            );
+            if output.status.code() != Some(block.exit_code) {
+                let stderr = String::from_utf8_lossy(&output.stderr);
+                failures.push(format!("{}: {line}: {}\n{stderr}", page.display(), output.status));
+            }
         }
     }
     run
@@ -154,14 +152,18 @@ fn run_commands(page: &Path) -> usize {
 
 #[test]
 fn every_command_of_the_readme_works() {
-    assert!(run_commands(Path::new("README.md")) >= 8);
+    let mut failures = Vec::new();
+    assert!(run_commands(Path::new("README.md"), &mut failures) >= 8);
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
 #[test]
 fn every_command_of_the_guide_works() {
     let pages = [pages("docs"), pages("docs/guide")].concat();
-    let run: usize = pages.iter().map(|page| run_commands(page)).sum();
+    let mut failures = Vec::new();
+    let run: usize = pages.iter().map(|page| run_commands(page, &mut failures)).sum();
     assert!(run >= 40, "{run}");
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
 /// GitHub's and mdBook's identifier of a heading.
