@@ -1,4 +1,4 @@
-//! `docs/diagnostics.md` explains every code, and its examples yield the stated diagnostics.
+//! `docs/guide/diagnostics.md` explains every code, and its examples yield the stated diagnostics.
 
 use std::collections::BTreeSet;
 use std::fs;

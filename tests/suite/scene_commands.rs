@@ -10,7 +10,7 @@ use crate::program::toyproof;
 use crate::support::SPHERE;
 
 /// The reference of the scene format.
-const REFERENCE: &str = "docs/scenes.md";
+const REFERENCE: &str = "docs/guide/scenes.md";
 
 #[test]
 fn built_in_scenes_are_accepted_by_name_and_files_come_first() {

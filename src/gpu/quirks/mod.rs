@@ -245,7 +245,7 @@ mod tests {
                 quirk.removal,
             );
         }
-        expect_file!["../../../docs/drivers.md"].assert_eq(&page);
+        expect_file!["../../../docs/evidence/drivers.md"].assert_eq(&page);
     }
 
     #[test]

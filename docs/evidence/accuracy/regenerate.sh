@@ -1,9 +1,9 @@
 #!/bin/sh
-# Writes the pictures in docs/accuracy and the parts of docs/accuracy.md between marks anew: `make accuracy`.
+# Regenerates the images in docs/evidence/accuracy and the marked parts of docs/evidence/accuracy.md: `make accuracy`.
 set -eu
 program=$1
-out=docs/accuracy
-page=docs/accuracy.md
+out=docs/evidence/accuracy
+page=docs/evidence/accuracy.md
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
