@@ -349,15 +349,15 @@ fn the_autograder_of_the_guide_writes_marks() {
 
 /// The format that editors match.
 #[test]
-fn quiet_diagnostics_are_one_line_with_a_position() {
+fn short_diagnostics_are_one_line_with_a_position() {
     let folder = assumed_files();
-    let run = toyproof(folder.path(), &["check", "homework/kim.glsl", "-q"]);
+    let run = toyproof(folder.path(), &["check", "homework/kim.glsl", "--format", "short"]);
     assert_eq!(run.code, 1, "{}", run.stderr);
-    let mut lines = run.stderr.lines();
+    let mut lines = run.stdout.lines();
     assert!(
         lines.any(|line| line.starts_with("homework/kim.glsl:55:56: error[E0100]: ")),
         "{}",
-        run.stderr
+        run.stdout
     );
 }
 
