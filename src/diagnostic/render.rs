@@ -45,7 +45,13 @@ pub fn human(diagnostic: &Diagnostic, files: &Files, width: Option<usize>, color
         .with_code(diagnostic.code.as_ref())
         .with_message(&diagnostic.message)
         .with_labels(labels)
-        .with_notes(diagnostic.notes.iter().map(|note| wrap_note(note, width)).collect());
+        .with_notes(
+            diagnostic
+                .notes
+                .iter()
+                .map(|note| wrap_note(note, width))
+                .collect(),
+        );
     let mut buffer = if color { Buffer::ansi() } else { Buffer::no_color() };
     // Writing to memory fails only for a span outside its file; the one-line form then still reports the
     // error.

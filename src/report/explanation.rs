@@ -61,7 +61,10 @@ fn mistakes() -> impl Iterator<Item = Explanation> {
             Some(Explanation {
                 code,
                 title: title.trim(),
-                text: format!("How to fix it: {}\n\n{introduction}", fix.trim()).trim_end().to_owned().into(),
+                text: format!("How to fix it: {}\n\n{introduction}", fix.trim())
+                    .trim_end()
+                    .to_owned()
+                    .into(),
             })
         })
     })

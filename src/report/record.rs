@@ -179,7 +179,10 @@ impl Mistake {
     /// Combines the recognized mistakes.
     #[must_use]
     pub fn new(diagnosis: &Diagnosis) -> Self {
-        let texts = diagnosis.mistakes.iter().map(|mistake| mistake.description.as_ref());
+        let texts = diagnosis
+            .mistakes
+            .iter()
+            .map(|mistake| mistake.description.as_ref());
         let alternatives = diagnosis.alternatives.iter().map(|other| Alternative {
             id: other.id.to_owned(),
             text: other.description.to_string(),

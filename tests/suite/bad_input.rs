@@ -71,7 +71,11 @@ fn scenes_and_shaders_are_not_confused() {
         expect(
             &run,
             2,
-            &["s.toml", "this is a scene, not a shader", "toyproof render s.toml"],
+            &[
+                "s.toml",
+                "this is a scene, not a shader",
+                "toyproof render s.toml",
+            ],
         );
     }
     expect(
@@ -245,7 +249,10 @@ fn out_of_range_numbers_have_our_own_messages() {
         (&["check", "s.glsl", "--frame", "-1"][..], "not in 0..="),
         (&["check", "s.glsl", "--time", "nan"], "finite"),
         (&["run", "s.glsl", "-o", "s.png", "--time", "inf"], "finite"),
-        (&["check", "s.glsl", "--date", "2020,12,1,0"], "the month 12 is out of range"),
+        (
+            &["check", "s.glsl", "--date", "2020,12,1,0"],
+            "the month 12 is out of range",
+        ),
         (&["check", "s.glsl", "--timeout", "0s"], "above 0"),
         (&["debug", "s.glsl", "--pixel", "-1,0"], "expected two integers"),
         (

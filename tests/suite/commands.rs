@@ -49,9 +49,14 @@ fn scenes_in_help_examples_are_built_in() {
     let mut seen = 0;
     for name in COMMANDS {
         let help = toyproof(root(), &[name, "--help"]).stdout;
-        assert!(!help.contains("glsl/"), "{name} names a file of the repository: {help}");
+        assert!(
+            !help.contains("glsl/"),
+            "{name} names a file of the repository: {help}"
+        );
         let words = help.split_whitespace();
-        for word in words.filter(|word| word.starts_with(['0', '1']) && word.contains('-') && !word.contains('.')) {
+        for word in
+            words.filter(|word| word.starts_with(['0', '1']) && word.contains('-') && !word.contains('.'))
+        {
             assert!(listed.contains(word), "{name}: {word}");
             seen += 1;
         }
@@ -64,7 +69,11 @@ fn the_evaluator_is_chosen_on_request() {
     let run = toyproof(root(), &["doctor", "--device", "cpu"]);
     assert_eq!(run.code, 0, "{}", run.stderr);
     assert!(run.stdout.starts_with("Selected device: cpu"), "{}", run.stdout);
-    assert_eq!(toyproof(root(), &["doctor", "--on", "cpu"]).stdout, run.stdout, "the old name");
+    assert_eq!(
+        toyproof(root(), &["doctor", "--on", "cpu"]).stdout,
+        run.stdout,
+        "the old name"
+    );
 }
 
 /// With odd sizes, the central pixel's ray is parallel to an axis of the screen.

@@ -340,7 +340,11 @@ fn proved_files_are_written_with_a_header() {
     fs::remove_file(&out).unwrap();
     let run = convert(&["--device", "cpu"]);
     assert_eq!(run.code, 2);
-    assert!(run.stdout.contains("verification needs a Vulkan driver"), "{}", run.stdout);
+    assert!(
+        run.stdout.contains("verification needs a Vulkan driver"),
+        "{}",
+        run.stdout
+    );
     assert!(!out.exists(), "what is not proved is not written");
 
     let run = convert(&["--device", "cpu", "--force"]);
@@ -401,7 +405,11 @@ fn folders_have_a_proof_table() {
         ];
         let run = toyproof(folder.path(), &arguments);
         assert_eq!(run.code, 1, "{to_language}: {}", run.stderr);
-        let statuses: Vec<_> = run.stdout.lines().filter_map(|line| line.split(' ').next()).collect();
+        let statuses: Vec<_> = run
+            .stdout
+            .lines()
+            .filter_map(|line| line.split(' ').next())
+            .collect();
         assert_eq!(statuses, ["proved", "refused", "proved"], "{}", run.stdout);
         let summary = "3 shaders: 2 proved, 1 refused, 2 written to ";
         assert!(run.stderr.contains(summary), "{}", run.stderr);

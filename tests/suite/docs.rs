@@ -351,7 +351,10 @@ fn the_autograder_of_the_guide_writes_marks() {
 #[test]
 fn short_diagnostics_are_one_line_with_a_position() {
     let folder = assumed_files();
-    let run = toyproof(folder.path(), &["check", "homework/kim.glsl", "--format", "short"]);
+    let run = toyproof(
+        folder.path(),
+        &["check", "homework/kim.glsl", "--format", "short"],
+    );
     assert_eq!(run.code, 1, "{}", run.stderr);
     let mut lines = run.stdout.lines();
     assert!(

@@ -290,7 +290,9 @@ fn a_requested_driver_that_does_not_start_is_an_error() {
 
     // A batch does not start it again for each shader.
     let first = "if (!access(\"started\", F_OK)) _exit(4); fclose(fopen(\"started\", \"w\")); _exit(3);";
-    let check = ["check", "hw", "--size", "16x9", "--device", "lavapipe", "--jobs", "1"];
+    let check = [
+        "check", "hw", "--size", "16x9", "--device", "lavapipe", "--jobs", "1",
+    ];
     let run = with_driver(first, &check);
     assert_eq!(run.code, 2, "{run:?}");
     assert_eq!(run.stdout.matches("(exit status: 3)").count(), 3, "{run:?}");

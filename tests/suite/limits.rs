@@ -146,10 +146,7 @@ fn broken_lines_of_an_earlier_run_are_skipped_and_counted() {
         again.stderr.contains("2 lines of results.jsonl cannot be read"),
         "{again:?}"
     );
-    assert!(
-        again.stderr.contains("2 of 2 results are reused"),
-        "{again:?}"
-    );
+    assert!(again.stderr.contains("2 of 2 results are reused"), "{again:?}");
 }
 
 #[test]
@@ -189,10 +186,7 @@ fn a_batch_ends_when_its_output_is_closed() {
     let output = running.wait_with_output().unwrap();
     let stderr = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2), "{stderr}");
-    assert!(
-        stderr.contains("standard output was closed after "),
-        "{stderr}"
-    );
+    assert!(stderr.contains("standard output was closed after "), "{stderr}");
     let kept = results(folder.path());
     assert!((1..COUNT).contains(&kept), "{kept}");
 }

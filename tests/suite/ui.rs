@@ -16,7 +16,10 @@ fn messages(path: &Path) -> String {
     let file = files.add(File::new(name, fs::read_to_string(path).unwrap()));
     match check(&files, file, &Options::default()) {
         Ok(checked) => panic!("{name} is accepted, with {:?}", checked.warnings),
-        Err(errors) => errors.iter().map(|error| human(error, &files, None, false)).collect(),
+        Err(errors) => errors
+            .iter()
+            .map(|error| human(error, &files, None, false))
+            .collect(),
     }
 }
 
