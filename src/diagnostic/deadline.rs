@@ -21,7 +21,7 @@ pub struct Deadline {
 
 /// The deadline has passed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-#[error("this shader takes longer than {} s to compile", limit.as_secs_f64())]
+#[error("compilation exceeded the time limit of {} s", limit.as_secs_f64())]
 pub struct Overdue {
     /// The time limit.
     pub limit: Duration,

@@ -1,6 +1,6 @@
 //! The stable codes of the front end's diagnostics.
 
-use toyproof_diagnostic::{Diagnostic, Overdue};
+use toyproof_diagnostic::{Diagnostic, Overdue, plural};
 
 use super::tree::Place;
 
@@ -119,7 +119,7 @@ codes! {
 #[must_use]
 pub fn overdue(overdue: Overdue) -> Diagnostic {
     Diagnostic::error(Code::TooSlow.as_str(), overdue.to_string())
-        .note("shorten its longest expressions, lists and functions, or give it more time with `--timeout` (`trade`: `--budget`)")
+        .help("shorten the longest expressions, arrays and functions, or raise `--timeout` (for `trade`, `--budget`)")
 }
 
 /// Maximum number of reported errors of one file, and of warnings.
@@ -135,8 +135,13 @@ pub(crate) fn push_limited(reported: &mut Vec<Diagnostic>, diagnostic: Diagnosti
     }
 }
 
+/// Formats a number of arguments or elements: `1 was given`, `3 were given`.
+pub(crate) fn given(count: usize) -> String {
+    format!("{count} {} given", plural(count as u64, "was", "were"))
+}
+
 /// The text at the spelling location of characters from a macro.
-pub const IN_MACRO: &str = "written in this macro";
+pub const IN_MACRO: &str = "in the definition of this macro";
 
 impl Code {
     /// Whether `// toyproof: allow(…)` may suppress it.

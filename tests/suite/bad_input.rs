@@ -198,7 +198,7 @@ fn invalid_scenes() {
         ),
         (
             "[film]\nsize = [0, 0]\n".to_owned(),
-            ["nothing to show", "s.toml:2:8"],
+            ["at least 1 pixel", "s.toml:2:8"],
         ),
         (
             "[film]\nsize = [100000, 100000]\n".to_owned(),
@@ -219,7 +219,7 @@ fn invalid_scenes() {
 #[test]
 fn invalid_sizes() {
     for (size, words) in [
-        ("0x0", "nothing to show"),
+        ("0x0", "at least 1 pixel"),
         ("100000x100000", "too large"),
         ("wide", "640x360"),
     ] {
@@ -364,7 +364,7 @@ fn an_unknown_adapter() {
     expect(
         &run,
         2,
-        &["no Vulkan adapter's name holds “Voodoo”", "there are:"],
+        &["no Vulkan adapter with “Voodoo” in its name", "available:"],
     );
 }
 

@@ -138,7 +138,7 @@ fn each_error_has_its_line_column_and_expectation() {
         (
             "[film]\nsize = [0, 0]",
             "s.toml:2:8: error[E0502]",
-            "nothing to show",
+            "at least 1 pixel",
         ),
         (
             "[film]\nsize = [100000, 100000]",
