@@ -93,7 +93,7 @@ fn each_mistake_is_reported_once() {
         &["invalid      s.glsl: 2 errors, the first in line 1, column 54"],
     );
     assert_eq!(run.stdout.lines().count(), 1, "{}", run.stdout);
-    assert_eq!(run.stderr.matches("`;` is missing").count(), 1, "{}", run.stderr);
+    assert_eq!(run.stderr.matches("expected `;`").count(), 1, "{}", run.stderr);
 }
 
 #[test]
@@ -132,7 +132,7 @@ fn an_empty_file() {
         &check("", &[]),
         1,
         &[
-            "the shader has no function `mainImage`",
+            "missing function `mainImage`",
             "mainImage(out vec4 fragColor, in vec2 fragCoord)",
         ],
     );
@@ -143,7 +143,7 @@ fn a_shader_without_main_image() {
     expect(
         &check("float f() { return 1.0; }", &[]),
         1,
-        &["the shader has no function `mainImage`"],
+        &["missing function `mainImage`"],
     );
 }
 
@@ -153,7 +153,7 @@ fn a_brace_that_is_never_closed() {
         &format!("{MAIN} {{\n  if (p.x > 1.0) {{\n  c = vec4(1.0);\n}}\n"),
         &[],
     );
-    expect(&run, 1, &["this `{` is never closed", "s.glsl:2:18"]);
+    expect(&run, 1, &["unclosed `{`", "s.glsl:2:18"]);
 }
 
 #[test]
@@ -410,7 +410,7 @@ fn twenty_thousand_parentheses() {
         "(".repeat(20_000),
         ")".repeat(20_000)
     );
-    expect(&check(&nested, &[]), 1, &["nested more than 256 deep"]);
+    expect(&check(&nested, &[]), 1, &["nesting deeper than 256 levels"]);
 }
 
 #[test]

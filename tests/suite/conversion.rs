@@ -153,7 +153,7 @@ fn conversions_are_valid_in_their_hosts_modules() {
     let with_channels = "const float data = 2.0;
         void mainImage(out vec4 c, in vec2 p) {
             c = texture(iChannel0, p / iResolution.xy) * data + texture(iChannel1, p / iResolution.xy) * fract(iTime);
-            c.x += float(iFrame % 3) * iTimeDelta + gl_FragCoord.x;
+            c.x += float(iFrame % 3) * iTimeDelta + gl_FragCoord.x + iMouse.z;
         }";
     for shader in [with_channels, REFLECTIONS.shader, ANIMATION.shader] {
         let mut files = Files::default();
