@@ -120,7 +120,7 @@ mod tests {
         assert!(over.is_over() && over.is_over() && over.share(4).is_over());
         assert_eq!(over.left(), Some(Duration::ZERO));
         let text = over.check().unwrap_err().to_string();
-        assert_eq!(text, "this shader takes longer than 0 s to compile");
+        assert_eq!(text, "compilation exceeded the time limit of 0 s");
     }
 
     #[test]

@@ -33,8 +33,9 @@ pub fn human(diagnostic: &Diagnostic, files: &Files, color: bool) -> String {
             .shown_fixes()
             .map(|fix| format!("help: {}", fix.message));
         let lines = fixes.chain(footer(diagnostic));
-        let lines: String = lines.map(|line| format!("  = {line}\n")).collect();
-        return short(diagnostic, files) + "\n" + &lines;
+        return lines.fold(short(diagnostic, files) + "\n", |text, line| {
+            text + "  = " + &line + "\n"
+        });
     }
     // A fix is shown at its place: at the caret if it changes the reported text.
     let mut label = diagnostic.label.as_deref();

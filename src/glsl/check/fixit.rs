@@ -174,19 +174,14 @@ impl Checker<'_> {
     pub(super) fn with_related_fixit(&self, diagnostic: Diagnostic, operand: ExprId, to: Type) -> Diagnostic {
         let from = self.ty(operand);
         let place = self.tree[operand].at.spelling;
-        let diagnostic = match self.fixit(operand, to) {
-            Some((advice, replacement)) => match self.replaced(operand, to, replacement) {
+        let diagnostic = if let Some((advice, replacement)) = self.fixit(operand, to) {
+            match self.replaced(operand, to, replacement) {
                 Some((span, replacement)) => diagnostic.fix(Fix::new(advice, span, replacement)),
                 None => diagnostic.related(place, advice),
-            },
-            None => {
-                let label = format!(
-                    "expected {}, found {}",
-                    self.quoted_type(to),
-                    self.quoted_type(from)
-                );
-                diagnostic.related(place, label)
             }
+        } else {
+            let (to, from) = (self.quoted_type(to), self.quoted_type(from));
+            diagnostic.related(place, format!("expected {to}, found {from}"))
         };
         match self.conversion_note(from, to) {
             Some(note) if !diagnostic.notes.contains(&note) => diagnostic.note(note),

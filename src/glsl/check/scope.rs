@@ -109,7 +109,13 @@ impl Checker<'_> {
         let near = nearest(text, variables)
             .or_else(|| nearest(text, functions))
             .map(str::to_owned);
-        self.report_undeclared(name, at, None, format!("`{text}` is not declared"), near)
+        self.report_undeclared(
+            name,
+            at,
+            None,
+            format!("`{text}` is not declared"),
+            near.as_deref(),
+        )
     }
 
     /// Reports an undeclared function, once in each function.
@@ -123,7 +129,13 @@ impl Checker<'_> {
         // The point before the `)`.
         let end = call.span.end.saturating_sub(1);
         let end = is_plain.then(|| Span::new(call.span.file, end, end));
-        self.report_undeclared(name, at, end, format!("unknown function `{text}`"), near)
+        self.report_undeclared(
+            name,
+            at,
+            end,
+            format!("unknown function `{text}`"),
+            near.as_deref(),
+        )
     }
 
     fn report_undeclared(
@@ -132,7 +144,7 @@ impl Checker<'_> {
         at: Place,
         call_end: Option<Span>,
         message: String,
-        near: Option<String>,
+        near: Option<&str>,
     ) -> ExprId {
         let known = self
             .function
@@ -146,7 +158,7 @@ impl Checker<'_> {
                 let diagnostic = Code::Undeclared.at(at, message);
                 foreign.advise(diagnostic, at, call_end).note(foreign.note())
             }
-            None => did_you_mean(Code::Undeclared, at, &message, near.as_deref()),
+            None => did_you_mean(Code::Undeclared, at, &message, near),
         };
         self.report(diagnostic);
         self.unknown.push((name, at));

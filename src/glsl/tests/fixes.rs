@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use toyproof_diagnostic::{Json, JsonFix, human, json};
+use toyproof_diagnostic::{Json, JsonFix, json};
 
 use super::*;
 
