@@ -153,7 +153,7 @@ fn conversions_are_valid_in_their_hosts_modules() {
     let with_channels = "const float data = 2.0;
         void mainImage(out vec4 c, in vec2 p) {
             c = texture(iChannel0, p / iResolution.xy) * data + texture(iChannel1, p / iResolution.xy) * fract(iTime);
-            c.x += float(iFrame % 3) * iTimeDelta + gl_FragCoord.x;
+            c.x += float(iFrame % 3) * iTimeDelta + gl_FragCoord.x + iMouse.z;
         }";
     for shader in [with_channels, REFLECTIONS.shader, ANIMATION.shader] {
         let mut files = Files::default();
@@ -476,7 +476,7 @@ fn files_in_every_language_state_their_proof() {
 
 /// Names that surround a shader in some language: ours, naga's, those of hosts and of the preludes that
 /// replace them.
-const SURROUNDING_NAMES: &str = "toyproof_colour toyproof_result toyproof_painted toyproof_frame ToyproofFrame toyproof_color toyproof_size \
+const SURROUNDING_NAMES: &str = "toyproof_color toyproof_result toyproof_image_color toyproof_frame ToyproofFrame toyproof_color toyproof_size \
     toyproof_need_0 toyproof_sin toyproof_start toyproof_remainder toyproof_t1 toyproof_s1 main_1 global inputs Inputs \
     position color saturate screen time view View globals Globals fragment VertexOutput kept written_main written_color \
     writtenn_at written_image FragmentInput_main FragmentOutput ConstructRay constructRay naga_mod naga_div i_time \

@@ -60,8 +60,8 @@ fn driver_start_failures_are_distinct_from_slow_shaders() {
     let limit = Duration::from_secs(3);
     thread::scope(|scope| {
         for (script, wanted) in [
-            ("exec sleep 60", "the worker process did not answer within 3 s"),
-            ("kill -STOP $$", "the worker process did not answer within 3 s"),
+            ("exec sleep 60", "the worker process did not respond within 3 s"),
+            ("kill -STOP $$", "the worker process did not respond within 3 s"),
             (
                 "STARTING; exec sleep 60",
                 "the Vulkan driver did not start within 3 s",
@@ -78,7 +78,7 @@ fn driver_start_failures_are_distinct_from_slow_shaders() {
         }
     });
     for (script, wanted) in [
-        ("exit 3", "died (exit status: 3) before it answered"),
+        ("exit 3", "terminated (exit status: 3) before its first reply"),
         (
             "TRANSLATING; STARTING; exit 3",
             "while the Vulkan driver was starting",

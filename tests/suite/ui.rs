@@ -1,5 +1,5 @@
 //! Compiler messages: `tests/ui/*.glsl` holds typical mistakes of students, and beside each the whole text
-//! that a terminal shows. `UPDATE_EXPECT=1 cargo test --test suite ui` writes the texts anew; read them aloud
+//! that a terminal shows. `UPDATE_EXPECT=1 cargo test --test suite ui` writes the texts anew; read them
 //! before you keep them.
 
 use std::fs;
