@@ -31,7 +31,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
                 terminal.result(&format!("{stem:<24} {}", title(name, text)));
             }
         }
-        terminal.note("help: `toyproof scenes --write DIR` writes their shaders (.glsl) and scenes (.toml)");
+        terminal.note("`toyproof scenes --write DIR` writes their shaders (.glsl) and scenes (.toml)");
         return Exit::Success;
     };
     let differs = |name: &str, text: &str| {
@@ -98,7 +98,7 @@ fn builtin_scene(path: &Path) -> Result<File, String> {
         None => "`toyproof scenes` lists the built-in scenes".to_owned(),
     };
     Err(format!(
-        "no such file or built-in scene: {name}\n  = help: {help}"
+        "no such file or built-in scene: {name}\nhelp: {help}"
     ))
 }
 

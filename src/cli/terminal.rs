@@ -161,9 +161,16 @@ impl Terminal {
         self.labeled("warning", AnsiColor::Yellow, text);
     }
 
-    /// Prints an error on standard error.
+    /// Prints an error on standard error; a line `help: …` at its end is its way out.
     pub(super) fn error(&self, text: impl Display) {
-        self.labeled("error", AnsiColor::Red, text);
+        let text = text.to_string();
+        match text.split_once("\nhelp: ") {
+            Some((text, help)) => {
+                self.labeled("error", AnsiColor::Red, text);
+                self.help(help);
+            }
+            None => self.labeled("error", AnsiColor::Red, text),
+        }
     }
 
     /// Prints a way out of an error on standard error.
