@@ -27,7 +27,7 @@ fn a_scene_and_its_shader_are_measured() {
     let head = "way,group,runs,outliers,median_ms,mad_ms,rmse,max,mismatches_8bit,flips,pareto";
     assert_eq!(csv.lines().next(), Some(head));
     assert!(
-        csv.contains("\"tracer f64\"") && csv.contains("\"evaluator f32, recentred\""),
+        csv.contains("\"tracer f64\"") && csv.contains("\"evaluator f32, recentered\""),
         "{csv}"
     );
     let json: Value = serde_json::from_str(&fs::read_to_string(out.join("trade.json")).unwrap()).unwrap();
