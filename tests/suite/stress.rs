@@ -127,10 +127,15 @@ fn planted_mistakes_are_named() {
 fn correct_functions_are_not_blamed_and_their_limits_are_reported() {
     let findings = examine(TEXTBOOK, "hitSphere", &RoleMap::new());
     assert_eq!(findings.mistake, None);
-    let lines = findings.report.breakdown_lines();
+    let summary = findings.summary("hitSphere").join("\n");
     assert!(
-        lines[0].starts_with("hitSphere f32 fails from scale 1e-20 down"),
-        "{lines:?}"
+        summary.starts_with("hitSphere makes none of the known mistakes, but fails for extreme input"),
+        "{summary}"
+    );
+    let row = summary.lines().find(|line| line.contains("scene scale ≤"));
+    assert!(
+        row.is_some_and(|row| row.contains(" 1e-20 ") && row.ends_with('–')),
+        "{summary}"
     );
     let example = findings.example.unwrap();
     assert!(
@@ -360,18 +365,24 @@ fn the_command_writes_its_files_and_names_the_columns() {
     );
     assert_eq!(run.code, 0, "{}", run.stderr);
     assert!(
-        run.stdout.contains("textbook f32 fails from scale"),
+        run.stdout
+            .starts_with("Where ray–sphere formulas stop being right in float32\n")
+            && run.stdout.contains("\nRecommended for spheres: recentered ("),
         "{}",
         run.stdout
     );
     let out = folder.path().join("out");
     let csv = fs::read_to_string(out.join("stress.csv")).unwrap();
-    let head = "formula,precision,device,axis,value,cases,wrong_hits,t_ulp_p50,t_ulp_p99,t_ulp_max,nan,self_intersections,lost";
+    let head = "formula,precision,device,axis,step,cases,failing,wrong_hits,t_error_ulp_median,t_error_ulp_p99,\
+                t_error_ulp_max,non_finite,self_intersections,missed_nearby";
     assert_eq!(csv.lines().next(), Some(head));
     let json: Value = serde_json::from_str(&fs::read_to_string(out.join("stress.json")).unwrap()).unwrap();
     assert_eq!(json["rows"].as_array().unwrap().len(), csv.lines().count() - 1);
     for name in ["spheres", "errors", "quadrics", "secondary"] {
-        assert!(out.join(format!("stress-{name}.png")).is_file(), "{name}");
+        for extension in ["png", "svg"] {
+            let file = out.join(format!("stress-{name}.{extension}"));
+            assert!(file.is_file(), "{}", file.display());
+        }
     }
 }
 

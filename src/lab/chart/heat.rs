@@ -53,7 +53,11 @@ const TITLE_SIZE: i32 = 25;
 const LINE_HEIGHT: i32 = 24;
 
 /// The top of the panels: below the title, the legend's title and the legend.
-const PANELS_TOP: i32 = 5 * LINE_HEIGHT;
+const PANELS_TOP: i32 = 5 * LINE_HEIGHT + GAP;
+/// The gap between column labels and the title below them: measured widths of rotated text are too small.
+const X_TITLE_GAP: i32 = 14;
+/// All panels are placed in one row up to this width.
+const MAX_SINGLE_ROW_WIDTH: i32 = 1320;
 
 impl HeatMap {
     /// Draws the map as SVG, at the size that it needs.
@@ -76,14 +80,21 @@ impl HeatMap {
         })
     }
 
-    /// The size, and the upper left corners of the panels: each is in the first row that has room for it. The
-    /// widest element determines the width.
+    /// The size, and the upper left corners of the panels: each is in the first row that has room for it.
+    /// The widest element determines the width, unless all panels fit in one row.
     fn layout(&self) -> ((u32, u32), Vec<(i32, i32)>) {
         let legend: i32 = self.bands.iter().map(Band::width).sum();
         let titles = [(&self.title, TITLE_SIZE), (&self.legend, FONT_SIZE)];
         let titles = titles.map(|(title, size)| text_width([title.as_str()], size) + GAP);
-        let widest = self.panels.iter().map(Panel::width);
-        let width = widest.chain([legend]).chain(titles).max().unwrap_or(0) + GAP;
+        let widths = self.panels.iter().map(Panel::width);
+        let single_row = Some(widths.clone().sum()).filter(|width| *width <= MAX_SINGLE_ROW_WIDTH);
+        let width = widths
+            .chain([legend])
+            .chain(single_row)
+            .chain(titles)
+            .max()
+            .unwrap_or(0)
+            + GAP;
         // The width and height of each row.
         let mut rows: Vec<(i32, i32)> = Vec::new();
         let mut places = Vec::new();
@@ -157,7 +168,7 @@ impl HeatMap {
             area.draw(&Text::new(name.as_str(), at, upwards.clone()))?;
         }
         let x_title = text_style(FONT_SIZE, GRAY);
-        let at = (left, below + panel.column_label_height() + 4);
+        let at = (left, below + panel.column_label_height() + X_TITLE_GAP);
         area.draw(&Text::new(panel.x_title.as_str(), at, x_title))
     }
 }
@@ -194,7 +205,7 @@ impl Panel {
 
     fn height(&self) -> i32 {
         let rows = self.rows.len() as i32 * CELL_SIZE;
-        2 * LINE_HEIGHT + 4 + rows + self.column_label_height() + 2 * GAP
+        2 * LINE_HEIGHT + X_TITLE_GAP + rows + self.column_label_height() + 2 * GAP
     }
 }
 

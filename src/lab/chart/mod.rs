@@ -39,11 +39,11 @@ fn text_width<'a>(texts: impl IntoIterator<Item = &'a str>, size: i32) -> i32 {
     texts.into_iter().map(width).max().unwrap_or(0)
 }
 
-/// Formats a tick label: `0.01`, `100`, `10⁻⁵`.
+/// Formats a tick label: `0.01`, `100`, `10⁻⁵`, `2·10⁻⁵`.
 pub(crate) fn tick(value: f64) -> String {
     let exponent = libm::log10(value * (1.0 + 1e-9)).floor() as i32;
     let mantissa = value / libm::exp10(f64::from(exponent));
-    if (-2..=4).contains(&exponent) {
+    if (-3..=3).contains(&exponent) {
         return format!("{}", (value * 1e6).round() / 1e6);
     }
     let superscript = |digit: char| match digit {

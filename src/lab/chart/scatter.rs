@@ -105,7 +105,7 @@ impl Scatter {
             .margin_right(LINE_HEIGHT + label_width)
             .caption(self.title.as_str(), text_style(TITLE_SIZE, INK))
             .x_label_area_size(70)
-            .y_label_area_size(110)
+            .y_label_area_size(95)
             .build_cartesian_2d(x.range.clone().log_scale(), y.range.clone().log_scale())?;
         let [x_ends, y_ends] = [&x, &y].map(|scale| (scale.range.start, scale.range.end));
         for (at, style) in x.grid() {
@@ -184,7 +184,7 @@ impl Scatter {
         let upwards = text_style(FONT_SIZE, INK)
             .transform(FontTransform::Rotate270)
             .pos(Pos::new(HPos::Center, VPos::Center));
-        text(self.y_title.clone(), (origin.0 + 24, (y0 + y1) / 2), upwards)
+        text(self.y_title.clone(), (origin.0 + 28, (y0 + y1) / 2), upwards)
     }
 
     /// Draws the colors of the groups, and the names of the points on the front.
@@ -302,7 +302,7 @@ impl Scale {
     /// The labeled values, and zero.
     fn ticks(&self) -> Vec<(f64, String)> {
         let decades = self.decades();
-        let step = (decades / 8.0).ceil().max(1.0) as i32;
+        let step = (decades / 10.0).ceil().max(1.0) as i32;
         let is_labeled = |digit: u32, exponent: i32| match digit {
             1 => exponent % step == 0,
             2 | 5 => decades <= MAX_DECADES_WITH_FINE_TICKS,
@@ -393,7 +393,7 @@ mod tests {
         );
         assert_eq!(
             labels(&[3e-8, 0.0, 1e-2], true),
-            ["10⁻⁷", "10⁻⁶", "10⁻⁵", "10⁻⁴", "10⁻³", "0.01", "0"]
+            ["10⁻⁷", "10⁻⁶", "10⁻⁵", "10⁻⁴", "0.001", "0.01", "0"]
         );
         assert!(labels(&[2.0], false).len() >= 2);
     }

@@ -256,7 +256,7 @@ pub fn axes() -> Vec<Axis> {
             margin: 0.0,
             ..spheres(
                 "parts",
-                ["degenerate input", "degenerate value"],
+                ["degenerate input", "kind of degenerate input"],
                 labels(&DEGENERATE_PARTS),
                 EasySteps::Unordered,
                 degenerate_sphere,
@@ -280,19 +280,14 @@ pub fn axes() -> Vec<Axis> {
         ),
         quadrics(
             "rays of a quadric",
-            ["special ray", "special ray"],
+            ["special ray", "kind of ray"],
             labels(&SPECIAL_QUADRIC_RAYS),
             EasySteps::Unordered,
             0.0,
             special_quadric_ray,
         ),
         secondary("mirrored rays", "mirror reflection", rays.clone(), mirrored_ray),
-        secondary(
-            "grazing rays",
-            "grazing secondary ray",
-            rays,
-            grazing_secondary_ray,
-        ),
+        secondary("grazing rays", "grazing direction", rays, grazing_secondary_ray),
     ]
 }
 

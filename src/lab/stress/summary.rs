@@ -154,20 +154,23 @@ impl Report {
             let Some((ordinary, failing, steps)) = self.best(kind, true) else {
                 continue;
             };
-            let mut line = match failing {
-                0 => format!("Recommended for {what}: {ordinary} (right in all {steps} steps"),
-                _ => {
-                    format!("Recommended for {what}: {ordinary} (fewest failures: {failing} of {steps} steps")
-                }
+            let extreme = self
+                .best(kind, false)
+                .filter(|(extreme, ..)| *extreme != ordinary);
+            let range = match extreme {
+                Some(_) => format!(
+                    " at scales from {:e} to {MAX_ORDINARY_SCALE:e}",
+                    1.0 / MAX_ORDINARY_SCALE
+                ),
+                None => String::new(),
             };
-            match self.best(kind, false) {
-                Some((extreme, ..)) if extreme != ordinary => {
-                    line += &format!(
-                        " at scales from {:e} to {MAX_ORDINARY_SCALE:e}); {extreme} for any scale",
-                        1.0 / MAX_ORDINARY_SCALE
-                    );
-                }
-                _ => line += ")",
+            let mut line = format!("Recommended for {what}: {ordinary} ");
+            line += &match failing {
+                0 => format!("(right in all {steps} steps{range})"),
+                _ => format!("(fewest failures{range}: {failing} of {steps} steps)"),
+            };
+            if let Some((extreme, ..)) = extreme {
+                line += &format!("\n  at any scale: {extreme}");
             }
             lines.push(line);
         }
