@@ -55,9 +55,9 @@ enum Command {
     Convert(convert::Args),
     /// Tell what one pixel does, in f32 beside f64, line by line
     Explain(explain::Args),
-    /// Find out where formulas for rays and surfaces fail: numerical stability at the extremes
+    /// Find the inputs for which ray–surface intersection fails numerically
     Stress(stress::Args),
-    /// Measure what accuracy costs: every way to a picture, with its time and its error
+    /// Measure rendering time against accuracy
     Trade(trade::Args),
     /// Compare two pictures
     Compare(compare::Args),

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use toyproof_diagnostic::{Deadline, path_name};
 use toyproof_gpu::Worker;
-use toyproof_lab::stress::function::{self, Findings, Role, RoleMap, Signature};
+use toyproof_lab::stress::function::{self, Role, RoleMap, Signature};
 use toyproof_lab::stress::{self, Report, Settings, formula};
 
 use super::inputs::{DriverArgs, LanguageArgs};

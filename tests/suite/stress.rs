@@ -396,7 +396,7 @@ fn bad_input_is_reported_and_leaves_nothing() {
         let all = [&["stress", "-o", "out", "--on", "cpu"], arguments].concat();
         toyproof(folder.path(), &all)
     };
-    for (arguments, says) in [
+    for (arguments, message) in [
         (&["a.glsl", "--function", "f"][..], "there is no function `f`"),
         (&["a.glsl"], "no function intersects a ray with a sphere"),
         (&["none.glsl"], "none.glsl"),
@@ -434,7 +434,7 @@ fn bad_input_is_reported_and_leaves_nothing() {
     ] {
         let run = stress(arguments);
         assert_eq!(run.code, 2, "{arguments:?}: {}", run.stderr);
-        assert!(run.stderr.contains(says), "{arguments:?}: {}", run.stderr);
+        assert!(run.stderr.contains(message), "{arguments:?}: {}", run.stderr);
     }
     assert!(!folder.path().join("out").exists());
 }

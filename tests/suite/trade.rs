@@ -122,7 +122,7 @@ fn skipped_methods_are_reported() {
 fn bad_input_is_reported_and_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("bad.glsl"), "void mainImage(").unwrap();
-    for (arguments, code, says) in [
+    for (arguments, code, message) in [
         (&["none.toml", "-o", "out"][..], 2, "none.toml"),
         (&["bad.glsl", "-o", "out"], 1, "error"),
         (&["bad.glsl"], 2, "--output"),
@@ -131,7 +131,7 @@ fn bad_input_is_reported_and_leaves_nothing() {
         let all = [&["trade", "--on", "cpu"], arguments].concat();
         let run = toyproof(folder.path(), &all);
         assert_eq!(run.code, code, "{arguments:?}: {}", run.stderr);
-        assert!(run.stderr.contains(says), "{arguments:?}: {}", run.stderr);
+        assert!(run.stderr.contains(message), "{arguments:?}: {}", run.stderr);
     }
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
 }

@@ -96,7 +96,7 @@ impl Report {
         let failing: CellValue = |row| (row.tally.cases > 0).then(|| row.tally.failing_share());
         let error: CellValue = |row| row.tally.t_error_ulp.map(|[_, p99, _]| p99);
         let share = format!("Unusable results, share of {} cases per cell:", self.cases);
-        let ulp = "Error of t, 99th percentile, in units in the last place (ULP):".to_owned();
+        let ulp = "Error of t, 99th percentile, in units in the last place (ULP); blank: no hits:".to_owned();
         let maps = [
             (
                 "stress-spheres",
@@ -165,11 +165,19 @@ impl Report {
                 lines.push((name, group.iter().map(|row| value(row)).collect()));
             }
         }
-        (!lines.is_empty()).then(|| Panel {
+        // Steps without any value, such as errors of t where there are no hits, have no column.
+        let shown: Vec<usize> = (0..axis.steps.len())
+            .filter(|&step| lines.iter().any(|(_, values)| values[step].is_some()))
+            .collect();
+        let lines = lines.into_iter().map(|(name, values)| {
+            let values = shown.iter().map(|&step| values[step]);
+            (name, values.collect())
+        });
+        (!shown.is_empty()).then(|| Panel {
             title: chart::capitalized(axis.label),
             x_title: axis.axis_title.to_owned(),
-            columns: axis.steps.iter().map(|step| column_label(*step)).collect(),
-            rows: lines,
+            columns: shown.iter().map(|&step| column_label(axis.steps[step])).collect(),
+            rows: lines.collect(),
         })
     }
 }

@@ -145,7 +145,7 @@ impl Report {
                 ]);
             }
         }
-        // The limits are sorted, so the first that none meets is the one to report.
+        // The limits are sorted, so the first unreachable one is the one to report.
         if let Some((_, name)) = fastest.iter().find(|(found, _)| found.is_none()) {
             rows.push(vec!["–".to_owned(), "–".to_owned(), format!("none below {name}")]);
         }

@@ -248,7 +248,7 @@ impl Signature {
 
 // How a function reports a miss, determined by evaluating it.
 
-/// Rays that clearly miss a sphere: a result common to several of them is the function's way to report a
+/// Rays that clearly miss a sphere: a result common to several of them is how the function reports a
 /// miss.
 pub(in crate::stress) fn clear_misses() -> Vec<RaySphere> {
     let random = &mut Random::new(0, &["clear misses"]);
