@@ -222,7 +222,7 @@ struct Scale {
     zero: Option<f64>,
 }
 
-/// The most decades of a scale with ticks at 1, 2 and 5 times powers of ten.
+/// The most decades of a scale with ticks at 1, 2 and 5 times powers of ten; with up to one, 3 and 7, too.
 const MAX_DECADES_WITH_FINE_TICKS: f64 = 2.6;
 /// The least decades of a scale: values that are nearly equal look so.
 const MIN_DECADES: f64 = 0.8;
@@ -306,6 +306,7 @@ impl Scale {
         let is_labeled = |digit: u32, exponent: i32| match digit {
             1 => exponent % step == 0,
             2 | 5 => decades <= MAX_DECADES_WITH_FINE_TICKS,
+            3 | 7 => decades <= 1.0,
             _ => false,
         };
         let ticks = self

@@ -58,6 +58,13 @@ impl Report {
             group: used.iter().position(|name| *name == result.group).unwrap_or(0),
             on_front: result.on_pareto_front,
         });
+        // Limits far from all errors would leave most of the chart empty.
+        let errors = self.results.iter().map(|result| result.error.rmse);
+        let lines = ERROR_LIMITS.iter().filter(|(limit, _)| {
+            let is_near = |error: f64| (0.1..=10.0).contains(&(error / limit));
+            errors.clone().any(is_near)
+                || (errors.clone().any(|error| error < *limit) && errors.clone().any(|error| error > *limit))
+        });
         let [width, height] = self.size;
         Scatter {
             title: format!(
@@ -68,10 +75,7 @@ impl Report {
             y_title: "root mean square error (colors in [0, 1])".to_owned(),
             groups: used.iter().map(|name| (*name).to_owned()).collect(),
             points: points.collect(),
-            reference_lines: ERROR_LIMITS
-                .iter()
-                .map(|&(error, name)| (error, name.to_owned()))
-                .collect(),
+            reference_lines: lines.map(|&(limit, name)| (limit, name.to_owned())).collect(),
         }
     }
 
