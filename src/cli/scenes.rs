@@ -15,7 +15,7 @@ use crate::cli::files::{self, ReadError};
 /// The name of a built-in scene can be used wherever a scene file is expected.
 #[derive(Debug, clap::Args)]
 #[command(
-    after_help = "Examples:\n  toyproof scenes\n  toyproof render 02-sphere -o sphere.png\n  \
+    after_long_help = "Examples:\n  toyproof scenes\n  toyproof render 02-sphere -o sphere.png\n  \
                         toyproof scenes --write course\n  toyproof check course --out report"
 )]
 pub(super) struct Args {

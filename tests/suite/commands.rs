@@ -70,7 +70,7 @@ fn the_evaluator_is_chosen_on_request() {
     assert_eq!(run.code, 0, "{}", run.stderr);
     assert!(run.stdout.starts_with("Selected device: cpu"), "{}", run.stdout);
     assert_eq!(
-        toyproof(root(), &["doctor", "--on", "cpu"]).stdout,
+        toyproof(root(), &["doctor", "--device", "cpu"]).stdout,
         run.stdout,
         "the old name"
     );

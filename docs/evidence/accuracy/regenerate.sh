@@ -1,5 +1,5 @@
 #!/bin/sh
-# Regenerates the images in docs/evidence/accuracy and the marked parts of docs/evidence/accuracy.md: `make accuracy`.
+# Regenerates the charts in docs/evidence/accuracy and the marked parts of docs/evidence/accuracy.md: `make accuracy`.
 set -eu
 program=$1
 out=docs/evidence/accuracy
@@ -18,9 +18,15 @@ fill() {
     cp "$work/page" "$page"
 }
 
-"$program" stress -q -o "$work" >"$work/lines"
-cp "$work"/stress-*.png "$out"
-sed 's/^/- /' "$work/lines" | fill stress
+# block: standard input as a code block.
+block() {
+    printf '```text\n'
+    cat
+    printf '```\n'
+}
+
+"$program" stress -v -o "$work" 2>&1 | grep -v "$work" | block | fill stress
+cp "$work"/stress-*.png "$work"/stress-*.svg "$out"
 
 for exercise in 03-shading 06-reflections 09-soft-shadows 12-whitted; do
     size=320x180
@@ -28,5 +34,5 @@ for exercise in 03-shading 06-reflections 09-soft-shadows 12-whitted; do
     "$program" trade -q "glsl/$exercise.toml" -o "$work/$exercise" --size $size >"$work/$exercise.lines"
     cp "$work/$exercise/trade.svg" "$out/trade-$exercise.svg"
     cp "$work/$exercise/trade.png" "$out/trade-$exercise.png"
-    sed "s/^/- $exercise: /" "$work/$exercise.lines"
+    block <"$work/$exercise.lines"
 done | fill trade
