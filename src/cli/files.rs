@@ -107,8 +107,8 @@ impl ReadError {
         match self {
             Self::Missing(_) => "no such file or folder".to_owned(),
             Self::Scene(path) => format!(
-                "this is a scene, not a shader; `toyproof check SHADER --scene {name}` compares a shader with it, and \
-                 `toyproof render {name} -o PICTURE` traces it",
+                "this is a scene, not a shader (to compare a shader with it: `toyproof check SHADER --scene {name}`; to \
+                 render it: `toyproof render {name}`)",
                 name = path_name(path)
             ),
             Self::NoShader(_) => {

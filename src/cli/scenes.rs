@@ -97,9 +97,7 @@ fn builtin_scene(path: &Path) -> Result<File, String> {
         Some(near) => format!("did you mean the built-in scene `{near}`?"),
         None => "`toyproof scenes` lists the built-in scenes".to_owned(),
     };
-    Err(format!(
-        "no such file or built-in scene: {name}\nhelp: {help}"
-    ))
+    Err(format!("no such file or built-in scene: {name}\nhelp: {help}"))
 }
 
 // The shaders and scenes of the course, which are embedded in the program.

@@ -103,7 +103,10 @@ pub fn lines(record: &Record, layout: &Layout) -> String {
         if layout.lists_errors {
             lines.extend(error_lines(&errors, &record.shader, layout));
         }
-        lines.extend(record.details.iter().map(|detail| layout.below("", detail)));
+        // Of a shader without a fault, the reason is enough.
+        if !record.verdict.is_good() || layout.detail == Detail::Full {
+            lines.extend(record.details.iter().map(|detail| layout.below("", detail)));
+        }
         if let Some(mistake) = &record.mistake {
             lines.extend(mistake_lines(mistake, layout));
         }

@@ -362,7 +362,7 @@ fn unprovable_shaders_name_the_operation_and_position() {
     fs::write(folder.path().join("a.glsl"), text).unwrap();
     let run = toyproof(folder.path(), &["convert", "a.glsl", "--verify", "-o", "a.wgsl"]);
     assert_eq!(run.code, 2, "{}", run.stderr);
-    let why = "every pixel depends on undefined behavior: `pow` of a negative base, or of zero to zero or less at a.glsl:2:17; not written";
+    let why = "every pixel depends on undefined behavior: `pow` of a negative base, or of base 0 and an exponent ≤ 0 at a.glsl:2:17; not written";
     assert!(run.stdout.contains(why), "{}", run.stdout);
 }
 
@@ -433,20 +433,20 @@ fn files_in_every_language_state_their_proof() {
     fs::write(&shader, textured).unwrap();
     let glslang = Command::new("glslangValidator").arg("--version").output().is_ok();
     for (ending, words) in [
-        ("wgsl", "read again by naga and run on"),
-        ("spv", "read again by the driver and run on"),
+        ("wgsl", "as read by naga and run on"),
+        ("spv", "as read by the driver and run on"),
         (
             "frag",
             if glslang {
-                "read again by toyproof's GLSL front end and by glslangValidator (Glslang Version"
+                "as read by toyproof's GLSL front end and glslangValidator (Glslang Version"
             } else {
-                "read again by toyproof's GLSL front end and run on"
+                "as read by toyproof's GLSL front end and run on"
             },
         ),
         (
             "hlsl",
             if glslang {
-                "read again by glslangValidator (Glslang Version"
+                "as read by glslangValidator (Glslang Version"
             } else {
                 "no compiler for the text was installed"
             },
@@ -476,7 +476,7 @@ fn files_in_every_language_state_their_proof() {
 
 /// Names that surround a shader in some language: ours, naga's, those of hosts and of the preludes that
 /// replace them.
-const SURROUNDING_NAMES: &str = "toyproof_color toyproof_result toyproof_image_color toyproof_frame ToyproofFrame toyproof_color toyproof_size \
+const SURROUNDING_NAMES: &str = "toyproof_color toyproof_result toyproof_image_color toyproof_frame ToyproofFrame toyproof_size \
     toyproof_need_0 toyproof_sin toyproof_start toyproof_remainder toyproof_t1 toyproof_s1 main_1 global inputs Inputs \
     position color saturate screen time view View globals Globals fragment VertexOutput kept written_main written_color \
     writtenn_at written_image FragmentInput_main FragmentOutput ConstructRay constructRay naga_mod naga_div i_time \

@@ -107,11 +107,27 @@ fn assumed_files() -> tempfile::TempDir {
     }
     let rubric = block("docs/guide/checking.md", "[compiles]");
     fs::write(folder.path().join("rubric.toml"), rubric).unwrap();
+    let scene = block("docs/guide/scenes.md", "[film]");
+    fs::write(folder.path().join("example.toml"), scene).unwrap();
+    let export = ["export", "example.toml", "-o", "shader.glsl"];
+    assert_eq!(toyproof(folder.path(), &export).code, 0);
     folder
 }
 
+/// The lines of an output, with single spaces and without the parentheses at their ends, which have times.
+fn without_times(output: &[u8]) -> Vec<String> {
+    let text = String::from_utf8_lossy(output);
+    let words = |line: &str| line.split_whitespace().collect::<Vec<_>>().join(" ");
+    let line = |line: &str| match line.rsplit_once(" (") {
+        Some((start, times)) if times.ends_with(')') && times.contains(" s") => words(start),
+        _ => words(line),
+    };
+    text.lines().map(line).collect()
+}
+
 /// Runs the `$ …` lines of a page in one folder; for lines with `make`, only the target is looked up. Returns
-/// their number, and adds a line to `failures` for each that ends with another exit code.
+/// their number, and adds a line to `failures` for each that ends with another exit code, or does not print
+/// what the page shows.
 fn run_commands(page: &Path, failures: &mut Vec<String>) -> usize {
     let folder = assumed_files();
     let program = Path::new(env!("CARGO_BIN_EXE_toyproof")).parent().unwrap();
@@ -121,8 +137,16 @@ fn run_commands(page: &Path, failures: &mut Vec<String>) -> usize {
         if block.language != "console" {
             continue;
         }
-        for line in block.text.lines().filter_map(|line| line.strip_prefix("$ ")) {
+        let mut lines = block.text.lines().peekable();
+        while let Some(line) = lines.next() {
+            let Some(line) = line.strip_prefix("$ ") else {
+                continue;
+            };
             run += 1;
+            let mut shown = Vec::new();
+            while let Some(line) = lines.next_if(|line| !line.starts_with("$ ")) {
+                shown.push(line);
+            }
             let needs_driver = line.contains("--verify") || line.contains("doctor");
             if (needs_driver && !require_driver())
                 || (line.contains("--browser") && require_chromium().is_none())
@@ -144,6 +168,16 @@ fn run_commands(page: &Path, failures: &mut Vec<String>) -> usize {
             if output.status.code() != Some(block.exit_code) {
                 let stderr = String::from_utf8_lossy(&output.stderr);
                 failures.push(format!("{}: {line}: {}\n{stderr}", page.display(), output.status));
+            }
+            let printed = without_times(&[output.stdout, output.stderr].concat());
+            for shown in shown.iter().map(|line| without_times(line.as_bytes()).concat()) {
+                if !printed.contains(&shown) {
+                    let printed = printed.join("\n");
+                    failures.push(format!(
+                        "{}: {line}: not printed: {shown}\n{printed}",
+                        page.display()
+                    ));
+                }
             }
         }
     }

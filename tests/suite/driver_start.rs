@@ -301,7 +301,9 @@ fn a_requested_driver_that_does_not_start_is_an_error() {
     assert_eq!(doctor.code, 2, "{doctor:?}");
     assert!(doctor.stdout.contains("Each driver alone:"), "{doctor:?}");
     assert!(
-        doctor.stdout.contains("driver.json: the worker process died"),
+        doctor
+            .stdout
+            .contains("driver.json: the worker process terminated"),
         "{doctor:?}"
     );
 }

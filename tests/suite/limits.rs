@@ -48,7 +48,10 @@ fn a_shader_that_takes_too_long_to_compile_is_a_timeout_with_a_code() {
     assert_eq!(shader["verdict"], "timeout");
     assert_eq!(shader["diagnostics"][0]["code"], "E0410");
     let reason = shader["reason"].as_str().unwrap();
-    assert!(reason.starts_with("compilation exceeded the time limit of"), "{reason}");
+    assert!(
+        reason.starts_with("compilation exceeded the time limit of"),
+        "{reason}"
+    );
 
     let others: [&[&str]; 4] = [
         &["convert", "hw/000.glsl", "-o", "x.wgsl", "--timeout", "1ns"],
