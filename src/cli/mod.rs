@@ -55,9 +55,7 @@ enum Command {
     Convert(convert::Args),
     /// Tell what one pixel does, in f32 beside f64, line by line
     Explain(explain::Args),
-    /// Find the inputs for which ray–surface intersection fails numerically
     Stress(stress::Args),
-    /// Measure rendering time against accuracy
     Trade(trade::Args),
     /// Compare two pictures
     Compare(compare::Args),
