@@ -349,6 +349,11 @@ fn known_weaknesses_of_the_formulas_are_found() {
     }
     // a = 1 with another direction.
     assert!(share("course", "f64", "|d|", "1e2") > 0.5 && share("textbook", "f64", "|d|", "1e2") == 0.0);
+    let summary = report.summary().join("\n");
+    assert!(
+        summary.contains("Recommended for spheres: recentered ("),
+        "{summary}"
+    );
     // Rays that leave a surface.
     assert!(share("t > 0", "f32", "mirrored rays", "scale 1") > 0.3);
     assert!(share("t > 1e-3", "f32", "mirrored rays", "scale 1") > 0.9);

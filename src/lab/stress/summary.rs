@@ -143,7 +143,7 @@ impl Report {
         lines
     }
 
-    /// The formulas and strategies with the fewest failing steps in f32.
+    /// The formulas and strategies with the largest range without failures in f32.
     fn recommendations(&self) -> Vec<String> {
         let mut lines = Vec::new();
         for (kind, what) in [
@@ -151,7 +151,7 @@ impl Report {
             (Kind::Quadrics, "quadrics"),
             (Kind::Secondaries, "secondary rays"),
         ] {
-            let Some((ordinary, failing, steps)) = self.best(kind, true) else {
+            let Some((ordinary, right, steps)) = self.best(kind, true) else {
                 continue;
             };
             let extreme = self
@@ -165,9 +165,10 @@ impl Report {
                 None => String::new(),
             };
             let mut line = format!("Recommended for {what}: {ordinary} ");
-            line += &match failing {
-                0 => format!("(right in all {steps} steps{range})"),
-                _ => format!("(fewest failures{range}: {failing} of {steps} steps)"),
+            line += &if right == steps {
+                format!("(right in all {steps} steps{range})")
+            } else {
+                format!("(largest range without failures{range}: {right} of {steps} steps)")
             };
             if let Some((extreme, ..)) = extreme {
                 line += &format!("\n  at any scale: {extreme}");
@@ -177,22 +178,30 @@ impl Report {
         lines
     }
 
-    /// The formula with the fewest failing steps in f32, the first of several, with the numbers of its
-    /// failing steps and of all steps. `ordinary`: whether extreme scales are ignored.
+    /// The formula with the largest range without failures in f32, the first of several, with the numbers of
+    /// the steps in that range and of all steps. `ordinary`: whether extreme scales are ignored.
     fn best(&self, kind: Kind, ordinary: bool) -> Option<(&str, usize, usize)> {
         let axes = axes();
-        let counts = |row: &&Row| {
-            let axis = axes.iter().find(|axis| axis.name == row.axis);
-            axis.is_some_and(|axis| !ordinary || is_ordinary(axis, row.value))
-        };
-        let formulas = self.formulas(kind, "f32").into_iter();
-        let failures = formulas.map(|name| {
-            let rows = self.cpu_rows("f32").filter(|row| row.formula == name);
-            let rows: Vec<&Row> = rows.filter(counts).collect();
-            let failing = rows.iter().filter(|row| row.tally.fails()).count();
-            (name, failing, rows.len())
+        let ranges = self.formulas(kind, "f32").into_iter().map(|name| {
+            let rows: Vec<&Row> = self.cpu_rows("f32").filter(|row| row.formula == name).collect();
+            let (mut right, mut total) = (0, 0);
+            for axis in axes.iter().filter(|axis| axis.kind == kind) {
+                for direction in directions(axis) {
+                    let steps = direction.steps.into_iter();
+                    let counted: Vec<Step> = steps
+                        .filter(|step| !ordinary || is_ordinary(axis, *step))
+                        .collect();
+                    let fails = |step: &Step| {
+                        let mut rows = rows.iter();
+                        rows.any(|row| row.axis == axis.name && row.value == *step && row.tally.fails())
+                    };
+                    right += counted.iter().position(fails).unwrap_or(counted.len());
+                    total += counted.len();
+                }
+            }
+            (name, right, total)
         });
-        failures.min_by_key(|(_, failing, _)| *failing)
+        ranges.min_by_key(|(_, right, total)| total - right)
     }
 
     /// Whether a GPU's results agree with the CPU's.

@@ -181,7 +181,7 @@ pub(super) struct Direction {
     /// The quantity with `≤` or `≥`; for a named step its description.
     pub(super) condition: String,
     /// The steps, easiest first.
-    steps: Vec<Step>,
+    pub(super) steps: Vec<Step>,
 }
 
 /// The directions in which the steps of an axis get harder.
