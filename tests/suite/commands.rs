@@ -14,7 +14,7 @@ fn root() -> &'static Path {
 }
 
 /// All commands.
-pub(crate) const COMMANDS: [&str; 14] = [
+pub(crate) const COMMANDS: [&str; 15] = [
     "check",
     "render",
     "run",
@@ -25,6 +25,7 @@ pub(crate) const COMMANDS: [&str; 14] = [
     "trade",
     "stress",
     "export",
+    "new",
     "scenes",
     "doctor",
     "completions",

@@ -52,6 +52,7 @@ mod snapshots;
 mod stress;
 mod strict;
 mod submissions;
+mod terminal;
 mod trade;
 mod ui;
 mod unstable;
