@@ -6,7 +6,7 @@ use toyproof_verify::compare::{CheckSummary, Pixel};
 use super::glossary::{Glossary, term};
 use super::overview::total_points;
 use super::source::{SourceLimit, source};
-use super::{Exhibit, Text};
+use super::{Exhibit, Text, sentence};
 use crate::report::{Mistake, Record, Rubric};
 
 /// What the article of a shader shows.
@@ -31,14 +31,14 @@ impl Article<'_> {
             r#"<article id="s{index}" aria-labelledby="h{index}" data-name="{name}"{images}>
 <h2 id="h{index}" tabindex="-1">{name}</h2>
 {facts}<p class="result"><span class="verdict {verdict}">{verdict_term}</span> {reason}</p>
-{details}{mistake}{help}{points}<div class="images"></div>
+{details}{mistake}{help}<div class="images"></div>
 {checks}{source}</article>
 "#,
             name = Text(name),
             images = self.images(),
             facts = self.facts(),
             verdict_term = term(&verdict, &verdict),
-            reason = Text(&record.reason),
+            reason = sentence(&record.reason),
             details = details(&record.details),
             mistake = record
                 .mistake
@@ -46,7 +46,6 @@ impl Article<'_> {
                 .map(|mistake| self.mistake(mistake))
                 .unwrap_or_default(),
             help = record.help.as_deref().map(command).unwrap_or_default(),
-            points = self.rubric.map(|rubric| points(rubric, record)).unwrap_or_default(),
             checks = checks(record),
             source = source(record, self.exhibit.source.as_deref(), self.limit, self.glossary),
         )
@@ -82,7 +81,10 @@ impl Article<'_> {
         }
         let seconds = seconds.total();
         if seconds > 0.0 {
-            facts += &format!("<span>Time: {seconds:.1} s</span>");
+            facts += &format!("<span>Time: {seconds:.2} s</span>");
+        }
+        if let Some(rubric) = self.rubric {
+            facts += &points(rubric, self.record);
         }
         if facts.is_empty() {
             return facts;
@@ -130,22 +132,14 @@ fn command(command: &str) -> String {
     format!("<p class=\"command\"><span>More:</span> <code>{}</code></p>\n", Text(command))
 }
 
-/// The points of each check.
+/// The points, in total and of each check.
 fn points(rubric: &Rubric, record: &Record) -> String {
-    let marks = rubric.marks(record).into_iter().map(|mark| {
-        format!(
-            "<tr><th scope=\"row\">{}</th><td class=\"number\">{} of {}</td><td>{}</td></tr>\n",
-            Text(mark.name),
-            mark.points,
-            mark.of,
-            Text(mark.why)
-        )
-    });
-    let marks: String = marks.collect();
+    let marks = rubric.marks(record).into_iter();
+    let marks: Vec<_> = marks
+        .map(|mark| format!("{} {} of {}", mark.name, mark.points, mark.of))
+        .collect();
     let [points, of] = total_points(rubric, record);
-    format!(
-        "<table class=\"points\">\n<caption>Points: {points} of {of}</caption>\n<tbody>\n{marks}</tbody>\n</table>\n"
-    )
+    format!("<span>Points: {points} of {of} ({})</span>", marks.join(", "))
 }
 
 /// The table of the three checks; empty if none ran.

@@ -128,8 +128,8 @@ impl Glossary {
             .values()
             .map(|Explanation { code, title, text }| {
                 format!(
-                    "<section class=\"entry\" id=\"x-{code}\" aria-labelledby=\"x-{code}-title\">\n\
-                     <h4 id=\"x-{code}-title\"><code>{code}</code> <span id=\"x-{code}-text\">{}</span></h4>\n{}</section>\n",
+                    "<details class=\"entry\" id=\"x-{code}\">\n<summary><code>{code}</code> \
+                     <span id=\"x-{code}-text\">{}</span></summary>\n{}</details>\n",
                     Text(title),
                     markdown::html(text)
                 )

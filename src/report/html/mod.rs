@@ -190,6 +190,11 @@ fn images(gallery: &Gallery) -> String {
 // Escaping of text for HTML, in an element or between double quotes. Characters that affect the surrounding
 // text, such as bidirectional controls, are escaped too.
 
+/// Escapes a sentence, in which numbers and their percent signs stay on one line.
+fn sentence(text: &str) -> String {
+    Text(text).to_string().replace(" %", "&nbsp;%")
+}
+
 /// Displays a value with the special characters of HTML escaped.
 pub(super) struct Text<T>(pub(super) T);
 

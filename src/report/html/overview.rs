@@ -5,7 +5,7 @@ use toyproof_verify::Verdict;
 use toyproof_verify::compare::CheckSummary;
 
 use super::names::Names;
-use super::{Exhibit, Gallery, Text};
+use super::{Exhibit, Gallery, Text, sentence};
 use crate::report::{Record, Rubric};
 
 pub(super) fn overview(
@@ -93,15 +93,20 @@ fn row(index: usize, record: &Record, name: &str, exhibit: &Exhibit, rubric: Opt
          <th scope=\"row\"><a href=\"#s{index}\" title=\"{}\">{}</a></th><td data-by=\"{}\">{}</td>{}\
          <td class=\"why\">{}</td>{}{}{}</tr>\n",
         Text(&record.shader),
-        Text(name),
+        breakable(name),
         verdict as u8,
         badge(verdict),
         points.unwrap_or_default(),
-        Text(&record.reason),
+        sentence(&record.reason),
         pixels_off(record.algorithm.as_ref()),
         pixels_off(record.precision.as_ref()),
         pixels_off(record.toolchain.as_ref()),
     )
+}
+
+/// Escapes a name, which may be broken after the parts of its path rather than within them.
+fn breakable(name: &str) -> String {
+    Text(name).to_string().replace('/', "/<wbr>").replace('_', "_<wbr>")
 }
 
 /// The points that a shader earned, and the maximum.

@@ -255,11 +255,20 @@
     }
   };
 
+  /** The entries of the glossary that articles refer to. */
+  const entriesOf = (articles) =>
+    new Set(articles.flatMap((article) => $$('[data-term]', article)).map(({ dataset }) => dataset.term));
+  const showEntriesOf = (articles) => {
+    const used = entriesOf(articles);
+    for (const entry of $$('#glossary .entry')) entry.classList.toggle('unused', !used.has(entry.id));
+  };
   const show = () => {
     const { hash } = location;
-    const target = /^#s\d+$/.test(hash) ? document.getElementById(hash.slice(1)) : null;
-    // The glossary's entries are beside the open shader.
-    if (!target && open && hash.length > 1) return;
+    const named = hash.length > 1 ? document.getElementById(hash.slice(1)) : null;
+    const target = named?.matches('article') ? named : null;
+    // An entry of the glossary is below the open shader.
+    if (named?.matches('details')) named.open = true;
+    if (named && !target && open) return;
     hideTip();
     if (open) {
       open.classList.remove('open');
@@ -271,6 +280,7 @@
     open = target ?? (isSingle ? $('article') : null);
     main.classList.toggle('reading', open !== null);
     main.classList.toggle('single', isSingle);
+    showEntriesOf(open ? [open] : $$('article'));
     if (!open) return;
     prepare(open);
     open.classList.add('open');
@@ -488,8 +498,6 @@
 
   // Paper: the shaders that the table shows, or the open one. The images are side by side.
 
-  /** The entries of the glossary that an article refers to. */
-  const entriesOf = (article) => new Set($$('[data-term]', article).map(({ dataset }) => dataset.term));
   const figure = (article, name, caption) => {
     const image = make('img', { alt: `${caption} of ${article.dataset.name}`, src: imageSource(article.dataset[name]) });
     return make('figure', {}, image, make('figcaption', { textContent: caption }));
@@ -512,14 +520,15 @@
       if (figures.length > 0) $('.images', article).append(make('div', { className: 'prints' }, ...figures));
     }
     folded = printed.flatMap((article) => $$('details:not([open])', article));
+    showEntriesOf(printed);
+    folded.push(...$$('#glossary details:not(.unused, [open])'));
     for (const details of folded) details.open = true;
-    const used = new Set(printed.flatMap((article) => [...entriesOf(article)]));
-    for (const entry of $$('#glossary .entry')) entry.classList.toggle('unused', !used.has(entry.id));
     thumbnails.forEach(addThumbnail);
   });
   addEventListener('afterprint', () => {
     $$('.prints').forEach((prints) => prints.remove());
     for (const details of folded) details.open = false;
+    showEntriesOf(open ? [open] : $$('article'));
   });
 
   // A page of one shader: this page without the other shaders.
@@ -556,7 +565,7 @@
     content.append(overview, make('div', { id: 'articles' }, originals.get(article).cloneNode(true)));
 
     const glossary = $('#glossary').cloneNode(true);
-    const used = entriesOf(article);
+    const used = entriesOf([article]);
     for (const entry of $$('.entry', glossary)) {
       entry.classList.remove('unused');
       if (!used.has(entry.id)) entry.remove();

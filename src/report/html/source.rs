@@ -116,7 +116,7 @@ fn message(diagnostic: &Json, place: &str, glossary: &Glossary) -> String {
     let notes = diagnostic.notes.iter();
     let notes: String = notes.map(|note| format!("<p class=\"note\">{}</p>", Text(note))).collect();
     format!(
-        "<div class=\"message {severity}\"><p><strong>{severity} {}</strong> {} <span class=\"place\">{}</span></p>{notes}</div>",
+        "<div class=\"message {severity}\"><p><strong>{severity} {}:</strong> {} <span class=\"place\">{}</span></p>{notes}</div>",
         glossary.link(code),
         Text(&diagnostic.message),
         Text(place)
@@ -235,7 +235,7 @@ mod tests {
         let html = html(vec![message_at(3, 3)], "one\n<script>\n  é_1 < 2;\nfour\nfive\nsix");
         assert!(html.contains("data-line=\"3\">  <mark>é_1</mark> &lt; 2;</span>"), "{html}");
         assert!(html.contains("no &lt;i&gt;"), "{html}");
-        let positions = ["&lt;script&gt;", "é_1", "error E0301", "four\nfive\nsix"].map(|part| text(&html).find(part));
+        let positions = ["&lt;script&gt;", "é_1", "error E0301:", "four\nfive\nsix"].map(|part| text(&html).find(part));
         assert!(positions.is_sorted() && positions[0].is_some(), "{html}");
         assert!(!html.contains("<details"), "{html}");
     }
