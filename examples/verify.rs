@@ -10,7 +10,7 @@ use toyproof::diagnostic::{Deadline, File, Files};
 use toyproof::glsl::{Options, check};
 use toyproof::image::Frame;
 use toyproof::lint::lint;
-use toyproof::report::reason;
+use toyproof::report::state;
 use toyproof::scene;
 use toyproof::translate::FloatMode;
 use toyproof::verify::{Case, Expected, verify};
@@ -43,6 +43,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     // The first argument would be a `gpu::Worker`; without one the toolchain check is left out.
     let findings = verify(None, &case)?;
-    println!("{}: {}", findings.verdict, reason(&findings, &files));
+    println!("{}: {}", findings.verdict, state(&findings, &files).reason);
     Ok(())
 }

@@ -1,11 +1,11 @@
-// Two-dimensional figures given by implicit functions, inside where f < 0; several samples smooth their edges.
+// 2D figures as implicit functions, with f < 0 inside; several samples per pixel smooth their edges.
 
 const int SAMPLES = 10;
 
 float seed;
 
 float random() {
-    return fract(sin(seed++) * 43758.5453123); // toyproof: allow(W0005) the scene draws its samples so
+    return fract(sin(seed++) * 43758.5453123); // toyproof: allow(W0005) the scene's sampler uses this hash
 }
 
 float disk(vec2 p, vec2 center, float radius) {
@@ -24,7 +24,7 @@ float heart(vec2 p, vec2 center, float size) {
     return ring * ring * ring - q.x * q.x * q.y * q.y * q.y;
 }
 
-// What is tested first lies on top.
+// The figure tested first is on top.
 vec3 figures(vec2 p) {
     if (heart(p, vec2(0.35, 0.08), 0.25) < 0.0) {
         return vec3(0.85, 0.1, 0.2);

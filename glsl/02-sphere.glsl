@@ -1,4 +1,4 @@
-// One sphere, shaded by how directly it faces the eye.
+// One sphere, shaded by the cosine between the ray and the normal.
 
 const float SCREEN_DEPTH = -2.0;
 const float NO_HIT = 1.0e6;
@@ -14,7 +14,7 @@ struct Sphere {
     vec3 color;
 };
 
-// r(t) = o + t d meets |x - c|^2 = r^2 where t^2 + 2 b t + c = 0, for d of length 1.
+// The ray o + t d intersects |x - center|^2 = r^2 where t^2 + 2 b t + c = 0, for d of length 1.
 float intersectSphere(Ray ray, Sphere sphere) {
     vec3 f = ray.origin - sphere.center;
     float b = dot(f, ray.direction);

@@ -1,4 +1,4 @@
-// One sphere under two lights: Lambert's cosine, and a little light from everywhere.
+// One sphere under two point lights: Lambert's cosine law, plus ambient light.
 
 const float SCREEN_DEPTH = -2.0;
 const float NO_HIT = 1.0e6;

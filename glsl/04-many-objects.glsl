@@ -1,4 +1,4 @@
-// Seven spheres: the nearest hit wins, and each may stand in another's light.
+// Seven spheres: the nearest hit is visible, and spheres cast shadows on each other.
 
 const float SCREEN_DEPTH = -2.0;
 const float NO_HIT = 1.0e6;
@@ -34,7 +34,7 @@ Light light;
 float seed;
 
 float random() {
-    return fract(sin(seed++) * 43758.5453123); // toyproof: allow(W0005) the course draws its numbers so
+    return fract(sin(seed++) * 43758.5453123); // toyproof: allow(W0005) the scene's sampler uses this hash
 }
 
 void makeScene() {
@@ -44,7 +44,7 @@ void makeScene() {
     spheres[3] = Sphere(vec3(-1.5, -0.4, -5.0), 0.6, vec3(0.9, 0.2, 0.15));
     spheres[4] = Sphere(vec3(1.4, -0.5, -4.8), 0.5, vec3(0.15, 0.3, 0.9));
     spheres[5] = Sphere(vec3(-0.6, 1.1, -5.5), 0.35, vec3(0.8, 0.4, 0.8));
-    // Beyond the light, where it shades nothing.
+    // Behind the light, so it casts no shadow.
     spheres[6] = Sphere(vec3(6.8, 10.2, 5.9), 3.0, vec3(0.6, 0.6, 0.6));
     light = Light(vec3(4.0, 6.0, 1.0), vec3(0.9));
 }
@@ -89,7 +89,7 @@ Intersection nearestHit(Ray ray) {
 }
 
 bool inShadow(vec3 point, vec3 normal) {
-    // A little off the surface, so that the sphere does not meet itself.
+    // Start slightly above the surface, so that the shadow ray does not hit the same sphere.
     vec3 origin = point + 0.001 * normal;
     vec3 toLight = light.position - origin;
     float distance = length(toLight);

@@ -1,4 +1,4 @@
-// Forty-three spheres: a parent, six children, and six more on each of them.
+// 43 spheres in a hierarchy: a parent, six children, and six grandchildren for each child.
 
 const float SCREEN_DEPTH = -2.0;
 const float NO_HIT = 1.0e6;
@@ -32,7 +32,7 @@ vec3 sideColor(int i) {
     return 0.5 + 0.4 * side(i);
 }
 
-// Once round in 240 frames, about the y axis of the parent.
+// One turn in 240 frames, about the y axis through the parent.
 vec3 turn(vec3 v, int frame) {
     float angle = 6.28318530718 * float(frame) / 240.0;
     float c = cos(angle);

@@ -1,4 +1,4 @@
-// Mirrors under an evening sky: the ray goes on from each until it meets none.
+// Mirrors under an evening sky: the ray is reflected until it misses all mirrors.
 
 const float SCREEN_DEPTH = -2.0;
 const float NO_HIT = 1.0e6;
@@ -31,7 +31,7 @@ vec3 sky(vec3 direction) {
     return (1.0 - up) * vec3(0.9, 0.5, 0.25) + up * vec3(0.1, 0.2, 0.5);
 }
 
-// As before, but what lies nearer than t_min is the surface that the ray just left.
+// As in 02-sphere, but hits closer than t_min are ignored: they are on the surface that the ray just left.
 float intersectSphere(Ray ray, Sphere sphere, float tMin) {
     vec3 f = ray.origin - sphere.center;
     float b = dot(f, ray.direction);

@@ -1,4 +1,4 @@
-// Diffuse BRDFs give back what they get, no more: color / pi. Bright light is tone-mapped and then gamma-corrected.
+// A diffuse BRDF conserves energy: color / pi. The result is tone-mapped, then gamma-corrected.
 
 const float SCREEN_DEPTH = -2.0;
 const float NO_HIT = 1.0e6;

@@ -40,7 +40,7 @@ void makeScene() {
     spheres[0] = Sphere(vec3(-2.0, 1.3, -7.0), 0.58, Material(vec3(0.8, 0.2, 0.15), 0.0, 0.0, 0.5, 0.0, 0.9, 0.0, 0.0, 0.5, 0.0, 0.6));
     // Plastic.
     spheres[1] = Sphere(vec3(0.0, 1.3, -7.0), 0.58, Material(vec3(0.8, 0.2, 0.15), 0.0, 0.0, 0.8, 0.0, 0.4, 0.0, 0.0, 0.5, 0.0, 0.6));
-    // Smooth plastic, tinted.
+    // Smooth plastic with a tinted highlight.
     spheres[2] = Sphere(vec3(2.0, 1.3, -7.0), 0.58, Material(vec3(0.8, 0.2, 0.15), 0.0, 0.0, 1.0, 0.8, 0.25, 0.0, 0.0, 0.5, 0.0, 0.6));
     // Rough gold.
     spheres[3] = Sphere(vec3(-2.0, 0.0, -7.0), 0.58, Material(vec3(1.0, 0.75, 0.35), 1.0, 0.0, 0.5, 0.0, 0.6, 0.0, 0.0, 0.5, 0.0, 0.6));
@@ -54,7 +54,7 @@ void makeScene() {
     spheres[7] = Sphere(vec3(0.0, -1.3, -7.0), 0.58, Material(vec3(0.9, 0.6, 0.5), 0.0, 0.9, 0.5, 0.0, 0.6, 0.0, 0.0, 0.5, 0.0, 0.6));
     // Lacquer.
     spheres[8] = Sphere(vec3(2.0, -1.3, -7.0), 0.58, Material(vec3(0.15, 0.5, 0.25), 0.0, 0.0, 0.5, 0.0, 0.6, 0.0, 0.0, 0.5, 1.0, 0.6));
-    // The ground.
+    // Ground.
     spheres[9] = Sphere(vec3(0.0, -52.3, -8.0), 50.0, Material(vec3(0.4, 0.4, 0.4), 0.0, 0.0, 0.2, 0.0, 0.9, 0.0, 0.0, 0.5, 0.0, 0.6));
 }
 
@@ -94,24 +94,24 @@ float square(float x) {
     return x * x;
 }
 
-// Schlick's weight.
+// The weight (1 - cosine)^5 of Schlick's Fresnel approximation.
 float schlick(float cosine) {
     float m = clamp(1.0 - cosine, 0.0, 1.0);
     return square(square(m)) * m;
 }
 
-// The clear coat's distribution, with a long tail.
+// Normal distribution of the clear coat: GTR with gamma = 1, which has a long tail.
 float berry(float nH, float alpha) {
     float a2 = alpha * alpha;
     return (a2 - 1.0) / (PI * log(a2) * (1.0 + (a2 - 1.0) * nH * nH));
 }
 
-// The distribution of the specular lobe, stretched along the tangents.
+// Normal distribution of the specular lobe: anisotropic GTR with gamma = 2 (GGX).
 float trowbridgeReitz(float nH, float xH, float yH, float ax, float ay) {
     return 1.0 / (PI * ax * ay * square(square(xH / ax) + square(yH / ay) + nH * nH));
 }
 
-// Shadowing, over twice the cosine.
+// Smith's shadowing factor for one direction, divided by twice the cosine.
 float smith(float cosine, float alpha) {
     float a2 = alpha * alpha;
     float c2 = cosine * cosine;
@@ -127,7 +127,7 @@ vec3 disney(Material m, vec3 light, vec3 view, vec3 normal) {
     vec3 middle = normalize(light + view);
     float nH = dot(normal, middle);
     float lH = dot(light, middle);
-    // Around the y axis, and towards it.
+    // The tangents: around the y axis, and toward it.
     vec3 x = normalize(vec3(normal.z, 0.0, -normal.x));
     vec3 y = cross(normal, x);
 

@@ -1,4 +1,4 @@
-// A light with a radius is seen under a cone of directions: each sample draws one of them.
+// A spherical light subtends a cone of directions; each sample picks a random direction in it.
 
 const float SCREEN_DEPTH = -2.0;
 const float NO_HIT = 1.0e6;
@@ -27,7 +27,7 @@ Sphere spheres[SPHERES];
 Light light;
 uint state;
 
-// The integer hash pcg (Jarzynski and Olano 2020): the same numbers on every machine.
+// The integer hash PCG (Jarzynski and Olano 2020), which gives the same numbers on every machine.
 uint pcg(uint v) {
     uint s = v * 747796405u + 2891336453u;
     uint word = ((s >> ((s >> 28u) + 4u)) ^ s) * 277803737u;
@@ -70,7 +70,7 @@ float intersectSphere(Ray ray, Sphere sphere) {
     return NO_HIT;
 }
 
-// The direction at an angle to w, given by its cosine, turned about w.
+// The direction at an angle to w, given by its cosine, rotated about w by `turn` turns.
 vec3 around(vec3 w, float cosine, float turn) {
     vec3 up = abs(w.y) > 0.9 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
     vec3 a = normalize(cross(up, w));
@@ -80,7 +80,7 @@ vec3 around(vec3 w, float cosine, float turn) {
     return sine * cos(phi) * a + sine * sin(phi) * b + cosine * w;
 }
 
-// Uniform over the cone in which the light is seen; how far the light is along it comes back in lightDistance.
+// Samples a direction uniformly in the cone of the light; lightDistance is the distance to the light along it.
 vec3 sampleLight(vec3 point, out float lightDistance) {
     vec3 toLight = light.position - point;
     float distance = length(toLight);

@@ -1,4 +1,4 @@
-// Surfaces of second degree, each in a frame of its own: the ray is brought there, and the rest is one quadratic.
+// Quadric surfaces. Each ray is transformed to the quadric's local frame, where a quadratic equation gives the hits.
 
 const float SCREEN_DEPTH = -2.0;
 const float NO_HIT = 1.0e6;
@@ -33,7 +33,7 @@ struct Intersection {
 Quadric quadrics[QUADRICS];
 
 Quadric ellipsoid(vec3 center, vec3 radii, vec3 color) {
-    // Its own x, y and z are those of the axis (0, 0, 1).
+    // The ellipsoid's axes are the coordinate axes.
     return Quadric(center, vec3(0.0, 0.0, 1.0), 1.0 / (radii * radii), 0.0, -1.0, -radii.z, radii.z, color);
 }
 
@@ -64,17 +64,17 @@ void makeScene() {
     quadrics[4] = hyperboloid(vec3(2.3, 0.0, -7.5), vec3(0.0, 1.0, 0.0), 0.4, 0.8, 2.0, vec3(0.7, 0.5, 0.9));
 }
 
-// The coordinates of v along two directions at right angles to the axis, and along the axis.
+// The local coordinates of v: along two directions perpendicular to the axis, and along the axis.
 mat3 frame(vec3 axis) {
     vec3 x = abs(axis.z) > 0.9 ? vec3(1.0, 0.0, 0.0) : normalize(cross(axis, vec3(0.0, 0.0, 1.0)));
     return mat3(x, cross(axis, x), axis);
 }
 
-// The root t of the nearer hit between the ends.
+// The smallest t of a hit between the two ends.
 float intersectQuadric(Ray ray, Quadric quadric, mat3 frame) {
     vec3 d = ray.direction * frame;
     vec3 far = (ray.origin - quadric.origin) * frame;
-    // From the point of the ray that is closest to the quadric's origin: smaller numbers, smaller errors.
+    // Start at the point of the ray closest to the quadric's origin: smaller numbers have smaller rounding errors.
     float ahead = -dot(far, d);
     vec3 o = far + ahead * d;
     float a = dot(quadric.q * d, d);
@@ -84,7 +84,7 @@ float intersectQuadric(Ray ray, Quadric quadric, mat3 frame) {
     if (disc < 0.0) {
         return NO_HIT;
     }
-    // The root that does not cancel, and the other by their product; where a is 0 there is only that.
+    // The root without cancellation; the other follows from their product. If a is 0, there is only one root.
     float q = b > 0.0 ? -b - sqrt(disc) : -b + sqrt(disc);
     float t0 = q == 0.0 ? NO_HIT : c / q;
     float t1 = a == 0.0 ? NO_HIT : q / a;
@@ -125,7 +125,7 @@ Intersection nearestHit(Ray ray) {
     if (t > 0.001 && t < hit.t) {
         hit = Intersection(t, vec3(0.0, 1.0, 0.0), vec3(0.5));
     }
-    // What is open shows both sides.
+    // Open surfaces are visible from both sides.
     if (dot(hit.normal, ray.direction) > 0.0) {
         hit.normal = -hit.normal;
     }

@@ -1,4 +1,4 @@
-// A little solar system: a moon turns about a planet that turns about the sun, each in its own time. iTime moves the
+// A small solar system: a moon orbits a planet that orbits the sun, each with its own period. iTime moves the
 // planets, iFrame the satellite.
 
 const float SCREEN_DEPTH = -2.0;
@@ -22,7 +22,7 @@ struct Sphere {
 Sphere bodies[BODIES];
 vec3 lamp;
 
-// Rodrigues' formula: v turned about a unit axis.
+// Rotates v about a unit axis (Rodrigues' formula).
 vec3 rotate(vec3 v, vec3 axis, float angle) {
     float c = cos(angle);
     float s = sin(angle);
@@ -33,7 +33,7 @@ vec3 rotateAbout(vec3 p, vec3 pivot, vec3 axis, float turns) {
     return pivot + rotate(p - pivot, axis, TAU * fract(turns));
 }
 
-// Each body is moved by its own motion first, then by that which carries it along.
+// Each body first follows its own orbit, then the orbit of its parent.
 vec3 year(vec3 p) {
     return rotateAbout(p, SUN, vec3(0.0, 1.0, 0.0), iTime / 8.0);
 }

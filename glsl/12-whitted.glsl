@@ -1,5 +1,5 @@
-// Whitted's picture: a mirror and a glass ball over a checkered floor. Glass parts each ray in two: a stack holds
-// those that are still to be followed.
+// Whitted's scene: a mirror and a glass ball above a checkered floor. Glass splits each ray into two; a stack holds
+// the rays that remain to be traced.
 
 const float SCREEN_DEPTH = -2.0;
 const float NO_HIT = 1.0e6;
@@ -34,7 +34,7 @@ struct Intersection {
     vec3 color;
 };
 
-// A ray to be followed: what it adds to the picture is multiplied by its throughput.
+// A ray on the stack; its throughput is its contribution to the pixel.
 struct Branch {
     Ray ray;
     vec3 throughput;
@@ -111,8 +111,8 @@ vec3 shade(Intersection hit) {
     return hit.color * sum;
 }
 
-// The share of light that is reflected, by Fresnel's equations for unpolarised light; eta is the index on this side
-// over that beyond, the cosines are those of the ray on this side and beyond.
+// The reflectance by Fresnel's equations, for unpolarized light. eta is the index of refraction on this side divided
+// by the index on the other side; cosine and beyond are the cosines of the ray on this side and on the other.
 float fresnel(float eta, float cosine, float beyond) {
     float across = (eta * cosine - beyond) / (eta * cosine + beyond);
     float along = (cosine - eta * beyond) / (cosine + eta * beyond);
@@ -153,7 +153,7 @@ vec3 trace(Ray first) {
         float cosine = -dot(ray.direction, normal);
         float sine2 = eta * eta * (1.0 - cosine * cosine);
         if (sine2 >= 1.0) {
-            // Total reflection.
+            // Total internal reflection.
             stack[top++] = Branch(mirrored, throughput, depth);
             continue;
         }

@@ -1,5 +1,5 @@
-// A path tracer. At each point light is looked for twice, by a direction drawn to an emitter and by one drawn for the BRDF;
-// the power heuristic weighs the two (Veach and Guibas 1995).
+// A path tracer with multiple importance sampling: at each hit, one direction is sampled toward an emitter and one from the
+// BRDF, and the power heuristic weights the two (Veach and Guibas 1995).
 
 const float SCREEN_DEPTH = -2.0;
 const float NO_HIT = 1.0e6;
@@ -36,14 +36,14 @@ struct Intersection {
     vec3 point;
     vec3 normal;
     Material material;
-    // Which sphere, or -1: the first EMITTERS of them shine.
+    // The index of the sphere, or -1; the first EMITTERS spheres are emitters.
     int sphere;
 };
 
 Sphere spheres[SPHERES];
 uint state;
 
-// The integer hash pcg (Jarzynski and Olano 2020): the same numbers on every machine.
+// The integer hash PCG (Jarzynski and Olano 2020), which gives the same numbers on every machine.
 uint pcg(uint v) {
     uint s = v * 747796405u + 2891336453u;
     uint word = ((s >> ((s >> 28u) + 4u)) ^ s) * 277803737u;
@@ -68,7 +68,7 @@ void makeScene() {
     spheres[5] = Sphere(vec3(0.6, -0.75, -4.2), 0.25, Material(DIFFUSE, vec3(0.3, 0.7, 0.4), 0.0));
 }
 
-// As if the ray began at the point that is closest to the centre: smaller numbers, smaller errors.
+// Starts at the point of the ray closest to the center: smaller numbers have smaller rounding errors.
 float intersectSphere(Ray ray, Sphere sphere) {
     vec3 f = ray.origin - sphere.center;
     float b = dot(f, ray.direction);
@@ -114,7 +114,7 @@ Intersection nearestHit(Ray ray) {
     return hit;
 }
 
-// The direction at an angle to w, given by its cosine, turned about w.
+// The direction at an angle to w, given by its cosine, rotated about w by `turn` turns.
 vec3 around(vec3 w, float cosine, float turn) {
     vec3 up = abs(w.y) > 0.9 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
     vec3 a = normalize(cross(up, w));
@@ -124,14 +124,14 @@ vec3 around(vec3 w, float cosine, float turn) {
     return sine * cos(phi) * a + sine * sin(phi) * b + cosine * w;
 }
 
-// 1 - cos of the half angle of the cone in which an emitter is seen.
+// 1 - cos of the half angle of the cone that an emitter subtends.
 float coneDepth(vec3 point, Sphere emitter) {
     vec3 toCenter = emitter.center - point;
     float sine2 = emitter.radius * emitter.radius / dot(toCenter, toCenter);
     return sine2 / (1.0 + sqrt(1.0 - sine2));
 }
 
-// The density, over the solid angle, with which a direction to this emitter is drawn.
+// The probability density, per solid angle, of sampling a direction toward this emitter.
 float lightDensity(vec3 point, Sphere emitter) {
     return 1.0 / (2.0 * PI * coneDepth(point, emitter) * float(EMITTERS));
 }
@@ -177,7 +177,7 @@ bool inShadow(Ray ray, int emitter) {
     return t > EPSILON && t < distance;
 }
 
-// The light of one emitter, drawn by chance.
+// The light from one randomly chosen emitter.
 vec3 sampleLight(Intersection hit, vec3 reflected) {
     int emitter = min(int(random() * float(EMITTERS)), EMITTERS - 1);
     float u = random();
@@ -200,7 +200,7 @@ vec3 sampleLight(Intersection hit, vec3 reflected) {
 vec3 trace(Ray ray) {
     vec3 color = vec3(0.0);
     vec3 throughput = vec3(1.0);
-    // The density with which the ray was drawn; 0 for the camera's.
+    // The probability density of the ray's direction; 0 for camera rays.
     float density = 0.0;
     for (int depth = 0; depth < MAX_DEPTH; depth++) {
         Intersection hit = nearestHit(ray);
@@ -214,7 +214,7 @@ vec3 trace(Ray ray) {
             }
             return color + throughput * hit.material.color * share;
         }
-        // Light that is looked for here would come by a segment too many.
+        // A path through another surface would be longer than MAX_DEPTH segments.
         if (depth + 1 == MAX_DEPTH) {
             return color;
         }

@@ -1,5 +1,5 @@
-// Hundreds of spheres, one in each cell of a grid. A ray looks only into the cells that it passes through, one after the
-// other, and a sphere is made from its cell's number when it is needed.
+// Hundreds of spheres, one in each cell of a grid. A ray visits only the cells that it passes through, in order,
+// and the sphere of a cell is computed from the cell's number when needed.
 
 const float SCREEN_DEPTH = -2.0;
 const float NO_HIT = 1.0e6;
@@ -27,7 +27,7 @@ struct Intersection {
 
 uint state;
 
-// The integer hash pcg (Jarzynski and Olano 2020).
+// The integer hash PCG (Jarzynski and Olano 2020).
 uint pcg(uint v) {
     uint s = v * 747796405u + 2891336453u;
     uint word = ((s >> ((s >> 28u) + 4u)) ^ s) * 277803737u;
@@ -39,7 +39,7 @@ float random() {
     return float(state >> 8u) / 16777216.0;
 }
 
-// The sphere of a cell, wholly inside of it. Its colour is what random() gives next.
+// The sphere of a cell, entirely inside the cell; its color is random.
 Sphere sphereIn(ivec3 cell) {
     state = SEED + uint(cell.x + CELLS.x * (cell.y + CELLS.y * cell.z));
     float radius = mix(0.1, 0.3, random());
@@ -57,7 +57,7 @@ vec3 nextColor() {
     return 0.95 * (0.2 + 0.8 * vec3(r, g, b));
 }
 
-// As if the ray began at the point that is closest to the centre: smaller numbers, smaller errors.
+// Starts at the point of the ray closest to the center: smaller numbers have smaller rounding errors.
 float intersectSphere(Ray ray, Sphere sphere) {
     vec3 f = ray.origin - sphere.center;
     float b = dot(f, ray.direction);
@@ -77,7 +77,7 @@ float intersectSphere(Ray ray, Sphere sphere) {
     return NO_HIT;
 }
 
-// The first hit, cell by cell (Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing", 1987).
+// The nearest hit, cell by cell (Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing", 1987).
 Intersection hitScene(Ray ray) {
     vec3 low = (CORNER - ray.origin) / ray.direction;
     vec3 high = (CORNER + SPACING * vec3(CELLS) - ray.origin) / ray.direction;
@@ -92,8 +92,8 @@ Intersection hitScene(Ray ray) {
     vec3 place = (ray.origin + enter * ray.direction - CORNER) / SPACING;
     ivec3 cell = clamp(ivec3(floor(place)), ivec3(0), CELLS - 1);
     ivec3 stride = ivec3(sign(ray.direction));
-    // t at which the ray leaves the cell along each axis, which it never does along one that it is perpendicular to, and how much later it
-    // leaves the one after.
+    // For each axis: next is the t at which the ray leaves the cell (never, if the ray is perpendicular to the axis),
+    // and step is the distance in t between two cell boundaries.
     vec3 next = (CORNER + SPACING * vec3(cell + max(stride, 0)) - ray.origin) / ray.direction;
     next = mix(next, vec3(NO_HIT), equal(stride, ivec3(0)));
     vec3 step = SPACING / abs(ray.direction);

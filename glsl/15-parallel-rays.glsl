@@ -1,4 +1,4 @@
-// Parallel rays: all look the same way, and each starts at its own place. What is far away is no smaller.
+// Parallel projection: all rays have the same direction and different origins, so distant objects look no smaller.
 
 const float NO_HIT = 1.0e6;
 const float WIDTH = 6.0;

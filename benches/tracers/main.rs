@@ -92,7 +92,7 @@ fn rays(scene: &Scene) -> [Vec<(Ray, Option<usize>)>; 2] {
         for x in 0..width {
             let [origin, direction] = tracer.camera_ray(x, y);
             camera.push((ray(origin, direction, 0.0), None));
-            if let Some((t, surface)) = tracer.meet(origin, direction, None) {
+            if let Some((t, surface)) = tracer.intersect(origin, direction, None) {
                 let point = [0, 1, 2].map(|i| origin[i] + t * direction[i]);
                 let away = loop {
                     let v = [0; 3].map(|_| random.between(-1.0, 1.0) as f32);
@@ -119,7 +119,7 @@ fn ray([ox, oy, oz]: [f32; 3], [dx, dy, dz]: [f32; 3], t_min: f32) -> Ray {
 fn meet_all<T: Real>(tracer: &Tracer<T>, rays: &[([T; 3], [T; 3], Option<usize>)]) -> usize {
     let met = rays
         .iter()
-        .filter(|(origin, direction, from)| tracer.meet(*origin, *direction, *from).is_some());
+        .filter(|(origin, direction, from)| tracer.intersect(*origin, *direction, *from).is_some());
     met.count()
 }
 

@@ -42,13 +42,13 @@ pub(super) struct FrameArgs {
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(i32).range(0..), allow_negative_numbers = true)]
     frame: i32,
     /// iMouse, in pixels [default: 0,0,0,0]
-    #[arg(long, value_name = "X,Y[,Z,W]", value_parser = parse_mouse, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y[,Z,W]", value_parser = parse_mouse, allow_hyphen_values = true, hide_short_help = true)]
     mouse: Option<[f32; 4]>,
     /// iDate: year, month from 0 to 11, day, seconds since midnight
-    #[arg(long, value_name = "Y,M,D,S", value_parser = parse_date, allow_hyphen_values = true)]
+    #[arg(long, value_name = "Y,M,D,S", value_parser = parse_date, allow_hyphen_values = true, hide_short_help = true)]
     date: Option<[f32; 4]>,
     /// The texture of iChannel0: an image (.png, .exr) or `noise` [default: black]
-    #[arg(long, value_name = "FILE|noise")]
+    #[arg(long, value_name = "FILE|noise", hide_short_help = true)]
     channel0: Option<PathBuf>,
     /// The texture of iChannel1
     #[arg(long, value_name = "FILE|noise", hide_short_help = true)]
@@ -131,7 +131,7 @@ pub(super) struct LanguageArgs {
     /// Treat warnings as errors: `warnings` for all, or a code such as W0005
     ///
     /// A comment `// toyproof: allow(W0005)` in the shader takes precedence.
-    #[arg(long, value_name = "warnings|CODE", value_parser = parse_deny)]
+    #[arg(long, value_name = "warnings|CODE", value_parser = parse_deny, hide_short_help = true)]
     deny: Vec<Deny>,
 }
 
@@ -286,6 +286,26 @@ pub(super) fn parse_time_limit(text: &str) -> Result<Duration, String> {
     Ok(time)
 }
 
+/// Shortens the name of an adapter and its driver: without what is in parentheses, and without the adapter if
+/// the driver's name begins with it.
+pub(super) fn short_device(device: &str) -> String {
+    let mut depth = 0_usize;
+    let mut short = String::new();
+    for character in device.chars() {
+        match character {
+            '(' => depth += 1,
+            ')' => depth = depth.saturating_sub(1),
+            character if depth == 0 => short.push(character),
+            _ => {}
+        }
+    }
+    let parts: Vec<_> = short.split(',').map(str::trim).collect();
+    match parts[..] {
+        [adapter, driver] if driver.starts_with(adapter) => driver.to_owned(),
+        _ => parts.join(", "),
+    }
+}
+
 /// Quotes an argument for a shell, if needed.
 pub(super) fn shell_word(text: &str) -> String {
     let is_plain = |character: char| character.is_alphanumeric() || "-_./:,+@%=".contains(character);
@@ -410,6 +430,9 @@ mod tests {
         for bad in ["0s", "0", "-1", "nan", "inf", "25h", "soon", ""] {
             assert!(parse_time_limit(bad).is_err(), "{bad}");
         }
+        let lavapipe = "llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe Mesa 22.3.6 (LLVM 15.0.6)";
+        assert_eq!(short_device(lavapipe), "llvmpipe Mesa 22.3.6");
+        assert_eq!(short_device("NVIDIA H200, NVIDIA 570.1"), "NVIDIA H200, NVIDIA 570.1");
         assert_eq!(shell_word("a/b-1.glsl"), "a/b-1.glsl");
         assert_eq!(shell_word("Grüße.glsl"), "Grüße.glsl");
         assert!(

@@ -10,6 +10,7 @@ mod explain;
 mod files;
 mod inputs;
 mod names;
+mod new;
 mod pool;
 mod render;
 mod run;
@@ -41,7 +42,6 @@ use self::terminal::Terminal;
 #[command(
     name = "toyproof",
     version,
-    propagate_version = true,
     max_term_width = 110,
     after_long_help = EXAMPLES,
 )]
@@ -81,6 +81,7 @@ enum Command {
     Trade(trade::Args),
     Stress(stress::Args),
     Export(render::ExportArgs),
+    New(new::Args),
     Scenes(scenes::Args),
     Doctor(doctor::Args),
     Completions(shell::CompletionsArgs),
@@ -168,6 +169,7 @@ impl Command {
             Self::Trade(args) => trade::run(args, terminal),
             Self::Stress(args) => stress::run(args, terminal),
             Self::Export(args) => render::export(args, terminal),
+            Self::New(args) => new::run(args, terminal),
             Self::Scenes(args) => scenes::run(args, terminal),
             Self::Doctor(args) => doctor::run(args, terminal),
             Self::Completions(args) => shell::completions(args, terminal),

@@ -13,6 +13,7 @@ use toyproof_tracer::{Real, Tracer};
 
 use super::inputs::may_write;
 use super::run::{Precision, default_image};
+use super::scenes::read_scene;
 use super::sequence::{self, Frames, Sequence};
 use super::terminal::file_size;
 use super::{Exit, Terminal, inputs};
@@ -99,7 +100,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     scene.film.samples = args.samples.unwrap_or(scene.film.samples);
     scene.film.sampler = args.sampler.map_or(scene.film.sampler, Sampler::from);
     let requirements = Requirements::of(&scene);
-    if !scene.film.sampler.draws()
+    if !scene.film.sampler.is_stochastic()
         && (requirements.soft_shadows || requirements.path_tracing || args.max_error.is_some())
     {
         let what = if args.max_error.is_some() {
@@ -198,7 +199,7 @@ fn render_frame(
     written
 }
 
-/// Reads a scene from its file; prints the errors.
+/// Reads a scene, given by its file or by the name of a built-in scene; prints the errors.
 pub(super) fn load_scene(path: &Path, terminal: &Terminal) -> Option<Scene> {
     if files::is_shader(path) {
         let path = path_name(path);
@@ -209,7 +210,7 @@ pub(super) fn load_scene(path: &Path, terminal: &Terminal) -> Option<Scene> {
         return None;
     }
     let mut files = Files::default();
-    let file = match files::read_text(path) {
+    let file = match read_scene(path) {
         Ok(text) => files.add(text),
         Err(error) => {
             terminal.error(error);

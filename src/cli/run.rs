@@ -13,7 +13,7 @@ use toyproof_gpu::{DrawOutput, Failure, Worker};
 use toyproof_image::{self as image, Frame, Image};
 use toyproof_verify::unbound;
 
-use super::inputs::{DriverArgs, Format, FrameArgs, LanguageArgs, may_write};
+use super::inputs::{DriverArgs, Format, FrameArgs, LanguageArgs, may_write, short_device};
 use super::names::{Names, with_suffix};
 use super::sequence::{self, Frames, Sequence};
 use super::shader::{Shader, Unusable, find};
@@ -345,6 +345,7 @@ impl Runner<'_> {
         let Rendered { device, seconds, .. } = rendered;
         if confirms {
             let size = file_size(bytes.len());
+            let device = short_device(device);
             let facts = format!("{width}×{height}, {precision} on {device}, {size}, {seconds:.2} s");
             self.terminal.confirm(path, &facts);
         }

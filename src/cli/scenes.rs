@@ -1,19 +1,25 @@
 //! `toyproof scenes`, and the course built into the program.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use include_dir::{Dir, include_dir};
-use toyproof_diagnostic::{File, Files, path_name};
+use toyproof_diagnostic::{File, Files, nearest, path_name};
 use toyproof_scene as scene;
 
 use super::{Exit, Terminal};
+use crate::cli::files::{self, ReadError};
 
-/// List the course's scenes and shaders, or write them to a folder
+/// List the built-in scenes, or write them and their shaders to a folder
+///
+/// The name of a built-in scene can be used wherever a scene file is expected.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Example:\n  toyproof scenes --write course\n  toyproof check course --out pictures")]
+#[command(
+    after_help = "Examples:\n  toyproof scenes\n  toyproof render 02-sphere -o sphere.png\n  \
+                        toyproof scenes --write course\n  toyproof check course --out report"
+)]
 pub(super) struct Args {
-    /// Write every shader and its scene into this folder
+    /// Write every scene and its shader to this folder
     #[arg(long, value_name = "DIR")]
     write: Option<PathBuf>,
 }
@@ -25,7 +31,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
                 terminal.result(&format!("{stem:<24} {}", title(name, text)));
             }
         }
-        terminal.note("`toyproof scenes --write DIR` writes their shaders (.glsl) and scenes (.toml)");
+        terminal.note("help: `toyproof scenes --write DIR` writes their shaders (.glsl) and scenes (.toml)");
         return Exit::Success;
     };
     let differs = |name: &str, text: &str| {
@@ -34,7 +40,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     };
     if let Some((name, _)) = course_files().find(|(name, text)| differs(name, text)) {
         terminal.error(format_args!(
-            "{} is there already and is not the course's; nothing was written, name another folder",
+            "{} already exists with other contents; nothing was written, choose another folder",
             path_name(&folder.join(name))
         ));
         return Exit::Error;
@@ -60,7 +66,43 @@ fn title(name: &str, text: &str) -> String {
         .unwrap_or_default()
 }
 
-// The course's shaders and scenes are embedded in the program.
+// Scenes by file or by name.
+
+/// Reads the text of a scene: that of the file, else that of the built-in scene of this name, with or without
+/// `.toml`.
+///
+/// # Errors
+/// A message for the user, if the file cannot be read or there is neither.
+pub(super) fn read_scene(path: &Path) -> Result<File, String> {
+    match files::read_text(path) {
+        Err(ReadError::Missing(_)) => builtin_scene(path),
+        text => text.map_err(|error| error.to_string()),
+    }
+}
+
+fn builtin_scene(path: &Path) -> Result<File, String> {
+    let name = path_name(path);
+    let stem = name.strip_suffix(".toml").unwrap_or(&name);
+    let scenes = || course_files().filter_map(|(name, text)| Some((name.strip_suffix(".toml")?, text)));
+    if let Some((stem, text)) = scenes().find(|(known, _)| *known == stem) {
+        return Ok(File::new(format!("{stem}.toml"), text));
+    }
+    let is_near = |known: &str| {
+        // The number of a scene, or its name without the number, is enough for a suggestion.
+        let (number, title) = known.split_once('-').unwrap_or(("", known));
+        stem == number || stem == title
+    };
+    let near = scenes().map(|(known, _)| known).find(|known| is_near(known));
+    let help = match near.or_else(|| nearest(stem, scenes().map(|(known, _)| known))) {
+        Some(near) => format!("did you mean the built-in scene `{near}`?"),
+        None => "`toyproof scenes` lists the built-in scenes".to_owned(),
+    };
+    Err(format!(
+        "no such file or built-in scene: {name}\n  = help: {help}"
+    ))
+}
+
+// The shaders and scenes of the course, which are embedded in the program.
 
 static COURSE: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/glsl");
 

@@ -1,7 +1,7 @@
 //! All output to the terminal.
 
 use std::collections::BTreeMap;
-use std::fmt::Display;
+use std::fmt::{self, Display};
 use std::io::{self, Write};
 use std::panic::PanicHookInfo;
 use std::path::Path;
@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use anstream::{AutoStream, ColorChoice};
 use anstyle::{AnsiColor, Style};
-use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use terminal_size::terminal_size_of;
 use toyproof_diagnostic::{self as diagnostic, Diagnostic, Files, Severity, path_name, wrap};
 use toyproof_image::output;
@@ -240,10 +240,11 @@ impl Terminal {
     pub(super) fn bar(&self, steps: u64, label: &str) -> ProgressBar {
         self.handle_interrupts();
         let bar = self.bars.add(ProgressBar::new(steps));
-        let template = "{prefix} {human_pos}/{human_len} {wide_bar} {per_sec}, ETA {eta}  {msg}";
-        bar.set_style(
-            ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar()),
-        );
+        let template = "{prefix} {human_pos}/{human_len} {wide_bar} {rate}, ETA {eta}  {msg}";
+        let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+        bar.set_style(style.with_key("rate", |state: &ProgressState, text: &mut dyn fmt::Write| {
+            let _ = write!(text, "{:.1}/s", state.per_sec());
+        }));
         bar.set_prefix(label.to_owned());
         bar
     }

@@ -156,7 +156,7 @@ mod tests {
         let test = &json["tests"][1];
         assert_eq!(
             (&test["name"], &test["score"], &test["max_score"], &test["status"]),
-            (&json!("maths"), &json!(6.0), &json!(6.0), &json!("passed"))
+            (&json!("algorithm"), &json!(6.0), &json!(6.0), &json!("passed"))
         );
         assert_eq!(json["execution_time"], 2);
         let mut hostile = invalid();

@@ -6,6 +6,8 @@ use toyproof_gpu as gpu;
 use toyproof_scene::Sampler;
 use toyproof_verify::{Failure, Findings, MAX_DIFFERING, Means, Reason, Share, Verdict};
 
+use super::Mistake;
+
 /// The reason of a verdict.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Statement {
@@ -34,9 +36,10 @@ impl Statement {
 pub fn state(findings: &Findings, files: &Files) -> Statement {
     let mut statement = state_reason(&findings.reason, files);
     if let Some(mistake) = &findings.tolerated_mistake {
-        statement
-            .details
-            .push(format!("a known mistake explains these pixels: {}", mistake.says));
+        statement.details.push(format!(
+            "a known mistake explains these pixels: {}",
+            Mistake::new(mistake).text
+        ));
     }
     if let (Verdict::Wrong, None, Some(color)) =
         (findings.verdict, &findings.mistake, findings.actual.only_color())

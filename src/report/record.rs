@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{self as diagnostic, Files};
 use toyproof_eval as eval;
 use toyproof_verify::compare::{CheckSummary, Comparison};
-use toyproof_verify::mistake::Named;
+use toyproof_verify::mistake::Diagnosis;
 use toyproof_verify::{CheckResult, Evidence, Failure, Findings, Reason, Verdict, decide};
 
 use super::reason::{Statement, state, state_reason};
@@ -124,7 +124,7 @@ impl Record {
         let answer = |check: &Option<CheckResult>| check.as_ref().map(|check| check.summary.clone());
         self.verdict = findings.verdict;
         self.set_statement(state(findings, files));
-        self.mistake = findings.mistake.as_deref().map(Mistake::new);
+        self.mistake = findings.mistake.as_ref().map(Mistake::new);
         self.cause = findings.cause.map(|cause| files.position(cause).into());
         self.algorithm = answer(&findings.algorithm);
         self.precision = answer(&findings.precision);
@@ -188,7 +188,7 @@ impl From<diagnostic::Position> for Position {
 /// The mistake that explains a wrong image.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Mistake {
-    /// Its name, such as `far-root`; for two combined mistakes both names: `no-aspect+gamma`.
+    /// Its name, such as `far-root`; for two combined mistakes both names: `no-aspect+no-gamma`.
     pub id: String,
     /// What is wrong in the shader, in one sentence.
     pub text: String,
@@ -210,16 +210,17 @@ pub struct Alternative {
 impl Mistake {
     /// Combines the recognized mistakes.
     #[must_use]
-    pub fn new(named: &[Named]) -> Self {
-        let (ids, texts): (Vec<_>, Vec<_>) = named
-            .iter()
-            .map(|mistake| (mistake.name, mistake.says.as_ref()))
-            .unzip();
+    pub fn new(diagnosis: &Diagnosis) -> Self {
+        let texts = diagnosis.mistakes.iter().map(|mistake| mistake.description.as_ref());
+        let alternatives = diagnosis.alternatives.iter().map(|other| Alternative {
+            id: other.id.to_owned(),
+            text: other.description.to_string(),
+        });
         Self {
-            id: ids.join("+"),
-            text: texts.join("; and "),
-            is_symptom: false,
-            alternatives: Vec::new(),
+            id: diagnosis.id(),
+            text: texts.collect::<Vec<_>>().join("; and "),
+            is_symptom: diagnosis.mistakes.iter().all(|mistake| mistake.is_symptom),
+            alternatives: alternatives.collect(),
         }
     }
 }
@@ -337,10 +338,10 @@ pub(super) mod samples {
     }
 
     impl Rubric {
-        /// A rubric without partial points for `compiles`, `maths` and `rounding`.
-        pub(in crate::report) fn of(compiles: f64, maths: f64, rounding: f64) -> Self {
+        /// A rubric without partial points for `compiles`, `algorithm` and `precision`.
+        pub(in crate::report) fn of(compiles: f64, algorithm: f64, precision: f64) -> Self {
             let text = format!(
-                "compiles.points = {compiles:?}\nmaths.points = {maths:?}\nrounding.points = {rounding:?}"
+                "compiles.points = {compiles:?}\nalgorithm.points = {algorithm:?}\nprecision.points = {precision:?}"
             );
             let mut files = Files::default();
             let file = files.add(File::new("r.toml", text));

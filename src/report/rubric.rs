@@ -1,31 +1,36 @@
 //! The points that a shader earns for each check, defined by a short TOML file.
 
-use std::ops::Range;
-
-use serde::{Deserialize, Serialize};
-use toml::Spanned;
-use toyproof_diagnostic::{Diagnostic, Diagnostics, FileId, Files, Span};
-use toyproof_scene::toml_diagnostic;
+use serde::Serialize;
+use toyproof_diagnostic::{Diagnostics, FileId, Files, grouped};
+use toyproof_scene::toml_reader::{self, Format, Table};
 use toyproof_verify::compare::CheckSummary;
 use toyproof_verify::{MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABLE, Verdict};
 
 use super::{Record, details, terminal};
 
 /// The maximum points of a check.
-const MAX_POINTS: f64 = 1e6;
+const MAX_POINTS: u32 = 1_000_000;
+
+/// Rubrics.
+static FORMAT: Format = Format {
+    form_code: "E0503",
+    value_code: "E0504",
+    aliases: &[],
+    renamed: &[("maths", "algorithm"), ("rounding", "precision")],
+};
 
 /// The points of each check.
 #[derive(Debug, Clone)]
 pub struct Rubric {
     compiles: f64,
-    maths: CheckPoints,
-    rounding: CheckPoints,
+    algorithm: CheckPoints,
+    precision: CheckPoints,
     /// Who sees the marks, and when.
     pub visibility: Visibility,
 }
 
 /// The points of one check.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 struct CheckPoints {
     points: f64,
     /// The share of agreeing pixels up to which nothing is earned, in [0, 1); from there points grow
@@ -34,7 +39,7 @@ struct CheckPoints {
 }
 
 /// Who sees the marks, and when; the names are Gradescope's.
-#[derive(Debug, Clone, Copy, Default, Deserialize, Serialize)]
+#[derive(Debug, Clone, Copy, Default, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Visibility {
     /// Students, at once.
@@ -51,7 +56,7 @@ pub enum Visibility {
 /// The points that a shader earned for one check.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mark {
-    /// `compiles`, `maths` or `rounding`.
+    /// `compiles`, `algorithm` or `precision`.
     pub name: &'static str,
     /// The points earned, in [0, `of`], rounded to hundredths.
     pub points: f64,
@@ -61,120 +66,86 @@ pub struct Mark {
     pub why: String,
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Document {
-    #[serde(default)]
-    visibility: Visibility,
-    compiles: Option<CompilesTable>,
-    maths: Option<QuestionTable>,
-    rounding: Option<QuestionTable>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct CompilesTable {
-    points: Spanned<f64>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct QuestionTable {
-    points: Spanned<f64>,
-    partial_from: Option<Spanned<f64>>,
-}
+const VISIBILITIES: [(&str, Visibility); 4] = [
+    ("visible", Visibility::Visible),
+    ("hidden", Visibility::Hidden),
+    ("after_due_date", Visibility::AfterDueDate),
+    ("after_published", Visibility::AfterPublished),
+];
 
 impl Rubric {
     /// Parses a rubric.
     ///
     /// # Errors
-    /// The first syntax or schema error of the TOML, or all values that are out of range.
+    /// The first syntax error of the TOML, or all other errors.
     pub fn parse(files: &Files, file: FileId) -> Result<Self, Diagnostics> {
-        let document: Document = toml::from_str(files.get(file).text())
-            .map_err(|error| Diagnostics::new(vec![toml_diagnostic("E0503", &error, files, file)], files))?;
-        let mut errors = Vec::new();
-        let mut parser = Parser {
-            file,
-            errors: &mut errors,
-        };
-        let compiles = document
-            .compiles
-            .map_or(0.0, |table| parser.points(&table.points));
-        let maths = parser.check(document.maths);
-        let rounding = parser.check(document.rounding);
-        if parser.errors.is_empty() && compiles + maths.points + rounding.points == 0.0 {
-            parser.reject(
-                0..0,
-                "a rubric needs points for compiles, maths or rounding".to_owned(),
-            );
-        }
-        if errors.is_empty() {
-            Ok(Self {
-                compiles,
-                maths,
-                rounding,
-                visibility: document.visibility,
-            })
-        } else {
-            Err(Diagnostics::new(errors, files))
-        }
+        toml_reader::read(&FORMAT, files, file, |document| {
+            let visibility = document.choice("visibility", "visibility", &VISIBILITIES);
+            let compiles = document.table("compiles", points);
+            let algorithm = document.table("algorithm", check_points);
+            let precision = document.table("precision", check_points);
+            let rubric = Self {
+                compiles: compiles.unwrap_or_default(),
+                algorithm: algorithm.unwrap_or_default(),
+                precision: precision.unwrap_or_default(),
+                visibility: visibility.map_or_else(Visibility::default, |visibility| visibility.value),
+            };
+            document.report_unknown_keys();
+            let sum = rubric.compiles + rubric.algorithm.points + rubric.precision.points;
+            if document.is_valid() && sum == 0.0 {
+                let help = "add a table such as [algorithm] with `points = 6`";
+                document.reject(document.span(), "the rubric gives no points", help);
+            }
+            rubric
+        })
     }
 
     /// Computes the marks of a shader, one for each check that has points.
     #[must_use]
     pub fn marks(&self, record: &Record) -> Vec<Mark> {
-        let maths = maths(self.maths, record);
-        let mut rounding = rounding(self.rounding, record);
+        let algorithm = algorithm(self.algorithm, record);
+        let mut precision = precision(self.precision, record);
         // A black image has no rounding errors.
-        if maths.points == 0.0 && maths.of > 0.0 {
-            rounding.points = 0.0;
-            "counts once maths does".clone_into(&mut rounding.why);
+        if algorithm.points == 0.0 && algorithm.of > 0.0 {
+            precision.points = 0.0;
+            "not graded: the algorithm check must earn points first".clone_into(&mut precision.why);
         }
-        let marks = [compiles(self.compiles, record), maths, rounding];
+        let marks = [compiles(self.compiles, record), algorithm, precision];
         marks.into_iter().filter(|mark| mark.of > 0.0).collect()
     }
 }
 
-struct Parser<'a> {
-    file: FileId,
-    errors: &'a mut Vec<Diagnostic>,
+/// Reads the points of a table.
+fn points(table: &mut Table) -> f64 {
+    let Some(points) = table.required::<f64>("points") else {
+        return 0.0;
+    };
+    if !(0.0..=f64::from(MAX_POINTS)).contains(&points.value) {
+        let (max, found) = (grouped(u64::from(MAX_POINTS)), table.excerpt(points.span));
+        table.reject(
+            points.span,
+            format!("`points` must be from 0 to {max}, found {found}"),
+            "",
+        );
+    }
+    points.value
 }
 
-impl Parser<'_> {
-    fn reject(&mut self, bytes: Range<usize>, message: String) {
-        let span = Span::new(self.file, bytes.start as u32, bytes.end as u32);
-        self.errors.push(Diagnostic::error("E0504", message).at(span));
+/// Reads the points of a check, and where partial points begin.
+fn check_points(table: &mut Table) -> CheckPoints {
+    let points = points(table);
+    let partial_from = table.optional::<f64>("partial_from");
+    if let Some(from) = &partial_from
+        && !(0.0..1.0).contains(&from.value)
+    {
+        let found = table.excerpt(from.span);
+        let message = format!("`partial_from` must be at least 0 and less than 1, found {found}");
+        let help = "it is the share of matching pixels at which partial points begin, such as 0.9 for 90 %";
+        table.reject(from.span, message, help);
     }
-
-    fn points(&mut self, value: &Spanned<f64>) -> f64 {
-        let points = *value.get_ref();
-        if !(0.0..=MAX_POINTS).contains(&points) {
-            let message = format!("points must be a number from 0 to {MAX_POINTS}, not {points}");
-            self.reject(value.span(), message);
-        }
-        points
-    }
-
-    fn check(&mut self, table: Option<QuestionTable>) -> CheckPoints {
-        let Some(QuestionTable { points, partial_from }) = table else {
-            return CheckPoints {
-                points: 0.0,
-                partial_from: None,
-            };
-        };
-        if let Some(from) = &partial_from
-            && !(0.0..1.0).contains(from.get_ref())
-        {
-            let message = format!(
-                "partial_from must be a share of the pixels, at least 0 and below 1, not {}",
-                from.get_ref()
-            );
-            self.reject(from.span(), message);
-        }
-        CheckPoints {
-            points: self.points(&points),
-            partial_from: partial_from.map(Spanned::into_inner),
-        }
+    CheckPoints {
+        points,
+        partial_from: partial_from.map(|from| from.value),
     }
 }
 
@@ -189,7 +160,7 @@ impl CheckPoints {
         (100.0 * self.points * (agreeing - from) / (1.0 - from)).floor() / 100.0
     }
 
-    /// The mark of an answer; `lost` is the share of the pixels that do not agree.
+    /// The mark of a check that was performed; `lost` is the share of the pixels that do not agree.
     fn mark(self, name: &'static str, passed: bool, lost: f64, why: String) -> Mark {
         let points = if passed {
             self.points
@@ -204,12 +175,12 @@ impl CheckPoints {
         }
     }
 
-    /// The mark of a check without an answer.
-    fn unanswered(self, name: &'static str, record: &Record) -> Mark {
+    /// The mark of a check that was not performed.
+    fn not_performed(self, name: &'static str, record: &Record) -> Mark {
         let why = match record.verdict {
             Verdict::Invalid => "the shader does not compile".to_owned(),
             Verdict::Error => format!(
-                "could not be judged, which is not the shader's fault: {}",
+                "not graded because of an error outside the shader: {}",
                 record.reason
             ),
             _ => record.reason.clone(),
@@ -218,7 +189,7 @@ impl CheckPoints {
     }
 }
 
-/// Replaces the empty description of an answer without differences.
+/// Replaces the empty description of a check that found no differences.
 fn or_no_difference(message: String) -> String {
     if message.is_empty() {
         "no pixel differs".to_owned()
@@ -241,53 +212,58 @@ fn compiles(points: f64, record: &Record) -> Mark {
     check.mark("compiles", passed, 1.0, why)
 }
 
-fn maths(check: CheckPoints, record: &Record) -> Mark {
-    let name = "maths";
-    let Some(answer) = &record.algorithm else {
-        return check.unanswered(name, record);
+fn algorithm(check: CheckPoints, record: &Record) -> Mark {
+    let name = "algorithm";
+    let Some(result) = &record.algorithm else {
+        return check.not_performed(name, record);
     };
     let passed =
-        answer.share(answer.differing) <= MAX_DIFFERING && answer.share(answer.undefined) <= MAX_UNDEFINED;
-    let lost = answer.share(answer.differing + answer.undefined);
+        result.share(result.differing) <= MAX_DIFFERING && result.share(result.undefined) <= MAX_UNDEFINED;
+    let lost = result.share(result.differing + result.undefined);
     let mistake = record.mistake.iter().map(|mistake| mistake.text.clone());
-    let why: Vec<_> = [or_no_difference(terminal::algorithm(answer))]
+    let why: Vec<_> = [or_no_difference(terminal::algorithm(result))]
         .into_iter()
         .chain(mistake)
         .collect();
     check.mark(name, passed, lost, why.join("; "))
 }
 
-/// Ill-conditioned pixels count as lost to rounding, too.
-fn rounding(check: CheckPoints, record: &Record) -> Mark {
-    let name = "rounding";
-    let Some(answer) = &record.precision else {
-        return check.unanswered(name, record);
+/// Ill-conditioned pixels count as lost to the precision check, too.
+fn precision(check: CheckPoints, record: &Record) -> Mark {
+    let name = "precision";
+    let Some(result) = &record.precision else {
+        return check.not_performed(name, record);
     };
     let ill_conditioned = record
         .algorithm
         .as_ref()
-        .map_or(0.0, |answer: &CheckSummary| answer.share(answer.ill_conditioned));
-    let lost = answer.share(answer.differing).max(ill_conditioned);
+        .map_or(0.0, |result: &CheckSummary| result.share(result.ill_conditioned));
+    let lost = result.share(result.differing).max(ill_conditioned);
     check.mark(
         name,
         lost <= MAX_UNSTABLE,
         lost,
-        or_no_difference(terminal::precision(answer)),
+        or_no_difference(terminal::precision(result)),
     )
 }
 
 #[cfg(test)]
 mod tests {
-    use toyproof_diagnostic::{File, short};
+    use toyproof_diagnostic::{Diagnostic, File};
 
     use super::*;
     use crate::report::record::samples::{correct, invalid, question, record};
 
+    /// The rubric, or its errors: `line:column code message; help: …`.
     fn read(text: &str) -> Result<Rubric, Vec<String>> {
         let mut files = Files::default();
         let file = files.add(File::new("r.toml", text));
-        Rubric::parse(&files, file)
-            .map_err(|errors| errors.iter().map(|error| short(error, &files)).collect())
+        let described = |error: &Diagnostic| {
+            let at = files.position(error.span.unwrap());
+            let message = format!("{}:{} {} {}", at.line, at.column, error.code, error.message);
+            [vec![message], error.notes.clone()].concat().join("; ")
+        };
+        Rubric::parse(&files, file).map_err(|errors| errors.iter().map(described).collect())
     }
 
     fn points(rubric: &str, record: &Record) -> Vec<(&'static str, f64, f64)> {
@@ -299,76 +275,106 @@ mod tests {
     }
 
     const RUBRIC: &str =
-        "[compiles]\npoints = 2\n[maths]\npoints = 6\npartial_from = 0.5\n[rounding]\npoints = 2";
+        "[compiles]\npoints = 2\n[algorithm]\npoints = 6\npartial_from = 0.5\n[precision]\npoints = 2";
 
     #[test]
-    fn errors_have_a_position_and_the_expected_value() {
-        for (text, place, message) in [
+    fn each_error_has_its_place_message_and_advice() {
+        for (text, expected) in [
             (
-                "[maths]\npoint = 1",
-                "r.toml:2:1: error[E0503]",
-                "unknown field `point`",
+                "[algorithm]\npoint = 1",
+                "2:1 E0503 unknown key `point` in [algorithm]; help: did you mean `points`?",
             ),
             (
                 "[style]\npoints = 1",
-                "r.toml:1:2: error[E0503]",
-                "expected one of",
+                "1:2 E0503 unknown table [style]; \
+                 help: expected `visibility`, [compiles], [algorithm] or [precision]",
             ),
             (
-                "[maths]\npoints = \"all\"",
-                "r.toml:2:10: error[E0503]",
-                "expected a number",
+                "[maths]\npoints = 6",
+                "1:2 E0503 unknown key `maths`; it is now called `algorithm`",
             ),
             (
-                "[maths]\npartial_from = 0.5",
-                "r.toml:1:1: error[E0503]",
-                "missing field `points`",
+                "compiles.points = 1\nrounding.points = 2",
+                "2:1 E0503 unknown key `rounding`; it is now called `precision`",
+            ),
+            (
+                "[[algorithm]]\npoints = 1",
+                "1:1 E0503 [algorithm] can be given only once; help: write `[algorithm]`, with single brackets",
+            ),
+            (
+                "algorithm = 6",
+                "1:13 E0503 `algorithm` must be a table, found 6; \
+                 help: write `[algorithm]` on a line of its own, and its keys below",
+            ),
+            (
+                "[algorithm]\npoints = \"all\"",
+                "2:10 E0503 `points` must be a number, found a string; help: for example `points = 1.0`",
+            ),
+            (
+                "[algorithm]\npoints = \"6\"",
+                "2:10 E0503 `points` must be a number, found a string; help: remove the quotes around the number",
+            ),
+            (
+                "[algorithm]\npartial_from = 0.5",
+                "1:1 E0503 missing key `points` in [algorithm]; help: add `points = 1.0`",
             ),
             (
                 "visibility = \"all\"",
-                "r.toml:1:14: error[E0503]",
-                "unknown variant `all`",
+                "1:14 E0503 unknown visibility `all`; \
+                 help: expected `visible`, `hidden`, `after_due_date` or `after_published`",
             ),
             (
-                "[maths]\npoints = -1",
-                "r.toml:2:10: error[E0504]",
-                "from 0 to 1000000, not -1",
+                "visibility = \"after_duedate\"",
+                "1:14 E0503 unknown visibility `after_duedate`; help: did you mean `after_due_date`?",
             ),
-            ("[maths]\npoints = nan", "r.toml:2:10: error[E0504]", "not NaN"),
             (
-                "[maths]\npoints = 1\npartial_from = 1",
-                "r.toml:3:16: error[E0504]",
-                "below 1, not 1",
+                "[algorithm]\npoints: 1",
+                "2:1 E0503 missing `=` after `points`; help: write `=` instead of `:`",
             ),
-            ("", "r.toml:1:1: error[E0504]", "needs points"),
-            ("[maths]\npoints = 0", "r.toml:1:1: error[E0504]", "needs points"),
+            (
+                "[algorithm]\npoints = -1",
+                "2:10 E0504 `points` must be from 0 to 1,000,000, found -1",
+            ),
+            (
+                "[algorithm]\npoints = nan",
+                "2:10 E0504 `points` must be from 0 to 1,000,000, found nan",
+            ),
+            (
+                "[algorithm]\npoints = 1\npartial_from = 90",
+                "3:16 E0504 `partial_from` must be at least 0 and less than 1, found 90; \
+                 help: it is the share of matching pixels at which partial points begin, such as 0.9 for 90 %",
+            ),
+            (
+                "",
+                "1:1 E0504 the rubric gives no points; help: add a table such as [algorithm] with `points = 6`",
+            ),
+            (
+                "[algorithm]\npoints = 0",
+                "1:1 E0504 the rubric gives no points; help: add a table such as [algorithm] with `points = 6`",
+            ),
         ] {
-            let errors = read(text).unwrap_err();
-            assert!(
-                errors[0].starts_with(place) && errors[0].contains(message),
-                "{text}: {errors:?}"
-            );
+            assert_eq!(read(text).unwrap_err(), [expected], "{text}");
         }
-        assert_eq!(
-            read("[maths]\npoints = -1\npartial_from = 2").unwrap_err().len(),
-            2,
-            "all at once"
-        );
+        let both = read("[algorithm]\npoints = -1\npartial_from = 2").unwrap_err();
+        assert_eq!(both.len(), 2, "all at once");
     }
 
     #[test]
     fn correct_shaders_earn_all_points_and_invalid_ones_none() {
         let all = [
             ("compiles", 2.0, 2.0),
-            ("maths", 6.0, 6.0),
-            ("rounding", 2.0, 2.0),
+            ("algorithm", 6.0, 6.0),
+            ("precision", 2.0, 2.0),
         ];
         assert_eq!(points(RUBRIC, &correct()), all);
         assert_eq!(
             points(RUBRIC, &invalid()),
             all.map(|(name, _, of)| (name, 0.0, of))
         );
-        assert_eq!(points("[maths]\npoints = 1", &correct()), [("maths", 1.0, 1.0)]);
+        assert_eq!(
+            points("[algorithm]\npoints = 1", &correct()),
+            [("algorithm", 1.0, 1.0)]
+        );
     }
 
     #[test]
@@ -379,28 +385,32 @@ mod tests {
             record.precision = Some(question([0; 3]));
             record
         };
-        let maths = |rubric, differing| points(rubric, &wrong(differing))[1];
-        assert_eq!(maths(RUBRIC, 1), ("maths", 6.0, 6.0), "within what is allowed");
-        assert_eq!(maths(RUBRIC, 2), ("maths", 5.97, 6.0));
-        assert_eq!(maths(RUBRIC, 250), ("maths", 3.0, 6.0));
-        assert_eq!(maths(RUBRIC, 500), ("maths", 0.0, 6.0));
-        assert_eq!(maths(RUBRIC, 1000), ("maths", 0.0, 6.0));
-        let strict = RUBRIC.replace("partial_from = 0.5", "");
-        assert_eq!(maths(&strict, 2), ("maths", 0.0, 6.0));
-        let rounding = |differing| points(RUBRIC, &wrong(differing))[2].1;
+        let algorithm = |rubric, differing| points(rubric, &wrong(differing))[1];
         assert_eq!(
-            (rounding(250), rounding(500)),
+            algorithm(RUBRIC, 1),
+            ("algorithm", 6.0, 6.0),
+            "within what is allowed"
+        );
+        assert_eq!(algorithm(RUBRIC, 2), ("algorithm", 5.97, 6.0));
+        assert_eq!(algorithm(RUBRIC, 250), ("algorithm", 3.0, 6.0));
+        assert_eq!(algorithm(RUBRIC, 500), ("algorithm", 0.0, 6.0));
+        assert_eq!(algorithm(RUBRIC, 1000), ("algorithm", 0.0, 6.0));
+        let strict = RUBRIC.replace("partial_from = 0.5", "");
+        assert_eq!(algorithm(&strict, 2), ("algorithm", 0.0, 6.0));
+        let precision = |differing| points(RUBRIC, &wrong(differing))[2].1;
+        assert_eq!(
+            (precision(250), precision(500)),
             (2.0, 0.0),
-            "a black picture loses no digits"
+            "a black image has no rounding errors"
         );
     }
 
     #[test]
-    fn ill_conditioned_pixels_are_rounding_and_undefined_ones_maths() {
-        let of = |maths, rounding| {
+    fn ill_conditioned_pixels_count_for_precision_and_undefined_ones_for_the_algorithm() {
+        let of = |algorithm, precision| {
             let mut record = record(Verdict::Unstable);
-            record.algorithm = Some(question(maths));
-            record.precision = Some(question(rounding));
+            record.algorithm = Some(question(algorithm));
+            record.precision = Some(question(precision));
             let earned = points(RUBRIC, &record);
             (earned[1].1, earned[2].1)
         };

@@ -170,12 +170,17 @@ fn mistake_lines(mistake: &Mistake, layout: &Layout) -> Vec<String> {
     if mistake.alternatives.is_empty() {
         return vec![layout.below(&format!("{label}: "), &mistake.text)];
     }
-    let all = std::iter::once(&mistake.text).chain(mistake.alternatives.iter().map(|other| &other.text));
-    let ranked = all
+    let others = mistake.alternatives.iter().map(|other| &other.text);
+    // A symptom is no mistake among others: it is what they cause.
+    let first = (!mistake.is_symptom).then_some(&mistake.text);
+    let ranked = first
+        .into_iter()
+        .chain(others)
         .enumerate()
         .map(|(rank, text)| layout.below(&format!("  {}. ", rank + 1), text));
-    let heading = layout.below("", &format!("{label}, one of these (most likely first):"));
-    std::iter::once(heading).chain(ranked).collect()
+    let heading = layout.below("", "possible mistakes, the most likely first:");
+    let symptom = mistake.is_symptom.then(|| layout.below("symptom: ", &mistake.text));
+    symptom.into_iter().chain([heading]).chain(ranked).collect()
 }
 
 /// The table of the checks, and the comparison of the images.
@@ -420,7 +425,7 @@ mod tests {
         });
         let shown = text(&several, Detail::Normal, None);
         assert!(
-            shown.contains("likely mistake, one of these (most likely first):\n               1. N·L"),
+            shown.contains("possible mistakes, the most likely first:\n               1. N·L"),
             "{shown}"
         );
         assert!(shown.contains("\n               2. second\n"), "{shown}");

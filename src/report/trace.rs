@@ -20,7 +20,6 @@ pub struct PixelTrace {
     f32: Option<[Component; 3]>,
     f64: Option<[Component; 3]>,
     /// The index of the first step where the two differ; null if none does.
-    #[serde(rename = "parts_at")]
     divergence_at: Option<usize>,
     /// The index of the step that causes a visible difference of the colors; null if there is none.
     cause_at: Option<usize>,
@@ -35,8 +34,7 @@ pub struct PixelTrace {
 /// One step.
 #[derive(Debug, Serialize)]
 struct TraceStep {
-    /// `stored`, `part`, `branch`, `round`, `returned` or `ran`.
-    #[serde(rename = "what")]
+    /// `assignment`, `subexpression`, `branch`, `iteration`, `return` or `statement`.
     kind: &'static str,
     line: usize,
     column: usize,
@@ -52,7 +50,6 @@ struct TraceStep {
     /// The lines of the enclosing calls, outermost first.
     calls: Vec<usize>,
     /// The iteration of each enclosing loop, outermost first, from 1.
-    #[serde(rename = "rounds")]
     iterations: Vec<u32>,
     /// The accessors of the components, as appended to the variable's name: `.x`.
     components: Vec<String>,
@@ -93,7 +90,7 @@ impl PixelTrace {
             .map(|step| TraceStep::new(subject, schema, step));
         let color = |color: [f64; 3]| color.map(Component::Float);
         Self {
-            version: 1,
+            version: 2,
             shader: subject.shader.to_owned(),
             pixel: subject.pixel,
             size: subject.size,
@@ -133,12 +130,12 @@ impl TraceStep {
         let count = single.as_ref().or(double.as_ref()).map_or(0, Vec::len);
         Self {
             kind: match event.kind {
-                EventKind::Assignment(_) => "stored",
-                EventKind::Subexpression => "part",
+                EventKind::Assignment(_) => "assignment",
+                EventKind::Subexpression => "subexpression",
                 EventKind::Branch => "branch",
-                EventKind::LoopHeader => "round",
-                EventKind::Return => "returned",
-                EventKind::Statement => "ran",
+                EventKind::LoopHeader => "iteration",
+                EventKind::Return => "return",
+                EventKind::Statement => "statement",
             },
             line: at.line,
             column: at.column,
@@ -292,23 +289,19 @@ impl PixelTrace {
     pub fn human(&self, whole: bool) -> String {
         let [x, y] = self.pixel;
         let [width, height] = self.size;
-        let mut text = format!("{}, pixel ({x}, {y}) of {width}x{height}\n", self.shader);
+        let mut text = format!("{}, pixel ({x}, {y}) of {width}×{height}\n", self.shader);
         for (name, color, single) in [("f32", self.f32, true), ("f64", self.f64, false)] {
-            let _ = match color {
-                Some(color) => {
-                    let parts = color.map(|part| part.digits(single));
-                    writeln!(text, "  {name} paints ({})", parts.join(", "))
-                }
-                None => writeln!(text, "  {name} discards it"),
-            };
+            let color = color.map(|color| color.map(|part| part.digits(single)).join(", "));
+            let color = color.map_or_else(|| "discarded".to_owned(), |color| format!("({color})"));
+            let _ = writeln!(text, "  color in {name}       {color}");
         }
         text.push_str(&self.headline());
         text.push('\n');
-        let mut writer = Writer { text, last: None };
+        let mut writer = Writer { text, whole, last: None };
         let mut skipped = 0;
         for (index, line) in self.steps.iter().enumerate() {
             let mark = self.mark(index);
-            if line.kind == "part" && !whole && mark.is_none() {
+            if line.kind == "subexpression" && !whole && mark.is_none() {
                 continue;
             }
             if !whole && !self.is_near(index) {
@@ -322,7 +315,7 @@ impl PixelTrace {
         if self.cut {
             writer
                 .text
-                .push_str("  … and so on: the rest was too long to be kept\n");
+                .push_str("  … the remaining steps were not recorded: the trace is too long\n");
         }
         writer.text
     }
@@ -338,15 +331,15 @@ impl PixelTrace {
     fn headline(&self) -> String {
         let mut text = String::new();
         match self.divergence_at {
-            None => text.push_str("  they never part: float32 is enough here\n"),
+            None => text.push_str("  first difference   none: float32 is precise enough here\n"),
             Some(at) => {
-                let _ = writeln!(text, "  they first part in {}", self.steps[at].difference());
+                let _ = writeln!(text, "  first difference   {}", self.steps[at].difference());
             }
         }
         if let Some(at) = self.cause_at {
             let _ = match self.divergence_at {
-                Some(first) if first == at => writeln!(text, "  and that is what is seen"),
-                _ => writeln!(text, "  what is seen comes of {}", self.steps[at].difference()),
+                Some(first) if first == at => writeln!(text, "  visible cause      the first difference"),
+                _ => writeln!(text, "  visible cause      {}", self.steps[at].difference()),
             };
         }
         if let Some(at) = self.not_finite_at {
@@ -358,7 +351,7 @@ impl PixelTrace {
             } = &self.steps[at];
             let _ = writeln!(
                 text,
-                "  what is not finite comes of line {line}, column {column}: `{source}`"
+                "  first not finite   line {line}, column {column}: `{source}`"
             );
         }
         text
@@ -368,21 +361,32 @@ impl PixelTrace {
     fn mark(&self, index: usize) -> Option<&'static str> {
         let is = |step: Option<usize>| step == Some(index);
         match () {
-            () if is(self.cause_at) => Some("  <- what is seen comes of this"),
-            () if is(self.divergence_at) => Some("  <- here they part"),
-            () if is(self.not_finite_at) => Some("  <- no longer finite"),
+            () if is(self.cause_at) => Some("  <- visible cause"),
+            () if is(self.divergence_at) => Some("  <- first difference"),
+            () if is(self.not_finite_at) => Some("  <- first not finite"),
             () => None,
         }
     }
 }
 
 impl TraceStep {
+    /// Whether a component has the same value in f32 and f64.
+    fn is_same(&self, at: usize) -> bool {
+        let component = |values: &Option<Vec<Component>>| values.as_ref().and_then(|values| values.get(at).copied());
+        match (component(&self.f32), component(&self.f64)) {
+            (Some(Component::Float(single)), Some(Component::Float(double))) => {
+                toyproof_verify::debug::ulps(single, double) == 0.0
+            }
+            (single, double) => single == double,
+        }
+    }
+
     /// Describes how the two differ at this step.
     fn difference(&self) -> String {
         let place = format!("line {}, column {}", self.line, self.column);
         let (Some(single), Some(double)) = (&self.f32, &self.f64) else {
             let only = if self.f32.is_some() { "f32" } else { "f64" };
-            return format!("{place}: only {only} comes to `{}`", self.text);
+            return format!("{place}: only {only} reaches `{}`", self.text);
         };
         let Some(worst) = self.worst else {
             return place;
@@ -400,6 +404,8 @@ impl TraceStep {
 
 struct Writer {
     text: String,
+    /// Whether components that are the same in f32 and f64 have rows of their own.
+    whole: bool,
     /// The line, the calls and the iterations of the last heading.
     last: Option<(usize, Vec<usize>, Vec<u32>)>,
 }
@@ -429,11 +435,19 @@ impl Writer {
         }
         let name = match line.kind {
             "branch" => "?",
-            "returned" => "return",
-            "part" => &line.text,
+            "return" => "return",
+            "subexpression" => &line.text,
             _ => line.name.as_deref().unwrap_or_default(),
         };
-        for (at, component) in line.components.iter().enumerate() {
+        let shown: Vec<usize> = (0..count)
+            .filter(|&at| self.whole || !line.is_same(at))
+            .collect();
+        if shown.is_empty() && only.is_empty() {
+            self.write_equal(&indent, name, line, mark);
+            return;
+        }
+        for &at in &shown {
+            let component = &line.components[at];
             let digits = |values: &Option<Vec<Component>>, single| {
                 let value = values.as_ref().and_then(|values| values.get(at));
                 value.map_or_else(|| "-".to_owned(), |value| value.digits(single))
@@ -447,7 +461,7 @@ impl Writer {
                 }
                 _ => String::new(),
             };
-            let end = if at + 1 == count { mark } else { "" };
+            let end = if Some(&at) == shown.last() { mark } else { "" };
             let width = NAME_WIDTH.saturating_sub(indent.len());
             let row = format!(
                 "      {indent}{:width$} {single:>NUMBER_WIDTH$} {double:>NUMBER_WIDTH$} {distance:>12}{only}{end}",
@@ -456,6 +470,17 @@ impl Writer {
             self.text.push_str(row.trim_end());
             self.text.push('\n');
         }
+    }
+
+    /// Writes a value that is the same in f32 and f64, on one line.
+    fn write_equal(&mut self, indent: &str, name: &str, line: &TraceStep, mark: &str) {
+        let values = line.f32.iter().flatten();
+        let values: Vec<_> = values.map(|value| value.digits(true)).collect();
+        let values = match &values[..] {
+            [value] => value.clone(),
+            values => format!("({})", values.join(", ")),
+        };
+        let _ = writeln!(self.text, "      {indent}{name} = {}{mark}", one_line(&values));
     }
 
     /// Writes the source line, if it differs from the previous heading.
@@ -471,15 +496,15 @@ impl Writer {
         {
             let _ = writeln!(
                 self.text,
-                "     {indent}in {}, called in line {from}:",
+                "     {indent}{}() at line {from}",
                 line.function
             );
         }
-        let round = match line.iterations.last() {
-            Some(round) if line.kind == "round" => format!("   (round {round})"),
+        let iteration = match line.iterations.last() {
+            Some(iteration) if line.kind == "iteration" => format!("   (iteration {iteration})"),
             _ => String::new(),
         };
-        let _ = writeln!(self.text, "{:>5} {indent}{}{round}", line.line, line.source);
+        let _ = writeln!(self.text, "{:>5} {indent}{}{iteration}", line.line, line.source);
         self.last = Some(here);
     }
 }
@@ -488,7 +513,7 @@ impl Writer {
 fn in_ulps(ulps: f64) -> String {
     match ulps {
         0.0 => "same".to_owned(),
-        _ if !ulps.is_finite() => "apart".to_owned(),
+        _ if !ulps.is_finite() => "different".to_owned(),
         _ if ulps < 0.05 => "<0.1 ULP".to_owned(),
         _ if ulps < 9.95 => format!("{ulps:.1} ULP"),
         _ if ulps < 1e9 => format!("{} ULP", grouped(ulps.round() as u64)),

@@ -26,7 +26,7 @@ pub struct Film {
 pub enum Sampler {
     /// All samples at the pixel center; no random numbers.
     Center,
-    /// Positions from the course's `fract(sin(seed++) * 43758.5453123)`, with seed 0 at each pixel; no
+    /// Positions from the exercises' `fract(sin(seed++) * 43758.5453123)`, with seed 0 at each pixel; no
     /// further random numbers.
     SineHash,
     /// Independent numbers from an integer hash that a shader can also compute.
@@ -40,7 +40,7 @@ pub enum Sampler {
 impl Sampler {
     /// Whether it provides random numbers for lights and surfaces.
     #[must_use]
-    pub fn draws(self) -> bool {
+    pub fn is_stochastic(self) -> bool {
         !matches!(self, Self::Center | Self::SineHash)
     }
 

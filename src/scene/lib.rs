@@ -23,15 +23,18 @@ mod motion;
 mod perturb;
 mod requirements;
 mod shape;
+mod template;
+pub mod toml_reader;
 
 use std::ops::Range;
 
-pub use file::{parse, toml_diagnostic};
+pub use file::parse;
 pub use film::{Camera, Figure, Film, Integrator, Outline, Projection, Sampler, ToneMap};
 pub use material::{Background, Checker, Disney, Fresnel, Light, Material, Model};
 pub use motion::{FrameTime, Motion, Period};
 pub use requirements::Requirements;
 pub use shape::{Equation, Quadric, QuadricKind, Scatter, Scattered, Shape, unit};
+pub use template::template;
 
 /// A color, linear RGB; each component ≥ 0, nominally in [0, 1].
 pub type Color = [f64; 3];
@@ -55,7 +58,7 @@ pub struct Scene {
     pub camera: Camera,
     /// The radiance of rays that hit nothing.
     pub background: Background,
-    /// Figures drawn on the screen itself, the last on top.
+    /// Figures on the screen, in front of all surfaces, the last on top.
     pub figures: Vec<Figure>,
     /// The lights.
     pub lights: Vec<Light>,

@@ -29,7 +29,7 @@ pub struct Checker {
 pub enum Model {
     /// `color · |D·N|`
     Facing,
-    /// The course's first BRDF, `f = color`: it reflects π times the incident light.
+    /// The simplest BRDF, `f = color`: it reflects π times the incident light.
     Lambert,
     /// `f = color / π`
     Diffuse,
@@ -60,8 +60,8 @@ pub enum Model {
 pub enum Fresnel {
     /// Fresnel's equations for unpolarized light.
     Exact,
-    /// `F₀ + (1 − F₀)(1 − cos)⁵` with `F₀ = ((1 − ior) / (1 + ior))²` and the cosine on the thinner side
-    /// (Schlick 1994).
+    /// `F₀ + (1 − F₀)(1 − cos)⁵` with `F₀ = ((1 − ior) / (1 + ior))²` and the cosine on the side of
+    /// the smaller index of refraction (Schlick 1994).
     Schlick,
 }
 

@@ -9,7 +9,7 @@ const MAX_UNSORTED_SPHERES: usize = 128;
 
 /// The features that a scene uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[expect(clippy::struct_excessive_bools, reason = "a scene uses a thing or does not")]
+#[expect(clippy::struct_excessive_bools, reason = "each feature is used or not")]
 pub struct Requirements {
     /// Figures on the screen.
     pub figures: bool,
@@ -74,16 +74,16 @@ impl fmt::Display for Requirements {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let labels = [
             (self.figures, "figures"),
-            (self.surfaces && !self.shapes, "spheres alone"),
-            (self.shapes, "shapes of several kinds"),
+            (self.surfaces && !self.shapes, "spheres only"),
+            (self.shapes, "planes or quadrics"),
             (self.many_spheres, "many spheres"),
             (self.secondary_rays, "secondary rays"),
-            (self.branches, "rays that part"),
+            (self.branches, "ray splitting at glass"),
             (self.shadows, "shadows"),
             (self.soft_shadows, "soft shadows"),
             (self.path_tracing, "path tracing"),
-            (self.samples, "samples"),
-            (self.transfer, "a transfer curve"),
+            (self.samples, "multiple samples"),
+            (self.transfer, "tone mapping or gamma"),
             (self.motion, "motion"),
         ];
         let used: Vec<_> = labels
@@ -92,7 +92,7 @@ impl fmt::Display for Requirements {
             .map(|(_, label)| *label)
             .collect();
         if used.is_empty() {
-            f.write_str("a background alone")
+            f.write_str("only a background")
         } else {
             f.write_str(&used.join(", "))
         }

@@ -52,22 +52,22 @@ pub enum QuadricKind {
         radii: [f64; 3],
     },
     /// `x² + y² = radius²`, 0 ≤ z ≤ height
-    #[expect(missing_docs, reason = "the equation says it")]
+    #[expect(missing_docs, reason = "the equation explains them")]
     Cylinder { radius: f64, height: f64 },
     /// `x² + y² = (radius · z / height)²`, 0 ≤ z ≤ height
-    #[expect(missing_docs, reason = "the equation says it")]
+    #[expect(missing_docs, reason = "the equation explains them")]
     Cone { radius: f64, height: f64 },
     /// `x² + y² = radius² · z / height`, 0 ≤ z ≤ height
-    #[expect(missing_docs, reason = "the equation says it")]
+    #[expect(missing_docs, reason = "the equation explains them")]
     Paraboloid { radius: f64, height: f64 },
     /// `x² + y² = waist² + (radius² − waist²) · (2 z / height)²`, |z| ≤ height / 2; waist < radius
-    #[expect(missing_docs, reason = "the equation says it")]
+    #[expect(missing_docs, reason = "the equation explains them")]
     Hyperboloid { waist: f64, radius: f64, height: f64 },
 }
 
 /// The equation of a quadric, in local units: q·p² + 2 g z + k = 0, where p² is component-wise.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[expect(missing_docs, reason = "the equation says it")]
+#[expect(missing_docs, reason = "the equation explains them")]
 pub struct Equation {
     pub q: [f64; 3],
     pub g: f64,

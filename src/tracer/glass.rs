@@ -96,7 +96,7 @@ impl<T: Real> Kernel<T> for &GlassRays<T> {
                 Wide::load(simd, &self.facing[at..]),
                 Wide::load(simd, &self.ior[at..]),
             );
-            // Relative to the side of the ray: its index over that of the other side, and the normal towards
+            // Relative to the side of the ray: its index over that of the other side, and the normal toward
             // it.
             let entering = facing.less(zero);
             let eta = (one / ior).select(entering, ior);

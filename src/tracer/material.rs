@@ -79,7 +79,7 @@ pub(super) enum Brdf<T> {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Frame<T: Real> {
     pub(super) normal: T::Vec3,
-    /// Direction towards the origin of the ray.
+    /// Direction toward the origin of the ray.
     pub(super) view: T::Vec3,
 }
 

@@ -57,7 +57,7 @@ impl<T: Real> FirstHit<T> {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Hit<T: Real> {
     pub(super) point: T::Vec3,
-    /// Of unit length. It points outward, or on an open surface towards the side of the incoming ray.
+    /// Of unit length. It points outward, or on an open surface toward the side of the incoming ray.
     pub(super) normal: T::Vec3,
     pub(super) surface: usize,
 }
@@ -171,7 +171,7 @@ impl<T: Real> Tracer<T> {
     /// index of the surface in the scene. `from` is the surface on which the ray starts, if any; its start is
     /// not a hit.
     #[must_use]
-    pub fn meet(&self, origin: [T; 3], direction: [T; 3], from: Option<usize>) -> Option<(T, usize)> {
+    pub fn intersect(&self, origin: [T; 3], direction: [T; 3], from: Option<usize>) -> Option<(T, usize)> {
         let ray = Ray {
             origin: T::Vec3::from_array(origin),
             direction: T::Vec3::from_array(direction),

@@ -168,8 +168,8 @@ fn sine_hash_jitter<T: Real>(sample: u32) -> [T; 2] {
     [0, 1].map(|axis| {
         let seed = f64::from(sample) * 2.0 + f64::from(axis);
         let (sine, _) = T::from_f64(seed).sine_and_cosine();
-        let draw = sine * T::from_f64(SINE_HASH_MULTIPLIER);
-        draw - draw.floor() - T::from_f64(0.5)
+        let scaled = sine * T::from_f64(SINE_HASH_MULTIPLIER);
+        scaled - scaled.floor() - T::from_f64(0.5)
     })
 }
 
@@ -483,7 +483,7 @@ mod tests {
                         single.next_2d(),
                         "{count} {index} {level:?}"
                     );
-                    assert_eq!(strata[at].next_1d(), single.next_1d(), "what is drawn next");
+                    assert_eq!(strata[at].next_1d(), single.next_1d(), "the next number");
                 }
             }
         }

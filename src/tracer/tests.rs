@@ -129,8 +129,8 @@ fn rays_inside_a_mirror_sphere_hit_only_far_sides() {
 fn sine_hash_yields_x_first_and_starts_at_seed_zero() {
     let text =
         "[film]\nsize = [1, 1]\nsampler = \"sine-hash\"\n[background]\nbottom = [0, 0, 0]\ntop = [1, 1, 1]\n";
-    let draw = (1f64.sin() * 43_758.545_312_3).fract();
-    let (x, y) = (-1.0, draw * 2.0 - 1.0);
+    let sample = (1f64.sin() * 43_758.545_312_3).fract();
+    let (x, y) = (-1.0, sample * 2.0 - 1.0);
     let expected = 0.5 * (1.0 + y / (x * x + y * y + 4.0f64).sqrt());
     assert_near(pixel(text, 0, 0), [expected; 3]);
 }
@@ -232,7 +232,7 @@ fn mirror_wedge_matches_unfolded_reflections() {
     let (sine, cosine) = angle.sin_cos();
     let color = 0.995f64;
     let text = |depth: u32| {
-        // The apex lies ahead, slightly below the eye; the upper mirror rises towards the eye.
+        // The apex lies ahead, slightly below the eye; the upper mirror rises toward the eye.
         format!(
             "[film]\nsize = [3, 64]\nmax_depth = {depth}\n[camera]\neye = [0, 0.02, 3]\nscreen_distance = 40\n\
              [background]\nbottom = [0.2, 0.2, 0.2]\ntop = [0.9, 0.9, 0.9]\n\

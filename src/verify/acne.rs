@@ -8,7 +8,7 @@ use toyproof_tracer::{RayEpsilons, Tracer};
 use super::CheckResult;
 use crate::compare::PixelStatus;
 use crate::decide::{MAX_UNSTABLE, Share};
-use crate::mistake::Named;
+use crate::mistake::KnownMistake;
 
 /// The largest number of pixels that are examined.
 const MAX_PIXELS: usize = 64;
@@ -47,8 +47,11 @@ pub(super) fn detect(
         .into_iter()
         .map(|check| (check, MIN_SHARE_IN_SINGLE, MIN_EXPLAINED_SHARE));
     algorithm.chain(precision).find_map(|(check, least, most)| {
-        let answer = &check.summary;
-        let differing = Share::of(answer, answer.differing + answer.ill_conditioned - answer.tied);
+        let summary = &check.summary;
+        let differing = Share::of(
+            summary,
+            summary.differing + summary.ill_conditioned - summary.tied,
+        );
         if differing.ratio() <= least {
             return None;
         }
@@ -65,8 +68,8 @@ pub(super) fn detect(
 /// Returns ill-conditioned pixels spread over the image, or differing ones if there are none, among those
 /// whose colors are kept.
 fn pixels_to_examine(check: &CheckResult, size: [u32; 2]) -> Vec<[u32; 2]> {
-    let is_undecided = check.statuses.contains(&PixelStatus::IllConditioned);
-    let status = if is_undecided {
+    let is_ill_conditioned = check.statuses.contains(&PixelStatus::IllConditioned);
+    let status = if is_ill_conditioned {
         PixelStatus::IllConditioned
     } else {
         PixelStatus::Differs
@@ -121,9 +124,10 @@ fn is_near(a: f64, b: f64) -> bool {
 }
 
 /// The mistake.
-pub(super) fn named() -> Named {
-    Named {
-        name: "self-intersection",
-        says: "lets rays meet the surface that they start from: start them a little off it, or do not count hits that are too near".into(),
-    }
+pub(super) fn mistake() -> KnownMistake {
+    KnownMistake::new(
+        "self-intersection",
+        "self-intersection (shadow acne): secondary rays start on the surface; offset the origin along the normal \
+         or use a minimum t of about 1e-3",
+    )
 }

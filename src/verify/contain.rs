@@ -47,7 +47,7 @@ impl fmt::Display for Part {
         f.write_str(match self {
             Self::Command => "running the command",
             Self::Shader => "checking the shader",
-            Self::Mistake => "searching for the mistake",
+            Self::Mistake => "searching for a likely mistake",
             Self::Cause => "searching for the line that loses precision",
             Self::Notes => "collecting notes",
             Self::Image => "encoding an image",
@@ -59,7 +59,7 @@ impl fmt::Display for Part {
 
 /// A panic that was contained.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("internal error while {part}: {message}; this is a bug in toyproof; please report it with the input")]
+#[error("internal error while {part}: {message}; please report this bug in toyproof with the input")]
 pub struct Panic {
     /// Where it was contained.
     pub part: Part,

@@ -95,8 +95,8 @@ impl Step {
     /// The iteration of each enclosing loop, the outermost first, from 1.
     #[must_use]
     pub fn iterations(&self) -> Vec<u32> {
-        let rounds = self.position.iter().map(|&(_, iteration)| iteration);
-        rounds.filter(|&iteration| iteration > 0).collect()
+        let iterations = self.position.iter().map(|&(_, iteration)| iteration);
+        iterations.filter(|&iteration| iteration > 0).collect()
     }
 
     /// The values of both, component by component, if it occurred in both.

@@ -468,7 +468,7 @@ mod tests {
     use super::*;
 
     /// The result of a check of 10,000 pixels.
-    fn answer([differing, ill_conditioned, undefined]: [u64; 3], max_abs: f64) -> CheckSummary {
+    fn summary([differing, ill_conditioned, undefined]: [u64; 3], max_abs: f64) -> CheckSummary {
         CheckSummary {
             pixels: 10_000,
             differing,
@@ -481,9 +481,9 @@ mod tests {
 
     fn checks(algorithm: [u64; 3], precision: u64, toolchain: (u64, f64)) -> Checks {
         Checks {
-            algorithm: Some(answer(algorithm, 1.0)),
-            precision: Some(answer([precision, 0, 0], 1.0)),
-            toolchain: Some(answer([toolchain.0, 0, 0], toolchain.1)),
+            algorithm: Some(summary(algorithm, 1.0)),
+            precision: Some(summary([precision, 0, 0], 1.0)),
+            toolchain: Some(summary([toolchain.0, 0, 0], toolchain.1)),
         }
     }
 
@@ -523,7 +523,7 @@ mod tests {
         assert_eq!(verdict(checks([0; 3], 0, (10, 1.0))), Verdict::Correct);
         let [few, many] = [4_000, 6_000].map(|undefined| {
             verdict(Checks {
-                toolchain: Some(answer([5_000, 0, undefined], 0.1)),
+                toolchain: Some(summary([5_000, 0, undefined], 0.1)),
                 ..Checks::default()
             })
         });
@@ -532,7 +532,7 @@ mod tests {
 
     #[test]
     fn without_a_scene_a_shader_is_ok() {
-        let precision = Some(answer([5_000, 0, 0], 1.0));
+        let precision = Some(summary([5_000, 0, 0], 1.0));
         let checks = Checks {
             precision,
             ..Checks::default()

@@ -10,7 +10,7 @@ use toyproof_image::{Image, Rgb8Image};
 use crate::compare::{self, CheckSummary, Comparison, DiffLevel, PixelStatus};
 use crate::contain::{Panic, Part, contain};
 use crate::decide::{CheckEvidence, Checks, Evidence, MAX_UNSTABLE, Reason, Share, Verdict, decide};
-use crate::mistake::Named;
+use crate::mistake::Diagnosis;
 use crate::stochastic::SampledRows;
 use crate::{Case, acne, notes};
 
@@ -46,10 +46,10 @@ pub struct Findings {
     /// Where the shader loses precision, if float32 is not enough and the place could be found; a note or a
     /// warning describes it.
     pub cause: Option<Span>,
-    /// The classic mistake, or the two, that explain a wrong image.
-    pub mistake: Option<Vec<Named>>,
-    /// The mistake that explains the pixels that differ in a correct image, which are few.
-    pub tolerated_mistake: Option<Named>,
+    /// The known mistake, or the two, that explain a wrong image.
+    pub mistake: Option<Diagnosis>,
+    /// The known mistake that explains the few differing pixels of a correct image.
+    pub tolerated_mistake: Option<Diagnosis>,
     /// Internal errors; the parts in which they occurred are missing here.
     pub panics: Vec<Panic>,
     /// The evaluator's time for all its images.
@@ -119,12 +119,12 @@ impl Findings {
         deadline: Instant,
         sampled_rows: Option<&SampledRows>,
     ) {
-        let answer = |check: &Option<CheckResult>| check.as_ref().map(|check| check.summary.clone());
+        let summary = |check: &Option<CheckResult>| check.as_ref().map(|check| check.summary.clone());
         let mut evidence = CheckEvidence {
             checks: Checks {
-                algorithm: answer(&self.algorithm),
-                precision: answer(&self.precision),
-                toolchain: answer(&self.toolchain),
+                algorithm: summary(&self.algorithm),
+                precision: summary(&self.precision),
+                toolchain: summary(&self.toolchain),
             },
             ..CheckEvidence::default()
         };
@@ -146,7 +146,7 @@ impl Findings {
                 acne::detect(expected.tracer(), case.frame.size, algorithm, precision);
             if evidence.self_intersection.is_some() {
                 self.decide(evidence.clone().into());
-                self.mistake = Some(vec![acne::named()]);
+                self.mistake = Some(Diagnosis::of(acne::mistake()));
             }
         }
         if sampled_rows.is_some() && evidence.random_numbers.is_none() {
@@ -197,20 +197,20 @@ impl Findings {
         if let (Verdict::Wrong, Some(hypotheses), Some(reseeding)) =
             (self.verdict, case.hypotheses, compared.reseeding)
         {
-            let named = contain(Part::Mistake, || {
+            let diagnosis = contain(Part::Mistake, || {
                 let pixels =
                     sampled_rows.noisy_pixels(program, case, reseeding, hypotheses.places(), deadline)?;
                 hypotheses.recognize_noisy(&pixels)
             });
-            self.mistake = self.contained(named);
+            self.mistake = self.contained(diagnosis);
         }
     }
 
     /// Searches for the mistake that explains a wrong image, or for two, among at most `pairs` pairs.
     fn search_for_mistake(&mut self, case: &Case, program: &Program, pairs: usize) {
         if let (Verdict::Wrong, None, Some(hypotheses)) = (self.verdict, &self.mistake, case.hypotheses) {
-            let named = contain(Part::Mistake, || hypotheses.recognize(program, case.frame, pairs));
-            self.mistake = self.contained(named);
+            let diagnosis = contain(Part::Mistake, || hypotheses.recognize(program, case.frame, pairs));
+            self.mistake = self.contained(diagnosis);
         }
     }
 
@@ -221,8 +221,8 @@ impl Findings {
             && algorithm.summary.differing > 0
         {
             let differing = notes::sample_pixels(algorithm, case.frame.size, usize::MAX);
-            let named = contain(Part::Mistake, || hypotheses.explaining(program, &differing));
-            self.tolerated_mistake = self.contained(named);
+            let diagnosis = contain(Part::Mistake, || hypotheses.explaining(program, &differing));
+            self.tolerated_mistake = self.contained(diagnosis);
         }
     }
 

@@ -22,7 +22,7 @@
 //!   random unit in the last place. If only such pixels differ, the verdict is `unstable`, not `wrong`.
 //! - Colors between those of the accepted offsets of secondary rays: offsets are a matter of style.
 //!
-//! A stochastic shader that draws other random numbers than the scene's is compared by its mean. The verdict
+//! A stochastic shader that uses other random numbers than the scene's is compared by its mean. The verdict
 //! does not depend on the load of the machine, the number of threads or the speed of the driver.
 //!
 //! # Explanations
@@ -179,10 +179,10 @@ pub enum Failure {
     #[error("{0}")]
     Unreadable(String),
     /// The shader does not compile.
-    #[error("it does not compile")]
+    #[error("the shader does not compile")]
     Invalid(Vec<Diagnostic>),
     /// The scene is invalid.
-    #[error("its scene is invalid")]
+    #[error("the scene is invalid")]
     InvalidScene(Vec<Diagnostic>),
     /// The GPU failed.
     #[error(transparent)]
@@ -194,7 +194,7 @@ pub enum Failure {
     #[error(transparent)]
     Overdue(#[from] Overdue),
     /// The driver truncated loops in that many pixels.
-    #[error("a loop was ended by force in {} {}", grouped(*.0), plural(*.0, "pixel", "pixels"))]
+    #[error("the driver stopped a loop in {} {}", grouped(*.0), plural(*.0, "pixel", "pixels"))]
     LoopTruncated(u64),
     /// There was an internal error.
     #[error(transparent)]

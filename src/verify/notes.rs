@@ -15,7 +15,7 @@ use super::{Case, CheckResult};
 use crate::compare::PixelStatus;
 use crate::debug::{Explanation, digits, explain};
 
-/// Reports what was observed, except what the lints report already. `excludes_pixels` says that pixels with
+/// Reports what was observed, except what the lints report already. `excludes_pixels` is true if pixels with
 /// undefined behavior are excluded.
 pub(super) fn notes(observed: &Observations, excludes_pixels: bool, lints: &Lints) -> Vec<Diagnostic> {
     let mut notes = Vec::new();
@@ -32,7 +32,7 @@ pub(super) fn notes(observed: &Observations, excludes_pixels: bool, lints: &Lint
         .any(|warning| warning.code == Code::LongLoop.as_str());
     if observed.beyond_cap > 0 && !is_warned {
         let message = format!(
-            "loops run more than {} rounds in {} {}, after which Mesa before 23 ends them by force",
+            "loops run more than {} iterations in {} {}; Mesa before 23 stops them there",
             grouped(u64::from(MESA_CAP)),
             grouped(observed.beyond_cap),
             plural(observed.beyond_cap, "pixel", "pixels")
@@ -45,26 +45,28 @@ pub(super) fn notes(observed: &Observations, excludes_pixels: bool, lints: &Lint
 /// Reports the channels that a shader reads but the frame has no image for, each at its first use.
 #[must_use]
 pub fn unbound(checked: &Checked, lints: &Lints, frame: &Frame) -> Vec<Diagnostic> {
-    let mut named = [None; 4];
+    let mut first_uses = [None; 4];
     for (_, expr) in checked.tree.exprs.iter() {
         if let ExprKind::Variable(variable) = expr.kind
             && let VariableKind::Input(Input::Channel(channel)) = checked.tree[variable].kind
         {
-            named[usize::from(channel)].get_or_insert(expr.at.span);
+            first_uses[usize::from(channel)].get_or_insert(expr.at.span);
         }
     }
-    let named = (0..)
-        .zip(named)
+    let first_uses = (0..)
+        .zip(first_uses)
         .filter_map(|(channel, span)| Some((channel, span?)));
-    let unbound = named.filter_map(|(channel, span): (usize, _)| {
+    let unbound = first_uses.filter_map(|(channel, span): (usize, _)| {
         let note = match checked.channels[channel] {
             SamplerShape::D2 if frame.channels[channel].is_some() => return None,
             SamplerShape::D2 => {
-                format!("`--channel{channel} FILE` binds a picture, `--channel{channel} noise` noise")
+                format!(
+                    "bind an image with `--channel{channel} FILE`, or noise with `--channel{channel} noise`"
+                )
             }
-            _ => "cube maps, volumes and arrays cannot be bound yet".to_owned(),
+            _ => "cube maps, volumes and arrays cannot be bound".to_owned(),
         };
-        let message = format!("`iChannel{channel}` is black: no picture is bound to it");
+        let message = format!("`iChannel{channel}` is black: no image is bound to it");
         let diagnostic = Diagnostic::warning(Code::UnboundChannel.as_str(), message);
         Some(diagnostic.at(span).note(note))
     });
@@ -74,18 +76,17 @@ pub fn unbound(checked: &Checked, lints: &Lints, frame: &Frame) -> Vec<Diagnosti
 /// Reports that the driver did not compile the shader in time.
 pub(super) fn slow_compilation(after: Duration) -> Diagnostic {
     let message = format!(
-        "the Vulkan driver takes longer than {} s to compile this shader: it was evaluated on the CPU, without the \
-         toolchain check",
+        "the Vulkan driver takes longer than {} s to compile this shader; it was evaluated on the CPU instead, \
+         without the toolchain check",
         after.as_secs_f64()
     );
-    Diagnostic::new(Severity::Note, Code::SlowCompilation.as_str(), message).note(
-        "a longer `--timeout` lets the driver finish; shorter functions and smaller arrays compile faster",
-    )
+    Diagnostic::new(Severity::Note, Code::SlowCompilation.as_str(), message)
+        .note("use a longer `--timeout`; shorter functions and smaller arrays compile faster")
 }
 
 fn undefined(observed: &Observed, excludes_pixels: bool) -> Diagnostic {
     let message = format!(
-        "{} in {}: GLSL leaves open what comes of it",
+        "{} in {}; the result is undefined in GLSL",
         observed.site.fault.words(),
         pixels(observed)
     );
@@ -94,7 +95,7 @@ fn undefined(observed: &Observed, excludes_pixels: bool) -> Diagnostic {
     if excludes_pixels {
         diagnostic
     } else {
-        diagnostic.note("no pixel's colour depends on it, so that none is left out of the comparison")
+        diagnostic.note("no pixel's color depends on it, so no pixel is excluded from the comparison")
     }
 }
 
@@ -109,12 +110,11 @@ fn never_written(observed: &Observed, lints: &Lints) -> Option<Diagnostic> {
     }
     let message = format!("in {}", pixels(observed));
     if let Some(suspected) = lints.maybe_uninitialized.iter().find(is_same) {
-        return Some(suspected.clone().note(format!("this was observed {message}")));
+        return Some(suspected.clone().note(format!("observed {message}")));
     }
-    let message =
-        format!("read before anything is written to it {message}: WebGL takes zero, other drivers anything");
+    let message = format!("read before it is written {message}; it is zero in WebGL and undefined elsewhere");
     let diagnostic = Diagnostic::warning(Code::NeverWritten.as_str(), message).at(declared);
-    Some(diagnostic.note("give it a value where it is declared"))
+    Some(diagnostic.note("initialize it in its declaration"))
 }
 
 /// Formats the number of pixels and the first of them.
@@ -140,17 +140,17 @@ pub(super) fn cause(
     check: &CheckResult,
 ) -> Option<Diagnostic> {
     let deadline = deadline.min(Instant::now() + case.timeout);
-    let mut named = BTreeMap::<u32, (u64, Diagnostic)>::new();
+    let mut causes = BTreeMap::<u32, (u64, Diagnostic)>::new();
     for pixel in sample_pixels(check, case.frame.size, MAX_EXPLAINED_PIXELS) {
         let explained = explain(program, case.frame, pixel, Some(deadline));
         let diagnostic = explained
             .ok()
             .and_then(|explanation| diagnostic(&explanation, pixel));
         if let Some((span, diagnostic)) = diagnostic {
-            named.entry(span.start).or_insert((0, diagnostic)).0 += 1;
+            causes.entry(span.start).or_insert((0, diagnostic)).0 += 1;
         }
     }
-    let most = named.into_values().max_by_key(|&(votes, _)| votes);
+    let most = causes.into_values().max_by_key(|&(votes, _)| votes);
     most.map(|(_, diagnostic)| diagnostic)
 }
 
@@ -188,15 +188,10 @@ impl NotFinite {
             _ => None,
         });
         let message = format!(
-            "{} in {} {}, first at ({x}, {y}), where {} comes of this",
-            if count == 1 {
-                "a colour that is not finite"
-            } else {
-                "colours that are not finite"
-            },
+            "this makes the color of {} {} NaN or infinite, first at ({x}, {y}), where it is {}",
             grouped(count),
-            if count == 1 { "pixel" } else { "pixels" },
-            value.unwrap_or_default(),
+            plural(count, "pixel", "pixels"),
+            value.unwrap_or_else(|| "not finite".to_owned()),
         );
         let span = explained.schema.event(step.event).at.span;
         Some(
@@ -240,17 +235,17 @@ fn diagnostic(explanation: &Explanation<'_>, [x, y]: [u32; 2]) -> Option<(Span, 
         Some((_, single, double)) if event.kind == EventKind::Branch => {
             let branch = |value| matches!(value, TraceValue::Word(word) if word != 0);
             format!(
-                "float32 decides otherwise here: {at} this is {}, and {} in double precision",
+                "float32 takes another branch here: {at} the condition is {}, but {} in double precision",
                 branch(single),
                 branch(double)
             )
         }
         Some((_, TraceValue::Float(single), TraceValue::Float(double))) => format!(
-            "float32 loses its digits here: {at} this is {}, and {} in double precision",
+            "float32 loses precision here: {at} this is {}, but {} in double precision",
             digits(single, true),
             digits(double, false)
         ),
-        _ => format!("float32 and double precision part here, {at}"),
+        _ => format!("float32 and double precision diverge here, {at}"),
     };
     let span = event.at.span;
     Some((
@@ -262,5 +257,5 @@ fn diagnostic(explanation: &Explanation<'_>, [x, y]: [u32; 2]) -> Option<(Span, 
 }
 
 fn hint([x, y]: [u32; 2]) -> String {
-    format!("`toyproof explain` with `--pixel {x},{y}` tells how it comes to this")
+    format!("`toyproof debug` with `--pixel {x},{y}` shows how this value is computed")
 }

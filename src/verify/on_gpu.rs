@@ -32,7 +32,7 @@ impl GpuRun {
     }
 }
 
-/// Verifies with a worker. `stop` ends the evaluator, whose `iteration_counts` tell whether loops are short.
+/// Verifies with a worker. `stop` ends the evaluator, whose `iteration_counts` show whether loops are short.
 pub(super) fn verify(
     worker: &mut Worker,
     case: &Case,

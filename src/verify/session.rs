@@ -174,12 +174,12 @@ impl<'a> VerifySession<'a> {
             self.not_finite.record(actual, offset);
             if let (Some(reference), Some(image)) = (reference, &mut self.reference) {
                 image.extend(reference);
-                let (comparison, marks) = compare::compare(reference, actual);
+                let (comparison, levels) = compare::compare(reference, actual);
                 match &mut self.comparison {
-                    None => self.comparison = Some((comparison, marks)),
+                    None => self.comparison = Some((comparison, levels)),
                     Some((whole, all)) => {
                         whole.extend(&comparison, offset);
-                        all.extend(marks);
+                        all.extend(levels);
                     }
                 }
             }

@@ -66,8 +66,10 @@ pub(super) fn warning(bands: &[SilhouetteBand], at: Span) -> Option<Diagnostic> 
     let diagnostic = worst.warning(at);
     Some(match others.len() {
         0 => diagnostic,
-        1 => diagnostic.note("so it is with another sphere, less so"),
-        count => diagnostic.note(format!("so it is with {count} other spheres, less so")),
+        1 => diagnostic.note("this affects another sphere as well, in a narrower band"),
+        count => diagnostic.note(format!(
+            "this affects {count} other spheres as well, in narrower bands"
+        )),
     })
 }
 
@@ -76,10 +78,12 @@ impl SilhouetteBand {
         let [x, y, z] = self.center.to_array();
         let (radius, distance, width) = (self.radius, self.distance, self.width);
         let message = format!(
-            "this discriminant loses the edge of the sphere at ({x}, {y}, {z}) with radius {radius}: in a band up to {width:.0} pixels wide, rays hit or miss by chance"
+            "float32 is too imprecise here for the silhouette of the sphere at ({x}, {y}, {z}) with radius {radius}: \
+             hits are arbitrary in a band up to {width:.0} pixels wide"
         );
         let note = format!(
-            "its centre is {distance:.0} away, and the error of f32 grows with the square of that. Write it around the point of the ray that is nearest to the centre: `vec3 h = f - dot(f, d) * d; float disc = r*r - dot(h, h);` for a unit direction d"
+            "the error grows with the square of the distance to the sphere, {distance:.0}; for a unit direction d, use \
+             `vec3 h = f - dot(f, d) * d; float disc = r*r - dot(h, h);`"
         );
         Diagnostic::warning(Code::NearTangent.as_str(), message)
             .at(at)
@@ -188,7 +192,7 @@ mod tests {
 
     const SIZE: [u32; 2] = [320, 180];
     const TEXTBOOK: &str = "float k = dot(f, f) - 1.0; float disc = b * b - k;";
-    const RECENTRED: &str = "vec3 h = f - b * d; float disc = 1.0 - dot(h, h);";
+    const RECENTERED: &str = "vec3 h = f - b * d; float disc = 1.0 - dot(h, h);";
 
     /// A shader that is white where rays hit the sphere of radius 1 around (0.1, 0.05, −distance), and its
     /// scene.
@@ -295,7 +299,7 @@ mod tests {
                 "{distance} {band:?} {offset}"
             );
 
-            let (checked, discriminants, _) = case(RECENTRED, distance, &camera, &ray);
+            let (checked, discriminants, _) = case(RECENTERED, distance, &camera, &ray);
             assert!(discriminants.is_empty());
             assert_eq!(render::<f32>(&checked), render::<f64>(&checked), "{distance}");
         }
@@ -314,8 +318,8 @@ mod tests {
         );
         assert_eq!(
             warning.unwrap().message,
-            "this discriminant loses the edge of the sphere at (0.1, 0.05, -1000) with radius 1: \
-             in a band up to 17 pixels wide, rays hit or miss by chance"
+            "float32 is too imprecise here for the silhouette of the sphere at (0.1, 0.05, -1000) with radius 1: \
+             hits are arbitrary in a band up to 17 pixels wide"
         );
     }
 }

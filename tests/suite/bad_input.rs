@@ -44,13 +44,13 @@ fn shaders_that_overflow_driver_counters() {
         "void mainImage(out vec4 c, in vec2 p) {{ {} c += p.xyxy; }}",
         loops.collect::<String>()
     );
-    let messages = ["invalid", "E0411", "nested too deeply", "in line 1, column"];
+    let messages = ["invalid", "E0411", "nested too deeply", "s.glsl:1:"];
     expect(
-        &check(&text, &["--on", "lavapipe", "--size", "16x9"]),
+        &check(&text, &["--device", "lavapipe", "--size", "16x9"]),
         1,
         &messages,
     );
-    expect(&check(&text, &["--on", "cpu", "--size", "16x9"]), 0, &["ok"]);
+    expect(&check(&text, &["--device", "cpu", "--size", "16x9"]), 0, &["ok"]);
 }
 
 #[test]
@@ -71,7 +71,7 @@ fn scenes_and_shaders_are_not_confused() {
         expect(
             &run,
             2,
-            &["s.toml: this is a scene, not a shader", "toyproof render s.toml"],
+            &["s.toml", "this is a scene, not a shader", "toyproof render s.toml"],
         );
     }
     expect(
@@ -90,9 +90,9 @@ fn each_mistake_is_reported_once() {
     expect(
         &run,
         1,
-        &["invalid      s.glsl: 2 errors, the first in line 1, column 54"],
+        &["invalid      s.glsl  2 errors\n             help: toyproof explain E0100"],
     );
-    assert_eq!(run.stdout.lines().count(), 1, "{}", run.stdout);
+    assert_eq!(run.stdout.lines().count(), 2, "{}", run.stdout);
     assert_eq!(run.stderr.matches("`;` is missing").count(), 1, "{}", run.stderr);
 }
 
@@ -115,7 +115,7 @@ fn a_file_that_cannot_be_read() {
     expect(
         &toyproof(folder.path(), &["check", "s.glsl"]),
         2,
-        &["s.glsl: cannot be read"],
+        &["error        s.glsl  cannot be read"],
     );
 }
 
@@ -180,29 +180,26 @@ fn bytes_that_are_not_text() {
 fn invalid_scenes() {
     let whole = format!("{MAIN} {{ c = vec4(0.0); }}");
     for (scene, words) in [
-        (
-            "colour = 1\n".to_owned(),
-            ["unknown field `colour`", "s.toml:1:1"],
-        ),
+        ("hue = 1\n".to_owned(), ["unknown key `hue`", "s.toml:1:1"]),
         (
             SPHERE.replace("-6.0", "nan"),
-            ["center must be three finite numbers", "s.toml:2:10"],
+            ["`center` must be finite, found [0.0, 0.0, nan]", "s.toml:2:10"],
         ),
         (
             SPHERE.replace("1.5", "0.0"),
-            ["radius must be a finite number above 0, not 0", "s.toml:3:10"],
+            ["`radius` must be greater than 0, found 0.0", "s.toml:3:10"],
         ),
         (
             "title = \"soon\"\n".to_owned(),
-            ["this scene shows nothing", "s.toml:1:1"],
+            ["the scene is empty", "s.toml:1:1"],
         ),
         (
             "[film]\nsize = [0, 0]\n".to_owned(),
-            ["nothing to show", "s.toml:2:8"],
+            ["`size` must be at least 1 pixel", "s.toml:2:8"],
         ),
         (
             "[film]\nsize = [100000, 100000]\n".to_owned(),
-            ["too large", "s.toml:2:8"],
+            ["`size` must be at most 16,384 pixels", "s.toml:2:8"],
         ),
     ] {
         let folder = folder(&[("s.glsl", &whole), ("s.toml", &scene)]);
@@ -230,8 +227,8 @@ fn invalid_sizes() {
 #[test]
 fn invalid_time_limits() {
     for (deadline, words) in [
-        ("500000000000years", "longer than a day"),
-        ("25h", "longer than a day"),
+        ("500000000000years", "24 hours"),
+        ("25h", "24 hours"),
         ("soon", "--timeout"),
     ] {
         expect(&check("", &["--timeout", deadline]), 2, &[words]);
@@ -248,16 +245,16 @@ fn out_of_range_numbers_have_our_own_messages() {
         (&["check", "s.glsl", "--frame", "-1"][..], "not in 0..="),
         (&["check", "s.glsl", "--time", "nan"], "finite"),
         (&["run", "s.glsl", "-o", "s.png", "--time", "inf"], "finite"),
-        (&["check", "s.glsl", "--date", "2020,12,1,0"], "no month 12"),
-        (&["check", "s.glsl", "--timeout", "0s"], "more than 0"),
-        (&["explain", "s.glsl", "--pixel", "-1,0"], "two whole numbers"),
+        (&["check", "s.glsl", "--date", "2020,12,1,0"], "the month 12 is out of range"),
+        (&["check", "s.glsl", "--timeout", "0s"], "above 0"),
+        (&["debug", "s.glsl", "--pixel", "-1,0"], "expected two integers"),
         (
             &["render", "s.toml", "-o", "s.png", "--max-error", "-1"],
             "above 0",
         ),
         (&["render", "s.toml", "-o", "s.png", "--time", "inf"], "finite"),
         (&["trade", "s.toml", "--max-error", "-1"], "from 0 to 1"),
-        (&["trade", "s.toml", "-o", "out", "--budget", "0s"], "more than 0"),
+        (&["trade", "s.toml", "-o", "out", "--budget", "0s"], "above 0"),
         (&["stress", "-o", "out", "--seed", "-1"], "from 0 to"),
     ] {
         let run = toyproof(folder.path(), arguments);
@@ -274,7 +271,7 @@ fn a_mismatched_file_extension() {
     expect(
         &convert(&["-o", "s.wgsl", "--to", "spv"]),
         2,
-        &["s.wgsl", "--to says spv"],
+        &["s.wgsl", "--to is spv"],
     );
     assert_eq!(names(folder.path()), ["s.glsl"]);
     expect(&convert(&["-o", "S.WGSL"]), 0, &[]);
@@ -337,8 +334,8 @@ fn no_vulkan_driver() {
         // The evaluator replaces it, unless a driver is requested.
         (&["check", "s.glsl"][..], 0),
         (&["run", "s.glsl", "-o", "s.png"], 0),
-        (&["check", "s.glsl", "--on", "lavapipe"], 2),
-        (&["run", "s.glsl", "-o", "s.png", "--on", "lavapipe"], 2),
+        (&["check", "s.glsl", "--device", "lavapipe"], 2),
+        (&["run", "s.glsl", "-o", "s.png", "--device", "lavapipe"], 2),
         (&["doctor"], 2),
     ] {
         let mut command = command(folder.path());
@@ -349,8 +346,8 @@ fn no_vulkan_driver() {
         let run = run(&mut command);
         expect(&run, code, &hint);
         if let ["check", _] | ["doctor"] = arguments {
-            let reported = run.stdout.contains("toolchain") && run.stdout.contains("not asked");
-            assert!(reported, "{arguments:?}: {}", run.stdout);
+            let skipped = format!("{}{}", run.stdout, run.stderr);
+            assert!(skipped.contains("toolchain check"), "{arguments:?}: {skipped}");
         }
     }
 }
@@ -360,7 +357,7 @@ fn an_unknown_adapter() {
     if !require_driver() {
         return;
     }
-    let run = check(&format!("{MAIN} {{ c = vec4(0.5); }}"), &["--on", "Voodoo"]);
+    let run = check(&format!("{MAIN} {{ c = vec4(0.5); }}"), &["--device", "Voodoo"]);
     expect(
         &run,
         2,
@@ -500,7 +497,7 @@ fn no_output_overwrites_an_input() {
         expect(
             &toyproof(folder.path(), arguments),
             2,
-            &["this is an input, and would be lost"],
+            &["is an input and would be overwritten"],
         );
     }
     assert_eq!(fs::read_to_string(folder.path().join("a.frag")).unwrap(), text);

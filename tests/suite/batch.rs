@@ -111,7 +111,7 @@ fn a_shader_has_the_same_verdict_alone_and_in_a_batch() {
         }
     }
     let check = |what: &str| {
-        let arguments = ["check", what, "--on", "cpu", "--size", "64x36", "--out", "out"];
+        let arguments = ["check", what, "--device", "cpu", "--size", "64x36", "--out", "out"];
         toyproof(folder.path(), &arguments);
         records(folder.path())
     };
@@ -154,7 +154,7 @@ fn killed_runs_resume_without_losing_or_repeating_work() {
     fs::write(&path, text).unwrap();
     let last = check(folder.path(), &["--resume"]);
     assert!(
-        last.stderr.contains("are taken over from an earlier run"),
+        last.stderr.contains("are reused from an earlier run"),
         "{}",
         last.stderr
     );
@@ -183,7 +183,7 @@ fn plain_images_and_sample_counts_are_named() {
     let more = exercise.shader.replace(count, "i <= SAMPLES;");
     let less = exercise.shader.replace("SAMPLES = 4", "SAMPLES = 3");
     for (text, words) in [
-        (black, "; every pixel is black"),
+        (black, "\n             every pixel is black"),
         (more, "takes one sample more than it divides by"),
         (less, "takes one sample less than the scene"),
     ] {
@@ -193,7 +193,7 @@ fn plain_images_and_sample_counts_are_named() {
             "a.glsl",
             "--scene",
             "scene.toml",
-            "--on",
+            "--device",
             "cpu",
             "--size",
             "160x90",
@@ -224,7 +224,7 @@ fn endless_neighbors_do_not_cause_a_timeout() {
         &[
             "check",
             ".",
-            "--on",
+            "--device",
             "cpu",
             "--jobs",
             "4",
@@ -311,7 +311,7 @@ fn changed_shaders_are_checked_again() {
     check(folder.path(), &[]);
     let again = check(folder.path(), &["--resume"]);
     assert!(
-        again.stderr.contains("4 of 4 shaders are taken over"),
+        again.stderr.contains("4 of 4 results are reused"),
         "{}",
         again.stderr
     );
@@ -338,10 +338,10 @@ fn stale_images_are_removed() {
     let folder = homework(3);
     check(folder.path(), &[]);
     let exists = |name: &str| folder.path().join("out").join(name).is_file();
-    assert!(exists("002-actual.png") && exists("002-maths.png"));
+    assert!(exists("002-actual.png") && exists("002-algorithm.png"));
     fs::write(folder.path().join("hw/002.glsl"), SPHERE.shader).unwrap();
     check(folder.path(), &[]);
-    assert!(exists("002-actual.png") && !exists("002-maths.png"));
+    assert!(exists("002-actual.png") && !exists("002-algorithm.png"));
     fs::write(folder.path().join("hw/002.glsl"), "void main").unwrap();
     check(folder.path(), &[]);
     assert!(!exists("002-actual.png"));

@@ -13,11 +13,27 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
+/// All commands.
+pub(crate) const COMMANDS: [&str; 14] = [
+    "check",
+    "render",
+    "run",
+    "convert",
+    "debug",
+    "explain",
+    "compare",
+    "trade",
+    "stress",
+    "export",
+    "scenes",
+    "doctor",
+    "completions",
+    "man",
+];
+
 #[test]
 fn the_help_of_each_command_shows_an_example() {
-    for name in [
-        "check", "render", "run", "convert", "explain", "stress", "trade", "compare", "scenes", "doctor",
-    ] {
+    for name in COMMANDS {
         let help = toyproof(root(), &[name, "--help"]).stdout;
         assert!(
             help.contains("Example") && help.contains(&format!("toyproof {name}")),
@@ -26,33 +42,35 @@ fn the_help_of_each_command_shows_an_example() {
     }
 }
 
+/// Examples in the help work for an installed user: the scenes that they name are built in.
 #[test]
-fn files_in_help_examples_exist() {
+fn scenes_in_help_examples_are_built_in() {
+    let listed = toyproof(root(), &["scenes"]).stdout;
     let mut seen = 0;
-    for name in [
-        "check", "render", "run", "convert", "explain", "stress", "trade", "compare", "export", "scenes",
-        "doctor",
-    ] {
+    for name in COMMANDS {
         let help = toyproof(root(), &[name, "--help"]).stdout;
-        for path in help.split_whitespace().filter(|word| word.starts_with("glsl/")) {
-            assert!(root().join(path).is_file(), "{name}: {path}");
+        assert!(!help.contains("glsl/"), "{name} names a file of the repository: {help}");
+        let words = help.split_whitespace();
+        for word in words.filter(|word| word.starts_with(['0', '1']) && word.contains('-') && !word.contains('.')) {
+            assert!(listed.contains(word), "{name}: {word}");
             seen += 1;
         }
     }
-    assert!(seen > 10, "{seen}");
+    assert!(seen > 5, "{seen}");
 }
 
 #[test]
 fn the_evaluator_is_chosen_on_request() {
-    let run = toyproof(root(), &["doctor", "--on", "cpu"]);
+    let run = toyproof(root(), &["doctor", "--device", "cpu"]);
     assert_eq!(run.code, 0, "{}", run.stderr);
-    assert!(run.stdout.contains("evaluator"), "{}", run.stdout);
+    assert!(run.stdout.starts_with("Selected device: cpu"), "{}", run.stdout);
+    assert_eq!(toyproof(root(), &["doctor", "--on", "cpu"]).stdout, run.stdout, "the old name");
 }
 
 /// With odd sizes, the central pixel's ray is parallel to an axis of the screen.
 #[test]
 fn the_course_is_correct_at_odd_sizes() {
-    let run = toyproof(root(), &["check", "glsl", "--size", "97x55", "--on", "cpu"]);
+    let run = toyproof(root(), &["check", "glsl", "--size", "97x55", "--device", "cpu"]);
     assert_eq!(run.code, 0, "{}{}", run.stdout, run.stderr);
 }
 
@@ -115,7 +133,7 @@ fn runtime_warnings_can_be_allowed_and_denied() {
         fs::write(folder.path().join(name), text).unwrap();
     }
     let check = |arguments: &[&str]| {
-        let all = [&["check", "--on", "cpu", "--size", "16x9"], arguments].concat();
+        let all = [&["check", "--device", "cpu", "--size", "16x9"], arguments].concat();
         toyproof(folder.path(), &all)
     };
     for (name, is_told) in [
@@ -204,7 +222,7 @@ fn repeated_warnings_are_summarized() {
     };
     let reported = convert(&[]);
     assert_eq!(reported.matches("warning[W0005]").count(), 3, "{reported}");
-    assert!(reported.contains("6 more of W0005"), "{reported}");
+    assert!(reported.contains("6 more W0005"), "{reported}");
     assert_eq!(convert(&["--verbose"]).matches("warning[W0005]").count(), 9);
 }
 
@@ -227,13 +245,8 @@ fn a_shader_without_a_scene_is_ok_and_one_with_the_wrong_scene_is_wrong() {
     );
     assert_eq!(run.code, 1);
     assert!(run.stdout.starts_with("wrong"), "{}", run.stdout);
-    assert!(run.stdout.contains("maths: "), "{}", run.stdout);
-    assert!(
-        run.stdout
-            .contains("differ from the scene, first at (0, 0): expected"),
-        "{}",
-        run.stdout
-    );
+    assert!(run.stdout.contains("differ from the reference"), "{}", run.stdout);
+    assert!(run.stdout.contains("help: toyproof "), "{}", run.stdout);
 }
 
 #[test]
@@ -301,7 +314,7 @@ fn sequences_are_numbered_and_resume() {
     fs::write(file("s-0000.exr"), "kept").unwrap();
     let resumed = render("");
     assert_eq!(resumed.code, 0, "{}", resumed.stderr);
-    let words = "2 of 4 frames are there already";
+    let words = "2 of 4 frames exist already";
     assert!(resumed.stderr.contains(words), "{}", resumed.stderr);
     assert_eq!(fs::read(file("s-0000.exr")).unwrap(), b"kept");
     assert!(!file("s.sequence").exists());
@@ -474,7 +487,7 @@ fn several_shaders_need_a_folder() {
     assert_eq!(run.code, 2);
     assert!(
         run.stderr
-            .contains("several shaders need a folder to go to, not all.wgsl"),
+            .contains("several shaders cannot be written to all.wgsl"),
         "{}",
         run.stderr
     );
@@ -488,7 +501,7 @@ fn images_of_several_shaders_need_a_folder() {
         let run = toyproof(folder.path(), &["run", glsl.to_str().unwrap(), "-o", output]);
         assert_eq!(run.code, 2);
         assert!(
-            run.stderr.contains("several shaders need a folder"),
+            run.stderr.contains("several images cannot be written to"),
             "{}",
             run.stderr
         );

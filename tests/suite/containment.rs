@@ -31,7 +31,7 @@ fn homework() -> tempfile::TempDir {
 fn check(folder: &Path, part: Option<Part>) -> Run {
     let mut command = command(folder);
     let shaders = ["a.glsl", "b.glsl", "c.glsl", "d.glsl"];
-    let flags = ["--out", "out", "--size", "64x36", "--jobs", "1", "--on", "cpu"];
+    let flags = ["--out", "out", "--size", "64x36", "--jobs", "1", "--device", "cpu"];
     command.arg("check").args(shaders).args(flags);
     if let Some(part) = part {
         command.env(INJECTION, format!("{part:?}"));
@@ -66,7 +66,7 @@ fn a_panic_affects_only_its_part() {
     let named = sound
         .stdout
         .lines()
-        .filter(|line| line.contains("paints that"))
+        .filter(|line| line.contains("likely mistake: "))
         .count();
     assert_eq!(named, 2, "{}", sound.stdout);
 

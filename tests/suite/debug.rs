@@ -108,7 +108,7 @@ fn explain_names_the_line_that_loses_digits() {
     fs::write(folder.path().join("far.glsl"), FAR).unwrap();
     let explain = |rest: &[&str]| {
         let arguments = [
-            &["explain", "far.glsl", "--size", "64x36", "--pixel", "30,18"],
+            &["debug", "far.glsl", "--size", "64x36", "--pixel", "30,18"],
             rest,
         ]
         .concat();
@@ -117,19 +117,19 @@ fn explain_names_the_line_that_loses_digits() {
         run.stdout
     };
     let human = explain(&[]);
-    assert!(human.contains("they first part in line 10, column 18"), "{human}");
+    assert!(human.contains("first difference   line 10, column 18"), "{human}");
     assert!(
-        human.contains("what is seen comes of line 4, column 18: `b * b - c` is 0 in f32"),
+        human.contains("visible cause      line 4, column 18: `b * b - c` is 0 in f32"),
         "{human}"
     );
-    assert!(human.contains("in hit, called in line 13:"), "{human}");
+    assert!(human.contains("hit() at line 13"), "{human}");
     assert!(
-        human.contains("for (int i = 0; i < 2; i++) {   (round 2)"),
+        human.contains("for (int i = 0; i < 2; i++) {   (iteration 2)"),
         "{human}"
     );
     let json: Value = serde_json::from_str(&explain(&["--format", "json"])).unwrap();
     let step = |name: &str| &json["steps"][json[name].as_u64().unwrap() as usize];
-    assert_eq!(step("parts_at")["line"], 10);
+    assert_eq!(step("divergence_at")["line"], 10);
     let cause = step("cause_at");
     assert_eq!(cause["line"], 4);
     assert_eq!(cause["function"], "hit");
@@ -159,7 +159,7 @@ fn explain_follows_uniform_and_shared_values() {
         let text = format!("void mainImage(out vec4 c, in vec2 p) {{\n{body}\n}}\n");
         fs::write(folder.path().join("a.glsl"), text).unwrap();
         let arguments = [
-            "explain",
+            "debug",
             "a.glsl",
             "--pixel",
             "20,5",
@@ -181,20 +181,23 @@ fn explain_locates_the_origin_of_a_nan() {
     let shader =
         "void mainImage(out vec4 c, in vec2 p) {\n    float x = sqrt(-p.x);\n    c = vec4(x * 0.5);\n}\n";
     fs::write(folder.path().join("nan.glsl"), shader).unwrap();
-    let run = toyproof(folder.path(), &["explain", "nan.glsl", "--pixel", "1,1"]);
+    let run = toyproof(folder.path(), &["debug", "nan.glsl", "--pixel", "1,1"]);
     assert_eq!(run.code, 0, "{}", run.stderr);
     assert!(
         run.stdout
-            .contains("what is not finite comes of line 2, column 15: `sqrt(-p.x)`"),
+            .contains("first not finite   line 2, column 15: `sqrt(-p.x)`"),
         "{}",
         run.stdout
     );
     let run = toyproof(
         folder.path(),
-        &["check", "nan.glsl", "--on", "cpu", "--size", "8x8"],
+        &["check", "nan.glsl", "--device", "cpu", "--size", "8x8"],
     );
     assert!(
-        run.stderr.contains("W0603") && run.stderr.contains("in 64 pixels, first at (0, 0)"),
+        run.stderr.contains("W0603")
+            && run
+                .stderr
+                .contains("of 64 pixels NaN or infinite, first at (0, 0)"),
         "{}",
         run.stderr
     );
@@ -207,17 +210,17 @@ fn explain_reports_its_limits() {
         let run = toyproof(root, arguments);
         (run.code, run.stderr)
     };
-    let (code, words) = run(&["explain", "glsl/02-sphere.glsl", "--pixel", "640,0"]);
+    let (code, words) = run(&["debug", "glsl/02-sphere.glsl", "--pixel", "640,0"]);
     assert!(
-        code == 2 && words.contains("there is no pixel (640, 0) in a picture of 640x360"),
+        code == 2 && words.contains("pixel (640, 0) is outside the image of 640x360 pixels"),
         "{words}"
     );
-    let (code, words) = run(&["explain", "glsl", "--pixel", "1,1"]);
-    assert!(code == 2 && words.contains("explain takes one"), "{words}");
-    let (code, words) = run(&["explain", "glsl/02-sphere.glsl", "--pixel", "1"]);
+    let (code, words) = run(&["debug", "glsl", "--pixel", "1,1"]);
+    assert!(code == 2 && words.contains("`debug` takes one"), "{words}");
+    let (code, words) = run(&["debug", "glsl/02-sphere.glsl", "--pixel", "1"]);
     assert!(code == 2 && words.contains("X,Y"), "{words}");
     let (code, words) = run(&[
-        "explain",
+        "debug",
         "glsl/02-sphere.glsl",
         "--pixel",
         "1,1",

@@ -26,13 +26,13 @@ const MAIN_IMAGE: &str =
     "\nvoid mainImage(out vec4 c, in vec2 p) { c = vec4(p / iResolution.xy, 0.0, 1.0); }\n";
 
 /// An example of the page.
-struct Example {
+struct Example<'a> {
     wrong: bool,
-    language: &'static str,
-    text: &'static str,
+    language: &'a str,
+    text: &'a str,
 }
 
-fn examples(explanation: &Explanation) -> Vec<Example> {
+fn examples(explanation: &Explanation) -> Vec<Example<'_>> {
     let mut examples = Vec::new();
     for (mark, wrong) in [("Wrong:\n\n```", true), ("Right:\n\n```", false)] {
         examples.extend(explanation.text.split(mark).skip(1).map(|rest| {
@@ -241,7 +241,7 @@ fn a_read_of_an_uninitialized_variable_is_reported_once() {
 
 #[test]
 fn a_code_is_explained_on_the_command_line() {
-    let run = toyproof(Path::new("."), &["check", "--explain", "e0402"]);
+    let run = toyproof(Path::new("."), &["explain", "e0402"]);
     assert_eq!(run.code, 0, "{}", run.stderr);
     assert!(
         run.stdout.starts_with("E0402: A `const` without a value\n\n"),
@@ -254,10 +254,10 @@ fn a_code_is_explained_on_the_command_line() {
         run.stdout
     );
     for (code, words) in [
-        ("E0420", "error: there is no code E0420; did you mean E0"),
-        ("nonsense", "codes are E or W and four digits"),
+        ("E0420", "error: unknown code `E0420`\nhelp: did you mean `E0"),
+        ("nonsense", "`toyproof explain --list` lists all"),
     ] {
-        let run = toyproof(Path::new("."), &["check", "--explain", code]);
+        let run = toyproof(Path::new("."), &["explain", code]);
         assert_eq!(run.code, 2);
         assert!(run.stderr.contains(words), "{}", run.stderr);
     }

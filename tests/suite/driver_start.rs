@@ -260,7 +260,7 @@ fn a_batch_continues_without_a_failed_driver() {
                 let run = with_driver(does, &check);
                 assert_eq!(run.code, 0, "{does}: {run:?}");
                 assert_eq!(
-                    run.stderr.matches("evaluated on the CPU instead").count(),
+                    run.stderr.matches("shaders are evaluated on the CPU").count(),
                     1,
                     "{does}: {run:?}"
                 );
@@ -280,7 +280,7 @@ fn a_requested_driver_that_does_not_start_is_an_error() {
     if !require_driver() || !require_program("cc") {
         return;
     }
-    let check = ["check", "hw/a.glsl", "--size", "16x9", "--on", "lavapipe"];
+    let check = ["check", "hw/a.glsl", "--size", "16x9", "--device", "lavapipe"];
     let run = with_driver("_exit(3);", &check);
     assert_eq!(run.code, 2, "{run:?}");
     assert!(
@@ -290,7 +290,7 @@ fn a_requested_driver_that_does_not_start_is_an_error() {
 
     // A batch does not start it again for each shader.
     let first = "if (!access(\"started\", F_OK)) _exit(4); fclose(fopen(\"started\", \"w\")); _exit(3);";
-    let check = ["check", "hw", "--size", "16x9", "--on", "lavapipe", "--jobs", "1"];
+    let check = ["check", "hw", "--size", "16x9", "--device", "lavapipe", "--jobs", "1"];
     let run = with_driver(first, &check);
     assert_eq!(run.code, 2, "{run:?}");
     assert_eq!(run.stdout.matches("(exit status: 3)").count(), 3, "{run:?}");

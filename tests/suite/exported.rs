@@ -316,6 +316,6 @@ fn exported_shaders_hold_only_what_their_scene_requires() {
     let refused = exported("[film]\nsamples = 4\nsampler = \"sobol\"\n[background]\n");
     assert_eq!(
         refused,
-        Err("the samplers \"stratified\" and \"sobol\" cannot be exported yet".to_owned())
+        Err("a scene with the sampler `stratified` or `sobol` cannot be exported".to_owned())
     );
 }

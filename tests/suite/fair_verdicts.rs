@@ -3,6 +3,7 @@
 //!
 //! The evaluator alone checks them; drivers are tested elsewhere.
 
+use toyproof::verify::mistake::Diagnosis;
 use toyproof::verify::{Reason, Verdict};
 
 use crate::support::{
@@ -14,8 +15,7 @@ use crate::support::{
 fn verdict(exercise: &Exercise, size: [u32; 2], edits: &[Edit]) -> (Verdict, String) {
     let exercise = Exercise { size, ..*exercise };
     let findings = check_exercise_with(None, &edited(&exercise, edits), &exercise);
-    let mistake = findings.mistake.iter().flatten().map(|named| named.name);
-    let mistake: Vec<_> = mistake.collect();
+    let mistake = findings.mistake.as_ref().map(Diagnosis::id);
     let assert_verdicts = format!("{} {mistake:?}: {:?}", numbers(&findings), findings.reason);
     (findings.verdict, assert_verdicts)
 }

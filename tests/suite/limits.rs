@@ -25,7 +25,7 @@ fn homework(count: usize) -> tempfile::TempDir {
 fn check(folder: &Path, arguments: &[&str]) -> Command {
     let mut check = command(folder);
     check
-        .args(["check", "hw", "--on", "cpu", "--size", "16x9"])
+        .args(["check", "hw", "--device", "cpu", "--size", "16x9"])
         .args(arguments);
     check
 }
@@ -53,7 +53,7 @@ fn a_shader_that_takes_too_long_to_compile_is_a_timeout_with_a_code() {
     let others: [&[&str]; 4] = [
         &["convert", "hw/000.glsl", "-o", "x.wgsl", "--timeout", "1ns"],
         &["run", "hw/000.glsl", "-o", "x.png", "--timeout", "1ns"],
-        &["explain", "hw/000.glsl", "--pixel", "0,0", "--timeout", "1ns"],
+        &["debug", "hw/000.glsl", "--pixel", "0,0", "--timeout", "1ns"],
         &[
             "trade",
             "hw/000.glsl",
@@ -61,7 +61,7 @@ fn a_shader_that_takes_too_long_to_compile_is_a_timeout_with_a_code() {
             "trade",
             "--budget",
             "1ns",
-            "--on",
+            "--device",
             "cpu",
         ],
     ];
@@ -127,7 +127,7 @@ fn links_out_of_the_submissions_are_not_followed() {
         assert!(!String::from_utf8_lossy(&text).contains("secret = 42"));
     }
     // A file that is named explicitly is read, wherever its link leads.
-    let named = toyproof(folder.path(), &["check", "hw/leak.glsl", "--on", "cpu"]);
+    let named = toyproof(folder.path(), &["check", "hw/leak.glsl", "--device", "cpu"]);
     assert!(named.stderr.contains("film"), "{named:?}");
 }
 
@@ -147,7 +147,7 @@ fn broken_lines_of_an_earlier_run_are_skipped_and_counted() {
         "{again:?}"
     );
     assert!(
-        again.stderr.contains("2 of 2 shaders are taken over"),
+        again.stderr.contains("2 of 2 results are reused"),
         "{again:?}"
     );
 }
@@ -190,7 +190,7 @@ fn a_batch_ends_when_its_output_is_closed() {
     let stderr = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2), "{stderr}");
     assert!(
-        stderr.contains("standard output was closed; what was done is kept"),
+        stderr.contains("standard output was closed after "),
         "{stderr}"
     );
     let kept = results(folder.path());

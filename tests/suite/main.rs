@@ -46,6 +46,7 @@ mod random_draws;
 mod reports;
 mod requirements;
 mod rules;
+mod scene_commands;
 mod snapshots;
 mod stress;
 mod strict;
@@ -53,5 +54,6 @@ mod submissions;
 mod trade;
 mod ui;
 mod unstable;
+mod wording;
 
 use toyproof_testkit as support;

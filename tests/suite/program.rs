@@ -35,7 +35,7 @@ pub(crate) fn check_homework(folder: &Path) -> Command {
         "hw",
         "--scene",
         "scene.toml",
-        "--on",
+        "--device",
         "cpu",
         "--size",
         "64x36",

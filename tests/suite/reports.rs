@@ -9,7 +9,7 @@ use crate::program::{Run, check_homework, run, toyproof};
 use crate::support::SPHERE;
 
 const RUBRIC: &str =
-    "[compiles]\npoints = 2\n[maths]\npoints = 6\npartial_from = 0.0\n[rounding]\npoints = 2\n";
+    "[compiles]\npoints = 2\n[algorithm]\npoints = 6\npartial_from = 0.0\n[precision]\npoints = 2\n";
 
 /// Creates three submissions: correct, wrong, and one that does not compile.
 fn homework() -> tempfile::TempDir {
@@ -108,7 +108,7 @@ fn marks_need_a_rubric_and_one_submission_needs_no_name() {
             "hw/ann.glsl",
             "--scene",
             "scene.toml",
-            "--on",
+            "--device",
             "cpu",
             "--size",
             "64x36",
@@ -125,7 +125,7 @@ fn marks_need_a_rubric_and_one_submission_needs_no_name() {
 #[test]
 fn invalid_rubrics_are_reported_before_any_work() {
     let folder = homework();
-    fs::write(folder.path().join("rubric.toml"), "[maths]\npoints = -3\n").unwrap();
+    fs::write(folder.path().join("rubric.toml"), "[algorithm]\npoints = -3\n").unwrap();
     let run = check(folder.path(), &["--out", "out", "--rubric", "rubric.toml"]);
     assert_eq!(run.code, 2);
     assert!(

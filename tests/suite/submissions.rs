@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::program::toyproof;
 
 const SHADER: &str = "void mainImage(out vec4 c, in vec2 p) { c = vec4(p / iResolution.xy, 0.5, 1.0); }\n";
-const FLAGS: [&str; 6] = ["--size", "16x9", "--on", "cpu", "--jobs", "1"];
+const FLAGS: [&str; 6] = ["--size", "16x9", "--device", "cpu", "--jobs", "1"];
 
 fn write(folder: &Path, name: &str, text: &str) {
     let path = folder.join(name);
@@ -31,7 +31,7 @@ fn folders_named_like_reports_or_images_do_no_harm() {
     }
     write(folder.path(), "hw/good-actual.png/x.glsl", SHADER);
     write(folder.path(), "hw/good.glsl", SHADER);
-    write(folder.path(), "rubric.toml", "[rounding]\npoints = 1\n");
+    write(folder.path(), "rubric.toml", "[precision]\npoints = 1\n");
     let arguments = ["check", "hw", "--out", "out", "--rubric", "rubric.toml"];
     let run = toyproof(folder.path(), &[&arguments[..], &FLAGS].concat());
     assert_eq!(run.code, 0, "{}", run.stderr);
@@ -58,7 +58,7 @@ fn links_among_submissions_do_not_redirect_outputs() {
         "report.csv",
         "results.jsonl",
         "x-actual.png",
-        "x-maths.png",
+        "x-algorithm.png",
         "x.png",
         "x.wgsl",
     ];
@@ -66,7 +66,7 @@ fn links_among_submissions_do_not_redirect_outputs() {
         symlink(folder.path().join("victim"), hw.join(link)).unwrap();
     }
     let check = ["check", "hw", "--out", "hw"];
-    let run = ["run", "hw", "-o", "hw", "--size", "16x9", "--on", "cpu"];
+    let run = ["run", "hw", "-o", "hw", "--size", "16x9", "--device", "cpu"];
     let convert = ["convert", "hw", "-o", "hw", "--to", "wgsl"];
     for arguments in [[&check[..], &FLAGS].concat(), run.to_vec(), convert.to_vec()] {
         let run = toyproof(folder.path(), &arguments);
@@ -77,7 +77,7 @@ fn links_among_submissions_do_not_redirect_outputs() {
             "{arguments:?}"
         );
     }
-    assert!(hw.join("x-actual.png").is_file() && !hw.join("x-maths.png").exists());
+    assert!(hw.join("x-actual.png").is_file() && !hw.join("x-algorithm.png").exists());
 }
 
 /// Names and texts that try to move the cursor, to color the terminal, or to imitate other output.

@@ -586,9 +586,8 @@ pub fn hypotheses(exercise: &Exercise) -> Hypotheses {
 /// `pairs` pairs of mistakes are tried.
 pub fn name(exercise: &Exercise, hypotheses: &Hypotheses, shader: &str, pairs: usize) -> String {
     let program = Program::new(&checked(shader)).expect("it is small");
-    let named = hypotheses.recognize(&program, &frame(exercise, exercise.size), pairs);
-    let names: Vec<_> = named.into_iter().flatten().map(|named| named.name).collect();
-    names.join("+")
+    let diagnosis = hypotheses.recognize(&program, &frame(exercise, exercise.size), pairs);
+    diagnosis.map_or_else(String::new, |diagnosis| diagnosis.id())
 }
 
 /// The faults of an exercise, each with its reported name, in the format of `tests/suite/fault_names.txt`.

@@ -21,6 +21,7 @@ pub(super) use self::reference::References;
 use self::reports::Results;
 use super::inputs::{DriverArgs, FrameArgs, LanguageArgs};
 use super::names::Names;
+use super::inputs::short_device;
 use super::pool::{self, InOrder};
 use super::shader::find;
 use super::{Exit, Terminal};
@@ -100,6 +101,10 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let Ok(rubric) = reports::rubric(args, terminal) else {
         return Exit::Error;
     };
+    let references = References::new(args.scene.as_deref());
+    if !references.is_usable(terminal) {
+        return Exit::Error;
+    }
     let mut results = None;
     if let Some(out) = &args.out {
         match Results::open(out, args.resume) {
@@ -125,7 +130,6 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         .chain([reports::RESULTS_NAME])
         .collect();
     let mut names = Names::new(&IMAGES.map(|kind| kind.suffix), &reserved);
-    let references = References::new(args.scene.as_deref());
     let submissions: Vec<Submission> = find(&args.shaders, terminal)
         .into_iter()
         .map(|input| Submission::new(input, args, &references, &mut names))
@@ -373,13 +377,15 @@ impl Batch<'_> {
 /// Prints the tally of all shaders, and warns of shaders that were compared with nothing.
 fn print_summary(report: &Report, hidden_warnings: u64, elapsed: Duration, terminal: &Terminal) {
     let records = report.shaders();
-    let device = report.device().map(|device| format!(", {device}")).unwrap_or_default();
-    let several = if records.len() > 1 { "\n" } else { "" };
-    terminal.note(&format!(
-        "{several}{} ({:.1} s{device})",
-        report::summary(records),
-        elapsed.as_secs_f64()
-    ));
+    let device = report.device().map(|device| format!(", {}", short_device(device)));
+    if records.len() > 1 {
+        terminal.note(&format!(
+            "\n{} ({:.1} s{})",
+            report::summary(records),
+            elapsed.as_secs_f64(),
+            device.unwrap_or_default()
+        ));
+    }
     if hidden_warnings > 0 {
         terminal.note(&format!(
             "{} {}; -v shows them",

@@ -10,7 +10,9 @@ use toyproof_scene::{self as scene, Scene};
 use toyproof_verify::mistake::Hypotheses;
 use toyproof_verify::{Expected, Failure};
 
+use crate::cli::Terminal;
 use crate::cli::files::{self, Input, InputSource, ReadError, Skipped};
+use crate::cli::scenes::read_scene;
 
 /// The reference scene of a shader.
 pub(in crate::cli) struct Reference {
@@ -29,8 +31,34 @@ pub(in crate::cli) struct References {
 impl References {
     /// Reads the scene that `--scene` names, if any.
     pub(in crate::cli) fn new(named: Option<&Path>) -> Self {
-        let named = named.map(|path| (path.to_owned(), read_text(path)));
+        let named = named.map(|path| (path.to_owned(), read_scene(path)));
         Self { named }
+    }
+
+    /// Checks the scene that `--scene` names, if any, and prints what is wrong with it.
+    pub(super) fn is_usable(&self, terminal: &Terminal) -> bool {
+        let Some((path, text)) = &self.named else {
+            return true;
+        };
+        if files::is_shader(path) {
+            let name = path_name(path);
+            terminal.error(format_args!(
+                "{name} is a shader; `--scene` takes a scene file or the name of a scene"
+            ));
+            return false;
+        }
+        let mut files = Files::default();
+        match text {
+            Err(error) => terminal.error(error),
+            Ok(text) => {
+                let file = files.add(text.clone());
+                match scene::parse(&files, file) {
+                    Ok(_) => return true,
+                    Err(errors) => terminal.diagnostics(&errors, &files),
+                }
+            }
+        }
+        false
     }
 
     /// The path of a shader's scene, and its text or the error: the scene that `--scene` names, else the one
@@ -45,7 +73,7 @@ impl References {
                 }
                 let text = match leaving_link(found, shader, &beside) {
                     Some(skipped) => Err(format!("there is no scene to compare with: {skipped}")),
-                    None if beside.is_file() => read_text(&beside),
+                    None if beside.is_file() => files::read_text(&beside).map_err(|error| error.to_string()),
                     None => Err(ReadError::Missing(beside.clone()).to_string()),
                 };
                 Some((beside, text))
@@ -75,10 +103,6 @@ impl References {
 fn leaving_link(found: &Input, shader: &Path, beside: &Path) -> Option<Skipped> {
     let folder = found.folder.as_deref().or(shader.parent())?;
     Skipped::of(beside, folder)
-}
-
-fn read_text(path: &Path) -> Result<File, String> {
-    files::read_text(path).map_err(|error| error.to_string())
 }
 
 // The scenes that shaders have been compared with, shared by all threads.

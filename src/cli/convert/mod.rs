@@ -509,6 +509,10 @@ impl Batch<'_> {
         match status {
             Status::Converted if self.output == Path::new("-") => {}
             Status::Converted => self.terminal.note(&format!("{row} → {}", path_name(&job.path))),
+            // Without a table of proofs, an error stands for itself.
+            Status::Refused if !self.args.verify => self
+                .terminal
+                .error(format_args!("{} was not converted: {message}", job.name())),
             _ => self.print(&row),
         }
     }

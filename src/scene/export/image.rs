@@ -1,5 +1,5 @@
-//! GLSL of `mainImage` and what it calls: samples and their mean, tone map, camera, figures, background, random
-//! numbers. `«Name: text»` marks a [slot](super::slot).
+//! GLSL of `mainImage` and what it calls: samples and their mean, tone map, camera, figures, background,
+//! random numbers. `«Name: text»` marks a [slot](super::slot).
 
 use std::fmt::Write;
 
@@ -20,13 +20,13 @@ impl Parts<'_> {
             _ => String::new(),
         };
         let sample = if film.sampler == Sampler::Center {
-            format!("{indent}«SampleStatement: color += «Sample: look(fragCoord)»;»\n")
+            format!("{indent}«SampleStatement: color += «Sample: pixelColor(fragCoord)»;»\n")
         } else {
             format!(
                 "{start}\
                  {indent}«SampleXStatement: float x = «SampleX: fragCoord.x + random() - 0.5»;»\n\
                  {indent}«SampleYStatement: float y = «SampleY: fragCoord.y + random() - 0.5»;»\n\
-                 {indent}«SampleStatement: color += «Sample: look(vec2(x, y))»;»\n"
+                 {indent}«SampleStatement: color += «Sample: pixelColor(vec2(x, y))»;»\n"
             )
         };
         let samples = if multisampled {
@@ -71,7 +71,7 @@ fn post_process(scene: &Scene) -> String {
 
 // The camera.
 
-/// Returns `look`, the color at a point of the image: a figure on the screen, or the color along the ray.
+/// Returns `pixelColor`, the color at a point of the image: that of a figure, or of the ray.
 pub(super) fn camera_function(scene: &Scene) -> String {
     let eye = vector(scene.camera.eye);
     let ray = match scene.camera.projection {
@@ -89,7 +89,7 @@ pub(super) fn camera_function(scene: &Scene) -> String {
     };
     let figures = figure_tests(&scene.figures);
     format!(
-        "vec3 look(vec2 fragCoord) {{\n    «AspectStatement: float aspect = «AspectRatio: iResolution.x / iResolution.y»;»\n    \
+        "vec3 pixelColor(vec2 fragCoord) {{\n    «AspectStatement: float aspect = «AspectRatio: iResolution.x / iResolution.y»;»\n    \
          float x = «ScreenX: fragCoord.x / iResolution.x * 2.0 - 1.0»;\n    \
          float y = «ScreenYOverAspect: «ScreenY: (fragCoord.y / iResolution.y * 2.0 - 1.0)» / aspect»;\n{figures}    return {ray};\n}}\n"
     )
@@ -196,7 +196,7 @@ float random() {
 }
 ";
 
-pub(super) const PCG: &str = "// The integer hash pcg (Jarzynski and Olano 2020).
+pub(super) const PCG: &str = "// The integer hash PCG (Jarzynski and Olano 2020).
 uint pcg(uint v) {
     uint s = v * 747796405u + 2891336453u;
     uint word = ((s >> ((s >> 28u) + 4u)) ^ s) * 277803737u;
@@ -216,7 +216,8 @@ void startSample(vec2 fragCoord, int i) {
 }
 ";
 
-pub(super) const AROUND: &str = "// The direction at an angle to w, given by its cosine, turned about w.
+pub(super) const AROUND: &str =
+    "// The direction at an angle to w, given by its cosine, rotated about w by `turn` turns.
 vec3 around(vec3 w, float cosine, float turn) {
     vec3 up = abs(w.y) > 0.9 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
     vec3 a = normalize(cross(up, w));

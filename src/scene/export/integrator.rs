@@ -71,7 +71,7 @@ impl Parts<'_> {
     fn branching(&self) -> Vec<String> {
         let [facing, emitter, is_lit] =
             self.ends(|color| format!("color += branch.throughput * {color};\ncontinue;"));
-        let go_on = "if (branch.depth == MAX_DEPTH) {\n    continue;\n}";
+        let stop_at_depth = "if (branch.depth == MAX_DEPTH) {\n    continue;\n}";
         let mirror = "stack[top++] = Branch(mirrored, throughput, branch.depth + 1);\ncontinue;";
         let share = match GLASS.map(|kind| self.uses(kind)) {
             [true, true] => {
@@ -85,7 +85,7 @@ impl Parts<'_> {
 float cosine = «GlassCosine: -dot(ray.direction, side)»;
 float sine2 = eta * eta * (1.0 - cosine * cosine);
 if (sine2 >= 1.0) {{
-    «TotalReflection: // Total reflection.
+    «TotalReflection: // Total internal reflection.
     stack[top++] = Branch(mirrored, throughput, branch.depth + 1);»
     continue;
 }}
@@ -97,15 +97,15 @@ stack[top++] = Branch(Ray(«RefractedOrigin: hit.point - «RefractionOffset: 0.0
 stack[top++] = Branch(mirrored, «ReflectedThroughput: throughput * share», branch.depth + 1);"
         );
         let sent = self.cases("", &[(&[Kind::Mirror], mirror.to_owned()), (&GLASS, glass)]);
-        let parted = format!(
-            "{go_on}\nvec3 throughput = branch.throughput * «GlassColor: hit.color»;\n{SIDE}\nRay mirrored = {MIRRORED};\n{sent}"
+        let split = format!(
+            "{stop_at_depth}\nvec3 throughput = branch.throughput * «GlassColor: hit.color»;\n{SIDE}\nRay mirrored = {MIRRORED};\n{sent}"
         );
         let both: Vec<Kind> = GLASS.into_iter().chain([Kind::Mirror]).collect();
         let cases: [(&[Kind], String); 4] = [
             (&[Kind::Facing], facing),
             (&[Kind::Emitter], emitter),
             (&REFLECTIVE, is_lit),
-            (&both, parted),
+            (&both, split),
         ];
         let mut pieces = Vec::new();
         if self.uses(Kind::Glass) {
@@ -123,7 +123,7 @@ stack[top++] = Branch(mirrored, «ReflectedThroughput: throughput * share», bra
     }
 }
 
-const FRESNEL: &str = "// The share of light that is reflected, by Fresnel's equations; eta is the index on this side over that beyond.
+const FRESNEL: &str = "// The reflectance by Fresnel's equations; eta is the ratio of this side's and the other side's index of refraction.
 float fresnel(float eta, float cosine, float beyond) {
     float across = (eta * cosine - beyond) / (eta * cosine + beyond);
     float along = (cosine - eta * beyond) / (cosine + eta * beyond);
@@ -132,7 +132,7 @@ float fresnel(float eta, float cosine, float beyond) {
 ";
 
 const SCHLICK: &str =
-    "// The share of light that is reflected, by Schlick's formula with the cosine on the thinner side.
+    "// Schlick's approximation of the reflectance; the cosine is that on the side of the smaller index.
 float schlick(float eta, float cosine, float beyond) {
     float f0 = (1.0 - eta) * (1.0 - eta) / ((1.0 + eta) * (1.0 + eta));
     float m = 1.0 - (eta < 1.0 ? cosine : beyond);
@@ -140,7 +140,7 @@ float schlick(float eta, float cosine, float beyond) {
 }
 ";
 
-const BRANCH: &str = "// A ray to be followed: what it adds to the picture is multiplied by its throughput.
+const BRANCH: &str = "// A ray on the stack; its throughput is its contribution to the pixel.
 struct Branch {
     Ray ray;
     vec3 throughput;
@@ -194,7 +194,7 @@ return color + throughput * hit.color * share;";
         };
         let brdf = self.path_brdf(Slot::PathDiffuseBrdf, "next", "-ray.direction");
         let reflective = format!(
-            "// Light that is looked for here would come by a segment too many.
+            "// A path through another surface would be longer than MAX_DEPTH segments.
 if («PathIsAtEnd: depth == MAX_DEPTH») {{
     return color;
 }}
@@ -268,14 +268,14 @@ return (hit.exponent + 1.0) / (2.0 * PI) * lobe;"
     }
 }
 
-const LIGHT_DENSITY: &str = "// 1 - cos of the half angle of the cone in which an emitter is seen.
+const LIGHT_DENSITY: &str = "// 1 - cos of the half angle of the cone that an emitter subtends.
 float coneDepth(vec3 point, Sphere emitter) {
     vec3 toCenter = emitter.center - point;
     float sine2 = emitter.radius * emitter.radius / dot(toCenter, toCenter);
     return sine2 < 1.0 ? sine2 / (1.0 + sqrt(1.0 - sine2)) : 2.0;
 }
 
-// The density, over the solid angle, with which a direction to this emitter is drawn.
+// The probability density, per solid angle, of sampling a direction toward this emitter.
 float lightDensity(vec3 point, Sphere emitter) {
     return 1.0 / «ConeSolidAngle: (2.0 * PI * coneDepth(point, emitter) * float(EMITTERS))»;
 }
@@ -291,13 +291,13 @@ const SAMPLE_LIGHT: &str = "bool inShadow(Ray ray, int emitter) {
     return nearestHit(ray).t < intersectSphere(ray, spheres[emitter]);
 }
 
-// The light of one emitter, drawn by chance.
+// The light from one randomly chosen emitter.
 vec3 sampleLight(Intersection hit, vec3 view) {
     int emitter = «EmitterChoice: min(int(random() * float(EMITTERS)), EMITTERS - 1)»;
     float u = random();
     float v = random();
-    float across = 1.0 - u * coneDepth(hit.point, spheres[emitter]);
-    vec3 direction = around(normalize(spheres[emitter].center - hit.point), across, v);
+    float cosTheta = 1.0 - u * coneDepth(hit.point, spheres[emitter]);
+    vec3 direction = around(normalize(spheres[emitter].center - hit.point), cosTheta, v);
     float cosine = dot(hit.normal, direction);
     if («EmitterHidden: cosine <= 0.0 || inShadow(Ray(hit.point + «ShadowOffset: 0.001» * hit.normal, direction), emitter)») {
         return vec3(0.0);
@@ -312,7 +312,7 @@ const PATH_TRACE: &str = "vec3 trace(vec3 origin, vec3 direction) {
     «PrimaryRay: Ray ray = Ray(origin, direction);»
     vec3 color = vec3(0.0);
     vec3 throughput = vec3(1.0);
-    // The density with which the ray was drawn; 0 from the eye and from mirrors.
+    // The probability density of the ray's direction; 0 for camera rays and mirror reflections.
     float density = 0.0;
     for (int depth = 1; «PathDepth: depth <= MAX_DEPTH»; depth++) {
         Intersection hit = nearestHit(ray);

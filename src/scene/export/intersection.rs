@@ -32,7 +32,7 @@ impl Parts<'_> {
         }
         if !self.quadrics.is_empty() {
             pieces.push(INTERSECT_QUADRIC.to_owned());
-            let normal = "normalOf(quadrics[i], hit.point, ray.direction)";
+            let normal = "quadricNormal(quadrics[i], hit.point, ray.direction)";
             loops += &self.nearest("Quadric", "quadrics", "quadrics[i]", normal);
         }
         pieces.push(format!(
@@ -58,12 +58,12 @@ impl Parts<'_> {
         } else {
             ("0", count)
         };
-        let mut taken = String::new();
+        let mut copied = String::new();
         for property in self.properties() {
-            let _ = writeln!(taken, "            hit.{0} = {own}.{0};", property.name);
+            let _ = writeln!(copied, "            hit.{0} = {own}.{0};", property.name);
         }
         if self.traces_paths && kind == "Sphere" {
-            taken += "            hit.sphere = i;\n";
+            copied += "            hit.sphere = i;\n";
         }
         let intersect_call = if kind == "Grid" {
             "        Sphere sphere;\n        float t = intersectGrid(ray, grids[i], sphere);\n".to_owned()
@@ -73,12 +73,12 @@ impl Parts<'_> {
         format!(
             "    for (int i = {first}; i < {count}; i++) {{\n{intersect_call}        if («IsNearer: t < hit.t») {{\n            \
              hit.t = «HitT: t»;\n            hit.point = «HitPoint: ray.origin + t * ray.direction»;\n            hit.normal = {normal};\n            \
-             hit.color = {color};\n{taken}        }}\n    }}\n"
+             hit.color = {color};\n{copied}        }}\n    }}\n"
         )
     }
 }
 
-const CHECKERED: &str = "// Squares seen from above.
+const CHECKERED: &str = "// A checkerboard in x and z.
 vec3 checkered(vec3 point, vec3 color, vec3 other, float side) {
     vec2 square = «CheckerSquare: floor(point.xz / side)»;
     return mod(«CheckerSum: square.x + square.y», 2.0) < 0.5 ? «CheckerEven: color» : «CheckerOdd: other»;
@@ -86,7 +86,7 @@ vec3 checkered(vec3 point, vec3 color, vec3 other, float side) {
 ";
 
 const INTERSECT_SPHERE: &str =
-    "// From the point of the ray that is closest to the centre: smaller numbers, smaller errors.
+    "// Starts at the point of the ray closest to the center: smaller numbers have smaller rounding errors.
 float intersectSphere(Ray ray, Sphere sphere) {
     vec3 f = «CenterToOrigin: ray.origin - sphere.center»;
     float b = dot(f, ray.direction);
@@ -116,7 +116,7 @@ const INTERSECT_PLANE: &str = "float intersectPlane(Ray ray, Plane plane) {
 // Quadrics.
 
 pub(super) const QUADRIC_FORM: &str =
-    "// q.x x^2 + q.y y^2 + q.z z^2 + 2 g z + k = 0 for low <= z <= high, in coordinates along the axes of a quadric.
+    "// q.x x^2 + q.y y^2 + q.z z^2 + 2 g z + k = 0 for low <= z <= high, in local coordinates.
 struct Form {
     vec3 q;
     float g;
@@ -184,7 +184,7 @@ fn form(kind: &QuadricKind) -> (&'static str, String) {
     }
 }
 
-const FRAME: &str = "// Two directions at right angles to the axis, and the axis.
+const FRAME: &str = "// An orthonormal basis whose third vector is the axis.
 mat3 frame(vec3 axis) {
     vec3 x = abs(axis.z) > 0.9 ? vec3(1.0, 0.0, 0.0) : cross(axis, vec3(0.0, 0.0, 1.0));
     x = normalize(x - dot(x, axis) * axis);
@@ -221,7 +221,7 @@ const HYPERBOLOID: &str = "Form hyperboloid(float waist, float radius, float hei
 ";
 
 pub(super) const INTERSECT_QUADRIC: &str =
-    "// As for spheres, from the point of the ray that is closest to the origin.
+    "// Starts at the point of the ray closest to the origin, as for spheres.
 float intersectQuadric(Ray ray, Quadric quadric) {
     Form form = quadric.form;
     vec3 d = «RayInFrame: ray.direction * quadric.axes»;
@@ -235,7 +235,7 @@ float intersectQuadric(Ray ray, Quadric quadric) {
     if (disc < 0.0) {
         return NO_HIT;
     }
-    // The root that does not cancel, and the other by their product; where a is 0 there is only that.
+    // The root without cancellation; the other follows from their product. If a is 0, there is only one root.
     float q = b > 0.0 ? -b - sqrt(disc) : -b + sqrt(disc);
     float t0 = q == 0.0 ? NO_HIT : c / q;
     float t1 = a == 0.0 ? NO_HIT : q / a;
@@ -252,8 +252,8 @@ float intersectQuadric(Ray ray, Quadric quadric) {
     return NO_HIT;
 }
 
-// What is open shows both sides.
-vec3 normalOf(Quadric quadric, vec3 point, vec3 direction) {
+// Open surfaces are visible from both sides.
+vec3 quadricNormal(Quadric quadric, vec3 point, vec3 direction) {
     vec3 p = (point - quadric.origin) * quadric.axes;
     vec3 normal = «QuadricNormal: normalize(quadric.axes * (quadric.form.q * p + vec3(0.0, 0.0, quadric.form.g)))»;
     return «QuadricSide: quadric.form.high < NO_HIT ? faceforward(normal, direction, normal) : normal»;
@@ -276,7 +276,7 @@ impl Parts<'_> {
         for property in self.properties() {
             let _ = write!(members, ", grid.{}", property.name);
         }
-        pieces.push(SPHERE_IN.replace("MEMBERS", &members));
+        pieces.push(CELL_SPHERE.replace("MEMBERS", &members));
         pieces.push(INTERSECT_GRID.to_owned());
         pieces
     }
@@ -294,65 +294,65 @@ pub(super) fn grid_values(scatter: &Scatter) -> String {
     )
 }
 
-pub(super) const GRID_STRUCTURE: &str = "// Cubic cells with a sphere in each, wholly inside of it.
+pub(super) const GRID_STRUCTURE: &str = "// A grid of cubic cells, each with a sphere that lies inside it.
 struct Grid {
     vec3 corner;
     ivec3 cells;
     float spacing;
-    float small;
-    float large;
+    float minRadius;
+    float maxRadius;
     uint seed;
 ";
 
-const SPHERE_IN: &str = "uint drawn;
+const CELL_SPHERE: &str = "uint cellState;
 
-float draw() {
-    drawn = pcg(drawn);
-    return float(drawn >> 8u) / 16777216.0;
+float cellRandom() {
+    cellState = pcg(cellState);
+    return float(cellState >> 8u) / 16777216.0;
 }
 
 // The sphere of a cell.
-Sphere sphereIn(Grid grid, ivec3 cell) {
-    drawn = «CellSeed: grid.seed + «CellNumber: uint(cell.x + grid.cells.x * (cell.y + grid.cells.y * cell.z))»»;
-    float radius = «CellRadius: mix(grid.small, grid.large, draw())»;
+Sphere cellSphere(Grid grid, ivec3 cell) {
+    cellState = «CellSeed: grid.seed + «CellNumber: uint(cell.x + grid.cells.x * (cell.y + grid.cells.y * cell.z))»»;
+    float radius = «CellRadius: mix(grid.minRadius, grid.maxRadius, cellRandom())»;
     float room = «CellRoom: grid.spacing - 2.0 * radius»;
-    float x = draw();
-    float y = draw();
-    float z = draw();
-    float r = draw();
-    float g = draw();
-    float b = draw();
+    float x = cellRandom();
+    float y = cellRandom();
+    float z = cellRandom();
+    float r = cellRandom();
+    float g = cellRandom();
+    float b = cellRandom();
     vec3 center = grid.corner + grid.spacing * vec3(cell) + radius + room * «CellPlace: vec3(x, y, z)»;
     return Sphere(center, radius, grid.color * (0.2 + 0.8 * «CellColor: vec3(r, g, b)»)MEMBERS);
 }
 ";
 
-const INTERSECT_GRID: &str = "// The first hit, cell by cell (Amanatides and Woo, \"A Fast Voxel Traversal Algorithm for Ray Tracing\", 1987).
+const INTERSECT_GRID: &str = "// The nearest hit, cell by cell (Amanatides and Woo, \"A Fast Voxel Traversal Algorithm for Ray Tracing\", 1987).
 float intersectGrid(Ray ray, Grid grid, out Sphere sphere) {
-    // A direction along an axis never leaves a cell across it.
+    // A tiny component instead of 0 avoids a division by 0.
     vec3 direction = mix(ray.direction, vec3(1.0e-20), equal(ray.direction, vec3(0.0)));
     vec3 low = (grid.corner - ray.origin) / direction;
     vec3 high = (grid.corner + grid.spacing * vec3(grid.cells) - ray.origin) / direction;
-    vec3 into = min(low, high);
-    vec3 outOf = max(low, high);
-    float enter = max(max(into.x, into.y), max(into.z, 0.0));
-    float leave = min(outOf.x, min(outOf.y, outOf.z));
+    vec3 near = min(low, high);
+    vec3 far = max(low, high);
+    float enter = max(max(near.x, near.y), max(near.z, 0.0));
+    float leave = min(far.x, min(far.y, far.z));
     ivec3 cell = ivec3(0);
     if (enter < leave) {
         vec3 place = (ray.origin + enter * ray.direction - grid.corner) / grid.spacing;
         cell = clamp(ivec3(floor(place)), ivec3(0), grid.cells - 1);
     }
-    sphere = sphereIn(grid, cell);
+    sphere = cellSphere(grid, cell);
     if (enter >= leave) {
         return NO_HIT;
     }
     ivec3 stride = «GridStride: ivec3(sign(direction))»;
-    // t at which the ray leaves the cell along each axis, and how much later it leaves the one after.
+    // For each axis, the t at which the ray leaves the cell, and the distance in t between cell boundaries.
     vec3 next = (grid.corner + grid.spacing * vec3(cell + max(stride, 0)) - ray.origin) / direction;
     vec3 step = «GridStep: grid.spacing / abs(direction)»;
     int steps = grid.cells.x + grid.cells.y + grid.cells.z;
     for (int i = 0; i < «GridSteps: steps»; i++) {
-        sphere = sphereIn(grid, cell);
+        sphere = cellSphere(grid, cell);
         float t = intersectSphere(ray, sphere);
         if (t < NO_HIT) {
             return t;

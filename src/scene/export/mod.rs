@@ -17,15 +17,15 @@ use self::structure::motion_functions;
 use crate::{Integrator, Object, Point, Quadric, Requirements, Sampler, Scatter, Scattered, Scene, Shape};
 pub use slot::{MarkedShader, Slot};
 
-/// A feature of a scene that has no shader yet, named as in the scene file.
+/// A feature of a scene that exported shaders do not support.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-#[error("{0} cannot be exported yet")]
+#[error("{0} cannot be exported")]
 pub struct Unsupported(pub &'static str);
 
 /// Returns a ShaderToy shader that renders the scene.
 ///
 /// # Errors
-/// If the scene has a feature that no shader renders yet.
+/// If the scene has a feature that no exported shader supports.
 pub fn shader(scene: &Scene) -> Result<String, Unsupported> {
     Ok(marked_shader(scene)?.text)
 }
@@ -33,10 +33,10 @@ pub fn shader(scene: &Scene) -> Result<String, Unsupported> {
 /// Returns the same shader with the names of its parts.
 ///
 /// # Errors
-/// If the scene has a feature that no shader renders yet.
+/// If the scene has a feature that no exported shader supports.
 pub fn marked_shader(scene: &Scene) -> Result<MarkedShader, Unsupported> {
     if matches!(scene.film.sampler, Sampler::Stratified | Sampler::Sobol) {
-        return Err(Unsupported("the samplers \"stratified\" and \"sobol\""));
+        return Err(Unsupported("a scene with the sampler `stratified` or `sobol`"));
     }
     let title = match scene.title.lines().next() {
         None | Some("") => "A scene",
@@ -62,7 +62,7 @@ struct Parts<'a> {
     spheres: Vec<(Point, f64, &'a Object)>,
     planes: Vec<(Point, Point, &'a Object)>,
     quadrics: Vec<(Quadric, &'a Object)>,
-    /// Scatters without motion; the spheres of others are among the rest.
+    /// Scatters without motion; the spheres of the others are in `spheres`.
     grids: Vec<&'a Scatter>,
     /// Whether any surface is checkered.
     checkers: bool,

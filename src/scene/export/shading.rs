@@ -243,24 +243,24 @@ pub(super) const DISNEY_FUNCTIONS: &str = "float square(float x) {
     return x * x;
 }
 
-// Schlick's weight.
+// The weight (1 - cosine)^5 of Schlick's Fresnel approximation.
 float schlickWeight(float cosine) {
     float m = clamp(1.0 - cosine, 0.0, 1.0);
     return «SchlickWeight: square(square(m)) * m»;
 }
 
-// The clear coat's distribution, with a long tail.
+// Normal distribution of the clear coat: GTR with gamma = 1, which has a long tail.
 float berry(float nH, float alpha) {
     float a2 = alpha * alpha;
     return (a2 - 1.0) / (PI * log(a2) * (1.0 + (a2 - 1.0) * nH * nH));
 }
 
-// The distribution of the specular lobe, stretched along the tangents.
+// Normal distribution of the specular lobe: anisotropic GTR with gamma = 2 (GGX).
 float trowbridgeReitz(float nH, float xH, float yH, float ax, float ay) {
     return 1.0 / (PI * ax * ay * square(square(xH / ax) + square(yH / ay) + nH * nH));
 }
 
-// Shadowing, over twice the cosine.
+// Smith's shadowing factor for one direction, divided by twice the cosine.
 float smith(float cosine, float alpha) {
     float a2 = alpha * alpha;
     float c2 = cosine * cosine;
@@ -277,7 +277,7 @@ vec3 disney(Disney m, vec3 color, vec3 light, vec3 view, vec3 normal) {
     vec3 middle = «HalfVector: normalize(light + view)»;
     float nH = dot(normal, middle);
     float lH = dot(light, middle);
-    // Around the y axis, and towards it.
+    // The tangents: around the y axis, and toward it.
     vec3 x = normal.xz == vec2(0.0) ? vec3(0.0, 0.0, normal.y) : normalize(vec3(normal.z, 0.0, -normal.x));
     vec3 y = cross(normal, x);
 
@@ -416,7 +416,7 @@ const POINT: &str = "    if (light.radius == 0.0) {
 ";
 
 const SAMPLE_LIGHT: &str =
-    "// A direction drawn from the cone in which the light is seen, and how far the light is along it.
+    "// Samples a direction in the cone that the light subtends, and returns the distance along it.
 vec3 sampleLight(Light light, vec3 point, out float distance) {
 POINT
     vec3 axis = light.position - point;

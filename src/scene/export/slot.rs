@@ -1,4 +1,4 @@
-//! Parts of exported shaders that have a name, so that whoever replaces one need not know its text.
+//! Named parts of exported shaders, which can be replaced without knowing their text.
 //!
 //! A template marks a part as `«Name: text»`; parts may contain others. In the template of a replacement,
 //! `…` is the text that is replaced and `«Name»` that of another part, with the parts that these contain.
@@ -86,7 +86,7 @@ slots! {
 pub struct MarkedShader {
     /// The shader.
     pub text: String,
-    /// The parts and where they stand; a name may occur several times.
+    /// The parts and their ranges; a name may occur several times.
     slots: Vec<(Slot, Range<usize>)>,
 }
 
@@ -137,7 +137,7 @@ impl MarkedShader {
         let template = slot.mark(text);
         let edits = self.ranges(slot).map(|range| (range.clone(), template.as_str()));
         self.rewritten(edits.collect())
-            .expect("parts of one name stand apart")
+            .expect("parts of one name do not overlap")
     }
 
     fn ranges(&self, slot: Slot) -> impl Iterator<Item = &Range<usize>> {
@@ -145,12 +145,12 @@ impl MarkedShader {
         own.map(|(_, range)| range)
     }
 
-    /// Where the only part of that name stands.
+    /// The range of the only part of that name.
     fn only(&self, slot: Slot) -> Option<Range<usize>> {
         self.only_in(slot, &(0..self.text.len()))
     }
 
-    /// Where the only part of that name within a range stands.
+    /// The range of the only part of that name within another range.
     fn only_in(&self, slot: Slot, outer: &Range<usize>) -> Option<Range<usize>> {
         let mut ranges = self.ranges(slot).filter(|inner| contains(outer, inner));
         ranges.next().filter(|_| ranges.next().is_none()).cloned()
@@ -242,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn markers_are_no_part_of_the_text() {
+    fn markers_are_not_part_of_the_text() {
         let shader = shader("x = «Brdf: «DiffuseBrdf: color / PI»» * cosine;");
         assert_eq!(shader.text, "// «Title» …\nx = color / PI * cosine;");
         assert!(shader.has(Slot::Brdf) && shader.has(Slot::DiffuseBrdf) && !shader.has(Slot::ViewBrdf));

@@ -215,7 +215,7 @@ pub(super) fn moved_direction(direction: Point, at: Point, motion: Option<usize>
     format!("motion{motion}({at} + {direction}) - motion{motion}({at})")
 }
 
-const ROTATE: &str = "// Rodrigues' formula: v turned about a unit axis.
+const ROTATE: &str = "// Rotates v about a unit axis (Rodrigues' formula).
 vec3 rotate(vec3 v, vec3 axis, float angle) {
     float c = «AngleCosine: cos(angle)»;
     float s = «AngleSine: sin(angle)»;

@@ -1,208 +1,152 @@
 //! `[film]`, `[camera]` and `[[figure]]`
 
-use serde::Deserialize;
-use toml::Spanned;
+use toyproof_diagnostic::Span;
 
 use super::super::{Camera, Figure, Film, Integrator, Outline, Projection, Sampler, ToneMap};
-use super::checks::{Checks, Pair, Triple};
+use crate::toml_reader::Table;
 
 /// The maximum number of samples per pixel.
-const MAX_SAMPLES: i64 = 65_536;
+const MAX_SAMPLES: u32 = 65_536;
 /// The maximum number of path segments.
-const MAX_DEPTH: i64 = 1_000;
+const MAX_DEPTH: u32 = 1_000;
 
-#[derive(Deserialize, Default)]
-#[serde(deny_unknown_fields)]
+const SAMPLERS: [(&str, Sampler); 5] = [
+    ("center", Sampler::Center),
+    ("sine-hash", Sampler::SineHash),
+    ("independent", Sampler::Independent),
+    ("stratified", Sampler::Stratified),
+    ("sobol", Sampler::Sobol),
+];
+const INTEGRATORS: [(&str, Integrator); 2] = [("whitted", Integrator::Whitted), ("path", Integrator::Path)];
+const TONE_MAPS: [(&str, ToneMap); 2] = [("none", ToneMap::None), ("reinhard", ToneMap::Reinhard)];
+
+pub(super) const DEFAULT_FILM: Film = Film {
+    size: [640, 360],
+    samples: 1,
+    sampler: Sampler::Center,
+    max_depth: 1,
+    integrator: Integrator::Whitted,
+    tone_map: ToneMap::None,
+    gamma: 1.0,
+};
+
+/// The film, and where its keys stand that other tables depend on.
 pub(super) struct FilmTable {
-    size: Option<Spanned<[i64; 2]>>,
-    samples: Option<Spanned<i64>>,
-    sampler: Option<SamplerName>,
-    pub(super) max_depth: Option<Spanned<i64>>,
-    integrator: Option<IntegratorName>,
-    tone_map: Option<ToneMapName>,
-    gamma: Option<Spanned<f64>>,
-}
-
-#[derive(Deserialize, Clone, Copy)]
-#[serde(rename_all = "kebab-case")]
-enum SamplerName {
-    Center,
-    SineHash,
-    Independent,
-    Stratified,
-    Sobol,
-}
-
-#[derive(Deserialize, Clone, Copy)]
-#[serde(rename_all = "kebab-case")]
-enum IntegratorName {
-    Whitted,
-    Path,
-}
-
-#[derive(Deserialize, Clone, Copy)]
-#[serde(rename_all = "kebab-case")]
-enum ToneMapName {
-    None,
-    Reinhard,
+    pub(super) film: Film,
+    pub(super) max_depth: Option<Span>,
+    pub(super) integrator: Option<Span>,
 }
 
 impl FilmTable {
-    pub(super) fn check(self, checks: &mut Checks) -> Film {
-        Film {
-            size: checks.size(self.size),
-            samples: checks.count("samples", self.samples, MAX_SAMPLES),
-            sampler: match self.sampler {
-                None | Some(SamplerName::Center) => Sampler::Center,
-                Some(SamplerName::SineHash) => Sampler::SineHash,
-                Some(SamplerName::Independent) => Sampler::Independent,
-                Some(SamplerName::Stratified) => Sampler::Stratified,
-                Some(SamplerName::Sobol) => Sampler::Sobol,
+    pub(super) fn read(table: &mut Table) -> Self {
+        let default = DEFAULT_FILM;
+        let size = table.size_or("size", default.size);
+        let samples = table.count_or("samples", [1, MAX_SAMPLES], default.samples);
+        let sampler = table.choice("sampler", "sampler", &SAMPLERS);
+        let max_depth = table.value_span("max_depth");
+        let depth = table.count_or("max_depth", [1, MAX_DEPTH], default.max_depth);
+        let integrator = table.choice("integrator", "integrator", &INTEGRATORS);
+        let tone_map = table.choice("tone_map", "tone map", &TONE_MAPS);
+        Self {
+            film: Film {
+                size,
+                samples,
+                sampler: sampler.map_or(default.sampler, |sampler| sampler.value),
+                max_depth: depth,
+                integrator: integrator.map_or(default.integrator, |integrator| integrator.value),
+                tone_map: tone_map.map_or(default.tone_map, |tone_map| tone_map.value),
+                gamma: table.positive_or("gamma", default.gamma),
             },
-            max_depth: checks.count("max_depth", self.max_depth, MAX_DEPTH),
-            integrator: match self.integrator {
-                None | Some(IntegratorName::Whitted) => Integrator::Whitted,
-                Some(IntegratorName::Path) => Integrator::Path,
-            },
-            tone_map: match self.tone_map {
-                None | Some(ToneMapName::None) => ToneMap::None,
-                Some(ToneMapName::Reinhard) => ToneMap::Reinhard,
-            },
-            gamma: self.gamma.map_or(1.0, |gamma| checks.positive("gamma", &gamma)),
+            max_depth,
+            integrator: integrator.map(|integrator| integrator.span),
         }
     }
 }
 
-#[derive(Deserialize, Default)]
-#[serde(deny_unknown_fields)]
-pub(super) struct CameraTable {
-    eye: Option<Triple>,
-    projection: Option<Spanned<ProjectionName>>,
-    screen_distance: Option<Spanned<f64>>,
-    width: Option<Spanned<f64>>,
-}
+/// The default of `screen_distance` and of `width`, in scene units.
+const DEFAULT_EXTENT: f64 = 2.0;
 
-#[derive(Deserialize, Clone, Copy)]
-#[serde(rename_all = "kebab-case")]
-enum ProjectionName {
-    Pinhole,
-    Parallel,
-}
+pub(super) const DEFAULT_CAMERA: Camera = Camera {
+    eye: [0.0; 3],
+    projection: Projection::Pinhole {
+        screen_distance: DEFAULT_EXTENT,
+    },
+};
 
-impl CameraTable {
-    pub(super) fn check(self, checks: &mut Checks) -> Camera {
-        let name = self
-            .projection
-            .map_or(ProjectionName::Pinhole, Spanned::into_inner);
-        let or_two = |what: &str, value: Option<Spanned<f64>>, checks: &mut Checks| {
-            value.map_or(2.0, |value| checks.positive(what, &value))
-        };
-        let projection = match name {
-            ProjectionName::Pinhole => {
-                checks.refuse_key("width", self.width.as_ref(), "parallel", "pinhole");
-                let screen_distance = or_two("screen_distance", self.screen_distance, checks);
-                Projection::Pinhole { screen_distance }
-            }
-            ProjectionName::Parallel => {
-                checks.refuse_key(
-                    "screen_distance",
-                    self.screen_distance.as_ref(),
-                    "pinhole",
-                    "parallel",
-                );
-                let width = or_two("width", self.width, checks);
-                Projection::Parallel { width }
-            }
-        };
-        Camera {
-            eye: checks.point("eye", self.eye, [0.0; 3]),
-            projection,
+pub(super) fn camera(table: &mut Table) -> Camera {
+    let eye = table.point_or("eye", DEFAULT_CAMERA.eye);
+    let names = [("pinhole", false), ("parallel", true)];
+    let is_parallel = table.choice("projection", "projection", &names);
+    let projection = if is_parallel.is_some_and(|name| name.value) {
+        table.reject_keys(&["screen_distance"], "projection", "pinhole", "parallel");
+        Projection::Parallel {
+            width: table.positive_or("width", DEFAULT_EXTENT),
         }
-    }
+    } else {
+        table.reject_keys(&["width"], "projection", "parallel", "pinhole");
+        Projection::Pinhole {
+            screen_distance: table.positive_or("screen_distance", DEFAULT_EXTENT),
+        }
+    };
+    Camera { eye, projection }
 }
 
 // `[[figure]]`
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct FigureTable {
-    outline: Spanned<OutlineName>,
-    color: Spanned<[f64; 3]>,
-    center: Option<Pair>,
-    radius: Option<Spanned<f64>>,
-    size: Option<Spanned<f64>>,
-    height: Option<Spanned<f64>>,
-    amplitude: Option<Spanned<f64>>,
-    frequency: Option<Spanned<f64>>,
-}
-
-#[derive(Deserialize, Clone, Copy, PartialEq, Eq)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, PartialEq, Eq)]
 enum OutlineName {
     Disk,
     Wave,
     Heart,
 }
 
-impl OutlineName {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Disk => "disk",
-            Self::Wave => "wave",
-            Self::Heart => "heart",
-        }
-    }
-}
+const OUTLINES: [(&str, OutlineName); 3] = [
+    ("disk", OutlineName::Disk),
+    ("wave", OutlineName::Wave),
+    ("heart", OutlineName::Heart),
+];
 
-impl FigureTable {
-    pub(super) fn check(self, checks: &mut Checks) -> Figure {
-        let place = self.outline.span();
-        let name = self.outline.into_inner();
-        let numbers = [
-            ("radius", OutlineName::Disk, &self.radius),
-            ("size", OutlineName::Heart, &self.size),
-            ("height", OutlineName::Wave, &self.height),
-            ("amplitude", OutlineName::Wave, &self.amplitude),
-            ("frequency", OutlineName::Wave, &self.frequency),
-        ];
-        for (key, owner, value) in numbers {
-            if owner != name {
-                checks.refuse_key(key, value.as_ref(), owner.name(), name.name());
-            }
-        }
-        if name == OutlineName::Wave {
-            checks.refuse_key("center", self.center.as_ref(), "disk", name.name());
-        }
-        let positive = |key: &str, value: &Option<Spanned<f64>>, checks: &mut Checks| {
-            let value = checks.required(key, value.as_ref(), &place);
-            value.map_or(1.0, |value| checks.positive(key, value))
-        };
-        let number = |key: &str, value: &Option<Spanned<f64>>, checks: &mut Checks| {
-            let value = checks.required(key, value.as_ref(), &place);
-            value.map_or(1.0, |value| checks.finite(key, value))
-        };
-        let center = |checks: &mut Checks| {
-            let value = checks.required("center", self.center.as_ref(), &place);
-            value.map_or([0.0; 2], |value| checks.pair("center", value))
-        };
-        let outline = match name {
-            OutlineName::Disk => Outline::Disk {
-                center: center(checks),
-                radius: positive("radius", &self.radius, checks),
-            },
-            OutlineName::Wave => Outline::Wave {
-                height: number("height", &self.height, checks),
-                amplitude: number("amplitude", &self.amplitude, checks),
-                frequency: number("frequency", &self.frequency, checks),
-            },
-            OutlineName::Heart => Outline::Heart {
-                center: center(checks),
-                size: positive("size", &self.size, checks),
-            },
-        };
-        Figure {
-            outline,
-            color: checks.color("color", Some(self.color), [0.0; 3]),
+/// The keys that only some outlines have, each with its outlines.
+const OUTLINE_KEYS: [(&[&str], &[OutlineName], &str); 4] = [
+    (&["radius"], &[OutlineName::Disk], "disk"),
+    (&["size"], &[OutlineName::Heart], "heart"),
+    (
+        &["height", "amplitude", "frequency"],
+        &[OutlineName::Wave],
+        "wave",
+    ),
+    (&["center"], &[OutlineName::Disk, OutlineName::Heart], "disk"),
+];
+
+/// Reads a figure; none if its outline is unknown, which is reported.
+pub(super) fn figure(table: &mut Table) -> Option<Figure> {
+    let name = table.required_choice("outline", "outline", &OUTLINES);
+    let color = table.color("color");
+    let Some(name) = name else {
+        table.ignore_rest();
+        return None;
+    };
+    let written = OUTLINES.iter().find(|(_, outline)| *outline == name.value);
+    let written = written.map_or("", |(written, _)| written);
+    for (keys, owners, owner) in OUTLINE_KEYS {
+        if !owners.contains(&name.value) {
+            table.reject_keys(keys, "outline", owner, written);
         }
     }
+    let outline = match name.value {
+        OutlineName::Disk => Outline::Disk {
+            center: table.pair("center"),
+            radius: table.positive("radius"),
+        },
+        OutlineName::Wave => Outline::Wave {
+            height: table.number("height"),
+            amplitude: table.number("amplitude"),
+            frequency: table.number("frequency"),
+        },
+        OutlineName::Heart => Outline::Heart {
+            center: table.pair("center"),
+            size: table.positive("size"),
+        },
+    };
+    Some(Figure { outline, color })
 }

@@ -1,252 +1,166 @@
 //! The tables of the scene file for surfaces (`[[sphere]]` and others), for their materials, and for motions.
 
-use std::ops::Range;
-
-use serde::Deserialize;
-use toml::Spanned;
+use toyproof_diagnostic::{Span, grouped, nearest};
 
 use super::super::{
     Checker, Disney, Fresnel, Material, Model, Motion, Object, Period, Point, Quadric, QuadricKind, Scatter,
     Shape,
 };
-use super::Surface;
-use super::checks::{Checks, Pair, Triple};
+use crate::toml_reader::{Table, list_of};
 
 /// The maximum number of spheres of one scatter.
 const MAX_SCATTER: u64 = 65_536;
 /// The default axis: upright.
 const UP: Point = [0.0, 1.0, 0.0];
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct SphereTable {
-    center: Triple,
-    radius: Spanned<f64>,
-    material: MaterialTable,
-    motion: Option<Spanned<String>>,
-}
+/// Reads the shape of a surface from its table.
+type ReadShape = fn(&mut Table) -> Shape;
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct PlaneTable {
-    point: Triple,
-    normal: Option<Triple>,
-    material: MaterialTable,
-    motion: Option<Spanned<String>>,
-}
+/// The tables that describe one surface each, and what reads their shape.
+pub(super) const SHAPES: [(&str, ReadShape); 7] = [
+    ("sphere", sphere),
+    ("plane", plane),
+    ("ellipsoid", ellipsoid),
+    ("cylinder", |table| {
+        axial(table, "base", |radius, height| QuadricKind::Cylinder {
+            radius,
+            height,
+        })
+    }),
+    ("cone", |table| {
+        axial(table, "apex", |radius, height| QuadricKind::Cone {
+            radius,
+            height,
+        })
+    }),
+    ("paraboloid", |table| {
+        axial(table, "apex", |radius, height| QuadricKind::Paraboloid {
+            radius,
+            height,
+        })
+    }),
+    ("hyperboloid", hyperboloid),
+];
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct EllipsoidTable {
-    center: Triple,
-    radii: Triple,
-    material: MaterialTable,
-    motion: Option<Spanned<String>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct HyperboloidTable {
-    center: Triple,
-    axis: Option<Triple>,
-    waist: Spanned<f64>,
-    radius: Spanned<f64>,
-    height: Spanned<f64>,
-    material: MaterialTable,
-    motion: Option<Spanned<String>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct ScatterTable {
-    corner: Triple,
-    cells: Spanned<[u32; 3]>,
-    spacing: Spanned<f64>,
-    radius: Pair,
-    seed: Option<u32>,
-    material: MaterialTable,
-    motion: Option<Spanned<String>>,
-}
-
-/// Returns one surface from its shape and the keys that all tables have.
-fn object(
-    shape: Shape,
-    (material, motion): (MaterialTable, Option<Spanned<String>>),
-    names: &MotionNames,
-    checks: &mut Checks,
-) -> (Vec<Object>, Range<usize>) {
-    let (material, place) = material.check(checks);
+/// Reads a surface, and where its model stands.
+pub(super) fn object(table: &mut Table, names: &MotionNames, shape: ReadShape) -> (Object, Option<Span>) {
+    let shape = shape(table);
+    let (material, model) = material(table);
     let object = Object {
         shape,
         material,
-        motion: names.find(motion, checks),
+        motion: names.read("motion", table),
     };
-    (vec![object], place)
+    (object, model)
 }
 
-fn quadric(origin: (&str, Triple), axis: Option<Triple>, kind: QuadricKind, checks: &mut Checks) -> Shape {
-    let axis = checks.direction("axis", axis, UP);
-    let (what, origin) = origin;
-    let origin = checks.point(what, Some(origin), [0.0; 3]);
+fn sphere(table: &mut Table) -> Shape {
+    Shape::Sphere {
+        center: table.point("center"),
+        radius: table.positive("radius"),
+    }
+}
+
+fn plane(table: &mut Table) -> Shape {
+    Shape::Plane {
+        point: table.point("point"),
+        normal: table.direction_or("normal", UP),
+    }
+}
+
+fn ellipsoid(table: &mut Table) -> Shape {
+    Shape::Quadric(Quadric {
+        origin: table.point("center"),
+        kind: QuadricKind::Ellipsoid {
+            radii: table.radii("radii"),
+        },
+        axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+    })
+}
+
+/// Reads a quadric with a radius at one end of the axis and a height along it.
+fn axial(table: &mut Table, origin: &'static str, kind: fn(f64, f64) -> QuadricKind) -> Shape {
+    let origin = table.point(origin);
+    let axis = table.direction_or("axis", UP);
+    let kind = kind(table.positive("radius"), table.positive("height"));
     Shape::Quadric(Quadric::around(axis, origin, kind))
 }
 
-impl Surface for SphereTable {
-    fn check(self, names: &MotionNames, checks: &mut Checks) -> (Vec<Object>, Range<usize>) {
-        let shape = Shape::Sphere {
-            center: checks.point("center", Some(self.center), [0.0; 3]),
-            radius: checks.positive("radius", &self.radius),
-        };
-        object(shape, (self.material, self.motion), names, checks)
+fn hyperboloid(table: &mut Table) -> Shape {
+    let origin = table.point("center");
+    let axis = table.direction_or("axis", UP);
+    let waist_span = table.value_span("waist");
+    let waist = table.positive("waist");
+    let radius = table.positive("radius");
+    let height = table.positive("height");
+    if let Some(span) = waist_span
+        && table.is_valid()
+        && waist >= radius
+    {
+        let found = table.excerpt(span);
+        let message = format!("`waist` must be less than `radius`, found {found}");
+        table.reject(span, message, "for a constant radius, use [[cylinder]]");
     }
+    let kind = QuadricKind::Hyperboloid {
+        waist,
+        radius,
+        height,
+    };
+    Shape::Quadric(Quadric::around(axis, origin, kind))
 }
 
-impl Surface for PlaneTable {
-    fn check(self, names: &MotionNames, checks: &mut Checks) -> (Vec<Object>, Range<usize>) {
-        let shape = Shape::Plane {
-            point: checks.point("point", Some(self.point), [0.0; 3]),
-            normal: checks.direction("normal", self.normal, UP),
-        };
-        object(shape, (self.material, self.motion), names, checks)
+/// Reads a scatter, and where its model stands.
+pub(super) fn scatter(table: &mut Table, names: &MotionNames) -> (Scatter, Option<Span>) {
+    let corner = table.point("corner");
+    let cells = cells(table);
+    let spacing = table.positive("spacing");
+    let radius = table.required::<[f64; 2]>("radius");
+    if let Some(radius) = &radius {
+        let [min, max] = radius.value;
+        if !(min > 0.0 && min <= max) {
+            table.reject_value("radius", radius, "must be a minimum greater than 0 and a maximum");
+        } else if table.is_valid() && max > 0.5 * spacing {
+            table.reject_value("radius", radius, "must be at most half of `spacing`");
+        }
     }
+    let seed = table.count_or("seed", [0, u32::MAX], 0);
+    let (material, model) = material(table);
+    let scatter = Scatter {
+        corner,
+        cells,
+        spacing,
+        radius: radius.map_or([1.0; 2], |radius| radius.value),
+        seed,
+        material,
+        motion: names.read("motion", table),
+    };
+    (scatter, model)
 }
 
-impl Surface for EllipsoidTable {
-    fn check(self, names: &MotionNames, checks: &mut Checks) -> (Vec<Object>, Range<usize>) {
-        let radii = *self.radii.get_ref();
-        if !radii.iter().all(|radius| radius.is_finite() && *radius > 0.0) {
-            checks.refuse(
-                self.radii.span(),
-                "radii must be three finite numbers above 0".to_owned(),
-            );
-        }
-        let shape = Shape::Quadric(Quadric {
-            kind: QuadricKind::Ellipsoid { radii },
-            origin: checks.point("center", Some(self.center), [0.0; 3]),
-            axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-        });
-        object(shape, (self.material, self.motion), names, checks)
+fn cells(table: &mut Table) -> [u32; 3] {
+    let Some(located) = table.required::<[i64; 3]>("cells") else {
+        return [1; 3];
+    };
+    let cells = located.value.map(|side| u32::try_from(side).unwrap_or(0));
+    let count = cells
+        .iter()
+        .map(|side| u64::from(*side))
+        .fold(1, u64::saturating_mul);
+    if located.value.iter().any(|side| *side < 1) {
+        table.reject_value("cells", &located, "must be at least 1 in each direction");
+        return [1; 3];
     }
-}
-
-/// Defines tables of quadrics with a radius at one end of the axis and a height along it.
-macro_rules! axial_tables {
-    ($($table:ident: $kind:ident from $origin:ident;)*) => {$(
-        #[derive(Deserialize)]
-        #[serde(deny_unknown_fields)]
-        pub(super) struct $table {
-            $origin: Triple,
-            axis: Option<Triple>,
-            radius: Spanned<f64>,
-            height: Spanned<f64>,
-            material: MaterialTable,
-            motion: Option<Spanned<String>>,
-        }
-
-        impl Surface for $table {
-            fn check(self, names: &MotionNames, checks: &mut Checks) -> (Vec<Object>, Range<usize>) {
-                let kind = QuadricKind::$kind {
-                    radius: checks.positive("radius", &self.radius),
-                    height: checks.positive("height", &self.height),
-                };
-                let shape = quadric((stringify!($origin), self.$origin), self.axis, kind, checks);
-                object(shape, (self.material, self.motion), names, checks)
-            }
-        }
-    )*};
-}
-
-axial_tables! {
-    CylinderTable: Cylinder from base;
-    ConeTable: Cone from apex;
-    ParaboloidTable: Paraboloid from apex;
-}
-
-impl Surface for HyperboloidTable {
-    fn check(self, names: &MotionNames, checks: &mut Checks) -> (Vec<Object>, Range<usize>) {
-        let waist = checks.positive("waist", &self.waist);
-        let radius = checks.positive("radius", &self.radius);
-        if waist >= radius {
-            checks.refuse(self.waist.span(), "waist must be smaller than radius".to_owned());
-        }
-        let height = checks.positive("height", &self.height);
-        let kind = QuadricKind::Hyperboloid {
-            waist,
-            radius,
-            height,
-        };
-        let shape = quadric(("center", self.center), self.axis, kind, checks);
-        object(shape, (self.material, self.motion), names, checks)
+    if !(1..=MAX_SCATTER).contains(&count) {
+        let problem = format!("must have a product of at most {}", grouped(MAX_SCATTER));
+        table.reject_value("cells", &located, &problem);
+        return [1; 3];
     }
-}
-
-impl ScatterTable {
-    /// Returns the scatter, and the bytes of the file that name its model.
-    pub(super) fn check(self, names: &MotionNames, checks: &mut Checks) -> (Scatter, Range<usize>) {
-        let cells = *self.cells.get_ref();
-        let number: u64 = cells
-            .iter()
-            .map(|side| u64::from(*side))
-            .fold(1, u64::saturating_mul);
-        if !(1..=MAX_SCATTER).contains(&number) {
-            let message =
-                format!("cells must be three whole numbers whose product is from 1 to {MAX_SCATTER}");
-            checks.refuse(self.cells.span(), message);
-        }
-        let spacing = checks.positive("spacing", &self.spacing);
-        let radius = *self.radius.get_ref();
-        if !(radius[0] > 0.0 && radius[0] <= radius[1] && radius[1] <= 0.5 * spacing) {
-            let message = "radius must be the smallest and the largest, above 0 and at most half the spacing";
-            checks.refuse(self.radius.span(), message.to_owned());
-        }
-        let (material, place) = self.material.check(checks);
-        let scatter = Scatter {
-            corner: checks.point("corner", Some(self.corner), [0.0; 3]),
-            cells: if number > MAX_SCATTER { [1; 3] } else { cells },
-            spacing,
-            radius,
-            seed: self.seed.unwrap_or(0),
-            material,
-            motion: names.find(self.motion, checks),
-        };
-        (scatter, place)
-    }
+    cells
 }
 
 // `material = { … }`
 
-type Number = Option<Spanned<f64>>;
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct MaterialTable {
-    model: Spanned<ModelName>,
-    color: Triple,
-    checker: Option<CheckerTable>,
-    exponent: Number,
-    ior: Number,
-    fresnel: Option<Spanned<FresnelName>>,
-    metallic: Number,
-    subsurface: Number,
-    specular: Number,
-    specular_tint: Number,
-    roughness: Number,
-    anisotropic: Number,
-    sheen: Number,
-    sheen_tint: Number,
-    clearcoat: Number,
-    clearcoat_gloss: Number,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct CheckerTable {
-    color: Triple,
-    size: Spanned<f64>,
-}
-
-#[derive(Deserialize, Clone, Copy, PartialEq, Eq)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, PartialEq, Eq)]
 enum ModelName {
     Facing,
     Lambert,
@@ -258,202 +172,176 @@ enum ModelName {
     Emitter,
 }
 
-impl ModelName {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Facing => "facing",
-            Self::Lambert => "lambert",
-            Self::Diffuse => "diffuse",
-            Self::Disney => "disney",
-            Self::Glossy => "glossy",
-            Self::Mirror => "mirror",
-            Self::Glass => "glass",
-            Self::Emitter => "emitter",
-        }
-    }
-}
+const MODELS: [(&str, ModelName); 8] = [
+    ("facing", ModelName::Facing),
+    ("lambert", ModelName::Lambert),
+    ("diffuse", ModelName::Diffuse),
+    ("disney", ModelName::Disney),
+    ("glossy", ModelName::Glossy),
+    ("mirror", ModelName::Mirror),
+    ("glass", ModelName::Glass),
+    ("emitter", ModelName::Emitter),
+];
 
-#[derive(Deserialize, Clone, Copy)]
-#[serde(rename_all = "kebab-case")]
-enum FresnelName {
-    Exact,
-    Schlick,
-}
+/// The keys that only one model has.
+const MODEL_KEYS: [(&[&str], ModelName, &str); 3] = [
+    (&["exponent"], ModelName::Glossy, "glossy"),
+    (&["ior", "fresnel"], ModelName::Glass, "glass"),
+    (
+        &[
+            "metallic",
+            "subsurface",
+            "specular",
+            "specular_tint",
+            "roughness",
+            "anisotropic",
+            "sheen",
+            "sheen_tint",
+            "clearcoat",
+            "clearcoat_gloss",
+        ],
+        ModelName::Disney,
+        "disney",
+    ),
+];
 
-impl MaterialTable {
-    /// Returns the material, and the bytes of the file that name its model.
-    pub(super) fn check(self, checks: &mut Checks) -> (Material, Range<usize>) {
-        let place = self.model.span();
-        let name = *self.model.get_ref();
-        self.reject_keys_of_other_models(name, checks);
-        let model = match name {
-            ModelName::Facing => Model::Facing,
-            ModelName::Lambert => Model::Lambert,
-            ModelName::Diffuse => Model::Diffuse,
-            ModelName::Disney => Model::Disney(self.disney(checks)),
-            ModelName::Glossy => {
-                let exponent = checks.required("exponent", self.exponent.as_ref(), &place);
-                Model::Glossy {
-                    exponent: exponent.map_or(1.0, |exponent| checks.positive("exponent", exponent)),
-                }
-            }
-            ModelName::Mirror => Model::Mirror,
-            ModelName::Glass => {
-                let ior = checks.required("ior", self.ior.as_ref(), &place);
-                Model::Glass {
-                    ior: ior.map_or(1.5, |ior| checks.positive("ior", ior)),
-                    fresnel: match self.fresnel.as_ref().map(Spanned::get_ref) {
-                        None | Some(FresnelName::Exact) => Fresnel::Exact,
-                        Some(FresnelName::Schlick) => Fresnel::Schlick,
-                    },
-                }
-            }
-            ModelName::Emitter => Model::Emitter,
+const FRESNEL: [(&str, Fresnel); 2] = [("exact", Fresnel::Exact), ("schlick", Fresnel::Schlick)];
+
+/// What stands for a material that is missing or in error.
+const PLACEHOLDER: Material = Material {
+    model: Model::Facing,
+    color: [1.0; 3],
+    checker: None,
+};
+
+const MATERIAL_EXAMPLE: &str = "material = { model = \"lambert\", color = [1.0, 0.5, 0.2] }";
+const CHECKER_EXAMPLE: &str = "checker = { color = [1.0, 1.0, 1.0], size = 1.0 }";
+
+/// Reads the material of a surface, and where its model stands.
+fn material(surface: &mut Table) -> (Material, Option<Span>) {
+    let material = surface.required_table("material", MATERIAL_EXAMPLE, |table| {
+        let name = table.required_choice("model", "material model", &MODELS);
+        let color = table.color("color");
+        let checker = table.inline_table("checker", CHECKER_EXAMPLE, |table| Checker {
+            color: table.color("color"),
+            size: table.positive("size"),
+        });
+        let Some(name) = name else {
+            table.ignore_rest();
+            return (PLACEHOLDER, None);
         };
+        let written = MODELS.iter().find(|(_, model)| *model == name.value);
+        let written = written.map_or("", |(written, _)| written);
+        for (keys, owner, owner_name) in MODEL_KEYS {
+            if owner != name.value {
+                table.reject_keys(keys, "model", owner_name, written);
+            }
+        }
         let material = Material {
-            model,
-            color: checks.color("color", Some(self.color), [0.0; 3]),
-            checker: self.checker.map(|checker| Checker {
-                color: checks.color("color", Some(checker.color), [0.0; 3]),
-                size: checks.positive("size", &checker.size),
-            }),
+            model: model(name.value, table),
+            color,
+            checker,
         };
-        (material, place)
-    }
+        (material, Some(name.span))
+    });
+    material.unwrap_or((PLACEHOLDER, None))
+}
 
-    /// Returns the parameters of Burley's BRDF with their keys.
-    fn parameters(&self) -> [(&'static str, &Number); 10] {
-        [
-            ("metallic", &self.metallic),
-            ("subsurface", &self.subsurface),
-            ("specular", &self.specular),
-            ("specular_tint", &self.specular_tint),
-            ("roughness", &self.roughness),
-            ("anisotropic", &self.anisotropic),
-            ("sheen", &self.sheen),
-            ("sheen_tint", &self.sheen_tint),
-            ("clearcoat", &self.clearcoat),
-            ("clearcoat_gloss", &self.clearcoat_gloss),
-        ]
+fn model(name: ModelName, table: &mut Table) -> Model {
+    match name {
+        ModelName::Facing => Model::Facing,
+        ModelName::Lambert => Model::Lambert,
+        ModelName::Diffuse => Model::Diffuse,
+        ModelName::Disney => Model::Disney(disney(table)),
+        ModelName::Glossy => Model::Glossy {
+            exponent: table.positive("exponent"),
+        },
+        ModelName::Mirror => Model::Mirror,
+        ModelName::Glass => Model::Glass {
+            ior: table.positive("ior"),
+            fresnel: table
+                .choice("fresnel", "Fresnel formula", &FRESNEL)
+                .map_or(Fresnel::Exact, |fresnel| fresnel.value),
+        },
+        ModelName::Emitter => Model::Emitter,
     }
+}
 
-    fn reject_keys_of_other_models(&self, name: ModelName, checks: &mut Checks) {
-        if name != ModelName::Glossy {
-            checks.refuse_key("exponent", self.exponent.as_ref(), "glossy", name.name());
-        }
-        if name != ModelName::Glass {
-            checks.refuse_key("ior", self.ior.as_ref(), "glass", name.name());
-            checks.refuse_key("fresnel", self.fresnel.as_ref(), "glass", name.name());
-        }
-        if name != ModelName::Disney {
-            for (key, value) in self.parameters() {
-                checks.refuse_key(key, value.as_ref(), "disney", name.name());
-            }
-        }
-    }
-
-    fn disney(&self, checks: &mut Checks) -> Disney {
-        let Disney {
-            metallic,
-            subsurface,
-            specular,
-            specular_tint,
-            roughness,
-            anisotropic,
-            sheen,
-            sheen_tint,
-            clearcoat,
-            clearcoat_gloss,
-        } = Disney::default();
-        let mut share =
-            |what, value: &Number, default| value.as_ref().map_or(default, |value| checks.share(what, value));
-        Disney {
-            metallic: share("metallic", &self.metallic, metallic),
-            subsurface: share("subsurface", &self.subsurface, subsurface),
-            specular: share("specular", &self.specular, specular),
-            specular_tint: share("specular_tint", &self.specular_tint, specular_tint),
-            roughness: share("roughness", &self.roughness, roughness),
-            anisotropic: share("anisotropic", &self.anisotropic, anisotropic),
-            sheen: share("sheen", &self.sheen, sheen),
-            sheen_tint: share("sheen_tint", &self.sheen_tint, sheen_tint),
-            clearcoat: share("clearcoat", &self.clearcoat, clearcoat),
-            clearcoat_gloss: share("clearcoat_gloss", &self.clearcoat_gloss, clearcoat_gloss),
-        }
+fn disney(table: &mut Table) -> Disney {
+    let default = Disney::default();
+    Disney {
+        metallic: table.share_or("metallic", default.metallic),
+        subsurface: table.share_or("subsurface", default.subsurface),
+        specular: table.share_or("specular", default.specular),
+        specular_tint: table.share_or("specular_tint", default.specular_tint),
+        roughness: table.share_or("roughness", default.roughness),
+        anisotropic: table.share_or("anisotropic", default.anisotropic),
+        sheen: table.share_or("sheen", default.sheen),
+        sheen_tint: table.share_or("sheen_tint", default.sheen_tint),
+        clearcoat: table.share_or("clearcoat", default.clearcoat),
+        clearcoat_gloss: table.share_or("clearcoat_gloss", default.clearcoat_gloss),
     }
 }
 
 // `[[motion]]`, and references to motions by name
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct MotionTable {
-    name: Spanned<String>,
-    pivot: Option<Triple>,
-    axis: Option<Triple>,
-    frames: Option<Spanned<f64>>,
-    seconds: Option<Spanned<f64>>,
-    within: Option<Spanned<String>>,
-}
-
-/// The names of motions, in file order.
+/// The names of motions, in the order of the file.
+#[derive(Default)]
 pub(super) struct MotionNames(Vec<String>);
 
 impl MotionNames {
-    /// Returns the index of the motion with that name.
-    pub(super) fn find(&self, name: Option<Spanned<String>>, checks: &mut Checks) -> Option<usize> {
-        let name = name?;
-        let found = self.0.iter().position(|known| known == name.get_ref());
+    /// Returns the index of the motion that a key names, if there is such a key.
+    pub(super) fn read(&self, key: &'static str, table: &mut Table) -> Option<usize> {
+        let name = table.optional::<String>(key)?;
+        let found = self.0.iter().position(|known| *known == name.value);
         if found.is_none() {
-            let known: Vec<_> = self.0.iter().map(|known| format!("\"{known}\"")).collect();
-            let known = match known.as_slice() {
-                [] => "there is none before here".to_owned(),
-                known => format!("expected {}", known.join(" or ")),
+            let known: Vec<_> = self.0.iter().map(|known| format!("`{known}`")).collect();
+            let known: Vec<_> = known.iter().map(String::as_str).collect();
+            let near = nearest(&name.value, self.0.iter().map(String::as_str));
+            let help = match (near, known.as_slice()) {
+                (Some(near), _) => format!("did you mean `{near}`?"),
+                (None, []) => format!("define it above in a [[motion]] with `name = \"{}\"`", name.value),
+                (None, known) => format!("expected {}, or another [[motion]] above", list_of(known)),
             };
-            checks.refuse(
-                name.span(),
-                format!("no motion is called \"{}\": {known}", name.get_ref()),
-            );
+            table.reject(name.span, format!("unknown motion `{}`", name.value), &help);
         }
         found
     }
 }
 
-pub(super) fn check_motions(tables: Vec<MotionTable>, checks: &mut Checks) -> (Vec<Motion>, MotionNames) {
-    let mut names = MotionNames(Vec::new());
-    let mut motions = Vec::new();
-    for table in tables {
-        let place = table.name.span();
-        let period = match (&table.frames, &table.seconds) {
-            (Some(frames), None) => Period::Frames(nonzero("frames", frames, checks)),
-            (None, Some(seconds)) => Period::Seconds(nonzero("seconds", seconds, checks)),
-            _ => {
-                let message = "a motion takes either frames or seconds for one turn";
-                checks.refuse(place.clone(), message.to_owned());
-                Period::Frames(1.0)
+/// Reads a motion, and adds its name to those of the earlier ones.
+pub(super) fn motion(table: &mut Table, names: &mut MotionNames) -> Motion {
+    let name = table.required::<String>("name");
+    let period = match [table.nonzero("frames"), table.nonzero("seconds")] {
+        [Some(frames), None] => Period::Frames(frames),
+        [None, Some(seconds)] => Period::Seconds(seconds),
+        periods => {
+            if table.is_valid() || periods[0].is_some() {
+                let message = "a motion needs either `frames` or `seconds` for one turn";
+                let help = match periods {
+                    [None, None] => "add `seconds = 8.0`",
+                    _ => "remove one of the two",
+                };
+                table.reject(table.span(), message, help);
             }
-        };
-        motions.push(Motion {
-            pivot: checks.point("pivot", table.pivot, [0.0; 3]),
-            axis: checks.direction("axis", table.axis, [0.0, 1.0, 0.0]),
-            period,
-            within: names.find(table.within, checks),
-        });
-        let name = table.name.into_inner();
-        if names.0.contains(&name) {
-            checks.refuse(place, format!("a second motion is called \"{name}\""));
+            Period::Frames(1.0)
         }
-        names.0.push(name);
+    };
+    let motion = Motion {
+        pivot: table.point_or("pivot", [0.0; 3]),
+        axis: table.direction_or("axis", UP),
+        period,
+        within: names.read("within", table),
+    };
+    if let Some(name) = name {
+        if names.0.contains(&name.value) {
+            let message = format!("motion `{}` is defined twice", name.value);
+            table.reject(name.span, message, "give each motion a name of its own");
+        }
+        names.0.push(name.value);
+    } else {
+        // Keeps the indices of motions and of their names equal.
+        names.0.push(String::new());
     }
-    (motions, names)
-}
-
-fn nonzero(what: &str, value: &Spanned<f64>, checks: &mut Checks) -> f64 {
-    let number = *value.get_ref();
-    if !(number.is_finite() && number != 0.0) {
-        checks.refuse(
-            value.span(),
-            format!("{what} must be a finite number other than 0, not {number}"),
-        );
-    }
-    number
+    motion
 }

@@ -277,10 +277,7 @@ fn secondary_packets_match_single_rays() {
         compare_secondary::<f32>(1500, 15.0),
         compare_secondary::<f64>(1500, 30.0),
     ] {
-        assert!(
-            own > rays / 50,
-            "{own} of {rays} rays meet their own sphere again"
-        );
+        assert!(own > rays / 50, "{own} of {rays} rays hit their own sphere again");
     }
 }
 
@@ -293,7 +290,7 @@ fn every_way_gives_the_same_bits_at_every_size() {
     ] {
         assert!(
             hits > rays / 4 && hits < rays,
-            "{hits} of {rays} rays meet something"
+            "{hits} of {rays} rays hit something"
         );
     }
 }

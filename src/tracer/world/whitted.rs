@@ -88,7 +88,7 @@ struct LitPoint<'w, T: Real> {
     hit: Hit<T>,
     brdf: &'w Brdf<T>,
     color: T::Vec3,
-    /// Direction towards the origin of the ray.
+    /// Direction toward the origin of the ray.
     view: T::Vec3,
     light: T::Vec3,
 }

@@ -80,11 +80,11 @@ fn spend(budget: &mut f64, pixels: usize) -> bool {
 /// few are, then the shader's own, which are fitted to some of the pixels, then all that authors use, in each
 /// pixel by itself. A pixel outside of all is excluded if it lies on an edge across which the shader takes
 /// derivatives, whose values GLSL leaves to the driver. It is excluded, too, if the reference itself is
-/// ill-conditioned there: an edge of the scene passes through the pixel's sample. Otherwise it is undecided
-/// if the shader's own color changes by more than the tolerance in one of the images of `perturbed`, which
-/// renders the shader with every operation perturbed, given a seed and the wanted pixels (Vignes, "A
-/// stochastic arithmetic for reliable scientific computation", 1993). `perturbed` is called only if something
-/// differs, and may return none.
+/// ill-conditioned there: an edge of the scene passes through the pixel's sample. Otherwise it is
+/// ill-conditioned if the shader's own color changes by more than the tolerance in one of the images of
+/// `perturbed`, which renders the shader with every operation perturbed, given a seed and the wanted pixels
+/// (Vignes, "A stochastic arithmetic for reliable scientific computation", 1993). `perturbed` is called only
+/// if something differs, and may return none.
 ///
 /// # Panics
 /// If the sizes differ.
@@ -381,7 +381,7 @@ mod tests {
     }
 
     #[test]
-    fn pixels_in_the_range_agree_and_ill_conditioned_ones_are_undecided() {
+    fn pixels_in_the_range_agree_and_ill_conditioned_ones_are_not_wrong() {
         let expected = row(&[0.0; 5]);
         let actual = row(&[0.00009, 0.3, 0.3, 0.3, 0.3]);
         let range = |x, _| ColorRange {

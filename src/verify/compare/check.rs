@@ -129,7 +129,7 @@ impl CheckSummary {
         count as f64 / self.pixels.max(1) as f64
     }
 
-    /// Whether no pixel differs or is undecided.
+    /// Whether no pixel differs or is ill-conditioned.
     #[must_use]
     pub fn is_same(&self) -> bool {
         self.differing + self.ill_conditioned == 0
@@ -214,20 +214,20 @@ mod tests {
     fn undefined_pixels_are_not_counted_otherwise() {
         use PixelStatus::{Agrees, Differs, IllConditioned, Undefined};
         let (a, b) = (row(&[0.0; 5]), row(&[1.0, 0.0, 0.25, 0.5, 0.375]));
-        let answer = CheckSummary::new(&a, &b, &[Undefined, Agrees, Differs, Differs, IllConditioned]);
+        let summary = CheckSummary::new(&a, &b, &[Undefined, Agrees, Differs, Differs, IllConditioned]);
         assert_eq!(
             (
-                answer.pixels,
-                answer.differing,
-                answer.ill_conditioned,
-                answer.undefined
+                summary.pixels,
+                summary.differing,
+                summary.ill_conditioned,
+                summary.undefined
             ),
             (5, 2, 1, 1)
         );
-        assert_eq!(answer.max_abs, 0.5);
-        assert_eq!(answer.first.map(|pixel| pixel.x), Some(2));
-        assert_eq!(answer.worst.map(|pixel| pixel.x), Some(3));
-        assert!(!answer.is_same());
+        assert_eq!(summary.max_abs, 0.5);
+        assert_eq!(summary.first.map(|pixel| pixel.x), Some(2));
+        assert_eq!(summary.worst.map(|pixel| pixel.x), Some(3));
+        assert!(!summary.is_same());
     }
 
     #[test]
@@ -243,8 +243,8 @@ mod tests {
             Differs,
             Agrees,
         ];
-        // Differing pixels are reported even if undecided ones are below them; without any, the undecided
-        // ones are.
+        // Differing pixels are reported even if ill-conditioned ones are below them; without any, the
+        // ill-conditioned ones are.
         for statuses in [
             all,
             all.map(|own| if own == Differs { IllConditioned } else { own }),
@@ -255,19 +255,19 @@ mod tests {
                     let black = column(&[0.0; 6][rows.clone()]);
                     CheckSummary::new(&black, &column(&reds[rows.clone()]), &statuses[rows])
                 };
-                let mut answer = part(0..height);
-                answer.extend(&part(height..reds.len()), height as u32);
-                assert_eq!(answer, whole, "{height}");
+                let mut summary = part(0..height);
+                summary.extend(&part(height..reds.len()), height as u32);
+                assert_eq!(summary, whole, "{height}");
             }
         }
     }
 
     #[test]
-    fn the_first_undecided_pixel_is_reported_where_none_differs() {
+    fn the_first_ill_conditioned_pixel_is_reported_where_none_differs() {
         use PixelStatus::{Agrees, IllConditioned};
-        let answer = CheckSummary::new(&row(&[0.0; 2]), &row(&[0.0, 0.1]), &[Agrees, IllConditioned]);
-        assert_eq!(answer.first.map(|pixel| pixel.x), Some(1));
-        assert!(!answer.is_same() && answer.differing == 0);
+        let summary = CheckSummary::new(&row(&[0.0; 2]), &row(&[0.0, 0.1]), &[Agrees, IllConditioned]);
+        assert_eq!(summary.first.map(|pixel| pixel.x), Some(1));
+        assert!(!summary.is_same() && summary.differing == 0);
     }
 
     #[test]

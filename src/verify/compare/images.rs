@@ -134,7 +134,7 @@ pub fn compare(reference: &Image, actual: &Image) -> (Comparison, Vec<DiffLevel>
         worst: None,
     };
     let mut sum = 0.0;
-    let mut marks = Vec::with_capacity(pixels);
+    let mut diff_levels = Vec::with_capacity(pixels);
     for index in 0..pixels {
         let pixel = Pixel::at(index, reference, actual);
         let (difference, levels) = (pixel.difference(), pixel.levels());
@@ -149,10 +149,10 @@ pub fn compare(reference: &Image, actual: &Image) -> (Comparison, Vec<DiffLevel>
             }
         }
         comparison.max_abs = comparison.max_abs.max(difference);
-        marks.push(DiffLevel::by(difference as f32));
+        diff_levels.push(DiffLevel::by(difference as f32));
     }
     comparison.mean_abs = sum / (3 * pixels.max(1)) as f64;
-    (comparison, marks)
+    (comparison, diff_levels)
 }
 
 #[cfg(test)]
@@ -184,14 +184,14 @@ mod tests {
     fn first_and_worst_are_found_from_the_bottom_left() {
         let a = image(&[[0.0; 3]; 4]);
         let b = image(&[[0.0; 3], [0.0, 0.1, 0.0], [0.9, 0.0, 0.0], [0.9, 0.0, 0.0]]);
-        let (comparison, marks) = compare(&a, &b);
+        let (comparison, diff_levels) = compare(&a, &b);
         let at = |pixel: Option<Pixel>| pixel.map(|pixel| (pixel.x, pixel.y));
         assert_eq!(comparison.differing, 3);
         assert_eq!(at(comparison.first), Some((1, 0)));
         assert_eq!(at(comparison.worst), Some((0, 1)), "the first of equals");
         assert_eq!(comparison.max_8bit, 230);
         assert!((comparison.mean_abs - 1.9 / 12.0).abs() < 1e-7);
-        assert_eq!(marks[0], DiffLevel::by(0.0));
+        assert_eq!(diff_levels[0], DiffLevel::by(0.0));
     }
 
     #[test]

@@ -66,7 +66,7 @@ pub const IN_BITS: Legend = Legend { tolerance: 1e-6 };
 /// Renders the difference image of `size` from one level per pixel (bottom row first), with the legend in a
 /// strip below it. The image is at least as wide as the legend requires.
 #[must_use]
-pub fn difference(size: [u32; 2], marks: &[DiffLevel], legend: Legend) -> Rgb8Image {
+pub fn difference(size: [u32; 2], levels: &[DiffLevel], legend: Legend) -> Rgb8Image {
     let entries = legend.entries();
     let columns = entries
         .iter()
@@ -82,7 +82,7 @@ pub fn difference(size: [u32; 2], marks: &[DiffLevel], legend: Legend) -> Rgb8Im
     let strip = rows * line_height + 4;
     let mut canvas = Canvas::new(total_width, height + strip);
     let colors: [_; 256] = std::array::from_fn(|byte| legend.color(DiffLevel(byte as u8)).map(quantize));
-    for (row, y) in marks.chunks(width as usize).zip(strip..) {
+    for (row, y) in levels.chunks(width as usize).zip(strip..) {
         for (level, x) in row.iter().zip(0..) {
             canvas.set(x, y, colors[usize::from(level.0)]);
         }
@@ -131,7 +131,7 @@ impl Legend {
             .decades()
             .map(|(decade, color)| (format!("> 1e{decade}"), color))
             .collect();
-        entries.push(("undecided".to_owned(), ILL_CONDITIONED));
+        entries.push(("ill-conditioned".to_owned(), ILL_CONDITIONED));
         entries.push(("undefined".to_owned(), UNDEFINED));
         entries
     }
@@ -215,8 +215,8 @@ mod tests {
 
     #[test]
     fn the_image_is_above_a_legend_of_the_scale() {
-        let marks = vec![DiffLevel::by(1.0); 4];
-        let image = difference([2, 2], &marks, LEGEND);
+        let levels = vec![DiffLevel::by(1.0); 4];
+        let image = difference([2, 2], &levels, LEGEND);
         let [width, height] = image.size();
         assert!(width >= 64 && height > 2 + GLYPH_SIZE);
         assert_eq!(

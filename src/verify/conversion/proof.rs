@@ -67,7 +67,7 @@ impl Proof {
     /// The number of pixels of all frames.
     #[must_use]
     pub fn pixels(&self) -> u64 {
-        self.frames.iter().map(|answer| answer.pixels).sum()
+        self.frames.iter().map(|summary| summary.pixels).sum()
     }
 
     /// The number of pixels that have the same bits.
@@ -81,20 +81,20 @@ impl Proof {
     pub fn max_abs(&self) -> f64 {
         self.frames
             .iter()
-            .map(|answer| answer.max_abs)
+            .map(|summary| summary.max_abs)
             .fold(0.0, f64::max)
     }
 
     /// The number of pixels that differ.
     #[must_use]
     pub fn differing(&self) -> u64 {
-        self.frames.iter().map(|answer| answer.differing).sum()
+        self.frames.iter().map(|summary| summary.differing).sum()
     }
 
     /// The number of pixels that depend on undefined behavior.
     #[must_use]
     pub fn undefined(&self) -> u64 {
-        self.frames.iter().map(|answer| answer.undefined).sum()
+        self.frames.iter().map(|summary| summary.undefined).sum()
     }
 }
 
@@ -202,13 +202,13 @@ pub fn compare_with_original(
     let undefined = faults.filter(|observed| observed.site.fault.is_undefined());
     let undefined_by = undefined.max_by_key(|observed| observed.pixels).copied();
     let proof = |(images, device): (Vec<Image>, String)| {
-        let pictures = expected.iter().zip(&images).zip(&singles);
-        let answers = pictures.map(|((expected, rendered), single)| {
+        let images = expected.iter().zip(&images).zip(&singles);
+        let summaries = images.map(|((expected, rendered), single)| {
             let statuses = compare::toolchain(expected, rendered, &single.undefined);
             CheckSummary::new(expected, rendered, &statuses)
         });
         Proof {
-            frames: answers.collect(),
+            frames: summaries.collect(),
             device,
             against,
             undefined_at: singles.iter().map(|single| single.undefined.clone()).collect(),

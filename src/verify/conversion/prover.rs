@@ -96,16 +96,16 @@ pub enum Unproved {
     #[error(transparent)]
     Tool(#[from] ToolError),
     /// The length of a SPIR-V file is not a multiple of four bytes.
-    #[error("half a word was written")]
+    #[error("the length of the SPIR-V file is not a multiple of four bytes")]
     PartialWord,
     /// Our own front end rejects the file with this message.
-    #[error("our own front end refuses it: {0}")]
+    #[error("toyproof's GLSL front end rejects the output: {0}")]
     FrontEnd(String),
     /// The evaluator does not run SPIR-V.
     #[error("the evaluator does not run SPIR-V")]
     Binary,
     /// There is no driver to run it.
-    #[error("to prove a conversion takes a Vulkan driver: {0}")]
+    #[error("a proof requires a Vulkan driver: {0}")]
     NoDriver(gpu::Failure),
     /// The shader takes too long to compile.
     #[error(transparent)]
@@ -115,15 +115,15 @@ pub enum Unproved {
     Run(Failure),
     /// Some pixels differ.
     #[error(
-        "{}{} of {} pixels {} not to the bit {}, by up to {max_abs:.1e}",
-        reader.as_ref().map_or_else(String::new, |reader| format!("as {reader} reads it, ")),
+        "{} of {} pixels {} from {}{}, by at most {max_abs:.1e}",
         grouped(*differing),
         grouped(*pixels),
-        plural(*differing, "is", "are"),
+        plural(*differing, "differs", "differ"),
         match against {
-            Against::Evaluator => "the evaluator's",
-            Against::StrictRun => "the shader's own",
-        }
+            Against::Evaluator => "the evaluator's image",
+            Against::StrictRun => "the original's image on the same driver",
+        },
+        reader.as_ref().map_or_else(String::new, |reader| format!(" as read by {reader}")),
     )]
     Differs {
         /// The reader, if there are several.
@@ -138,7 +138,7 @@ pub enum Unproved {
         against: Against,
     },
     /// Every pixel depends on undefined behavior.
-    #[error("every pixel hangs on what GLSL leaves undefined: {} at {at}", fault.words())]
+    #[error("every pixel depends on undefined behavior: {} at {at}", fault.words())]
     FullyUndefined {
         /// The operation that occurs in most pixels.
         fault: Fault,
@@ -155,20 +155,20 @@ pub enum Unproved {
         shape: &'static str,
     },
     /// The browser cannot be given one of the channels.
-    #[error("a channel that is not flat cannot be fed to Chromium yet")]
+    #[error("Chromium can only test shaders whose channels are 2D textures")]
     BrowserChannel,
     /// The browser does not render the original.
-    #[error("the original: {0}")]
+    #[error("Chromium does not render the original: {0}")]
     BrowserOriginal(browser::Failure),
     /// The browser does not render the conversion.
     #[error(transparent)]
     Browser(browser::Failure),
     /// The browser renders the conversion with other colors than the original.
     #[error(
-        "in Chromium {} of {} pixels {} not as with WebGL 2 of the original, by up to {:.1}/255",
+        "in Chromium, {} of {} pixels {} from the original in WebGL 2, by at most {:.1}/255",
         grouped(.0.differing),
         grouped(.0.pixels),
-        plural(.0.differing, "is", "are"),
+        plural(.0.differing, "differs", "differ"),
         .0.max * 255.0
     )]
     BrowserDiffers(Rgb8Comparison),

@@ -90,7 +90,9 @@ fn a_changed_operator_is_found() {
             ) => {
                 assert!(*differing > 0 && differing <= pixels && !unproved.is_of_shader());
                 assert!(
-                    unproved.to_string().contains(" not to the bit the evaluator's"),
+                    unproved
+                        .to_string()
+                        .contains(" from the evaluator's image, by at most "),
                     "{unproved}"
                 );
             }

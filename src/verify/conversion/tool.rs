@@ -15,7 +15,7 @@ use toyproof_translate::backend::{Target, roundtrip, spirv};
 #[derive(Debug, Error)]
 pub enum ToolError {
     /// It rejects the file with this message.
-    #[error("{tool} refuses it: {message}")]
+    #[error("{tool} rejects the output: {message}")]
     Refused {
         /// The tool.
         tool: &'static str,
@@ -23,7 +23,7 @@ pub enum ToolError {
         message: String,
     },
     /// The file could not be written for it.
-    #[error("{tool} has no file to read: {error}")]
+    #[error("cannot write a temporary file for {tool}: {error}")]
     Unwritable {
         /// The tool.
         tool: &'static str,
@@ -31,7 +31,7 @@ pub enum ToolError {
         error: io::Error,
     },
     /// It could not be run, or its output could not be read.
-    #[error("{tool}: {error}")]
+    #[error("cannot run {tool}: {error}")]
     NotRun {
         /// The tool.
         tool: &'static str,
@@ -39,7 +39,7 @@ pub enum ToolError {
         error: io::Error,
     },
     /// The length of its output is not a multiple of four bytes.
-    #[error("{0} wrote half a word")]
+    #[error("the length of the output of {0} is not a multiple of four bytes")]
     PartialWord(&'static str),
 }
 
@@ -159,9 +159,7 @@ impl Tool {
         let first = messages
             .lines()
             .find(|line| line.contains("error") || line.contains("ERROR"));
-        let first = first
-            .or_else(|| messages.lines().next())
-            .unwrap_or("it says nothing");
+        let first = first.or_else(|| messages.lines().next()).unwrap_or("no message");
         Err(ToolError::Refused {
             tool: self.name,
             message: first.trim().to_owned(),
@@ -204,7 +202,7 @@ fn run(command: &mut Command) -> io::Result<Output> {
             child.wait()?;
             return Err(io::Error::new(
                 io::ErrorKind::TimedOut,
-                "it did not end within a minute",
+                "it did not finish within 60 s",
             ));
         }
         thread::sleep(POLL_INTERVAL);

@@ -6,15 +6,16 @@ use toyproof_image::Image;
 use toyproof_scene::export::{MarkedShader, Slot};
 use toyproof_scene::{FrameTime, Model, Projection, Scene, Shape};
 
-use super::Named;
+use super::KnownMistake;
+use super::change::place;
 use crate::mistake::mutant::{Mutant, MutantSource};
 use crate::mistake::thumbnail::{WrongImage, differs, max_unexplained};
 
 /// A number that may be wrong.
 struct Parameter {
-    name: &'static str,
+    id: &'static str,
     /// Describes the mistake for a value.
-    says: Box<dyn Fn(f64) -> String + Sync>,
+    description: Box<dyn Fn(f64) -> String + Sync>,
     /// The value whose multiples are tried.
     default_value: f64,
     /// Whether it is the correct value.
@@ -46,36 +47,56 @@ pub(super) fn fitted_mutants(
     wrong_image: &WrongImage,
     correct: &Image,
 ) -> Vec<Mutant> {
-    let mut parameters = of_scene(scene, frame_time);
-    if let Some(shader) = shader {
-        parameters.extend(of_shader(shader));
-    }
+    let parameters = parameters(scene, frame_time, shader);
     let fitted = parameters.par_iter().filter_map(|parameter| {
         let value = best_value(parameter, wrong_image, correct)?;
-        let named = Named {
-            name: parameter.name,
-            says: (parameter.says)(value).into(),
-        };
         let is_wrong = !parameter.is_correct
             || (value - parameter.default_value).abs() > MIN_RELATIVE_ERROR * parameter.default_value;
         is_wrong
             .then(|| (parameter.source)(value))
             .flatten()
-            .map(|source| Mutant::new(vec![named], source))
+            .map(|source| Mutant::new(vec![parameter.mistake(value)], source))
     });
     let counted = shader.into_iter().flat_map(step_count_mutants);
     fitted.collect::<Vec<_>>().into_iter().chain(counted).collect()
+}
+
+/// All numbers of a scene and of its shader.
+fn parameters(scene: &Scene, frame_time: FrameTime, shader: Option<&MarkedShader>) -> Vec<Parameter> {
+    let mut parameters = of_scene(scene, frame_time);
+    parameters.extend(shader.into_iter().flat_map(of_shader));
+    parameters
+}
+
+impl Parameter {
+    /// The mistake of having this value.
+    fn mistake(&self, value: f64) -> KnownMistake {
+        KnownMistake::new(self.id, (self.description)(value))
+    }
+}
+
+/// The mistakes of a scene and of its shader, each with some value.
+#[cfg(test)]
+pub(super) fn examples(
+    scene: &Scene,
+    frame_time: FrameTime,
+    shader: Option<&MarkedShader>,
+) -> Vec<KnownMistake> {
+    let parameters = parameters(scene, frame_time, shader);
+    let fitted = parameters.iter().map(|parameter| parameter.mistake(1.25));
+    let counted = shader.into_iter().flat_map(step_count_mutants);
+    fitted.chain(counted.flat_map(|mutant| mutant.mistakes)).collect()
 }
 
 /// Mutants whose loop over the cells of a grid ends too early, one for each number of steps.
 fn step_count_mutants(shader: &MarkedShader) -> Vec<Mutant> {
     let mutant = |steps: i32| {
         let shader = shader.replaced(&[(Slot::GridSteps, &steps.to_string())])?;
-        let named = Named {
-            name: "too-few-steps",
-            says: format!("goes through {steps} cells of the grid at most").into(),
-        };
-        Some(Mutant::new(vec![named], MutantSource::Shader(shader)))
+        let mistake = KnownMistake::new(
+            "too-few-grid-steps",
+            format!("the grid traversal stops after {steps} cells"),
+        );
+        Some(Mutant::new(vec![mistake], MutantSource::Shader(shader)))
     };
     (2..=MAX_STEPS).filter_map(mutant).collect()
 }
@@ -154,36 +175,59 @@ fn three_digits(value: f64) -> String {
 /// Sets a number of a scene.
 type Set = Box<dyn Fn(&mut Scene, f64) + Sync>;
 
+/// Describes a wrong value, given what the number is called, the value and the scene's value.
+type Describe = fn(&str, &str, &str) -> String;
+
+/// A wrong number.
+const VALUE: Describe = |what, value, expected| format!("{what} is {value}; the scene has {expected}");
+
+/// A wrong brightness, relative to the scene's.
+const BRIGHTNESS: Describe = |what, value, _| format!("{what} is {value} times as bright as the scene's");
+
 /// A number of the scene.
 struct SceneNumber {
-    /// The name of the mistake of having another one.
-    name: &'static str,
+    /// The id of the mistake of having another value.
+    id: &'static str,
     /// What the number is called.
     what: String,
+    describe: Describe,
     value: f64,
     set: Set,
 }
 
 impl SceneNumber {
     fn new(
-        name: &'static str,
+        id: &'static str,
         what: impl Into<String>,
         value: f64,
         set: impl Fn(&mut Scene, f64) + Sync + 'static,
     ) -> Self {
         Self {
-            name,
+            id,
             what: what.into(),
+            describe: VALUE,
             value,
             set: Box::new(set),
         }
     }
 
+    /// The brightness of `what`, relative to the scene's.
+    fn brightness(
+        id: &'static str,
+        what: impl Into<String>,
+        set: impl Fn(&mut Scene, f64) + Sync + 'static,
+    ) -> Self {
+        Self {
+            describe: BRIGHTNESS,
+            ..Self::new(id, what, 1.0, set)
+        }
+    }
+
     fn parameter(self, scene: Scene, frame_time: FrameTime) -> Parameter {
-        let (what, value) = (self.what, three_digits(self.value));
+        let (what, describe, expected) = (self.what, self.describe, three_digits(self.value));
         Parameter {
-            name: self.name,
-            says: Box::new(move |other| format!("has {} for {what}, which is {value}", three_digits(other))),
+            id: self.id,
+            description: Box::new(move |value| describe(&what, &three_digits(value), &expected)),
             default_value: self.value,
             is_correct: true,
             source: Box::new(move |value| {
@@ -199,8 +243,8 @@ impl SceneNumber {
 fn of_scene(scene: &Scene, frame_time: FrameTime) -> Vec<Parameter> {
     let mut numbers = vec![of_projection(scene.camera.projection)];
     numbers.push(SceneNumber::new(
-        "another-gamma",
-        "the gamma",
+        "wrong-gamma",
+        "gamma",
         scene.film.gamma,
         |scene, gamma| scene.film.gamma = gamma,
     ));
@@ -215,14 +259,14 @@ fn of_scene(scene: &Scene, frame_time: FrameTime) -> Vec<Parameter> {
 fn of_projection(projection: Projection) -> SceneNumber {
     match projection {
         Projection::Pinhole { screen_distance } => SceneNumber::new(
-            "screen-distance",
-            "the distance of the screen",
+            "wrong-screen-distance",
+            "the screen distance",
             screen_distance,
             |scene, screen_distance| scene.camera.projection = Projection::Pinhole { screen_distance },
         ),
         Projection::Parallel { width } => SceneNumber::new(
-            "width-of-the-picture",
-            "the width of the picture",
+            "wrong-projection-width",
+            "the width of the parallel projection",
             width,
             |scene, width| scene.camera.projection = Projection::Parallel { width },
         ),
@@ -233,29 +277,27 @@ fn of_lights(scene: &Scene) -> Vec<SceneNumber> {
     let mut numbers = Vec::new();
     for (index, light) in scene.lights.iter().enumerate() {
         let (color, radius) = (light.color, light.radius);
-        let what = format!("the brightness of light {}", index + 1);
-        numbers.push(SceneNumber::new(
-            "another-brightness",
-            what,
-            1.0,
+        let which = format!("the light at {}", place(light.position));
+        numbers.push(SceneNumber::brightness(
+            "wrong-brightness",
+            which.clone(),
             move |scene, factor| {
                 scene.lights[index].color = color.map(|part| factor * part);
             },
         ));
         if radius > 0.0 {
             numbers.push(SceneNumber::new(
-                "another-light-radius",
-                "the light's radius",
+                "wrong-light-radius",
+                format!("the radius of {which}"),
                 radius,
                 move |scene, radius| scene.lights[index].radius = radius,
             ));
         }
     }
     let ambient = scene.ambient;
-    numbers.push(SceneNumber::new(
-        "another-ambient-light",
-        "the brightness of the ambient light",
-        1.0,
+    numbers.push(SceneNumber::brightness(
+        "wrong-ambient-light",
+        "the ambient light",
         move |scene, factor| scene.ambient = ambient.map(|part| factor * part),
     ));
     numbers
@@ -266,8 +308,8 @@ fn of_objects(scene: &Scene) -> Vec<SceneNumber> {
     for (index, object) in scene.objects.iter().enumerate() {
         if let Model::Glass { ior, .. } = object.material.model {
             numbers.push(SceneNumber::new(
-                "another-index",
-                "the index of refraction",
+                "wrong-ior",
+                "the refractive index",
                 ior,
                 move |scene, new| {
                     if let Model::Glass { ior, .. } = &mut scene.objects[index].material.model {
@@ -276,13 +318,12 @@ fn of_objects(scene: &Scene) -> Vec<SceneNumber> {
                 },
             ));
         }
-        if let Shape::Sphere { radius, .. } = object.shape
+        if let Shape::Sphere { center, radius } = object.shape
             && scene.objects.len() <= MAX_OBJECTS
         {
-            let what = format!("the radius of sphere {}", index + 1);
             numbers.push(SceneNumber::new(
-                "another-radius",
-                what,
+                "wrong-radius",
+                format!("the radius of the sphere at {}", place(center)),
                 radius,
                 move |scene, new| {
                     if let Shape::Sphere { radius, .. } = &mut scene.objects[index].shape {
@@ -297,35 +338,36 @@ fn of_objects(scene: &Scene) -> Vec<SceneNumber> {
 
 /// Numbers that a shader may have but the scene does not.
 fn of_shader(shader: &MarkedShader) -> Vec<Parameter> {
-    let all = [
+    let all: [(_, fn(&str) -> String, _, _, _); 2] = [
         (
-            "light-falls-off",
-            "lets light fall off with the square of its distance, which the scene does not: by",
+            "light-falloff",
+            |value| format!("light decreases as {value} / distance²; lights in the scene have no falloff"),
             Slot::LightTerm,
             "… * NUMBER / dot(lights[i].position - hit.point, lights[i].position - hit.point)",
             10.0,
         ),
         (
-            "mirrors-of-one-colour",
-            "has all mirrors reflect alike: by",
+            "constant-mirror-color",
+            |value| format!("every mirror multiplies the throughput by {value} instead of its color"),
             Slot::MirrorStatement,
             "throughput *= NUMBER;",
             0.5,
         ),
     ];
     let used = all.into_iter().filter(|(_, _, slot, ..)| shader.has(*slot));
-    let parameter = |(name, says, slot, template, default_value): (_, _, _, &'static str, _)| {
-        let shader = shader.clone();
-        Parameter {
-            name,
-            says: Box::new(move |value| format!("{says} {}", three_digits(value))),
-            default_value,
-            is_correct: false,
-            source: Box::new(move |value| {
-                let template = template.replace("NUMBER", &format!("{value:?}"));
-                shader.replaced(&[(slot, &template)]).map(MutantSource::Shader)
-            }),
-        }
-    };
+    let parameter =
+        |(id, describe, slot, template, default_value): (_, fn(&str) -> String, _, &'static str, _)| {
+            let shader = shader.clone();
+            Parameter {
+                id,
+                description: Box::new(move |value| describe(&three_digits(value))),
+                default_value,
+                is_correct: false,
+                source: Box::new(move |value| {
+                    let template = template.replace("NUMBER", &format!("{value:?}"));
+                    shader.replaced(&[(slot, &template)]).map(MutantSource::Shader)
+                }),
+            }
+        };
     used.map(parameter).collect()
 }

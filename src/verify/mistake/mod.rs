@@ -1,9 +1,11 @@
-//! Names the mistake in a wrong image: the image is compared with those of mutants, tracers with one classic
-//! mistake, and with two at once where no single one explains it. A mistake replaces parts of the shader that
-//! renders the scene (`catalogue`), changes the scene (`change`), or is one wrong number (`fit`).
+//! Finds the mistake that explains a wrong image: the image is compared with those of mutants, tracers with
+//! one classic mistake, and with two at once where no single one explains it. A mistake replaces parts of the
+//! shader that renders the scene (`catalogue`), changes the scene (`change`), or is one wrong number (`fit`).
 
 mod catalogue;
 mod change;
+#[cfg(test)]
+mod documentation;
 mod fit;
 mod mutant;
 mod pair;
@@ -26,36 +28,79 @@ use crate::mistake::thumbnail::{
     Thumbnail, View, WrongImage, cost_per_pixel, differing, max_unexplained, pixels,
 };
 
-/// A mistake that explains a wrong image.
+/// A mistake that a shader may have, or a symptom of many mistakes.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Named {
-    /// The name of the mistake.
-    pub name: &'static str,
-    /// What a tracer with this mistake does, to follow “a tracer that”.
-    pub says: Cow<'static, str>,
+pub struct KnownMistake {
+    /// The id, such as `far-root`, under which `docs/mistakes.md` lists it.
+    pub id: &'static str,
+    /// The bug in the shader, to follow “likely mistake: ”.
+    pub description: Cow<'static, str>,
+    /// Whether it is only a symptom of many mistakes: most of the image is lost.
+    pub is_symptom: bool,
+}
+
+impl KnownMistake {
+    pub(crate) fn new(id: &'static str, description: impl Into<Cow<'static, str>>) -> Self {
+        Self {
+            id,
+            description: description.into(),
+            is_symptom: false,
+        }
+    }
+
+    /// A symptom of many mistakes.
+    fn symptom(id: &'static str, description: &'static str) -> Self {
+        Self {
+            is_symptom: true,
+            ..Self::new(id, description)
+        }
+    }
+}
+
+/// What explains a wrong image.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Diagnosis {
+    /// The mistake, or two that were made at once; never empty.
+    pub mistakes: Vec<KnownMistake>,
+    /// Other mistakes each of which alone renders the same image, the most likely first.
+    pub alternatives: Vec<KnownMistake>,
 }
 
 /// The largest number of alternative mistakes that are reported.
 const MAX_ALTERNATIVES: usize = 3;
 
-impl Named {
-    /// The same, with alternatives that render the same image.
-    fn or(&self, others: &[&Mutant]) -> Self {
-        let others = others
-            .iter()
-            .flat_map(|other| &other.mistakes)
-            .take(MAX_ALTERNATIVES);
-        let mut says = vec![self.says.as_ref()];
-        for other in others {
+impl Diagnosis {
+    /// A single mistake without alternatives.
+    pub(crate) fn of(mistake: KnownMistake) -> Self {
+        Self {
+            mistakes: vec![mistake],
+            alternatives: Vec::new(),
+        }
+    }
+
+    /// The mistakes of a mutant. The `others` render the same image.
+    fn new(mutant: &Mutant, others: &[&Mutant]) -> Self {
+        let mistakes = mutant.mistakes.clone();
+        let mut alternatives: Vec<KnownMistake> = Vec::new();
+        for other in others.iter().flat_map(|other| &other.mistakes) {
             // A change of the scene may be equivalent to an edit of the shader.
-            if !says.contains(&other.says.as_ref()) {
-                says.push(&other.says);
+            let is_same =
+                |known: &KnownMistake| known.id == other.id || known.description == other.description;
+            if alternatives.len() < MAX_ALTERNATIVES && !mistakes.iter().chain(&alternatives).any(is_same) {
+                alternatives.push(other.clone());
             }
         }
         Self {
-            name: self.name,
-            says: says.join("; or that ").into(),
+            mistakes,
+            alternatives,
         }
+    }
+
+    /// The id of the mistake; for two at once both ids, such as `no-aspect+no-gamma`.
+    #[must_use]
+    pub fn id(&self) -> String {
+        let ids: Vec<&str> = self.mistakes.iter().map(|mistake| mistake.id).collect();
+        ids.join("+")
     }
 }
 
@@ -79,7 +124,7 @@ const FINE_FACTOR: u32 = 3;
 const MIN_WRONG_PIXELS: u64 = 8;
 
 /// The largest number of mistakes, besides the first, that render the same image; with more, there are too
-/// many explanations and none is named.
+/// many explanations and none is reported.
 const MAX_OTHER_MISTAKES: usize = 3;
 
 /// The smallest number of pixels that a mistake must explain, all of them, and the largest number that are
@@ -130,7 +175,7 @@ impl Hypotheses {
             .chain(shaders.iter().cloned().map(MutantSource::Shader));
         let changed = |change: change::Change| {
             Mutant::new(
-                vec![change.named],
+                vec![change.mistake],
                 MutantSource::Scene(Box::new(change.scene), change.frame_time),
             )
         };
@@ -170,7 +215,7 @@ impl Hypotheses {
     /// Returns the mistake, or the two, that render the `student`'s image of that frame, in f64. Where no
     /// single one does, at most `pairs` pairs are searched; the result does not depend on the machine's load.
     #[must_use]
-    pub fn recognize(&self, student: &Program, frame: &Frame, pairs: usize) -> Option<Vec<Named>> {
+    pub fn recognize(&self, student: &Program, frame: &Frame, pairs: usize) -> Option<Diagnosis> {
         let small = render(student, &self.small)?;
         let pixels = small.pixels().len();
         let correct_images = self
@@ -194,11 +239,8 @@ impl Hypotheses {
             view: &self.small,
         };
         let confirmed = |mutant: &Mutant, others: &[&Mutant]| {
-            let mut named = self.confirm(mutant, student, frame)?;
-            if let [single] = &mut named[..] {
-                *single = single.or(others);
-            }
-            Some(named)
+            self.is_confirmed(mutant, student, frame)
+                .then(|| Diagnosis::new(mutant, others))
         };
         let general_matches = wrong_image.matching(&self.general);
         let single_matches = wrong_image.matching(&self.wrong);
@@ -251,11 +293,13 @@ impl Hypotheses {
         })
     }
 
-    /// Returns the mistakes if they explain a larger image as well, perhaps with other ray epsilons.
-    fn confirm(&self, mutant: &Mutant, student: &Program, frame: &Frame) -> Option<Vec<Named>> {
+    /// Whether a mutant explains a larger image as well, perhaps with other ray epsilons.
+    fn is_confirmed(&self, mutant: &Mutant, student: &Program, frame: &Frame) -> bool {
         let large = View::of(frame, u32::MAX, LARGE_WORK / cost_per_pixel(&self.scene));
-        let wrong = render(student, &large)?;
-        let correct = self.correct.first()?.source.render(&large)?;
+        let correct = || self.correct.first()?.source.render(&large);
+        let (Some(wrong), Some(correct)) = (render(student, &large), correct()) else {
+            return false;
+        };
         let all = differing(&wrong, &correct);
         let limit = max_unexplained(all, wrong.pixels().len());
         drop(correct);
@@ -267,13 +311,13 @@ impl Hypotheses {
             let others = mutant.with_other_epsilons(self.frame_time, self.scene.max_offset);
             others.par_iter().any(explains)
         };
-        (explains(mutant) || explains_with_other_epsilons()).then(|| mutant.mistakes.clone())
+        explains(mutant) || explains_with_other_epsilons()
     }
 
-    /// Returns the mistake that explains a few pixels in which the `student`'s shader has a wrong color, and
+    /// Returns what explains a few pixels in which the `student`'s shader has a wrong color, and
     /// no others; none with fewer than `MIN_EXPLAINED_PIXELS` pixels.
     #[must_use]
-    pub fn explaining(&self, student: &Program, pixels: &[[u32; 2]]) -> Option<Named> {
+    pub fn explaining(&self, student: &Program, pixels: &[[u32; 2]]) -> Option<Diagnosis> {
         if pixels.len() < MIN_EXPLAINED_PIXELS {
             return None;
         }
@@ -302,7 +346,7 @@ impl Hypotheses {
         }
         let explaining: Vec<&Mutant> = self.wrong.par_iter().filter(explains).collect();
         let (first, others) = explaining.split_first()?;
-        (others.len() <= MAX_OTHER_MISTAKES).then(|| first.mistakes[0].or(others))
+        (others.len() <= MAX_OTHER_MISTAKES).then(|| Diagnosis::new(first, others))
     }
 }
 
@@ -337,9 +381,79 @@ mod exercises {
         "15-parallel-rays",
     ];
 
+    /// Scenes with what no exercise has.
+    const OTHER_SCENES: [&str; 4] = [NESTED_MOTIONS, BOTH_GLASSES, DIFFUSE_PATHS, MOVED_CAMERA];
+
+    const NESTED_MOTIONS: &str = r#"
+        motion = [
+            { name = "a", axis = [0, 1, 0], seconds = 2 },
+            { name = "b", axis = [0, 1, 0], seconds = 2, within = "a" },
+            { name = "c", axis = [0, 1, 0], seconds = 2, within = "b" },
+            { name = "d", axis = [0, 1, 0], seconds = 2, within = "c" },
+        ]
+        sphere = [
+            { center = [0, 0, -6], radius = 1, motion = "d", material = { model = "facing", color = [1, 1, 0] } },
+        ]
+    "#;
+
+    const BOTH_GLASSES: &str = r#"
+        sphere = [
+            { center = [-2, 0, -6], radius = 1, material = { model = "glass", color = [1, 1, 0], ior = 1.5 } },
+            { center = [2, 0, -6], radius = 1, material = { model = "glass", color = [1, 1, 0], ior = 1.5, fresnel = "schlick" } },
+        ]
+    "#;
+
+    const MOVED_CAMERA: &str = r#"
+        camera = { eye = [0, 1, 0] }
+        sphere = [{ center = [0, 0, -6], radius = 1, material = { model = "facing", color = [1, 1, 0] } }]
+    "#;
+
+    const DIFFUSE_PATHS: &str = r#"
+        film = { integrator = "path", max_depth = 3, samples = 2, sampler = "independent" }
+        sphere = [
+            { center = [0, 4, -6], radius = 1, material = { model = "emitter", color = [9, 9, 9] } },
+            { center = [0, 0, -6], radius = 1, material = { model = "diffuse", color = [1, 1, 0] } },
+        ]
+    "#;
+
+    /// The scenes of the exercises, and others, so that each mistake can be made in one of them.
+    pub(super) fn scenes() -> impl Iterator<Item = Scene> {
+        let exercises = EXERCISES.into_iter().map(|(_, text)| text);
+        exercises.chain(OTHER_SCENES).map(scene_of)
+    }
+
     pub(super) fn scene_of(text: &str) -> Scene {
         let mut files = Files::default();
         let file = files.add(File::new("scene", text));
         parse(&files, file).unwrap()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::exercises::scenes;
+    use super::*;
+
+    #[test]
+    fn alternatives_are_few_and_not_repeated() {
+        let scene = scenes().next().unwrap();
+        let mutant = |id, description: &'static str| {
+            let source = MutantSource::Scene(Box::new(scene.clone()), FrameTime::default());
+            Mutant::new(vec![KnownMistake::new(id, description)], source)
+        };
+        let first = mutant("a", "one");
+        let others = [
+            mutant("a", "two"),
+            mutant("b", "one"),
+            mutant("c", "three"),
+            mutant("c", "four"),
+            mutant("d", "five"),
+            mutant("e", "six"),
+            mutant("f", "seven"),
+        ];
+        let diagnosis = Diagnosis::new(&first, &others.iter().collect::<Vec<_>>());
+        assert_eq!(diagnosis.id(), "a");
+        let alternatives: Vec<_> = diagnosis.alternatives.iter().map(|known| known.id).collect();
+        assert_eq!(alternatives, ["c", "d", "e"]);
     }
 }

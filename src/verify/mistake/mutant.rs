@@ -1,6 +1,6 @@
-//! Mutants: tracers with mistakes in them, and the ways in which students write the shader without a mistake.
+//! Mutants: tracers with mistakes in them, and the variants of the shader that students write without a mistake.
 
-use crate::mistake::Named;
+use crate::mistake::KnownMistake;
 use crate::mistake::catalogue::Mistake;
 use crate::mistake::thumbnail::View;
 use std::sync::OnceLock;
@@ -59,7 +59,7 @@ pub(super) fn render(program: &Program, view: &View) -> Option<Image> {
 /// A tracer with mistakes in it. Its image is rendered once, on first use.
 #[derive(Debug)]
 pub(super) struct Mutant {
-    pub(super) mistakes: Vec<Named>,
+    pub(super) mistakes: Vec<KnownMistake>,
     pub(super) source: MutantSource,
     /// The mistake of the catalogue, if it is a single one.
     pub(super) edit: Option<&'static Mistake>,
@@ -67,7 +67,7 @@ pub(super) struct Mutant {
 }
 
 impl Mutant {
-    pub(super) fn new(mistakes: Vec<Named>, source: MutantSource) -> Self {
+    pub(super) fn new(mistakes: Vec<KnownMistake>, source: MutantSource) -> Self {
         Self {
             mistakes,
             source,
@@ -81,7 +81,7 @@ impl Mutant {
         let source = MutantSource::Shader(mistake.apply(shader)?);
         Some(Self {
             edit: Some(mistake),
-            ..Self::new(vec![mistake.named()], source)
+            ..Self::new(vec![mistake.known()], source)
         })
     }
 
@@ -96,8 +96,8 @@ impl Mutant {
             .collect()
     }
 
-    pub(super) fn names(&self) -> impl Iterator<Item = &'static str> {
-        self.mistakes.iter().map(|named| named.name)
+    pub(super) fn ids(&self) -> impl Iterator<Item = &'static str> {
+        self.mistakes.iter().map(|mistake| mistake.id)
     }
 
     /// The image of a view, which must be the same in all calls. It does not wait for another thread's: a

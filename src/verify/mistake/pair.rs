@@ -85,7 +85,7 @@ pub(super) fn likely<'a>(
     let pairs = (0..all.len()).flat_map(|second| (0..second).map(move |first| [first, second]));
     let pairs = pairs.filter(|pair| {
         let [first, second] = pair.map(|at| all[at].mutant);
-        first.names().ne(second.names())
+        first.ids().ne(second.ids())
     });
     let mut pairs: Vec<([usize; 2], u64)> = pairs
         .map(|pair| (pair, all[pair[0]].contradicted(&all[pair[1]])))

@@ -6,7 +6,7 @@ use toyproof_eval::Places;
 use toyproof_image::Image;
 
 use crate::mistake::mutant::Mutant;
-use crate::mistake::{Hypotheses, MAX_OTHER_MISTAKES, Named};
+use crate::mistake::{Diagnosis, Hypotheses, MAX_OTHER_MISTAKES};
 
 /// A pixel of a stochastic shader, over several sets of random numbers. Components are in [0, 1].
 #[derive(Debug, Clone, Copy)]
@@ -41,7 +41,7 @@ impl Hypotheses {
 
     /// Returns the mistake of a stochastic shader, from its pixels at [`Self::places`].
     #[must_use]
-    pub fn recognize_noisy(&self, pixels: &[NoisyPixel]) -> Option<Vec<Named>> {
+    pub fn recognize_noisy(&self, pixels: &[NoisyPixel]) -> Option<Diagnosis> {
         let correct = self.correct.first()?.image(&self.small)?;
         let all = self.general.par_iter().chain(&self.wrong);
         let fitting: Vec<(f64, &Mutant)> = all
@@ -58,13 +58,13 @@ impl Hypotheses {
             .min_by(f64::total_cmp)?;
         let mut best: Vec<&Mutant> = Vec::new();
         for (remaining_bias, mutant) in fitting {
-            let is_new = best.iter().all(|other| other.names().ne(mutant.names()));
+            let is_new = best.iter().all(|other| other.ids().ne(mutant.ids()));
             if remaining_bias <= least + MAX_REMAINING_DIFFERENCE && is_new {
                 best.push(mutant);
             }
         }
         let (first, others) = best.split_first()?;
-        (others.len() <= MAX_OTHER_MISTAKES).then(|| vec![first.mistakes[0].or(others)])
+        (others.len() <= MAX_OTHER_MISTAKES).then(|| Diagnosis::new(first, others))
     }
 }
 

@@ -146,7 +146,7 @@ impl WrongImage<'_> {
             .collect()
     }
 
-    /// Returns the mutants that explain the image best, one of each name.
+    /// Returns the mutants that explain the image best, one of each id.
     pub(super) fn matching<'s>(&self, mutants: &'s [Mutant]) -> Vec<&'s Mutant> {
         let all = mutants.par_iter();
         let all: Vec<_> = all
@@ -158,7 +158,7 @@ impl WrongImage<'_> {
             .min();
         let mut best: Vec<&Mutant> = Vec::new();
         for (unexplained_pixels, mutant) in all {
-            let is_new = best.iter().all(|other| other.names().ne(mutant.names()));
+            let is_new = best.iter().all(|other| other.ids().ne(mutant.ids()));
             if Some(unexplained_pixels) == least && is_new {
                 best.push(mutant);
             }

@@ -1,6 +1,6 @@
 // glsl/01-sampling.glsl, converted by toyproof 0.1.0 (naga 30.0.1).
 
-// Two-dimensional figures given by implicit functions, inside where f < 0; several samples smooth their edges.
+// 2D figures as implicit functions, with f < 0 inside; several samples per pixel smooth their edges.
 
 struct Inputs {
     iResolution: vec3f,
@@ -13,7 +13,7 @@ const SAMPLES: i32 = 10;
 var<private> seed: f32;
 
 fn random() -> f32 {
-    // toyproof: allow(W0005) the scene draws its samples so
+    // toyproof: allow(W0005) the scene's sampler uses this hash
     let old_seed = seed;
     seed += 1.0;
     return fract(sin(old_seed) * 43758.5453123);
@@ -35,7 +35,7 @@ fn heart(p: vec2f, center: vec2f, size: f32) -> f32 {
     return ring * ring * ring - q.x * q.x * q.y * q.y * q.y;
 }
 
-// What is tested first lies on top.
+// The figure tested first is on top.
 fn figures(p: vec2f) -> vec3f {
     if heart(p, vec2f(0.35, 0.08), 0.25) < 0.0 {
         return vec3f(0.85, 0.1, 0.2);

@@ -1,6 +1,6 @@
 // glsl/02-sphere.glsl, converted by toyproof 0.1.0 (naga 30.0.1).
 
-// One sphere, shaded by how directly it faces the eye.
+// One sphere, shaded by the cosine between the ray and the normal.
 
 struct Inputs {
     iResolution: vec3f,
@@ -22,7 +22,7 @@ struct Sphere {
     color: vec3f,
 }
 
-// r(t) = o + t d meets |x - c|^2 = r^2 where t^2 + 2 b t + c = 0, for d of length 1.
+// The ray o + t d intersects |x - center|^2 = r^2 where t^2 + 2 b t + c = 0, for d of length 1.
 fn intersectSphere(ray: Ray, sphere: Sphere) -> f32 {
     let f = ray.origin - sphere.center;
     let b = dot(f, ray.direction);

@@ -1,6 +1,6 @@
 // glsl/03-shading.glsl, converted by toyproof 0.1.0 (naga 30.0.1).
 
-// One sphere under two lights: Lambert's cosine, and a little light from everywhere.
+// One sphere under two point lights: Lambert's cosine law, plus ambient light.
 
 struct Inputs {
     iResolution: vec3f,

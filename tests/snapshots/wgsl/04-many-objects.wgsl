@@ -1,6 +1,6 @@
 // glsl/04-many-objects.glsl, converted by toyproof 0.1.0 (naga 30.0.1).
 
-// Seven spheres: the nearest hit wins, and each may stand in another's light.
+// Seven spheres: the nearest hit is visible, and spheres cast shadows on each other.
 
 struct Inputs {
     iResolution: vec3f,
@@ -42,7 +42,7 @@ var<private> light: Light;
 var<private> seed: f32;
 
 fn random() -> f32 {
-    // toyproof: allow(W0005) the course draws its numbers so
+    // toyproof: allow(W0005) the scene's sampler uses this hash
     let old_seed = seed;
     seed += 1.0;
     return fract(sin(old_seed) * 43758.5453123);
@@ -55,7 +55,7 @@ fn makeScene() {
     spheres[3] = Sphere(vec3f(-1.5, -0.4, -5.0), 0.6, vec3f(0.9, 0.2, 0.15));
     spheres[4] = Sphere(vec3f(1.4, -0.5, -4.8), 0.5, vec3f(0.15, 0.3, 0.9));
     spheres[5] = Sphere(vec3f(-0.6, 1.1, -5.5), 0.35, vec3f(0.8, 0.4, 0.8));
-    // Beyond the light, where it shades nothing.
+    // Behind the light, so it casts no shadow.
     spheres[6] = Sphere(vec3f(6.8, 10.2, 5.9), 3.0, vec3f(0.6, 0.6, 0.6));
     light = Light(vec3f(4.0, 6.0, 1.0), vec3f(0.9));
 }
@@ -100,7 +100,7 @@ fn nearestHit(ray: Ray) -> Intersection {
 }
 
 fn inShadow(point: vec3f, normal: vec3f) -> bool {
-    // A little off the surface, so that the sphere does not meet itself.
+    // Start slightly above the surface, so that the shadow ray does not hit the same sphere.
     let origin = point + 0.001 * normal;
     let toLight = light.position - origin;
     let distance = length(toLight);

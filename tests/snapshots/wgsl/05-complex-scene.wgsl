@@ -1,6 +1,6 @@
 // glsl/05-complex-scene.glsl, converted by toyproof 0.1.0 (naga 30.0.1).
 
-// Forty-three spheres: a parent, six children, and six more on each of them.
+// 43 spheres in a hierarchy: a parent, six children, and six grandchildren for each child.
 
 struct Inputs {
     @size(20) iResolution: vec3f,
@@ -47,7 +47,7 @@ fn sideColor(i: i32) -> vec3f {
     return 0.5 + 0.4 * side(i);
 }
 
-// Once round in 240 frames, about the y axis of the parent.
+// One turn in 240 frames, about the y axis through the parent.
 fn turn(v: vec3f, frame: i32) -> vec3f {
     let angle = 6.28318530718 * f32(frame) / 240.0;
     let c = cos(angle);

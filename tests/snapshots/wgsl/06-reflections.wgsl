@@ -1,6 +1,6 @@
 // glsl/06-reflections.glsl, converted by toyproof 0.1.0 (naga 30.0.1).
 
-// Mirrors under an evening sky: the ray goes on from each until it meets none.
+// Mirrors under an evening sky: the ray is reflected until it misses all mirrors.
 
 struct Inputs {
     iResolution: vec3f,
@@ -39,7 +39,7 @@ fn sky(direction: vec3f) -> vec3f {
     return (1.0 - up) * vec3f(0.9, 0.5, 0.25) + up * vec3f(0.1, 0.2, 0.5);
 }
 
-// As before, but what lies nearer than t_min is the surface that the ray just left.
+// As in 02-sphere, but hits closer than t_min are ignored: they are on the surface that the ray just left.
 fn intersectSphere(ray: Ray, sphere: Sphere, tMin: f32) -> f32 {
     let f = ray.origin - sphere.center;
     let b = dot(f, ray.direction);

@@ -1,6 +1,6 @@
 // glsl/07-diffuse.glsl, converted by toyproof 0.1.0 (naga 30.0.1).
 
-// Diffuse BRDFs give back what they get, no more: color / pi. Bright light is tone-mapped and then gamma-corrected.
+// A diffuse BRDF conserves energy: color / pi. The result is tone-mapped, then gamma-corrected.
 
 struct Inputs {
     iResolution: vec3f,

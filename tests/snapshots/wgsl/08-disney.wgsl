@@ -56,7 +56,7 @@ fn makeScene() {
         0.58,
         Material(vec3f(0.8, 0.2, 0.15), 0.0, 0.0, 0.8, 0.0, 0.4, 0.0, 0.0, 0.5, 0.0, 0.6),
     );
-    // Smooth plastic, tinted.
+    // Smooth plastic with a tinted highlight.
     spheres[2] = Sphere(
         vec3f(2.0, 1.3, -7.0),
         0.58,
@@ -98,7 +98,7 @@ fn makeScene() {
         0.58,
         Material(vec3f(0.15, 0.5, 0.25), 0.0, 0.0, 0.5, 0.0, 0.6, 0.0, 0.0, 0.5, 1.0, 0.6),
     );
-    // The ground.
+    // Ground.
     spheres[9] = Sphere(
         vec3f(0.0, -52.3, -8.0),
         50.0,
@@ -142,24 +142,24 @@ fn square(x: f32) -> f32 {
     return x * x;
 }
 
-// Schlick's weight.
+// The weight (1 - cosine)^5 of Schlick's Fresnel approximation.
 fn schlick(cosine: f32) -> f32 {
     let m = clamp(1.0 - cosine, 0.0, 1.0);
     return square(square(m)) * m;
 }
 
-// The clear coat's distribution, with a long tail.
+// Normal distribution of the clear coat: GTR with gamma = 1, which has a long tail.
 fn berry(nH: f32, alpha: f32) -> f32 {
     let a2 = alpha * alpha;
     return (a2 - 1.0) / (PI * log(a2) * (1.0 + (a2 - 1.0) * nH * nH));
 }
 
-// The distribution of the specular lobe, stretched along the tangents.
+// Normal distribution of the specular lobe: anisotropic GTR with gamma = 2 (GGX).
 fn trowbridgeReitz(nH: f32, xH: f32, yH: f32, ax: f32, ay: f32) -> f32 {
     return 1.0 / (PI * ax * ay * square(square(xH / ax) + square(yH / ay) + nH * nH));
 }
 
-// Shadowing, over twice the cosine.
+// Smith's shadowing factor for one direction, divided by twice the cosine.
 fn smith(cosine: f32, alpha: f32) -> f32 {
     let a2 = alpha * alpha;
     let c2 = cosine * cosine;
@@ -175,7 +175,7 @@ fn disney(m: Material, light: vec3f, view: vec3f, normal: vec3f) -> vec3f {
     let middle = normalize(light + view);
     let nH = dot(normal, middle);
     let lH = dot(light, middle);
-    // Around the y axis, and towards it.
+    // The tangents: around the y axis, and toward it.
     let x = normalize(vec3f(normal.z, 0.0, -normal.x));
     let y = cross(normal, x);
 

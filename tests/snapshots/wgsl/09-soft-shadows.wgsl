@@ -1,6 +1,6 @@
 // glsl/09-soft-shadows.glsl, converted by toyproof 0.1.0 (naga 30.0.1).
 
-// A light with a radius is seen under a cone of directions: each sample draws one of them.
+// A spherical light subtends a cone of directions; each sample picks a random direction in it.
 
 struct Inputs {
     iResolution: vec3f,
@@ -35,7 +35,7 @@ var<private> spheres: array<Sphere, 4>;
 var<private> light: Light;
 var<private> state: u32;
 
-// The integer hash pcg (Jarzynski and Olano 2020): the same numbers on every machine.
+// The integer hash PCG (Jarzynski and Olano 2020), which gives the same numbers on every machine.
 fn pcg(v: u32) -> u32 {
     let s = v * 747796405u + 2891336453u;
     let word = ((s >> ((s >> 28u) + 4u)) ^ s) * 277803737u;
@@ -78,7 +78,7 @@ fn intersectSphere(ray: Ray, sphere: Sphere) -> f32 {
     return NO_HIT;
 }
 
-// The direction at an angle to w, given by its cosine, turned about w.
+// The direction at an angle to w, given by its cosine, rotated about w by `turn` turns.
 fn around(w: vec3f, cosine: f32, turn: f32) -> vec3f {
     let up = select(vec3f(0.0, 1.0, 0.0), vec3f(1.0, 0.0, 0.0), abs(w.y) > 0.9);
     let a = normalize(cross(up, w));
@@ -88,7 +88,7 @@ fn around(w: vec3f, cosine: f32, turn: f32) -> vec3f {
     return sine * cos(phi) * a + sine * sin(phi) * b + cosine * w;
 }
 
-// Uniform over the cone in which the light is seen; how far the light is along it comes back in lightDistance.
+// Samples a direction uniformly in the cone of the light; lightDistance is the distance to the light along it.
 fn sampleLight(point: vec3f, lightDistance: ptr<function, f32>) -> vec3f {
     let toLight = light.position - point;
     let distance = length(toLight);

@@ -1,6 +1,6 @@
 // glsl/10-quadrics.glsl, converted by toyproof 0.1.0 (naga 30.0.1).
 
-// Surfaces of second degree, each in a frame of its own: the ray is brought there, and the rest is one quadratic.
+// Quadric surfaces. Each ray is transformed to the quadric's local frame, where a quadratic equation gives the hits.
 
 struct Inputs {
     iResolution: vec3f,
@@ -41,7 +41,7 @@ struct Intersection {
 var<private> quadrics: array<Quadric, 5>;
 
 fn ellipsoid(center: vec3f, radii: vec3f, color: vec3f) -> Quadric {
-    // Its own x, y and z are those of the axis (0, 0, 1).
+    // The ellipsoid's axes are the coordinate axes.
     return Quadric(center, vec3f(0.0, 0.0, 1.0), 1.0 / (radii * radii), 0.0, -1.0, -radii.z, radii.z, color);
 }
 
@@ -88,17 +88,17 @@ fn makeScene() {
     );
 }
 
-// The coordinates of v along two directions at right angles to the axis, and along the axis.
+// The local coordinates of v: along two directions perpendicular to the axis, and along the axis.
 fn frame(axis: vec3f) -> mat3x3f {
     let x = select(normalize(cross(axis, vec3f(0.0, 0.0, 1.0))), vec3f(1.0, 0.0, 0.0), abs(axis.z) > 0.9);
     return mat3x3f(x, cross(axis, x), axis);
 }
 
-// The root t of the nearer hit between the ends.
+// The smallest t of a hit between the two ends.
 fn intersectQuadric(ray: Ray, quadric: Quadric, frame_1: mat3x3f) -> f32 {
     let d = ray.direction * frame_1;
     let far = (ray.origin - quadric.origin) * frame_1;
-    // From the point of the ray that is closest to the quadric's origin: smaller numbers, smaller errors.
+    // Start at the point of the ray closest to the quadric's origin: smaller numbers have smaller rounding errors.
     let ahead = -dot(far, d);
     let o = far + ahead * d;
     let a = dot(quadric.q * d, d);
@@ -108,7 +108,7 @@ fn intersectQuadric(ray: Ray, quadric: Quadric, frame_1: mat3x3f) -> f32 {
     if disc < 0.0 {
         return NO_HIT;
     }
-    // The root that does not cancel, and the other by their product; where a is 0 there is only that.
+    // The root without cancellation; the other follows from their product. If a is 0, there is only one root.
     let q = select(-b + sqrt(disc), -b - sqrt(disc), b > 0.0);
     var t0 = select(c / q, NO_HIT, q == 0.0);
     var t1 = select(q / a, NO_HIT, a == 0.0);
@@ -149,7 +149,7 @@ fn nearestHit(ray: Ray) -> Intersection {
     if t > 0.001 && t < hit.t {
         hit = Intersection(t, vec3f(0.0, 1.0, 0.0), vec3f(0.5));
     }
-    // What is open shows both sides.
+    // Open surfaces are visible from both sides.
     if dot(hit.normal, ray.direction) > 0.0 {
         hit.normal = -hit.normal;
     }

@@ -1,6 +1,6 @@
 // glsl/11-animation.glsl, converted by toyproof 0.1.0 (naga 30.0.1).
 
-// A little solar system: a moon turns about a planet that turns about the sun, each in its own time. iTime moves the
+// A small solar system: a moon orbits a planet that orbits the sun, each with its own period. iTime moves the
 // planets, iFrame the satellite.
 
 struct Inputs {
@@ -32,7 +32,7 @@ struct Sphere {
 var<private> bodies: array<Sphere, 6>;
 var<private> lamp: vec3f;
 
-// Rodrigues' formula: v turned about a unit axis.
+// Rotates v about a unit axis (Rodrigues' formula).
 fn rotate(v: vec3f, axis: vec3f, angle: f32) -> vec3f {
     let c = cos(angle);
     let s = sin(angle);
@@ -43,7 +43,7 @@ fn rotateAbout(p: vec3f, pivot: vec3f, axis: vec3f, turns: f32) -> vec3f {
     return pivot + rotate(p - pivot, axis, TAU * fract(turns));
 }
 
-// Each body is moved by its own motion first, then by that which carries it along.
+// Each body first follows its own orbit, then the orbit of its parent.
 fn year(p: vec3f) -> vec3f {
     return rotateAbout(p, SUN, vec3f(0.0, 1.0, 0.0), inputs.iTime / 8.0);
 }

@@ -1,7 +1,7 @@
 // glsl/12-whitted.glsl, converted by toyproof 0.1.0 (naga 30.0.1).
 
-// Whitted's picture: a mirror and a glass ball over a checkered floor. Glass parts each ray in two: a stack holds
-// those that are still to be followed.
+// Whitted's scene: a mirror and a glass ball above a checkered floor. Glass splits each ray into two; a stack holds
+// the rays that remain to be traced.
 
 struct Inputs {
     iResolution: vec3f,
@@ -47,7 +47,7 @@ struct Intersection {
     color: vec3f,
 }
 
-// A ray to be followed: what it adds to the picture is multiplied by its throughput.
+// A ray on the stack; its throughput is its contribution to the pixel.
 struct Branch {
     ray: Ray,
     throughput: vec3f,
@@ -124,8 +124,8 @@ fn shade(hit: Intersection) -> vec3f {
     return hit.color * sum;
 }
 
-// The share of light that is reflected, by Fresnel's equations for unpolarised light; eta is the index on this side
-// over that beyond, the cosines are those of the ray on this side and beyond.
+// The reflectance by Fresnel's equations, for unpolarized light. eta is the index of refraction on this side divided
+// by the index on the other side; cosine and beyond are the cosines of the ray on this side and on the other.
 fn fresnel(eta: f32, cosine: f32, beyond: f32) -> f32 {
     let across = (eta * cosine - beyond) / (eta * cosine + beyond);
     let along = (cosine - eta * beyond) / (cosine + eta * beyond);
@@ -167,7 +167,7 @@ fn trace(first: Ray) -> vec3f {
         let cosine = -dot(ray.direction, normal);
         let sine2 = eta * eta * (1.0 - cosine * cosine);
         if sine2 >= 1.0 {
-            // Total reflection.
+            // Total internal reflection.
             stack[top] = Branch(mirrored, throughput, depth);
             top++;
             continue;

@@ -1,7 +1,7 @@
 // glsl/13-importance-sampling.glsl, converted by toyproof 0.1.0 (naga 30.0.1).
 
-// A path tracer. At each point light is looked for twice, by a direction drawn to an emitter and by one drawn for the BRDF;
-// the power heuristic weighs the two (Veach and Guibas 1995).
+// A path tracer with multiple importance sampling: at each hit, one direction is sampled toward an emitter and one from the
+// BRDF, and the power heuristic weights the two (Veach and Guibas 1995).
 
 struct Inputs {
     iResolution: vec3f,
@@ -44,14 +44,14 @@ struct Intersection {
     point: vec3f,
     normal: vec3f,
     material: Material,
-    // Which sphere, or -1: the first EMITTERS of them shine.
+    // The index of the sphere, or -1; the first EMITTERS spheres are emitters.
     sphere: i32,
 }
 
 var<private> spheres: array<Sphere, 6>;
 var<private> state: u32;
 
-// The integer hash pcg (Jarzynski and Olano 2020): the same numbers on every machine.
+// The integer hash PCG (Jarzynski and Olano 2020), which gives the same numbers on every machine.
 fn pcg(v: u32) -> u32 {
     let s = v * 747796405u + 2891336453u;
     let word = ((s >> ((s >> 28u) + 4u)) ^ s) * 277803737u;
@@ -76,7 +76,7 @@ fn makeScene() {
     spheres[5] = Sphere(vec3f(0.6, -0.75, -4.2), 0.25, Material(DIFFUSE, vec3f(0.3, 0.7, 0.4), 0.0));
 }
 
-// As if the ray began at the point that is closest to the centre: smaller numbers, smaller errors.
+// Starts at the point of the ray closest to the center: smaller numbers have smaller rounding errors.
 fn intersectSphere(ray: Ray, sphere: Sphere) -> f32 {
     let f = ray.origin - sphere.center;
     let b = dot(f, ray.direction);
@@ -122,7 +122,7 @@ fn nearestHit(ray: Ray) -> Intersection {
     return hit;
 }
 
-// The direction at an angle to w, given by its cosine, turned about w.
+// The direction at an angle to w, given by its cosine, rotated about w by `turn` turns.
 fn around(w: vec3f, cosine: f32, turn: f32) -> vec3f {
     let up = select(vec3f(0.0, 1.0, 0.0), vec3f(1.0, 0.0, 0.0), abs(w.y) > 0.9);
     let a = normalize(cross(up, w));
@@ -132,14 +132,14 @@ fn around(w: vec3f, cosine: f32, turn: f32) -> vec3f {
     return sine * cos(phi) * a + sine * sin(phi) * b + cosine * w;
 }
 
-// 1 - cos of the half angle of the cone in which an emitter is seen.
+// 1 - cos of the half angle of the cone that an emitter subtends.
 fn coneDepth(point: vec3f, emitter: Sphere) -> f32 {
     let toCenter = emitter.center - point;
     let sine2 = emitter.radius * emitter.radius / dot(toCenter, toCenter);
     return sine2 / (1.0 + sqrt(1.0 - sine2));
 }
 
-// The density, over the solid angle, with which a direction to this emitter is drawn.
+// The probability density, per solid angle, of sampling a direction toward this emitter.
 fn lightDensity(point: vec3f, emitter: Sphere) -> f32 {
     return 1.0 / (2.0 * PI * coneDepth(point, emitter) * f32(EMITTERS));
 }
@@ -185,7 +185,7 @@ fn inShadow(ray: Ray, emitter: i32) -> bool {
     return t > EPSILON && t < distance;
 }
 
-// The light of one emitter, drawn by chance.
+// The light from one randomly chosen emitter.
 fn sampleLight(hit: Intersection, reflected: vec3f) -> vec3f {
     let emitter = min(i32(random() * f32(EMITTERS)), EMITTERS - 1);
     let u = random();
@@ -209,7 +209,7 @@ fn trace(ray_in: Ray) -> vec3f {
     var ray = ray_in;
     var color = vec3f(0.0);
     var throughput = vec3f(1.0);
-    // The density with which the ray was drawn; 0 for the camera's.
+    // The probability density of the ray's direction; 0 for camera rays.
     var density = 0.0;
     for (var depth = 0; depth < MAX_DEPTH; depth++) {
         let hit = nearestHit(ray);
@@ -223,7 +223,7 @@ fn trace(ray_in: Ray) -> vec3f {
             }
             return color + throughput * hit.material.color * share;
         }
-        // Light that is looked for here would come by a segment too many.
+        // A path through another surface would be longer than MAX_DEPTH segments.
         if depth + 1 == MAX_DEPTH {
             return color;
         }

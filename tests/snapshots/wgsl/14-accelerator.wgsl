@@ -1,7 +1,7 @@
 // glsl/14-accelerator.glsl, converted by toyproof 0.1.0 (naga 30.0.1).
 
-// Hundreds of spheres, one in each cell of a grid. A ray looks only into the cells that it passes through, one after the
-// other, and a sphere is made from its cell's number when it is needed.
+// Hundreds of spheres, one in each cell of a grid. A ray visits only the cells that it passes through, in order,
+// and the sphere of a cell is computed from the cell's number when needed.
 
 struct Inputs {
     iResolution: vec3f,
@@ -35,7 +35,7 @@ struct Intersection {
 
 var<private> state: u32;
 
-// The integer hash pcg (Jarzynski and Olano 2020).
+// The integer hash PCG (Jarzynski and Olano 2020).
 fn pcg(v: u32) -> u32 {
     let s = v * 747796405u + 2891336453u;
     let word = ((s >> ((s >> 28u) + 4u)) ^ s) * 277803737u;
@@ -47,7 +47,7 @@ fn random() -> f32 {
     return f32(state >> 8u) / 16777216.0;
 }
 
-// The sphere of a cell, wholly inside of it. Its colour is what random() gives next.
+// The sphere of a cell, entirely inside the cell; its color is random.
 fn sphereIn(cell: vec3i) -> Sphere {
     state = SEED + u32(cell.x + CELLS.x * (cell.y + CELLS.y * cell.z));
     let radius = mix(0.1, 0.3, random());
@@ -65,7 +65,7 @@ fn nextColor() -> vec3f {
     return 0.95 * (0.2 + 0.8 * vec3f(r, g, b));
 }
 
-// As if the ray began at the point that is closest to the centre: smaller numbers, smaller errors.
+// Starts at the point of the ray closest to the center: smaller numbers have smaller rounding errors.
 fn intersectSphere(ray: Ray, sphere: Sphere) -> f32 {
     let f = ray.origin - sphere.center;
     let b = dot(f, ray.direction);
@@ -85,7 +85,7 @@ fn intersectSphere(ray: Ray, sphere: Sphere) -> f32 {
     return NO_HIT;
 }
 
-// The first hit, cell by cell (Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing", 1987).
+// The nearest hit, cell by cell (Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing", 1987).
 fn hitScene(ray: Ray) -> Intersection {
     let low = (CORNER - ray.origin) / ray.direction;
     let high = (CORNER + SPACING * vec3f(CELLS) - ray.origin) / ray.direction;
@@ -100,8 +100,8 @@ fn hitScene(ray: Ray) -> Intersection {
     let place = (ray.origin + enter * ray.direction - CORNER) / SPACING;
     var cell = clamp(vec3i(floor(place)), vec3i(0), CELLS - 1);
     let stride = vec3i(sign(ray.direction));
-    // t at which the ray leaves the cell along each axis, which it never does along one that it is perpendicular to, and how much later it
-    // leaves the one after.
+    // For each axis: next is the t at which the ray leaves the cell (never, if the ray is perpendicular to the axis),
+    // and step is the distance in t between two cell boundaries.
     var next = (CORNER + SPACING * vec3f(cell + max(stride, vec3i(0))) - ray.origin) / ray.direction;
     next = select(next, vec3f(NO_HIT), stride == vec3i(0));
     let step = SPACING / abs(ray.direction);

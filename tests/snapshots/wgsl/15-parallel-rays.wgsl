@@ -1,6 +1,6 @@
 // glsl/15-parallel-rays.glsl, converted by toyproof 0.1.0 (naga 30.0.1).
 
-// Parallel rays: all look the same way, and each starts at its own place. What is far away is no smaller.
+// Parallel projection: all rays have the same direction and different origins, so distant objects look no smaller.
 
 struct Inputs {
     iResolution: vec3f,

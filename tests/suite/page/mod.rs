@@ -22,7 +22,7 @@ fn report(folder: &Path, rest: &[&str]) -> Vec<Value> {
     write("scene.toml", SPHERE.scene);
     write(
         "rubric.toml",
-        "compiles.points = 2\nmaths.points = 6\nmaths.partial_from = 0.5\nrounding.points = 2\n",
+        "compiles.points = 2\nalgorithm.points = 6\nalgorithm.partial_from = 0.5\nprecision.points = 2\n",
     );
     write("hw/ann.glsl", SPHERE.shader);
     write(
@@ -444,7 +444,9 @@ fn a_page_of_500_shaders_shows_one_at_a_time() {
             shader: format!("hw/{at:03}.glsl"),
             scene: None,
             verdict: Verdict::Ok,
-            reason: "the shader paints".to_owned(),
+            reason: "rendered".to_owned(),
+            details: Vec::new(),
+            help: None,
             algorithm: None,
             precision: None,
             toolchain: None,

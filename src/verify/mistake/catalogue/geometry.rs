@@ -7,44 +7,45 @@ pub(super) const TEXTBOOK: &str = "b * b - dot(f, f) + sphere.radius * sphere.ra
 
 /// Intersections of rays with spheres, and the nearest hit.
 pub(super) static INTERSECTIONS: &[Mistake] = mistakes! {
-    "roots-not-halved": "does not divide the roots by 2a",
+    "roots-not-halved": "the roots of the quadratic are not divided by 2a",
         [NearRoot = "2.0 * (-b - root)", FarRoot = "2.0 * (-b + root)"];
-    "discriminant-without-4": "forgets the 4 in b² − 4ac",
+    "discriminant-without-4": "the 4 is missing in the discriminant b² − 4ac",
         [
             Discriminant = "4.0 * b * b - dot(f, f) + sphere.radius * sphere.radius",
             NearRoot = "(-2.0 * b - root) / 2.0",
             FarRoot = "(-2.0 * b + root) / 2.0",
         ];
-    "far-root": "takes the root where a ray leaves the sphere, not the one where it enters",
+    "far-root": "the far root is used instead of the near one: rays hit the back of the sphere",
         [NearRoot = "-b + root"];
-    "behind-the-eye": "counts what lies behind the start of a ray", [NearRootIsHit = "true"];
-    "radius-not-squared": "does not square the radius",
+    "hit-behind-origin": "hits behind the ray's origin (negative t) are accepted", [NearRootIsHit = "true"];
+    "radius-not-squared": "the sphere's radius is not squared in the quadratic",
         [Discriminant = "sphere.radius - dot(closest, closest)"];
-    "root-not-taken": "does not take the square root of the discriminant", [DiscriminantRoot = "disc"];
-    "sign-of-b": "has the wrong sign of b: the centre minus the origin, where the formula has the origin minus the centre",
+    "discriminant-without-sqrt": "the square root of the discriminant is missing",
+        [DiscriminantRoot = "disc"];
+    "sign-of-b": "b has the wrong sign: center − origin is used instead of origin − center",
         [CenterToOrigin = "sphere.center - ray.origin"];
-    "last-hit": "keeps the last sphere that a ray meets, not the nearest",
+    "last-hit": "the last sphere that a ray hits is kept instead of the nearest",
         [IsNearer = "t < NO_HIT"],
         [IsNearer = "t < NO_HIT", HitT = "min(t, hit.t)", HitPoint = "ray.origin + hit.t * ray.direction"];
-    "first-hit": "keeps the first sphere that a ray meets, not the nearest",
+    "first-hit": "the first sphere that a ray hits is kept instead of the nearest",
         [IsNearer = "t < NO_HIT && hit.t == NO_HIT"];
-    "farthest-hit": "keeps the farthest sphere that a ray meets, not the nearest",
+    "farthest-hit": "the farthest hit is kept instead of the nearest",
         [IsNearer = "t < NO_HIT && (hit.t == NO_HIT || t > hit.t)"];
-    "first-sphere-for-all": "takes the colour and the normal of the first sphere for all",
+    "first-sphere-for-all": "the color and the normal are always those of the first sphere",
         [SphereColor = "spheres[0].color", SphereNormal = "normalize(hit.point - spheres[0].center)"];
-    "normal-of-the-first-sphere": "takes the normal of the first sphere for all",
+    "normal-of-first-sphere": "the normal is always computed from the first sphere",
         [SphereNormal = "normalize(hit.point - spheres[0].center)"];
-    "colour-of-the-first-sphere": "takes the colour of the first sphere for all",
+    "color-of-first-sphere": "the color is always that of the first sphere",
         [SphereColor = "spheres[0].color"];
-    "colour-of-the-next-sphere": "takes the colour of the next sphere",
+    "color-of-next-sphere": "the color is that of the next sphere: the index is off by one",
         [SphereColor = "spheres[(i + 1) % SPHERES].color"];
-    "colour-of-the-last-sphere": "takes the colour of the last sphere for all",
+    "color-of-last-sphere": "the color is always that of the last sphere",
         [SphereColor = "spheres[SPHERES - 1].color"];
-    "loop-too-short": "ends its loop over the spheres too early: the last ones cannot be seen",
+    "loop-too-short": "the loop over the spheres ends too early: the last ones are missing",
         [SphereCount = "SPHERES - 1"],
         [SphereCount = "SPHERES - 2"];
-    "loop-from-1": "starts its loop over the spheres at 1: the first one cannot be seen", [FirstSphere = "1"];
-    "nearest-not-reset": "does not start from far away again when it looks for the nearest hit of the next ray",
+    "loop-from-1": "the loop over the spheres starts at 1: the first one is missing", [FirstSphere = "1"];
+    "nearest-not-reset": "the nearest t of the previous ray is not reset before the next ray",
         [
             NearestHitSignature = "float nearest;\n\n…",
             InitialT = "nearest",
@@ -55,122 +56,129 @@ pub(super) static INTERSECTIONS: &[Mistake] = mistakes! {
 
 /// Surfaces of second degree, and checkered ones.
 pub(super) static QUADRICS: &[Mistake] = mistakes! {
-    "ends-not-tested": "does not end cylinders, cones and their like",
+    "ends-not-tested": "hits beyond the ends of cylinders, cones and other open quadrics are accepted",
         [
             NearQuadricIsHit = "ahead + near > «NearQuadricMinT»",
             FarQuadricIsHit = "ahead + beyond > «FarQuadricMinT»",
         ];
-    "only-the-nearer-root": "gives up where the nearer root lies beyond the ends, though the other may not",
+    "near-root-only": "the far root is not tested where the near root lies beyond the quadric's ends",
         [FarQuadricIsHit = "false"];
-    "radii-not-squared": "does not square the radii of ellipsoids",
+    "radii-not-squared": "the radii of ellipsoids are not squared",
         [EllipsoidQ = "1.0 / radii"],
         [EllipsoidQ = "1.0 / radii", EllipsoidEnds = "-radii.z, radii.z"];
-    "radii-multiplied": "multiplies by the squared radii of ellipsoids where it should divide",
+    "radii-multiplied": "the coefficients of ellipsoids are the squared radii instead of their reciprocals",
         [EllipsoidQ = "radii * radii"],
         [EllipsoidQ = "radii * radii", EllipsoidEnds = "-radii.z, radii.z"];
-    "axis-forgotten": "forgets the axes: all surfaces lie along z", [AxisFrame = "mat3(1.0)"];
-    "frame-by-the-wrong-side": "multiplies by the frame from the wrong side",
+    "axis-ignored": "the axis of quadrics is ignored: all lie along z", [AxisFrame = "mat3(1.0)"];
+    "frame-not-transposed": "the ray is multiplied by the frame's matrix instead of its transpose",
         [RayInFrame = "quadric.axes * ray.direction"],
         [
             RayInFrame = "quadric.axes * ray.direction",
             OriginInFrame = "quadric.axes * (ray.origin - quadric.origin)",
         ];
-    "normal-left-in-the-frame": "leaves the normal in the surface's own coordinates",
+    "normal-in-local-space": "the normal is not transformed back to world space",
         [QuadricNormal = "normalize(quadric.form.q * p + vec3(0.0, 0.0, quadric.form.g))"];
-    "normal-from-the-middle": "takes the direction from the surface's own origin for its normal",
+    "normal-from-quadric-center": "the direction from the quadric's center is used as the normal instead of the gradient",
         [QuadricNormal = "normalize(point - quadric.origin)"];
-    "normal-without-the-linear-part": "forgets the linear part of the equation in the normal",
+    "normal-without-linear-term": "the linear term of the quadric's equation is missing in the normal",
         [QuadricNormal = "normalize(quadric.axes * (quadric.form.q * p))"];
-    "cone-without-its-slope": "has cones of 45°, whatever their radius and height", [ConeSlope = "-1.0"];
-    "both-nappes": "shows both nappes of the cone", [ConeLow = "-height"];
-    "paraboloid-too-wide": "has the 2 of the paraboloid's equation in the wrong place",
+    "cone-slope-ignored": "the cone's slope is always 45°: its radius and height are ignored",
+        [ConeSlope = "-1.0"];
+    "both-nappes": "both halves (nappes) of the cone are visible", [ConeLow = "-height"];
+    "paraboloid-too-wide": "the factor 2 of the linear term is wrong in the paraboloid's equation",
         [ParaboloidG = "-radius * radius / height"],
         [ParaboloidG = "-2.0 * radius * radius / height"];
-    "hyperboloid-of-two-sheets": "has a hyperboloid of two sheets", [HyperboloidK = "waist * waist"];
-    "quadric-normal-inwards": "shows the dark side of surfaces of second degree: their normal points away from the ray",
+    "hyperboloid-of-two-sheets": "the hyperboloid has two sheets: its constant term has the wrong sign",
+        [HyperboloidK = "waist * waist"];
+    "quadric-normal-reversed": "the normal of quadrics points away from the ray's origin",
         [QuadricSide = "-faceforward(normal, direction, normal)"];
-    "normal-not-turned": "does not turn the normal of open surfaces to the ray",
+    "normal-not-flipped": "the normal of open surfaces is not flipped toward the ray's origin",
         [QuadricSide = "normal"],
         [QuadricSide = "-normal"];
-    "not-moved-back": "moves the ray's start closer, and forgets to add that to t",
+    "origin-shift-not-added": "the ray's origin is moved closer to the surface, but the shift is not added to t",
         [NearQuadricT = "near"],
         [NearQuadricT = "near", FarQuadricT = "beyond"];
-    "checker-in-one-direction": "has stripes for a checker",
+    "checker-stripes": "the checker has stripes: only one of its two coordinates is used",
         [CheckerSum = "square.x"],
         [CheckerSum = "square.y"];
-    "checker-by-truncation": "rounds towards 0 where the checker needs floor: its squares are twice as wide at the axes",
+    "checker-truncated": "the checker truncates toward 0, so its squares are twice as wide at the axes",
         [CheckerSquare = "trunc(point.xz / side)"];
-    "checker-too-large": "has the squares of a checker twice as large",
+    "checker-too-large": "the squares of the checker are twice as large as the scene's",
         [CheckerSquare = "floor(point.xz / (2.0 * side))"];
-    "checker-too-small": "has the squares of a checker half as large",
+    "checker-too-small": "the squares of the checker are half as large as the scene's",
         [CheckerSquare = "floor(point.xz / (0.5 * side))"];
-    "checker-multiplied": "multiplies by the squares' side where it should divide",
+    "checker-multiplied": "the position is multiplied by the side of the checker's squares instead of divided by it",
         [CheckerSquare = "floor(point.xz * side)"];
-    "checker-colours-swapped": "has the two colours of the checker exchanged",
+    "checker-colors-swapped": "the two colors of the checker are swapped",
         [CheckerEven = "«CheckerOdd»", CheckerOdd = "«CheckerEven»"];
 };
 
 /// Grids with a sphere in each cell, and the random numbers of the spheres.
 pub(super) static GRIDS: &[Mistake] = mistakes! {
-    "first-cell-only": "looks into the first cell of the grid only", [GridSteps = "1"];
-    "strides-without-sign": "goes through the cells in the positive direction always",
+    "first-cell-only": "only the first cell of the grid is tested", [GridSteps = "1"];
+    "grid-step-sign": "the grid traversal always steps in the positive direction",
         [GridStride = "ivec3(1)"];
-    "steps-not-of-a-cell": "takes steps of length 1 from cell to cell, not of a cell's side",
+    "grid-step-length": "the grid traversal advances by 1 instead of the size of a cell",
         [GridStep = "1.0 / abs(direction)"];
-    "farther-wall-first": "goes on across the farther wall of a cell, not the nearer",
+    "far-boundary-first": "the grid traversal crosses the farthest cell boundary first instead of the nearest",
         [NextCellIsX = "next.x > next.y && next.x > next.z"];
-    "an-axis-forgotten": "never goes on to the cells above or below, or never to those behind",
+    "grid-axis-missing": "the grid traversal never steps along one of the axes",
         [NextCellIsY = "false"],
         [NextCellIsY = "true"];
-    "cell-number-swapped": "has x and y, or y and z, exchanged in the number of a cell",
+    "cell-index-swapped": "two coordinates are swapped in the index of a cell",
         [CellNumber = "uint(cell.y + grid.cells.y * (cell.x + grid.cells.x * cell.z))"],
         [CellNumber = "uint(cell.x + grid.cells.x * (cell.z + grid.cells.z * cell.y))"],
         [CellNumber = "uint(cell.z + grid.cells.z * (cell.y + grid.cells.y * cell.x))"];
-    "another-seed": "starts from another seed",
+    "wrong-seed": "the random numbers of the grid start from another seed",
         [CellSeed = "grid.seed + 1u + «CellNumber»"],
         [CellSeed = "grid.seed - 1u + «CellNumber»"],
         [CellSeed = "«CellNumber»"],
         [CellSeed = "1u + «CellNumber»"];
-    "in-the-middle-of-cells": "puts spheres in the middle of their cells", [CellPlace = "0.5"];
-    "room-too-large": "gives spheres the room of the whole cell, or takes the radius away once only",
+    "spheres-at-cell-centers": "spheres lie at the centers of their cells instead of random positions",
+        [CellPlace = "0.5"];
+    "position-range-too-large": "the range of a sphere's position in its cell is too large: the radius is not subtracted on both sides",
         [CellRoom = "grid.spacing"],
         [CellRoom = "grid.spacing - radius"];
-    "radii-alike": "makes all spheres of the grid equally large",
-        [CellRadius = "0.5 * (grid.small + grid.large) + 0.0 * draw()"];
-    "coordinates-drawn-backwards": "draws the place from z to x, not from x to z",
+    "equal-radii": "all spheres of the grid have the same radius",
+        [CellRadius = "0.5 * (grid.minRadius + grid.maxRadius) + 0.0 * cellRandom()"];
+    "random-coordinates-reversed": "random coordinates are sampled in the order z, y, x instead of x, y, z",
         [CellPlace = "vec3(z, y, x)"];
-    "colours-drawn-backwards": "draws blue first and red last", [CellColor = "vec3(b, g, r)"];
-    "hash-without-its-shift": "forgets the last shift of the hash", [HashResult = "word"];
+    "random-colors-reversed": "random color components are sampled in the order b, g, r instead of r, g, b",
+        [CellColor = "vec3(b, g, r)"];
+    "hash-shift-missing": "the last shift of the hash function is missing", [HashResult = "word"];
 };
 
 /// Normals of spheres.
 pub(super) static NORMALS: &[Mistake] = mistakes! {
-    "normal-not-normalised": "does not normalise normals",
+    "normal-not-normalized": "the normal is not normalized",
         [SphereNormal = "(hit.point - spheres[i].center)"],
         [SphereNormal = "(hit.point - spheres[i].center)", Discriminant = TEXTBOOK];
-    "normal-inwards": "has normals that point into the spheres",
+    "normal-inward": "the normal points into the sphere: center − point is used instead of point − center",
         [SphereNormal = "normalize(spheres[i].center - hit.point)"];
-    "normal-from-the-origin": "has normals that point away from the world's origin, not from the sphere's centre",
+    "normal-from-world-origin": "the normal is computed from the world's origin instead of the sphere's center",
         [SphereNormal = "normalize(hit.point)"];
-    "normal-is-the-direction": "takes the ray's direction for the normal", [SphereNormal = "-ray.direction"];
+    "normal-is-ray-direction": "the negated ray direction is used as the normal",
+        [SphereNormal = "-ray.direction"];
 };
 
 /// Motions.
 pub(super) static MOTIONS: &[Mistake] = mistakes! {
-    "turned-the-other-way": "turns the other way round", [RotationCross = "cross(v, axis)"];
-    "rotation-without-its-last-term": "forgets the last term of Rodrigues' formula",
+    "rotation-reversed": "the rotation has the opposite direction", [RotationCross = "cross(v, axis)"];
+    "rodrigues-last-term-missing": "the last term of Rodrigues' rotation formula is missing",
         [Rotation = "c * v + s * «RotationCross»"];
-    "sine-and-cosine-swapped": "has sine and cosine exchanged",
+    "sine-and-cosine-swapped": "the sine and the cosine of the rotation angle are swapped",
         [AngleCosine = "«AngleSine»", AngleSine = "«AngleCosine»"];
-    "angle-in-turns": "takes the number of turns for an angle in radians", [RotationAngle = "fract(turns)"];
-    "angle-in-degrees": "takes degrees for radians", [RotationAngle = "360.0 * fract(turns)"];
-    "half-turns": "turns by π where 2π should stand", [RotationAngle = "3.14159265359 * fract(turns)"];
-    "about-the-origin": "turns about the world's origin, not about the pivot",
+    "angle-in-turns": "the rotation angle is in turns instead of radians", [RotationAngle = "fract(turns)"];
+    "angle-in-degrees": "the rotation angle is in degrees instead of radians",
+        [RotationAngle = "360.0 * fract(turns)"];
+    "angle-with-pi": "the rotation angle uses π instead of 2π per turn",
+        [RotationAngle = "3.14159265359 * fract(turns)"];
+    "rotation-about-origin": "the rotation is about the world's origin instead of the pivot",
         [RotationAboutPivot = "rotate(p, axis, «RotationAngle»)"];
-    "pivot-not-added-back": "does not add the pivot back",
+    "pivot-not-added-back": "the pivot is not added back after the rotation",
         [RotationAboutPivot = "rotate(«RotatedPoint», axis, «RotationAngle»)"];
-    "pivot-not-taken-away": "does not take the pivot away before it turns", [RotatedPoint = "p"];
-    "carried-along-first": "carries a thing along before it turns it about its own axis, where it should be after",
+    "pivot-not-subtracted": "the pivot is not subtracted before the rotation", [RotatedPoint = "p"];
+    "motion-order-swapped": "the enclosing motion is applied before the object's own rotation instead of after it",
         [CarriedBy0 = "rotateAbout(motion0(p), «RotationArguments»)"],
         [CarriedBy1 = "rotateAbout(motion1(p), «RotationArguments»)"],
         [CarriedBy2 = "rotateAbout(motion2(p), «RotationArguments»)"];

@@ -5,66 +5,71 @@ use super::{Mistake, mistakes};
 
 /// The camera.
 pub(super) static CAMERA: &[Mistake] = mistakes! {
-    "direction-not-normalised": "does not normalise the camera's directions, though its formula is that for directions of length 1",
+    "direction-not-normalized": "camera ray directions are not normalized, but the intersection formula assumes unit length",
         [CameraDirection = "«ScreenPoint»", Discriminant = TEXTBOOK],
         [ParallelDirection = "vec3(0.0, 0.0, -2.0)", Discriminant = TEXTBOOK];
-    "no-aspect": "forgets the aspect of the picture", [ScreenYOverAspect = "«ScreenY»"];
-    "aspect-upside-down": "multiplies by the aspect where it should divide",
+    "no-aspect": "the aspect ratio is missing in the screen coordinates", [ScreenYOverAspect = "«ScreenY»"];
+    "aspect-inverted": "y is multiplied by the aspect ratio instead of divided by it",
         [ScreenYOverAspect = "«ScreenY» * aspect"];
-    "aspect-of-integers": "computes the aspect by integer division",
+    "aspect-integer-division": "the aspect ratio is computed with integer division",
         [AspectRatio = "float(int(iResolution.x) / int(iResolution.y))"];
-    "place-of-integers": "computes the place on the screen by integer division",
+    "screen-integer-division": "the screen coordinates are computed with integer division",
         [
             ScreenX = "float(int(fragCoord.x) / int(iResolution.x)) * 2.0 - 1.0",
             ScreenY = "(float(int(fragCoord.y) / int(iResolution.y)) * 2.0 - 1.0)",
         ],
         [ScreenX = "float(int(fragCoord.x) / int(iResolution.x)) * 2.0 - 1.0"],
         [ScreenY = "(float(int(fragCoord.y) / int(iResolution.y)) * 2.0 - 1.0)"];
-    "upside-down": "has y upside down", [ScreenY = "(1.0 - fragCoord.y / iResolution.y * 2.0)"];
-    "mirrored": "has x the wrong way round", [ScreenX = "1.0 - fragCoord.x / iResolution.x * 2.0"];
-    "not-centred": "lets the screen begin at the eye's axis: from 0 to 1, not from −1 to 1",
+    "upside-down": "the image is upside down: y is negated",
+        [ScreenY = "(1.0 - fragCoord.y / iResolution.y * 2.0)"];
+    "mirrored": "the image is mirrored: x is negated", [ScreenX = "1.0 - fragCoord.x / iResolution.x * 2.0"];
+    "not-centered": "screen coordinates run from 0 to 1 instead of −1 to 1",
         [ScreenX = "fragCoord.x / iResolution.x", ScreenY = "(fragCoord.y / iResolution.y)"];
-    "half-screen": "has a screen from −½ to ½, not from −1 to 1",
+    "half-screen": "screen coordinates run from −0.5 to 0.5 instead of −1 to 1",
         [ScreenX = "fragCoord.x / iResolution.x - 0.5", ScreenY = "(fragCoord.y / iResolution.y - 0.5)"];
-    "pixel-corner": "looks through the corners of pixels, not their middles",
+    "pixel-corner": "rays pass through the corners of pixels instead of their centers",
         [AspectStatement = "fragCoord -= 0.5;\n    …"];
-    "half-pixel-twice": "adds half a pixel to fragCoord, which has it already",
+    "half-pixel-twice": "half a pixel is added to `fragCoord`, which already is the pixel's center",
         [AspectStatement = "fragCoord += 0.5;\n    …"],
         [ScreenY = "((fragCoord.y + 0.5) / iResolution.y * 2.0 - 1.0)"],
         [ScreenX = "(fragCoord.x + 0.5) / iResolution.x * 2.0 - 1.0"];
-    "a-pixel-aside": "is a pixel aside",
+    "off-by-one-pixel": "the image is shifted by one pixel",
         [AspectStatement = "fragCoord.x += 1.0;\n    …"],
         [AspectStatement = "fragCoord.x -= 1.0;\n    …"],
         [AspectStatement = "fragCoord.y += 1.0;\n    …"],
         [AspectStatement = "fragCoord.y -= 1.0;\n    …"],
         [AspectStatement = "fragCoord += 1.0;\n    …"];
-    "screen-behind": "has the screen behind the eye", [ScreenZ = "«ScreenDistance»"];
-    "screen-at-1": "has the screen at distance 1, whatever the scene says", [ScreenZ = "-1.0"];
-    "one-ray-for-all": "sends the same ray through all pixels", [ParallelOffset = "vec3(0.0)"];
+    "screen-behind-camera": "the screen is behind the camera: the z of ray directions is positive",
+        [ScreenZ = "«ScreenDistance»"];
+    "screen-at-1": "the screen distance is 1 instead of the scene's", [ScreenZ = "-1.0"];
+    "one-ray-for-all": "all pixels cast the same ray: its origin does not depend on the pixel",
+        [ParallelOffset = "vec3(0.0)"];
 };
 
 /// Samples, tone map and gamma.
 pub(super) static FILM: &[Mistake] = mistakes! {
-    "no-gamma": "forgets the gamma of the scene", [GammaStatement = ""];
-    "gamma-inverted": "raises colours to the power 2.2 where it should take 1/2.2",
+    "no-gamma": "gamma correction is missing", [GammaStatement = ""];
+    "gamma-inverted": "gamma correction uses the exponent γ instead of 1/γ",
         [GammaExponent = "«Gamma»"];
-    "gamma-of-2": "takes the square root for the scene's gamma", [GammaStatement = "color = sqrt(color);"];
-    "gamma": "raises colours to the power 1/2.2, which the scene does not",
+    "gamma-of-2": "gamma correction uses the square root instead of the scene's gamma",
+        [GammaStatement = "color = sqrt(color);"];
+    "extra-gamma": "colors are raised to the power 1/2.2, which the scene does not do",
         [FinalColor = "pow(color, vec3(1.0 / 2.2))"];
-    "gamma-backwards": "raises colours to the power 2.2", [FinalColor = "pow(color, vec3(2.2))"];
-    "no-tone-map": "forgets the tone map", [ToneMapStatement = ""];
-    "tone-map": "applies the tone map c / (c + 1), which the scene has not",
+    "extra-inverse-gamma": "colors are raised to the power 2.2, which the scene does not do",
+        [FinalColor = "pow(color, vec3(2.2))"];
+    "no-tone-map": "tone mapping is missing", [ToneMapStatement = ""];
+    "extra-tone-map": "the tone map c / (c + 1) is applied, which the scene does not do",
         [FinalColor = "color / (color + 1.0)"];
-    "gamma-before-tone-map": "applies the gamma before the tone map",
+    "gamma-before-tone-map": "gamma correction is applied before tone mapping",
         [ToneMapStatement = "«GammaStatement»", GammaStatement = "«ToneMapStatement»"];
-    "exponential-tone-map": "has the tone map 1 − exp(−c) where the scene has c / (c + 1)",
+    "exponential-tone-map": "the tone map is 1 − exp(−c) instead of c / (c + 1)",
         [ToneMapped = "1.0 - exp(-color)"];
-    "tone-map-by-luminance": "divides by the luminance plus 1, where each component should be divided by its own",
+    "tone-map-by-luminance": "the tone map divides by the luminance plus 1 instead of each component plus 1",
         [ToneMapped = "color / (dot(color, vec3(0.3, 0.6, 0.1)) + 1.0)"],
         [ToneMapped = "color / (dot(color, vec3(0.299, 0.587, 0.114)) + 1.0)"],
         [ToneMapped = "color / (dot(color, vec3(0.2126, 0.7152, 0.0722)) + 1.0)"],
         [ToneMapped = "color / (dot(color, vec3(1.0 / 3.0)) + 1.0)"];
-    "background-not-developed": "leaves the background out of tone map and gamma",
+    "background-not-tone-mapped": "tone mapping and gamma correction are not applied to the background",
         [
             ToneMapStatement = "vec3 light = color;\n    …",
             FinalColor = "light == background(vec3(0.0)) ? light : color",
@@ -73,68 +78,71 @@ pub(super) static FILM: &[Mistake] = mistakes! {
             GammaStatement = "vec3 light = color;\n    …",
             FinalColor = "light == background(vec3(0.0)) ? light : color",
         ];
-    "blue-is-red": "has red and blue exchanged", [FinalColor = "color.zyx"];
-    "samples-not-averaged": "adds up its samples without dividing by their number", [MeanStatement = ""];
-    "one-sample-short": "takes one sample less than it divides by", [SampleCondition = "i < SAMPLES - 1"];
-    "one-sample-too-many": "takes one sample more than it divides by", [SampleCondition = "i <= SAMPLES"];
-    "one-sample-less": "takes one sample less than the scene",
+    "red-blue-swapped": "red and blue are swapped", [FinalColor = "color.zyx"];
+    "samples-not-averaged": "the sum of the samples is not divided by their number", [MeanStatement = ""];
+    "sample-loop-too-short": "the sum has one sample fewer than its divisor",
+        [SampleCondition = "i < SAMPLES - 1"];
+    "sample-loop-too-long": "the sum has one sample more than its divisor",
+        [SampleCondition = "i <= SAMPLES"];
+    "one-sample-fewer": "the number of samples is one less than the scene's",
         [SampleCondition = "i < SAMPLES - 1", MeanDivisor = "SAMPLES - 1"];
-    "one-sample-more": "takes one sample more than the scene",
+    "one-sample-more": "the number of samples is one more than the scene's",
         [SampleCondition = "i <= SAMPLES", MeanDivisor = "SAMPLES + 1"];
-    "samples-divided-by-one-less": "divides by one less than the number of its samples",
+    "samples-divisor-too-small": "the sum of the samples is divided by one less than their number",
         [MeanDivisor = "SAMPLES - 1"];
-    "last-sample-only": "keeps its last sample only",
+    "last-sample-only": "only the last sample is kept instead of the mean of all samples",
         [SampleStatement = "color = «Sample»;", MeanStatement = ""];
-    "one-seed-for-all-samples": "draws the same numbers for all samples of a pixel", [SampleIndex = "0"];
-    "no-jitter": "samples the pixel's centre only",
+    "same-seed-for-all-samples": "all samples of a pixel use the same random numbers", [SampleIndex = "0"];
+    "no-jitter": "samples are not jittered: all lie at the pixel's center",
         [SampleX = "fragCoord.x + 0.0 * random()", SampleY = "fragCoord.y + 0.0 * random()"];
-    "jitter-not-centred": "lets samples lie beside their pixel: it forgets to take half a pixel away",
+    "jitter-not-centered": "samples are jittered from 0 to 1 instead of −0.5 to 0.5",
         [SampleX = "fragCoord.x + random()", SampleY = "fragCoord.y + random()"],
         [SampleX = "fragCoord.x + random()"],
         [SampleY = "fragCoord.y + random()"];
-    "jitter-too-wide": "spreads its samples over two pixels",
+    "jitter-too-wide": "samples are jittered from −1 to 1 instead of −0.5 to 0.5",
         [SampleX = "fragCoord.x + 2.0 * random() - 1.0", SampleY = "fragCoord.y + 2.0 * random() - 1.0"];
-    "samples-at-the-corner": "puts all samples at the pixel's corner",
+    "samples-at-corner": "all samples lie at the pixel's corner",
         [SampleX = "fragCoord.x + 0.0 * random() - 0.5", SampleY = "fragCoord.y + 0.0 * random() - 0.5"];
-    "y-drawn-first": "draws y before x",
+    "y-sampled-before-x": "the first random number jitters y instead of x",
         [SampleXStatement = "«SampleYStatement»", SampleYStatement = "«SampleXStatement»"];
-    "jitter-in-x-only": "moves its samples along x only", [SampleY = "fragCoord.y"];
+    "jitter-in-x-only": "samples are jittered only along x", [SampleY = "fragCoord.y"];
 };
 
 /// The background.
 pub(super) static BACKGROUND: &[Mistake] = mistakes! {
-    "black-background": "has no background", [BackgroundColor = "vec3(0.0)"];
-    "background-upside-down": "has the background upside down",
+    "black-background": "the background is black", [BackgroundColor = "vec3(0.0)"];
+    "background-upside-down": "the background gradient is upside down",
         [BackgroundStatement = "direction.y = -direction.y;\n    …"];
-    "background-by-y-alone": "mixes the background by y, which goes from −1 to 1, not from 0 to 1",
+    "background-y-not-remapped": "the background gradient uses y, which runs from −1 to 1, instead of 0.5 (1 + y)",
         [BackgroundHeight = "direction.y"];
-    "background-along-x": "mixes the background along x, not along y",
+    "background-along-x": "the background gradient runs along x instead of y",
         [BackgroundHeight = "0.5 * (1.0 + direction.x)"];
-    "background-along-z": "mixes the background along z, not along y",
+    "background-along-z": "the background gradient runs along z instead of y",
         [BackgroundHeight = "0.5 * (1.0 + direction.z)"];
-    "background-not-reflected": "does not tint the background that mirrors show",
+    "background-not-tinted": "the background seen in mirrors is not multiplied by the throughput",
         [BackgroundThroughMirrors = "background(«BackgroundDirection»)"];
-    "background-of-the-first-ray": "shows in mirrors the background that the eye's own ray would see",
+    "background-of-camera-ray": "the background seen in mirrors is that of the camera ray instead of the reflected ray",
         [BackgroundDirection = "direction"];
 };
 
 /// Figures on the screen.
 pub(super) static FIGURES: &[Mistake] = mistakes! {
-    "disk-radius-not-squared": "does not square the disk's radius", [DiskFunction = "dot(d, d) - radius"];
-    "disk-inside-out": "fills the outside of the disk", [DiskFunction = "radius * radius - dot(d, d)"];
-    "wave-upside-down": "fills the space above the wave, not below it",
+    "disk-radius-not-squared": "the disk's radius is not squared", [DiskFunction = "dot(d, d) - radius"];
+    "disk-inside-out": "the outside of the disk is filled: its function has the wrong sign",
+        [DiskFunction = "radius * radius - dot(d, d)"];
+    "wave-filled-above": "the area above the wave is filled instead of the area below it",
         [WaveFunction = "height + amplitude * sin(frequency * p.x) - p.y"],
         [WaveFunction = "height - p.y + amplitude * sin(frequency * p.x)"];
-    "wave-mirrored": "has the wave upside down",
+    "wave-sign": "the sine of the wave has the wrong sign: crests and troughs are swapped",
         [WaveFunction = "p.y - height + amplitude * sin(frequency * p.x)"];
-    "wave-in-turns": "takes the wave's frequency for turns, not for radians",
+    "wave-with-2-pi": "the wave's frequency is multiplied by 2π, but it is in radians",
         [WaveFunction = "p.y - height - amplitude * sin(6.28318530718 * frequency * p.x)"];
-    "wave-of-cosine": "has a cosine for the wave's sine",
+    "wave-of-cosine": "the wave uses the cosine instead of the sine",
         [WaveFunction = "p.y - height - amplitude * cos(frequency * p.x)"];
-    "heart-upside-down": "has the heart upside down",
+    "heart-upside-down": "the heart is upside down: the term x²y³ has the wrong sign",
         [HeartFunction = "ring * ring * ring + q.x * q.x * q.y * q.y * q.y"];
-    "ring-not-cubed": "does not cube the ring of the heart",
+    "heart-not-cubed": "the term x² + y² − 1 of the heart is not cubed",
         [HeartFunction = "ring - q.x * q.x * q.y * q.y * q.y"];
-    "ring-squared": "squares the ring of the heart where it should cube it",
+    "heart-squared": "the term x² + y² − 1 of the heart is squared instead of cubed",
         [HeartFunction = "ring * ring - q.x * q.x * q.y * q.y * q.y"];
 };

@@ -5,117 +5,122 @@ use super::{Mistake, mistakes};
 
 /// Mirrors.
 pub(super) static MIRRORS: &[Mistake] = mistakes! {
-    "no-reflection": "does not turn reflected rays: they go straight on",
+    "no-reflection": "rays are not reflected: they pass straight through mirrors",
         [ReflectedDirection = "ray.direction"];
-    "reflection-sign": "has the reflected direction backwards", [ReflectedDirection = "-…"];
-    "reflection-without-2": "forgets the 2 in the reflected direction d − 2(d·n)n",
+    "reflection-reversed": "the reflected direction is reversed", [ReflectedDirection = "-…"];
+    "reflection-without-2": "the factor 2 is missing in the reflected direction d − 2(d·n)n",
         [ReflectedDirection = "normalize(ray.direction - dot(ray.direction, hit.normal) * hit.normal)"],
         [
             ReflectedDirection = "ray.direction - dot(ray.direction, hit.normal) * hit.normal",
             Discriminant = TEXTBOOK,
         ];
-    "reflection-with-4": "has a 4 for the 2 in the reflected direction d − 2(d·n)n",
+    "reflection-with-4": "the reflected direction is d − 4(d·n)n instead of d − 2(d·n)n",
         [ReflectedDirection = "normalize(ray.direction - 4.0 * dot(ray.direction, hit.normal) * hit.normal)"],
         [
             ReflectedDirection = "ray.direction - 4.0 * dot(ray.direction, hit.normal) * hit.normal",
             Discriminant = TEXTBOOK,
         ];
-    "reflection-with-plus": "has d + 2(d·n)n for the reflected direction d − 2(d·n)n",
+    "reflection-with-plus": "the reflected direction is d + 2(d·n)n instead of d − 2(d·n)n",
         [ReflectedDirection = "normalize(ray.direction + 2.0 * dot(ray.direction, hit.normal) * hit.normal)"],
         [
             ReflectedDirection = "ray.direction + 2.0 * dot(ray.direction, hit.normal) * hit.normal",
             Discriminant = TEXTBOOK,
         ];
-    "reflection-from-the-eye": "starts reflected rays at the eye",
+    "reflection-origin-unchanged": "reflected rays start at the origin of the incoming ray instead of the hit point",
         [ReflectedOrigin = "ray.origin"],
         [SampledOrigin = "ray.origin"];
-    "reflection-along-the-normal": "reflects every ray along the normal", [ReflectedDirection = "hit.normal"];
-    "one-reflection-short": "follows one reflection less than the scene has",
+    "reflection-along-normal": "the normal is used as the reflected direction",
+        [ReflectedDirection = "hit.normal"];
+    "one-bounce-fewer": "paths end one bounce before the scene's maximum depth",
         [MirrorDepth = "depth < MAX_DEPTH - 1"];
-    "one-bounce-only": "follows one reflection only", [MirrorDepth = "depth < 2"];
-    "two-bounces-only": "follows two reflections only", [MirrorDepth = "depth < 3"];
-    "background-after-one-bounce": "shows the background after one reflection, whatever the ray meets then",
+    "one-bounce-only": "only one reflection is followed", [MirrorDepth = "depth < 2"];
+    "two-bounces-only": "only two reflections are followed", [MirrorDepth = "depth < 3"];
+    "background-after-one-bounce": "the background is shown after one reflection, even where the reflected ray hits a surface",
         [MirrorDepth = "depth < 2", ColorAfterLastMirror = "throughput * background(ray.direction)"];
-    "background-after-the-last-bounce": "shows the background after the last reflection, where the scene has black",
+    "background-after-last-bounce": "the background is shown after the last bounce instead of black",
         [ColorAfterLastMirror = "throughput * background(ray.direction)"];
-    "mirrors-added": "adds the colours of mirrors up, where they should multiply",
+    "mirror-colors-added": "the throughput adds the colors of mirrors instead of multiplying them",
         [MirrorStatement = "throughput += hit.color;"];
-    "mirrors-without-colour": "forgets the mirrors' colour", [MirrorStatement = ""];
-    "last-mirror-only": "keeps the last mirror's colour only, where all should multiply",
+    "mirror-color-ignored": "the throughput is not multiplied by the mirror's color", [MirrorStatement = ""];
+    "last-mirror-only": "the throughput is replaced by the last mirror's color instead of multiplied by it",
         [MirrorStatement = "throughput = hit.color;"];
 };
 
 /// Glass.
 pub(super) static GLASS: &[Mistake] = mistakes! {
-    "index-upside-down": "has the index of refraction the other way up",
+    "ior-ratio-inverted": "the ratio of the refractive indices is inverted",
         [EtaEntering = "«EtaLeaving»", EtaLeaving = "«EtaEntering»"];
-    "index-always-entering": "takes every ray for one that enters the glass", [EtaLeaving = "1.0 / hit.ior"];
-    "normal-not-turned-inside": "does not turn the normal where a ray leaves the glass",
+    "ior-always-entering": "rays that leave the glass use the ratio of refractive indices of rays that enter it",
+        [EtaLeaving = "1.0 / hit.ior"];
+    "normal-not-flipped-inside": "the normal is not flipped where rays leave the glass",
         [
             GlassCosine = "-dot(ray.direction, hit.normal)",
             Refracted = "eta * ray.direction + (eta * cosine - beyond) * hit.normal",
         ];
-    "refraction-without-normal": "forgets the part of the refracted direction along the normal",
+    "refraction-without-normal": "the normal component of the refracted direction is missing",
         [Refracted = "normalize(eta * ray.direction)"],
         [Refracted = "eta * ray.direction", Discriminant = TEXTBOOK];
-    "refraction-sign": "has the wrong sign in Snell's law",
+    "refraction-sign": "a sign is wrong in the refracted direction η d + (η cos θᵢ − cos θₜ) n",
         [Refracted = "normalize(eta * ray.direction + (eta * cosine + beyond) * side)"],
         [Refracted = "eta * ray.direction + (eta * cosine + beyond) * side", Discriminant = TEXTBOOK];
-    "no-refraction": "does not bend rays in glass: they go straight on", [Refracted = "ray.direction"];
-    "glass-reflects-nothing": "lets glass reflect nothing", [ReflectedShare = "0.0"];
-    "glass-reflects-half": "lets glass reflect half of the light at every angle", [ReflectedShare = "0.5"];
-    "glass-reflects-4-percent": "lets glass reflect as much at every angle as straight on",
+    "no-refraction": "rays are not refracted: they pass straight through glass",
+        [Refracted = "ray.direction"];
+    "no-glass-reflection": "the Fresnel reflectance of glass is always 0", [ReflectedShare = "0.0"];
+    "glass-reflects-half": "the Fresnel reflectance of glass is always 0.5", [ReflectedShare = "0.5"];
+    "constant-reflectance": "the Fresnel reflectance at normal incidence is used at every angle",
         [ReflectedShare = "(1.0 - eta) * (1.0 - eta) / ((1.0 + eta) * (1.0 + eta))"];
-    "one-polarisation": "counts one polarisation only, where Fresnel's equations take the mean of two",
+    "one-polarization": "the Fresnel reflectance uses one polarization instead of the mean of both",
         [Fresnel = "across * across"],
         [Fresnel = "along * along"];
-    "shares-swapped": "has the shares of reflected and refracted light exchanged",
+    "fresnel-weights-swapped": "the weights of reflected and refracted light are swapped",
         [RefractedThroughput = "«ReflectedThroughput»", ReflectedThroughput = "«RefractedThroughput»"];
-    "shares-forgotten": "adds up reflected and refracted light without their shares",
+    "fresnel-weights-missing": "reflected and refracted light are added without their Fresnel weights",
         [RefractedThroughput = "throughput", ReflectedThroughput = "throughput"];
-    "glass-without-colour": "forgets the colour of the glass",
+    "glass-color-ignored": "the color of the glass is ignored",
         [GlassColor = "(hit.model == GLASS ? vec3(1.0) : hit.color)"],
         [GlassColor = "(hit.model == SCHLICK ? vec3(1.0) : hit.color)"];
-    "no-total-reflection": "loses the rays that glass reflects totally", [TotalReflection = ""];
+    "no-total-internal-reflection": "total internal reflection is missing: such rays are lost",
+        [TotalReflection = ""];
 };
 
 /// Path tracing.
 pub(super) static PATHS: &[Mistake] = mistakes! {
-    "light-not-weighted": "does not weigh the light of the emitters that it draws, so that it counts twice",
+    "sampled-light-not-weighted": "sampled emitters have no MIS weight, so their light counts twice",
         [WeightedEmitter = "«UnweightedEmitter»"];
-    "found-light-not-weighted": "does not weigh the light of the emitters that it finds by chance, so that it counts twice",
+    "hit-light-not-weighted": "emitters hit by BRDF samples have no MIS weight, so their light counts twice",
         [EmitterShare = "1.0"];
-    "light-not-weighted-at-all": "weighs no light, so that all counts twice",
+    "mis-weights-missing": "MIS weights are missing, so all direct light counts twice",
         [WeightedEmitter = "«UnweightedEmitter»", EmitterShare = "1.0"];
-    "emitters-not-drawn": "does not count the light of the emitters that it draws",
+    "sampled-light-missing": "the light of sampled emitters is not added",
         [EmitterStatement = "«EmitterSample»;"];
-    "found-light-not-counted": "does not count the light of the emitters that it finds by chance",
+    "hit-light-missing": "the light of emitters hit by BRDF samples is not added",
         [EmitterShare = "0.0"];
-    "number-of-emitters-forgotten": "forgets in the density that there are several emitters",
+    "emitter-count-ignored": "the density of light sampling does not include the probability of choosing the emitter",
         [ConeSolidAngle = "(2.0 * PI * coneDepth(point, emitter))"];
-    "first-emitter-only": "draws the first emitter always",
+    "first-emitter-only": "only the first emitter is sampled",
         [EmitterChoice = "min(int(0.0 * random()), EMITTERS - 1)"];
-    "density-of-a-sphere": "has the density of a whole sphere for diffuse directions",
+    "density-of-sphere": "the density of diffuse directions is 1/(4π) instead of cos θ/π",
         [DiffuseDensity = "1.0 / (4.0 * PI)"];
-    "density-of-a-half-space": "has the density of a half space for diffuse directions",
+    "density-of-hemisphere": "the density of diffuse directions is 1/(2π) instead of cos θ/π",
         [DiffuseDensity = "1.0 / (2.0 * PI)"];
-    "directions-uniform": "draws diffuse directions uniformly over the half space, though their density is said to be the cosine's",
+    "uniform-instead-of-cosine-weighted": "diffuse directions are sampled uniformly, but the density is that of cosine-weighted sampling",
         [DiffuseCosine = "1.0 - u"];
-    "lobe-around-the-normal": "draws glossy directions around the normal, not around the reflected direction",
+    "lobe-around-normal": "glossy directions are sampled around the normal instead of the reflected direction",
         [LobeAxis = "hit.normal"];
-    "exponent-without-1": "forgets the 1 in the exponent by which glossy directions are drawn",
+    "exponent-without-1": "glossy directions are sampled with the exponent 1/n instead of 1/(n + 1)",
         [LobeExponent = "1.0 / hit.exponent"];
-    "path-cosine-forgotten": "forgets the cosine where a path goes on", [PathFactor = "«PathBrdf» / density"];
-    "density-forgotten": "does not divide by the density where a path goes on",
+    "path-cosine-missing": "the cosine is missing in the throughput", [PathFactor = "«PathBrdf» / density"];
+    "density-missing": "the throughput is not divided by the probability density",
         [PathFactor = "«PathBrdf» * cosine"];
-    "path-one-segment-short": "follows paths for one segment less than the scene has",
+    "one-bounce-fewer": "paths end one bounce before the scene's maximum depth",
         [PathDepth = "depth <= MAX_DEPTH - 1", PathIsAtEnd = "depth == MAX_DEPTH - 1"];
-    "light-one-segment-too-far": "looks for light at the end of the last segment, too",
+    "light-sampled-beyond-max-depth": "emitters are sampled even at the end of the last segment of a path",
         [PathIsAtEnd = "false"];
-    "throughput-not-kept": "forgets what surfaces before the last have absorbed",
+    "throughput-replaced": "the throughput is replaced at each bounce instead of multiplied",
         [PathStatement = "throughput = «PathFactor»;"];
-    "emitters-through-everything": "sees emitters through everything", [EmitterHidden = "cosine <= 0.0"];
-    "pi-forgotten-in-paths": "forgets to divide the BRDF by π where light is looked for, or where a path goes on",
+    "light-visibility-missing": "emitters are sampled without a shadow ray, so they shine through objects",
+        [EmitterHidden = "cosine <= 0.0"];
+    "pi-missing-in-paths": "the diffuse BRDF is not divided by π, either for sampled emitters or in the throughput",
         [EmitterDiffuseBrdf = "hit.color"],
         [PathDiffuseBrdf = "hit.color"];
 };

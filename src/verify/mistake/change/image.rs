@@ -12,37 +12,43 @@ pub(super) fn camera(changes: &mut Changes) {
         Projection::Pinhole { screen_distance } => {
             changes.add(
                 "parallel-rays",
-                "sends parallel rays, where the scene has them start at the eye",
+                "camera rays are parallel; the scene has a pinhole camera",
                 |scene| scene.camera.projection = Projection::Parallel { width: 2.0 },
             );
-            changes.add("angle-too-narrow", "has the screen twice as far away", |scene| {
-                scene.camera.projection = Projection::Pinhole {
-                    screen_distance: 2.0 * screen_distance,
-                };
-            });
+            changes.add(
+                "field-of-view-too-narrow",
+                "the field of view is too narrow: the screen distance is twice the scene's",
+                |scene| {
+                    scene.camera.projection = Projection::Pinhole {
+                        screen_distance: 2.0 * screen_distance,
+                    };
+                },
+            );
         }
         Projection::Parallel { width } => {
             for screen_distance in [2.0, 1.0] {
                 changes.add(
-                    "rays-from-one-eye",
-                    "sends rays from one point, where the scene has them parallel",
+                    "perspective-rays",
+                    "camera rays start at one point; the scene has a parallel projection",
                     |scene| scene.camera.projection = Projection::Pinhole { screen_distance },
                 );
             }
-            let says = "takes the picture's width for half of it";
-            changes.add("width-not-halved", says, |scene| {
+            let description = "the parallel projection is twice as wide: its width is not halved";
+            changes.add("projection-width-not-halved", description, |scene| {
                 scene.camera.projection = Projection::Parallel { width: 2.0 * width };
             });
-            let says = "halves the picture's width twice";
-            changes.add("width-halved-twice", says, |scene| {
+            let description = "the parallel projection is half as wide: its width is halved twice";
+            changes.add("projection-width-halved-twice", description, |scene| {
                 scene.camera.projection = Projection::Parallel { width: 0.5 * width };
             });
         }
     }
     if changes.scene.camera.eye != [0.0; 3] {
-        changes.add("eye-at-the-origin", "has the eye at the origin", |scene| {
-            scene.camera.eye = [0.0; 3];
-        });
+        changes.add(
+            "camera-at-origin",
+            "the camera is at the origin instead of the scene's `eye`",
+            |scene| scene.camera.eye = [0.0; 3],
+        );
     }
 }
 
@@ -50,25 +56,26 @@ pub(super) fn film(changes: &mut Changes) {
     let film = changes.scene.film;
     let depth = film.max_depth;
     if depth > 1 {
-        changes.add("one-bounce-short", "follows one reflection too few", |scene| {
-            scene.film.max_depth -= 1;
+        changes.add(
+            "one-bounce-fewer",
+            "paths end one bounce before the scene's maximum depth",
+            |scene| scene.film.max_depth -= 1,
+        );
+    }
+    changes.add(
+        "one-bounce-more",
+        "paths continue one bounce beyond the scene's maximum depth",
+        |scene| scene.film.max_depth += 1,
+    );
+    for segments in (1..depth.min(MAX_SEGMENTS + 1)).rev() {
+        let description = format!("the maximum depth is {segments}; the scene has {depth}");
+        changes.add("max-depth-too-small", description, |scene| {
+            scene.film.max_depth = segments;
         });
     }
-    changes.add("one-bounce-more", "follows one reflection too many", |scene| {
-        scene.film.max_depth += 1;
-    });
-    for segments in (1..depth.min(MAX_SEGMENTS + 1)).rev() {
-        let says = format!("follows each ray for {segments} segments, where the scene has {depth}");
-        changes.add("too-few-segments", says, |scene| scene.film.max_depth = segments);
-    }
     if film.samples > 1 {
-        changes.add(
-            "one-sample",
-            "takes one sample in each pixel, where the scene has more",
-            |scene| {
-                scene.film.samples = 1;
-            },
-        );
+        let description = format!("one sample per pixel is taken; the scene has {}", film.samples);
+        changes.add("one-sample", description, |scene| scene.film.samples = 1);
     }
 }
 
@@ -76,21 +83,23 @@ pub(super) fn figures(changes: &mut Changes) {
     let count = changes.scene.figures.len();
     for low in 0..count {
         for high in low + 1..count {
-            let says = format!(
-                "lays the {} figure over the {} one, where the scene has it below",
+            let description = format!(
+                "the {} figure covers the {} one; the scene has the opposite order",
                 ordinal(low),
                 ordinal(high)
             );
-            changes.add("figures-order", says, |scene| scene.figures.swap(low, high));
+            changes.add("figures-order", description, |scene| {
+                scene.figures.swap(low, high);
+            });
         }
-        let says = format!("leaves out the {} figure", ordinal(low));
-        changes.add("figure-missing", says, |scene| {
+        let description = format!("the {} figure is missing", ordinal(low));
+        changes.add("figure-missing", description, |scene| {
             scene.figures.remove(low);
         });
     }
     changes.add(
         "figures-order-reversed",
-        "lays the figures on each other the other way round",
+        "the order of all figures is reversed",
         |scene| {
             scene.figures.reverse();
         },

@@ -8,11 +8,11 @@ use std::borrow::Cow;
 
 use toyproof_scene::{FrameTime, Point, Scene};
 
-use super::Named;
+use super::KnownMistake;
 
 /// A scene at a time, with one change.
 pub(super) struct Change {
-    pub(super) named: Named,
+    pub(super) mistake: KnownMistake,
     pub(super) scene: Scene,
     pub(super) frame_time: FrameTime,
 }
@@ -25,7 +25,7 @@ pub(super) struct Changes<'a> {
 }
 
 /// Returns the changes that lose most of the image, so that many mistakes may be the cause; one of these is
-/// named even if others explain the image as well.
+/// reported even if others explain the image as well.
 pub(super) fn general(scene: &Scene, frame_time: FrameTime) -> Vec<Change> {
     let mut changes = Changes::new(scene, frame_time);
     objects::no_objects(&mut changes);
@@ -33,7 +33,7 @@ pub(super) fn general(scene: &Scene, frame_time: FrameTime) -> Vec<Change> {
     changes.all
 }
 
-/// Returns all other changes; of two that render the same image, the first is named.
+/// Returns all other changes; of two that render the same image, the first is reported.
 pub(super) fn all(scene: &Scene, frame_time: FrameTime) -> Vec<Change> {
     let mut changes = Changes::new(scene, frame_time);
     image::film(&mut changes);
@@ -56,16 +56,27 @@ impl<'a> Changes<'a> {
     }
 
     /// Adds the scene after `edit`, if that changes anything.
-    fn add(&mut self, name: &'static str, says: impl Into<Cow<'static, str>>, edit: impl FnOnce(&mut Scene)) {
+    fn add(
+        &mut self,
+        id: &'static str,
+        description: impl Into<Cow<'static, str>>,
+        edit: impl FnOnce(&mut Scene),
+    ) {
+        self.add_mistake(KnownMistake::new(id, description), edit);
+    }
+
+    /// Adds the scene after `edit`, with a symptom of many mistakes.
+    fn add_symptom(&mut self, id: &'static str, description: &'static str, edit: impl FnOnce(&mut Scene)) {
+        self.add_mistake(KnownMistake::symptom(id, description), edit);
+    }
+
+    fn add_mistake(&mut self, mistake: KnownMistake, edit: impl FnOnce(&mut Scene)) {
         let mut scene = self.scene.clone();
         edit(&mut scene);
         scene.release_changed_scatters();
         if scene != *self.scene {
             self.all.push(Change {
-                named: Named {
-                    name,
-                    says: says.into(),
-                },
+                mistake,
                 scene,
                 frame_time: self.frame_time,
             });
@@ -73,12 +84,9 @@ impl<'a> Changes<'a> {
     }
 
     /// Adds the scene at another time.
-    fn add_at_time(&mut self, name: &'static str, says: &'static str, frame_time: FrameTime) {
+    fn add_at_time(&mut self, id: &'static str, description: &'static str, frame_time: FrameTime) {
         self.all.push(Change {
-            named: Named {
-                name,
-                says: says.into(),
-            },
+            mistake: KnownMistake::new(id, description),
             scene: self.scene.clone(),
             frame_time,
         });
@@ -86,7 +94,7 @@ impl<'a> Changes<'a> {
 }
 
 /// Formats a point.
-fn place([x, y, z]: Point) -> String {
+pub(super) fn place([x, y, z]: Point) -> String {
     format!("({x}, {y}, {z})")
 }
 
@@ -156,7 +164,7 @@ mod tests {
                 .chain(all(&scene, frame_time))
             {
                 let Change {
-                    named,
+                    mistake,
                     scene,
                     frame_time,
                 } = change;
@@ -165,12 +173,12 @@ mod tests {
                     assert!(
                         scattered.scatter.spheres().eq(objects.iter().cloned()),
                         "{name}: {}",
-                        named.name
+                        mistake.id
                     );
                 }
                 let differing = differing(&scene, frame_time);
                 // An edge may pass through a pixel's center.
-                assert!(differing <= own + 3, "{name}: {}: {differing} pixels", named.name);
+                assert!(differing <= own + 3, "{name}: {}: {differing} pixels", mistake.id);
             }
         }
     }

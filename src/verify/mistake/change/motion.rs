@@ -11,36 +11,48 @@ pub(super) fn motions(changes: &mut Changes) {
     }
     let frame_time = changes.frame_time;
     let frame = |frame| FrameTime { frame, ..frame_time };
-    changes.add_at_time("next-frame", "shows the next frame", frame(frame_time.frame + 1));
     changes.add_at_time(
-        "frame-before",
-        "shows the frame before",
+        "next-frame",
+        "the next frame is shown",
+        frame(frame_time.frame + 1),
+    );
+    changes.add_at_time(
+        "previous-frame",
+        "the previous frame is shown",
         frame(frame_time.frame - 1),
     );
-    let start = "shows the start, as if nothing moved";
-    changes.add_at_time("nothing-moves", start, FrameTime::default());
+    changes.add_at_time(
+        "nothing-moves",
+        "nothing moves: the image is that of time 0",
+        FrameTime::default(),
+    );
     let motions = changes.scene.motions.len();
     for index in 0..motions {
         let which = format!("the {} motion", ordinal(index));
-        let mut add = |name, says: String, edit: &dyn Fn(&mut Motion)| {
-            changes.add(name, says, |scene| edit(&mut scene.motions[index]));
+        let period = changes.scene.motions[index].period;
+        let mut add = |id, description: String, edit: &dyn Fn(&mut Motion)| {
+            changes.add(id, description, |scene| edit(&mut scene.motions[index]));
         };
         add(
-            "not-carried-along",
-            format!("does not carry {which} along with the one that it is within"),
+            "enclosing-motion-missing",
+            format!("{which} does not follow the motion that it is within"),
             &|motion| motion.within = None,
         );
         for (axis, name) in [
-            ([0.0, 1.0, 0.0], "upright"),
-            ([1.0, 0.0, 0.0], "along x"),
-            ([0.0, 0.0, 1.0], "along z"),
+            ([0.0, 1.0, 0.0], "y"),
+            ([1.0, 0.0, 0.0], "x"),
+            ([0.0, 0.0, 1.0], "z"),
         ] {
-            let says = format!("has the axis of {which} {name}");
-            add("another-axis", says, &|motion| motion.axis = axis);
+            let description = format!("the axis of {which} is {name}; the scene has another axis");
+            add("wrong-axis", description, &|motion| motion.axis = axis);
         }
+        let [actual, expected] = match period {
+            Period::Frames(_) => ["seconds", "frames"],
+            Period::Seconds(_) => ["frames", "seconds"],
+        };
         add(
-            "frames-for-seconds",
-            format!("takes frames for seconds in {which}, or seconds for frames"),
+            "frames-seconds-swapped",
+            format!("the period of {which} is counted in {actual} instead of {expected}"),
             &|motion| {
                 motion.period = match motion.period {
                     Period::Frames(frames) => Period::Seconds(frames),
@@ -48,26 +60,31 @@ pub(super) fn motions(changes: &mut Changes) {
                 };
             },
         );
-        for (factor, how) in [(0.5, "twice as fast"), (2.0, "half as fast")] {
-            let says = format!("turns {how} as {which}");
-            add("wrong-period", says, &|motion| {
+        for (factor, how) in [(0.5, "twice"), (2.0, "half")] {
+            let description = format!("{which} is {how} as fast as the scene's");
+            add("wrong-period", description, &|motion| {
                 motion.period = scaled(motion.period, factor);
             });
         }
-        let says = format!("has {which} the other way round");
-        add("turned-the-other-way", says, &|motion| {
+        let description = format!("{which} has the opposite direction");
+        add("rotation-reversed", description, &|motion| {
             motion.period = scaled(motion.period, -1.0);
         });
-        let says = format!("turns about the world's origin in {which}, not about its pivot");
-        add("about-the-origin", says, &|motion| motion.pivot = [0.0; 3]);
-        let says = format!("does not turn {which}: it is not called, or its turns are divided as integers");
-        changes.add("motion-stands-still", says, |scene| stop(scene, index));
+        let description = format!("{which} is about the world's origin instead of its pivot");
+        add("rotation-about-origin", description, &|motion| {
+            motion.pivot = [0.0; 3];
+        });
+        let description =
+            format!("{which} is missing: it is not applied, or its angle is computed with integer division");
+        changes.add("motion-missing", description, |scene| stop(scene, index));
         for other in index + 1..motions {
-            let says = format!(
-                "does not turn {which} and the {} one: they are not called, or their turns are divided as integers",
+            let description = format!(
+                "the {} and the {} motion are missing: they are not applied, or their angles are computed with \
+                 integer division",
+                ordinal(index),
                 ordinal(other)
             );
-            changes.add("motions-stand-still", says, |scene| {
+            changes.add("motions-missing", description, |scene| {
                 stop(scene, index);
                 stop(scene, other);
             });
@@ -121,20 +138,21 @@ pub(super) fn hierarchy(changes: &mut Changes) {
     let Some(nodes) = nodes(&changes.scene.objects) else {
         return;
     };
-    let mut add = |name, says: &'static str, edit: &dyn Fn(&mut Scene)| changes.add(name, says, edit);
+    let mut add =
+        |id, description: &'static str, edit: &dyn Fn(&mut Scene)| changes.add(id, description, edit);
     add(
-        "children-as-large-as-their-parents",
-        "has spheres as large as those that they sit on",
+        "child-radius-of-parent",
+        "child spheres are as large as their parents",
         &|scene| rebuild(scene, &nodes, |parent, _| (parent, parent + parent)),
     );
     add(
-        "children-half-sunk",
-        "puts the centres of spheres on the surface of those that they sit on: one radius away, not the sum of both",
+        "child-distance-too-small",
+        "the centers of child spheres lie on the surface of their parents: the child's radius is not added",
         &|scene| rebuild(scene, &nodes, |parent, own| (own, parent)),
     );
     add(
-        "colours-not-mixed",
-        "gives spheres a colour of their own, not half of it that of the sphere which they sit on",
+        "child-colors-not-mixed",
+        "the color of child spheres is not averaged with that of their parents",
         &|scene| {
             for (object, node) in scene.objects.iter_mut().zip(&nodes) {
                 if let Some(parent) = node.parent {
@@ -146,7 +164,7 @@ pub(super) fn hierarchy(changes: &mut Changes) {
     let deepest = nodes.iter().map(|node| node.level).max().unwrap_or(0);
     add(
         "smallest-missing",
-        "leaves out the smallest spheres, or lays them upon those that they should sit on",
+        "the smallest spheres are missing or coincide with larger ones",
         &|scene| keep(scene, &nodes, |node| node.level < deepest),
     );
     let points_back = |node: &Node| {
@@ -155,7 +173,7 @@ pub(super) fn hierarchy(changes: &mut Changes) {
     };
     add(
         "one-side-only",
-        "puts spheres on one side of each axis only",
+        "child spheres lie on only one side of each axis",
         &|scene| {
             keep(scene, &nodes, |node| !points_back(node));
         },
@@ -163,8 +181,9 @@ pub(super) fn hierarchy(changes: &mut Changes) {
     let most = nodes.iter().map(|node| node.number + 1).max().unwrap_or(0);
     for level in 1..=deepest {
         for number in 0..most {
-            let says = "leaves out one of the spheres that sit on others: a loop begins or ends one off";
-            add("one-child-short", says, &|scene| {
+            let description =
+                "one of the child spheres is missing at each parent: a loop bound is off by one";
+            add("child-missing", description, &|scene| {
                 keep(scene, &nodes, |node| node.level != level || node.number != number);
             });
         }

@@ -2,16 +2,15 @@
 
 use toyproof_scene::{Fresnel, Model, Scene, Shape};
 
-use super::{Changes, ordinal, place};
+use super::{Changes, place};
 
 /// The largest number of surfaces of a scene in which a missing one is searched for.
 const MAX_MISSING: usize = 64;
 
 pub(super) fn no_objects(changes: &mut Changes) {
-    changes.add(
-        "background-alone",
-        "paints the background alone, as if no ray met anything: look at where rays go, where the scene stands, the sign of b, and \
-         which t count as hits",
+    changes.add_symptom(
+        "background-only",
+        "only the background is visible: rays hit nothing",
         |scene| scene.retain_objects(|_| false),
     );
 }
@@ -21,21 +20,21 @@ pub(super) fn objects(changes: &mut Changes) {
     let missing: Vec<_> = objects.iter().map(|object| describe(&object.shape)).collect();
     if missing.len() <= MAX_MISSING && missing.len() > 1 {
         for (index, what) in missing.iter().enumerate() {
-            let says = format!("leaves out {what}");
-            changes.add("object-missing", says, |scene| {
+            let description = format!("{what} is missing");
+            changes.add("object-missing", description, |scene| {
                 scene.retain_objects(|at| at != index);
             });
         }
     }
-    for (factor, name, says) in [
+    for (factor, id, description) in [
         (
             2.0,
-            "diameter-for-radius",
-            "takes diameters for radii: all spheres are twice as large",
+            "diameter-as-radius",
+            "all spheres are twice as large: their diameter is used as the radius",
         ),
-        (0.5, "radius-halved", "has all spheres half as large"),
+        (0.5, "radius-halved", "all spheres are half as large"),
     ] {
-        changes.add(name, says, |scene| {
+        changes.add(id, description, |scene| {
             for object in &mut scene.objects {
                 if let Shape::Sphere { radius, .. } = &mut object.shape {
                     *radius *= factor;
@@ -48,20 +47,20 @@ pub(super) fn objects(changes: &mut Changes) {
 
 fn materials(changes: &mut Changes) {
     changes.add(
-        "schlick-for-fresnel",
-        "has Schlick's formula where the scene has Fresnel's equations",
+        "schlick-instead-of-fresnel",
+        "Schlick's approximation is used; the scene has the Fresnel equations",
         |scene| {
             each_fresnel(scene, Fresnel::Schlick);
         },
     );
     changes.add(
-        "fresnel-for-schlick",
-        "has Fresnel's equations where the scene has Schlick's formula",
+        "fresnel-instead-of-schlick",
+        "the Fresnel equations are used; the scene has Schlick's approximation",
         |scene| {
             each_fresnel(scene, Fresnel::Exact);
         },
     );
-    changes.add("glass-as-mirror", "treats glass as a mirror", |scene| {
+    changes.add("glass-as-mirror", "glass is rendered as a mirror", |scene| {
         for object in &mut scene.objects {
             if matches!(object.material.model, Model::Glass { .. }) {
                 object.material.model = Model::Mirror;
@@ -72,7 +71,7 @@ fn materials(changes: &mut Changes) {
     let glass = changes.scene.objects.iter().map(|object| object.material.model);
     let glass = glass.into_iter().find(is_glass);
     if let Some(glass) = glass {
-        changes.add("mirror-as-glass", "treats mirrors as glass", |scene| {
+        changes.add("mirror-as-glass", "mirrors are rendered as glass", |scene| {
             for object in &mut scene.objects {
                 if object.material.model == Model::Mirror && object.shape.is_closed() {
                     object.material.model = glass;
@@ -81,8 +80,8 @@ fn materials(changes: &mut Changes) {
         });
     }
     changes.add(
-        "checker-forgotten",
-        "paints checkered surfaces in one colour",
+        "checker-missing",
+        "checkered surfaces have only one color",
         |scene| {
             for object in &mut scene.objects {
                 object.material.checker = None;
@@ -109,10 +108,9 @@ fn describe(shape: &Shape) -> String {
 }
 
 pub(super) fn no_lights(changes: &mut Changes) {
-    changes.add(
-        "ambient-light-alone",
-        "lets no light fall on anything but ambient light: look at the direction to the light, the sign of the normal, and where \
-         shadow rays start",
+    changes.add_symptom(
+        "ambient-only",
+        "only ambient light is visible: no light reaches a surface",
         |scene| scene.lights.clear(),
     );
 }
@@ -120,48 +118,47 @@ pub(super) fn no_lights(changes: &mut Changes) {
 pub(super) fn lights(changes: &mut Changes) {
     let lights = changes.scene.lights.clone();
     for (index, light) in lights.iter().enumerate() {
+        let position = place(light.position);
+        let which = format!("the light at {position}");
         if lights.len() > 1 {
-            let says = format!("leaves out the light at {}", place(light.position));
-            changes.add("light-missing", says, |scene| {
+            let description = format!("{which} is missing");
+            changes.add("light-missing", description, |scene| {
                 scene.lights.remove(index);
             });
-            let says = format!("takes the {} light for every light", ordinal(index));
-            changes.add("one-light-for-all", says, |scene| {
+            let description = format!("{which} is used in place of every light");
+            changes.add("one-light-for-all", description, |scene| {
                 for light in &mut scene.lights {
                     *light = lights[index];
                 }
             });
         }
-        let says = match lights.len() {
-            1 => "has no shadows".to_owned(),
-            _ => format!("has no shadows of the {} light", ordinal(index)),
+        let description = match lights.len() {
+            1 => "shadows are missing".to_owned(),
+            _ => format!("{which} casts no shadows"),
         };
-        changes.add("light-without-shadow", says, |scene| {
+        changes.add("light-without-shadow", description, |scene| {
             scene.lights[index].shadow = false;
         });
-        changes.add(
-            "shadow-of-a-light-without",
-            "has shadows of a light that casts none",
-            |scene| {
-                scene.lights[index].shadow = true;
-            },
-        );
+        let description = format!("{which} casts shadows; in the scene it casts none");
+        changes.add("extra-shadow", description, |scene| {
+            scene.lights[index].shadow = true;
+        });
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-            let says = format!(
-                "has the {} light on the other side: the sign of its {name}",
-                ordinal(index)
-            );
-            changes.add("light-sign", says, |scene| {
+            let description = format!("the {name} of the light's position {position} has the wrong sign");
+            changes.add("light-sign", description, |scene| {
                 let along = &mut scene.lights[index].position[axis];
                 *along = -*along;
             });
         }
-        changes.add("light-at-rest", "does not move the light", |scene| {
+        changes.add("light-not-moving", format!("{which} does not move"), |scene| {
             scene.lights[index].motion = None;
         });
-        let says = "takes the light's diameter for its radius, or has it twice as large";
-        changes.add("light-too-large", says, |scene| scene.lights[index].radius *= 2.0);
-        changes.add("light-too-small", "has the light half as large", |scene| {
+        let description = format!("the radius of {which} is twice the scene's");
+        changes.add("light-too-large", description, |scene| {
+            scene.lights[index].radius *= 2.0;
+        });
+        let description = format!("the radius of {which} is half the scene's");
+        changes.add("light-too-small", description, |scene| {
             scene.lights[index].radius *= 0.5;
         });
     }

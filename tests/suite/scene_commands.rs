@@ -1,0 +1,183 @@
+//! Scenes by name, and `toyproof new scene`.
+
+use std::fs;
+use std::path::Path;
+
+use toyproof::diagnostic::{File, Files};
+use toyproof::scene;
+
+use crate::program::toyproof;
+use crate::support::SPHERE;
+
+/// The reference of the scene format.
+const REFERENCE: &str = "docs/scenes.md";
+
+#[test]
+fn built_in_scenes_are_accepted_by_name_and_files_come_first() {
+    let folder = tempfile::tempdir().unwrap();
+    let render = |scene: &str, image: &str| {
+        let run = toyproof(folder.path(), &["render", scene, "-o", image, "--size", "16x9"]);
+        assert_eq!(run.code, 0, "{scene}: {}", run.stderr);
+        fs::read(folder.path().join(image)).unwrap()
+    };
+    let by_name = render("02-sphere", "name.png");
+    assert_eq!(by_name, render("02-sphere.toml", "extension.png"));
+    // A file of that name is preferred.
+    fs::write(
+        folder.path().join("02-sphere.toml"),
+        "[background]\ncolor = [1, 1, 1]\n",
+    )
+    .unwrap();
+    assert_ne!(by_name, render("02-sphere.toml", "file.png"));
+    assert_eq!(by_name, render("02-sphere", "name.png"));
+
+    fs::write(folder.path().join("s.glsl"), SPHERE.shader).unwrap();
+    let run = toyproof(
+        folder.path(),
+        &[
+            "check",
+            "s.glsl",
+            "--scene",
+            "02-sphere",
+            "--on",
+            "cpu",
+            "--size",
+            "64x36",
+        ],
+    );
+    assert_eq!(run.code, 0, "{}{}", run.stdout, run.stderr);
+    let run = toyproof(folder.path(), &["export", "06-reflections", "-o", "mirrors.glsl"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+}
+
+#[test]
+fn a_missing_scene_is_one_error_for_all_commands() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.glsl"), SPHERE.shader).unwrap();
+    fs::write(folder.path().join("b.glsl"), "void mainImage(").unwrap();
+    for (scene, help) in [
+        ("02-spere", "did you mean the built-in scene `02-sphere`?"),
+        ("sphere.toml", "did you mean the built-in scene `02-sphere`?"),
+        ("2", "`toyproof scenes` lists the built-in scenes"),
+        ("nosuch.toml", "`toyproof scenes` lists the built-in scenes"),
+    ] {
+        for arguments in [
+            &["check", ".", "--out", "out", "--scene", scene][..],
+            &["render", scene, "-o", "x.png"],
+            &["export", scene, "-o", "x.glsl"],
+            &["trade", scene, "-o", "out"],
+        ] {
+            let run = toyproof(folder.path(), arguments);
+            assert_eq!((run.code, run.stdout.as_str()), (2, ""), "{arguments:?}");
+            let expected = format!("error: no such file or built-in scene: {scene}\n  = help: {help}\n");
+            assert_eq!(run.stderr, expected, "{arguments:?}");
+        }
+    }
+    assert_eq!(
+        fs::read_dir(folder.path()).unwrap().count(),
+        2,
+        "nothing is written"
+    );
+}
+
+#[test]
+fn an_invalid_scene_stops_the_check_of_all_shaders() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.glsl"), SPHERE.shader).unwrap();
+    fs::write(folder.path().join("s.toml"), "[[spher]]\nradius = 1\n").unwrap();
+    let run = toyproof(folder.path(), &["check", "a.glsl", "--scene", "s.toml"]);
+    assert_eq!((run.code, run.stdout.as_str()), (2, ""));
+    assert!(
+        run.stderr.contains("unknown table [[spher]]") && run.stderr.contains("did you mean [[sphere]]?"),
+        "{}",
+        run.stderr
+    );
+    let run = toyproof(folder.path(), &["check", "a.glsl", "--scene", "a.glsl"]);
+    assert_eq!((run.code, run.stdout.as_str()), (2, ""));
+    assert!(run.stderr.contains("a.glsl is a shader"), "{}", run.stderr);
+}
+
+#[test]
+fn a_new_scene_renders_and_its_shader_is_correct() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = toyproof(folder.path(), &["new", "scene", "week 1"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    assert!(
+        run.stderr.contains("created week 1.toml")
+            && run
+                .stderr
+                .contains("toyproof render \"week 1.toml\" -o \"week 1.png\""),
+        "{}",
+        run.stderr
+    );
+    let text = fs::read_to_string(folder.path().join("week 1.toml")).unwrap();
+    assert!(text.contains("title = \"week 1\""));
+
+    let size = ["--size", "160x90"];
+    let run = toyproof(
+        folder.path(),
+        &[&["render", "week 1.toml", "-o", "w.png"], &size[..]].concat(),
+    );
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let run = toyproof(folder.path(), &["export", "week 1.toml", "-o", "week 1.glsl"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let run = toyproof(
+        folder.path(),
+        &[&["check", "week 1.glsl", "--on", "cpu"], &size[..]].concat(),
+    );
+    assert_eq!(run.code, 0, "{}{}", run.stdout, run.stderr);
+}
+
+#[test]
+fn a_new_scene_never_overwrites() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("mine.toml"), "mine").unwrap();
+    for arguments in [
+        &["new", "scene", "mine"][..],
+        &["new", "scene", "mine.toml"],
+        &["new", "scene", "x", "-o", "mine.toml"],
+    ] {
+        let run = toyproof(folder.path(), arguments);
+        assert_eq!(run.code, 2, "{arguments:?}");
+        assert!(run.stderr.contains("mine.toml already exists"), "{}", run.stderr);
+    }
+    assert_eq!(
+        fs::read_to_string(folder.path().join("mine.toml")).unwrap(),
+        "mine"
+    );
+    for name in ["", "../x", "a/b", "-x", "a\"b"] {
+        assert_eq!(toyproof(folder.path(), &["new", "scene", name]).code, 2, "{name}");
+    }
+    let run = toyproof(folder.path(), &["new", "scene", "other", "-o", "-"]);
+    assert!(
+        run.code == 0 && run.stdout.contains("title = \"other\""),
+        "{}",
+        run.stderr
+    );
+}
+
+#[test]
+fn examples_of_the_reference_are_scenes_and_its_images_exist() {
+    let page = fs::read_to_string(REFERENCE).unwrap();
+    let examples: Vec<_> = page
+        .split("```toml\n")
+        .skip(1)
+        .map(|rest| rest.split("```").next().unwrap())
+        .collect();
+    assert!(examples.len() >= 3, "{}", examples.len());
+    for text in examples {
+        let mut files = Files::default();
+        let file = files.add(File::new("example.toml", text));
+        scene::parse(&files, file).unwrap();
+    }
+    let folder = Path::new(REFERENCE).parent().unwrap();
+    let images: Vec<_> = page
+        .split("](images/")
+        .skip(1)
+        .map(|rest| rest.split(')').next().unwrap())
+        .collect();
+    assert!(images.len() > 15, "{}", images.len());
+    for image in images {
+        assert!(folder.join("images").join(image).is_file(), "{image}");
+    }
+}
