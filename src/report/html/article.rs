@@ -70,7 +70,10 @@ impl Article<'_> {
     /// The facts about the shader below its name.
     fn facts(&self) -> String {
         let Record {
-            shader, scene, seconds, ..
+            shader,
+            scene,
+            seconds,
+            ..
         } = self.record;
         let mut facts = String::new();
         if shader != self.name {
@@ -100,7 +103,10 @@ impl Article<'_> {
             "Likely mistake".to_owned()
         };
         let one = |id: &str, text: &str| match self.glossary.mistake_links(id) {
-            Some(links) => format!("{} <span class=\"explanation\">Explanation: {links}</span>", Text(text)),
+            Some(links) => format!(
+                "{} <span class=\"explanation\">Explanation: {links}</span>",
+                Text(text)
+            ),
             None => Text(text).to_string(),
         };
         let first = one(&mistake.id, &mistake.text);
@@ -123,13 +129,18 @@ fn details(details: &[String]) -> String {
     if details.is_empty() {
         return String::new();
     }
-    let details = details.iter().map(|detail| format!("<li>{}</li>\n", Text(detail)));
+    let details = details
+        .iter()
+        .map(|detail| format!("<li>{}</li>\n", Text(detail)));
     format!("<ul class=\"details\">\n{}</ul>\n", details.collect::<String>())
 }
 
 /// The command that shows more; the script adds a button that copies it.
 fn command(command: &str) -> String {
-    format!("<p class=\"command\"><span>More:</span> <code>{}</code></p>\n", Text(command))
+    format!(
+        "<p class=\"command\"><span>More:</span> <code>{}</code></p>\n",
+        Text(command)
+    )
 }
 
 /// The points, in total and of each check.
@@ -156,10 +167,16 @@ fn checks(record: &Record) -> String {
                 Some(summary) => check_cells(summary),
                 None => {
                     let why = record.skipped_toolchain_reason().filter(|_| name == "toolchain");
-                    format!("<td class=\"none\" colspan=\"5\">{}</td>", why.unwrap_or("not run"))
+                    format!(
+                        "<td class=\"none\" colspan=\"5\">{}</td>",
+                        why.unwrap_or("not run")
+                    )
                 }
             };
-            format!("<tr data-check=\"{name}\"><th scope=\"row\">{}</th>{cells}</tr>\n", term(name, name))
+            format!(
+                "<tr data-check=\"{name}\"><th scope=\"row\">{}</th>{cells}</tr>\n",
+                term(name, name)
+            )
         })
         .collect();
     let number = |id: &str, text: &str| format!("<th scope=\"col\" class=\"number\">{}</th>", term(id, text));
@@ -194,7 +211,8 @@ fn check_cells(check: &CheckSummary) -> String {
         differing => format!("{} of {}", grouped(differing), grouped(check.pixels)),
     };
     // On a narrow screen there is no header, and the cells name their columns.
-    let number = |name: &str, number: &str| format!("<td class=\"number\" data-name=\"{name}\">{number}</td>");
+    let number =
+        |name: &str, number: &str| format!("<td class=\"number\" data-name=\"{name}\">{number}</td>");
     [
         number("Pixels off", &off),
         number("Ill-conditioned", &grouped(check.ill_conditioned)),
@@ -220,8 +238,8 @@ fn place(name: &str, pixel: &Pixel) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::record::samples::{correct, question, record};
     use crate::report::Alternative;
+    use crate::report::record::samples::{correct, question, record};
     use toyproof_verify::Verdict;
 
     fn article(record: &Record) -> String {
@@ -247,7 +265,10 @@ mod tests {
             alternatives: Vec::new(),
         });
         let html = article(&wrong);
-        assert!(html.contains("<strong>Likely mistake:</strong> &lt;first&gt; <span"), "{html}");
+        assert!(
+            html.contains("<strong>Likely mistake:</strong> &lt;first&gt; <span"),
+            "{html}"
+        );
         assert!(html.contains("href=\"#x-E0301\""), "{html}");
         let mistake = wrong.mistake.as_mut().unwrap();
         mistake.is_symptom = true;
@@ -257,7 +278,10 @@ mod tests {
         });
         let html = article(&wrong);
         assert!(html.contains("href=\"#t-symptom\""), "{html}");
-        assert!(html.contains("<ol>\n<li>&lt;first&gt;") && html.contains("<li>second</li>"), "{html}");
+        assert!(
+            html.contains("<ol>\n<li>&lt;first&gt;") && html.contains("<li>second</li>"),
+            "{html}"
+        );
     }
 
     #[test]
@@ -266,7 +290,10 @@ mod tests {
         record.algorithm = Some(question([1_000, 0, 0]));
         (record.toolchain, record.seconds.gpu) = (None, None);
         let html = article(&record);
-        assert!(html.contains("data-name=\"Pixels off\">1,000 of 1,000</td>"), "{html}");
+        assert!(
+            html.contains("data-name=\"Pixels off\">1,000 of 1,000</td>"),
+            "{html}"
+        );
         assert!(html.contains("no GPU rendered the shader"), "{html}");
         assert!(!article(&invalid_without_checks()).contains("class=\"checks\""));
     }

@@ -7,8 +7,16 @@ use crate::report::{Explanation, Record, explanations};
 
 /// The terms, each with its id and its definition.
 const TERMS: [(&str, &str, &str); 18] = [
-    ("correct", "correct", "The image of the shader agrees with the reference."),
-    ("ok", "ok", "The shader renders. There is no scene to compare its image with."),
+    (
+        "correct",
+        "correct",
+        "The image of the shader agrees with the reference.",
+    ),
+    (
+        "ok",
+        "ok",
+        "The shader renders. There is no scene to compare its image with.",
+    ),
     (
         "wrong",
         "wrong",
@@ -27,9 +35,21 @@ const TERMS: [(&str, &str, &str); 18] = [
          random numbers, or the shader cannot be evaluated in time.",
     ),
     ("invalid", "invalid", "The shader does not compile."),
-    ("timeout", "timeout", "The shader does not end, or takes too long."),
-    ("error", "error", "The driver or toyproof failed. The shader is not at fault."),
-    ("reference", "reference", "The correct image of the scene, which toyproof's ray tracer renders."),
+    (
+        "timeout",
+        "timeout",
+        "The shader does not end, or takes too long.",
+    ),
+    (
+        "error",
+        "error",
+        "The driver or toyproof failed. The shader is not at fault.",
+    ),
+    (
+        "reference",
+        "reference",
+        "The correct image of the scene, which toyproof's ray tracer renders.",
+    ),
     (
         "algorithm",
         "algorithm check",
@@ -94,10 +114,16 @@ impl Glossary {
             let alternatives = mistake.alternatives.iter().map(|other| other.id.as_str());
             mistake_ids(&mistake.id).chain(alternatives.flat_map(mistake_ids))
         });
-        let used: BTreeSet<&str> =
-            diagnostics.map(|diagnostic| diagnostic.code.as_str()).chain(mistakes).collect();
+        let used: BTreeSet<&str> = diagnostics
+            .map(|diagnostic| diagnostic.code.as_str())
+            .chain(mistakes)
+            .collect();
         let explanations = explanations().filter(|explanation| used.contains(explanation.code));
-        Self(explanations.map(|explanation| (explanation.code, explanation)).collect())
+        Self(
+            explanations
+                .map(|explanation| (explanation.code, explanation))
+                .collect(),
+        )
     }
 
     /// Formats a code as a link to its explanation, if there is one.

@@ -130,12 +130,17 @@ mod tests {
     #[test]
     fn blocks_and_inline_markup_are_converted_and_escaped() {
         assert_eq!(
-            html("Use `a < b`,\n**not** <b>.\n\nWrong:\n\n```glsl\nx <\n\ny\n```\n- one\n  more\n- [two](x.md)\n\n| a |\n|---|\n"),
+            html(
+                "Use `a < b`,\n**not** <b>.\n\nWrong:\n\n```glsl\nx <\n\ny\n```\n- one\n  more\n- [two](x.md)\n\n| a |\n|---|\n"
+            ),
             "<p>Use <code>a &lt; b</code>,\n<strong>not</strong> &lt;b&gt;.</p>\n<p>Wrong:</p>\n\
              <pre tabindex=\"0\"><code>x &lt;\n\ny</code></pre>\n<ul>\n<li>one\n  more</li>\n<li>two</li>\n</ul>\n\
              <pre tabindex=\"0\"><code>| a |\n|---|</code></pre>\n"
         );
-        assert_eq!(html("```\nunclosed"), "<pre tabindex=\"0\"><code>unclosed</code></pre>\n");
+        assert_eq!(
+            html("```\nunclosed"),
+            "<pre tabindex=\"0\"><code>unclosed</code></pre>\n"
+        );
     }
 
     #[test]
@@ -143,8 +148,14 @@ mod tests {
         for explanation in crate::report::explanations() {
             let html = html(&explanation.text);
             for tag in ["p", "ul", "li", "pre", "code", "strong"] {
-                let [starts, ends] = [format!("<{tag}"), format!("</{tag}>")].map(|tag| html.matches(&tag).count());
-                let starts = starts - if tag == "p" { html.matches("<pre").count() } else { 0 };
+                let [starts, ends] =
+                    [format!("<{tag}"), format!("</{tag}>")].map(|tag| html.matches(&tag).count());
+                let starts = starts
+                    - if tag == "p" {
+                        html.matches("<pre").count()
+                    } else {
+                        0
+                    };
                 assert_eq!(starts, ends, "{tag} in {}: {html}", explanation.code);
             }
         }

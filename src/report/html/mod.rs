@@ -34,13 +34,16 @@ const HEAD_SCRIPT: &str = "document.documentElement.classList.add('script')";
 /// The template that the script inserts into the open article.
 const VIEWER: &str = include_str!("viewer.html");
 
-/// Formats the page. The gallery has one exhibit per record, in the same order; `date` is the time of the run.
+/// Formats the page. The gallery has one exhibit per record, in the same order; `date` is when the run ended.
 #[must_use]
 pub fn html(report: &Report, rubric: Option<&Rubric>, gallery: &Gallery, date: SystemTime) -> String {
     let records = report.shaders();
     let names = Names::of(records);
     let glossary = Glossary::of(records);
-    let sources = gallery.exhibits().iter().filter_map(|exhibit| exhibit.source.as_deref());
+    let sources = gallery
+        .exhibits()
+        .iter()
+        .filter_map(|exhibit| exhibit.source.as_deref());
     let limit = SourceLimit::of(sources);
     let articles = records.iter().zip(gallery.exhibits()).enumerate();
     let articles: String = articles
@@ -226,6 +229,7 @@ impl Write for Escaping<'_, '_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::Mistake;
     use crate::report::record::samples::{every_verdict, invalid};
 
     fn page(records: Vec<Record>, gallery: &Gallery) -> String {
@@ -240,7 +244,14 @@ mod tests {
         for text in [&mut record.shader, &mut record.reason] {
             HOSTILE.clone_into(text);
         }
-        record.scene = Some(HOSTILE.to_owned());
+        (record.scene, record.help) = (Some(HOSTILE.to_owned()), Some(HOSTILE.to_owned()));
+        record.details = vec![HOSTILE.to_owned()];
+        record.mistake = Some(Mistake {
+            id: HOSTILE.to_owned(),
+            text: HOSTILE.to_owned(),
+            is_symptom: true,
+            alternatives: Vec::new(),
+        });
         let diagnostic = &mut record.diagnostics[0];
         (diagnostic.message, diagnostic.file, diagnostic.line) =
             (HOSTILE.to_owned(), Some(HOSTILE.to_owned()), Some(1));
@@ -253,7 +264,7 @@ mod tests {
         });
         let page = page(vec![record], &gallery);
         assert!(!page.contains("<script>hacked") && !page.contains("<img") && !page.contains("<device>"));
-        assert!(page.matches("&lt;img src=x").count() >= 8, "it is there, as text");
+        assert!(page.matches("&lt;img src=x").count() >= 8, "the text is shown");
         assert_eq!(page.matches("<script").count(), 3, "settings and our own two");
     }
 
@@ -284,8 +295,85 @@ mod tests {
 
     #[test]
     fn subsampling_is_reported() {
-        assert!(!page(Vec::new(), &Gallery::new(1)).contains("class=\"thinned\""));
+        assert!(!page(Vec::new(), &Gallery::new(1)).contains("class=\"subsampled\""));
         assert!(page(Vec::new(), &Gallery::new(3)).contains("one pixel of every 3 by 3"));
+    }
+
+    #[test]
+    fn the_head_states_what_was_checked_and_when() {
+        let mut records = every_verdict();
+        for record in &mut records {
+            record.shader.insert_str(0, "class/hw<3/");
+        }
+        let report = Report::new(None, records);
+        let time = UNIX_EPOCH + std::time::Duration::from_secs(951_827_640);
+        let page = html(&report, None, &Gallery::new(1), time);
+        assert!(page.contains("<h1>toyproof check: hw&lt;3</h1>"));
+        assert!(page.contains("Folder: class/hw&lt;3<"));
+        assert!(page.contains("<time datetime=\"2000-02-29T12:34Z\">2000-02-29 12:34 UTC</time>"));
+    }
+
+    #[test]
+    fn days_are_those_of_the_calendar() {
+        for (days, day) in [
+            (0, "1970-01-01"),
+            (789, "1972-02-29"),
+            (790, "1972-03-01"),
+            (11_016, "2000-02-29"),
+            (11_322, "2000-12-31"),
+            (47_540, "2100-02-28"),
+            (47_541, "2100-03-01"),
+        ] {
+            let date = UNIX_EPOCH + std::time::Duration::from_secs(86_400 * days + 86_399);
+            assert_eq!(utc(date), [day, "23:59"], "{days}");
+        }
+    }
+
+    /// The relative luminance of a color of the style, as WCAG 2 defines it.
+    fn luminance(hex: &str) -> f64 {
+        let digits: Vec<_> = hex.chars().map(|digit| digit.to_digit(16).unwrap()).collect();
+        let levels: Vec<_> = match digits[..] {
+            [r, g, b] => vec![17 * r, 17 * g, 17 * b],
+            _ => digits.chunks(2).map(|pair| 16 * pair[0] + pair[1]).collect(),
+        };
+        let linear = |level: u32| match f64::from(level) / 255.0 {
+            low @ ..=0.04045 => low / 12.92,
+            value => ((value + 0.055) / 1.055).powf(2.4),
+        };
+        0.2126 * linear(levels[0]) + 0.7152 * linear(levels[1]) + 0.0722 * linear(levels[2])
+    }
+
+    #[test]
+    fn colors_have_the_contrast_of_wcag_aa() {
+        let color = |name: &str, theme: usize| {
+            let start = format!("--{name}: light-dark(");
+            let (_, rest) = STYLE.split_once(&start).expect(name);
+            let (both, _) = rest.split_once(')').unwrap();
+            luminance(both.split(", ").nth(theme).unwrap().trim_start_matches('#'))
+        };
+        let texts = ["ink", "soft", "accent", "good", "bad", "odd"];
+        let pairs = texts
+            .into_iter()
+            .flat_map(|text| ["paper", "panel", "raised"].map(|back| (text, back, 4.5)))
+            .chain(["paper", "panel", "raised"].map(|back| ("edge", back, 3.0)))
+            .chain([
+                ("good", "good-back", 4.5),
+                ("bad", "bad-back", 4.5),
+                ("odd", "odd-back", 4.5),
+            ])
+            .chain(["ink", "soft"].map(|text| (text, "bad-back", 4.5)))
+            .chain(["ink", "soft", "accent"].map(|text| (text, "odd-back", 4.5)))
+            .chain([("paper", "accent", 4.5)]);
+        for (text, back, least) in pairs {
+            for theme in [0, 1] {
+                let (a, b) = (color(text, theme), color(back, theme));
+                let contrast = (a.max(b) + 0.05) / (a.min(b) + 0.05);
+                assert!(
+                    contrast >= least,
+                    "{text} on {back}, theme {theme}: {contrast:.2}"
+                );
+            }
+        }
     }
 
     #[test]

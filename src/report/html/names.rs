@@ -58,7 +58,12 @@ mod tests {
     fn the_common_folder_is_removed() {
         for (names, folder, name, short) in [
             (&["hw/a/x.glsl", "hw/ab/x.glsl"][..], "hw", "hw", "a/x.glsl"),
-            (&["/home/t/hw/a.glsl", "/home/t/hw/b.glsl"], "/home/t/hw", "hw", "a.glsl"),
+            (
+                &["/home/t/hw/a.glsl", "/home/t/hw/b.glsl"],
+                "/home/t/hw",
+                "hw",
+                "a.glsl",
+            ),
             (&["hw/a.glsl", "hx/a.glsl"], "", "", "hw/a.glsl"),
             (&["/a.glsl", "/b/c.glsl"], "", "", "a.glsl"),
             (&["hw/a.glsl"], "hw", "hw", "a.glsl"),

@@ -106,7 +106,10 @@ fn row(index: usize, record: &Record, name: &str, exhibit: &Exhibit, rubric: Opt
 
 /// Escapes a name, which may be broken after the parts of its path rather than within them.
 fn breakable(name: &str) -> String {
-    Text(name).to_string().replace('/', "/<wbr>").replace('_', "_<wbr>")
+    Text(name)
+        .to_string()
+        .replace('/', "/<wbr>")
+        .replace('_', "_<wbr>")
 }
 
 /// The points that a shader earned, and the maximum.
@@ -124,6 +127,9 @@ fn pixels_off(check: Option<&CheckSummary>) -> String {
     match check.map(|check| check.differing) {
         None => "<td class=\"number wide none\" data-by=\"-1\" title=\"not run\">–</td>".to_owned(),
         Some(0) => "<td class=\"number wide none\" data-by=\"0\">0</td>".to_owned(),
-        Some(count) => format!("<td class=\"number wide\" data-by=\"{count}\">{}</td>", grouped(count)),
+        Some(count) => format!(
+            "<td class=\"number wide\" data-by=\"{count}\">{}</td>",
+            grouped(count)
+        ),
     }
 }

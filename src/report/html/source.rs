@@ -21,7 +21,7 @@ const MAX_UNFOLDED: usize = 24;
 const MAX_LINE_CHARS: usize = 200;
 
 /// The maximum size of all sources of a page, in bytes.
-const MAX_SOURCE_BYTES: usize = 2_500_000;
+const MAX_SOURCE_BYTES: usize = 2_000_000;
 
 /// The size up to which the page has the whole source of a shader; of a longer one it has only the lines
 /// around the marked ones.
@@ -69,7 +69,9 @@ pub(super) fn source(
                     severity: diagnostic.severity.to_string(),
                     messages: Vec::new(),
                 });
-                marked.messages.push(message(diagnostic, &format!("{line}:{column}"), glossary));
+                marked
+                    .messages
+                    .push(message(diagnostic, &format!("{line}:{column}"), glossary));
             }
             at => {
                 let place = match (&diagnostic.file, at) {
@@ -80,7 +82,10 @@ pub(super) fn source(
             }
         }
     }
-    if let Some(cause) = record.cause.filter(|cause| (1..=lines.len()).contains(&cause.line)) {
+    if let Some(cause) = record
+        .cause
+        .filter(|cause| (1..=lines.len()).contains(&cause.line))
+    {
         marks.entry(cause.line).or_insert_with(|| Marked {
             column: cause.column,
             severity: "cause".to_owned(),
@@ -92,7 +97,10 @@ pub(super) fn source(
     }
     let mut html = String::new();
     if !others.is_empty() {
-        html += &format!("<h3>Messages</h3>\n<ul class=\"messages\">\n{}</ul>\n", others.concat());
+        html += &format!(
+            "<h3>Messages</h3>\n<ul class=\"messages\">\n{}</ul>\n",
+            others.concat()
+        );
     }
     if !lines.is_empty() {
         let is_whole = source.is_none_or(|text| text.len() <= limit.0);
@@ -114,7 +122,9 @@ pub(super) fn source(
 fn message(diagnostic: &Json, place: &str, glossary: &Glossary) -> String {
     let Json { severity, code, .. } = diagnostic;
     let notes = diagnostic.notes.iter();
-    let notes: String = notes.map(|note| format!("<p class=\"note\">{}</p>", Text(note))).collect();
+    let notes: String = notes
+        .map(|note| format!("<p class=\"note\">{}</p>", Text(note)))
+        .collect();
     format!(
         "<div class=\"message {severity}\"><p><strong>{severity} {}:</strong> {} <span class=\"place\">{}</span></p>{notes}</div>",
         glossary.link(code),
@@ -138,7 +148,10 @@ fn listing(lines: &[&str], marks: &BTreeMap<usize, Marked>, is_whole: bool) -> S
             marked.messages.concat(),
             severity = marked.severity,
         );
-        let following = marks.range(line + 1..).next().map_or(lines.len() + 1, |(&line, _)| line);
+        let following = marks
+            .range(line + 1..)
+            .next()
+            .map_or(lines.len() + 1, |(&line, _)| line);
         next = (line + 1 + CONTEXT_LINES).min(following).min(lines.len() + 1);
         html += &plain_lines(lines, line + 1, next);
     }
@@ -161,7 +174,11 @@ fn unmarked(lines: &[&str], start: usize, end: usize, is_whole: bool) -> String 
             _ => format!("<p class=\"fold\">{title} are left out to keep this page small</p>\n"),
         };
     }
-    let open = if count == lines.len() && count <= MAX_UNFOLDED { " open" } else { "" };
+    let open = if count == lines.len() && count <= MAX_UNFOLDED {
+        " open"
+    } else {
+        ""
+    };
     format!(
         "<details{open}><summary class=\"fold\">{title}</summary>\n{}</details>\n",
         plain_lines(lines, start, end)
@@ -232,10 +249,17 @@ mod tests {
 
     #[test]
     fn the_word_is_marked_in_its_line_and_text_is_escaped() {
-        let html = html(vec![message_at(3, 3)], "one\n<script>\n  é_1 < 2;\nfour\nfive\nsix");
-        assert!(html.contains("data-line=\"3\">  <mark>é_1</mark> &lt; 2;</span>"), "{html}");
+        let html = html(
+            vec![message_at(3, 3)],
+            "one\n<script>\n  é_1 < 2;\nfour\nfive\nsix",
+        );
+        assert!(
+            html.contains("data-line=\"3\">  <mark>é_1</mark> &lt; 2;</span>"),
+            "{html}"
+        );
         assert!(html.contains("no &lt;i&gt;"), "{html}");
-        let positions = ["&lt;script&gt;", "é_1", "error E0301:", "four\nfive\nsix"].map(|part| text(&html).find(part));
+        let positions =
+            ["&lt;script&gt;", "é_1", "error E0301:", "four\nfive\nsix"].map(|part| text(&html).find(part));
         assert!(positions.is_sorted() && positions[0].is_some(), "{html}");
         assert!(!html.contains("<details"), "{html}");
     }
@@ -243,7 +267,10 @@ mod tests {
     #[test]
     fn lines_far_from_marks_are_folded_and_none_is_lost() {
         let lines: Vec<_> = (1..=40).map(|line| format!("line{line};")).collect();
-        let html = html(vec![message_at(20, 1), message_at(22, 1), message_at(22, 5)], &lines.join("\n"));
+        let html = html(
+            vec![message_at(20, 1), message_at(22, 1), message_at(22, 5)],
+            &lines.join("\n"),
+        );
         let folds: Vec<_> = html.split("<summary class=\"fold\">").skip(1).collect();
         let titles: Vec<_> = folds.iter().map(|fold| fold.split('<').next().unwrap()).collect();
         assert_eq!(titles, ["Lines 1–16", "Lines 26–40"]);
@@ -259,7 +286,10 @@ mod tests {
         let mut record = record(Verdict::Timeout);
         record.cause = Some(Position { line: 2, column: 1 });
         let html = source(&record, Some("a\nb"), SourceLimit::of([]), &Glossary::of(&[]));
-        assert!(html.contains("<mark>b</mark>") && html.contains("likely cause"), "{html}");
+        assert!(
+            html.contains("<mark>b</mark>") && html.contains("likely cause"),
+            "{html}"
+        );
     }
 
     #[test]
