@@ -95,33 +95,37 @@ impl Article<'_> {
         format!("<p class=\"facts\">{facts}</p>\n")
     }
 
-    /// The likely mistake with links to its explanation; with alternatives, a ranked list.
+    /// The likely mistake with links to its explanation; with alternatives, a ranked list. A symptom is not one
+    /// of the mistakes: they cause it.
     fn mistake(&self, mistake: &Mistake) -> String {
-        let label = if mistake.is_symptom {
-            term("symptom", "Symptom")
-        } else {
-            "Likely mistake".to_owned()
-        };
-        let one = |id: &str, text: &str| match self.glossary.mistake_links(id) {
+        let explained = |id: &str, text: &str| match self.glossary.mistake_links(id) {
             Some(links) => format!(
                 "{} <span class=\"explanation\">Explanation: {links}</span>",
-                Text(text)
+                sentence(text)
             ),
-            None => Text(text).to_string(),
+            None => sentence(text),
         };
-        let first = one(&mistake.id, &mistake.text);
-        if mistake.alternatives.is_empty() {
-            return format!("<div class=\"mistake\">\n<p><strong>{label}:</strong> {first}</p>\n</div>\n");
+        let first = explained(&mistake.id, &mistake.text);
+        let others = mistake.alternatives.iter();
+        let mut ranked: Vec<_> = others.map(|other| explained(&other.id, &other.text)).collect();
+        let mut html = String::new();
+        if mistake.is_symptom {
+            html += &format!(
+                "<p><strong>{}:</strong> {first}</p>\n",
+                term("symptom", "Symptom")
+            );
+        } else if ranked.is_empty() {
+            html += &format!("<p><strong>Likely mistake:</strong> {first}</p>\n");
+        } else {
+            ranked.insert(0, first);
         }
-        let others: String = mistake
-            .alternatives
-            .iter()
-            .map(|other| format!("<li>{}</li>\n", one(&other.id, &other.text)))
-            .collect();
-        format!(
-            "<div class=\"mistake\">\n<p><strong>{label}</strong>, one of these (most likely first):</p>\n\
-             <ol>\n<li>{first}</li>\n{others}</ol>\n</div>\n"
-        )
+        if !ranked.is_empty() {
+            let ranked: String = ranked.iter().map(|one| format!("<li>{one}</li>\n")).collect();
+            html += &format!(
+                "<p><strong>Possible mistakes</strong>, the most likely first:</p>\n<ol>\n{ranked}</ol>\n"
+            );
+        }
+        format!("<div class=\"mistake\">\n{html}</div>\n")
     }
 }
 
@@ -131,7 +135,7 @@ fn details(details: &[String]) -> String {
     }
     let details = details
         .iter()
-        .map(|detail| format!("<li>{}</li>\n", Text(detail)));
+        .map(|detail| format!("<li>{}</li>\n", sentence(detail)));
     format!("<ul class=\"details\">\n{}</ul>\n", details.collect::<String>())
 }
 
@@ -270,22 +274,25 @@ mod tests {
             "{html}"
         );
         assert!(html.contains("href=\"#x-E0301\""), "{html}");
-        let mistake = wrong.mistake.as_mut().unwrap();
-        mistake.is_symptom = true;
-        mistake.alternatives.push(Alternative {
+        wrong.mistake.as_mut().unwrap().alternatives.push(Alternative {
             id: "unexplained".to_owned(),
             text: "second".to_owned(),
         });
         let html = article(&wrong);
-        assert!(html.contains("href=\"#t-symptom\""), "{html}");
+        assert!(html.contains("<ol>\n<li>&lt;first&gt;"), "{html}");
+        assert!(html.contains("<li>second</li>\n</ol>"), "{html}");
+        wrong.mistake.as_mut().unwrap().is_symptom = true;
+        let html = article(&wrong);
         assert!(
-            html.contains("<ol>\n<li>&lt;first&gt;") && html.contains("<li>second</li>"),
+            html.contains("href=\"#t-symptom\"") && html.contains("</strong> &lt;first&gt;"),
             "{html}"
         );
+        assert!(html.contains("<ol>\n<li>second</li>\n</ol>"), "{html}");
     }
 
     #[test]
     fn checks_count_pixels() {
+        assert!(!article(&record(Verdict::Invalid)).contains("class=\"checks\""));
         let mut record = correct();
         record.algorithm = Some(question([1_000, 0, 0]));
         (record.toolchain, record.seconds.gpu) = (None, None);
@@ -295,10 +302,5 @@ mod tests {
             "{html}"
         );
         assert!(html.contains("no GPU rendered the shader"), "{html}");
-        assert!(!article(&invalid_without_checks()).contains("class=\"checks\""));
-    }
-
-    fn invalid_without_checks() -> Record {
-        record(Verdict::Invalid)
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{Text, markdown};
+use super::{Text, markdown, sentence};
 use crate::report::{Explanation, Record, explanations};
 
 /// The terms, each with its id and its definition.
@@ -146,7 +146,7 @@ impl Glossary {
         let terms: String = TERMS
             .iter()
             .map(|(id, term, definition)| {
-                format!("<div class=\"entry\" id=\"t-{id}\"><dt>{term}</dt><dd id=\"t-{id}-text\">{definition}</dd></div>\n")
+                format!("<div class=\"entry\" id=\"t-{id}\"><dt>{term}</dt><dd id=\"t-{id}-text\">{}</dd></div>\n", sentence(definition))
             })
             .collect();
         let explanations: String = self
@@ -156,7 +156,7 @@ impl Glossary {
                 format!(
                     "<details class=\"entry\" id=\"x-{code}\">\n<summary><code>{code}</code> \
                      <span id=\"x-{code}-text\">{}</span></summary>\n{}</details>\n",
-                    Text(title),
+                    sentence(title),
                     markdown::html(text)
                 )
             })

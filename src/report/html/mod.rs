@@ -193,9 +193,21 @@ fn images(gallery: &Gallery) -> String {
 // Escaping of text for HTML, in an element or between double quotes. Characters that affect the surrounding
 // text, such as bidirectional controls, are escaped too.
 
-/// Escapes a sentence, in which numbers and their percent signs stay on one line.
+/// Escapes a sentence. What is between backticks is code; a number and its percent sign stay on one line.
 fn sentence(text: &str) -> String {
-    Text(text).to_string().replace(" %", "&nbsp;%")
+    let parts: Vec<_> = text.split('`').map(|part| Text(part).to_string()).collect();
+    if parts.len().is_multiple_of(2) {
+        // The backticks are not in pairs.
+        return Text(text).to_string();
+    }
+    let parts = parts.iter().enumerate().map(|(index, part)| {
+        if index % 2 == 1 {
+            format!("<code>{part}</code>")
+        } else {
+            part.replace(" %", "&nbsp;%")
+        }
+    });
+    parts.collect()
 }
 
 /// Displays a value with the special characters of HTML escaped.
@@ -374,6 +386,19 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn code_in_sentences_is_marked_and_escaped() {
+        assert_eq!(
+            sentence("`<a>` is not `b`: 5 %"),
+            "<code>&lt;a&gt;</code> is not <code>b</code>: 5&nbsp;%"
+        );
+        assert_eq!(sentence("a ` <b>"), "a ` &lt;b&gt;");
+        assert_eq!(
+            sentence("</code>`</code>`"),
+            "&lt;/code&gt;<code>&lt;/code&gt;</code>"
+        );
     }
 
     #[test]

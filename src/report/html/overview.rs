@@ -125,7 +125,7 @@ pub(super) fn total_points(rubric: &Rubric, record: &Record) -> [f64; 2] {
 /// Formats the number of pixels of a check that differ.
 fn pixels_off(check: Option<&CheckSummary>) -> String {
     match check.map(|check| check.differing) {
-        None => "<td class=\"number wide none\" data-by=\"-1\" title=\"not run\">–</td>".to_owned(),
+        None => "<td class=\"number wide none\" data-by=\"-1\">not run</td>".to_owned(),
         Some(0) => "<td class=\"number wide none\" data-by=\"0\">0</td>".to_owned(),
         Some(count) => format!(
             "<td class=\"number wide\" data-by=\"{count}\">{}</td>",

@@ -159,11 +159,14 @@
     previous: button('Previous', () => go(-1)),
     next: button('Next', () => go(1)),
   };
-  const bar = make('nav', { className: 'moves', ariaLabel: 'Shaders' });
-  if (!isSingle) {
-    const save = button('Save as HTML', () => saveAlone(open), { title: 'Save this shader as a file of its own' });
-    bar.append(...Object.values(moves), make('span', { className: 'gap' }), save, button('Print', () => print()));
-  }
+  const bar = make(
+    'nav',
+    { className: 'moves', ariaLabel: 'Shaders' },
+    ...Object.values(moves),
+    make('span', { className: 'gap' }),
+    button('Save as HTML', () => saveAlone(open), { title: 'Save the report on this shader as a file of its own' }),
+    button('Print', () => print(), { title: 'Print the report on this shader' }),
+  );
 
   const neighbor = (by) => {
     const shown = [...body.rows].filter((row) => !row.hidden);
@@ -284,19 +287,15 @@
     if (!open) return;
     prepare(open);
     open.classList.add('open');
-    open.prepend(bar);
+    if (!isSingle) open.prepend(bar);
     rowOf(open).classList.add('open');
     linkOf(open).setAttribute('aria-current', 'true');
     updateMoves();
     if (open.dataset.actual !== undefined) view(open);
     if (!target) return;
     $('h2', open).focus({ preventScroll: true });
-    if (getComputedStyle($('#articles')).position === 'sticky') {
-      $('#articles').scrollTop = 0;
-      rowOf(open).scrollIntoView({ block: 'nearest' });
-    } else {
-      scrollTo(0, 0);
-    }
+    rowOf(open).scrollIntoView({ block: 'nearest' });
+    scrollTo(0, 0);
   };
   addEventListener('hashchange', show);
 

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 
 use toyproof_diagnostic::{Json, grouped, plural};
 
-use super::Text;
 use super::glossary::Glossary;
+use super::{Text, sentence};
 use crate::report::Record;
 
 /// The maximum number of messages that are shown for one shader.
@@ -123,12 +123,12 @@ fn message(diagnostic: &Json, place: &str, glossary: &Glossary) -> String {
     let Json { severity, code, .. } = diagnostic;
     let notes = diagnostic.notes.iter();
     let notes: String = notes
-        .map(|note| format!("<p class=\"note\">{}</p>", Text(note)))
+        .map(|note| format!("<p class=\"note\">{}</p>", sentence(note)))
         .collect();
     format!(
         "<div class=\"message {severity}\"><p><strong>{severity} {}:</strong> {} <span class=\"place\">{}</span></p>{notes}</div>",
         glossary.link(code),
-        Text(&diagnostic.message),
+        sentence(&diagnostic.message),
         Text(place)
     )
 }
