@@ -1,22 +1,23 @@
-# What a newcomer types: `make demo`, then `make test`.
+# Start with `make demo`, then `make test`.
 
 .PHONY: demo test setup check msrv lint bench fuzz accuracy platforms
 .DEFAULT_GOAL := demo
 
-# Builds, checks the course's shaders and says where the pictures are.
+# Builds, checks the course's shaders and writes images and reports to out/.
 demo: setup
 	cargo build --release
 	./target/release/toyproof check glsl --out out
 
-# Also counts the tests that were skipped for want of a driver or a program.
+# Also counts the tests that were skipped because a driver or a program is missing.
 test:
 	tests/run.sh
 
-# Types, borrows and warnings of all crates, tests and benchmarks, without building them.
+# Type-checks all crates, tests and benchmarks without building them.
 check:
 	cargo check --workspace --all-targets
 
-# The minimum supported version of Rust, in a folder of its own, since the artifacts of two versions replace each other.
+# Type-checks with the minimum supported version of Rust. Uses its own folder, since builds of two versions overwrite each
+# other's artifacts.
 msrv:
 	CARGO_TARGET_DIR=$${CARGO_TARGET_DIR:-target}/msrv cargo +1.89 check --workspace --all-targets --locked
 
@@ -24,24 +25,24 @@ lint:
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets -- -D warnings
 
-# Mesa's lavapipe, on which the shaders run; see `toyproof doctor`.
+# Checks the build's requirements and installs Mesa's lavapipe, on which shaders run; see `toyproof doctor`.
 setup:
 	@./setup.sh
 
 bench:
 	XDG_RUNTIME_DIR=$${XDG_RUNTIME_DIR:-/tmp} cargo bench
 
-# Writes docs/accuracy/ and the parts of docs/accuracy.md that are measured anew.
+# Measures again: writes docs/evidence/accuracy/ and the generated parts of docs/evidence/accuracy.md.
 accuracy:
 	cargo build --release
-	sh docs/accuracy/regenerate.sh ./target/release/toyproof
+	sh docs/evidence/accuracy/regenerate.sh ./target/release/toyproof
 
-# Until it finds something or is stopped; needs a nightly compiler and cargo-fuzz. The code is safe Rust: no sanitizer.
+# Runs until it finds something or is stopped; needs a nightly compiler and cargo-fuzz. No sanitizer: the code is safe Rust.
 fuzz:
 	mkdir -p fuzz/corpus/front_end
 	cargo +nightly fuzz run -s none front_end fuzz/corpus/front_end fuzz/seeds fuzz/regressions glsl -- \
 		-dict=fuzz/glsl.dict -max_len=4096 -timeout=60
 
-# Windows under wine, aarch64 under qemu, type checks for macOS and WebAssembly.
+# Tests Windows under wine and aarch64 under qemu; type-checks for macOS and WebAssembly.
 platforms:
 	tests/platforms.sh

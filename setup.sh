@@ -1,40 +1,119 @@
 #!/bin/sh
-# Installs a Vulkan driver that runs on the CPU, where the system's package manager can and may.
+# Checks what the build needs (Rust, make, a C linker) and installs a Vulkan driver that runs on the CPU.
+# Needs no password: what only an administrator may install is printed as a command. Can be run repeatedly.
 set -eu
+cd "$(dirname "$0")"
 
-for folder in /usr/share /usr/local/share /etc; do
-    for manifest in "$folder"/vulkan/icd.d/lvp_icd*.json; do
-        [ -e "$manifest" ] && exit 0
-    done
-done
+log() { echo "setup: $*" >&2; }
+has() { command -v "$1" >/dev/null 2>&1; }
 
-as_root=
-if [ "$(id -u)" -ne 0 ]; then
-    if command -v sudo >/dev/null 2>&1 && sudo -n true 2>/dev/null; then
-        as_root=sudo
+packages_for() {
+    if has apt-get; then
+        manager="apt-get install -y"
+        build="make gcc libc6-dev"
+        driver="mesa-vulkan-drivers libvulkan1"
+    elif has dnf; then
+        manager="dnf install -y"
+        build="make gcc"
+        driver="mesa-vulkan-drivers vulkan-loader"
+    elif has pacman; then
+        manager="pacman -S --needed --noconfirm"
+        build="make gcc"
+        driver="vulkan-swrast vulkan-icd-loader"
+    else
+        manager=
+    fi
+}
+
+# Root needs no sudo; other users use it only where it asks for no password.
+root_prefix() {
+    if [ "$(id -u)" -eq 0 ]; then
+        as_root=
+    elif has sudo && sudo -n true 2>/dev/null; then
+        as_root="sudo "
     else
         as_root=none
     fi
-fi
+}
 
-if command -v apt-get >/dev/null 2>&1; then
-    refresh="apt-get update -q"
-    install="env DEBIAN_FRONTEND=noninteractive apt-get install -q -y mesa-vulkan-drivers libvulkan1"
-elif command -v dnf >/dev/null 2>&1; then
-    refresh=true
-    install="dnf install -y mesa-vulkan-drivers vulkan-loader"
-elif command -v pacman >/dev/null 2>&1; then
-    refresh=true
-    install="pacman -S --noconfirm vulkan-swrast vulkan-icd-loader"
-else
-    echo "setup: no package manager that is known here; install Mesa's lavapipe by hand" >&2
-    exit 0
-fi
+# install WHAT PACKAGES: installs packages, or prints the command.
+install() {
+    if [ -z "$manager" ]; then
+        log "$1 is missing, and the package manager of this system is unknown; install it by hand"
+        return 1
+    fi
+    if [ "$as_root" = none ]; then
+        log "$1 is missing; run: sudo $manager $2"
+        return 1
+    fi
+    log "$1 is missing; running: $as_root$manager $2"
+    if has apt-get; then
+        DEBIAN_FRONTEND=noninteractive
+        export DEBIAN_FRONTEND
+        ${as_root}apt-get update -q >/dev/null 2>&1 || log "the list of packages could not be updated"
+    fi
+    # The words of the command are separate arguments.
+    # shellcheck disable=SC2086
+    ${as_root}$manager $2 >&2 || { log "the command failed"; return 1; }
+}
 
-if [ "$as_root" = none ]; then
-    echo "setup: lavapipe is missing and only root may install it; run: sudo $install" >&2
-    exit 0
+has_driver() {
+    for folder in /usr/share /usr/local/share /etc; do
+        for manifest in "$folder"/vulkan/icd.d/lvp_icd*.json; do
+            [ -e "$manifest" ] && return 0
+        done
+    done
+    return 1
+}
+
+needed=$(sed -n 's/^rust-version = "\([0-9.]*\)".*/\1/p' Cargo.toml)
+
+# Whether cargo is installed and rustc is at least the needed version.
+has_rust() {
+    has cargo && has rustc || return 1
+    found=$(rustc --version | sed -n 's/^rustc \([0-9]*\)\.\([0-9]*\).*/\1 \2/p')
+    major=${found% *}
+    minor=${found#* }
+    [ "${major:-0}" -gt "${needed%%.*}" ] ||
+        { [ "${major:-0}" -eq "${needed%%.*}" ] && [ "${minor:-0}" -ge "${needed#*.}" ]; }
+}
+
+check_rust() {
+    has_rust && return 0
+    if has rustup; then
+        log "Rust $needed or later is missing; running: rustup update stable"
+        rustup update stable >&2 || log "the command failed"
+        has_rust && return 0
+        log "the default toolchain is older than Rust $needed; run: rustup default stable"
+        return 1
+    fi
+    if has rustc; then
+        log "$(rustc --version) is too old: Rust $needed or later is needed. Install it from https://rustup.rs:"
+    else
+        log "Rust $needed or later is missing. Install it from https://rustup.rs:"
+    fi
+    # Printed for the reader's shell.
+    # shellcheck disable=SC2016
+    log '    curl --proto "=https" --tlsv1.2 -sSf https://sh.rustup.rs | sh && . "$HOME/.cargo/env"'
+    return 1
+}
+
+packages_for
+root_prefix
+ready=yes
+check_rust || ready=no
+if ! has make || ! has cc; then
+    if [ "$(uname -s)" = Darwin ]; then
+        log "make or the C linker is missing; run: xcode-select --install"
+        ready=no
+    else
+        install "make or the C linker cc" "${build:-}" || ready=no
+    fi
 fi
-echo "setup: installing lavapipe, a Vulkan driver that runs on the CPU"
-$as_root $refresh >/dev/null 2>&1 || true
-$as_root $install || echo "setup: that failed; without a Vulkan driver no shader can run" >&2
+if [ "$(uname -s)" = Darwin ]; then
+    log "shaders run on toyproof's CPU evaluator, since Vulkan is not available on macOS"
+elif ! has_driver; then
+    install "the optional Vulkan driver lavapipe" "${driver:-}" ||
+        log "without a Vulkan driver, shaders run on toyproof's CPU evaluator and the toolchain check is skipped"
+fi
+[ "$ready" = yes ] || { log "install what is missing, then run this again"; exit 1; }

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Renders the images of docs/scenes.md: sh docs/images/render.sh [PROGRAM], where PROGRAM is toyproof.
+# Renders the images of docs/guide/scenes.md: sh docs/images/render.sh [PROGRAM], where PROGRAM is toyproof.
 # The PNGs are made smaller with optipng, if it is installed.
 set -eu
 toyproof=${1:-toyproof}
@@ -110,5 +110,5 @@ size = 0.28
 color = [0.85, 0.15, 0.2]
 SCENE
 
-# The first example of docs/scenes.md.
-sed -n '/^```toml$/,/^```$/{/^```$/q;/^```/d;p;}' "$folder/../scenes.md" | render example 480x270
+# The first example of docs/guide/scenes.md.
+sed -n '/^```toml$/,/^```$/{/^```$/q;/^```/d;p;}' "$folder/../guide/scenes.md" | render example 480x270

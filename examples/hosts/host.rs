@@ -1,9 +1,7 @@
-//! A host for converted shaders: paints one frame of a WGSL or SPIR-V file into a PNG.
+//! A host for converted shaders: renders one frame of a WGSL or SPIR-V file to a PNG.
 //!
 //!     toyproof convert glsl/02-sphere.glsl -o sphere.wgsl --verify
 //!     cargo run --example host -- sphere.wgsl sphere.png
-
-#![expect(clippy::too_many_lines, reason = "a host is read from top to bottom")]
 
 use std::error::Error;
 use std::path::Path;
@@ -18,8 +16,8 @@ const VERTICES: &str = "@vertex fn main(@builtin(vertex_index) i: u32) -> @built
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
-    let (Some(shader), Some(picture)) = (arguments.next(), arguments.next()) else {
-        return Err("say: host SHADER.wgsl|SHADER.spv PICTURE.png".into());
+    let (Some(shader), Some(image)) = (arguments.next(), arguments.next()) else {
+        return Err("usage: host SHADER.wgsl|SHADER.spv IMAGE.png".into());
     };
     let file = std::fs::read(&shader)?;
     let shader = if Path::new(&shader)
@@ -35,18 +33,18 @@ fn main() -> Result<(), Box<dyn Error>> {
     } else {
         Shader::Wgsl(String::from_utf8(file)?)
     };
-    let pixels = pollster::block_on(paint(&shader))?;
-    image::save_buffer(picture, &pixels, SIZE[0], SIZE[1], image::ColorType::Rgba8)?;
+    let pixels = pollster::block_on(render(&shader))?;
+    image::save_buffer(image, &pixels, SIZE[0], SIZE[1], image::ColorType::Rgba8)?;
     Ok(())
 }
 
-/// What a file holds.
+/// The content of a file.
 enum Shader {
     Wgsl(String),
     Spirv(Vec<u32>),
 }
 
-/// The inputs, where the shader looks for them; all others are zero.
+/// ShaderToy's inputs at the offsets of the uniform block; all others are zero.
 fn inputs() -> [u8; 208] {
     let mut block = [0; 208];
     let mut put = |at: usize, bytes: [u8; 4]| block[at..at + 4].copy_from_slice(&bytes);
@@ -61,36 +59,18 @@ fn inputs() -> [u8; 208] {
     block
 }
 
-async fn paint(shader: &Shader) -> Result<Vec<u8>, Box<dyn Error>> {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-    let adapter = instance
-        .request_adapter(&wgpu::RequestAdapterOptions::default())
-        .await?;
-    // Words go to the driver as they are, which wgpu has a feature for.
-    let required_features = match shader {
-        Shader::Wgsl(_) => wgpu::Features::empty(),
-        Shader::Spirv(_) => wgpu::Features::PASSTHROUGH_SHADERS,
-    };
-    let (device, queue) = adapter
-        .request_device(&wgpu::DeviceDescriptor {
-            required_features,
-            ..Default::default()
-        })
-        .await?;
-    let module = |text: &str| {
-        device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: None,
-            source: wgpu::ShaderSource::Wgsl(text.into()),
-        })
-    };
-    let vertices = module(VERTICES);
-    let fragment = match shader {
-        Shader::Wgsl(text) => module(text),
-        Shader::Spirv(words) => passed_through(&device, words),
-    };
-
-    // Group 0, binding 0 is the block of inputs. A shader that reads channels has textures at 1 + 2K and
-    // samplers at 2 + 2K.
+/// The pipeline of a converted shader, which draws the three vertices `0..3`.
+fn converted_pipeline(
+    device: &wgpu::Device,
+    fragment: &wgpu::ShaderModule,
+    format: wgpu::TextureFormat,
+) -> wgpu::RenderPipeline {
+    let vertices = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: None,
+        source: wgpu::ShaderSource::Wgsl(VERTICES.into()),
+    });
+    // Group 0, binding 0 is the block of inputs. A shader that reads channel K also needs its texture at
+    // 1 + 2K and its sampler at 2 + 2K.
     let group = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: None,
         entries: &[wgpu::BindGroupLayoutEntry {
@@ -108,8 +88,7 @@ async fn paint(shader: &Shader) -> Result<Vec<u8>, Box<dyn Error>> {
         bind_group_layouts: &[Some(&group)],
         ..Default::default()
     });
-    let format = wgpu::TextureFormat::Rgba8Unorm;
-    let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: None,
         layout: Some(&layout),
         vertex: wgpu::VertexState {
@@ -119,7 +98,7 @@ async fn paint(shader: &Shader) -> Result<Vec<u8>, Box<dyn Error>> {
             buffers: &[],
         },
         fragment: Some(wgpu::FragmentState {
-            module: &fragment,
+            module: fragment,
             entry_point: Some("main"),
             compilation_options: Default::default(),
             targets: &[Some(format.into())],
@@ -129,7 +108,34 @@ async fn paint(shader: &Shader) -> Result<Vec<u8>, Box<dyn Error>> {
         multisample: Default::default(),
         multiview_mask: None,
         cache: None,
-    });
+    })
+}
+
+async fn render(shader: &Shader) -> Result<Vec<u8>, Box<dyn Error>> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let adapter = instance
+        .request_adapter(&wgpu::RequestAdapterOptions::default())
+        .await?;
+    // SPIR-V goes to the driver unchanged, which is an optional feature of wgpu.
+    let required_features = match shader {
+        Shader::Wgsl(_) => wgpu::Features::empty(),
+        Shader::Spirv(_) => wgpu::Features::PASSTHROUGH_SHADERS,
+    };
+    let (device, queue) = adapter
+        .request_device(&wgpu::DeviceDescriptor {
+            required_features,
+            ..Default::default()
+        })
+        .await?;
+    let fragment = match shader {
+        Shader::Wgsl(text) => device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: None,
+            source: wgpu::ShaderSource::Wgsl(text.as_str().into()),
+        }),
+        Shader::Spirv(words) => passthrough(&device, words),
+    };
+    let format = wgpu::TextureFormat::Rgba8Unorm;
+    let pipeline = converted_pipeline(&device, &fragment, format);
 
     let block = device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
@@ -140,7 +146,7 @@ async fn paint(shader: &Shader) -> Result<Vec<u8>, Box<dyn Error>> {
     queue.write_buffer(&block, 0, &inputs());
     let bound = device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,
-        layout: &group,
+        layout: &pipeline.get_bind_group_layout(0),
         entries: &[wgpu::BindGroupEntry {
             binding: 0,
             resource: block.as_entire_binding(),
@@ -162,7 +168,7 @@ async fn paint(shader: &Shader) -> Result<Vec<u8>, Box<dyn Error>> {
         usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
         view_formats: &[],
     });
-    // 640 pixels of 4 bytes are a multiple of the 256 that rows must be.
+    // 640 pixels of 4 bytes are a multiple of 256, as rows must be.
     let stride = 4 * width;
     let rows = device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
@@ -201,12 +207,12 @@ async fn paint(shader: &Shader) -> Result<Vec<u8>, Box<dyn Error>> {
     rows.slice(..).map_async(wgpu::MapMode::Read, |_| {});
     device.poll(wgpu::PollType::wait_indefinitely())?;
     let mapped = rows.slice(..).get_mapped_range()?;
-    // The target's first row is the bottom of the picture: y of GLSL points up.
+    // The target's first row is the bottom of the image: y of GLSL points up.
     Ok(mapped.chunks(stride as usize).rev().flatten().copied().collect())
 }
 
-#[expect(unsafe_code, reason = "wgpu has no other way to run words as they are")]
-fn passed_through(device: &wgpu::Device, words: &[u32]) -> wgpu::ShaderModule {
+#[expect(unsafe_code, reason = "wgpu has no safe way to run SPIR-V unchanged")]
+fn passthrough(device: &wgpu::Device, words: &[u32]) -> wgpu::ShaderModule {
     let entry = wgpu::PassthroughShaderEntryPoint {
         name: "main".into(),
         workgroup_size: (0, 0, 0),
@@ -216,6 +222,6 @@ fn passed_through(device: &wgpu::Device, words: &[u32]) -> wgpu::ShaderModule {
         spirv: Some(words.into()),
         ..Default::default()
     };
-    // SAFETY: the words are what `toyproof convert --verify` proved; wgpu does not look at them.
+    // SAFETY: `toyproof convert --verify` proved the module; wgpu does not validate it.
     unsafe { device.create_shader_module_passthrough(descriptor) }
 }

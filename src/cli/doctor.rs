@@ -86,7 +86,11 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             terminal.bytes(json.as_bytes());
         }
     }
-    if report.error.is_some() { Exit::Error } else { Exit::Success }
+    if report.error.is_some() {
+        Exit::Error
+    } else {
+        Exit::Success
+    }
 }
 
 /// Starts all drivers together, and each alone if that fails.
@@ -172,7 +176,11 @@ impl DriverReport {
     }
 
     fn print(&self, terminal: &Terminal) {
-        let kind = if self.is_software { "runs on the CPU" } else { "runs on a GPU" };
+        let kind = if self.is_software {
+            "runs on the CPU"
+        } else {
+            "runs on a GPU"
+        };
         terminal.result(&format!("  {}", self.name));
         terminal.result(&format!("    driver          {} ({kind})", self.version));
         if let Some(limit) = self.loop_limit {
@@ -197,10 +205,14 @@ impl DriverReport {
 impl Report {
     fn print(&self, terminal: &Terminal) {
         let selected = self.selected.as_deref().unwrap_or("none");
-        let reason = self.reason.map(|reason| format!(" ({reason})")).unwrap_or_default();
+        let reason = self
+            .reason
+            .map(|reason| format!(" ({reason})"))
+            .unwrap_or_default();
         terminal.result(&format!("Selected device: {selected}{reason}"));
         if selected == "cpu" {
-            terminal.paragraph("toyproof's own evaluator needs no driver; `check` skips the toolchain check.");
+            terminal
+                .paragraph("toyproof's own evaluator needs no driver; `check` skips the toolchain check.");
         }
         if !self.drivers.is_empty() {
             terminal.result("\nVulkan devices:");
@@ -216,7 +228,9 @@ impl Report {
             terminal.result("  none");
         }
         if self.is_pinned {
-            terminal.result("  VK_DRIVER_FILES or VK_ICD_FILENAMES is set: only the drivers named there are loaded");
+            terminal.result(
+                "  VK_DRIVER_FILES or VK_ICD_FILENAMES is set: only the drivers named there are loaded",
+            );
         }
         if !self.tests.is_empty() {
             terminal.result("\nEach driver alone:");

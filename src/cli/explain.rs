@@ -55,12 +55,13 @@ fn print(explanation: &Explanation, terminal: &Terminal) {
 
 fn report_unknown(code: &str, terminal: &Terminal) {
     terminal.error(format_args!("unknown code `{code}`"));
-    let codes: Vec<_> = report::explanations().map(|explanation| explanation.code).collect();
+    let codes: Vec<_> = report::explanations()
+        .map(|explanation| explanation.code)
+        .collect();
     match nearest(code, codes.iter().map(AsRef::as_ref)) {
         Some(near) => terminal.help(format_args!("did you mean `{near}`?")),
-        None if code.contains(['.', '/']) => terminal.help(
-            "`explain` takes codes; to trace one pixel of a shader: toyproof debug SHADER --pixel X,Y",
-        ),
+        None if code.contains(['.', '/']) => terminal
+            .help("`explain` takes codes; to trace one pixel of a shader: toyproof debug SHADER --pixel X,Y"),
         None => terminal.help("`toyproof explain --list` lists all codes and mistakes"),
     }
 }

@@ -272,7 +272,10 @@ pub(super) fn worker(on: AdapterSelector, timeout: Duration) -> Result<Worker, S
 
 /// Parses a time limit: seconds, or numbers with units.
 pub(super) fn parse_time_limit(text: &str) -> Result<Duration, String> {
-    let seconds = text.parse().ok().and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+    let seconds = text
+        .parse()
+        .ok()
+        .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
     let time = match seconds.map_or_else(|| humantime::parse_duration(text), Ok) {
         Ok(time) => time,
         Err(_) => return Err("expected seconds or a number with a unit: 10, 500ms, 2m".to_owned()),
@@ -432,7 +435,10 @@ mod tests {
         }
         let lavapipe = "llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe Mesa 22.3.6 (LLVM 15.0.6)";
         assert_eq!(short_device(lavapipe), "llvmpipe Mesa 22.3.6");
-        assert_eq!(short_device("NVIDIA H200, NVIDIA 570.1"), "NVIDIA H200, NVIDIA 570.1");
+        assert_eq!(
+            short_device("NVIDIA H200, NVIDIA 570.1"),
+            "NVIDIA H200, NVIDIA 570.1"
+        );
         assert_eq!(shell_word("a/b-1.glsl"), "a/b-1.glsl");
         assert_eq!(shell_word("Grüße.glsl"), "Grüße.glsl");
         assert!(

@@ -52,10 +52,22 @@ pub struct Cli {
     #[arg(short, long, global = true, help_heading = "Output")]
     verbose: bool,
     /// Print results and errors only, one line each
-    #[arg(short, long, global = true, conflicts_with = "verbose", help_heading = "Output")]
+    #[arg(
+        short,
+        long,
+        global = true,
+        conflicts_with = "verbose",
+        help_heading = "Output"
+    )]
     quiet: bool,
     /// Color the output: `auto` on terminals, unless NO_COLOR is set
-    #[arg(long, global = true, value_name = "WHEN", default_value = "auto", help_heading = "Output")]
+    #[arg(
+        long,
+        global = true,
+        value_name = "WHEN",
+        default_value = "auto",
+        help_heading = "Output"
+    )]
     color: ColorChoice,
 }
 
@@ -118,15 +130,25 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Exit {
         Err(error) => {
             // Help and the version are no errors; if they cannot be printed, nothing can.
             let _ = error.print();
-            if error.use_stderr() { Exit::Error } else { Exit::Success }
+            if error.use_stderr() {
+                Exit::Error
+            } else {
+                Exit::Success
+            }
         }
     }
 }
 
 /// The value of `--color`, if it is valid, for the messages on arguments that cannot be parsed.
 fn requested_color(arguments: &[OsString]) -> ColorChoice {
-    let texts: Vec<_> = arguments.iter().filter_map(|argument| argument.to_str()).collect();
-    let separate = texts.windows(2).find(|pair| pair[0] == "--color").map(|pair| pair[1]);
+    let texts: Vec<_> = arguments
+        .iter()
+        .filter_map(|argument| argument.to_str())
+        .collect();
+    let separate = texts
+        .windows(2)
+        .find(|pair| pair[0] == "--color")
+        .map(|pair| pair[1]);
     let joined = texts.iter().find_map(|text| text.strip_prefix("--color="));
     match separate.or(joined) {
         Some("always") => ColorChoice::Always,

@@ -11,7 +11,7 @@ use super::{Exit, Terminal};
 #[derive(Debug, clap::Args)]
 #[command(
     arg_required_else_help = true,
-    after_help = "Example:\n  toyproof new scene week1"
+    after_long_help = "Example:\n  toyproof new scene week1"
 )]
 pub(super) struct Args {
     #[command(subcommand)]
@@ -21,7 +21,7 @@ pub(super) struct Args {
 #[derive(Debug, clap::Subcommand)]
 enum What {
     /// Create a scene: a camera, a light, a floor and two spheres, with comments on every key
-    #[command(after_help = "Example:\n  toyproof new scene week1\n  toyproof render week1.toml -o week1.png")]
+    #[command(after_long_help = "Example:\n  toyproof new scene week1\n  toyproof render week1.toml -o week1.png")]
     Scene(SceneArgs),
 }
 

@@ -203,9 +203,7 @@ fn render_frame(
 pub(super) fn load_scene(path: &Path, terminal: &Terminal) -> Option<Scene> {
     if files::is_shader(path) {
         let path = path_name(path);
-        terminal.error(format_args!(
-            "{path} is a shader, but a scene is expected here"
-        ));
+        terminal.error(format_args!("{path} is a shader, but a scene is expected here"));
         terminal.help(format_args!("to run a shader: toyproof run {path} -o IMAGE"));
         return None;
     }
@@ -271,7 +269,13 @@ pub(super) struct ExportArgs {
     /// The scene: a file, or a name that `toyproof scenes` lists
     scene: PathBuf,
     /// The shader (.glsl), or - for standard output
-    #[arg(short, long, value_name = "SHADER", default_value = "-", hide_default_value = true)]
+    #[arg(
+        short,
+        long,
+        value_name = "SHADER",
+        default_value = "-",
+        hide_default_value = true
+    )]
     output: PathBuf,
 }
 

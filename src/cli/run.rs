@@ -312,13 +312,11 @@ impl Runner<'_> {
             .map_err(eval::Failure::from)
             .and_then(|program| program.render_rows(&self.frame, self.frame.rows(), &settings));
         match rendered {
-            Ok(rendered) => {
-                Ok(Rendered {
-                    image: rendered.image,
-                    device: "CPU".to_owned(),
-                    seconds: start.elapsed().as_secs_f64(),
-                })
-            }
+            Ok(rendered) => Ok(Rendered {
+                image: rendered.image,
+                device: "CPU".to_owned(),
+                seconds: start.elapsed().as_secs_f64(),
+            }),
             Err(failure) => Err(not_evaluated(&failure, shader, self.terminal)),
         }
     }

@@ -15,7 +15,7 @@ use crate::cli::files::{self, ReadError};
 /// The name of a built-in scene can be used wherever a scene file is expected.
 #[derive(Debug, clap::Args)]
 #[command(
-    after_help = "Examples:\n  toyproof scenes\n  toyproof render 02-sphere -o sphere.png\n  \
+    after_long_help = "Examples:\n  toyproof scenes\n  toyproof render 02-sphere -o sphere.png\n  \
                         toyproof scenes --write course\n  toyproof check course --out report"
 )]
 pub(super) struct Args {
@@ -31,7 +31,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
                 terminal.result(&format!("{stem:<24} {}", title(name, text)));
             }
         }
-        terminal.note("help: `toyproof scenes --write DIR` writes their shaders (.glsl) and scenes (.toml)");
+        terminal.note("`toyproof scenes --write DIR` writes their shaders (.glsl) and scenes (.toml)");
         return Exit::Success;
     };
     let differs = |name: &str, text: &str| {
@@ -98,7 +98,7 @@ fn builtin_scene(path: &Path) -> Result<File, String> {
         None => "`toyproof scenes` lists the built-in scenes".to_owned(),
     };
     Err(format!(
-        "no such file or built-in scene: {name}\n  = help: {help}"
+        "no such file or built-in scene: {name}\nhelp: {help}"
     ))
 }
 

@@ -1,11 +1,12 @@
 //! Image sequences: the numbers of their frames, their files, and which are still to be rendered.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
-use toyproof_diagnostic::{grouped, plural};
-use toyproof_image::FRAME_RATE;
+use toyproof_diagnostic::{grouped, path_name, plural};
+use toyproof_image::{self as image, FRAME_RATE};
 
 use super::Terminal;
 
@@ -126,6 +127,13 @@ impl Sequence {
         bar.finish_and_clear();
         // The sequence is complete, so no record is needed.
         let _ = std::fs::remove_file(&self.record);
+        if let Some(stale) = self.stale_frame() {
+            terminal.warn(format_args!(
+                "{} has another size: it is left from an earlier sequence",
+                path_name(&stale)
+            ));
+            terminal.help("delete the old frames before you encode a video");
+        }
         terminal.confirm(
             &self.output,
             &format!(
@@ -141,10 +149,33 @@ impl Sequence {
     }
 }
 
+impl Sequence {
+    /// Returns the first frame outside of this sequence whose image has another size than its last frame.
+    fn stale_frame(&self) -> Option<PathBuf> {
+        let size = |path: &Path| image::read(path).ok().map(|image| image.size());
+        let last = self.frames.numbered(&self.output).last()?.path;
+        let is_own: HashSet<_> = self.frames.numbered(&self.output).map(|one| one.path).collect();
+        let prefix = format!("{}-", self.output.file_stem()?.to_string_lossy());
+        let is_frame = |path: &PathBuf| {
+            let stem = path
+                .file_stem()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned();
+            let number = stem.strip_prefix(&prefix).unwrap_or_default();
+            let is_number = !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit());
+            is_number && path.extension() == self.output.extension() && !is_own.contains(path)
+        };
+        let folder = self.output.parent().filter(|folder| *folder != Path::new(""));
+        let entries = std::fs::read_dir(folder.unwrap_or(Path::new("."))).ok()?;
+        let paths = entries.filter_map(|entry| Some(self.output.with_file_name(entry.ok()?.file_name())));
+        let other = paths.filter(is_frame).min()?;
+        (size(&other)? != size(&last)?).then_some(other)
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use toyproof_diagnostic::path_name;
-
     use super::*;
 
     #[test]
@@ -161,6 +192,25 @@ mod tests {
         for wrong in ["", "3", "3..", "..3", "4..3", "-1..3", "1..x", "1..2..3"] {
             assert!(parse_frames(wrong).is_err(), "{wrong}");
         }
+    }
+
+    #[test]
+    fn frames_of_another_size_are_found() {
+        let folder = tempfile::tempdir().unwrap();
+        let output = folder.path().join("x.png");
+        let terminal = Terminal::new(true, false);
+        let write = |name: &str, width: u32| {
+            let image = image::Image::new(width, 1, vec![[0.0; 4]; width as usize]);
+            let path = folder.path().join(name);
+            std::fs::write(&path, image::encode(&image, &path).unwrap()).unwrap();
+        };
+        let sequence = || Sequence::resume(parse_frames("0..1").unwrap(), &output, "a", &terminal);
+        write("x-0001.png", 2);
+        write("x-0002.png", 2);
+        write("x-y.png", 3);
+        assert_eq!(sequence().stale_frame(), None, "of the same size");
+        write("x-0001.png", 3);
+        assert_eq!(sequence().stale_frame(), Some(folder.path().join("x-0002.png")));
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! Finds and reads shaders, for all commands that take them.
 
+use std::collections::HashMap;
 use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use toyproof_diagnostic::{Deadline, Diagnostic, Files, Severity};
 use toyproof_glsl::{self as glsl, Checked};
@@ -131,7 +132,7 @@ fn read(found: &Input, files: &mut Files, options: &glsl::Options) -> Result<Che
 /// that are not followed.
 pub(super) fn find(arguments: &[PathBuf], terminal: &Terminal) -> Vec<Result<Input, ReadError>> {
     let first = arguments.iter().position(|argument| argument == Path::new("-"));
-    arguments
+    let mut inputs: Vec<_> = arguments
         .iter()
         .enumerate()
         .filter(|&(at, argument)| argument != Path::new("-") || Some(at) == first)
@@ -142,5 +143,73 @@ pub(super) fn find(arguments: &[PathBuf], terminal: &Terminal) -> Vec<Result<Inp
             }
             search.inputs
         })
-        .collect()
+        .collect();
+    keep_folders(&mut inputs);
+    inputs
+}
+
+/// Makes the relative paths of inputs with equal ones start at their common folder, so that their outputs keep
+/// their folders: `a/x.glsl` and `b/x.glsl`.
+fn keep_folders(inputs: &mut [Result<Input, ReadError>]) {
+    let mut equal: HashMap<PathBuf, Vec<&mut Input>> = HashMap::new();
+    for input in inputs.iter_mut().flatten().filter(|input| input.path().is_some()) {
+        equal.entry(input.relative.clone()).or_default().push(input);
+    }
+    for mut inputs in equal.into_values().filter(|inputs| inputs.len() > 1) {
+        let folders = inputs.iter().filter_map(|input| input.path()?.parent());
+        let folders: Vec<Vec<Component>> = folders.map(|folder| folder.components().collect()).collect();
+        let common = |index: usize| {
+            let mut parts = folders.iter().map(|folder| folder.get(index));
+            let first = parts.next().flatten();
+            first.is_some() && parts.all(|part| part == first)
+        };
+        let length = (0..).take_while(|&index| common(index)).count();
+        let relative = |input: &Input| -> Option<PathBuf> {
+            let rest: Vec<_> = input.path()?.components().skip(length).collect();
+            let is_inside = rest.iter().all(|part| matches!(part, Component::Normal(_)));
+            is_inside.then(|| rest.iter().collect())
+        };
+        let paths: Vec<_> = inputs.iter().map(|input| relative(input)).collect();
+        for (input, path) in inputs.iter_mut().zip(paths) {
+            if let Some(path) = path {
+                input.relative = path;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::files::InputSource;
+
+    fn relative(paths: &[&str]) -> Vec<PathBuf> {
+        let input = |path: &&str| {
+            let path = PathBuf::from(path);
+            let relative = PathBuf::from(path.file_name().unwrap());
+            let source = InputSource::File(path);
+            Ok(Input {
+                source,
+                relative,
+                folder: None,
+            })
+        };
+        let mut inputs: Vec<_> = paths.iter().map(input).collect();
+        keep_folders(&mut inputs);
+        inputs.into_iter().map(|input| input.unwrap().relative).collect()
+    }
+
+    #[test]
+    fn equal_names_keep_their_folders() {
+        let paths = relative(&["st/a/x.glsl", "st/b/x.glsl", "st/b/y.glsl"]);
+        assert_eq!(paths, ["a/x.glsl", "b/x.glsl", "y.glsl"].map(PathBuf::from));
+        assert_eq!(
+            relative(&["x.glsl", "../x.glsl"]),
+            ["x.glsl", "x.glsl"].map(PathBuf::from)
+        );
+        assert_eq!(
+            relative(&["a/x.glsl", "a/x.glsl"]),
+            ["x.glsl", "x.glsl"].map(PathBuf::from)
+        );
+    }
 }

@@ -5,41 +5,47 @@ use std::sync::atomic::AtomicBool;
 
 use toyproof_diagnostic::{Deadline, path_name};
 use toyproof_gpu::Worker;
-use toyproof_lab::stress::function::{self, Findings, Role, RoleMap, Signature};
+use toyproof_lab::stress::function::{self, Role, RoleMap, Signature};
 use toyproof_lab::stress::{self, Report, Settings, formula};
 
 use super::inputs::{DriverArgs, LanguageArgs};
 use super::shader::{Shader, Unusable, find};
 use super::{Exit, Terminal};
 
-/// Find out where formulas for rays and surfaces fail: numerical stability at the extremes
+/// Find the inputs for which ray–surface intersection fails numerically
 ///
-/// Ways to intersect a ray with a sphere and with a quadric, and to start a ray from a surface, are taken to
-/// their limits in f32 and in f64, and held against exact arithmetic. With a shader, that is done to a
-/// function of its own. What is written: stress.csv, stress.json, and heat maps.
+/// Tests formulas for ray–sphere and ray–quadric intersection, and for the start of rays that leave a
+/// surface, with extreme inputs in f32 and f64, and compares the results with 160-bit arithmetic. Prints
+/// where each formula fails in f32; with -v also in f64.
+///
+/// With a shader, tests the shader's own function that intersects a ray with a sphere, and recognizes common
+/// mistakes.
+///
+/// Writes stress.csv, stress.json, and heat maps as SVG and PNG.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Examples:\n  toyproof stress -o stress\n  \
-                        toyproof stress glsl/02-sphere.glsl --function intersectSphere -o mine\n  \
-                        toyproof stress mine.glsl --function meet --map p=origin,v=direction,ball.at=center -o mine\n\n\
-                        Exit code: 0; 1 if a function makes a known mistake that its callers cannot make up for; 2 if there was trouble.")]
+#[command(after_long_help = "Examples:\n  toyproof stress -o stress\n  \
+                        toyproof stress my.glsl --function intersectSphere -o stress\n  \
+                        toyproof stress my.glsl --function hit --map p=origin,v=direction,ball.at=center -o stress\n\n\
+                        Exit code: 0 if no mistake was found, 1 if the function makes a known mistake that its callers cannot avoid, 2 for other errors")]
 pub(super) struct Args {
-    /// A shader whose function is to be tested
+    /// Shader with the function to test [default: the built-in formulas]
     shader: Option<PathBuf>,
-    /// The function: it takes a ray and a sphere, and gives t [default: the one that does]
+    /// Function that intersects a ray with a sphere [default: the only one that is recognized]
     #[arg(long, value_name = "NAME", requires = "shader")]
     function: Option<String>,
-    /// What its parameters are, where that is not clear from their names: origin, direction, center, radius,
-    /// sphere (center and radius in a vec4), tmin, tmax; and of what it gives: t, second, hit. `return`
-    /// is what it returns
+    /// Roles of the function's parameters, where their names do not show them
+    ///
+    /// Inputs: origin, direction, center, radius, sphere (center and radius in a vec4), tmin, tmax. Outputs:
+    /// t, second (t of the second hit), hit. The path `return` is the function's result.
     #[arg(long, value_name = "PATH=ROLE,…", value_delimiter = ',', value_parser = parse_role, requires = "shader")]
     map: Vec<(String, Role)>,
-    /// Where the results go
+    /// Write the results into this folder
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
-    /// What the cases are drawn from: the same seed draws the same
+    /// Seed of the random cases
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = parse_seed, allow_negative_numbers = true)]
     seed: u64,
-    /// Cases for each step of each axis
+    /// Random cases per step of each tested quantity
     #[arg(long, value_name = "N", default_value_t = 500, value_parser = clap::value_parser!(u32).range(1..=100_000), allow_negative_numbers = true)]
     cases: u32,
     #[command(flatten)]
@@ -50,7 +56,7 @@ pub(super) struct Args {
 
 fn parse_seed(text: &str) -> Result<u64, String> {
     text.parse()
-        .map_err(|_| format!("a seed is a whole number from 0 to {}", u64::MAX))
+        .map_err(|_| format!("expected a whole number from 0 to {}", u64::MAX))
 }
 
 fn parse_role(text: &str) -> Result<(String, Role), String> {
@@ -59,7 +65,7 @@ fn parse_role(text: &str) -> Result<(String, Role), String> {
         Some((path.trim().to_owned(), role))
     });
     parsed.ok_or_else(|| {
-        "say what is what, as in ray.origin=origin; there are origin, direction, center, radius, sphere, tmin, tmax, t, second and hit"
+        "expected PATH=ROLE, such as ray.origin=origin; roles: origin, direction, center, radius, sphere, tmin, tmax, t, second, hit"
             .to_owned()
     })
 }
@@ -69,7 +75,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         Ok(worker) => worker,
         Err(exit) => return exit,
     };
-    let interrupted = terminal.watch_interrupts("stopping; nothing is written");
+    let interrupted = terminal.watch_interrupts("stopping; no files are written");
     match &args.shader {
         Some(shader) => examine(args, shader, worker.as_mut(), &interrupted, terminal),
         None => study(args, worker.as_mut(), &interrupted, terminal),
@@ -88,24 +94,23 @@ impl Args {
 
 fn study(args: &Args, worker: Option<&mut Worker>, interrupted: &AtomicBool, terminal: &Terminal) -> Exit {
     let subjects = formula::subjects();
-    let bar = terminal.bar(stress::run_count(&subjects, worker.is_some()), "stress");
+    let bar = terminal.bar(stress::run_count(&subjects, worker.is_some()), "formulas tested");
     let studied = stress::study(&subjects, worker, args.settings(), interrupted, || bar.inc(1));
     bar.finish_and_clear();
     match studied {
         Ok(report) => {
-            print_report(&report, terminal);
+            for line in report.summary() {
+                terminal.result(&line);
+            }
+            for line in report.double_precision_summary() {
+                terminal.detail(&line);
+            }
             write_results(&report, report.json(), args, terminal)
         }
         Err(failure) => {
             terminal.error(failure);
             Exit::Error
         }
-    }
-}
-
-fn print_report(report: &Report, terminal: &Terminal) {
-    for line in report.breakdown_lines() {
-        terminal.result(&line);
     }
 }
 
@@ -119,7 +124,7 @@ fn examine(
     let found = find(&[path.to_owned()], terminal);
     let [input] = found.as_slice() else {
         terminal.error(format_args!(
-            "{} holds several shaders; stress takes one",
+            "{} contains several shaders; `stress` takes one",
             path_name(path)
         ));
         return Exit::Error;
@@ -153,15 +158,16 @@ fn examine(
         &signature,
         args.language.options(Deadline::after(args.driver.timeout())),
     );
-    let bar = terminal.bar(2 + u64::from(worker.is_some()), &signature.name);
+    let bar = terminal.bar(2 + u64::from(worker.is_some()), "runs");
     let examined = function::examine(&subject, &signature, worker, args.settings(), interrupted, || {
         bar.inc(1);
     });
     bar.finish_and_clear();
     match examined {
         Ok(findings) => {
-            print_report(&findings.report, terminal);
-            print_findings(&signature, &findings, terminal);
+            for line in findings.summary(&signature.name) {
+                terminal.result(&line);
+            }
             let kept = write_results(&findings.report, findings.json(), args, terminal);
             kept.max(if findings.mistake.is_some_and(|mistake| !mistake.recoverable) {
                 Exit::ShaderFault
@@ -172,26 +178,6 @@ fn examine(
         Err(failure) => {
             terminal.error(format_args!("{}: {failure}", shader.name));
             Exit::Error
-        }
-    }
-}
-
-fn print_findings(signature: &Signature, findings: &Findings, terminal: &Terminal) {
-    let name = &signature.name;
-    if let Some(mistake) = &findings.mistake {
-        terminal.result(&format!("{name} {} ({})", mistake.description, mistake.name));
-    }
-    match &findings.example {
-        None => terminal.result(&format!("{name} is right wherever it was asked")),
-        Some(example) => {
-            terminal.result(&format!("it fails at {}, for example with", example.step));
-            for line in &example.assignments {
-                terminal.result(&format!("    {line}"));
-            }
-            terminal.result(&format!(
-                "where {} is right and {} came",
-                example.expected, example.actual
-            ));
         }
     }
 }
@@ -208,7 +194,7 @@ fn worker(driver: &DriverArgs, terminal: &Terminal) -> Result<Option<Worker>, Ex
     match worker.probe() {
         Ok(_) => Ok(Some(worker)),
         Err(failure) if failure.is_without_driver() && driver.may_fall_back() => {
-            terminal.warn(format_args!("{failure}; only the CPU is tested"));
+            terminal.warn(format_args!("{failure}; testing only the CPU"));
             Ok(None)
         }
         Err(failure) => Err(fail(&failure)),
@@ -221,8 +207,9 @@ fn write_results(report: &Report, json: String, args: &Args, terminal: &Terminal
         ("stress.json".to_owned(), json.into_bytes()),
     ];
     for (name, heat_map) in report.heat_maps() {
+        files.push((format!("{name}.svg"), heat_map.svg().into_bytes()));
         let name = format!("{name}.png");
-        match toyproof_image::encode(&heat_map, name.as_ref()) {
+        match toyproof_image::encode(&heat_map.image(), name.as_ref()) {
             Ok(bytes) => files.push((name, bytes)),
             Err(error) => {
                 terminal.error(error);
@@ -233,5 +220,14 @@ fn write_results(report: &Report, json: String, args: &Args, terminal: &Terminal
     let kept = files
         .iter()
         .all(|(name, bytes)| terminal.write(&args.output.join(name), bytes));
-    if kept { Exit::Success } else { Exit::Error }
+    if !kept {
+        return Exit::Error;
+    }
+    let path = |name: &str| path_name(&args.output.join(name));
+    terminal.note(&format!(
+        "All figures: {}. Heat maps: {}",
+        path("stress.csv"),
+        path("stress-spheres.svg")
+    ));
+    Exit::Success
 }

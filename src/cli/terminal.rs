@@ -161,9 +161,16 @@ impl Terminal {
         self.labeled("warning", AnsiColor::Yellow, text);
     }
 
-    /// Prints an error on standard error.
+    /// Prints an error on standard error; a line `help: …` at its end is its way out.
     pub(super) fn error(&self, text: impl Display) {
-        self.labeled("error", AnsiColor::Red, text);
+        let text = text.to_string();
+        match text.split_once("\nhelp: ") {
+            Some((text, help)) => {
+                self.labeled("error", AnsiColor::Red, text);
+                self.help(help);
+            }
+            None => self.labeled("error", AnsiColor::Red, text),
+        }
     }
 
     /// Prints a way out of an error on standard error.
@@ -242,9 +249,11 @@ impl Terminal {
         let bar = self.bars.add(ProgressBar::new(steps));
         let template = "{prefix} {human_pos}/{human_len} {wide_bar} {rate}, ETA {eta}  {msg}";
         let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
-        bar.set_style(style.with_key("rate", |state: &ProgressState, text: &mut dyn fmt::Write| {
-            let _ = write!(text, "{:.1}/s", state.per_sec());
-        }));
+        bar.set_style(
+            style.with_key("rate", |state: &ProgressState, text: &mut dyn fmt::Write| {
+                let _ = write!(text, "{:.1}/s", state.per_sec());
+            }),
+        );
         bar.set_prefix(label.to_owned());
         bar
     }
@@ -278,7 +287,11 @@ impl Terminal {
     /// Handles interrupts, so that no progress bar is left behind on the terminal.
     fn handle_interrupts(&self) {
         let bars = self.bars.clone();
-        let Interrupts { message, flag, is_handled } = &self.interrupts;
+        let Interrupts {
+            message,
+            flag,
+            is_handled,
+        } = &self.interrupts;
         let (message, flag) = (Arc::clone(message), Arc::clone(flag));
         is_handled.get_or_init(|| {
             // If no handler can be installed, an interrupt ends the program.

@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-use toyproof_diagnostic::{Deadline, File, Files, grouped, path_name, plural};
+use toyproof_diagnostic::{Deadline, File, Files, path_name};
 use toyproof_gpu::{AdapterSelector, Worker};
 use toyproof_image as image;
 use toyproof_image::Frame;
-use toyproof_lab::trade::{self, ERROR_LIMITS, Report, Subject};
+use toyproof_lab::trade::{self, Report, Subject};
 use toyproof_lint::Lints;
 use toyproof_scene::{Scene, export};
 
@@ -19,31 +19,36 @@ use super::shader::{Shader, Unusable, find};
 use super::{Exit, Terminal};
 use crate::cli::files;
 
-/// Measure what accuracy costs: every way to the picture of a scene, or of a shader, with its time and its
-/// error
+/// Measure rendering time against accuracy
 ///
-/// The ways are those that the scene asks for: the tracer in f32 and f64, with its samples and depths; and
-/// the shader beside the scene, or the one that `export` writes, on the CPU and on GPUs, with each formula
-/// for spheres. What is written: trade.csv, trade.json, trade.svg and trade.png.
+/// Renders a scene or a shader in many configurations, and compares each image with a reference in double
+/// precision. Prints the fastest configuration for each of several error limits; with -v all configurations.
+///
+/// The configurations are the tracer in f32 and f64, with the samplers, sample counts and depths that matter
+/// for the scene, and its shader on the CPU and on GPUs, with each ray–sphere formula. The shader is the file
+/// next to the scene, or the one that `toyproof export` writes.
+///
+/// Writes trade.csv, trade.json, and a chart: trade.svg and trade.png.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Examples:\n  toyproof trade glsl/03-shading.toml -o trade\n  \
-                        toyproof trade glsl/06-reflections.glsl -o trade --budget 60s\n  \
-                        toyproof trade glsl/09-soft-shadows.toml --max-error 0.004 --size 160x90")]
+#[command(after_long_help = "Examples:\n  toyproof trade 03-shading -o trade\n  \
+                        toyproof trade my-scene.toml -o trade --budget 60s\n  \
+                        toyproof trade 09-soft-shadows --max-error 0.004 --size 160x90")]
 pub(super) struct Args {
-    /// A scene, in TOML, or a shader
+    /// A scene of the course, such as 09-soft-shadows, a scene file (.toml), or a shader (.glsl)
+    #[arg(value_name = "SCENE|SHADER")]
     subject: PathBuf,
-    /// Where the results go; needed unless --max-error is given
+    /// Write the results into this folder; required without --max-error
     #[arg(short, long, value_name = "DIR", required_unless_present = "max_error")]
     output: Option<PathBuf>,
-    /// How long everything may take
+    /// Time limit of the whole measurement
     #[arg(long, value_name = "TIME", default_value = "30s", value_parser = parse_time_limit)]
     budget: Duration,
-    /// Say only which way is the cheapest whose error, a root mean square in [0, 1], is at most this
+    /// Print only the fastest configuration whose root mean square error is at most this, from 0 to 1
     #[arg(long, value_name = "ERROR", value_parser = parse_max_error, allow_negative_numbers = true)]
     max_error: Option<f64>,
-    /// The GPUs: `all` that there are, `cpu` for none, `lavapipe`, or words of an adapter's name
-    #[arg(long, value_name = "ADAPTER", default_value = "all")]
-    on: String,
+    /// GPUs to measure: `all`, `cpu` for none, `lavapipe`, or a substring of the adapter's name
+    #[arg(long, alias = "on", value_name = "DEVICE", default_value = "all")]
+    device: String,
     #[command(flatten)]
     language: LanguageArgs,
     #[command(flatten)]
@@ -58,7 +63,7 @@ fn parse_max_error(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
-    let interrupted = terminal.watch_interrupts("stopping; nothing is written");
+    let interrupted = terminal.watch_interrupts("stopping; no files are written");
     match measure(args, &interrupted, terminal) {
         Ok(report) => print_report(&report, args, terminal),
         Err(exit) => exit,
@@ -88,21 +93,27 @@ fn measure(args: &Args, interrupted: &AtomicBool, terminal: &Terminal) -> Result
         .as_ref()
         .and_then(|shader| Some((shader, shader.checked.as_ref().ok()?)));
     let subject = Subject {
-        name: path_name(&args.subject),
+        name: subject_name(&args.subject),
         scene: scene.as_ref(),
         shader: checked.map(|(shader, checked)| (shader.text(checked), checked)),
         options: args.language.options(deadline),
         frame: &frame,
-        workers: workers(&args.on, args.budget, terminal)?,
+        workers: workers(&args.device, args.budget, terminal)?,
         start,
         budget: args.budget,
     };
-    let bar = terminal.bar(1000, "measuring");
+    let bar = terminal.bar(1000, "time budget used");
     let report = trade::study(subject, interrupted, |share| {
         bar.set_position((1000.0 * share) as u64);
     });
     bar.finish_and_clear();
     report.map_err(|failure| fail(failure.to_string()))
+}
+
+/// The name of a scene or shader in reports: without folder and extension.
+fn subject_name(path: &Path) -> String {
+    path.file_stem()
+        .map_or_else(|| path_name(path), |stem| path_name(stem.as_ref()))
 }
 
 /// Gives scene and frame one size: the flag's, else the scene's, else the default.
@@ -122,7 +133,7 @@ fn load_shader(path: &Path, args: &Args, deadline: &Deadline, terminal: &Termina
     let found = find(&[path.to_owned()], terminal);
     let [input] = found.as_slice() else {
         terminal.error(format_args!(
-            "{} holds several shaders; trade takes one",
+            "{} contains several shaders; `trade` takes one",
             path_name(path)
         ));
         return Err(Exit::Error);
@@ -182,7 +193,7 @@ fn workers(selector: &str, budget: Duration, terminal: &Terminal) -> Result<Vec<
             match probe.probe() {
                 Ok(drivers) => drivers.iter().map(|driver| driver.name.clone()).collect(),
                 Err(failure) => {
-                    terminal.warn(format_args!("{failure}; only the CPU is measured"));
+                    terminal.warn(format_args!("{failure}; measuring only the CPU"));
                     return Ok(Vec::new());
                 }
             }
@@ -211,32 +222,17 @@ fn print_report(report: &Report, args: &Args, terminal: &Terminal) -> Exit {
         return Exit::Error;
     }
     if let Some(error) = args.max_error {
-        terminal.result(&report.cheapest_line(error, &error.to_string()));
-        if report.cheapest(error).is_some() && !report.skipped.is_empty() {
+        terminal.result(&report.fastest_line(error));
+        if !report.skipped.is_empty() {
             terminal.note(&report.skipped_line());
         }
     } else {
-        let ways = report.results.len() as u64;
-        terminal.note(&format!(
-            "{} {}; the truth is {}: {}",
-            grouped(ways),
-            plural(ways, "way", "ways"),
-            report.reference,
-            if report.reference_error > 0.0 {
-                format!("{:.1e}", report.reference_error)
-            } else {
-                "nothing that a picture in f32 holds".to_owned()
-            }
-        ));
-        if !report.skipped.is_empty() {
-            terminal.note(&format!("no time for {}", report.skipped.join("; ")));
-        }
-        for (error, word) in ERROR_LIMITS {
-            terminal.result(&report.cheapest_line(error, word));
-        }
-        if let Some(line) = report.stable_formula_cost() {
+        for line in report.summary() {
             terminal.result(&line);
         }
+    }
+    for line in report.details() {
+        terminal.detail(&line);
     }
     let Some(folder) = &args.output else {
         return Exit::Success;
@@ -258,5 +254,10 @@ fn print_report(report: &Report, args: &Args, terminal: &Terminal) -> Exit {
     let kept = files
         .iter()
         .all(|(name, bytes)| terminal.write(&folder.join(name), bytes));
-    if kept { Exit::Success } else { Exit::Error }
+    if !kept {
+        return Exit::Error;
+    }
+    let [csv, chart] = ["trade.csv", "trade.svg"].map(|name| path_name(&folder.join(name)));
+    terminal.note(&format!("Chart: {chart}. All configurations: {csv}"));
+    Exit::Success
 }

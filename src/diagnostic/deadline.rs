@@ -21,7 +21,7 @@ pub struct Deadline {
 
 /// The deadline has passed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-#[error("this shader takes longer than {} s to compile", limit.as_secs_f64())]
+#[error("compilation exceeded the time limit of {} s", limit.as_secs_f64())]
 pub struct Overdue {
     /// The time limit.
     pub limit: Duration,
@@ -120,7 +120,7 @@ mod tests {
         assert!(over.is_over() && over.is_over() && over.share(4).is_over());
         assert_eq!(over.left(), Some(Duration::ZERO));
         let text = over.check().unwrap_err().to_string();
-        assert_eq!(text, "this shader takes longer than 0 s to compile");
+        assert_eq!(text, "compilation exceeded the time limit of 0 s");
     }
 
     #[test]

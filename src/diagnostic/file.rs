@@ -131,6 +131,12 @@ impl Files {
         self.get(span.file).position(span.start as usize)
     }
 
+    /// The position after the last character of a span.
+    #[must_use]
+    pub fn end_position(&self, span: Span) -> Position {
+        self.get(span.file).position(span.end as usize)
+    }
+
     /// The text that a span covers.
     #[must_use]
     pub fn text(&self, span: Span) -> &str {
@@ -190,6 +196,12 @@ impl Span {
     pub fn new(file: FileId, start: u32, end: u32) -> Self {
         debug_assert!(start <= end);
         Self { file, start, end }
+    }
+
+    /// Whether the spans overlap or adjoin.
+    #[must_use]
+    pub fn touches(self, other: Self) -> bool {
+        self.file == other.file && self.start <= other.end && other.start <= self.end
     }
 
     /// The smallest span that covers both; `other` if they are of different files.

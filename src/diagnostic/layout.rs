@@ -76,7 +76,10 @@ mod tests {
 
     #[test]
     fn cells_are_aligned() {
-        let rows = [vec!["a".to_owned(), "1,000".to_owned()], vec!["ä→b".to_owned(), "2".to_owned()]];
+        let rows = [
+            vec!["a".to_owned(), "1,000".to_owned()],
+            vec!["ä→b".to_owned(), "2".to_owned()],
+        ];
         assert_eq!(columns(&rows, &[1]), ["a    1,000", "ä→b      2"]);
     }
 }

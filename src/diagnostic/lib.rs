@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 pub use self::deadline::{Deadline, Overdue};
 pub use self::file::{File, FileId, Files, Position, Span};
 pub use self::layout::{columns, display_width, wrap};
-pub use self::render::{Json, human, json, short};
+pub use self::render::{Json, JsonFix, human, json, short};
 pub use self::text::{grouped, magnitude, nearest, path_name, plural, printable, printable_lines};
 
 /// The severity of a diagnostic.
@@ -58,6 +58,11 @@ fn one_line(text: impl Into<String>) -> String {
     truncate_middle(printable(&text.into()).into_owned())
 }
 
+/// The text with control characters except line feeds escaped, truncated in the middle if too long.
+fn several_lines(text: &str) -> String {
+    truncate_middle(printable_lines(text).into_owned())
+}
+
 /// The text, truncated in the middle if too long.
 fn truncate_middle(mut text: String) -> String {
     if text.len() > MAX_MESSAGE_BYTES {
@@ -70,10 +75,53 @@ fn truncate_middle(mut text: String) -> String {
     text
 }
 
+/// An edit of the source text that a diagnostic proposes.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Edit {
+    /// The text to replace; empty for an insertion.
+    pub span: Span,
+    /// The replacement.
+    pub replacement: String,
+}
+
+/// A mechanical correction of the error that a diagnostic reports.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Fix {
+    /// What to do, such as ``write `1.0` ``.
+    pub message: String,
+    /// The edits, which do not overlap and apply together; at least one, all of one file.
+    pub edits: Vec<Edit>,
+}
+
+impl Fix {
+    /// A fix that replaces one span.
+    pub fn new(message: impl Into<String>, span: Span, replacement: impl Into<String>) -> Self {
+        let replacement = replacement.into();
+        Self {
+            message: one_line(message),
+            edits: vec![Edit { span, replacement }],
+        }
+    }
+
+    /// Adds an edit.
+    #[must_use]
+    pub fn and(mut self, span: Span, replacement: impl Into<String>) -> Self {
+        let replacement = replacement.into();
+        self.edits.push(Edit { span, replacement });
+        self
+    }
+
+    /// The text that all edits cover.
+    fn span(&self) -> Option<Span> {
+        let spans = self.edits.iter().map(|edit| edit.span);
+        spans.reduce(Span::to)
+    }
+}
+
 /// A diagnostic about a source text.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Diagnostic {
-    /// The severity of a diagnostic.
+    /// The severity.
     pub severity: Severity,
     /// A stable code: `E` and four digits for errors, `W` for warnings.
     pub code: Cow<'static, str>,
@@ -85,8 +133,12 @@ pub struct Diagnostic {
     pub label: Option<String>,
     /// Other relevant spans, each with a short text.
     pub related: Vec<(Span, String)>,
-    /// Notes and suggestions.
+    /// Corrections. If there are several, each corrects a part of the error.
+    pub fixes: Vec<Fix>,
+    /// Additional information: why it is an error, or what follows from it.
     pub notes: Vec<String>,
+    /// Advice on what to do.
+    pub helps: Vec<String>,
 }
 
 impl Diagnostic {
@@ -99,7 +151,9 @@ impl Diagnostic {
             span: None,
             label: None,
             related: Vec::new(),
+            fixes: Vec::new(),
             notes: Vec::new(),
+            helps: Vec::new(),
         }
     }
 
@@ -129,17 +183,36 @@ impl Diagnostic {
 
     /// Adds a related span.
     #[must_use]
-    pub fn related(mut self, span: Span, words: impl Into<String>) -> Self {
-        self.related.push((span, one_line(words)));
+    pub fn related(mut self, span: Span, text: impl Into<String>) -> Self {
+        self.related.push((span, one_line(text)));
+        self
+    }
+
+    /// Adds a fix. Its message is shown at its place, unless the diagnostic's message contains it.
+    #[must_use]
+    pub fn fix(mut self, fix: Fix) -> Self {
+        self.fixes.push(fix);
         self
     }
 
     /// Adds a note.
     #[must_use]
     pub fn note(mut self, note: impl Into<String>) -> Self {
-        self.notes
-            .push(truncate_middle(printable_lines(&note.into()).into_owned()));
+        self.notes.push(several_lines(&note.into()));
         self
+    }
+
+    /// Adds a line of advice.
+    #[must_use]
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.helps.push(several_lines(&help.into()));
+        self
+    }
+
+    /// The fixes whose messages are not part of the diagnostic's message.
+    fn shown_fixes(&self) -> impl Iterator<Item = &Fix> {
+        let fixes = self.fixes.iter();
+        fixes.filter(|fix| !self.message.contains(&fix.message))
     }
 }
 

@@ -1,6 +1,6 @@
 //! The stable codes of the front end's diagnostics.
 
-use toyproof_diagnostic::{Diagnostic, Overdue};
+use toyproof_diagnostic::{Diagnostic, Overdue, plural};
 
 use super::tree::Place;
 
@@ -37,89 +37,89 @@ macro_rules! codes {
 
 codes! {
     // The preprocessor, §3.
-    UnknownCharacter "E0001" "A character that GLSL does not know",
-    UnterminatedComment "E0002" "A `/*` without `*/`",
-    UnknownDirective "E0003" "A `#` line that is no directive",
-    MalformedDirective "E0004" "A directive with too little or too much on its line",
-    BadCondition "E0005" "An `#if` or `#elif` that is no integer constant expression",
-    UnbalancedCondition "E0006" "An `#if` without `#endif`, or an `#else`, `#elif` or `#endif` too many",
-    BadMacro "E0007" "A macro that may not be defined, redefined or undefined so",
-    BadMacroCall "E0008" "A macro used with the wrong number of arguments, or without its `)`",
-    PasteOperator "E0009" "`#` or `##` in a macro: GLSL ES has neither",
-    ErrorDirective "E0010" "An `#error` that was reached",
-    BadVersion "E0011" "A `#version` that is not `300 es`, or does not come first",
-    BadExtension "E0012" "An `#extension` that is required and does not exist",
-    TooMuchExpansion "E0013" "Macros that expand to more than can be meant",
+    UnknownCharacter "E0001" "An invalid character",
+    UnterminatedComment "E0002" "An unterminated comment",
+    UnknownDirective "E0003" "An unknown preprocessor directive",
+    MalformedDirective "E0004" "A malformed directive",
+    BadCondition "E0005" "An invalid condition of `#if` or `#elif`",
+    UnbalancedCondition "E0006" "Unbalanced conditional directives",
+    BadMacro "E0007" "An invalid definition of a macro",
+    BadMacroCall "E0008" "An invalid use of a macro",
+    PasteOperator "E0009" "`#` or `##` in a macro, which GLSL ES does not have",
+    ErrorDirective "E0010" "An `#error` directive",
+    BadVersion "E0011" "An unsupported `#version`",
+    BadExtension "E0012" "An unsupported extension that is required",
+    TooMuchExpansion "E0013" "A macro expansion that is too large",
     // The grammar, §3 and §9.
-    Syntax "E0100" "Text that does not fit the grammar",
-    TooDeep "E0101" "Statements or expressions nested too deep",
-    BadNumber "E0102" "A number that is none",
-    NumberRange "E0103" "A number that its type cannot hold",
-    ReservedWord "E0104" "A word that GLSL ES reserves",
-    Unclosed "E0105" "A bracket that is never closed",
+    Syntax "E0100" "A syntax error",
+    TooDeep "E0101" "Too deep nesting",
+    BadNumber "E0102" "A malformed number",
+    NumberRange "E0103" "An integer out of range",
+    ReservedWord "E0104" "A reserved word",
+    Unclosed "E0105" "An unbalanced bracket",
     // Names, §4.2.
-    Undeclared "E0200" "A name that is not declared",
-    Redeclared "E0201" "A name that its scope has already",
-    NotAVariable "E0202" "A type or function where a variable is needed, or the other way round",
-    UnknownMember "E0203" "A member that its structure does not have, or a selection that is no swizzle",
+    Undeclared "E0200" "An undeclared name",
+    Redeclared "E0201" "A redeclared name",
+    NotAVariable "E0202" "A type or function used as a variable, or the reverse",
+    UnknownMember "E0203" "An unknown member or an invalid swizzle",
     // Types, §4 and §5.
-    BadOperands "E0300" "An operator on types that it does not take",
-    Mismatch "E0301" "A value of one type where another is needed",
-    NoOverload "E0302" "A call with arguments that no overload takes",
-    BadConstructor "E0303" "A constructor with arguments that it does not take",
-    BadIndex "E0304" "An index that is no integer, or out of range, or of something that has no elements",
-    BadArraySize "E0305" "An array without a size of at least 1",
-    ArrayOfArrays "E0306" "An array of arrays, which GLSL ES 3.00 does not have",
-    BadType "E0307" "A type that cannot be used here",
-    BadReturn "E0308" "A `return` that does not fit its function",
+    BadOperands "E0300" "Invalid operands of an operator",
+    Mismatch "E0301" "Mismatched types",
+    NoOverload "E0302" "No matching function for a call",
+    BadConstructor "E0303" "Invalid arguments of a constructor",
+    BadIndex "E0304" "An invalid index",
+    BadArraySize "E0305" "An invalid array size",
+    ArrayOfArrays "E0306" "An array of arrays, which GLSL ES 3.00 does not support",
+    BadType "E0307" "A type that is not allowed here",
+    BadReturn "E0308" "An invalid or missing `return`",
     // Rules, §4.3, §5.8 and §6.
-    NotWritable "E0400" "An assignment to what cannot be written",
-    NotConstant "E0401" "A value that must be a constant expression and is none",
+    NotWritable "E0400" "An assignment to a read-only value",
+    NotConstant "E0401" "A value that must be a constant expression",
     Uninitialized "E0402" "A `const` without a value",
-    BadQualifier "E0403" "A qualifier that is not allowed here",
-    Recursion "E0404" "A function that calls itself",
-    Undefined "E0405" "A function that is called and never defined",
-    BadOverload "E0406" "A function that differs from another by its result or qualifiers only",
-    BadSwitch "E0407" "A label of a `switch` that is not allowed",
-    MisplacedJump "E0408" "A `break` or `continue` outside of a loop",
-    NoMainImage "E0409" "No `void mainImage(out vec4, in vec2)`",
+    BadQualifier "E0403" "An invalid qualifier",
+    Recursion "E0404" "A recursive function",
+    Undefined "E0405" "A function that is called but not defined",
+    BadOverload "E0406" "Overloads that differ only in return type or qualifiers",
+    BadSwitch "E0407" "An invalid `switch` or label",
+    MisplacedJump "E0408" "A `break` or `continue` outside a loop",
+    NoMainImage "E0409" "A missing or invalid `mainImage`",
     TooSlow "E0410" "A shader that takes too long to compile",
-    TooDeepToRun "E0411" "A shader that nests deeper than drivers count",
+    TooDeepToRun "E0411" "Control flow nested too deep for drivers",
     // Warnings.
-    ReservedName "W0001" "A name that begins with what GLSL keeps for itself",
-    UnknownExtension "W0002" "An `#extension` that does not exist",
+    ReservedName "W0001" "A reserved name",
+    UnknownExtension "W0002" "An unsupported extension that is enabled",
     // Findings of lints in a shader without errors.
-    Unwritten "W0003" "A variable that is read before it is written",
-    MaybeUnwritten "W0004" "A variable that is read in pixels that did not write it",
-    SineHash "W0005" "Randomness from `fract(sin(x) * 43758.5453)`, which differs from GPU to GPU",
-    Derivative "W0006" "A derivative where neighbouring pixels may have gone another way",
-    ImplicitLod "W0007" "A texture lookup without a level where neighbouring pixels may have gone another way",
-    LongLoop "W0008" "Loops that may run longer than older drivers let them",
-    EndlessLoop "W0009" "A loop that never ends",
-    UnusedResult "W0010" "A value that is computed and dropped",
-    FloatEquality "W0011" "`==` or `!=` of floats that were computed",
-    UnnormalizedDirection "W0012" "A ray-sphere formula for unit directions, given one that is never normalised",
+    Unwritten "W0003" "A variable that is used uninitialized",
+    MaybeUnwritten "W0004" "A variable that may be used uninitialized",
+    SineHash "W0005" "A hash of `sin`, which differs between GPUs",
+    Derivative "W0006" "A derivative in non-uniform control flow",
+    ImplicitLod "W0007" "An implicit level of detail in non-uniform control flow",
+    LongLoop "W0008" "Loops that may exceed the iteration limit of older drivers",
+    EndlessLoop "W0009" "An infinite loop",
+    UnusedResult "W0010" "An unused result",
+    FloatEquality "W0011" "`==` or `!=` of computed floats",
+    UnnormalizedDirection "W0012" "A ray–sphere formula for unit directions with a direction that is not normalized",
     // A lint that also depends on the scene.
-    NearTangent "W0013" "A ray-sphere formula that loses the edge of a sphere of the scene",
-    BadAllow "W0014" "An `allow` that is not understood",
-    UnusedAllow "W0015" "An `allow` that nothing needs",
-    MissingReturn "W0016" "A function that on some way ends without a `return`",
-    LintTimeout "W0017" "Lints that take too long",
+    NearTangent "W0013" "A ray–sphere discriminant that is too inaccurate for the scene",
+    BadAllow "W0014" "A malformed `allow` comment",
+    UnusedAllow "W0015" "An unused `allow` comment",
+    MissingReturn "W0016" "A function that may reach its end without a `return`",
+    LintTimeout "W0017" "Lints that exceeded their time limit",
     // Findings while a shader runs.
-    UndefinedOperation "W0600" "An operation whose value GLSL leaves open",
-    LongRun "W0601" "Loops that older drivers cut short",
-    LostDigits "W0602" "Digits that float32 loses",
-    NotFinite "W0603" "A colour that is NaN or infinite",
-    NeverWritten "W0604" "A read of what was never written",
-    UnboundChannel "W0605" "A channel that no picture is bound to",
-    SlowCompilation "W0606" "A shader that the driver takes too long to compile",
+    UndefinedOperation "W0600" "An operation with an undefined result",
+    LongRun "W0601" "Loops that exceed the iteration limit of older drivers",
+    LostDigits "W0602" "A loss of precision in float32",
+    NotFinite "W0603" "A color that is NaN or infinite",
+    NeverWritten "W0604" "A read of an uninitialized variable",
+    UnboundChannel "W0605" "A channel without an image",
+    SlowCompilation "W0606" "A shader that takes the driver too long to compile",
 }
 
 /// The error about a shader that takes too long to compile, in any stage.
 #[must_use]
 pub fn overdue(overdue: Overdue) -> Diagnostic {
     Diagnostic::error(Code::TooSlow.as_str(), overdue.to_string())
-        .note("shorten its longest expressions, lists and functions, or give it more time with `--timeout` (`trade`: `--budget`)")
+        .help("shorten the longest expressions, arrays and functions, or raise `--timeout` (for `trade`, `--budget`)")
 }
 
 /// Maximum number of reported errors of one file, and of warnings.
@@ -135,8 +135,13 @@ pub(crate) fn push_limited(reported: &mut Vec<Diagnostic>, diagnostic: Diagnosti
     }
 }
 
+/// Formats a number of arguments or elements: `1 was given`, `3 were given`.
+pub(crate) fn given(count: usize) -> String {
+    format!("{count} {} given", plural(count as u64, "was", "were"))
+}
+
 /// The text at the spelling location of characters from a macro.
-pub const IN_MACRO: &str = "written in this macro";
+pub const IN_MACRO: &str = "in the definition of this macro";
 
 impl Code {
     /// Whether `// toyproof: allow(…)` may suppress it.

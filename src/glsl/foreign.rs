@@ -1,4 +1,8 @@
-//! Names from other languages and other GLSL versions that users write by habit.
+//! Names from other languages and other GLSL versions, and what to write instead.
+
+use toyproof_diagnostic::{Diagnostic, Fix, Span};
+
+use crate::tree::Place;
 
 /// `LANGUAGE: NAME = replacement`, one per line. A plain word after `=` is a GLSL name.
 const TABLE: &str = "
@@ -47,7 +51,7 @@ const TABLE: &str = "
     HLSL: rcp = `1.0 / x`
     HLSL: log10 = `log(x) / log(10.0)`
     HLSL: clip = `if (x < 0.0) discard;`
-    HLSL: sincos = `sin(x)` and `cos(x)`
+    HLSL: sincos = `sin` and `cos`
     GLSL ES 1.00: texture2D = texture
     GLSL ES 1.00: texture2DLod = textureLod
     GLSL ES 1.00: texture2DLodEXT = textureLod
@@ -56,10 +60,10 @@ const TABLE: &str = "
     GLSL ES 1.00: textureCube = texture
     GLSL ES 1.00: textureCubeLod = textureLod
     GLSL ES 1.00: textureCubeLodEXT = textureLod
-    GLSL ES 1.00: gl_FragColor = `fragColor`, or as you call the first parameter of `mainImage`
-    GLSL ES 1.00: gl_FragData = `fragColor`, or as you call the first parameter of `mainImage`
-    GLSL ES 1.00: varying = `in`; but ShaderToy has no inputs except its own
-    GLSL ES 1.00: attribute = `in`, in vertex shaders, which ShaderToy does not have
+    GLSL ES 1.00: gl_FragColor = the first parameter of `mainImage`
+    GLSL ES 1.00: gl_FragData = the first parameter of `mainImage`
+    GLSL ES 1.00: varying = `in`, although ShaderToy provides no inputs besides its uniforms
+    GLSL ES 1.00: attribute = `in`, although ShaderToy provides no vertex attributes
     desktop GLSL: double = float
     desktop GLSL: dvec2 = vec2
     desktop GLSL: dvec3 = vec3
@@ -89,7 +93,7 @@ const TABLE: &str = "
     C: logf = log
     C: fmodf = `mod(x, y)`, whose result has the sign of `y`
     C: atan2f = `atan(y, x)`
-    C: cbrt = `pow(x, 1.0 / 3.0)`, for `x` of at least 0
+    C: cbrt = `pow(x, 1.0 / 3.0)`, for `x` ≥ 0
     C: unsigned = uint
     C: long = int
     C: short = int
@@ -108,12 +112,12 @@ const TABLE: &str = "
     other languages: elif = `else if`
     other languages: elseif = `else if`
     other languages: elsif = `else if`
-    other languages: then = nothing: `if (condition) { … }`
+    other languages: then = `{ … }` after `if (condition)`
     other languages: var = a type, such as `float` or `vec3`
     other languages: let = a type, such as `float` or `vec3`
     other languages: auto = a type, such as `float` or `vec3`
-    other languages: random = a hash of your own: GLSL has no random numbers
-    other languages: rand = a hash of your own: GLSL has no random numbers
+    other languages: random = a hash function: GLSL has no random numbers
+    other languages: rand = a hash function: GLSL has no random numbers
     other languages: Vector2 = vec2
     other languages: Vector3 = vec3
     other languages: Vector4 = vec4
@@ -146,6 +150,39 @@ impl Foreign {
         self.replacement.chars().all(is_word).then_some(self.replacement)
     }
 
+    /// Adds to a diagnostic what to write instead of the name, as a fix if the replacement is mechanical.
+    /// `call_end` is the end of the arguments if the name is called.
+    pub(crate) fn advise(self, diagnostic: Diagnostic, at: Place, call_end: Option<Span>) -> Diagnostic {
+        let advice = format!("use {}", self.replacement());
+        match self.edits(call_end.is_some()) {
+            Some((name, None)) => diagnostic.fix(Fix::new(advice, at.spelling, name)),
+            Some((name, Some(arguments))) => match call_end {
+                Some(end) => diagnostic.fix(Fix::new(advice, at.spelling, name).and(end, arguments)),
+                None => diagnostic.label(advice),
+            },
+            None => diagnostic.label(advice),
+        }
+    }
+
+    /// The text that replaces the name, and the text to add after the last argument of a call.
+    fn edits(self, is_called: bool) -> Option<(&'static str, Option<String>)> {
+        if let Some(name) = self.glsl_equivalent() {
+            return Some((name, None));
+        }
+        let code = self.replacement.strip_prefix('`')?.split('`').next()?;
+        let Some((name, parameters)) = code.strip_suffix(')').and_then(|code| code.split_once('(')) else {
+            // A token, or several: not an expression of operands.
+            let is_mechanical = code == "else if" || !code.contains([' ', '{']);
+            let is_all = self.replacement.len() == code.len() + 2;
+            return (is_mechanical && is_all).then_some((code, None));
+        };
+        // Parameters have one letter; further arguments are constants, which the call lacks.
+        let is_word = name.bytes().all(|byte| byte.is_ascii_alphanumeric());
+        let constants: Vec<_> = parameters.split(", ").filter(|part| part.len() > 1).collect();
+        let added = (!constants.is_empty()).then(|| format!(", {}", constants.join(", ")));
+        (is_word && is_called && !parameters.contains('(')).then_some((name, added))
+    }
+
     /// The replacement, quoted for a message.
     pub(crate) fn replacement(self) -> String {
         match self.glsl_equivalent() {
@@ -156,7 +193,10 @@ impl Foreign {
 
     /// A note on the name's origin.
     pub(crate) fn note(self) -> String {
-        format!("`{}` belongs to {}", self.name, self.language)
+        match self.language {
+            "other languages" | "other hosts" => format!("`{}` is not part of GLSL", self.name),
+            language => format!("`{}` is from {language}", self.name),
+        }
     }
 }
 
@@ -189,6 +229,10 @@ mod tests {
         assert_eq!(rows().count(), lines.count());
         for row in rows() {
             assert!(!is_ours(row.name), "{}", row.name);
+            if let Some((name, _)) = row.edits(true) {
+                let is_name = is_ours(name) || name.starts_with('i') || name == "3.14159265";
+                assert!(is_name || ["&&", "||", "else if"].contains(&name), "{name}");
+            }
             if let Some(glsl_equivalent) = row.glsl_equivalent() {
                 assert!(
                     is_ours(glsl_equivalent) || glsl_equivalent.starts_with('i'),

@@ -129,11 +129,11 @@ impl Chromium {
             ));
         }
         self.live = Some(connection);
-        let images_base64 = answer["pictures"].as_array().map_or(&[][..], Vec::as_slice);
+        let images_base64 = answer["images"].as_array().map_or(&[][..], Vec::as_slice);
         let images: Option<Vec<Image>> = frames.iter().zip(images_base64).map(decode_image).collect();
         images
             .filter(|images| images.len() == frames.len())
-            .ok_or_else(|| Failure::Disconnected("it answers another question than was asked".to_owned()))
+            .ok_or_else(|| Failure::Disconnected("unexpected reply".to_owned()))
     }
 
     /// Returns the browser's name and version after it has rendered.
@@ -318,7 +318,7 @@ impl BrowserConnection {
             let left = deadline.saturating_duration_since(Instant::now());
             let mut answer = self.messages.recv_timeout(left).map_err(|error| match error {
                 RecvTimeoutError::Timeout => Failure::Timeout(start.elapsed()),
-                RecvTimeoutError::Disconnected => Failure::Disconnected("it ended".to_owned()),
+                RecvTimeoutError::Disconnected => Failure::Disconnected("the browser exited".to_owned()),
             })?;
             // Other messages are events.
             if answer["id"] == self.last_id {

@@ -70,12 +70,12 @@ fn choose(mut adapters: Vec<Adapter>, selector: &AdapterSelector) -> Result<Vec<
         AdapterSelector::Auto => find_by_name(DriverKind::Lavapipe.adapter_name()).unwrap_or(0),
         AdapterSelector::Lavapipe => find_by_name(DriverKind::Lavapipe.adapter_name()).ok_or_else(|| {
             Failure::NoDriver(format!(
-                "lavapipe is not among the Vulkan drivers here; {INSTALL_HINT}"
+                "lavapipe not found among the Vulkan drivers; {INSTALL_HINT}"
             ))
         })?,
         AdapterSelector::Named(substring) => find_by_name(substring).ok_or_else(|| {
             Failure::NoDriver(format!(
-                "no Vulkan adapter's name holds “{substring}”; there are: {}",
+                "no Vulkan adapter with “{substring}” in its name; available: {}",
                 names.join(", ")
             ))
         })?,

@@ -81,8 +81,8 @@ impl fmt::Display for Phase {
             Self::Starting => "the Vulkan driver was starting",
             Self::Translating => "naga was translating the shader",
             Self::Compiling => "the driver was compiling the shader",
-            Self::Drawing => "the driver was painting the frame",
-            Self::WatchingLoops => "the driver was painting the frame with its loops watched",
+            Self::Drawing => "the driver was rendering the frame",
+            Self::WatchingLoops => "the driver was rendering the frame with instrumented loops",
         })
     }
 }
@@ -97,13 +97,13 @@ pub enum Failure {
     #[error("naga cannot translate this shader")]
     Refused(Vec<Diagnostic>),
     /// naga's own front end rejects the output.
-    #[error("what was written is refused by naga's own front end: {0}")]
+    #[error("naga's front end rejects the translated shader: {0}")]
     Reread(String),
     /// naga failed internally.
     #[error("naga cannot translate this shader: {0}")]
     Naga(String),
     /// The deadline expired.
-    #[error("stopped after {:.1} s, while {phase}", after.as_secs_f64())]
+    #[error("time limit of {:.1} s exceeded while {phase}", after.as_secs_f64())]
     Timeout {
         /// Phase in which it expired.
         phase: Phase,
@@ -117,7 +117,7 @@ pub enum Failure {
         phase: Phase,
     },
     /// The stack overflowed: recursion on deeply nested code.
-    #[error("nested too deep: the stack overflowed while {phase}")]
+    #[error("nested too deeply: stack overflow while {phase}")]
     StackOverflow {
         /// Phase in which it happened.
         phase: Phase,

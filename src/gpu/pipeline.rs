@@ -155,7 +155,7 @@ impl Layout {
 
 #[expect(
     unsafe_code,
-    reason = "only a passthrough module runs naga's words as they are"
+    reason = "only a passthrough module runs naga's SPIR-V unchanged"
 )]
 fn module(device: &Device, words: &[u32]) -> ShaderModule {
     let entry = wgpu::PassthroughShaderEntryPoint {

@@ -97,7 +97,7 @@ pub(super) fn receive<T: DeserializeOwned>(mut from: impl Read) -> io::Result<T>
     from.read_exact(&mut length)?;
     let length = u64::from_le_bytes(length);
     if length > MAX_MESSAGE_BYTES {
-        return Err(io::Error::other("a message longer than any there is"));
+        return Err(io::Error::other("message too long"));
     }
     let mut bytes = Vec::new();
     if from.take(length).read_to_end(&mut bytes)? as u64 != length {

@@ -266,7 +266,7 @@ impl<W: Write> Server<W> {
             self.phase(Phase::Starting)?;
             let device = Device::open(selector).map_err(|failure| match failure {
                 Failure::Device(why) => {
-                    Failure::NotStarted(format!("the Vulkan driver does not start: {why}"))
+                    Failure::NotStarted(format!("the Vulkan driver failed to start: {why}"))
                 }
                 failure => failure,
             })?;
@@ -290,7 +290,7 @@ fn words_and_channels(module: &ValidModule) -> Result<(Vec<u32>, [Shape; 4]), Fa
 }
 
 fn device_lost() -> Failure {
-    Failure::Device("the device is gone".to_owned())
+    Failure::Device("the device was lost".to_owned())
 }
 
 fn send_reply(output: impl Write, reply: &Reply) -> Result<(), Failure> {
@@ -313,7 +313,7 @@ fn on_translator_thread<T: Send + 'static>(
         .join()
         .unwrap_or_else(|payload| {
             Err(Failure::Naga(format!(
-                "it panicked: {}",
+                "panic: {}",
                 panic_message(payload.as_ref())
             )))
         })
@@ -324,5 +324,5 @@ fn panic_message(payload: &(dyn Any + Send)) -> String {
         .downcast_ref::<String>()
         .cloned()
         .or_else(|| payload.downcast_ref::<&str>().map(|&words| words.to_owned()))
-        .unwrap_or_else(|| "a panic without words".to_owned())
+        .unwrap_or_else(|| "panic without a message".to_owned())
 }

@@ -466,11 +466,11 @@ fn classify(phase: Phase, status: Option<ExitStatus>, stderr: &str) -> Failure {
 /// Describes how a worker ended, as part of a sentence.
 fn describe_exit(status: Option<ExitStatus>, stderr: &str) -> String {
     let end = status.map_or_else(
-        || "stopped answering".to_owned(),
-        |status| format!("died ({status})"),
+        || "stopped responding".to_owned(),
+        |status| format!("terminated ({status})"),
     );
     match stderr.lines().last() {
-        Some(last) => format!("{end}, saying “{last}”,"),
+        Some(last) => format!("{end} with the message “{last}”"),
         None => end,
     }
 }
@@ -503,7 +503,7 @@ impl Startup {
         let what = if self.is_driver {
             "the Vulkan driver did not start"
         } else {
-            "the worker process did not answer"
+            "the worker process did not respond"
         };
         Failure::NotStarted(format!("{what} within {} s", after.as_secs_f64()))
     }
@@ -512,7 +512,7 @@ impl Startup {
         let when = if self.is_driver {
             "while the Vulkan driver was starting"
         } else {
-            "before it answered"
+            "before its first reply"
         };
         Failure::NotStarted(format!(
             "the worker process {} {when}",
@@ -525,7 +525,7 @@ impl Startup {
 fn with_pin_hint(failure: Failure) -> Failure {
     match failure {
         Failure::NoDriver(why) if device::is_pinned_by_user() => Failure::NoDriver(format!(
-            "{why}; {} is set, and hides all drivers but those that it names",
+            "{why}; {} is set and hides all other drivers",
             device::PIN_VARIABLES.join(" or ")
         )),
         failure => failure,
@@ -533,5 +533,5 @@ fn with_pin_hint(failure: Failure) -> Failure {
 }
 
 fn unexpected_reply() -> Failure {
-    Failure::Worker("it answered another question than was asked".to_owned())
+    Failure::Worker("unexpected reply".to_owned())
 }

@@ -12,10 +12,10 @@ use super::{Image, MAX_SIDE, Rgb8Image, check_size, quantize};
 #[derive(Debug, Error)]
 pub enum ImageError {
     /// The extension is neither `.png` nor `.exr`.
-    #[error("{0}: a picture is written as .png (8 bits) or .exr (floats)")]
+    #[error("{0}: unsupported image format: use .png (8 bits) or .exr (floats)")]
     Extension(PathBuf),
     /// The file is not an image, or cannot be read.
-    #[error("{path}: not a picture that can be read: {error}")]
+    #[error("{path}: not a readable image: {error}")]
     Unreadable {
         /// The file.
         path: PathBuf,
@@ -153,7 +153,7 @@ fn decode(path: &Path) -> Result<DynamicImage, ImageError> {
         .and_then(ImageReader::with_guessed_format)
         .map_err(|error| unreadable(error.to_string()))?;
     if !matches!(reader.format(), Some(ImageFormat::Png | ImageFormat::OpenExr)) {
-        return Err(unreadable("only PNG and EXR are understood".to_owned()));
+        return Err(unreadable("only PNG and EXR are supported".to_owned()));
     }
     let mut limits = Limits::default();
     limits.max_image_width = Some(MAX_SIDE);
@@ -206,7 +206,12 @@ mod tests {
         assert!(error.to_string().contains("a.jpg") && error.to_string().contains(".png"));
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
-        std::fs::write(&path, "no picture").unwrap();
-        assert!(read(&path).unwrap_err().to_string().contains("not a picture"));
+        std::fs::write(&path, "not an image").unwrap();
+        assert!(
+            read(&path)
+                .unwrap_err()
+                .to_string()
+                .contains("not a readable image")
+        );
     }
 }

@@ -22,6 +22,7 @@ pub use frame::{BLOCK_BYTES, FRAME_RATE, Frame, SAMPLE_RATE};
 pub use rgb8::Rgb8Image;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
+use toyproof_diagnostic::grouped;
 
 /// Maximum side of an image, in pixels: the common limit of Vulkan drivers.
 pub const MAX_SIDE: u32 = 16_384;
@@ -62,7 +63,7 @@ impl Image {
     pub fn of_bands(bands: Vec<Self>) -> Self {
         let height: u32 = bands.iter().map(|band| band.height).sum();
         let mut bands = bands.into_iter();
-        let mut whole = bands.next().expect("a picture has a band");
+        let mut whole = bands.next().expect("an image has at least one band");
         let more = (height - whole.height) as usize * whole.width as usize;
         whole.pixels.reserve_exact(more);
         for band in bands {
@@ -119,12 +120,12 @@ pub fn quantize(component: f32) -> u8 {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum SizeError {
     /// No pixels.
-    #[error("a picture of {0}×{1} pixels has nothing to show; both sides must be at least 1")]
+    #[error("invalid image size {0}×{1}: width and height must be at least 1 pixel")]
     Empty(u64, u64),
     /// More than [`MAX_SIDE`] or [`MAX_PIXELS`].
     #[error(
-        "a picture of {0}×{1} pixels is too large; each side may be at most {MAX_SIDE}, and the picture at \
-         most {million} million pixels",
+        "image size {0}×{1} is too large: the limits are {side} pixels per side and {million} million pixels in total",
+        side = grouped(MAX_SIDE.into()),
         million = MAX_PIXELS / 1_000_000
     )]
     TooLarge(u64, u64),
@@ -207,7 +208,7 @@ mod tests {
     fn sizes_are_checked_without_overflow() {
         assert_eq!(check_size(7680, 4320), Ok([7680, 4320]));
         let refusal = |width, height| check_size(width, height).unwrap_err().to_string();
-        assert!(refusal(0, 5).contains("nothing to show"));
+        assert!(refusal(0, 5).contains("at least 1 pixel"));
         assert!(refusal(100_000, 100_000).contains("too large"));
         assert!(refusal(u64::MAX, u64::MAX).contains("too large"));
         assert!(refusal(16_384, 16_384).contains("million"));

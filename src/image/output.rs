@@ -62,7 +62,7 @@ fn check_no_symlink_between(folder: &Path, path: &Path) -> io::Result<()> {
     for ancestor in below {
         if fs::symlink_metadata(ancestor).is_ok_and(|found| found.is_symlink()) {
             let reason = format!(
-                "`{}` is a symbolic link, which outputs do not follow",
+                "`{}` is a symbolic link; outputs are not written through links",
                 path_name(ancestor)
             );
             return Err(io::Error::other(reason));

@@ -10,4 +10,5 @@
 
 pub mod chart;
 pub mod stress;
+mod text_table;
 pub mod trade;

@@ -37,18 +37,15 @@ impl Allows {
         }
         let extents = StatementExtents::of(tree);
         let mut all = Vec::new();
-        for remark in control_comments {
-            let scope = extents.scope_of(files, *remark);
-            for name in code_spans(files, *remark, diagnostics) {
+        for comment in control_comments {
+            let scope = extents.scope_of(files, *comment);
+            for name in code_spans(files, *comment, diagnostics) {
                 match Code::ALL.iter().find(|code| code.as_str() == files.text(name)) {
                     Some(&code) if code.can_be_allowed() => all.push(Allow { code, name, scope }),
-                    Some(_) => diagnostics.push(invalid_remark(
-                        name,
-                        "only warnings about the shader can be allowed",
-                    )),
+                    Some(_) => diagnostics.push(invalid_comment(name, "only warnings can be allowed")),
                     None => {
-                        let message = format!("there is no warning `{}`", files.text(name));
-                        diagnostics.push(invalid_remark(name, message));
+                        let message = format!("unknown warning `{}`", files.text(name));
+                        diagnostics.push(invalid_comment(name, message));
                     }
                 }
             }
@@ -71,8 +68,9 @@ impl Allows {
         let unused = self.all.iter().zip(&used);
         let unused = unused.filter(|(allow, used)| !**used && !allow.code.is_of_runs());
         let unused = unused.map(|(allow, _)| {
-            let message = format!("nothing here needs `allow({})`", allow.code.as_str());
-            Diagnostic::warning(Code::UnusedAllow.as_str(), message).at(allow.name)
+            let message = format!("unused `allow({})`", allow.code.as_str());
+            let diagnostic = Diagnostic::warning(Code::UnusedAllow.as_str(), message).at(allow.name);
+            diagnostic.help("remove it")
         });
         let left = found.into_iter().zip(allowed).filter(|(_, allowed)| !allowed);
         left.map(|(diagnostic, _)| diagnostic).chain(unused).collect()
@@ -84,7 +82,7 @@ impl Allows {
         let mut places: Vec<(u32, usize)> = Vec::new();
         for (index, diagnostic) in found.iter().enumerate() {
             places.extend(diagnostic.span.map(|span| (span.start, index)));
-            let in_macro = diagnostic.related.iter().filter(|(_, words)| words == IN_MACRO);
+            let in_macro = diagnostic.related.iter().filter(|(_, text)| text == IN_MACRO);
             places.extend(in_macro.map(|(span, _)| (span.start, index)));
         }
         places.sort_unstable();
@@ -107,15 +105,15 @@ impl Allows {
     }
 }
 
-fn invalid_remark(at: Span, message: impl Into<String>) -> Diagnostic {
+fn invalid_comment(at: Span, message: impl Into<String>) -> Diagnostic {
     Diagnostic::warning(Code::BadAllow.as_str(), message)
         .at(at)
-        .note("it is written `// toyproof: allow(W0005)`; several codes are parted by commas")
+        .help("write `// toyproof: allow(W0005)`, with commas between several codes")
 }
 
 /// The spans of the codes between the parentheses.
-fn code_spans(files: &Files, remark: ControlComment, diagnostics: &mut Vec<Diagnostic>) -> Vec<Span> {
-    let text = files.text(remark.at);
+fn code_spans(files: &Files, comment: ControlComment, diagnostics: &mut Vec<Diagnostic>) -> Vec<Span> {
+    let text = files.text(comment.at);
     let inside = text
         .split_once(':')
         .map(|(_, rest)| rest.trim_start())
@@ -124,18 +122,15 @@ fn code_spans(files: &Files, remark: ControlComment, diagnostics: &mut Vec<Diagn
         .and_then(|rest| rest.split_once(')'))
         .map(|(inside, _)| inside);
     let Some(inside) = inside else {
-        diagnostics.push(invalid_remark(
-            remark.at,
-            "this remark to toyproof is not understood",
-        ));
+        diagnostics.push(invalid_comment(comment.at, "malformed `toyproof:` comment"));
         return Vec::new();
     };
     // `part` and `inside` are slices of `text`.
-    let offset = |part: &str| (part.as_ptr() as usize - text.as_ptr() as usize) as u32 + remark.at.start;
+    let offset = |part: &str| (part.as_ptr() as usize - text.as_ptr() as usize) as u32 + comment.at.start;
     inside
         .split(',')
         .map(str::trim)
-        .map(|name| Span::new(remark.at.file, offset(name), offset(name) + name.len() as u32))
+        .map(|name| Span::new(comment.at.file, offset(name), offset(name) + name.len() as u32))
         .collect()
 }
 
@@ -172,27 +167,27 @@ impl StatementExtents {
         Self(all)
     }
 
-    /// The range of text that a remark covers.
-    fn scope_of(&self, files: &Files, remark: ControlComment) -> Span {
-        let text = files.get(remark.at.file).text();
+    /// The range of text that a comment covers.
+    fn scope_of(&self, files: &Files, comment: ControlComment) -> Span {
+        let text = files.get(comment.at.file).text();
         let line_end = |byte: u32| {
             let rest = &text[byte as usize..];
             byte + rest.find(['\n', '\r']).unwrap_or(rest.len()) as u32
         };
-        let (start, end) = if remark.first {
+        let (start, end) = if comment.first {
             (0, text.len() as u32 + 1)
-        } else if remark.alone {
-            let after = remark.at.end;
+        } else if comment.alone {
+            let after = comment.at.end;
             let end = directive_after(text, after).or_else(|| {
                 let next = self.0.partition_point(|&(start, _)| start < after);
                 self.0.get(next).map(|&(_, end)| end)
             });
             (after, line_end(end.unwrap_or(after)))
         } else {
-            let line = text[..remark.at.start as usize].rfind(['\n', '\r']);
-            (line.map_or(0, |newline| newline as u32 + 1), remark.at.start)
+            let line = text[..comment.at.start as usize].rfind(['\n', '\r']);
+            (line.map_or(0, |newline| newline as u32 + 1), comment.at.start)
         };
-        Span::new(remark.at.file, start, end)
+        Span::new(comment.at.file, start, end)
     }
 }
 

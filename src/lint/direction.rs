@@ -27,11 +27,11 @@ pub(super) fn run(program: &Program, quadratics: &[Quadratic], findings: &mut Fi
             continue;
         };
         let message =
-            "this discriminant is right for directions of length 1, and the ray's is never normalised";
+            "this discriminant requires a unit direction, but the ray direction is never normalized";
         findings.add(Code::UnnormalizedDirection, tree[quadratic.expr].at, message, |diagnostic| {
             diagnostic
-                .related(tree[origin].at.span, "the direction is made here")
-                .note("write `normalize(…)` there, or keep a = dot(d, d): `b*b - a*c`, and divide the roots by a")
+                .related(tree[origin].at.span, "the direction is computed here")
+                .help("normalize the direction, or use the general form: `b*b - a*c` with `a = dot(d, d)`, and divide the roots by `a`")
         });
     }
 }

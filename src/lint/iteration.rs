@@ -37,7 +37,7 @@ pub(super) fn run(program: &Program, findings: &mut Findings) {
             counter.findings,
             at,
             format!(
-                "the loops of a pixel may run {} iterations in all",
+                "the loops of one pixel may run {} iterations in total",
                 format_number(total)
             ),
         );
@@ -46,7 +46,9 @@ pub(super) fn run(program: &Program, findings: &mut Findings) {
 
 fn report(findings: &mut Findings, at: Place, message: String) {
     findings.add(Code::LongLoop, at, message, |diagnostic| {
-        diagnostic.note("lavapipe before Mesa 23 stops the loops of a pixel after 65,535 iterations in total, without a word; newer drivers take long")
+        diagnostic.note(
+            "lavapipe before Mesa 23 silently stops the loops of a pixel after 65,535 iterations in total",
+        )
     });
 }
 
@@ -128,7 +130,7 @@ impl Counter<'_, '_> {
             let message = match inside {
                 0.0 => format!("this loop may run {} iterations", format_number(total)),
                 _ => format!(
-                    "this loop and those inside of it may run {} iterations",
+                    "this loop and the loops inside it may run {} iterations",
                     format_number(total)
                 ),
             };
@@ -150,14 +152,15 @@ impl Counter<'_, '_> {
         }
         let message = match condition {
             Some(Condition::Expression(expr)) if !tree[expr].constant => {
-                "this loop never ends once it is entered: nothing in it changes its condition"
+                "infinite loop: its body does not change its condition"
             }
-            _ => "this loop never ends: its condition is always true, and nothing leaves it",
+            _ => "infinite loop: its condition is always true, and no `break` or `return` leaves it",
         };
         self.findings
             .add(Code::EndlessLoop, statement.at, message, |diagnostic| {
                 diagnostic
-                    .note("browsers stop the GPU after some seconds; leave the loop by `break`, or bound it")
+                    .note("browsers reset the GPU after a few seconds")
+                    .help("bound the number of iterations, or leave the loop with `break`")
             });
     }
 

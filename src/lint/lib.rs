@@ -116,11 +116,11 @@ pub fn lint(files: &Files, checked: &Checked, deadline: &Deadline) -> Lints {
 
 fn lint_timeout(overdue: Overdue) -> Diagnostic {
     let message = format!(
-        "the lints take longer than {} s for this shader: it was not searched for suspicious code",
+        "lints exceeded their time limit of {} s and were skipped",
         overdue.limit.as_secs_f64()
     );
     Diagnostic::new(Severity::Note, Code::LintTimeout.as_str(), message)
-        .note("shorter functions take less time; `--timeout` gives more")
+        .help("raise `--timeout`, or shorten the functions")
 }
 
 /// The findings so far.

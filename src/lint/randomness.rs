@@ -28,16 +28,15 @@ pub(super) fn run(program: &Program, findings: &mut Findings) {
             "sin"
         };
         let factor_text = format_number(factor);
-        let message =
-            format!("randomness from the digits of `{name}(…) * {factor_text}` differs from GPU to GPU");
+        let message = format!("this hash depends on the precision of `{name}` and differs between GPUs");
         findings.add(Code::SineHash, tree[expr].at, message, |diagnostic| {
             diagnostic
                 .note(format!(
-                    "each driver computes `{name}` in its own way; Vulkan lets it be off by 2^-11, which times {factor_text} is {}",
+                    "Vulkan allows an error of 2^-11 in `{name}`; multiplied by {factor_text}, that is {}",
                     format_number((factor * MAX_SINE_ERROR * 10.0).round() / 10.0)
                 ))
-                .note(
-                    "an integer hash is the same everywhere: `uint h = floatBitsToUint(x); h = (h ^ (h >> 16)) * 0x7feb352du; \
+                .help(
+                    "use an integer hash, which is the same everywhere: `uint h = floatBitsToUint(x); h = (h ^ (h >> 16)) * 0x7feb352du; \
                      h = (h ^ (h >> 15)) * 0x846ca68bu; return float((h ^ (h >> 16)) >> 8) / 16777216.0;`",
                 )
         });

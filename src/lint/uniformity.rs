@@ -88,19 +88,22 @@ fn samples_one_row(program: &Program, at: ExprId) -> bool {
 fn report(tree: &Tree, expr: ExprId, function: BuiltIn, cause: ExprId, findings: &mut Findings) {
     let name = function.name();
     let (code, message) = if function.is_derivative() {
-        let message = format!("`{name}` compares with neighbouring pixels, which may have gone another way");
+        let message = format!("`{name}` in non-uniform control flow");
         (Code::Derivative, message)
     } else {
-        let message =
-            format!("`{name}` chooses its level by neighbouring pixels, which may have gone another way");
+        let message = format!("`{name}` without an explicit level of detail in non-uniform control flow");
         (Code::ImplicitLod, message)
     };
     findings.add(code, tree[expr].at, message, |diagnostic| {
-        let diagnostic = diagnostic.related(tree[cause].at.span, "pixels may differ in this");
+        let diagnostic = diagnostic.related(tree[cause].at.span, "this condition may differ between pixels");
         if function.is_derivative() {
-            diagnostic.note("its value is then undefined, and WGSL refuses it; compute it before control parts, into a variable")
+            diagnostic
+                .note("the derivative is undefined if neighboring pixels take a different path; WGSL rejects it")
+                .help("compute it before the control flow diverges")
         } else {
-            diagnostic.note("where the channel has mip levels, edges show wrong ones; WGSL refuses it. Look up before control parts, or say the level: `textureLod(channel, at, 0.0)`")
+            diagnostic
+                .note("the mip level is undefined if neighboring pixels take a different path; WGSL rejects it")
+                .help("sample before the control flow diverges, or give the level: `textureLod(channel, uv, 0.0)`")
         }
     });
 }

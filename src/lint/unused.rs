@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use toyproof_diagnostic::{Fix, Span};
 use toyproof_glsl::Code;
 use toyproof_glsl::tree::{
     BinaryOp, Direction, ExprId, ExprKind, StatementKind, Tree, Type, VariableKind, walk,
@@ -82,10 +83,10 @@ fn check_expression(tree: &Tree, pure: &[bool], expr: ExprId, findings: &mut Fin
     let message = match &tree[expr].kind {
         ExprKind::Binary {
             op: BinaryOp::Equal, ..
-        } => "this compares, and drops the answer; one `=` assigns".to_owned(),
+        } => "the result of this comparison is unused; `=` assigns".to_owned(),
         ExprKind::BuiltIn { function, .. } => dropped_message(function.name()),
         ExprKind::Call { function, .. } => dropped_message(&tree[*function].name),
-        _ => "this does nothing: its value is computed and dropped".to_owned(),
+        _ => "this expression has no effect: its value is unused".to_owned(),
     };
     let assigned = match &tree[expr].kind {
         ExprKind::BuiltIn { arguments, .. } | ExprKind::Call { arguments, .. } => match arguments.first() {
@@ -98,15 +99,23 @@ fn check_expression(tree: &Tree, pure: &[bool], expr: ExprId, findings: &mut Fin
         _ => None,
     };
     findings.add(Code::UnusedResult, at, message, |diagnostic| match assigned {
-        Some(name) => diagnostic.note(format!(
-            "a function leaves its argument as it is; assign what it gives: `{name} = …`"
-        )),
+        Some(name) => {
+            let start = Span::new(at.span.file, at.span.start, at.span.start);
+            let fix = Fix::new(
+                format!("assign the result: `{name} = …`"),
+                start,
+                format!("{name} = "),
+            );
+            diagnostic
+                .note("a function does not change its argument")
+                .fix(fix)
+        }
         None => diagnostic,
     });
 }
 
 fn dropped_message(name: &str) -> String {
-    format!("the result of `{name}` is dropped, and it does nothing else")
+    format!("the result of `{name}` is unused, and the call has no other effect")
 }
 
 fn has_effect(kind: &ExprKind, pure: &[bool]) -> bool {

@@ -3,10 +3,10 @@
 use std::borrow::Cow;
 
 /// The page of diagnostics: a section for each code.
-const DIAGNOSTICS: &str = include_str!("../../docs/diagnostics.md");
+const DIAGNOSTICS: &str = include_str!("../../docs/guide/diagnostics.md");
 
 /// The page of mistakes: a row of a table for each.
-const MISTAKES: &str = include_str!("../../docs/mistakes.md");
+const MISTAKES: &str = include_str!("../../docs/guide/mistakes.md");
 
 /// The start of a section.
 const HEADING: &str = "\n## ";
@@ -61,7 +61,10 @@ fn mistakes() -> impl Iterator<Item = Explanation> {
             Some(Explanation {
                 code,
                 title: title.trim(),
-                text: format!("How to fix it: {}\n\n{introduction}", fix.trim()).trim_end().to_owned().into(),
+                text: format!("How to fix it: {}\n\n{introduction}", fix.trim())
+                    .trim_end()
+                    .to_owned()
+                    .into(),
             })
         })
     })

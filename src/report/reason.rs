@@ -160,7 +160,8 @@ fn by_means(pixels: Share, sampler: Sampler, means: Means) -> Statement {
         of_all(pixels, ["differs", "differ"]),
         sampler.name()
     );
-    let noise = |variance: f64| format!("its noise has {variance:.1} times the variance of the scene's sampler");
+    let noise =
+        |variance: f64| format!("its noise has {variance:.1} times the variance of the scene's sampler");
     match means {
         Means::Different {
             at: [x, y],
@@ -184,18 +185,20 @@ fn by_means(pixels: Share, sampler: Sampler, means: Means) -> Statement {
         ))
         .detail(noise(variance))
         .detail(other_numbers),
-        Means::Correlated => {
-            Statement::new("the random numbers of neighboring pixels are correlated, so means cannot be compared")
-                .detail("seed the random numbers of each pixel from its coordinates, or use the scene's sampler")
-                .detail(other_numbers)
-        }
+        Means::Correlated => Statement::new(
+            "the random numbers of neighboring pixels are correlated, so means cannot be compared",
+        )
+        .detail("seed the random numbers of each pixel from its coordinates, or use the scene's sampler")
+        .detail(other_numbers),
         Means::TooNoisy { variance } => Statement::new("too noisy to compare means with the reference")
             .detail(noise(variance))
             .detail("sample the lights directly, or take more samples per pixel")
             .detail(other_numbers),
-        Means::Underpowered => Statement::new("too few samples or pixels to compare means with the reference")
-            .detail("check a larger image, or use the scene's sampler")
-            .detail(other_numbers),
+        Means::Underpowered => {
+            Statement::new("too few samples or pixels to compare means with the reference")
+                .detail("check a larger image, or use the scene's sampler")
+                .detail(other_numbers)
+        }
         Means::Same {
             within,
             pixels,

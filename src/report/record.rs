@@ -211,7 +211,10 @@ impl Mistake {
     /// Combines the recognized mistakes.
     #[must_use]
     pub fn new(diagnosis: &Diagnosis) -> Self {
-        let texts = diagnosis.mistakes.iter().map(|mistake| mistake.description.as_ref());
+        let texts = diagnosis
+            .mistakes
+            .iter()
+            .map(|mistake| mistake.description.as_ref());
         let alternatives = diagnosis.alternatives.iter().map(|other| Alternative {
             id: other.id.to_owned(),
             text: other.description.to_string(),
@@ -313,6 +316,16 @@ pub(super) mod samples {
             file: Some("a.glsl".to_owned()),
             line: Some(2),
             column: Some(3),
+            end_line: Some(2),
+            end_column: Some(7),
+            fix: Some(diagnostic::JsonFix {
+                message: "did you mean `near`?".to_owned(),
+                replacement: "near".to_owned(),
+                line: 2,
+                column: 3,
+                end_line: 2,
+                end_column: 7,
+            }),
             notes: vec!["declare it".to_owned()],
         });
         record

@@ -261,7 +261,8 @@ mod tests {
         let described = |error: &Diagnostic| {
             let at = files.position(error.span.unwrap());
             let message = format!("{}:{} {} {}", at.line, at.column, error.code, error.message);
-            [vec![message], error.notes.clone()].concat().join("; ")
+            let helps = error.helps.iter().map(|help| format!("; help: {help}"));
+            message + &helps.collect::<String>()
         };
         Rubric::parse(&files, file).map_err(|errors| errors.iter().map(described).collect())
     }

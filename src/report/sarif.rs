@@ -121,7 +121,8 @@ fn diagnostic_result(record: &Record, message: &diagnostic::Json, rules: &mut Ru
         rule_index: rules.index_of(&message.code, about),
         level: message.severity,
         message: Message::new(lines.join("\n")),
-        locations: [Location::new(file, message.line.zip(message.column))],
+        locations: [Location::new(file, Region::of(message))],
+        fixes: message.fix.iter().map(|fix| Fix::new(file, fix)).collect(),
     }
 }
 
@@ -145,6 +146,7 @@ fn verdict_result(
         level: Severity::Error,
         message: Message::new(lines.join("\n")),
         locations: [Location::new(&record.shader, None)],
+        fixes: Vec::new(),
     }
 }
 
@@ -217,6 +219,50 @@ struct SarifResult {
     level: Severity,
     message: Message,
     locations: [Location; 1],
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    fixes: Vec<Fix>,
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Fix {
+    description: Message,
+    artifact_changes: [ArtifactChange; 1],
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct ArtifactChange {
+    artifact_location: ArtifactLocation,
+    replacements: [Replacement; 1],
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Replacement {
+    deleted_region: Region,
+    inserted_content: Message,
+}
+
+impl Fix {
+    fn new(file: &str, fix: &diagnostic::JsonFix) -> Self {
+        let deleted_region = Region {
+            start_line: fix.line,
+            start_column: fix.column,
+            end_line: Some(fix.end_line),
+            end_column: Some(fix.end_column),
+        };
+        Self {
+            description: Message::new(fix.message.clone()),
+            artifact_changes: [ArtifactChange {
+                artifact_location: ArtifactLocation::new(file),
+                replacements: [Replacement {
+                    deleted_region,
+                    inserted_content: Message::new(fix.replacement.clone()),
+                }],
+            }],
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -254,24 +300,43 @@ struct ArtifactLocation {
 struct Region {
     start_line: usize,
     start_column: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    end_line: Option<usize>,
+    /// Exclusive.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    end_column: Option<usize>,
 }
 
-impl Location {
-    /// A location in a file, with an optional line and column.
-    fn new(file: &str, at: Option<(usize, usize)>) -> Self {
+impl Region {
+    fn of(message: &diagnostic::Json) -> Option<Self> {
+        Some(Self {
+            start_line: message.line?,
+            start_column: message.column?,
+            end_line: message.end_line,
+            end_column: message.end_column,
+        })
+    }
+}
+
+impl ArtifactLocation {
+    fn new(file: &str) -> Self {
         let path = utf8_percent_encode(file, ENCODE_IN_PATH);
         let uri = if file.starts_with('/') {
             format!("file://{path}")
         } else {
             path.to_string()
         };
+        Self { uri }
+    }
+}
+
+impl Location {
+    /// A location in a file, with an optional region.
+    fn new(file: &str, region: Option<Region>) -> Self {
         Self {
             physical_location: PhysicalLocation {
-                artifact_location: ArtifactLocation { uri },
-                region: at.map(|(start_line, start_column)| Region {
-                    start_line,
-                    start_column,
-                }),
+                artifact_location: ArtifactLocation::new(file),
+                region,
             },
         }
     }
@@ -292,19 +357,37 @@ mod tests {
         });
         let level = json!({ "enum": ["none", "note", "warning", "error"] });
         let count = json!({ "type": "integer", "minimum": 1 });
+        let artifact = json!({
+            "type": "object", "additionalProperties": false,
+            "properties": { "uri": { "type": "string", "pattern": "^(file://)?[A-Za-z0-9%/._~-]+$" } },
+        });
+        let region = json!({
+            "type": "object", "additionalProperties": false,
+            "properties": { "startLine": count, "startColumn": count, "endLine": count, "endColumn": count },
+        });
+        let fixes = json!({ "type": "array", "uniqueItems": true, "items": {
+            "type": "object", "additionalProperties": false, "required": ["artifactChanges"],
+            "properties": {
+                "description": message,
+                "artifactChanges": { "type": "array", "minItems": 1, "items": {
+                    "type": "object", "additionalProperties": false, "required": ["artifactLocation", "replacements"],
+                    "properties": {
+                        "artifactLocation": artifact,
+                        "replacements": { "type": "array", "minItems": 1, "items": {
+                            "type": "object", "additionalProperties": false, "required": ["deletedRegion"],
+                            "properties": { "deletedRegion": region, "insertedContent": message },
+                        } },
+                    },
+                } },
+            },
+        } });
         let locations = json!({ "type": "array", "items": {
             "type": "object", "additionalProperties": false,
             "properties": { "physicalLocation": {
                 "type": "object", "additionalProperties": false,
                 "properties": {
-                    "artifactLocation": {
-                        "type": "object", "additionalProperties": false,
-                        "properties": { "uri": { "type": "string", "pattern": "^(file://)?[A-Za-z0-9%/._~-]+$" } },
-                    },
-                    "region": {
-                        "type": "object", "additionalProperties": false,
-                        "properties": { "startLine": count, "startColumn": count },
-                    },
+                    "artifactLocation": artifact,
+                    "region": region,
                 },
             } },
         } });
@@ -331,6 +414,7 @@ mod tests {
                 "level": level,
                 "message": message,
                 "locations": locations,
+                "fixes": fixes,
             },
         } });
         let notifications = json!({ "type": "array", "items": {
@@ -410,7 +494,12 @@ mod tests {
         }
         let last = &json["runs"][0]["results"][4]["locations"][0]["physicalLocation"];
         assert_eq!(last["artifactLocation"]["uri"], "file:///hw/a%20b.glsl");
-        assert_eq!(last["region"], json!({ "startLine": 2, "startColumn": 3 }));
+        let region = json!({ "startLine": 2, "startColumn": 3, "endLine": 2, "endColumn": 7 });
+        assert_eq!(last["region"], region);
+        let change = &json["runs"][0]["results"][4]["fixes"][0]["artifactChanges"][0];
+        assert_eq!(change["artifactLocation"]["uri"], "file:///hw/a%20b.glsl");
+        let replacement = json!({ "deletedRegion": region, "insertedContent": { "text": "near" } });
+        assert_eq!(change["replacements"], json!([replacement]));
         let invocation = &json["runs"][0]["invocations"][0];
         assert_eq!(invocation["executionSuccessful"], false);
         assert_eq!(

@@ -179,7 +179,9 @@ fn mistake_lines(mistake: &Mistake, layout: &Layout) -> Vec<String> {
         .enumerate()
         .map(|(rank, text)| layout.below(&format!("  {}. ", rank + 1), text));
     let heading = layout.below("", "possible mistakes, the most likely first:");
-    let symptom = mistake.is_symptom.then(|| layout.below("symptom: ", &mistake.text));
+    let symptom = mistake
+        .is_symptom
+        .then(|| layout.below("symptom: ", &mistake.text));
     symptom.into_iter().chain([heading]).chain(ranked).collect()
 }
 
@@ -235,7 +237,8 @@ fn check_row(name: &str, check: &CheckSummary) -> Vec<String> {
 
 /// The expected and the actual color, with as many decimals as show the difference.
 fn pixel_colors(pixel: &Pixel) -> String {
-    let color = |[r, g, b]: [f32; 3], decimals: usize| format!("({r:.decimals$}, {g:.decimals$}, {b:.decimals$})");
+    let color =
+        |[r, g, b]: [f32; 3], decimals: usize| format!("({r:.decimals$}, {g:.decimals$}, {b:.decimals$})");
     let colors = |decimals| (color(pixel.expected, decimals), color(pixel.actual, decimals));
     let (mut expected, mut actual) = colors(3);
     if expected == actual {
@@ -439,7 +442,12 @@ mod tests {
         let mut record = correct();
         record.algorithm.as_mut().unwrap().differing = 1234;
         let shown = text(&record, Detail::Full, None);
-        let starts: Vec<_> = shown.lines().skip(1).take(3).map(|line| line.find("  ")).collect();
+        let starts: Vec<_> = shown
+            .lines()
+            .skip(1)
+            .take(3)
+            .map(|line| line.find("  "))
+            .collect();
         assert!(starts.iter().all(|start| *start == starts[0]), "{shown}");
         assert!(shown.contains("algorithm       1,234"), "{shown}");
     }

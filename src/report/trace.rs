@@ -297,7 +297,11 @@ impl PixelTrace {
         }
         text.push_str(&self.headline());
         text.push('\n');
-        let mut writer = Writer { text, whole, last: None };
+        let mut writer = Writer {
+            text,
+            whole,
+            last: None,
+        };
         let mut skipped = 0;
         for (index, line) in self.steps.iter().enumerate() {
             let mark = self.mark(index);
@@ -372,7 +376,8 @@ impl PixelTrace {
 impl TraceStep {
     /// Whether a component has the same value in f32 and f64.
     fn is_same(&self, at: usize) -> bool {
-        let component = |values: &Option<Vec<Component>>| values.as_ref().and_then(|values| values.get(at).copied());
+        let component =
+            |values: &Option<Vec<Component>>| values.as_ref().and_then(|values| values.get(at).copied());
         match (component(&self.f32), component(&self.f64)) {
             (Some(Component::Float(single)), Some(Component::Float(double))) => {
                 toyproof_verify::debug::ulps(single, double) == 0.0
@@ -439,9 +444,7 @@ impl Writer {
             "subexpression" => &line.text,
             _ => line.name.as_deref().unwrap_or_default(),
         };
-        let shown: Vec<usize> = (0..count)
-            .filter(|&at| self.whole || !line.is_same(at))
-            .collect();
+        let shown: Vec<usize> = (0..count).filter(|&at| self.whole || !line.is_same(at)).collect();
         if shown.is_empty() && only.is_empty() {
             self.write_equal(&indent, name, line, mark);
             return;
@@ -494,11 +497,7 @@ impl Writer {
         if calls_before != Some(&line.calls)
             && let Some(from) = line.calls.last()
         {
-            let _ = writeln!(
-                self.text,
-                "     {indent}{}() at line {from}",
-                line.function
-            );
+            let _ = writeln!(self.text, "     {indent}{}() at line {from}", line.function);
         }
         let iteration = match line.iterations.last() {
             Some(iteration) if line.kind == "iteration" => format!("   (iteration {iteration})"),

@@ -240,11 +240,15 @@ fn diagnostic(explanation: &Explanation<'_>, [x, y]: [u32; 2]) -> Option<(Span, 
                 branch(double)
             )
         }
-        Some((_, TraceValue::Float(single), TraceValue::Float(double))) => format!(
-            "float32 loses precision here: {at} this is {}, but {} in double precision",
-            digits(single, true),
-            digits(double, false)
-        ),
+        Some((_, TraceValue::Float(single), TraceValue::Float(double)))
+            if digits(single, true) != digits(double, false) =>
+        {
+            format!(
+                "float32 loses precision here: {at} this is {}, but {} in double precision",
+                digits(single, true),
+                digits(double, false)
+            )
+        }
         _ => format!("float32 and double precision diverge here, {at}"),
     };
     let span = event.at.span;

@@ -1,22 +1,22 @@
 // Arrays: §4.1.9, §5.4.4 and §5.7.
 
-//# 4.1.9 holds the size stands behind the name or the type
+//# 4.1.9 holds the size follows the name or the type
 bool holds() { float a[2]; float[2] b; a[1] = 2.0; b = a; return b[1] == iTime; }
 
 //# 4.1.9 holds a declaration may have arrays beside plain variables
 bool holds() { float a = 1.0, b[2], c[3]; return a == 1.0 && b.length() + c.length() == 5; }
 
-//# 4.1.9 holds a size belongs to all names if it stands at the type
+//# 4.1.9 holds a size after the type applies to all names
 bool holds() { float[3] a, b; return a.length() + b.length() == 6; }
 
 //# 4.1.9 holds the size may be unsigned
 float a[3u];
 bool holds() { return a.length() == 3; }
 
-//# 4.1.9 holds the value tells an open size
+//# 4.1.9 holds the initializer determines an omitted size
 bool holds() { float a[] = float[](1.0, 2.0, 3.0); float[] b = float[2](1.0, 2.0); return a.length() + b.length() == 5; }
 
-//# 4.1.9 holds the arguments tell an open size
+//# 4.1.9 holds the arguments determine an omitted size
 bool holds() { return float[](1.0, 2.0, 3.0).length() == 3; }
 
 //# 4.1.9 holds the size may be the length of another array
@@ -81,13 +81,13 @@ float a[0];  //!
 //# 4.1.9 E0305 an array has no negative size
 float a[-1];  //!
 
-//# 4.1.9 E0305 the size of an array is no float
+//# 4.1.9 E0305 the size of an array is not a float
 float a[2.0];  //!
 
-//# 4.1.9 E0305 the size of an array is no bool
+//# 4.1.9 E0305 the size of an array is not a bool
 float a[true];  //!
 
-//# 4.1.9 E0305 the size of an array is no vector
+//# 4.1.9 E0305 the size of an array is not a vector
 // glslang takes its first component.
 float a[ivec2(2)];  //!
 
@@ -113,7 +113,7 @@ float[] f() { return float[](1.0); }  //!
 //# 4.1.9 E0306 there are no arrays of arrays
 float a[2][3];  //!
 
-//# 4.1.9 E0306 there are no arrays of arrays, wherever the sizes stand
+//# 4.1.9 E0306 arrays of arrays are not supported, wherever the sizes are
 float[2] a[3];  //!
 
 //# 4.1.9 E0306 there are no arrays of arrays as parameters
@@ -199,17 +199,17 @@ vec2 a[2] = vec2[2](vec2(1.0), vec3(1.0));  //!
 //# 5.4.4 E0301 the elements of an array are not spread from a vector
 float a[2] = float[2](vec2(1.0), 2.0);  //!
 
-//# 5.7 E0304 an index is no float
+//# 5.7 E0304 an index is not a float
 float f(float a[2]) {
     return a[1.0];  //!
 }
 
-//# 5.7 E0304 an index is no bool
+//# 5.7 E0304 an index is not a bool
 float f(float a[2]) {
     return a[true];  //!
 }
 
-//# 5.7 E0304 an index is no vector
+//# 5.7 E0304 an index is not a vector
 float f(float a[2], ivec2 i) {
     return a[i];  //!
 }
@@ -286,7 +286,7 @@ float f(float a[2]) {
     return a.x;  //!
 }
 
-//# 4.1.9 E0302 an array of another size is no argument
+//# 4.1.9 E0302 an array of a different size is not a valid argument
 float f(float a[2]) { return a[0]; }
 float g(float a[3]) {
     return f(a);  //!

@@ -1,6 +1,6 @@
 // Built-in variables, constants and functions without textures: §7 and §8.1 to §8.7, §8.9.
 
-//# 7.2 holds the place of a fragment is its centre
+//# 7.2 holds the position of a fragment is its center
 bool holds() { return gl_FragCoord.xy == vec2(0.5) && gl_FragCoord.w > 0.0; }
 
 //# 7.2 holds the place of a fragment is known in functions
@@ -145,10 +145,10 @@ bool holds() { vec2 a = vec2(1.0, iTime), b = vec2(iTime, 2.0); return lessThan(
 //# 8.7 holds truths are gathered
 bool holds() { bvec3 b = bvec3(true, iTime > 1.0, iTime > 5.0); return any(b) && !all(b) && not(b) == bvec3(false, false, true) && equal(b, bvec3(true)) == b; }
 
-//# 8.9 holds neighbours that agree have no difference
+//# 8.9 holds the derivative of equal neighbors is 0
 bool holds() { return dFdx(iTime) == 0.0 && dFdy(vec2(iTime)) == vec2(0.0) && fwidth(iTime) == 0.0; }
 
-//# 8.9 holds neighbours are one apart
+//# 8.9 holds neighbors are one pixel apart
 bool holds() { return dFdx(gl_FragCoord.x) == 1.0 && dFdy(gl_FragCoord.xy) == vec2(0.0, 1.0) && fwidth(gl_FragCoord.xy) == vec2(1.0); }
 
 //# 8.1 E0302 functions of floats take no integers

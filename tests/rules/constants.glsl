@@ -217,7 +217,7 @@ void f(int n) {
     }
 }
 
-//# 4.3.3 E0401 a label is no variable
+//# 4.3.3 E0401 a label is not a variable
 void f(int n) {
     int a = 1;
     switch (n) {

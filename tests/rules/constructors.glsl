@@ -83,7 +83,7 @@ struct A { float a; };
 struct B { A a; float b[2]; };
 bool holds() { B b = B(A(iTime), float[2](1.0, 3.0)); return b.a.a == 2.0 && b.b[1] == 3.0; }
 
-//# 5.4 holds a constructor may stand where a value may
+//# 5.4 holds a constructor is allowed where a value is
 bool holds() { return vec2(1.0, iTime).y + float[](1.0, 2.0)[1] + mat2(2.0)[0].x == 6.0; }
 
 //# 5.4 holds a constructor as a statement does nothing
@@ -245,17 +245,17 @@ S f() {
     );
 }
 
-//# 5.4 E0303 there is no constructor of void
+//# 5.4 E0303 void has no constructor
 void f() {
     void(1.0);  //!
 }
 
-//# 5.4 E0303 there is no constructor of samplers
+//# 5.4 E0303 samplers have no constructors
 vec4 f() {
     return texture(sampler2D(1), vec2(0.0));  //!
 }
 
-//# 5.4 E0100 a type is no value
+//# 5.4 E0100 a type is not a value
 float f() {
     return float;  //!
 }

@@ -42,7 +42,7 @@ bool holds() { switch (iFrame - 5) { case -2: return true; } return false; }
 //# 6.2 holds switches nest, and break leaves the inner one
 bool holds() { int n = 0; switch (iFrame) { case 3: switch (iFrame) { case 3: n += 1; break; default: n += 10; } n += 100; break; default: n += 1000; } return n == 101; }
 
-//# 6.2 holds a break may stand anywhere in a switch
+//# 6.2 holds a break is allowed anywhere in a switch
 bool holds() { int n = 0; switch (iFrame) { case 3: if (iTime > 1.0) break; n = 1; default: n += 2; } return n == 0; }
 
 //# 6.2 holds a switch may be empty
@@ -80,10 +80,10 @@ bool holds() { int n = 0; for (int i = 0; i < 6; i++) { if (i % 2 == 0) continue
 //# 6.3 holds break leaves the inner loop only
 bool holds() { int n = 0; for (int i = 0; i < 3; i++) for (int j = 0; j < 9; j++) { if (j > i) break; n++; } return n == 6; }
 
-//# 6.3 holds a while asks before
+//# 6.3 holds a while loop tests before its body
 bool holds() { int n = 0; while (n < iFrame) n++; while (n < 0) n = 99; return n == 3; }
 
-//# 6.3 holds a do asks after
+//# 6.3 holds a do loop tests after its body
 bool holds() { int n = 0; do n++; while (n < 0); return n == 1; }
 
 //# 6.3 holds continue in a do goes to its condition
@@ -123,7 +123,7 @@ void f(bvec2 b) {
     if (b) { }  //!
 }
 
-//# 6.2 E0301 a condition is no assignment of a number
+//# 6.2 E0301 a condition cannot be the assignment of a number
 void f(int n) {
     if (n = 1) { }  //!
 }
@@ -153,7 +153,7 @@ void f(bool b) {
     if (b) { } else { } else { }  //!
 }
 
-//# 6.2 error there is no then
+//# 6.2 error then is not a keyword
 void f(bool b) {
     if (b) then { }  //!
 }
@@ -221,7 +221,7 @@ void f(int n) {
     }
 }
 
-//# 6.2 E0407 a declaration does not stand before the first label
+//# 6.2 E0407 a declaration cannot precede the first label
 // glslang lets it.
 void f(int n) {
     switch (n) {
@@ -238,7 +238,7 @@ void f(int n) {
     }  //!
 }
 
-//# 6.2 E0407 a label does not stand inside of a block of its switch
+//# 6.2 E0407 a label cannot be inside a block of its switch
 void f(int n) {
     switch (n) {
         case 1: {
@@ -247,12 +247,12 @@ void f(int n) {
     }
 }
 
-//# 6.2 E0407 a label does not stand outside of a switch
+//# 6.2 E0407 a label cannot be outside a switch
 void f() {
     case 1: ;  //!
 }
 
-//# 6.2 E0407 a default does not stand outside of a switch
+//# 6.2 E0407 a default cannot be outside a switch
 void f() {
     default: ;  //!
 }
@@ -341,7 +341,7 @@ void f() {
     for (int i = 0; i < 2; int j = 1) { }  //!
 }
 
-//# 6.3 E0100 there is no foreach
+//# 6.3 E0100 foreach is not supported
 void f(float a[2]) {
     for (float x : a) { }  //!
 }
@@ -401,17 +401,17 @@ float f() {
     return 1.0  //!
 }
 
-//# 6.4 E0100 a statement does not stand outside of functions
+//# 6.4 E0100 a statement cannot be outside a function
 float a;
 a = 1.0;  //!
 
-//# 6.4 E0100 a loop does not stand outside of functions
+//# 6.4 E0100 a loop cannot be outside a function
 for (int i = 0; i < 2; i++) { }  //!
 
 //# 6.4 E0105 a brace too many ends nothing
 void f() { }
 }  //!
 
-//# 6.1 error a semicolon does not stand alone outside of functions
+//# 6.1 error a lone semicolon cannot be outside a function
 // glslang lets it.
 void f() { };  //!

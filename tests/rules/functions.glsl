@@ -58,7 +58,7 @@ float g() { return f(iTime); }
 float f(int a) { return 9.0; }
 bool holds() { return g() == 2.0 && f(1) == 9.0; }
 
-//# 6.1 holds a prototype lets functions stand in any order
+//# 6.1 holds prototypes allow functions in any order
 float even(int n);
 float twice(int n) { return even(n) * 2.0; }
 float even(int n) { return n % 2 == 0 ? 1.0 : 0.0; }
@@ -166,7 +166,7 @@ float g() {
     return f(1.0, 2.0);  //!
 }
 
-//# 6.1 E0302 a call has an argument for each parameter: none
+//# 6.1 E0302 a call has an argument for each parameter: no arguments
 float f(float a) { return a; }
 float g() {
     return f();  //!
@@ -204,14 +204,14 @@ float g(T t) {
     return f(t);  //!
 }
 
-//# 6.1 E0302 one of the overloads fits, or none
+//# 6.1 E0302 an overload must match
 float f(float a) { return a; }
 float f(vec2 a) { return a.x; }
 float g(vec3 v) {
     return f(v);  //!
 }
 
-//# 6.1 E0302 a call without value is no argument
+//# 6.1 E0302 a void call is not an argument
 void nothing() { }
 float f(float a) { return a; }
 float g() {
@@ -337,32 +337,32 @@ vec4 g(sampler2D s) {
     return f(s);  //!
 }
 
-//# 6.1.1 E0400 an out argument is an lvalue, and a number is none
+//# 6.1.1 E0400 an out argument is an lvalue, not a number
 void f(out float a) { a = 1.0; }
 void g() {
     f(1.0);  //!
 }
 
-//# 6.1.1 E0400 an inout argument is an lvalue, and a sum is none
+//# 6.1.1 E0400 an inout argument is an lvalue, not a sum
 void f(inout float a) { }
 void g(float b) {
     f(b + 1.0);  //!
 }
 
-//# 6.1.1 E0400 an out argument is no constant
+//# 6.1.1 E0400 an out argument is not a constant
 void f(out float a) { a = 1.0; }
 const float c = 1.0;
 void g() {
     f(c);  //!
 }
 
-//# 6.1.1 E0400 an out argument is no input
+//# 6.1.1 E0400 an out argument is not an input
 void f(out float a) { a = 1.0; }
 void g() {
     f(iTime);  //!
 }
 
-//# 6.1.1 E0400 an out argument is no const parameter
+//# 6.1.1 E0400 an out argument is not a const parameter
 void f(out float a) { a = 1.0; }
 void g(const float b) {
     f(b);  //!
@@ -374,7 +374,7 @@ void g(vec2 v) {
     f(v.xx);  //!
 }
 
-//# 6.1.1 E0400 an out argument is no call
+//# 6.1.1 E0400 an out argument is not a call
 void f(out float a) { a = 1.0; }
 float h() { return 1.0; }
 void g() {
@@ -437,7 +437,7 @@ void g();
 void f() { g(); }  //!
 void g() { f(); }
 
-//# 6.1.2 holds an overload of its name is no recursion
+//# 6.1.2 holds a call of an overload is not recursion
 float f(vec2 v) { return v.x; }
 float f(float a) { return f(vec2(a)); }
 bool holds() { return f(iTime) == 2.0; }

@@ -15,10 +15,10 @@ bool holds() { int a, b = 1; a = b = iFrame; a += b -= 1; return a == 5 && b == 
 //# 5.1 holds ?: groups to the right
 bool holds() { int i = iFrame; return (i == 1 ? 10 : i == 3 ? 30 : 40) == 30; }
 
-//# 5.9 holds scalars meet each component
+//# 5.9 holds scalars apply to each component
 bool holds() { vec3 v = vec3(1.0, 2.0, 3.0); return 2.0 * v - 1.0 == vec3(1.0, 3.0, 5.0) && 6.0 / v == vec3(6.0, 3.0, 2.0); }
 
-//# 5.9 holds vectors meet component by component
+//# 5.9 holds vectors apply component by component
 bool holds() { ivec2 a = ivec2(7, 8), b = ivec2(2, 3); return a * b == ivec2(14, 24) && a / b == ivec2(3, 2) && a % b == ivec2(1, 2); }
 
 //# 5.9 holds a matrix times a vector is linear algebra
@@ -73,12 +73,12 @@ int n = 0;
 bool asked() { n++; return true; }
 bool holds() { bool a = iTime > 1.0 || asked(); bool b = iTime < 1.0 || asked(); return n == 1 && a && b; }
 
-//# 5.9 holds ^^ asks both sides
+//# 5.9 holds ^^ evaluates both sides
 int n = 0;
 bool asked() { n++; return true; }
 bool holds() { bool a = asked() ^^ asked(); return n == 2 && !a; }
 
-//# 5.9 holds ?: asks one side only
+//# 5.9 holds ?: evaluates one side only
 int n = 0;
 int asked(int by) { n += by; return n; }
 bool holds() { int a = iTime > 1.0 ? asked(1) : asked(10); return a == 1 && n == 1; }
@@ -116,7 +116,7 @@ bool holds() { float a; return (a = iTime) + a == 4.0; }
 //# 5.8 holds parentheses keep an lvalue
 bool holds() { float a = 1.0; (a) = iTime; vec2 v; (v.x) = a; return a == 2.0 && v.x == 2.0; }
 
-//# 5.9 holds == of structures asks all members
+//# 5.9 holds == of structures compares all members
 struct S { int a; vec2 b; };
 bool holds() { S s = S(1, vec2(2.0)), t = s; bool same = s == t; t.b.y = 0.0; return same && s != t; }
 
@@ -292,7 +292,7 @@ vec2 f(mat2 m, vec3 v) {
     return m * v;  //!
 }
 
-//# 5.9 E0300 matrices are multiplied where columns meet rows
+//# 5.9 E0300 matrices are multiplied if columns match rows
 mat2x3 f(mat2x3 a, mat2x3 b) {
     return a * b;  //!
 }
@@ -307,7 +307,7 @@ mat2 f(mat2 a, vec2 b) {
     return a + b;  //!
 }
 
-//# 5.9 E0300 a function without value is no operand
+//# 5.9 E0300 a void call is not an operand
 void nothing() { }
 float f() {
     return nothing() + 1.0;  //!
@@ -478,7 +478,7 @@ float f(vec2 v) {
     return v.z;  //!
 }
 
-//# 5.5 E0203 a colour component exists
+//# 5.5 E0203 a color component exists
 float f(vec3 v) {
     return v.a;  //!
 }
@@ -523,12 +523,12 @@ float f(float a) {
     return (a * 2.0;  //!
 }
 
-//# 5.1 E0100 there is no address
+//# 5.1 E0100 there is no address-of operator
 void f(float a) {
     &a;  //!
 }
 
-//# 5.1 E0100 there is no dereferencing
+//# 5.1 E0100 there is no dereference operator
 void f(float a) {
     *a;  //!
 }

@@ -1,6 +1,6 @@
 // The preprocessor: §3.4 and §3.5.
 
-//# 3.4 holds an object macro stands for its tokens
+//# 3.4 holds an object-like macro expands to its tokens
 #define TWO 1.0 + 1.0
 bool holds() { return TWO * 3.0 == 4.0; }
 
@@ -127,11 +127,11 @@ bool holds() { return X == 3.0; }
 #define X 2.0
 bool holds() { return X == iTime; }
 
-//# 3.4 holds what is no macro may be undefined
+//# 3.4 holds a name that is not a macro may be undefined
 #undef NEVER_DEFINED
 bool holds() { return true; }
 
-//# 3.4 E0200 an undefined macro is no more
+//# 3.4 E0200 an undefined macro is not expanded
 #define X 1.0
 #undef X
 float f() {
@@ -168,7 +168,7 @@ float f() {
 //# 3.4 E0007 the version cannot be defined
 #define __VERSION__ 100  //!
 
-//# 3.4 E0007 defined is no name for a macro
+//# 3.4 E0007 defined cannot be the name of a macro
 #define defined 1  //!
 
 //# 3.4 E0004 nothing follows the name after undef
@@ -192,13 +192,13 @@ bool holds() { return n / 2 == 1; }
 float x = 1.0;
 bool holds() { float x = 2.0; return X == 2.0; }
 
-//# 3.4 E0009 there is no stringising
+//# 3.4 E0009 the operator # is not supported
 #define S(x) #x
 float f() {
     return S(1.0);  //!
 }
 
-//# 3.4 E0009 there is no pasting
+//# 3.4 E0009 the operator ## is not supported
 #define P(a, b) a ## b
 float f() {
     return P(1, .0);  //!
@@ -304,7 +304,7 @@ bool holds() { return true; }
 bool holds() { return true; }
 #endif
 
-//# 3.4 holds defined asks for the macro and not for its value
+//# 3.4 holds defined tests the macro and not its value
 #define ZERO 0
 #if defined(ZERO) && defined ZERO && !defined(ONE) && !ZERO
 bool holds() { return true; }
@@ -319,7 +319,7 @@ bool holds() { return true; }
 #endif
 bool holds() { return true; }
 
-//# 3.4 E0005 an unknown name is no 0 in a condition
+//# 3.4 E0005 an unknown name is not 0 in a condition
 #if UNKNOWN  //!
 #endif
 
@@ -360,7 +360,7 @@ bool holds() { return true; }
 #if defined  //!
 #endif
 
-//# 3.4 E0005 defined needs a name, and a number is none
+//# 3.4 E0005 defined needs a name, not a number
 #if defined(1)  //!
 #endif
 
@@ -396,7 +396,7 @@ float x;
 #ifdef  //!
 #endif
 
-//# 3.4 E0004 ifndef needs a name, and a number is none
+//# 3.4 E0004 ifndef needs a name, not a number
 #ifndef 1  //!
 #endif
 
@@ -422,13 +422,13 @@ float x;
 #endif
 bool holds() { return true; }
 
-//# 3.4 E0003 there is no include
+//# 3.4 E0003 include is not supported
 #include "other.glsl"  //!
 
 //# 3.4 E0003 a directive has a known name
 #defien X 1  //!
 
-//# 3.4 E0003 a directive is no number
+//# 3.4 E0003 a directive is not a number
 #12  //!
 
 //# 3.4 E0009 a directive begins its line
@@ -449,7 +449,7 @@ bool holds() { return true; }
     b
 bool holds() { return SUM(1.0, 2.0) == 3.0; }
 
-//# 3.4 holds comments may stand in directives
+//# 3.4 holds directives may contain comments
 #define X /* one */ 1.0 // and this is no part of it
 bool holds() { return X + 1.0 == 2.0; }
 
@@ -464,7 +464,7 @@ bool holds() { return X == 1.0; }
 #pragma debug(on)
 bool holds() { return true; }
 
-//# 3.3 holds the version may stand first
+//# 3.3 holds the version may come first
 // On the site, where a header precedes the author's text, it may not; we take whole files, too.
 #version 300 es
 bool holds() { return __VERSION__ == 300; }
@@ -473,7 +473,7 @@ bool holds() { return __VERSION__ == 300; }
 float x;
 #version 300 es  //!
 
-//# 3.3 E0011 there is no other version: desktop GLSL
+//# 3.3 E0011 other versions are not supported: desktop GLSL
 #version 330 core  //!
 
 //# 3.3 E0011 version 300 is es
@@ -509,7 +509,7 @@ bool holds() { return true; }
 //# 3.5 E0004 an extension has a behaviour
 #extension GL_OES_toyproof  //!
 
-//# 3.5 E0004 there is no other behaviour
+//# 3.5 E0004 other behaviors do not exist
 #extension GL_OES_toyproof : perhaps  //!
 
 //# 3.4 E0013 macros cannot grow without bounds
@@ -527,13 +527,13 @@ float f() {
     return A8;  //!
 }
 
-//# 3.4 E0300 a mistake in a macro stands where the macro is used
+//# 3.4 E0300 an error in a macro is reported where the macro is used
 #define HALF(x) x / 2
 float f(float a) {
     return HALF(a);  //!
 }
 
-//# 3.4 E0200 a mistake in an argument stands where it is written
+//# 3.4 E0200 an error in an argument is reported at the argument
 // ANGLE names the last line of the use.
 #define SUM(a, b) (a + b)
 float f() {

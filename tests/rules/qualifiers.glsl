@@ -8,17 +8,17 @@ bool holds() { count(); count(); return n == 3; }
 //# 4.3 holds a local variable may be const
 bool holds() { const float a = 2.0; return a == iTime; }
 
-//# 4.3 E0403 a local variable is no uniform
+//# 4.3 E0403 a local variable is not a uniform
 void f() {
     uniform float a;  //!
 }
 
-//# 4.3 E0403 a local variable is no input
+//# 4.3 E0403 a local variable is not an input
 void f() {
     in float a;  //!
 }
 
-//# 4.3 E0403 a local variable is no output
+//# 4.3 E0403 a local variable is not an output
 void f() {
     out float a;  //!
 }
@@ -32,7 +32,7 @@ uniform const float a = 1.0;  //!
 //# 4.3 E0403 a global variable is not in and out
 in out vec4 a;  //!
 
-//# 4.3 E0403 const stands once
+//# 4.3 E0403 const is not repeated
 const const float a = 1.0;  //!
 
 //# 4.3.3 E0402 a constant has a value
@@ -93,10 +93,10 @@ void f() {
     iFrame++;  //!
 }
 
-//# 4.3.4 E0307 an input is no bool
+//# 4.3.4 E0307 an input is not a bool
 in bool a;  //!
 
-//# 4.3.4 E0307 an input is no vector of bools
+//# 4.3.4 E0307 an input is not a vector of bools
 in bvec2 a;  //!
 
 //# 4.3.4 E0403 an input takes no value
@@ -114,13 +114,13 @@ in int a;  //!
 //# 4.3.4 error an input of integers is flat
 in uvec2 a;  //!
 
-//# 4.3.6 E0307 an output is no bool
+//# 4.3.6 E0307 an output is not a bool
 out bool a;  //!
 
-//# 4.3.6 E0307 an output is no matrix
+//# 4.3.6 E0307 an output is not a matrix
 out mat2 a;  //!
 
-//# 4.3.6 E0307 an output is no structure
+//# 4.3.6 E0307 an output is not a structure
 struct S { float a; };
 out S a;  //!
 
@@ -166,7 +166,7 @@ void f(const out float a) { }  //!
 //# 4.4 E0403 a const parameter is not inout
 void f(const inout float a) { }  //!
 
-//# 4.4 E0403 a parameter is no uniform
+//# 4.4 E0403 a parameter is not a uniform
 void f(uniform float a) { }  //!
 
 //# 4.4 E0403 a parameter has one direction
@@ -210,7 +210,7 @@ flat uniform float a;  //!
 //# 4.3.9 error interpolation is not for outputs of a fragment shader
 flat out vec4 a;  //!
 
-//# 4.3.9 error centroid alone is no storage
+//# 4.3.9 error centroid alone is not a storage qualifier
 // glslang lets it.
 centroid float a;  //!
 
@@ -225,14 +225,14 @@ void f() {
 //# 4.3.8 error inputs of a fragment shader have no location
 layout(location = 0) in vec4 a;  //!
 
-//# 4.3.8 E0100 a layout says something
+//# 4.3.8 E0100 a layout is not empty
 layout() out vec4 a;  //!
 
 //# 4.3.8 E0100 a location is a number
 layout(location = x) out vec4 a;  //!
 
-//# 4.3.8 error there is no such layout
-layout(colour = 1) out vec4 a;  //!
+//# 4.3.8 error an unknown layout is an error
+layout(color = 1) out vec4 a;  //!
 
 //# 4.5.3 holds numbers may have a precision
 lowp float a = 1.0;
@@ -276,20 +276,20 @@ precision lowp samplerCube;
 precision mediump isampler3D;
 bool holds() { return true; }
 
-//# 4.5.4 E0307 there is no default precision of uint
+//# 4.5.4 E0307 uint has no default precision
 precision highp uint;  //!
 
-//# 4.5.4 E0307 there is no default precision of vectors
+//# 4.5.4 E0307 vectors have no default precision
 precision highp vec2;  //!
 
-//# 4.5.4 E0307 there is no default precision of bool
+//# 4.5.4 E0307 bool has no default precision
 precision lowp bool;  //!
 
-//# 4.5.4 E0307 there is no default precision of structures
+//# 4.5.4 E0307 structures have no default precision
 struct S { float a; };
 precision lowp S;  //!
 
-//# 4.5.4 error there is no default precision of arrays
+//# 4.5.4 error arrays have no default precision
 precision lowp float[2];  //!
 
 //# 4.5.4 E0100 a default precision names a precision
@@ -375,5 +375,5 @@ centroid out vec4 a;  //!
 //# 4.6.1 error an input is not declared invariant
 invariant in float a;  //!
 
-//# 4.3.9 error interpolation stands once
+//# 4.3.9 error interpolation qualifiers are not repeated
 flat smooth in float a;  //!

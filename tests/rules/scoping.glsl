@@ -165,15 +165,15 @@ void f() {
 //# 4.2.2 holds a block in the body of a for may hide what the for declares
 bool holds() { int n = 0; for (int i = 0; i < 2; i++) { { int i = 10; n += i; } } return n == 20; }
 
-//# 4.2.2 E0201 a variable is no function
+//# 4.2.2 E0201 a variable is not a function
 float f;
 float f() { return 1.0; }  //!
 
-//# 4.2.2 E0201 a function is no variable
+//# 4.2.2 E0201 a function is not a variable
 float f() { return 1.0; }
 float f;  //!
 
-//# 4.2.2 E0201 a structure is no variable
+//# 4.2.2 E0201 a structure is not a variable
 struct S { float a; };
 float S;  //!
 
@@ -200,7 +200,7 @@ void g() {
 struct S { float a; };
 bool holds() { S s = S(1.0); float S = 2.0; return s.a + S == 3.0; }
 
-//# 4.2.2 error a hidden structure is no type
+//# 4.2.2 error a hidden structure is not a type
 struct S { float a; };
 void f() {
     float S = 1.0;
@@ -281,24 +281,24 @@ bool holds() { return f(1.0) == 2.0; }
 const int n = 2;
 bool holds() { float a[n]; const int n = 3; float b[n]; return a.length() + b.length() == 5; }
 
-//# 4.2.2 E0202 a function is no value
+//# 4.2.2 E0202 a function is not a value
 float f() { return 1.0; }
 void g() {
     float x = f;  //!
 }
 
-//# 4.2.2 E0100 a structure is no value
+//# 4.2.2 E0100 a structure is not a value
 struct S { float a; };
 void g() {
     float x = S + 1.0;  //!
 }
 
-//# 4.2.2 E0202 a variable is no function to call
+//# 4.2.2 E0202 a variable cannot be called
 void f(float a) {
     a(1.0);  //!
 }
 
-//# 4.2.2 E0202 a built-in function is no value
+//# 4.2.2 E0202 a built-in function is not a value
 void f() {
     float x = sin;  //!
 }

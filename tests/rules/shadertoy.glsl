@@ -1,7 +1,7 @@
 // ShaderToy's surroundings: mainImage and the inputs. On the site, a main below the author's text calls mainImage, and that is where
 // compilers find the mistakes of mainImage's header; we name the header.
 
-//# - holds mainImage paints
+//# - holds mainImage sets the color
 void mainImage(out vec4 c, in vec2 p) { c = vec4(1.0, 0.5, 0.25, 1.0); }
 
 //# - holds the names of mainImage's parameters are the author's
@@ -13,7 +13,7 @@ void mainImage(out vec4 c, vec2 p) { c = vec4(p.y * 2.0); }
 //# - holds mainImage's parameters may have a precision
 void mainImage(out highp vec4 c, in mediump vec2 p) { c = vec4(1.0); }
 
-//# - holds mainImage may find its colour black and opaque
+//# - holds the color is initially opaque black
 void mainImage(inout vec4 c, in vec2 p) { c.x += c.w - c.y; }
 
 //# - holds mainImage may promise to leave its place alone
@@ -21,8 +21,8 @@ void mainImage(out vec4 c, const in vec2 p) { c = vec4(p.x * 2.0); }
 
 //# - holds mainImage may be declared before
 void mainImage(out vec4 c, in vec2 p);
-void paint(out vec4 c) { c = vec4(iTime - 1.0); }
-void mainImage(out vec4 c, in vec2 p) { paint(c); }
+void shade(out vec4 c) { c = vec4(iTime - 1.0); }
+void mainImage(out vec4 c, in vec2 p) { shade(c); }
 
 //# - holds mainImage may be called by the author, too
 float f(vec2 p) { return p.x * 2.0; }
@@ -41,10 +41,10 @@ void mainImage(out vec4 c, in vec2 p) { c.x = 0.5; c.yz = p; c.x += p.x; }
 //# - holds mainImage may change its own copy of the place
 void mainImage(out vec4 c, in vec2 p) { p += 0.5; c = vec4(p.x); }
 
-//# - holds the place is the centre of a pixel
+//# - holds the position is the center of a pixel
 void mainImage(out vec4 c, in vec2 p) { c = vec4(p == gl_FragCoord.xy && p == vec2(0.5)); }
 
-//# - holds the colour need not be in range
+//# - holds the color may be out of range
 void mainImage(out vec4 c, in vec2 p) { c = vec4(9.0, -5.0, 0.0, 0.0); c.r -= 8.0; }
 
 //# - holds the inputs are there
@@ -87,7 +87,7 @@ void mainImage(out vec4 c, in vec2 p) { c = vec4(n); n += 1.0; }
 //# - holds main may be the name of a variable
 bool holds() { float main = iTime; return main == 2.0; }
 
-//# - holds mainSound and mainVR may stand beside
+//# - holds mainSound and mainVR may be defined too
 vec2 mainSound(int sample_, float time) { return vec2(time); }
 void mainVR(out vec4 c, in vec2 p, in vec3 o, in vec3 d) { c = vec4(0.0); }
 bool holds() { return mainSound(0, iTime).x == 2.0; }
@@ -99,7 +99,7 @@ float f() { return 1.0; } // no mainImage //!
 // glslang leaves it to the linker.
 void mainImage(out vec4 c, in vec2 p);  //!
 
-//# - E0409 mainImage writes its colour
+//# - E0409 mainImage has an out parameter
 // The site compiles it, and stays black.
 void mainImage(vec4 c, in vec2 p) { c = vec4(1.0); }  //!
 
@@ -109,7 +109,7 @@ void mainImage(out vec4 c) { c = vec4(1.0); }  //!
 //# - E0409 mainImage has two parameters and no more
 void mainImage(out vec4 c, in vec2 p, in float t) { c = vec4(1.0); }  //!
 
-//# - E0409 mainImage's colour has four components
+//# - E0409 mainImage's color has four components
 void mainImage(out vec3 c, in vec2 p) { c = vec3(1.0); }  //!
 
 //# - E0409 mainImage's place has two components
@@ -139,7 +139,7 @@ uniform vec3 iResolution;  //!
 //# - E0201 iChannel0 is declared
 uniform sampler2D iChannel0;  //!
 
-//# - E0201 iMouse is no name of a function
+//# - E0201 iMouse cannot be the name of a function
 vec2 iMouse() { return vec2(1.0); }  //!
 
 //# - E0400 the resolution is not assigned to

@@ -26,7 +26,7 @@ struct S {
     void a;  //!
 };
 
-//# 4.1.1 error a call without value has none to keep
+//# 4.1.1 error a void call has no value to assign
 void nothing() { }
 void f() {
     float a = nothing();  //!
@@ -36,40 +36,40 @@ void f() {
 bool yes = true, no = false;
 bool holds() { return yes && !no && yes != no; }
 
-//# 4.1.2 E0301 a bool is no number
+//# 4.1.2 E0301 a bool is not a number
 bool a = 1;  //!
 
-//# 4.1.2 E0301 a number is no bool
+//# 4.1.2 E0301 a number is not a bool
 int a = true;  //!
 
-//# 4.1.3 E0301 an int is no uint
+//# 4.1.3 E0301 an int is not a uint
 uint a = 1;  //!
 
-//# 4.1.3 E0301 a uint is no int
+//# 4.1.3 E0301 a uint is not an int
 int a = 1u;  //!
 
-//# 4.1.3 E0301 a float is no int
+//# 4.1.3 E0301 a float is not an int
 int a = 1.0;  //!
 
-//# 4.1.4 E0301 an int is no float
+//# 4.1.4 E0301 an int is not a float
 float a = 1;  //!
 
-//# 4.1.4 E0301 an int is no float, negative neither
+//# 4.1.4 E0301 a negative int is not a float
 float a = -1;  //!
 
 //# 4.1.5 E0301 vectors of different sizes are different
 vec3 a = vec2(1.0);  //!
 
-//# 4.1.5 E0301 a vector of ints is no vector of floats
+//# 4.1.5 E0301 a vector of ints is not a vector of floats
 vec2 a = ivec2(1);  //!
 
-//# 4.1.5 E0301 a scalar is no vector
+//# 4.1.5 E0301 a scalar is not a vector
 vec3 a = 1.0;  //!
 
-//# 4.1.5 error there is no vector of one
+//# 4.1.5 error a vector has at least two components
 vec1 a;  //!
 
-//# 4.1.5 error there is no vector of five
+//# 4.1.5 error a vector has at most four components
 vec5 a;  //!
 
 //# 4.1.5 error Metal's and HLSL's types are not GLSL's
@@ -87,7 +87,7 @@ mat2 a = mat2x3(1.0);  //!
 //# 4.1.6 E0301 columns and rows are not swapped
 mat2x3 a = mat3x2(1.0);  //!
 
-//# 4.1.6 E0301 a scalar is no matrix
+//# 4.1.6 E0301 a scalar is not a matrix
 mat2 a = 1.0;  //!
 
 //# 4.1.6 error there are no matrices of five
@@ -104,18 +104,18 @@ void f(mat2x3 m) {
     m[0] = vec2(1.0);  //!
 }
 
-//# 4.1.7 E0307 a sampler is no local variable
+//# 4.1.7 E0307 a sampler is not a local variable
 void f() {
     sampler2D s;  //!
 }
 
-//# 4.1.7 E0307 a sampler is no plain global
+//# 4.1.7 E0307 a sampler is not a plain global
 sampler2D s;  //!
 
-//# 4.1.7 E0307 a sampler is no constant
+//# 4.1.7 E0307 a sampler is not a constant
 const sampler2D s = iChannel0;  //!
 
-//# 4.1.7 E0307 a structure with a sampler is no local variable
+//# 4.1.7 E0307 a structure with a sampler is not a local variable
 struct S { sampler2D s; };
 void f() {
     S s;  //!
@@ -177,14 +177,14 @@ bool holds() { return s.a + s.b.y == 3.0; }
 struct S { mat2 m; mat3x2 n; };
 bool holds() { S s; s.m = mat2(iTime); s.n[2].y = 5.0; return s.m[1].y == 2.0 && s.n[2] == vec2(0.0, 5.0); }
 
-//# 4.1.8 holds structures stand four deep in each other
+//# 4.1.8 holds structures nest four levels deep
 struct A { float a; };
 struct B { A a; };
 struct C { B b; };
 struct D { C c; };
 bool holds() { D d; d.c.b.a.a = iTime; return d.c.b.a.a == 2.0; }
 
-//# 4.1.8 E0101 structures do not stand deeper than WebGL lets them
+//# 4.1.8 E0101 structures nest no deeper than WebGL allows
 // glslang has no limit.
 struct A { float a; };
 struct B { A a; };
@@ -267,7 +267,7 @@ struct S {
     float f() { return 1.0; }  //!
 };
 
-//# 4.1.8 E0403 a member is no uniform
+//# 4.1.8 E0403 a member is not a uniform
 struct S {
     uniform float a;  //!
 };
@@ -297,7 +297,7 @@ void f() {
     s = t;  //!
 }
 
-//# 4.1.8 E0301 a structure is no vector
+//# 4.1.8 E0301 a structure is not a vector
 struct S { float x, y; };
 vec2 f(S s) {
     vec2 v = s;  //!
@@ -328,7 +328,7 @@ void f() {
     float a(1.0);  //!
 }
 
-//# 4.1.8 error there is no auto
+//# 4.1.8 error auto is not supported
 void f() {
     auto a = 1.0;  //!
 }

@@ -3,7 +3,7 @@
 //# 8.8 holds a texel is fetched by its place
 bool holds() { return texelFetch(iChannel0, ivec2(iFrame, 1), 0) == vec4(0.75, 0.25, 0.5, 1.0); }
 
-//# 8.8 holds a texture is looked up at the centre of a texel
+//# 8.8 holds a texture is sampled at the center of a texel
 bool holds() { return texture(iChannel0, vec2(2.5, 1.5) / 4.0) == vec4(0.5, 0.25, 0.5, 1.0); }
 
 //# 8.8 holds a texture is looked up with a bias
@@ -53,7 +53,7 @@ bool holds() { return at(iChannel0, 3.0, 1.0) == vec2(0.75, 0.25); }
 float sum(sampler2D a, sampler2D b) { return texelFetch(a, ivec2(1, 0), 0).x + texelFetch(b, ivec2(0), 0).x; }
 bool holds() { return sum(iChannel0, iChannel1) == 0.25 && sum(iChannel1, iChannel0) == 0.0 && sum(iChannel0, iChannel0) == 0.25; }
 
-//# 8.8 holds lookups stand in loops and branches
+//# 8.8 holds lookups are allowed in loops and branches
 bool holds() { float s = 0.0; for (int i = 0; i < 4; i++) if (i != 1) s += texelFetch(iChannel0, ivec2(i, 0), 0).x; return s == 1.25; }
 
 //# 8.8 holds a lookup may depend on a lookup
@@ -132,7 +132,7 @@ vec4 f(vec2 p) {
     return texture(p, iChannel0);  //!
 }
 
-//# 8.8 E0302 a number is no sampler
+//# 8.8 E0302 a number is not a sampler
 vec4 f(vec2 p) {
     return texture(0, p);  //!
 }
@@ -195,8 +195,8 @@ vec2 f() {
 
 //# 8.8 E0301 a texture gives four numbers
 vec3 f(vec2 p) {
-    vec3 colour = texture(iChannel0, p);  //!
-    return colour;
+    vec3 color = texture(iChannel0, p);  //!
+    return color;
 }
 
 //# 8.8 E0302 textureProj takes three or four numbers
@@ -204,7 +204,7 @@ vec4 f(vec2 p) {
     return textureProj(iChannel0, p);  //!
 }
 
-//# 8.8 E0302 there is no projection of a cube
+//# 8.8 E0302 a cube map has no projective lookup
 vec4 f(samplerCube s, vec4 p) {
     return textureProj(s, p);  //!
 }

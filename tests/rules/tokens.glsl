@@ -1,9 +1,9 @@
 // Characters, comments, tokens, numbers, names and reserved words: §3.1 to §3.8, §4.1.3 and §4.1.4.
 
-//# 3.1 E0001 an at sign is no character of GLSL
+//# 3.1 E0001 an at sign is not in the character set
 float x = 1.0 @ 2.0;  //!
 
-//# 3.1 E0001 a dollar sign is no part of names
+//# 3.1 E0001 a dollar sign is not part of names
 float x$ = 1.0;  //!
 
 //# 3.1 E0001 there are no strings
@@ -12,7 +12,7 @@ float x = "1.0";  //!
 //# 3.1 E0001 there are no characters as values
 int x = 'a';  //!
 
-//# 3.1 E0001 a backslash alone is no token
+//# 3.1 E0001 a backslash alone is not a token
 float x = 1.0 \ 2.0;  //!
 
 //# 3.1 E0001 names are ASCII
@@ -29,7 +29,7 @@ bool holds() { return/**/iTime/* 1 */==/* 2 */2.0; }
 //# 3.3 holds block comments do not nest
 /* /* */ bool holds() { return true; }
 
-//# 3.3 E0100 block comments do not nest, so the second end is none
+//# 3.3 E0100 block comments do not nest
 /* /* */ */  //!
 
 //# 3.3 holds a block comment hides a line comment
@@ -87,16 +87,16 @@ bool holds() { return 7u / 2U == 3u && 0xFFFFFFFFu == ~0u && 017u == 15u; }
 //# 4.1.3 holds a hexadecimal int is its bits
 bool holds() { return 0xFFFFFFFF == -1 && 0x80000000 < 0; }
 
-//# 4.1.3 E0102 8 is no octal digit
+//# 4.1.3 E0102 8 is not an octal digit
 int x = 08;  //!
 
-//# 4.1.3 E0102 9 is no octal digit
+//# 4.1.3 E0102 9 is not an octal digit
 int x = 0129;  //!
 
 //# 4.1.3 E0102 a hexadecimal number has digits
 int x = 0x;  //!
 
-//# 4.1.3 E0102 g is no hexadecimal digit
+//# 4.1.3 E0102 g is not a hexadecimal digit
 int x = 0x1g;  //!
 
 //# 4.1.3 E0103 an integer has 32 bits
@@ -108,7 +108,7 @@ int x = 0x100000000;  //!
 //# 4.1.3 E0103 an unsigned integer has 32 bits
 uint x = 4294967296u;  //!
 
-//# 4.1.3 E0102 there is no long
+//# 4.1.3 E0102 long integers are not supported
 int x = 1L;  //!
 
 //# 4.1.3 E0102 a letter does not follow a number
@@ -123,7 +123,7 @@ bool holds() { return 2.0 == 2. && .5 == 5e-1 && 2e0 == iTime && 20E-1 == 2.0 &&
 //# 4.1.4 holds a float may say that it is one
 bool holds() { return 2.0f == iTime && 2.F == 2e0f; }
 
-//# 4.1.4 E0102 an integer is no float by its suffix
+//# 4.1.4 E0102 a suffix does not make an integer a float
 float x = 1f;  //!
 
 //# 4.1.4 E0102 a float has one point
@@ -147,7 +147,7 @@ float x = 1.0u;  //!
 //# 4.1.4 E0102 there are no hexadecimal floats
 float x = 0x1.8;  //!
 
-//# 4.1.4 E0100 a point alone is no number
+//# 4.1.4 E0100 a point alone is not a number
 float x = .;  //!
 
 //# 4.1.4 holds leading zeros make no octal float
@@ -199,16 +199,16 @@ bool holds() { return aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa
 // glslang takes any length.
 float aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa = 2.0;  //!
 
-//# 3.7 E0100 a keyword is no name
+//# 3.7 E0100 a keyword is not a name
 float while = 1.0;  //!
 
-//# 3.7 E0100 the name of a type is no name of a variable
+//# 3.7 E0100 the name of a type cannot be the name of a variable
 float vec3 = 1.0;  //!
 
-//# 3.7 E0100 true is no name
+//# 3.7 E0100 true is not a name
 bool true = false;  //!
 
-//# 3.7 E0100 discard is no name of a function
+//# 3.7 E0100 discard cannot be the name of a function
 float discard() { return 1.0; }  //!
 
 //# 3.7 E0104 attribute is a keyword no more

@@ -111,7 +111,9 @@ fn a_shader_has_the_same_verdict_alone_and_in_a_batch() {
         }
     }
     let check = |what: &str| {
-        let arguments = ["check", what, "--device", "cpu", "--size", "64x36", "--out", "out"];
+        let arguments = [
+            "check", what, "--device", "cpu", "--size", "64x36", "--out", "out",
+        ];
         toyproof(folder.path(), &arguments);
         records(folder.path())
     };

@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 use std::{env, fs};
 
+use serde_json::json;
 use toyproof::diagnostic::{Deadline, File, Files};
 use toyproof::glsl::{Options, check};
 use toyproof::gpu::Worker;
@@ -262,20 +263,7 @@ fn example_hosts_render_conversions() {
     let checked = check(&files, file, &Options::default()).unwrap();
     let glsl = emit(&ValidModule::parse(&lower(&checked)).unwrap(), Target::Glsl).unwrap();
     let folder = tempfile::tempdir().unwrap();
-    let mut window = Page::with(
-        &program,
-        &[
-            "--hide-scrollbars",
-            "--use-gl=angle",
-            "--use-angle=swiftshader",
-            "--enable-unsafe-swiftshader",
-            // Without the last two, the canvas of a WebGPU page stays empty on a machine without a GPU.
-            "--enable-unsafe-webgpu",
-            "--use-webgpu-adapter=swiftshader",
-            "--use-vulkan=swiftshader",
-            "--enable-features=Vulkan",
-        ],
-    );
+    let mut window = Page::with(&program, &SOFTWARE_RENDERING);
     window.window([700, 420], false);
     for (page, text) in [
         ("host.html", converted(SHADER).unwrap()),
@@ -288,6 +276,48 @@ fn example_hosts_render_conversions() {
         // window.
         wait_until(|| shows_the_ramps(&window.screenshot()));
     }
+}
+
+/// The flags with which Chromium shows WebGL and WebGPU canvases on a machine without a GPU. The guide lists
+/// those of WebGPU.
+const SOFTWARE_RENDERING: [&str; 8] = [
+    "--hide-scrollbars",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--enable-unsafe-webgpu",
+    "--use-webgpu-adapter=swiftshader",
+    "--use-vulkan=swiftshader",
+    "--enable-features=Vulkan",
+];
+
+#[test]
+fn example_hosts_report_errors() {
+    let Some(program) = require_chromium() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let open = |window: &mut Page, page: &str, text: &str| {
+        let file = folder.path().join(page);
+        fs::write(&file, with_shader(page, text)).unwrap();
+        window.open(&file);
+    };
+    let reports = |text: &str| {
+        format!(
+            "document.querySelector('#errors').textContent.includes({})",
+            json!(text)
+        )
+    };
+    let wgsl = "\n@fragment\nfn main() -> @location(0) vec4f {\n  return vec4f(unknown);\n}\n";
+    let glsl = "#version 300 es\nprecision highp float;\nout vec4 c;\nvoid main() { c = vec4(unknown); }\n";
+    let mut window = Page::with(&program, &SOFTWARE_RENDERING);
+    open(&mut window, "host.html", wgsl);
+    window.until(&reports("error at line 3, column 16"));
+    open(&mut window, "host-webgl2.html", glsl);
+    window.until(&reports("ERROR: 0:4: 'unknown'"));
+    let mut window = Page::new(&program);
+    open(&mut window, "host.html", wgsl);
+    window.until(&reports("WebGPU"));
 }
 
 /// Whether a window shows red increasing to the right and green increasing upward, on a canvas of 640 by

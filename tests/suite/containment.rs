@@ -31,7 +31,9 @@ fn homework() -> tempfile::TempDir {
 fn check(folder: &Path, part: Option<Part>) -> Run {
     let mut command = command(folder);
     let shaders = ["a.glsl", "b.glsl", "c.glsl", "d.glsl"];
-    let flags = ["--out", "out", "--size", "64x36", "--jobs", "1", "--device", "cpu"];
+    let flags = [
+        "--out", "out", "--size", "64x36", "--jobs", "1", "--device", "cpu",
+    ];
     command.arg("check").args(shaders).args(flags);
     if let Some(part) = part {
         command.env(INJECTION, format!("{part:?}"));

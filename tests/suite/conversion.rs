@@ -153,7 +153,7 @@ fn conversions_are_valid_in_their_hosts_modules() {
     let with_channels = "const float data = 2.0;
         void mainImage(out vec4 c, in vec2 p) {
             c = texture(iChannel0, p / iResolution.xy) * data + texture(iChannel1, p / iResolution.xy) * fract(iTime);
-            c.x += float(iFrame % 3) * iTimeDelta + gl_FragCoord.x;
+            c.x += float(iFrame % 3) * iTimeDelta + gl_FragCoord.x + iMouse.z;
         }";
     for shader in [with_channels, REFLECTIONS.shader, ANIMATION.shader] {
         let mut files = Files::default();
@@ -340,7 +340,11 @@ fn proved_files_are_written_with_a_header() {
     fs::remove_file(&out).unwrap();
     let run = convert(&["--device", "cpu"]);
     assert_eq!(run.code, 2);
-    assert!(run.stdout.contains("verification needs a Vulkan driver"), "{}", run.stdout);
+    assert!(
+        run.stdout.contains("verification needs a Vulkan driver"),
+        "{}",
+        run.stdout
+    );
     assert!(!out.exists(), "what is not proved is not written");
 
     let run = convert(&["--device", "cpu", "--force"]);
@@ -401,7 +405,11 @@ fn folders_have_a_proof_table() {
         ];
         let run = toyproof(folder.path(), &arguments);
         assert_eq!(run.code, 1, "{to_language}: {}", run.stderr);
-        let statuses: Vec<_> = run.stdout.lines().filter_map(|line| line.split(' ').next()).collect();
+        let statuses: Vec<_> = run
+            .stdout
+            .lines()
+            .filter_map(|line| line.split(' ').next())
+            .collect();
         assert_eq!(statuses, ["proved", "refused", "proved"], "{}", run.stdout);
         let summary = "3 shaders: 2 proved, 1 refused, 2 written to ";
         assert!(run.stderr.contains(summary), "{}", run.stderr);
@@ -468,7 +476,7 @@ fn files_in_every_language_state_their_proof() {
 
 /// Names that surround a shader in some language: ours, naga's, those of hosts and of the preludes that
 /// replace them.
-const SURROUNDING_NAMES: &str = "toyproof_colour toyproof_result toyproof_painted toyproof_frame ToyproofFrame toyproof_color toyproof_size \
+const SURROUNDING_NAMES: &str = "toyproof_color toyproof_result toyproof_image_color toyproof_frame ToyproofFrame toyproof_color toyproof_size \
     toyproof_need_0 toyproof_sin toyproof_start toyproof_remainder toyproof_t1 toyproof_s1 main_1 global inputs Inputs \
     position color saturate screen time view View globals Globals fragment VertexOutput kept written_main written_color \
     writtenn_at written_image FragmentInput_main FragmentOutput ConstructRay constructRay naga_mod naga_div i_time \

@@ -1,4 +1,4 @@
-//! `docs/diagnostics.md` explains every code, and its examples yield the stated diagnostics.
+//! `docs/guide/diagnostics.md` explains every code, and its examples yield the stated diagnostics.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -17,9 +17,11 @@ use toyproof::verify::{Case, Expected, verify};
 use crate::architecture::sources;
 use crate::program::toyproof;
 
-/// Codes that no example can produce: those that depend on time, on invalid UTF-8, and internal errors of
-/// toyproof.
-const CODES_WITHOUT_EXAMPLE: [&str; 7] = ["E0410", "E0411", "E0500", "E0900", "E0901", "W0017", "W0606"];
+/// Codes that no example can produce: those that depend on time, on invalid UTF-8 or on the target of a
+/// conversion, and internal errors of toyproof.
+const CODES_WITHOUT_EXAMPLE: [&str; 8] = [
+    "E0410", "E0411", "E0500", "E0900", "E0901", "E0902", "W0017", "W0606",
+];
 
 /// The `mainImage` that examples omit.
 const MAIN_IMAGE: &str =
@@ -63,7 +65,7 @@ fn scene(explanation: &Explanation) -> Option<Scene> {
 }
 
 /// All diagnostics of an example.
-fn told(example: &Example, scene: Option<&Scene>) -> (Vec<Diagnostic>, Files) {
+fn diagnostics_of(example: &Example, scene: Option<&Scene>) -> (Vec<Diagnostic>, Files) {
     let mut files = Files::default();
     match example.language {
         "glsl" => {
@@ -75,7 +77,7 @@ fn told(example: &Example, scene: Option<&Scene>) -> (Vec<Diagnostic>, Files) {
             let file = files.add(File::new("example.glsl", format!("{}{rest}", example.text)));
             let checked = glsl::check(&files, file, &glsl::Options::default());
             (
-                checked.map_or_else(Vec::from, |checked| seen(&files, &checked, scene)),
+                checked.map_or_else(Vec::from, |checked| warnings_of(&files, &checked, scene)),
                 files,
             )
         }
@@ -90,12 +92,12 @@ fn told(example: &Example, scene: Option<&Scene>) -> (Vec<Diagnostic>, Files) {
                 files,
             )
         }
-        other => panic!("what is ```{other}?"),
+        other => panic!("unknown language {other}"),
     }
 }
 
 /// The warnings on a shader, and those on its run.
-fn seen(files: &Files, checked: &Checked, scene: Option<&Scene>) -> Vec<Diagnostic> {
+fn warnings_of(files: &Files, checked: &Checked, scene: Option<&Scene>) -> Vec<Diagnostic> {
     let frame = Frame {
         size: scene.map_or([16, 9], |scene| scene.film.size),
         // The fourth channel has no image.
@@ -127,10 +129,10 @@ fn seen(files: &Files, checked: &Checked, scene: Option<&Scene>) -> Vec<Diagnost
 #[test]
 fn every_code_has_its_section_and_every_section_its_code() {
     // Codes are written literally wherever a diagnostic is created.
-    let mut spelled = BTreeSet::new();
+    let mut written = BTreeSet::new();
     for path in sources(Path::new("src")) {
         let text = fs::read_to_string(&path).unwrap();
-        spelled.extend(
+        written.extend(
             text.split('"')
                 .filter(|word| {
                     word.len() == 5
@@ -143,7 +145,7 @@ fn every_code_has_its_section_and_every_section_its_code() {
     let explained: BTreeSet<_> = explanations()
         .map(|explanation| explanation.code.to_owned())
         .collect();
-    assert_eq!(spelled, explained);
+    assert_eq!(written, explained);
     for &code in Code::ALL {
         let title = toyproof::report::explain(code.as_str()).unwrap().title;
         assert_eq!(title, code.about(), "{}", code.as_str());
@@ -171,7 +173,7 @@ fn wrong_examples_give_only_their_code_and_right_ones_none() {
         );
         let scene = scene(&explanation);
         for example in &examples {
-            let (reported, files) = told(example, scene.as_ref());
+            let (reported, files) = diagnostics_of(example, scene.as_ref());
             let codes: Vec<_> = reported.iter().map(|diagnostic| &*diagnostic.code).collect();
             let wanted = if example.wrong {
                 vec![explanation.code]
@@ -204,7 +206,7 @@ fn codes_of(functions: &str, uses: &str) -> Vec<String> {
     let file = files.add(File::new("a.glsl", text));
     let checked = glsl::check(&files, file, &glsl::Options::default()).unwrap();
     let line = |reported: &Diagnostic| reported.span.map_or(0, |span| files.position(span).line);
-    let reported = seen(&files, &checked, None);
+    let reported = warnings_of(&files, &checked, None);
     let codes = reported
         .iter()
         .map(|reported| format!("{}:{}", reported.code, line(reported)));
@@ -234,7 +236,7 @@ fn a_read_of_an_uninitialized_variable_is_reported_once() {
         ),
         none
     );
-    // Written on no path, and in elements that are not told apart.
+    // Written on no path, and in elements that are not distinguished.
     assert_eq!(codes_of("", "float a;\nc.x = a;"), ["W0003:3"]);
     assert_eq!(codes_of("", "float a[2];\na[0] = 1.0; c.x = a[1];"), ["W0604:2"]);
 }

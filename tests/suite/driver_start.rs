@@ -60,8 +60,8 @@ fn driver_start_failures_are_distinct_from_slow_shaders() {
     let limit = Duration::from_secs(3);
     thread::scope(|scope| {
         for (script, wanted) in [
-            ("exec sleep 60", "the worker process did not answer within 3 s"),
-            ("kill -STOP $$", "the worker process did not answer within 3 s"),
+            ("exec sleep 60", "the worker process did not respond within 3 s"),
+            ("kill -STOP $$", "the worker process did not respond within 3 s"),
             (
                 "STARTING; exec sleep 60",
                 "the Vulkan driver did not start within 3 s",
@@ -78,7 +78,7 @@ fn driver_start_failures_are_distinct_from_slow_shaders() {
         }
     });
     for (script, wanted) in [
-        ("exit 3", "died (exit status: 3) before it answered"),
+        ("exit 3", "terminated (exit status: 3) before its first reply"),
         (
             "TRANSLATING; STARTING; exit 3",
             "while the Vulkan driver was starting",
@@ -290,7 +290,9 @@ fn a_requested_driver_that_does_not_start_is_an_error() {
 
     // A batch does not start it again for each shader.
     let first = "if (!access(\"started\", F_OK)) _exit(4); fclose(fopen(\"started\", \"w\")); _exit(3);";
-    let check = ["check", "hw", "--size", "16x9", "--device", "lavapipe", "--jobs", "1"];
+    let check = [
+        "check", "hw", "--size", "16x9", "--device", "lavapipe", "--jobs", "1",
+    ];
     let run = with_driver(first, &check);
     assert_eq!(run.code, 2, "{run:?}");
     assert_eq!(run.stdout.matches("(exit status: 3)").count(), 3, "{run:?}");

@@ -16,6 +16,7 @@ mod conversion;
 mod debug;
 mod derivatives;
 mod diagnostics;
+mod docs;
 #[cfg(unix)]
 mod driver_start;
 mod equivalent_rewrites;

@@ -94,7 +94,12 @@ fn found<T>(needed: Option<T>, missing: &str) -> Option<T> {
 
 fn new_worker(on: AdapterSelector) -> Worker {
     let program = PathBuf::from(env!("CARGO_BIN_EXE_toyproof"));
-    Worker::new(program, vec![toyproof::cli::WORKER.into()], on, Duration::from_secs(60))
+    Worker::new(
+        program,
+        vec![toyproof::cli::WORKER.into()],
+        on,
+        Duration::from_secs(60),
+    )
 }
 
 /// Reports, once for each reason, that the test of this thread is skipped, or a part of it.

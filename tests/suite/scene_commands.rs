@@ -10,7 +10,7 @@ use crate::program::toyproof;
 use crate::support::SPHERE;
 
 /// The reference of the scene format.
-const REFERENCE: &str = "docs/scenes.md";
+const REFERENCE: &str = "docs/guide/scenes.md";
 
 #[test]
 fn built_in_scenes_are_accepted_by_name_and_files_come_first() {
@@ -39,7 +39,7 @@ fn built_in_scenes_are_accepted_by_name_and_files_come_first() {
             "s.glsl",
             "--scene",
             "02-sphere",
-            "--on",
+            "--device",
             "cpu",
             "--size",
             "64x36",
@@ -123,7 +123,7 @@ fn a_new_scene_renders_and_its_shader_is_correct() {
     assert_eq!(run.code, 0, "{}", run.stderr);
     let run = toyproof(
         folder.path(),
-        &[&["check", "week 1.glsl", "--on", "cpu"], &size[..]].concat(),
+        &[&["check", "week 1.glsl", "--device", "cpu"], &size[..]].concat(),
     );
     assert_eq!(run.code, 0, "{}{}", run.stdout, run.stderr);
 }

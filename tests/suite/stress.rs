@@ -56,7 +56,7 @@ void mainImage(out vec4 color, in vec2 place) { color = vec4(0.0); }
 fn planted_mistakes_are_named() {
     let near = "float t = -b - root;";
     let of_exercise: [(&str, &[Edit]); 9] = [
-        ("direction-of-length-1", &[]),
+        ("unit-direction-only", &[]),
         (
             "roots-not-halved",
             &[
@@ -66,7 +66,7 @@ fn planted_mistakes_are_named() {
         ),
         ("larger-root", &[(near, "float t = -b + root;")]),
         (
-            "behind-the-eye",
+            "behind-origin",
             &[(
                 "if (t > 0.00001) {\n            return t;\n        }\n        t = -b + root;\n        if (t > 0.00001) {\n            return t;\n        }",
                 "return t;",
@@ -95,22 +95,18 @@ fn planted_mistakes_are_named() {
             &[("dot(f, f) - sphere.radius", "dot(f, f) + sphere.radius")],
         ),
         (
-            "centre-ignored",
+            "center-ignored",
             &[("vec3 f = ray.origin - sphere.center;", "vec3 f = ray.origin;")],
         ),
     ];
     let of_textbook: [(&str, &str, &str); 7] = [
         ("roots-not-halved", "/ (2.0 * a)", ""),
-        ("not-over-a", "/ (2.0 * a)", "/ 2.0"),
+        ("not-divided-by-a", "/ (2.0 * a)", "/ 2.0"),
         ("discriminant-without-4", "4.0 * a * c", "a * c"),
         ("no-square-root", "sqrt(disc)", "disc"),
         ("discriminant-plus", "b * b - 4.0", "b * b + 4.0"),
         ("half-b-with-4", "float b = 2.0 *", "float b ="),
-        (
-            "direction-of-length-1",
-            "float a = dot(rd, rd);",
-            "float a = 1.0;",
-        ),
+        ("unit-direction-only", "float a = dot(rd, rd);", "float a = 1.0;"),
     ];
     let mut right = 0;
     let mut reported = Vec::new();
@@ -131,10 +127,15 @@ fn planted_mistakes_are_named() {
 fn correct_functions_are_not_blamed_and_their_limits_are_reported() {
     let findings = examine(TEXTBOOK, "hitSphere", &RoleMap::new());
     assert_eq!(findings.mistake, None);
-    let lines = findings.report.breakdown_lines();
+    let summary = findings.summary("hitSphere").join("\n");
     assert!(
-        lines[0].starts_with("hitSphere f32 fails from scale 1e-20 down"),
-        "{lines:?}"
+        summary.starts_with("hitSphere makes none of the known mistakes, but fails for extreme input"),
+        "{summary}"
+    );
+    let row = summary.lines().find(|line| line.contains("scene scale ≤"));
+    assert!(
+        row.is_some_and(|row| row.contains(" 1e-20 ") && row.ends_with('–')),
+        "{summary}"
     );
     let example = findings.example.unwrap();
     assert!(
@@ -203,7 +204,7 @@ fn signatures_are_recognized_by_types_and_names_or_given() {
             .replace('C', c)
             .replace('R', r);
         let text = format!("{structs}\n{head} {{ {formula} {body} }}\n{main}");
-        assert_eq!(mistake(&text, "f"), Some("direction-of-length-1"), "{text}");
+        assert_eq!(mistake(&text, "f"), Some("unit-direction-only"), "{text}");
     }
     let formula = answer
         .replace('O', "a")
@@ -219,16 +220,22 @@ fn signatures_are_recognized_by_types_and_names_or_given() {
         .map(|(path, role)| (path.to_owned(), role))
         .collect();
     let found = examine(&text, "f", &map).mistake.map(|mistake| mistake.name);
-    assert_eq!(found, Some("direction-of-length-1"));
+    assert_eq!(found, Some("unit-direction-only"));
     let why = Signature::recognize(&checked(&text), "g", &RoleMap::new())
         .unwrap_err()
         .to_string();
-    assert!(why.contains("there is no function g; there are f"), "{why}");
+    assert!(
+        why.contains("there is no function `g`; the shader has f"),
+        "{why}"
+    );
     let other = format!("float f(float x) {{ return x; }}\n{main}");
     let why = Signature::recognize(&checked(&other), "f", &RoleMap::new())
         .unwrap_err()
         .to_string();
-    assert!(why.contains("it is not clear what is the ray's origin"), "{why}");
+    assert!(
+        why.contains("no parameter of f is recognized as the ray's origin"),
+        "{why}"
+    );
 }
 
 #[test]
@@ -241,7 +248,7 @@ fn exercise_functions_are_blamed_only_for_unit_directions() {
             continue;
         };
         let found = mistake(exercise.shader, &signature.name);
-        assert_eq!(found, Some("direction-of-length-1"), "{}", exercise.name);
+        assert_eq!(found, Some("unit-direction-only"), "{}", exercise.name);
         seen += 1;
     }
     assert!(seen >= 12, "{seen}");
@@ -263,7 +270,7 @@ fn other_shapes_are_not_mistaken_for_spheres() {
     let why = Signature::recognize(&checked(QUADRICS.shader), "intersectQuadric", &RoleMap::new())
         .unwrap_err()
         .to_string();
-    assert!(why.contains("not clear") && why.contains("--map"), "{why}");
+    assert!(why.contains("is recognized as") && why.contains("--map"), "{why}");
     let body = "{ return length(o + d + c) + r; } void mainImage(out vec4 c, in vec2 p) { c = vec4(0.0); }";
     for (head, is_sphere) in [
         ("float f(vec3 o, vec3 d, vec3 c, float r)", true),
@@ -326,7 +333,7 @@ fn known_weaknesses_of_the_formulas_are_found() {
     // Cancellation in |f|² − r², and the effect of recentering.
     assert!(share("textbook", "f32", "distance/radius", "1e4") > 0.1);
     assert!(share("half-b", "f32", "distance/radius", "1e4") > 0.1);
-    assert!(share("recentred", "f32", "distance/radius", "1e4") == 0.0);
+    assert!(share("recentered", "f32", "distance/radius", "1e4") == 0.0);
     // Overflow and underflow of squares.
     assert!(share("textbook", "f32", "scale", "1e20") > 0.9);
     for (scale, precision) in [
@@ -345,7 +352,7 @@ fn known_weaknesses_of_the_formulas_are_found() {
     // Rays that leave a surface.
     assert!(share("t > 0", "f32", "mirrored rays", "scale 1") > 0.3);
     assert!(share("t > 1e-3", "f32", "mirrored rays", "scale 1") > 0.9);
-    assert!(share("skip the surface", "f32", "grazing rays", "ground r = 1000") == 0.0);
+    assert!(share("skip own surface", "f32", "grazing rays", "ground r = 1000") == 0.0);
 }
 
 #[test]
@@ -354,22 +361,28 @@ fn the_command_writes_its_files_and_names_the_columns() {
     let on = if require_driver() { "auto" } else { "cpu" };
     let run = toyproof(
         folder.path(),
-        &["stress", "-o", "out", "--cases", "20", "--on", on],
+        &["stress", "-o", "out", "--cases", "20", "--device", on],
     );
     assert_eq!(run.code, 0, "{}", run.stderr);
     assert!(
-        run.stdout.contains("textbook f32 fails from scale"),
+        run.stdout
+            .starts_with("Where ray–sphere formulas stop being right in float32\n")
+            && run.stdout.contains("\nRecommended for spheres: recentered ("),
         "{}",
         run.stdout
     );
     let out = folder.path().join("out");
     let csv = fs::read_to_string(out.join("stress.csv")).unwrap();
-    let head = "formula,precision,device,axis,value,cases,wrong_hits,t_ulp_p50,t_ulp_p99,t_ulp_max,nan,self_hits,lost";
+    let head = "formula,precision,device,axis,step,cases,failing,wrong_hits,t_error_ulp_median,t_error_ulp_p99,\
+                t_error_ulp_max,non_finite,self_intersections,missed_nearby";
     assert_eq!(csv.lines().next(), Some(head));
     let json: Value = serde_json::from_str(&fs::read_to_string(out.join("stress.json")).unwrap()).unwrap();
     assert_eq!(json["rows"].as_array().unwrap().len(), csv.lines().count() - 1);
     for name in ["spheres", "errors", "quadrics", "secondary"] {
-        assert!(out.join(format!("stress-{name}.png")).is_file(), "{name}");
+        for extension in ["png", "svg"] {
+            let file = out.join(format!("stress-{name}.{extension}"));
+            assert!(file.is_file(), "{}", file.display());
+        }
     }
 }
 
@@ -378,38 +391,50 @@ fn bad_input_is_reported_and_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.glsl");
     fs::write(&path, "void mainImage(out vec4 c, in vec2 p) { c = vec4(1.0); }").unwrap();
-    fs::write(folder.path().join("meet.glsl"), TEXTBOOK).unwrap();
+    fs::write(folder.path().join("textbook.glsl"), TEXTBOOK).unwrap();
     let stress = |arguments: &[&str]| {
-        let all = [&["stress", "-o", "out", "--on", "cpu"], arguments].concat();
+        let all = [&["stress", "-o", "out", "--device", "cpu"], arguments].concat();
         toyproof(folder.path(), &all)
     };
-    for (arguments, says) in [
-        (&["a.glsl", "--function", "f"][..], "there is no function f"),
-        (&["a.glsl"], "no function is seen"),
+    for (arguments, message) in [
+        (&["a.glsl", "--function", "f"][..], "there is no function `f`"),
+        (&["a.glsl"], "no function intersects a ray with a sphere"),
         (&["none.glsl"], "none.glsl"),
         (&["--function", "f"], "SHADER"),
-        (&["a.glsl", "--map", "x=nonsense"], "say what is what"),
+        (&["a.glsl", "--map", "x=nonsense"], "expected PATH=ROLE"),
         (
-            &["meet.glsl", "--function", "hitSphere", "--map", "q=origin"],
+            &["textbook.glsl", "--function", "hitSphere", "--map", "q=origin"],
             "hitSphere has no parameter `q`",
         ),
         (
-            &["meet.glsl", "--function", "hitSphere", "--map", "ro.at=center"],
+            &[
+                "textbook.glsl",
+                "--function",
+                "hitSphere",
+                "--map",
+                "ro.at=center",
+            ],
             "no parameter `ro.at`",
         ),
         (
-            &["meet.glsl", "--function", "hitSphere", "--map", "radius=origin"],
-            "`radius` is the ray's origin",
+            &[
+                "textbook.glsl",
+                "--function",
+                "hitSphere",
+                "--map",
+                "radius=origin",
+            ],
+            "`radius` cannot be the ray's origin",
         ),
         (
-            &["meet.glsl", "--map", "q=origin"],
+            &["textbook.glsl", "--map", "q=origin"],
             "hitSphere has no parameter `q`",
         ),
         (&["--cases", "0"], "--cases"),
     ] {
         let run = stress(arguments);
         assert_eq!(run.code, 2, "{arguments:?}: {}", run.stderr);
-        assert!(run.stderr.contains(says), "{arguments:?}: {}", run.stderr);
+        assert!(run.stderr.contains(message), "{arguments:?}: {}", run.stderr);
     }
     assert!(!folder.path().join("out").exists());
 }
@@ -430,12 +455,12 @@ fn an_interrupt_leaves_no_partial_files() {
     use rustix::process::{Pid, Signal, kill_process};
     let folder = tempfile::tempdir().unwrap();
     for arguments in [
-        &["stress", "-o", "out", "--on", "cpu", "--cases", "10000"][..],
+        &["stress", "-o", "out", "--device", "cpu", "--cases", "10000"][..],
         &[
             "trade",
             "-o",
             "out",
-            "--on",
+            "--device",
             "cpu",
             "--budget",
             "60s",

@@ -1,5 +1,5 @@
 //! Compiler messages: `tests/ui/*.glsl` holds typical mistakes of students, and beside each the whole text
-//! that a terminal shows. `UPDATE_EXPECT=1 cargo test --test suite ui` writes the texts anew; read them aloud
+//! that a terminal shows. `UPDATE_EXPECT=1 cargo test --test suite ui` writes the texts anew; read them
 //! before you keep them.
 
 use std::fs;
@@ -16,7 +16,10 @@ fn messages(path: &Path) -> String {
     let file = files.add(File::new(name, fs::read_to_string(path).unwrap()));
     match check(&files, file, &Options::default()) {
         Ok(checked) => panic!("{name} is accepted, with {:?}", checked.warnings),
-        Err(errors) => errors.iter().map(|error| human(error, &files, None, false)).collect(),
+        Err(errors) => errors
+            .iter()
+            .map(|error| human(error, &files, None, false))
+            .collect(),
     }
 }
 

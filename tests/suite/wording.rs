@@ -31,9 +31,15 @@ const RETIRED: [(&str, &str); 40] = [
     ("in (its|their|naga's|whose) words", "message"),
     ("is none", "is not a"),
     ("that is none", "malformed"),
-    ("is no (character|macro|number|name|type|function|variable)", "is not a"),
+    (
+        "is no (character|macro|number|name|type|function|variable)",
+        "is not a",
+    ),
     ("comes to call", "recursive call"),
-    ("on some way|may have gone another way", "on some path, in non-uniform control flow"),
+    (
+        "on some way|may have gone another way",
+        "on some path, in non-uniform control flow",
+    ),
     ("be it", "whether"),
     ("all the same", "anyway"),
     ("does without|do without", "needs no"),
@@ -45,8 +51,14 @@ const RETIRED: [(&str, &str); 40] = [
     ("behaviours?", "behavior"),
     ("grey", "gray"),
     ("(un)?normali[s]e(d|s)?|normali[s]ation", "normalize"),
-    ("that draws?|it draws|draws? (others|random)", "stochastic, sample"),
-    ("meets? (a|the|its|their|an) (surface|sphere|plane)", "hits, intersects"),
+    (
+        "that draws?|it draws|draws? (others|random)",
+        "stochastic, sample",
+    ),
+    (
+        "meets? (a|the|its|their|an) (surface|sphere|plane)",
+        "hits, intersects",
+    ),
     ("fed to|is fed", "given to, read by"),
     ("every way to|ways to an? image", "configuration"),
     ("not asked|is asked", "not run"),
@@ -127,7 +139,12 @@ fn files(folder: &Path, extensions: &[&str]) -> Vec<PathBuf> {
 }
 
 fn report(found: &[String]) {
-    assert!(found.is_empty(), "{} retired words:\n{}", found.len(), found.join("\n"));
+    assert!(
+        found.is_empty(),
+        "{} retired words:\n{}",
+        found.len(),
+        found.join("\n")
+    );
 }
 
 #[test]
@@ -194,7 +211,8 @@ fn a_retired_word_is_found() {
     assert_eq!(found("the pixel is rendered in the image's center"), 0);
     assert_eq!(found("it Paints a picture"), 2);
     let mut texts = Vec::new();
-    let code = "/// paints\nfn a() { b(\"told\\npaint\"); }\n#[cfg(test)]\nmod tests { const A: &str = \"maths\"; }";
+    let code =
+        "/// paints\nfn a() { b(\"told\\npaint\"); }\n#[cfg(test)]\nmod tests { const A: &str = \"maths\"; }";
     literals(code.parse().unwrap(), &mut texts);
     assert_eq!(texts, ["\"told\npaint\""]);
 }

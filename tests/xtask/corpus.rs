@@ -20,7 +20,12 @@ const TIMEOUT: Duration = Duration::from_secs(60);
 /// A worker that is this program.
 fn worker() -> Worker {
     let program = std::env::current_exe().expect("this program has a path");
-    Worker::new(program, vec![toyproof::cli::WORKER.into()], AdapterSelector::Auto, TIMEOUT)
+    Worker::new(
+        program,
+        vec![toyproof::cli::WORKER.into()],
+        AdapterSelector::Auto,
+        TIMEOUT,
+    )
 }
 
 /// The valid shaders of a folder, in an order independent of their names.

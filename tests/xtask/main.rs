@@ -30,7 +30,7 @@ enum Task {
         #[arg(default_value = "")]
         exercise: String,
     },
-    /// Print the smallest errors of scenes that are found, the table of docs/accuracy.md
+    /// Print the smallest errors of scenes that are found, the table of docs/evidence/accuracy.md
     Sensitivity,
     /// Compare the bits of the evaluator and of the strict GPU run, for the shaders of a folder that read no channel
     Corpus {

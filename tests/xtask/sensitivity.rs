@@ -231,7 +231,7 @@ impl Subject {
     }
 }
 
-/// Prints the table of `docs/accuracy.md`.
+/// Prints the table of `docs/evidence/accuracy.md`.
 pub(super) fn print_table() {
     let names: Vec<_> = QUANTITIES.iter().map(|quantity| quantity.name).collect();
     println!("| | {} |", names.join(" | "));

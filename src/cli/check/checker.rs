@@ -19,10 +19,10 @@ use super::Args;
 use super::images::IMAGES;
 use super::reference::{Reference, References, SceneCache};
 use crate::cli::files::{Input, ReadError};
+use crate::cli::inputs::shell_word;
 use crate::cli::names::{Names, with_suffix};
 use crate::cli::shader::{Shader, Unusable, denied};
 use crate::cli::{Terminal, files, pool};
-use crate::cli::inputs::shell_word;
 use crate::report::{self, Record};
 
 /// A shader to check.
@@ -255,7 +255,12 @@ impl<'a> Checker<'a> {
                 Some(mistake) => return explain(&mistake.id.replace('+', " ")),
                 None => &record.algorithm,
             },
-            Verdict::Unstable if record.algorithm.as_ref().is_some_and(|check| check.ill_conditioned > 0) => {
+            Verdict::Unstable
+                if record
+                    .algorithm
+                    .as_ref()
+                    .is_some_and(|check| check.ill_conditioned > 0) =>
+            {
                 &record.algorithm
             }
             Verdict::Unstable => &record.precision,

@@ -19,9 +19,9 @@ use self::checker::{Checker, Message, Outcome, Submission, WorkerContext};
 use self::images::IMAGES;
 pub(super) use self::reference::References;
 use self::reports::Results;
+use super::inputs::short_device;
 use super::inputs::{DriverArgs, FrameArgs, LanguageArgs};
 use super::names::Names;
-use super::inputs::short_device;
 use super::pool::{self, InOrder};
 use super::shader::find;
 use super::{Exit, Terminal};
@@ -259,7 +259,8 @@ impl Batch<'_> {
                 grouped(submissions.len() as u64)
             ));
             if self.args.out.is_some() {
-                self.terminal.help("the same command with --resume checks the others");
+                self.terminal
+                    .help("the same command with --resume checks the others");
             }
             self.failed = true;
         }
@@ -287,15 +288,17 @@ impl Batch<'_> {
             self.print(message);
         }
         match self.args.format {
-            CheckFormat::Human => match contain(Part::Summary, || report::lines(&outcome.record, &self.layout)) {
-                Ok(lines) => self.terminal.result(&lines),
-                Err(panic) => {
-                    let Record { shader, verdict, .. } = &outcome.record;
-                    self.terminal.result(&format!("{verdict:<12} {shader}"));
-                    self.terminal.error(format_args!("{shader}: {panic}"));
-                    self.failed = true;
+            CheckFormat::Human => {
+                match contain(Part::Summary, || report::lines(&outcome.record, &self.layout)) {
+                    Ok(lines) => self.terminal.result(&lines),
+                    Err(panic) => {
+                        let Record { shader, verdict, .. } = &outcome.record;
+                        self.terminal.result(&format!("{verdict:<12} {shader}"));
+                        self.terminal.error(format_args!("{shader}: {panic}"));
+                        self.failed = true;
+                    }
                 }
-            },
+            }
             CheckFormat::Short => {
                 for diagnostic in &outcome.record.diagnostics {
                     self.terminal.result(&diagnostic.to_string());
@@ -377,7 +380,9 @@ impl Batch<'_> {
 /// Prints the tally of all shaders, and warns of shaders that were compared with nothing.
 fn print_summary(report: &Report, hidden_warnings: u64, elapsed: Duration, terminal: &Terminal) {
     let records = report.shaders();
-    let device = report.device().map(|device| format!(", {}", short_device(device)));
+    let device = report
+        .device()
+        .map(|device| format!(", {}", short_device(device)));
     if records.len() > 1 {
         terminal.note(&format!(
             "\n{} ({:.1} s{})",
@@ -393,7 +398,10 @@ fn print_summary(report: &Report, hidden_warnings: u64, elapsed: Duration, termi
             plural(hidden_warnings, "warning", "warnings")
         ));
     }
-    let without = records.iter().filter(|record| record.verdict == Verdict::Ok).count() as u64;
+    let without = records
+        .iter()
+        .filter(|record| record.verdict == Verdict::Ok)
+        .count() as u64;
     // Of a single shader, its reason says so.
     if without > 0 && records.len() > 1 {
         terminal.warn(format_args!(

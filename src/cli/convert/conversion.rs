@@ -7,8 +7,9 @@ use toyproof_diagnostic::{Deadline, Diagnostic};
 use toyproof_glsl as glsl;
 use toyproof_gpu::browser::Chromium;
 use toyproof_gpu::{Failure, Worker};
+use toyproof_translate::wgsl::Unprintable;
 use toyproof_verify::conversion::{
-    Conversion, ConvertError, Converter, FRAMES, FallbackReason, Proved, Prover, Runner, Source,
+    Conversion, ConvertError, Converter, FRAMES, FallbackReason, Proved, Prover, Runner, Source, WgslError,
 };
 
 use super::super::inputs::{DriverArgs, LanguageArgs};
@@ -165,6 +166,10 @@ fn refusal(error: ConvertError) -> Refusal {
         ConvertError::Overdue(overdue) => {
             Refusal::Diagnostics(vec![glsl::overdue(overdue)], Exit::ShaderFault)
         }
+        ConvertError::Unwritable(WgslError::Unprintable {
+            why: Unprintable::Host(diagnostic),
+            ..
+        }) => Refusal::Diagnostics(vec![*diagnostic], Exit::Error),
         ConvertError::Unwritable(error) => Refusal::Message(error.to_string(), Exit::Error),
         ConvertError::Worker(Failure::Invalid(diagnostics)) => {
             Refusal::Diagnostics(diagnostics, Exit::ShaderFault)

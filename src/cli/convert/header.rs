@@ -83,7 +83,9 @@ fn header_text(name: &str, status: &ProofStatus) -> String {
 /// Appends what it was compared with, in which frames, and how many pixels were left out.
 fn settings(head: &mut String, proof: &Proof) {
     let against = match proof.against {
-        Against::Evaluator => "renders the same image as toyproof's evaluator renders of the original in float32",
+        Against::Evaluator => {
+            "renders the same image as toyproof's evaluator renders of the original in float32"
+        }
         Against::StrictRun => "renders the same image as the original does there with strict arithmetic",
     };
     let frames: Vec<_> = FRAMES
@@ -106,10 +108,7 @@ pub(super) fn describe_browser(shown: Rgb8Comparison) -> String {
         "0.00" => " by as much as 0.01/255".to_owned(),
         levels => format!(" by more than {levels}/255"),
     };
-    format!(
-        "none of {} displayed pixels differs{by}",
-        grouped(shown.pixels)
-    )
+    format!("none of {} displayed pixels differs{by}", grouped(shown.pixels))
 }
 
 /// Describes how many pixels are equal.

@@ -481,7 +481,10 @@ impl Batch<'_> {
                     let _ = write!(message, "; in Chromium {}", header::describe_browser(shown));
                 }
                 if let Some(why) = &converted.fallback {
-                    let _ = write!(message, "; written by naga, since toyproof's writer failed: {why}");
+                    let _ = write!(
+                        message,
+                        "; written by naga, since toyproof's writer failed: {why}"
+                    );
                 }
                 (Status::Proved, message)
             }
@@ -496,9 +499,10 @@ impl Batch<'_> {
             ProofStatus::NotProved(why) if written => {
                 (Status::Unproved, format!("{why}; written because of --force"))
             }
-            ProofStatus::NotProved(why) => {
-                (Status::Unproved, format!("{why}; not written (--force writes it anyway)"))
-            }
+            ProofStatus::NotProved(why) => (
+                Status::Unproved,
+                format!("{why}; not written (--force writes it anyway)"),
+            ),
         };
         (status, message, exit)
     }

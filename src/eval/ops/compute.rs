@@ -163,7 +163,7 @@ pub(crate) fn compute_scalar<N: Number>() -> Handler<N> {
     handler::<N, Scalars>(Level::Base)
 }
 
-/// Returns the handler of an operation into a row; `rows` says which operands are rows, as at least one is.
+/// Returns the handler of an operation into a row; `rows` is which operands are rows, as at least one is.
 pub(crate) fn compute<N: Number>(level: Level, operation: Operation, rows: [bool; 3]) -> Handler<N> {
     // The operands of the operations in `frequent_mixed` are all rows here.
     macro_rules! source {

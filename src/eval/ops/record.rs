@@ -94,7 +94,7 @@ impl<N: Number> Run<N> for PartialQuad {
     }
 }
 
-/// Returns the handler of a check; `rows` says whether all operands are rows.
+/// Returns the handler of a check; `rows` is whether all operands are rows.
 pub(crate) fn check<N: Number>(level: Level, predicate: Predicate, rows: bool) -> Handler<N> {
     macro_rules! form {
         ($name:ident, $ty:ty) => {

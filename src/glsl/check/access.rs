@@ -1,9 +1,9 @@
 //! Names, members, swizzles and indices (§5.5–§5.7).
 
-use toyproof_diagnostic::nearest;
+use toyproof_diagnostic::{nearest, plural};
 
 use super::Checker;
-use super::scope::Entity;
+use super::scope::{Entity, did_you_mean};
 use crate::codes::Code;
 use crate::token::Symbol;
 use crate::tree::{BuiltIn, ExprId, ExprKind, Place, Scalar, StructId, Swizzle, Type, VariableKind};
@@ -72,21 +72,12 @@ impl Checker<'_> {
                         return self.error_expr(whole);
                     }
                     let near = nearest(text, members.iter().map(|member| &*member.name));
-                    let message = match near {
-                        Some(near) => {
-                            format!(
-                                "{} has no member `{text}`; did you mean `{near}`?",
-                                self.quoted_type(ty)
-                            )
-                        }
-                        None => format!("{} has no member `{text}`", self.quoted_type(ty)),
-                    };
+                    let message = format!("{} has no member `{text}`", self.quoted_type(ty));
                     let names: Vec<_> = members
                         .iter()
                         .map(|member| format!("`{}`", member.name))
                         .collect();
-                    let diagnostic = Code::UnknownMember
-                        .at(at, message)
+                    let diagnostic = did_you_mean(Code::UnknownMember, at, &message, near)
                         .note(format!("its members are {}", names.join(", ")));
                     return self.refuse_with(diagnostic, at);
                 };
@@ -99,8 +90,8 @@ impl Checker<'_> {
             }
             Type::Vector(scalar, size) => {
                 let Some(components) = swizzle(text, size) else {
-                    let message = format!("`.{text}` selects no components of {}", self.quoted_type(ty));
-                    let label = format!("it has `.{}`", &"xyzw"[..usize::from(size)]);
+                    let message = format!("invalid swizzle `.{text}` of {}", self.quoted_type(ty));
+                    let label = format!("its components are `.{}`", &"xyzw"[..usize::from(size)]);
                     let diagnostic = Code::UnknownMember.at(at, message).label(label);
                     return self.refuse_with(diagnostic, at);
                 };
@@ -111,7 +102,7 @@ impl Checker<'_> {
                 self.push(kind, Type::vector(scalar, components.size()), constant, whole)
             }
             _ => {
-                let message = format!("{} has no members; this asks for `.{text}`", self.quoted_type(ty));
+                let message = format!("{} has no member `{text}`", self.quoted_type(ty));
                 self.refuse(Code::UnknownMember, at, message)
             }
         }
@@ -145,13 +136,13 @@ impl Checker<'_> {
             Type::Matrix { columns, rows } => (Type::Vector(Scalar::Float, rows), u32::from(columns)),
             Type::Array(array) => (self.tree.array(array).element, self.tree.array(array).size),
             _ => {
-                let message = format!("{} has no elements to index", self.quoted_type(ty));
+                let message = format!("{} cannot be indexed", self.quoted_type(ty));
                 return self.refuse(Code::BadIndex, at, message);
             }
         };
         if !matches!(index_type, Type::INT | Type::UINT) {
             let message = format!(
-                "an index must be `int` or `uint`, and this is {}",
+                "the index must be `int` or `uint`, not {}",
                 self.quoted_type(index_type)
             );
             return self.refuse(Code::BadIndex, self.tree[index].at, message);
@@ -160,16 +151,17 @@ impl Checker<'_> {
             && !(0..i64::from(size)).contains(&value)
         {
             let message = format!(
-                "the index {value} is out of range: {} has {size} elements",
-                self.quoted_type(ty)
+                "index {value} is out of bounds: {} has {size} {}",
+                self.quoted_type(ty),
+                plural(u64::from(size), "element", "elements")
             );
             let at = self.tree[index].at;
-            let label = format!("the last one is {}", size.saturating_sub(1));
+            let label = format!("the last index is {}", size.saturating_sub(1));
             return self.refuse_with(Code::BadIndex.at(at, message).label(label), at);
         }
         // §4.1.7: the sampler must be known at compile time.
         if matches!(element, Type::Sampler(_)) && !self.tree[index].constant {
-            let message = "the index of an array of samplers must be a constant expression";
+            let message = "the index of a sampler array must be a constant expression";
             return self.refuse(Code::NotConstant, self.tree[index].at, message);
         }
         let constant = self.tree[base].constant && self.tree[index].constant;

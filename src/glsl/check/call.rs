@@ -1,12 +1,12 @@
 //! Calls and constructors: overload resolution (§6.1, §5.4).
 
-use toyproof_diagnostic::Diagnostic;
+use toyproof_diagnostic::{Diagnostic, Fix, plural};
 
 use super::prelude::TEXEL_OFFSETS;
 use super::scope::Entity;
 use super::signature::{self, Match};
 use super::{Checker, Specifier, is_desktop_conversion};
-use crate::codes::Code;
+use crate::codes::{Code, given};
 use crate::token::Symbol;
 use crate::tree::{
     BuiltIn, Constructor, Direction, ExprId, ExprKind, FunctionId, Place, Scalar, StructId, Type, Value,
@@ -30,7 +30,7 @@ impl Checker<'_> {
             ),
             None => match BuiltIn::named(text) {
                 Some(function) => self.call_built_in(function, arguments, name_at, at),
-                None => self.undeclared_function(name, name_at),
+                None => self.undeclared_function(name, name_at, at),
             },
         }
     }
@@ -174,7 +174,7 @@ impl Checker<'_> {
         });
         if let Some(part) = too_far {
             let message = format!(
-                "the offset {part} is out of range: {} to {}",
+                "texel offset {part} is out of range: must be from {} to {}",
                 TEXEL_OFFSETS.start(),
                 TEXEL_OFFSETS.end()
             );
@@ -238,7 +238,7 @@ impl Checker<'_> {
                 .take(MAX_LISTED_OVERLOADS)
                 .map(|wanted| format!("`{}`", self.format_signature(&name, wanted)))
                 .collect();
-            diagnostic = diagnostic.note(format!("there are {}", forms.join(", ")));
+            diagnostic = diagnostic.note(format!("its overloads are {}", forms.join(", ")));
         }
         self.refuse_with(diagnostic, at)
     }
@@ -270,20 +270,20 @@ impl Checker<'_> {
         name_at: Place,
     ) -> Diagnostic {
         let types = self.types(arguments);
-        let given = self.format_signature(name, &types);
+        let call = self.format_signature(name, &types);
         let Some(wanted) = closest else {
             if counts.contains(&types.len()) {
-                return Code::NoOverload.at(name_at, format!("no function `{given}`"));
+                return Code::NoOverload.at(name_at, format!("no matching function for the call `{call}`"));
             }
             let message = format!(
-                "`{name}` takes {} and is given {}",
-                plural(&format_counts(counts), "argument"),
-                types.len()
+                "`{name}` takes {}, but {}",
+                counted(&format_counts(counts), "argument"),
+                given(types.len())
             );
             return Code::NoOverload.at(name_at, message);
         };
         let message = format!(
-            "no function `{given}`; did you mean `{}`?",
+            "no matching function for the call `{call}`; expected `{}`",
             self.format_signature(name, wanted)
         );
         let misfits = arguments
@@ -326,7 +326,7 @@ fn format_counts(counts: &[usize]) -> String {
     }
 }
 
-fn plural(count: &str, noun: &str) -> String {
+fn counted(count: &str, noun: &str) -> String {
     match count {
         "1" => format!("1 {noun}"),
         "0" => format!("no {noun}s"),
@@ -363,7 +363,10 @@ impl Checker<'_> {
                         _ => None,
                     };
                     let diagnostic = match fixit {
-                        Some(fixit) => diagnostic.label(fixit),
+                        Some((advice, Some(replacement))) if !at.is_expanded() => {
+                            diagnostic.fix(Fix::new(advice, at.span, replacement))
+                        }
+                        Some((advice, _)) => diagnostic.label(advice),
                         None => diagnostic,
                     };
                     self.refuse_with(diagnostic, at)
@@ -380,41 +383,47 @@ impl Checker<'_> {
         if types.len() != arguments.len() {
             let name = self.quoted_type(Type::Struct(id));
             let message = format!(
-                "{name} has {} members and is given {}",
+                "{name} has {} {}, but {}",
                 types.len(),
-                arguments.len()
+                plural(types.len() as u64, "member", "members"),
+                given(arguments.len())
             );
             return self.refuse(Code::BadConstructor, at, message);
         }
         let arguments = arguments
             .into_iter()
             .zip(types)
-            .map(|(argument, ty)| self.expect(argument, ty, "this member"))
+            .map(|(argument, ty)| self.expect(argument, ty, "this member's value"))
             .collect();
         self.push_constructor(Constructor::Struct, Type::Struct(id), arguments, at)
     }
 
     fn construct_array(&mut self, specifier: &Specifier, arguments: Vec<ExprId>, at: Place) -> ExprId {
         if arguments.is_empty() {
-            return self.refuse(Code::BadConstructor, at, "an array has at least one element");
+            return self.refuse(
+                Code::BadConstructor,
+                at,
+                "an array must have at least one element",
+            );
         }
         // The arguments determine the size of `[]`.
         let first = self.ty(arguments[0]);
-        let given = match first {
+        let inferred = match first {
             Type::Error => Type::Error,
             _ => self.tree.array_of(first, arguments.len() as u32),
         };
-        let ty = self.array_type(specifier.base, &specifier.sizes, Some(given), specifier.at);
+        let ty = self.array_type(specifier.base, &specifier.sizes, Some(inferred), specifier.at);
         let Type::Array(id) = ty else {
             return self.error_expr(at);
         };
         let array = self.tree.array(id);
         if array.size as usize != arguments.len() {
             let message = format!(
-                "{} has {} elements and is given {}",
+                "{} has {} {}, but {}",
                 self.quoted_type(ty),
                 array.size,
-                arguments.len()
+                plural(u64::from(array.size), "element", "elements"),
+                given(arguments.len())
             );
             return self.refuse(Code::BadConstructor, at, message);
         }
@@ -443,43 +452,56 @@ impl Checker<'_> {
     /// Selects the constructor that makes a scalar, vector or matrix of these arguments (§5.4.1, §5.4.2).
     fn numeric_constructor(&self, ty: Type, arguments: &[ExprId]) -> Result<Constructor, String> {
         let Some(wanted) = ty.component_count() else {
-            return Err(format!("there is no constructor of {}", self.quoted_type(ty)));
+            return Err(format!("{} has no constructor", self.quoted_type(ty)));
         };
         let types = self.types(arguments);
         if let Some(&other) = types.iter().find(|ty| ty.component_count().is_none()) {
             return Err(format!(
-                "{} cannot be made of {}",
+                "{} cannot be constructed from {}",
                 self.quoted_type(ty),
                 self.quoted_type(other)
             ));
         }
         match (ty, &types[..]) {
-            (_, []) => return Err(format!("{} needs an argument", self.quoted_type(ty))),
+            (_, []) => {
+                return Err(format!(
+                    "the constructor of {} needs at least one argument",
+                    self.quoted_type(ty)
+                ));
+            }
             (Type::Scalar(_), [_]) => return Ok(Constructor::Scalar),
-            (Type::Scalar(_), _) => return Err(format!("{} takes one argument", self.quoted_type(ty))),
+            (Type::Scalar(_), _) => {
+                return Err(format!(
+                    "the constructor of {} takes 1 argument",
+                    self.quoted_type(ty)
+                ));
+            }
             (Type::Vector(..), [Type::Scalar(_)]) => return Ok(Constructor::Splat),
             (Type::Matrix { .. }, [Type::Scalar(_)]) => return Ok(Constructor::Diagonal),
             (Type::Matrix { .. }, [Type::Matrix { .. }]) => return Ok(Constructor::Resize),
             (Type::Matrix { .. }, several) if several.iter().any(|ty| matches!(ty, Type::Matrix { .. })) => {
-                return Err("a matrix is made of one matrix, or of scalars and vectors".to_owned());
+                return Err(
+                    "a matrix is constructed from one matrix, or from scalars and vectors".to_owned(),
+                );
             }
             _ => {}
         }
         // Every argument must give at least one component.
         let mut have = 0;
-        for &given in &types {
+        for &argument in &types {
             if have >= usize::from(wanted) {
                 return Err(format!(
-                    "{} has {wanted} components and is given more",
+                    "too many arguments: {} has {wanted} components",
                     self.quoted_type(ty)
                 ));
             }
-            have += given.component_count().map_or(0, usize::from);
+            have += argument.component_count().map_or(0, usize::from);
         }
         if have < usize::from(wanted) {
             return Err(format!(
-                "{} has {wanted} components and is given {have}",
-                self.quoted_type(ty)
+                "{} has {wanted} components, but {}",
+                self.quoted_type(ty),
+                given(have)
             ));
         }
         Ok(match ty.scalar() {

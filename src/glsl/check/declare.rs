@@ -91,11 +91,14 @@ impl Checker<'_> {
         let problem = match ty {
             Type::Void => "a variable cannot be `void`".to_owned(),
             _ if kind != VariableKind::Uniform && self.holds_sampler(ty) => {
-                format!("{} can only be a uniform or a parameter", self.quoted_type(ty))
+                format!(
+                    "{} can only be the type of a uniform or a parameter",
+                    self.quoted_type(ty)
+                )
             }
             _ if !self.is_stage_io_type(ty, kind) => {
                 format!(
-                    "{} cannot come from another stage or go there",
+                    "{} cannot be the type of a shader input or output",
                     self.quoted_type(ty)
                 )
             }
@@ -133,7 +136,7 @@ impl Checker<'_> {
                 self.error(
                     Code::Uninitialized,
                     at,
-                    format!("the constant `{text}` has no value"),
+                    format!("the constant `{text}` has no initializer"),
                 );
             }
             return None;
@@ -145,7 +148,7 @@ impl Checker<'_> {
             self.error(
                 Code::BadQualifier,
                 at,
-                format!("`{text}` comes from outside or goes there: it takes no value here"),
+                format!("`{text}` cannot have an initializer: it is a uniform, an input or an output"),
             );
             return None;
         }
@@ -159,13 +162,13 @@ impl Checker<'_> {
                 "global"
             };
             let message = format!("the value of the {what} `{text}` is not a constant expression");
-            let note = if kind == VariableKind::Const {
-                "leave `const` out if it is to be computed while the shader runs"
+            let help = if kind == VariableKind::Const {
+                "remove `const` if the value is computed at run time"
             } else {
-                "globals are set before the shader runs: set this one in `mainImage`, or use --lenient"
+                "assign it in `mainImage`, or use `--lenient`"
             };
             let diagnostic = Code::NotConstant.at(self.tree[expr].at, message);
-            self.report(diagnostic.note(note));
+            self.report(diagnostic.help(help));
         }
         Some(expr)
     }
@@ -183,14 +186,14 @@ impl Checker<'_> {
         };
         let diagnostic = match first {
             Some(Some(first)) => Code::Redeclared
-                .at(at, format!("`{text}` is declared already"))
-                .related(first.span, "first declared here"),
+                .at(at, format!("redeclaration of `{text}`"))
+                .related(first.span, "previously declared here"),
             Some(None) => Code::Redeclared
-                .at(at, format!("`{text}` is declared already, by ShaderToy"))
-                .note("leave this declaration out: ShaderToy declares its inputs itself"),
+                .at(at, format!("redeclaration of `{text}`, which ShaderToy declares"))
+                .help("remove this declaration"),
             None if self.scopes.is_global() && text == "main" => Code::Redeclared
-                .at(at, "`main` is ShaderToy's own")
-                .note("it calls `void mainImage(out vec4 fragColor, in vec2 fragCoord)` for each pixel: write that one"),
+                .at(at, "`main` is reserved for ShaderToy")
+                .help("define `void mainImage(out vec4 fragColor, in vec2 fragCoord)`, which ShaderToy calls for each pixel"),
             None => return true,
         };
         self.report(diagnostic);
@@ -203,10 +206,10 @@ impl Checker<'_> {
             self.error(
                 Code::Redeclared,
                 at,
-                format!("`{text}` begins with `gl_`: such names belong to GLSL"),
+                format!("`{text}` begins with `gl_`, which is reserved"),
             );
         } else if text.contains("__") {
-            let message = format!("names with two underscores such as `{text}` belong to GLSL");
+            let message = format!("`{text}` contains `__`, which is reserved");
             push_limited(&mut self.warnings, Code::ReservedName.at(at, message));
         }
     }
@@ -272,7 +275,11 @@ impl Checker<'_> {
         let global = self.scopes.is_global();
         self.check_interface_qualifiers(qualifiers);
         if let (Some((_, at)), Some(_)) = (qualifiers.storage, qualifiers.is_const) {
-            self.error(Code::BadQualifier, at, "only a parameter can be `const` and `in`");
+            self.error(
+                Code::BadQualifier,
+                at,
+                "only a parameter can be both `const` and `in`",
+            );
         }
         match qualifiers.storage {
             None if qualifiers.is_const.is_some() => VariableKind::Const,
@@ -285,7 +292,7 @@ impl Checker<'_> {
                 let message = match storage {
                     Storage::Uniform => "a local variable cannot be `uniform`",
                     Storage::In | Storage::Out | Storage::InOut => {
-                        "only a parameter can be `in`, `out` or `inout` here"
+                        "a local variable cannot be `in`, `out` or `inout`"
                     }
                 };
                 self.error(Code::BadQualifier, at, message);
@@ -299,13 +306,13 @@ impl Checker<'_> {
         let global = self.scopes.is_global();
         for &(keyword, at) in &qualifiers.interface {
             let (wanted, whose) = match keyword {
-                Keyword::Invariant | Keyword::Layout => (Storage::Out, "outputs"),
-                _ => (Storage::In, "inputs"),
+                Keyword::Invariant | Keyword::Layout => (Storage::Out, "shader outputs"),
+                _ => (Storage::In, "shader inputs"),
             };
             let message = if !global {
-                "this qualifier is for globals only".to_owned()
+                format!("`{}` is only allowed on global variables", keyword.text())
             } else if qualifiers.storage.is_none_or(|(storage, _)| storage != wanted) {
-                format!("`{}` is for {whose} only", keyword.text())
+                format!("`{}` is only allowed on {whose}", keyword.text())
             } else {
                 continue;
             };
@@ -330,7 +337,7 @@ impl Checker<'_> {
     pub(crate) fn layout(&mut self, name: Symbol, at: Place) {
         let text = self.text(name);
         if text != "location" {
-            let message = format!("a fragment shader has no layout `{text}`");
+            let message = format!("unknown layout qualifier `{text}`");
             self.error(Code::BadQualifier, at, message);
         }
     }
@@ -344,7 +351,7 @@ impl Checker<'_> {
                 VariableKind::Output | VariableKind::BuiltIn(BuiltInVariable::FragDepth)
             )
         {
-            self.error(Code::BadQualifier, at, "only an output can be `invariant`");
+            self.error(Code::BadQualifier, at, "only a shader output can be `invariant`");
         }
     }
 
@@ -358,7 +365,10 @@ impl Checker<'_> {
         if let Some(at) = qualifiers.precision
             && !numeric
         {
-            let message = format!("{} has no precision", self.quoted_type(specifier.base));
+            let message = format!(
+                "{} cannot have a precision qualifier",
+                self.quoted_type(specifier.base)
+            );
             self.error(Code::BadQualifier, at, message);
         }
     }
@@ -369,10 +379,7 @@ impl Checker<'_> {
         if !specifier.sizes.is_empty() {
             self.error(Code::BadType, at, "an array has no default precision");
         } else if !matches!(ty, Type::FLOAT | Type::INT | Type::Sampler(_)) {
-            let message = format!(
-                "only `int`, `float` and samplers have a precision, not {}",
-                self.quoted_type(ty)
-            );
+            let message = format!("{} has no default precision", self.quoted_type(ty));
             self.error(Code::BadType, at, message);
         }
     }

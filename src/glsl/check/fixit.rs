@@ -1,6 +1,6 @@
 //! Fix-its: the replacement text that messages propose.
 
-use toyproof_diagnostic::Diagnostic;
+use toyproof_diagnostic::{Diagnostic, Fix, Span};
 
 use crate::check::{Checker, is_desktop_conversion};
 use crate::tree::{BinaryOp, ExprId, ExprKind, Scalar, Type, UnaryOp};
@@ -9,7 +9,10 @@ impl Checker<'_> {
     /// Adds to the diagnostic how to convert the expression to the type, if one fix is likely.
     pub(super) fn with_fixit(&self, diagnostic: Diagnostic, expr: ExprId, to: Type) -> Diagnostic {
         let diagnostic = match self.fixit(expr, to) {
-            Some(fixit) => diagnostic.label(fixit),
+            Some((advice, replacement)) => match self.replaced(expr, to, replacement) {
+                Some((span, replacement)) => diagnostic.fix(Fix::new(advice, span, replacement)),
+                None => diagnostic.label(advice),
+            },
             None => diagnostic,
         };
         match self.conversion_note(self.ty(expr), to) {
@@ -22,54 +25,89 @@ impl Checker<'_> {
     fn conversion_note(&self, from: Type, to: Type) -> Option<String> {
         (!self.lenient && is_desktop_conversion(from, to)).then(|| {
             format!(
-                "WebGL2 does not turn {} into {} by itself; some desktop drivers do, and so does --lenient",
+                "WebGL2 has no implicit conversion from {} to {}, unlike desktop GLSL and `--lenient`",
                 self.quoted_type(from),
                 self.quoted_type(to)
             )
         })
     }
 
-    /// The text that proposes how to convert the expression to the type.
-    pub(super) fn fixit(&self, expr: ExprId, to: Type) -> Option<String> {
+    /// Advice on how to convert the expression to the type, and the text that replaces the expression if it
+    /// is short.
+    pub(super) fn fixit(&self, expr: ExprId, to: Type) -> Option<(String, Option<String>)> {
         let from = self.ty(expr);
         let name = self.tree.type_name(to);
         let written = self.source_text(expr);
         let it = written.as_deref().unwrap_or("…");
-        Some(match (from, to) {
-            (_, Type::BOOL) if self.is_assignment(expr) => "`=` assigns; to compare write `==`".to_owned(),
-            (Type::Scalar(scalar), Type::BOOL) => {
-                format!("compare it, as in `{it} != {}`", zero(scalar))
+        let replacement = match (from, to) {
+            (_, Type::BOOL) if self.is_assignment(expr) => {
+                return Some(("`=` assigns; use `==` to compare".to_owned(), None));
             }
-            (Type::INT, Type::FLOAT) if self.is_number(expr) => format!("write `{it}.0`"),
-            (Type::INT, Type::UINT) if self.is_number(expr) => format!("write `{it}u`"),
+            (Type::Scalar(scalar), Type::BOOL) => format!("{it} != {}", zero(scalar)),
+            (Type::INT, Type::FLOAT) if self.is_number(expr) => format!("{it}.0"),
+            (Type::INT, Type::UINT) if self.is_number(expr) => format!("{it}u"),
             (Type::FLOAT, Type::INT | Type::UINT) => match self.whole_number(expr) {
-                Some(number) if to == Type::UINT => format!("write `{number}u`"),
-                Some(number) => format!("write `{number}`"),
-                None => format!("write `{name}({it})`, which drops the fraction"),
+                Some(number) if to == Type::UINT => format!("{number}u"),
+                Some(number) => number,
+                None => {
+                    let replacement = format!("{name}({it})");
+                    let advice = format!("write `{replacement}`, which drops the fraction");
+                    return Some((advice, written.map(|_| replacement)));
+                }
             },
-            (Type::Scalar(_), Type::Scalar(_) | Type::Vector(..)) => format!("write `{name}({it})`"),
+            (Type::Scalar(_), Type::Scalar(_) | Type::Vector(..)) => format!("{name}({it})"),
             (Type::Vector(a, have), Type::Vector(b, want)) if a == b && have > want => {
                 let first = &"xyzw"[..usize::from(want)];
-                match &written {
-                    Some(it) => format!("write `{it}.{first}`"),
-                    None => format!("`.{first}` behind it takes {want} of its components"),
+                if written.is_none() {
+                    return Some((
+                        format!("add `.{first}` to take the first {want} components"),
+                        None,
+                    ));
                 }
+                format!("{it}.{first}")
             }
             (Type::Vector(Scalar::Float, have), Type::Vector(Scalar::Float, want)) if have < want => {
                 let missing = (have..want).map(|index| if index == 3 { ", 1.0" } else { ", 0.0" });
-                format!("write `{name}({it}{})`", missing.collect::<String>())
+                format!("{name}({it}{})", missing.collect::<String>())
             }
-            (Type::Vector(_, have), Type::Vector(_, want)) if have == want => {
-                format!("write `{name}({it})`")
-            }
+            (Type::Vector(_, have), Type::Vector(_, want)) if have == want => format!("{name}({it})"),
             (Type::Vector(a, _), Type::Scalar(b)) if a == b => {
-                format!(
-                    "take one component, such as `{}.x`",
-                    written.as_deref().unwrap_or("(…)")
-                )
+                let it = written.as_deref().unwrap_or("(…)");
+                return Some((format!("select one component, such as `{it}.x`"), None));
             }
             _ => return None,
-        })
+        };
+        Some((format!("write `{replacement}`"), written.map(|_| replacement)))
+    }
+
+    /// The edit for a fix-it: the replacement of the whole expression if its characters are known, or of the
+    /// `=` in an assignment that is probably a comparison.
+    fn replaced(&self, expr: ExprId, to: Type, replacement: Option<String>) -> Option<(Span, String)> {
+        if let ExprKind::Assign {
+            target,
+            value,
+            op: None,
+        } = self.tree[expr].kind
+            && to == Type::BOOL
+        {
+            let [target, value] = [target, value].map(|part| self.tree[part].at);
+            let gap = Span::new(
+                target.span.file,
+                target.span.end,
+                value.span.start.max(target.span.end),
+            );
+            let is_plain = !self.tree[expr].at.is_expanded() && gap.end - gap.start <= " = ".len() as u32;
+            return is_plain.then(|| (gap, " == ".to_owned()));
+        }
+        Some((self.written_span(expr)?, replacement?))
+    }
+
+    /// The span of an expression whose characters are those of [`Self::source_text`]: without parentheses,
+    /// blanks or comments.
+    fn written_span(&self, expr: ExprId) -> Option<Span> {
+        let span = self.tree[expr].at.spelling;
+        let written = self.source_text(expr)?;
+        (written.len() == (span.end - span.start) as usize).then_some(span)
     }
 
     /// Adds a fix-it to a diagnostic about operands that an operator does not accept.
@@ -91,8 +129,24 @@ impl Checker<'_> {
                 return self.with_fixit_at(diagnostic, operand, to);
             }
         }
+        if let Some(replacement) = self.replaced_operation(op, left, right) {
+            let whole = self.tree[left].at.to(self.tree[right].at).span;
+            let advice = format!("write `{replacement}`");
+            let diagnostic = diagnostic.fix(Fix::new(advice, whole, replacement));
+            return match self.operator_note(op, left, a, b) {
+                Some((note, _)) => diagnostic.note(note),
+                None => diagnostic,
+            };
+        }
         match self.operator_note(op, left, a, b) {
-            Some(note) => diagnostic.note(note),
+            Some((note, help)) => {
+                let diagnostic = diagnostic.note(note);
+                if help.is_empty() {
+                    diagnostic
+                } else {
+                    diagnostic.help(help)
+                }
+            }
             // Vectors of different sizes: the longer one is truncated.
             None => match (a, b) {
                 (Type::Vector(x, m), Type::Vector(y, n)) if x == y && m > n => {
@@ -116,73 +170,119 @@ impl Checker<'_> {
         self.with_fixit(diagnostic.at(at.span), operand, to)
     }
 
-    /// Adds the fix-it for an operand as a related place, at the operand's spelling location.
+    /// Adds the fix-it for an operand at the operand's spelling location.
     pub(super) fn with_related_fixit(&self, diagnostic: Diagnostic, operand: ExprId, to: Type) -> Diagnostic {
         let from = self.ty(operand);
-        let label = match self.fixit(operand, to) {
-            Some(fixit) => fixit,
-            None => format!("this is {}, not {}", self.quoted_type(from), self.quoted_type(to)),
+        let place = self.tree[operand].at.spelling;
+        let diagnostic = if let Some((advice, replacement)) = self.fixit(operand, to) {
+            match self.replaced(operand, to, replacement) {
+                Some((span, replacement)) => diagnostic.fix(Fix::new(advice, span, replacement)),
+                None => diagnostic.related(place, advice),
+            }
+        } else {
+            let (to, from) = (self.quoted_type(to), self.quoted_type(from));
+            diagnostic.related(place, format!("expected {to}, found {from}"))
         };
-        let diagnostic = diagnostic.related(self.tree[operand].at.spelling, label);
         match self.conversion_note(from, to) {
             Some(note) if !diagnostic.notes.contains(&note) => diagnostic.note(note),
             _ => diagnostic,
         }
     }
 
-    /// A note on what the operator is for, if a different operation was probably intended.
-    fn operator_note(&self, op: BinaryOp, left: ExprId, a: Type, b: Type) -> Option<String> {
+    /// A note on what the operator is for, and advice, if a different operation was probably intended.
+    fn operator_note(&self, op: BinaryOp, left: ExprId, a: Type, b: Type) -> Option<(String, String)> {
         let any = |scalar: Scalar| a.scalar() == Some(scalar) || b.scalar() == Some(scalar);
-        let chained = matches!(self.tree[left].kind, ExprKind::Binary { op, .. } if op.precedence() == BinaryOp::Less.precedence());
-        let logical = match op {
-            BinaryOp::BitAnd => "&&",
-            BinaryOp::BitOr => "||",
-            _ => "^^",
-        };
-        Some(match op {
-            BinaryOp::Remainder if any(Scalar::Float) => {
-                "`%` is for integers; for floats write `mod(a, b)`".to_owned()
-            }
-            BinaryOp::BitXor if any(Scalar::Float) => {
-                "`^` combines bits; for a power write `pow(a, b)`, for a square `a * a`".to_owned()
-            }
+        let symbol = op.symbol();
+        let (note, help) = match op {
+            BinaryOp::Remainder if any(Scalar::Float) => (
+                "`%` is only defined for integers",
+                "for floats, write `mod(a, b)`",
+            ),
+            BinaryOp::BitXor if any(Scalar::Float) => (
+                "`^` is the bitwise exclusive or",
+                "for a power, write `pow(a, b)`; for a square, `a * a`",
+            ),
             BinaryOp::BitAnd | BinaryOp::BitOr | BinaryOp::BitXor if a == Type::BOOL && b == Type::BOOL => {
-                format!("`{}` combines bits; for `bool` write `{logical}`", op.symbol())
+                let note = format!("`{symbol}` is a bitwise operator of integers");
+                return Some((note, format!("for `bool` values, write `{}`", logical(op))));
             }
             BinaryOp::BitAnd | BinaryOp::BitOr | BinaryOp::ShiftLeft | BinaryOp::ShiftRight
                 if any(Scalar::Float) =>
             {
-                format!("`{}` is for integers", op.symbol())
+                return Some((format!("`{symbol}` is only defined for integers"), String::new()));
             }
             BinaryOp::And | BinaryOp::Or | BinaryOp::Xor => {
-                format!("`{}` joins two `bool`, such as `a > b`", op.symbol())
+                let note = format!("both operands of `{symbol}` must be `bool`, such as `a > b`");
+                return Some((note, String::new()));
             }
             BinaryOp::Less | BinaryOp::LessEqual | BinaryOp::Greater | BinaryOp::GreaterEqual => {
-                let symbol = op.symbol();
                 match (a, b) {
-                    (Type::BOOL, _) if chained => format!(
-                        "`a {symbol} b {symbol} c` is written `a {symbol} b && b {symbol} c`"
-                    ),
-                    (Type::Vector(..), Type::Vector(..)) => {
-                        "vectors are compared by `lessThan(a, b)` and its kin; `all(…)` or `any(…)` makes one `bool` of the \
-                         answers"
-                            .to_owned()
+                    (Type::BOOL, _) if self.is_comparison(left) => {
+                        let help = format!("write `a {symbol} b && b {symbol} c`");
+                        return Some(("comparisons cannot be chained".to_owned(), help));
                     }
+                    (Type::Vector(..), Type::Vector(..)) => (
+                        "relational operators are only defined for scalars",
+                        "use `lessThan(a, b)` or a similar function, and `all(…)` or `any(…)` to combine the components",
+                    ),
                     _ => return None,
                 }
             }
-            _ if any(Scalar::Bool) => "a `bool` is no number; `float(b)` makes 1.0 or 0.0 of it".to_owned(),
+            _ if any(Scalar::Bool) => (
+                "a `bool` is not a number",
+                "write `float(b)`, which is 1.0 or 0.0",
+            ),
             BinaryOp::Multiply => match (a, b) {
                 (Type::Matrix { columns, .. }, Type::Vector(..)) => {
-                    format!(
-                        "{} has {columns} columns and takes a `vec{columns}`",
-                        self.quoted_type(a)
-                    )
+                    let matrix = self.quoted_type(a);
+                    let note = format!("{matrix} has {columns} columns: the vector must be a `vec{columns}`");
+                    return Some((note, String::new()));
                 }
                 _ => return None,
             },
             _ => return None,
-        })
+        };
+        Some((note.to_owned(), help.to_owned()))
+    }
+
+    /// The text that replaces a whole operation if a different one was probably intended and the operands are
+    /// short.
+    fn replaced_operation(&self, op: BinaryOp, left: ExprId, right: ExprId) -> Option<String> {
+        if self.tree[left].at.to(self.tree[right].at).is_expanded() {
+            return None;
+        }
+        let text = |expr: ExprId| self.written_span(expr).and_then(|_| self.source_text(expr));
+        let [a, b] = [left, right].map(|operand| self.ty(operand));
+        match op {
+            BinaryOp::Remainder if a.scalar() == Some(Scalar::Float) && a == b => {
+                Some(format!("mod({}, {})", text(left)?, text(right)?))
+            }
+            BinaryOp::BitXor if a.scalar() == Some(Scalar::Float) && a == b => {
+                Some(format!("pow({}, {})", text(left)?, text(right)?))
+            }
+            BinaryOp::BitAnd | BinaryOp::BitOr | BinaryOp::BitXor if a == Type::BOOL && b == Type::BOOL => {
+                Some(format!("{} {} {}", text(left)?, logical(op), text(right)?))
+            }
+            _ if op.precedence() == BinaryOp::Less.precedence() => match self.tree[left].kind {
+                ExprKind::Binary {
+                    op: first,
+                    left,
+                    right: middle,
+                } if first.precedence() == op.precedence() && self.ty(middle) == b => {
+                    let [start, middle, end] = [text(left)?, text(middle)?, text(right)?];
+                    let (first, second) = (first.symbol(), op.symbol());
+                    Some(format!("{start} {first} {middle} && {middle} {second} {end}"))
+                }
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    /// Whether the expression is `a < b` or similar.
+    fn is_comparison(&self, expr: ExprId) -> bool {
+        let precedence = BinaryOp::Less.precedence();
+        matches!(self.tree[expr].kind, ExprKind::Binary { op, .. } if op.precedence() == precedence)
     }
 
     fn is_assignment(&self, expr: ExprId) -> bool {
@@ -242,6 +342,15 @@ impl Checker<'_> {
                 _ => return None,
             }
         }
+    }
+}
+
+/// The logical operator that corresponds to a bitwise one.
+fn logical(op: BinaryOp) -> &'static str {
+    match op {
+        BinaryOp::BitAnd => "&&",
+        BinaryOp::BitOr => "||",
+        _ => "^^",
     }
 }
 

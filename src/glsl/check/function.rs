@@ -107,7 +107,7 @@ impl Checker<'_> {
         let text = self.text(name);
         let allowed = self.lenient || BuiltIn::named(text).is_none();
         if !allowed {
-            let message = format!("`{text}` is declared already: it is a built-in function");
+            let message = format!("`{text}` is a built-in function and cannot be redefined");
             self.error(Code::Redeclared, at, message);
         }
         allowed
@@ -147,18 +147,25 @@ impl Checker<'_> {
         let function = &self.tree[old];
         let directions = function.parameters.iter().zip(parameters);
         let problem = if function.return_type != return_type {
-            "its result"
+            "return type"
         } else if directions
             .into_iter()
             .any(|(&old, new)| self.tree[old].kind != VariableKind::Parameter(new.direction))
         {
-            "the qualifiers of its parameters"
+            "parameter qualifiers"
         } else {
             return true;
         };
-        let message = format!("`{}` differs from an overload by {problem} only", function.name);
+        let message = format!(
+            "two declarations of `{}` differ only in their {problem}",
+            function.name
+        );
         let first = function.at.span;
-        self.report(Code::BadOverload.at(at, message).related(first, "the other"));
+        self.report(
+            Code::BadOverload
+                .at(at, message)
+                .related(first, "previously declared here"),
+        );
         false
     }
 
@@ -172,8 +179,8 @@ impl Checker<'_> {
         if self.tree[function].body.is_some() {
             let old = &self.tree[function];
             let diagnostic = Code::Redeclared
-                .at(at, format!("`{}` has a body already", old.name))
-                .related(old.at.span, "the first");
+                .at(at, format!("redefinition of `{}`", old.name))
+                .related(old.at.span, "previously defined here");
             self.report(diagnostic);
         }
         self.tree[function].at = at;
@@ -210,12 +217,12 @@ impl Checker<'_> {
         }
         if !matches!(return_type, Type::Void | Type::Error) && context.is_some_and(|context| !context.returns)
         {
-            let message = format!("`{}` never returns a value", self.tree[function].name);
-            let note = format!(
-                "end it with `return …;` and a {}, or make it `void`",
+            let message = format!("`{}` has no `return` statement", self.tree[function].name);
+            let help = format!(
+                "return a {}, or make the function `void`",
                 self.quoted_type(return_type)
             );
-            self.report(Code::BadReturn.at(at, message).note(note));
+            self.report(Code::BadReturn.at(at, message).help(help));
         }
         self.tree[function].body = Some(body);
         self.tree.items.push(Item::Function(function));
@@ -235,10 +242,7 @@ impl Checker<'_> {
         let mut reported = HashSet::new();
         for &(_, callee, at) in &calls {
             if complete && self.tree[callee].body.is_none() && reported.insert(callee) {
-                let message = format!(
-                    "`{}` is declared and called, but has no body",
-                    self.tree[callee].name
-                );
+                let message = format!("`{}` is called but not defined", self.tree[callee].name);
                 self.report(
                     Code::Undefined
                         .at(at, message)
@@ -246,13 +250,20 @@ impl Checker<'_> {
                 );
             }
         }
-        if let Some((function, at)) = self.find_recursion(&calls) {
-            let message = format!(
-                "by this call, `{}` comes to call itself",
-                self.tree[function].name
-            );
-            let note = "GLSL has no stack, so no function may call itself: use a loop";
-            self.report(Code::Recursion.at(at, message).note(note));
+        if let Some((function, caller, at)) = self.find_recursion(&calls) {
+            let name = &self.tree[function].name;
+            let message = if caller == function {
+                format!("recursive call: `{name}` calls itself")
+            } else {
+                format!(
+                    "recursive call: `{name}` calls itself through `{}`",
+                    self.tree[caller].name
+                )
+            };
+            let diagnostic = Code::Recursion
+                .at(at, message)
+                .note("GLSL does not support recursion");
+            self.report(diagnostic.help("use a loop"));
         }
         // `main` in place of `mainImage` has been reported.
         if self
@@ -269,8 +280,11 @@ impl Checker<'_> {
         None
     }
 
-    /// A recursive function and the last call of its cycle.
-    fn find_recursion(&self, calls: &[(FunctionId, FunctionId, Place)]) -> Option<(FunctionId, Place)> {
+    /// A recursive function, and the caller and the place of the last call of its cycle.
+    fn find_recursion(
+        &self,
+        calls: &[(FunctionId, FunctionId, Place)],
+    ) -> Option<(FunctionId, FunctionId, Place)> {
         let functions = self.tree.functions.len();
         let mut callees = vec![Vec::new(); functions];
         let mut callers = vec![0_usize; functions];
@@ -302,7 +316,7 @@ impl Checker<'_> {
         loop {
             let (caller, at) = call_of[function.index()]?;
             if std::mem::replace(&mut visited[function.index()], true) {
-                return Some((function, at));
+                return Some((function, caller, at));
             }
             function = caller;
         }
@@ -339,15 +353,12 @@ impl Checker<'_> {
             }
         }
         let (at, message) = match near {
-            Some(_) => (
-                near,
-                "this `mainImage` does not have the parameters that ShaderToy gives it",
-            ),
-            None => (self.end, "the shader has no function `mainImage`"),
+            Some(_) => (near, "`mainImage` has the wrong signature"),
+            None => (self.end, "missing function `mainImage`"),
         };
         let diagnostic = Code::NoMainImage.at(at?, message);
-        let calls = "ShaderToy calls `void mainImage(out vec4 fragColor, in vec2 fragCoord)` for each pixel";
-        self.report(diagnostic.note(calls));
+        let help = "define `void mainImage(out vec4 fragColor, in vec2 fragCoord)`, which ShaderToy calls for each pixel";
+        self.report(diagnostic.help(help));
         None
     }
 }

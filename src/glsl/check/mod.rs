@@ -17,7 +17,7 @@ mod types;
 
 use std::collections::HashSet;
 
-use toyproof_diagnostic::{Deadline, Diagnostic};
+use toyproof_diagnostic::{Deadline, Diagnostic, Fix};
 
 pub(crate) use self::declare::{Declarator, Qualifiers, Storage};
 use self::function::Context;
@@ -30,6 +30,7 @@ pub(crate) use self::types::{Members, Size, Specifier};
 use crate::Options;
 use crate::codes::{Code, IN_MACRO, MAX_REPORTED, push_limited};
 use crate::keywords::Interner;
+use crate::parse::LiteralError;
 use crate::preprocess::Preprocessed;
 use crate::token::Symbol;
 use crate::tree::{Expr, ExprId, ExprKind, FunctionId, Literal, Place, Scalar, StructId, Tree, Type, Value};
@@ -162,6 +163,16 @@ impl<'a> Checker<'a> {
         self.error_expr(at)
     }
 
+    /// Reports a malformed numeric literal and returns an error expression.
+    pub(crate) fn malformed_literal(&mut self, error: LiteralError, at: Place) -> ExprId {
+        let diagnostic = error.code.at(at, error.message);
+        let diagnostic = match error.replacement {
+            Some(number) => diagnostic.fix(Fix::new(format!("write `{number}`"), at.spelling, number)),
+            None => diagnostic,
+        };
+        self.refuse_with(diagnostic, at)
+    }
+
     pub(crate) fn literal(&mut self, literal: Literal, at: Place) -> ExprId {
         let ty = literal.value.ty();
         self.push(ExprKind::Literal(literal), ty, true, at)
@@ -197,7 +208,7 @@ impl<'a> Checker<'a> {
         }
         let (from, at) = (self.ty(expr), self.tree[expr].at);
         let message = format!(
-            "{role} must be {}, and this is {}",
+            "{role} must be {}, not {}",
             self.quoted_type(to),
             self.quoted_type(from)
         );
@@ -207,7 +218,7 @@ impl<'a> Checker<'a> {
 
     /// Checks a condition, which must be a `bool` (§6.2).
     pub(crate) fn condition(&mut self, expr: ExprId) -> ExprId {
-        self.expect(expr, Type::BOOL, "a condition")
+        self.expect(expr, Type::BOOL, "the condition")
     }
 }
 

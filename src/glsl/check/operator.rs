@@ -17,11 +17,10 @@ impl Checker<'_> {
             UnaryOp::BitNot => is_integral(ty),
         };
         if !fits && ty != Type::Error {
-            let message = format!("`{}` does not take {}", op.symbol(), self.quoted_type(ty));
+            let message = format!("invalid operand of `{}`: {}", op.symbol(), self.quoted_type(ty));
             let mut diagnostic = Code::BadOperands.at(at, message);
             if op == UnaryOp::Not && matches!(ty, Type::Scalar(_)) {
-                diagnostic = diagnostic
-                    .note("`!` turns a `bool` round; to ask whether a number is 0, compare it with `==`");
+                diagnostic = diagnostic.help("`!` negates a `bool`; to test whether a number is 0, use `==`");
             }
             return self.refuse_with(diagnostic, at);
         }
@@ -38,7 +37,7 @@ impl Checker<'_> {
         let (left, right) = self.promote_operands(op, left, right);
         let Some(ty) = self.binary_type(op, self.ty(left), self.ty(right)) else {
             let message = format!(
-                "`{}` does not take {} and {}",
+                "invalid operands of `{}`: {} and {}",
                 op.symbol(),
                 self.quoted_type(a),
                 self.quoted_type(b)
@@ -107,7 +106,7 @@ impl Checker<'_> {
         let (a, b) = (self.ty(yes), self.ty(no));
         if a != b && a != Type::Error && b != Type::Error {
             let message = format!(
-                "`?:` chooses between values of one type, and these are {} and {}",
+                "both results of `?:` must have the same type, not {} and {}",
                 self.quoted_type(a),
                 self.quoted_type(b)
             );
@@ -122,10 +121,7 @@ impl Checker<'_> {
         // Samplers are not values (§4.1.7). WebGL does not allow `?:` of `void`, arrays or structures.
         let webgl_has_none = matches!(a, Type::Array(_) | Type::Struct(_)) && !self.lenient;
         if a == Type::Void || self.holds_sampler(a) || webgl_has_none {
-            let message = format!(
-                "`?:` cannot choose between values of type {}",
-                self.quoted_type(a)
-            );
+            let message = format!("the results of `?:` cannot be of type {}", self.quoted_type(a));
             return self.refuse(Code::BadType, at, message);
         }
         let constant = [condition, yes, no].iter().all(|&part| self.tree[part].constant);
@@ -182,7 +178,7 @@ impl Checker<'_> {
         }
         let ty = self.ty(target);
         let value = match op {
-            None => self.expect(value, ty, "the value assigned here"),
+            None => self.expect(value, ty, "the assigned value"),
             Some(op) => self.compound_operand(op, target, value),
         };
         if ty == Type::Error || self.ty(value) == Type::Error {
@@ -204,7 +200,7 @@ impl Checker<'_> {
         }
         let at = self.tree[target].at.to(self.tree[value].at);
         let message = format!(
-            "`{}=` does not take {} and {}",
+            "invalid operands of `{}=`: {} and {}",
             op.symbol(),
             self.quoted_type(a),
             self.quoted_type(b)
@@ -221,7 +217,7 @@ impl Checker<'_> {
             return self.error_expr(at);
         }
         if ty.scalar().is_none_or(|scalar| scalar == Scalar::Bool) {
-            let message = format!("`{}` does not take {}", op.symbol(), self.quoted_type(ty));
+            let message = format!("invalid operand of `{}`: {}", op.symbol(), self.quoted_type(ty));
             return self.refuse(Code::BadOperands, at, message);
         }
         self.push(ExprKind::Step { op, postfix, target }, ty, false, at)
@@ -240,7 +236,7 @@ impl Checker<'_> {
                 ExprKind::Variable(variable) => break variable,
                 ExprKind::Swizzle { components, .. } if components.repeats() => {
                     let message = format!(
-                        "`.{}` names a component twice and cannot be {verb}",
+                        "`.{}` repeats a component and cannot be {verb}",
                         components.name()
                     );
                     self.error(Code::NotWritable, at, message);
@@ -253,7 +249,7 @@ impl Checker<'_> {
                     self.error(
                         Code::NotWritable,
                         at,
-                        format!("this is not a variable, so it cannot be {verb}"),
+                        format!("this expression cannot be {verb}: it is not a variable"),
                     );
                     return false;
                 }
@@ -262,11 +258,11 @@ impl Checker<'_> {
         let variable = &self.tree[variable];
         let ty = self.tree.type_name(variable.ty);
         let copy = format!(
-            "give a variable of your own its value and change that: `{ty} mine = {};`",
+            "copy it to a local variable and change the copy: `{ty} copy = {};`",
             variable.name
         );
-        let constant = "leave `const` out of its declaration if it is to change";
-        let (what, note) = match variable.kind {
+        let constant = "remove `const` from its declaration";
+        let (what, help) = match variable.kind {
             VariableKind::BuiltInConstant => ("a constant", None),
             VariableKind::Const => ("a constant", Some(constant.to_owned())),
             VariableKind::Parameter(Direction::ConstIn) => ("a `const` parameter", Some(constant.to_owned())),
@@ -286,7 +282,7 @@ impl Checker<'_> {
         {
             diagnostic = diagnostic.related(declared.span, "declared here");
         }
-        diagnostic.notes.extend(note);
+        diagnostic.helps.extend(help);
         self.report(diagnostic);
         false
     }

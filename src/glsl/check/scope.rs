@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use toyproof_diagnostic::nearest;
+use toyproof_diagnostic::{Diagnostic, Fix, Span, nearest};
 
 use super::Checker;
 use crate::codes::Code;
@@ -91,6 +91,16 @@ impl Scopes {
 
 // Unknown names, and suggestions for them.
 
+/// Makes an error about a name that is probably a misspelling of `near`.
+pub(super) fn did_you_mean(code: Code, at: Place, message: &str, near: Option<&str>) -> Diagnostic {
+    let Some(near) = near else {
+        return code.at(at, message);
+    };
+    let question = format!("did you mean `{near}`?");
+    code.at(at, format!("{message}; {question}"))
+        .fix(Fix::new(question, at.spelling, near))
+}
+
 impl Checker<'_> {
     /// Reports an undeclared variable, once in each function.
     pub(super) fn undeclared(&mut self, name: Symbol, at: Place) -> ExprId {
@@ -99,25 +109,42 @@ impl Checker<'_> {
         let near = nearest(text, variables)
             .or_else(|| nearest(text, functions))
             .map(str::to_owned);
-        self.report_undeclared(name, at, format!("`{text}` is not declared"), near)
+        self.report_undeclared(
+            name,
+            at,
+            None,
+            format!("`{text}` is not declared"),
+            near.as_deref(),
+        )
     }
 
     /// Reports an undeclared function, once in each function.
-    pub(super) fn undeclared_function(&mut self, name: Symbol, at: Place) -> ExprId {
+    pub(super) fn undeclared_function(&mut self, name: Symbol, at: Place, call: Place) -> ExprId {
         let text = self.text(name);
         let (variables, functions) = self.names_in_scope();
         let near = nearest(text, functions)
             .or_else(|| nearest(text, variables))
             .map(str::to_owned);
-        self.report_undeclared(name, at, format!("there is no function `{text}`"), near)
+        let is_plain = !at.is_expanded() && !call.is_expanded();
+        // The point before the `)`.
+        let end = call.span.end.saturating_sub(1);
+        let end = is_plain.then(|| Span::new(call.span.file, end, end));
+        self.report_undeclared(
+            name,
+            at,
+            end,
+            format!("unknown function `{text}`"),
+            near.as_deref(),
+        )
     }
 
     fn report_undeclared(
         &mut self,
         name: Symbol,
         at: Place,
+        call_end: Option<Span>,
         message: String,
-        near: Option<String>,
+        near: Option<&str>,
     ) -> ExprId {
         let known = self
             .function
@@ -126,20 +153,19 @@ impl Checker<'_> {
         if known || self.is_maybe_declared(name) {
             return self.error_expr(at);
         }
-        let diagnostic = match (Foreign::named(self.text(name)), near) {
-            (Some(foreign), _) => Code::Undeclared
-                .at(at, message)
-                .label(format!("write {}", foreign.replacement()))
-                .note(foreign.note()),
-            (None, Some(near)) => Code::Undeclared.at(at, format!("{message}; did you mean `{near}`?")),
-            (None, None) => Code::Undeclared.at(at, message),
+        let diagnostic = match Foreign::named(self.text(name)) {
+            Some(foreign) => {
+                let diagnostic = Code::Undeclared.at(at, message);
+                foreign.advise(diagnostic, at, call_end).note(foreign.note())
+            }
+            None => did_you_mean(Code::Undeclared, at, &message, near),
         };
         self.report(diagnostic);
         self.unknown.push((name, at));
         self.error_expr(at)
     }
 
-    /// After parsing: changes the errors about names that are declared later in the text to say so.
+    /// After parsing: changes the errors about names that are declared later in the text accordingly.
     pub(super) fn find_late_declarations(&mut self) {
         for (name, at) in std::mem::take(&mut self.unknown) {
             let late = match self.scopes.find(name) {
@@ -157,11 +183,10 @@ impl Checker<'_> {
             {
                 let text = self.interner.text(name);
                 reported.message = format!("`{text}` is used before it is declared");
-                reported
-                    .related
-                    .push((late.span, "declared here, too late".to_owned()));
-                reported.notes =
-                    vec!["a name can be used only after its declaration: move that up".to_owned()];
+                reported.related.push((late.span, "declared here".to_owned()));
+                reported.fixes.clear();
+                reported.notes.clear();
+                reported.helps = vec!["move the declaration above the first use".to_owned()];
             }
         }
     }
@@ -216,27 +241,18 @@ impl Checker<'_> {
                 Code::Undeclared
             };
             let ty = foreign.glsl_equivalent().and_then(named).unwrap_or(Type::Error);
-            self.report(
-                code.at(at, format!("there is no type `{text}`"))
-                    .label(format!("write {}", foreign.replacement()))
-                    .note(foreign.note()),
-            );
+            let diagnostic = code.at(at, format!("unknown type `{text}`"));
+            self.report(foreign.advise(diagnostic, at, None).note(foreign.note()));
             return ty;
         }
         if reserved {
-            self.error(
-                Code::ReservedWord,
-                at,
-                format!("`{text}` is a word that GLSL reserves"),
-            );
+            self.error(Code::ReservedWord, at, format!("`{text}` is a reserved word"));
             return Type::Error;
         }
         if !self.is_maybe_declared(name) {
-            let message = match nearest(text, self.type_names()) {
-                Some(near) => format!("there is no type `{text}`; did you mean `{near}`?"),
-                None => format!("there is no type `{text}`"),
-            };
-            self.error(Code::Undeclared, at, message);
+            let near = nearest(text, self.type_names());
+            let message = format!("unknown type `{text}`");
+            self.report(did_you_mean(Code::Undeclared, at, &message, near));
             self.mark_maybe_declared(name);
         }
         Type::Error

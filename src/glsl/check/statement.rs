@@ -2,6 +2,8 @@
 
 use std::collections::HashSet;
 
+use toyproof_diagnostic::grouped;
+
 use super::Checker;
 use crate::codes::Code;
 use crate::tree::{ExprId, Label, Place, Type};
@@ -23,7 +25,7 @@ impl Checker<'_> {
         let (ty, at) = (self.ty(selector), self.tree[selector].at);
         if !matches!(ty, Type::INT | Type::UINT | Type::Error) {
             let message = format!(
-                "a `switch` needs an `int` or `uint`, and this is {}",
+                "the value of a `switch` must be `int` or `uint`, not {}",
                 self.quoted_type(ty)
             );
             self.error(Code::BadSwitch, at, message);
@@ -38,7 +40,7 @@ impl Checker<'_> {
     /// Checks `case expr:`.
     pub(crate) fn case(&mut self, labels: &mut Labels, expr: ExprId) -> Label {
         let at = self.tree[expr].at;
-        let expr = self.expect(expr, labels.selector, "this label");
+        let expr = self.expect(expr, labels.selector, "the label");
         let value = self.integer(expr).filter(|_| self.tree[expr].constant);
         // All labels of one `switch` have one type, so bit patterns identify values.
         let bits = value.unwrap_or_default() as u32;
@@ -47,13 +49,14 @@ impl Checker<'_> {
                 self.error(
                     Code::NotConstant,
                     at,
-                    "a label must be an integral constant expression",
+                    "a `case` label must be an integer constant expression",
                 );
             } else if !labels.values.insert(bits) {
-                self.error(Code::BadSwitch, at, "this `switch` has that label already");
+                self.error(Code::BadSwitch, at, "duplicate `case` label");
             } else if labels.values.len() == MAX_LABELS + 1 {
                 let message = format!(
-                    "this `switch` has more than {MAX_LABELS} labels, which is more than drivers take"
+                    "this `switch` has more than {} labels, the limit of drivers",
+                    grouped(MAX_LABELS as u64)
                 );
                 self.error(Code::BadSwitch, at, message);
             }
@@ -64,7 +67,7 @@ impl Checker<'_> {
     /// Checks `default:`.
     pub(crate) fn default(&mut self, labels: &mut Labels, at: Place) -> Label {
         if std::mem::replace(&mut labels.has_default, true) {
-            self.error(Code::BadSwitch, at, "this `switch` has a `default` already");
+            self.error(Code::BadSwitch, at, "duplicate `default` label");
         }
         Label::Default
     }
@@ -107,13 +110,13 @@ impl Checker<'_> {
             .as_ref()
             .is_none_or(|context| context.breakable == 0)
         {
-            self.error(Code::MisplacedJump, at, "`break` outside of a loop or `switch`");
+            self.error(Code::MisplacedJump, at, "`break` outside a loop or `switch`");
         }
     }
 
     pub(crate) fn continue_statement(&mut self, at: Place) {
         if self.function.as_ref().is_none_or(|context| context.loops == 0) {
-            self.error(Code::MisplacedJump, at, "`continue` outside of a loop");
+            self.error(Code::MisplacedJump, at, "`continue` outside a loop");
         }
     }
 
@@ -134,7 +137,7 @@ impl Checker<'_> {
         match value {
             None if !matches!(wanted, Type::Void | Type::Error) => {
                 let message = format!(
-                    "`{name}` returns {}, and this `return` has no value",
+                    "missing return value: `{name}` returns {}",
                     self.quoted_type(wanted)
                 );
                 self.error(Code::BadReturn, at, message);
@@ -143,14 +146,14 @@ impl Checker<'_> {
             None => None,
             Some(_) if wanted == Type::Void => {
                 let given = value.map_or(Type::Error, |value| self.ty(value));
-                let message = format!("`{name}` is `void` and returns no value");
+                let message = format!("`{name}` is `void` and cannot return a value");
                 let mut diagnostic = Code::BadReturn.at(at, message);
                 if given != Type::Error {
-                    let note = format!(
-                        "write `return;`, or {} before its name instead of `void`",
+                    let help = format!(
+                        "write `return;`, or make the return type {}",
                         self.quoted_type(given)
                     );
-                    diagnostic = diagnostic.note(note);
+                    diagnostic = diagnostic.help(help);
                 }
                 self.report(diagnostic);
                 None
@@ -161,7 +164,7 @@ impl Checker<'_> {
                 }
                 let given = self.ty(value);
                 let message = format!(
-                    "`{name}` returns {}, and this is {}",
+                    "the return value of `{name}` must be {}, not {}",
                     self.quoted_type(wanted),
                     self.quoted_type(given)
                 );

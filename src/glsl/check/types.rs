@@ -2,6 +2,8 @@
 
 use std::collections::HashMap;
 
+use toyproof_diagnostic::grouped;
+
 use super::Checker;
 use super::scope::Entity;
 use crate::MAX_NESTING;
@@ -49,19 +51,20 @@ impl Checker<'_> {
         }
         let problem = if !matches!(ty, Type::INT | Type::UINT) {
             format!(
-                "the size of an array must be `int` or `uint`, and this is {}",
+                "the array size must be `int` or `uint`, not {}",
                 self.quoted_type(ty)
             )
         } else if !self.tree[expr].constant {
-            "the size of an array must be a constant expression".to_owned()
+            "the array size must be a constant expression".to_owned()
         } else {
             match self.integer(expr) {
                 Some(size @ 1..=MAX_ARRAY_SIZE) => return Size::Of(size as u32),
-                Some(size @ ..=0) => format!("an array cannot have {size} elements"),
+                Some(size @ ..=0) => format!("the array size must be at least 1, not {size}"),
                 Some(size) => {
-                    format!("an array of {size} elements is more than WebGL takes: {MAX_ARRAY_SIZE}")
+                    let [size, limit] = [size, MAX_ARRAY_SIZE].map(|count| grouped(count.unsigned_abs()));
+                    format!("array too large: {size} elements, the limit of WebGL is {limit}")
                 }
-                None => "the size of this array cannot be told".to_owned(),
+                None => "the array size cannot be evaluated".to_owned(),
             }
         };
         let mut diagnostic = Code::BadArraySize.at(at, problem);
@@ -72,7 +75,7 @@ impl Checker<'_> {
             )
         {
             let (ty, name) = (self.tree.type_name(ty), &self.tree[variable].name);
-            diagnostic = diagnostic.note(format!("`const {ty} {name} = …;` makes it one"));
+            diagnostic = diagnostic.help(format!("make `{name}` a constant: `const {ty} {name} = …;`"));
         }
         self.report(diagnostic);
         Size::Broken
@@ -82,11 +85,15 @@ impl Checker<'_> {
     /// determines the sizes that are omitted.
     pub(super) fn array_type(&mut self, base: Type, sizes: &[Size], given: Option<Type>, at: Place) -> Type {
         if sizes.len() > 1 && !self.lenient {
-            self.error(Code::ArrayOfArrays, at, "GLSL ES 3.00 has no arrays of arrays");
+            self.error(
+                Code::ArrayOfArrays,
+                at,
+                "arrays of arrays are not supported in GLSL ES 3.00",
+            );
             return Type::Error;
         }
         if !sizes.is_empty() && base == Type::Void {
-            self.error(Code::BadType, at, "there are no arrays of `void`");
+            self.error(Code::BadType, at, "an array cannot have elements of type `void`");
             return Type::Error;
         }
         if !self.check_dimensions(base, sizes.len(), at) {
@@ -109,7 +116,7 @@ impl Checker<'_> {
                 (Size::Of(size), _) | (Size::Inferred(_), Some(size)) => size,
                 (Size::Inferred(_), None) if given == Some(Type::Error) => return Type::Error,
                 (Size::Inferred(at), None) => {
-                    self.error(Code::BadArraySize, at, "this array has no size");
+                    self.error(Code::BadArraySize, at, "missing array size");
                     return Type::Error;
                 }
                 (Size::Broken, _) => return Type::Error,
@@ -169,13 +176,13 @@ impl Checker<'_> {
         let all: Vec<_> = sizes.iter().chain(&specifier.sizes).copied().collect();
         let ty = self.array_type(specifier.base, &all, None, at);
         if ty == Type::Void {
-            self.error(Code::BadType, at, "a member cannot be `void`");
+            self.error(Code::BadType, at, "a structure member cannot be `void`");
             return;
         }
         if let Some(first) = members.places.get(&name) {
             let diagnostic = Code::Redeclared
-                .at(at, format!("this structure has two members `{text}`"))
-                .related(first.span, "the first");
+                .at(at, format!("duplicate member `{text}`"))
+                .related(first.span, "previously declared here");
             self.report(diagnostic);
         } else {
             members.places.insert(name, at);
@@ -247,7 +254,7 @@ impl Checker<'_> {
             MAX_STRUCT_NESTING
         };
         if whole.structs > limit || whole.depth > MAX_NESTING {
-            let message = format!("structures stand more than {limit} deep in each other here");
+            let message = format!("structures nested more than {limit} levels deep");
             self.error(Code::TooDeep, at, message);
             // Reported once: outer structures get an empty extent for this one.
             return Extent {
@@ -269,7 +276,10 @@ impl Checker<'_> {
         if self.extent(ty).scalars <= MAX_SCALARS {
             return ty;
         }
-        let message = format!("{} is larger than WebGL takes: 16 MB", self.quoted_type(ty));
+        let message = format!(
+            "{} exceeds 16 MB, the limit of WebGL for a variable",
+            self.quoted_type(ty)
+        );
         self.error(Code::BadArraySize, at, message);
         Type::Error
     }
@@ -278,7 +288,7 @@ impl Checker<'_> {
     fn check_dimensions(&mut self, element: Type, dimensions: usize, at: Place) -> bool {
         let fits = self.extent(element).depth + dimensions <= MAX_NESTING;
         if !fits {
-            self.error(Code::TooDeep, at, "this array has too many dimensions");
+            self.error(Code::TooDeep, at, "too many array dimensions");
         }
         fits
     }

@@ -58,18 +58,18 @@ pub(super) fn pair(
 fn diagnose(fault: &Fault, tokens: &[Token]) -> Diagnostic {
     match *fault {
         Fault::NeverClosed { open, before } => {
-            let diagnostic = Code::Unclosed.at(tokens[open].at, "this `{` is never closed");
+            let diagnostic = Code::Unclosed.at(tokens[open].at, "unclosed `{`");
             match tokens[before].kind {
-                TokenKind::End => diagnostic.note("the text ends before its `}`"),
-                _ => diagnostic.related(tokens[before].at.span, "its `}` is missing before this"),
+                TokenKind::End => diagnostic.note("the file ends before the matching `}`"),
+                _ => diagnostic.related(tokens[before].at.span, "expected `}` before this"),
             }
         }
         Fault::NeverOpened { after, close } => Code::Unclosed
-            .at(tokens[close].at, "this `}` has no `{`")
-            .related(tokens[after].at.span, "is the `{` missing after this?"),
+            .at(tokens[close].at, "unmatched `}`")
+            .related(tokens[after].at.span, "is a `{` missing after this?"),
         Fault::Stray { close } => Code::Unclosed
-            .at(tokens[close].at, "this `}` has no `{`")
-            .note("remove it, or put the `{` where it belongs"),
+            .at(tokens[close].at, "unmatched `}`")
+            .help("remove it, or add the missing `{`"),
     }
 }
 

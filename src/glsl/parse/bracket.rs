@@ -1,6 +1,6 @@
 //! Unbalanced parentheses and square brackets: reported and repaired, so that the rest can be parsed.
 
-use toyproof_diagnostic::{Diagnostic, File, Span};
+use toyproof_diagnostic::{Diagnostic, File, Fix, Span};
 
 use super::brace;
 use super::recover::Layout;
@@ -173,10 +173,10 @@ impl Pairing {
                 } else {
                     "["
                 };
-                let message = format!("this `{}` has no `{opening}`", punctuator.text());
-                let note = format!("remove it, or put the `{opening}` where it belongs");
+                let message = format!("unmatched `{}`", punctuator.text());
+                let help = format!("remove it, or add the missing `{opening}`");
                 self.reported
-                    .push(Code::Unclosed.at(token.at, message).note(note));
+                    .push(Code::Unclosed.at(token.at, message).help(help));
                 self.push_stray(token);
             }
         }
@@ -193,13 +193,20 @@ impl Pairing {
         let Some(right) = closing(bracket) else {
             return;
         };
-        let (open_text, right_text) = (bracket.text(), right.text());
-        let message = format!("`{}` does not close `{open_text}`", punctuator.text());
+        let right_text = right.text();
+        let message = format!(
+            "mismatched bracket: expected `{right_text}`, found `{}`",
+            punctuator.text()
+        );
         self.reported.push(
             Code::Unclosed
                 .at(token.at, message)
-                .label(format!("write `{right_text}` here"))
-                .related(open.at.span, "opened here"),
+                .fix(Fix::new(
+                    format!("write `{right_text}`"),
+                    token.at.spelling,
+                    right_text,
+                ))
+                .related(open.at.span, format!("`{}` opened here", bracket.text())),
         );
         self.done.push(Token {
             kind: TokenKind::Punctuator(right),
@@ -250,12 +257,12 @@ impl Pairing {
     fn report_misplaced(&mut self, token: Token, punctuator: Punctuator) {
         let diagnostic = Code::Syntax.at(
             token.at,
-            format!("`{}` cannot stand in parentheses", punctuator.text()),
+            format!("unexpected `{}` inside brackets", punctuator.text()),
         );
         let diagnostic = match (punctuator, self.open.last()) {
             (Punctuator::Semicolon, Some(open)) => diagnostic
                 .related(open.token.at.span, "opened here")
-                .note("arguments are separated by `,`"),
+                .fix(Fix::new("separate arguments with `,`", token.at.spelling, ",")),
             (_, Some(open)) => diagnostic.related(open.token.at.span, "opened here"),
             _ => diagnostic,
         };
@@ -282,12 +289,12 @@ impl Pairing {
         let Some(closing) = closing(bracket) else {
             return;
         };
-        let message = format!("this `{}` is never closed", bracket.text());
+        let message = format!("unclosed `{}`", bracket.text());
         let diagnostic = Code::Unclosed.at(token.at, message);
         self.reported.push(if next.kind == TokenKind::End {
-            diagnostic.note(format!("the text ends before its `{}`", closing.text()))
+            diagnostic.note(format!("the file ends before the matching `{}`", closing.text()))
         } else {
-            let label = format!("its `{}` is missing before this", closing.text());
+            let label = format!("expected `{}` before this", closing.text());
             diagnostic.related(next.at.span, label)
         });
         self.done.push(missing(closing, next));

@@ -28,7 +28,7 @@ impl Parser<'_> {
             return self.halt(
                 Code::BadQualifier,
                 at,
-                "ShaderToy has nothing to bind to an interface block",
+                "interface blocks are not supported: ShaderToy binds none",
             );
         }
         let specifier = self.type_specifier()?;
@@ -80,13 +80,13 @@ impl Parser<'_> {
         self.eat_empty_declarator();
         let (name, at) = self.name()?;
         if self.is(Punctuator::LeftParen) {
-            let diagnostic = Code::Syntax.at(at, "a function cannot be declared inside of a function");
+            let diagnostic = Code::Syntax.at(at, "a function cannot be declared inside a function");
             let (ty, name) = (
                 self.check.tree.type_name(specifier.base),
                 self.interner.text(name),
             );
-            let note = format!("a variable gets its value by `{ty} {name} = {ty}(…);`");
-            return self.halt_with(diagnostic.note(note));
+            let help = format!("to initialize a variable, write `{ty} {name} = {ty}(…);`");
+            return self.halt_with(diagnostic.help(help));
         }
         self.declarators(&qualifiers, &specifier, name, at)
     }
@@ -203,7 +203,7 @@ impl Parser<'_> {
         self.expect(Punctuator::LeftBrace)?;
         if self.is(Punctuator::RightBrace) {
             let at = self.token().at;
-            return self.halt(Code::Syntax, at, "a structure has at least one member");
+            return self.halt(Code::Syntax, at, "a structure must have at least one member");
         }
         let mut members = Members::default();
         let mut complete = true;
@@ -228,14 +228,14 @@ impl Parser<'_> {
         let qualifiers = self.qualifiers()?;
         if let Some(at) = qualifiers.other_than_precision() {
             self.check
-                .report(Code::BadQualifier.at(at, "a member has no qualifier but its precision"));
+                .report(Code::BadQualifier.at(at, "a structure member can only have a precision qualifier"));
         }
         if self.keyword() == Some(Keyword::Struct) {
             let at = self.token().at;
             return self.halt(
                 Code::Syntax,
                 at,
-                "a structure cannot be declared inside of a structure",
+                "a structure cannot be declared inside a structure",
             );
         }
         let specifier = self.named_type()?;
@@ -334,7 +334,7 @@ impl Parser<'_> {
             };
             self.next();
             if rank <= last {
-                let message = format!("`{}` cannot stand after what is before it", keyword.text());
+                let message = format!("qualifier `{}` is out of order or repeated", keyword.text());
                 self.check.report(Code::BadQualifier.at(at, message));
             }
             last = rank;
@@ -384,7 +384,7 @@ impl Parser<'_> {
     ) -> Parsed<()> {
         if let Some(at) = qualifiers.other_than_precision() {
             self.check
-                .report(Code::BadQualifier.at(at, "a result has no qualifier but its precision"));
+                .report(Code::BadQualifier.at(at, "a return type can only have a precision qualifier"));
         }
         let parameters = self.parameters()?;
         let function = self.check.declare_function(result, name, at, &parameters);
@@ -470,7 +470,7 @@ impl Parser<'_> {
         let interface = qualifiers.interface.first().map(|&(_, at)| at);
         let wrong = match (qualifiers.storage, qualifiers.is_const, interface) {
             (_, _, Some(at)) | (Some((Storage::Uniform, at)), _, _) => {
-                Some((at, "a parameter can be `const`, `in`, `out` or `inout`"))
+                Some((at, "a parameter can only be `const`, `in`, `out` or `inout`"))
             }
             (Some((Storage::Out | Storage::InOut, at)), Some(_), None) => {
                 Some((at, "a `const` parameter can only be `in`"))

@@ -134,7 +134,7 @@ impl Parser<'_> {
                 self.next();
                 match super::expression::literal(self.interner.text(text)) {
                     Ok(literal) => Ok(self.check.literal(literal, token.at)),
-                    Err((code, message)) => Ok(self.check.refuse(code, token.at, message)),
+                    Err(error) => Ok(self.check.malformed_literal(error, token.at)),
                 }
             }
             TokenKind::Punctuator(Punctuator::LeftParen) => {
@@ -180,10 +180,10 @@ impl Parser<'_> {
         if !self.is(Punctuator::LeftParen) {
             let name = self.check.tree.type_name(specifier.base);
             if self.is(Punctuator::RightParen) && !self.is_reported() {
-                let message = format!("GLSL has no casts: write `{name}(…)` around the value");
-                return self.halt(Code::Syntax, specifier.at, message);
+                let diagnostic = Code::Syntax.at(specifier.at, "C-style casts are not supported");
+                return self.halt_with(diagnostic.help(format!("write `{name}(…)` around the value")));
             }
-            return self.unexpected(&format!("`(`, for `{name}` is a type"));
+            return self.unexpected(&format!("`(` after the type `{name}`"));
         }
         let start = self.at;
         let (arguments, close) = self.arguments()?;
@@ -215,8 +215,27 @@ impl Parser<'_> {
 
 // Numeric literals (§4.1.3, §4.1.4).
 
+/// The error in a numeric literal.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct LiteralError {
+    pub(crate) code: Code,
+    pub(crate) message: String,
+    /// The literal that was probably intended.
+    pub(crate) replacement: Option<String>,
+}
+
+impl LiteralError {
+    fn malformed(text: &str) -> Self {
+        Self {
+            code: Code::BadNumber,
+            message: format!("malformed number `{text}`"),
+            replacement: None,
+        }
+    }
+}
+
 /// The value of a numeric literal, or the error in it.
-pub(super) fn literal(text: &str) -> Result<Literal, (Code, String)> {
+pub(super) fn literal(text: &str) -> Result<Literal, LiteralError> {
     let value = if is_float(text) {
         float(text)
     } else {
@@ -233,17 +252,17 @@ fn is_float(text: &str) -> bool {
     !hexadecimal && text.contains(['.', 'e', 'E'])
 }
 
-fn float(text: &str) -> Result<Value, (Code, String)> {
+fn float(text: &str) -> Result<Value, LiteralError> {
     let digits = text.strip_suffix(['f', 'F']).unwrap_or(text);
     // Forms that Rust accepts but GLSL does not (`inf`, `1`) do not reach this. As in WebGL, a number that is
     // too large is infinity.
     match digits.parse() {
         Ok(value) => Ok(Value::Float(value)),
-        Err(_) => Err((Code::BadNumber, format!("`{text}` is no number"))),
+        Err(_) => Err(LiteralError::malformed(text)),
     }
 }
 
-fn integer(text: &str) -> Result<Value, (Code, String)> {
+fn integer(text: &str) -> Result<Value, LiteralError> {
     let (digits, unsigned) = match text.strip_suffix(['u', 'U']) {
         Some(digits) => (digits, true),
         None => (text, false),
@@ -254,25 +273,35 @@ fn integer(text: &str) -> Result<Value, (Code, String)> {
         None => (digits, 10),
     };
     if digits.is_empty() || !digits.chars().all(|c| c.is_digit(radix)) {
-        let message = if digits
+        let is_float = digits
             .strip_suffix(['f', 'F'])
-            .is_some_and(|rest| rest.parse::<u64>().is_ok())
-        {
+            .is_some_and(|rest| rest.parse::<u64>().is_ok());
+        let (message, replacement) = if is_float {
             let number = text.trim_end_matches(['f', 'F']);
-            format!("`{text}` needs a point to be a `float`: write `{number}.0`")
+            let message = format!("`float` literal `{text}` has no decimal point");
+            (message, Some(format!("{number}.0")))
         } else if radix == 8 && digits.chars().all(|c| c.is_ascii_digit()) {
             let number = text.trim_start_matches('0');
-            format!("`{text}` begins with 0, which makes it octal: write `{number}`")
+            let message = format!("invalid digit in `{text}`: a leading 0 makes it octal");
+            (message, Some(number.to_owned()))
         } else {
-            format!("`{text}` is no number")
+            return Err(LiteralError::malformed(text));
         };
-        return Err((Code::BadNumber, message));
+        return Err(LiteralError {
+            code: Code::BadNumber,
+            message,
+            replacement,
+        });
     }
     match u32::from_str_radix(digits, radix) {
         // An `int` takes the bit pattern: 0xFFFFFFFF is −1 (§4.1.3).
         Ok(bits) if unsigned => Ok(Value::Uint(bits)),
         Ok(bits) => Ok(Value::Int(bits.cast_signed())),
-        Err(_) => Err((Code::NumberRange, format!("`{text}` does not fit 32 bits"))),
+        Err(_) => Err(LiteralError {
+            code: Code::NumberRange,
+            message: format!("integer literal `{text}` does not fit in 32 bits"),
+            replacement: None,
+        }),
     }
 }
 

@@ -11,9 +11,10 @@ mod expression;
 mod recover;
 mod statement;
 
-use toyproof_diagnostic::{Diagnostic, File, Span};
+use toyproof_diagnostic::{Diagnostic, File, Fix, Span};
 
 pub(super) use self::bracket::balance;
+pub(crate) use self::expression::LiteralError;
 use self::recover::Layout;
 use crate::MAX_NESTING;
 use crate::check::Checker;
@@ -139,11 +140,14 @@ impl<'a> Parser<'a> {
         let end = previous.at.span.end;
         let at = Place::plain(Span::new(previous.at.span.file, end, end));
         let message = match self.spelling(previous) {
-            Some(text) => format!("`;` is missing after `{text}`"),
-            None => "`;` is missing".to_owned(),
+            Some(text) => format!("expected `;` after `{text}`"),
+            None => "expected `;`".to_owned(),
         };
-        self.check
-            .report(Code::Syntax.at(at, message).label("put a `;` here"));
+        self.check.report(
+            Code::Syntax
+                .at(at, message)
+                .fix(Fix::new("add `;`", at.span, ";")),
+        );
         Ok(())
     }
 
@@ -204,7 +208,7 @@ impl<'a> Parser<'a> {
             }
             _ => match self.spelling(self.token()) {
                 Some(text) => format!("`{text}`"),
-                None => "the end of the text".to_owned(),
+                None => "the end of the file".to_owned(),
             },
         };
         let diagnostic = Code::Syntax.at(at, format!("expected {wanted}, found {found}"));
@@ -214,12 +218,10 @@ impl<'a> Parser<'a> {
     /// The error about a reserved word.
     fn reserved(&self, word: Symbol, at: Place) -> Diagnostic {
         let text = self.interner.text(word);
-        let diagnostic = Code::ReservedWord.at(at, format!("`{text}` is a word that GLSL reserves"));
+        let diagnostic = Code::ReservedWord.at(at, format!("`{text}` is a reserved word"));
         match Foreign::named(text) {
-            Some(foreign) => diagnostic
-                .label(format!("write {}", foreign.replacement()))
-                .note(foreign.note()),
-            None => diagnostic.label("choose another name"),
+            Some(foreign) => foreign.advise(diagnostic, at, None).note(foreign.note()),
+            None => diagnostic.label("choose a different name"),
         }
     }
 
@@ -251,7 +253,7 @@ impl<'a> Parser<'a> {
             return self.halt(
                 Code::TooDeep,
                 at,
-                format!("this is nested more than {MAX_NESTING} deep"),
+                format!("nesting deeper than {MAX_NESTING} levels"),
             );
         }
         if self.check.deadline.is_over() {

@@ -1,6 +1,6 @@
 //! Error recovery: skipping text that cannot be parsed, source layout, and hints about foreign syntax.
 
-use toyproof_diagnostic::{Diagnostic, File};
+use toyproof_diagnostic::{Diagnostic, File, Fix, Span};
 
 use super::bracket::closing;
 use super::{Halt, Parsed, Parser};
@@ -235,19 +235,22 @@ impl Parser<'_> {
         let previous = self.at.checked_sub(1).and_then(|at| self.tokens.get(at));
         match (previous.map(|token| token.kind), self.kind()) {
             (_, TokenKind::Word(symbol)) => match Foreign::named(self.interner.text(symbol)) {
-                Some(foreign) => diagnostic.label(format!("write {}", foreign.replacement())),
+                Some(foreign) => foreign.advise(diagnostic, self.token().at, None),
                 None => diagnostic,
             },
             (Some(before), TokenKind::Punctuator(LeftBrace)) if self.comes_before_value(before) => diagnostic
-                .note(
-                    "GLSL ES has no lists in braces: write `vec3(…)` for a vector, `float[](…)` for an array",
-                ),
+                .help("GLSL ES has no initializer lists: write `vec3(…)` for a vector, `float[](…)` for an array"),
             (Some(TokenKind::Punctuator(Assign)), TokenKind::Punctuator(comparison @ (Less | Greater))) => {
-                diagnostic.label(format!("write `{}=`", comparison.text()))
+                let meant = format!("{}=", comparison.text());
+                let both = self.tokens[self.at - 1].at.spelling.to(self.token().at.spelling);
+                diagnostic.fix(Fix::new(format!("write `{meant}`"), both, meant))
             }
             (Some(TokenKind::Punctuator(Comma)), TokenKind::Number(_)) => {
                 match self.decimal_comma(self.at - 1) {
-                    Some(number) => diagnostic.label(format!("write `{number}`: GLSL has a decimal point")),
+                    Some((number, span)) => {
+                        let message = format!("write `{number}`: the decimal separator is a point");
+                        diagnostic.fix(Fix::new(message, span, number))
+                    }
                     None => diagnostic,
                 }
             }
@@ -280,15 +283,17 @@ impl Parser<'_> {
     pub(super) fn report_foreign_else_if(&mut self) {
         let token = self.token();
         let text = self.spelling(token).unwrap_or_default();
-        let diagnostic = Code::Syntax.at(token.at, format!("GLSL has no `{text}`"));
+        let diagnostic = Code::Syntax.at(token.at, format!("`{text}` is not a GLSL keyword"));
         // Errors in the preceding arm must not suppress this one.
         self.end_unit();
-        self.check.report(diagnostic.label("write `else if`"));
+        self.check
+            .report(diagnostic.fix(Fix::new("write `else if`", token.at.spelling, "else if")));
         self.end_unit();
     }
 
-    /// The decimal number that two integers with a comma but no space between them probably stand for.
-    fn decimal_comma(&self, comma: usize) -> Option<String> {
+    /// The decimal number that two integers with a comma but no space between them probably stand for, and their
+    /// span.
+    fn decimal_comma(&self, comma: usize) -> Option<(String, Span)> {
         let three = self.tokens.get(comma.checked_sub(1)?..comma + 2)?;
         let adjoin = |pair: &[Token]| pair[0].at.spelling.end == pair[1].at.spelling.start;
         let is_comma = three[1].kind == TokenKind::Punctuator(Punctuator::Comma);
@@ -301,7 +306,8 @@ impl Parser<'_> {
         });
         let (whole, fraction) = (whole?, fraction?);
         let is_whole = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
-        (is_whole(whole) && is_whole(fraction)).then(|| format!("{whole}.{fraction}"))
+        let span = three[0].at.spelling.to(three[2].at.spelling);
+        (is_whole(whole) && is_whole(fraction)).then(|| (format!("{whole}.{fraction}"), span))
     }
 
     /// Adds a note about a decimal comma to the last error about a list of arguments, if an error was
@@ -321,12 +327,11 @@ impl Parser<'_> {
         };
         let is_mixed = commas().any(|index| is_spaced(index) || has_point(index - 1) || has_point(index + 1));
         let meant = commas().find_map(|comma| self.decimal_comma(comma));
-        if let Some(number) = meant.filter(|_| is_mixed)
+        if let Some((number, span)) = meant.filter(|_| is_mixed)
             && let Some(error) = self.check.errors.pop()
         {
-            let comma = number.replace('.', ",");
-            let note = format!("is `{comma}` one number? write `{number}`: GLSL has a decimal point");
-            self.check.errors.push(error.note(note));
+            let message = format!("write `{number}` if this is one number");
+            self.check.errors.push(error.fix(Fix::new(message, span, number)));
         }
     }
 }

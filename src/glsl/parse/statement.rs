@@ -89,14 +89,16 @@ impl Parser<'_> {
                 self.end(StatementKind::Expression(expr))?
             }
             Keyword::Case | Keyword::Default => {
-                self.check
-                    .misplaced_label(at, "a label stands directly in a `switch` or nowhere");
+                self.check.misplaced_label(
+                    at,
+                    "`case` and `default` labels must be directly inside a `switch`",
+                );
                 return Err(super::Halt);
             }
             Keyword::Else => {
-                let diagnostic = Code::Syntax.at(at, "this `else` has no `if`");
-                let note = "between `if (…)` and `else` stands one statement, or a block in `{ }`";
-                return self.halt_with(diagnostic.note(note));
+                let diagnostic = Code::Syntax.at(at, "`else` without a matching `if`");
+                let help = "put several statements between `if (…)` and `else` in `{ }`";
+                return self.halt_with(diagnostic.help(help));
             }
             _ => return Ok(None),
         }))
@@ -263,7 +265,10 @@ impl Parser<'_> {
             let at = self.token().at;
             if !matches!(self.keyword(), Some(Keyword::Case | Keyword::Default)) {
                 if cases.is_empty() {
-                    self.check.misplaced_label(at, "a `switch` begins with a label");
+                    self.check.misplaced_label(
+                        at,
+                        "expected a `case` or `default` label at the start of a `switch`",
+                    );
                     cases.push(Case {
                         labels: Vec::new(),
                         body: Block::new(),
@@ -291,7 +296,7 @@ impl Parser<'_> {
         if bare {
             let close = self.tokens[self.at - 1].at;
             self.check
-                .misplaced_label(close, "a statement must follow the last label of a `switch`");
+                .misplaced_label(close, "expected a statement after the last label of a `switch`");
         }
         Ok(cases)
     }

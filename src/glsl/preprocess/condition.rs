@@ -65,7 +65,7 @@ impl Preprocessor<'_> {
         self.open(outer, active, at);
         match name {
             _ if !outer => Ok(()),
-            None => Code::MalformedDirective.refuse(at, "the name of a macro is missing here"),
+            None => Code::MalformedDirective.refuse(at, "expected the name of a macro"),
             Some(_) => expect_end_of_directive(&line[1..]),
         }
     }
@@ -107,7 +107,7 @@ impl Preprocessor<'_> {
 
     pub(super) fn on_endif(&mut self, line: &[PpToken], at: Place) -> Result<(), Box<Diagnostic>> {
         match self.groups.pop() {
-            None => Code::UnbalancedCondition.refuse(at, "this `#endif` has no `#if`"),
+            None => Code::UnbalancedCondition.refuse(at, "`#endif` without `#if`"),
             Some(group) if group.outer => expect_end_of_directive(line),
             Some(_) => Ok(()),
         }
@@ -130,11 +130,11 @@ impl Preprocessor<'_> {
     /// The innermost group, which starts its next branch.
     fn branch(&mut self, at: Place, name: &str) -> Result<&mut Group, Box<Diagnostic>> {
         match self.groups.last_mut() {
-            None => Code::UnbalancedCondition.refuse(at, format!("this `{name}` has no `#if`")),
+            None => Code::UnbalancedCondition.refuse(at, format!("`{name}` without `#if`")),
             Some(group) if group.last => Err(Box::new(
                 Code::UnbalancedCondition
-                    .at(at, format!("this `{name}` follows an `#else`"))
-                    .related(group.at.span, "of this"),
+                    .at(at, format!("`{name}` after `#else`"))
+                    .related(group.at.span, "this `#if` already has an `#else`"),
             )),
             Some(group) => Ok(group),
         }
@@ -151,7 +151,7 @@ impl Preprocessor<'_> {
         let (value, rest) = self.constant(&tokens, at)?;
         match rest {
             [] => Ok(value != 0),
-            [first, ..] => Code::BadCondition.refuse(first.at, "an operator is missing here"),
+            [first, ..] => Code::BadCondition.refuse(first.at, "expected an operator"),
         }
     }
 
@@ -176,10 +176,13 @@ impl Preprocessor<'_> {
                     (name, after)
                 }
                 [name, after @ ..] => (name, after),
-                [] => return Code::BadCondition.refuse(token.at, "`defined` needs the name of a macro"),
+                [] => {
+                    return Code::BadCondition
+                        .refuse(token.at, "expected the name of a macro after `defined`");
+                }
             };
             let TokenKind::Word(name) = name.kind else {
-                return Code::BadCondition.refuse(token.at, "`defined` needs the name of a macro");
+                return Code::BadCondition.refuse(token.at, "expected the name of a macro after `defined`");
             };
             rest = after;
             let value = self
@@ -242,7 +245,9 @@ impl Evaluator<'_, '_> {
             let right = self.binary(op.precedence() + 1, evaluates_right)?;
             left = match compute(op, left, right) {
                 Some(value) => value,
-                None if is_evaluated => return Code::BadCondition.refuse(at, "division by zero"),
+                None if is_evaluated => {
+                    return Code::BadCondition.refuse(at, "division by zero in a preprocessor condition");
+                }
                 None => 0,
             };
         }
@@ -251,25 +256,32 @@ impl Evaluator<'_, '_> {
 
     fn unary(&mut self, is_evaluated: bool) -> Result<i64, Box<Diagnostic>> {
         let Some((&token, rest)) = self.rest.split_first() else {
-            return Code::BadCondition.refuse(self.at, "the condition ends too early");
+            return Code::BadCondition.refuse(self.at, "expected an integer expression");
         };
         self.rest = rest;
         let op = match token.kind {
             TokenKind::Number(number) => return integer(self.preprocessor.interner.text(number), token.at),
             TokenKind::Word(_) if !is_evaluated => return Ok(0),
             TokenKind::Word(name) => {
-                let message = format!("`{}` is no macro", self.preprocessor.interner.text(name));
-                return Code::BadCondition.refuse(token.at, message);
+                let name = self.preprocessor.interner.text(name);
+                let message = format!("`{name}` is not a macro");
+                let diagnostic = Code::BadCondition.at(token.at, message);
+                return Err(Box::new(
+                    diagnostic.help(format!("define it, or test `defined({name})` first")),
+                ));
             }
             TokenKind::Punctuator(Punctuator::LeftParen) => None,
             TokenKind::Punctuator(Punctuator::Plus) => Some(UnaryOp::Plus),
             TokenKind::Punctuator(Punctuator::Minus) => Some(UnaryOp::Minus),
             TokenKind::Punctuator(Punctuator::Not) => Some(UnaryOp::Not),
             TokenKind::Punctuator(Punctuator::Tilde) => Some(UnaryOp::BitNot),
-            _ => return Code::BadCondition.refuse(token.at, "an integer is missing here"),
+            _ => return Code::BadCondition.refuse(token.at, "expected an integer"),
         };
         if self.depth == MAX_CONDITION_NESTING {
-            return Code::TooDeep.refuse(token.at, "this condition is nested too deep");
+            return Code::TooDeep.refuse(
+                token.at,
+                format!("condition nested more than {MAX_CONDITION_NESTING} levels deep"),
+            );
         }
         self.depth += 1;
         let value = if let Some(op) = op {
@@ -286,7 +298,7 @@ impl Evaluator<'_, '_> {
                 Some((close, rest)) if close.kind == TokenKind::Punctuator(Punctuator::RightParen) => {
                     self.rest = rest;
                 }
-                _ => return Code::BadCondition.refuse(token.at, "this `(` has no `)`"),
+                _ => return Code::BadCondition.refuse(token.at, "unclosed `(`"),
             }
             value
         };
@@ -311,7 +323,7 @@ fn integer(text: &str, at: Place) -> Result<i64, Box<Diagnostic>> {
         None if digits.starts_with('0') => i64::from_str_radix(digits, 8),
         None => digits.parse(),
     };
-    value.or_else(|_| Code::BadCondition.refuse(at, format!("`{text}` is no integer")))
+    value.or_else(|_| Code::BadCondition.refuse(at, format!("`{text}` is not an integer")))
 }
 
 /// Computes one operation; none for a division by zero.

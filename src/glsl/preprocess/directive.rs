@@ -1,12 +1,42 @@
 //! Directives: the lines that begin with `#`.
 
-use toyproof_diagnostic::Diagnostic;
+use toyproof_diagnostic::{Diagnostic, Fix, Span, nearest};
 
 use super::macros::expect_end_of_directive;
 use super::{PpToken, Preprocessor, Seen};
 use crate::codes::Code;
 use crate::token::TokenKind;
 use crate::tree::Place;
+
+/// The directives (§3.4).
+const DIRECTIVES: [&str; 13] = [
+    "define",
+    "undef",
+    "if",
+    "ifdef",
+    "ifndef",
+    "elif",
+    "else",
+    "endif",
+    "error",
+    "pragma",
+    "extension",
+    "version",
+    "line",
+];
+
+fn unknown_directive(name: &str, at: Place) -> Diagnostic {
+    let diagnostic = Code::UnknownDirective.at(at, format!("unknown directive `#{name}`"));
+    match nearest(name, DIRECTIVES) {
+        _ if name == "include" => diagnostic.help("GLSL ES has no `#include`: paste the code of the file"),
+        Some(near) => diagnostic.fix(Fix::new(
+            format!("did you mean `#{near}`?"),
+            at.span,
+            format!("#{near}"),
+        )),
+        None => diagnostic,
+    }
+}
 
 impl Preprocessor<'_> {
     /// Executes the directive whose `#` has been read, up to and including its newline.
@@ -39,7 +69,7 @@ impl Preprocessor<'_> {
             "extension" => self.extension(&line, at),
             // §3.4: unknown pragmas are ignored.
             "pragma" => Ok(()),
-            _ => Code::UnknownDirective.refuse(at, format!("there is no directive `#{name}`")),
+            _ => Err(Box::new(unknown_directive(&name, at))),
         };
         if let Err(diagnostic) = done {
             self.report(*diagnostic);
@@ -52,7 +82,7 @@ impl Preprocessor<'_> {
             return;
         }
         if self.is_active() {
-            self.report(Code::UnknownDirective.at(first.at, "the name of a directive is missing here"));
+            self.report(Code::UnknownDirective.at(first.at, "expected the name of a directive after `#`"));
         }
         self.rest_of_line();
     }
@@ -100,35 +130,39 @@ impl Preprocessor<'_> {
     /// Checks `#version 300 es`, which must come first.
     fn version(&mut self, line: &[PpToken], at: Place) -> Result<(), Box<Diagnostic>> {
         if self.seen > Seen::Nothing {
-            return Code::BadVersion.refuse(at, "`#version` must come before everything else");
+            return Code::BadVersion.refuse(at, "`#version` must be the first line of code");
         }
         let texts: Vec<_> = line.iter().map(|token| self.text(token)).collect();
         if texts == ["300", "es"] {
             return Ok(());
         }
-        let message = format!(
-            "`#version {}` is not what `ShaderToy` speaks: `#version 300 es`",
-            texts.join(" ")
-        );
-        Code::BadVersion.refuse(at, message.replace("`ShaderToy`", "ShaderToy"))
+        let message = format!("unsupported version `{}`", texts.join(" "));
+        let span = line.iter().map(|token| token.at.span).reduce(Span::to);
+        let diagnostic = Code::BadVersion.at(at, message);
+        let help = "ShaderToy uses `#version 300 es`";
+        Err(Box::new(match span {
+            Some(span) => diagnostic.fix(Fix::new(help, span, "300 es")),
+            None => diagnostic.help(help),
+        }))
     }
 
     /// Checks `#extension name : behavior` (§3.5). No extension is supported.
     fn extension(&mut self, line: &[PpToken], at: Place) -> Result<(), Box<Diagnostic>> {
         let texts: Vec<_> = line.iter().map(|token| self.text(token)).collect();
         let [name, ":", behavior @ ("require" | "enable" | "warn" | "disable")] = texts[..] else {
-            let message = "this is not `#extension name : require`, `enable`, `warn` or `disable`";
-            return Code::MalformedDirective.refuse(at, message);
+            let diagnostic = Code::MalformedDirective.at(at, "malformed `#extension`");
+            let help = "write `#extension NAME : BEHAVIOR`, where BEHAVIOR is `require`, `enable`, `warn` or `disable`";
+            return Err(Box::new(diagnostic.help(help)));
         };
         if self.seen == Seen::Text {
-            return Code::BadExtension.refuse(at, "`#extension` must come before all declarations");
+            return Code::BadExtension.refuse(at, "`#extension` after the first declaration");
         }
         let fatal = behavior == "require" || (name == "all" && behavior == "enable");
         if fatal {
-            return Code::BadExtension.refuse(at, format!("the extension `{name}` is not supported"));
+            return Code::BadExtension.refuse(at, format!("unsupported extension `{name}`"));
         }
         if name != "all" {
-            let message = format!("the extension `{name}` is not supported");
+            let message = format!("unsupported extension `{name}`");
             self.report(Code::UnknownExtension.at(at, message));
         }
         Ok(())

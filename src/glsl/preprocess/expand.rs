@@ -1,8 +1,10 @@
 //! Macro expansion (C++98 §16.3).
 
+use toyproof_diagnostic::plural;
+
 use super::macros::Body;
 use super::{PpToken, Preprocessor};
-use crate::codes::Code;
+use crate::codes::{Code, given};
 use crate::token::{Punctuator, Symbol, TokenKind};
 use crate::tree::Place;
 
@@ -153,10 +155,7 @@ impl Preprocessor<'_> {
             let token = self.next_of_stream();
             match token.kind {
                 TokenKind::End => {
-                    let message = format!(
-                        "the arguments of the macro `{}` have no `)`",
-                        self.interner.text(name)
-                    );
+                    let message = format!("unclosed call of the macro `{}`", self.interner.text(name));
                     self.report(Code::BadMacroCall.at(at.to(open), message));
                     self.gave_up = true;
                     return None;
@@ -196,8 +195,9 @@ impl Preprocessor<'_> {
         }
         let name = self.interner.text(name);
         let message = format!(
-            "the macro `{name}` takes {wanted} arguments and is given {}",
-            arguments.len()
+            "the macro `{name}` takes {wanted} {}, but {}",
+            plural(wanted as u64, "argument", "arguments"),
+            given(arguments.len())
         );
         self.report(Code::BadMacroCall.at(used, message));
         false
@@ -244,7 +244,7 @@ impl Preprocessor<'_> {
     /// Stops preprocessing: reports that once, and returns the end of the text.
     fn give_up(&mut self, at: Place) -> PpToken {
         if !self.gave_up {
-            self.report(Code::TooMuchExpansion.at(at, "macros expand to too many tokens here"));
+            self.report(Code::TooMuchExpansion.at(at, "macro expansion too large"));
         }
         self.gave_up = true;
         self.budget = 0;

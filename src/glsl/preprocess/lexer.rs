@@ -173,7 +173,7 @@ impl<'a> Lexer<'a> {
                 return Ok(());
             }
         }
-        Code::UnterminatedComment.refuse(Place::plain(open), "this comment is never closed")
+        Code::UnterminatedComment.refuse(Place::plain(open), "unterminated comment")
     }
 
     /// Appends characters to `scratch` while `accept(so_far, next)` holds.

@@ -111,14 +111,12 @@ impl Preprocessor<'_> {
         if let Some(old) = self.macros.get(&name)
             && !(old.parameters == parameters && same_body(&old.body, &new))
         {
-            let message = format!(
-                "the macro `{}` is defined already, and differently",
-                self.interner.text(name)
-            );
+            let message = format!("redefinition of the macro `{}`", self.interner.text(name));
             return Err(Box::new(
                 Code::BadMacro
                     .at(name_at, message)
-                    .related(old.at.span, "first defined here"),
+                    .related(old.at.span, "previous definition")
+                    .help("remove one of them, or write `#undef` between them"),
             ));
         }
         // Redefining a macro identically changes nothing, even during its expansion.
@@ -151,16 +149,16 @@ impl Preprocessor<'_> {
         ] = line
         else {
             let at = line.first().map_or(at, |token| token.at);
-            return Code::MalformedDirective.refuse(at, "the name of a macro is missing here");
+            return Code::MalformedDirective.refuse(at, "expected the name of a macro");
         };
         let text = self.interner.text(*name);
         let predefined = self.macros.get(name).is_some_and(|old| old.predefined);
         if predefined || text.starts_with("GL_") || text == "defined" {
-            let message = format!("`{text}` belongs to GLSL and cannot be defined or undefined");
+            let message = format!("`{text}` is reserved and cannot be defined or undefined");
             return Code::BadMacro.refuse(*at, message);
         }
         if text.contains("__") {
-            let message = format!("names with two underscores such as `{text}` belong to GLSL");
+            let message = format!("`{text}` contains `__`, which is reserved");
             self.report(Code::ReservedName.at(*at, message));
         }
         Ok((*name, *at, rest))
@@ -186,16 +184,13 @@ impl Preprocessor<'_> {
         loop {
             let [name, after, tail @ ..] = rest else {
                 let at = rest.first().map_or(open, |token| token.at);
-                return Code::MalformedDirective.refuse(at, "the parameters of this macro have no `)`");
+                return Code::MalformedDirective.refuse(at, "unclosed parameter list of a macro");
             };
             let TokenKind::Word(parameter) = name.kind else {
-                return Code::MalformedDirective.refuse(name.at, "the name of a parameter is missing here");
+                return Code::MalformedDirective.refuse(name.at, "expected the name of a parameter");
             };
             if parameters.contains(&parameter) {
-                let message = format!(
-                    "this macro has two parameters `{}`",
-                    self.interner.text(parameter)
-                );
+                let message = format!("duplicate parameter `{}`", self.interner.text(parameter));
                 return Code::BadMacro.refuse(name.at, message);
             }
             parameters.push(parameter);
@@ -203,7 +198,7 @@ impl Preprocessor<'_> {
             match after.kind {
                 TokenKind::Punctuator(Punctuator::RightParen) => return Ok((parameters, rest)),
                 TokenKind::Punctuator(Punctuator::Comma) => {}
-                _ => return Code::MalformedDirective.refuse(after.at, "`,` or `)` is missing here"),
+                _ => return Code::MalformedDirective.refuse(after.at, "expected `,` or `)`"),
             }
         }
     }
@@ -213,7 +208,7 @@ impl Preprocessor<'_> {
 pub(super) fn expect_end_of_directive(rest: &[PpToken]) -> Result<(), Box<Diagnostic>> {
     match rest {
         [] => Ok(()),
-        [first, ..] => Code::MalformedDirective.refuse(first.at, "this is too much for the directive"),
+        [first, ..] => Code::MalformedDirective.refuse(first.at, "unexpected text after the directive"),
     }
 }
 

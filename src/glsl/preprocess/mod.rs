@@ -12,7 +12,7 @@ mod macros;
 
 use std::collections::HashMap;
 
-use toyproof_diagnostic::{Deadline, Diagnostic, FileId, Files};
+use toyproof_diagnostic::{Deadline, Diagnostic, FileId, Files, Fix, grouped};
 
 use self::condition::Group;
 use self::expand::Stream;
@@ -74,10 +74,12 @@ pub(crate) fn preprocess(files: &Files, file: FileId, deadline: &Deadline) -> Pr
                 } else {
                     c.to_string()
                 };
-                let message = format!("`{shown}` is no character of GLSL");
+                let message = format!("invalid character `{shown}`");
                 let diagnostic = Code::UnknownCharacter.at(token.at, message);
                 preprocessor.report(match lookalike(c) {
-                    Some(meant) => diagnostic.label(format!("write `{meant}`")),
+                    Some(meant) => {
+                        diagnostic.fix(Fix::new(format!("write `{meant}`"), token.at.spelling, meant))
+                    }
                     None => diagnostic,
                 });
                 token.kind = TokenKind::Stray;
@@ -85,9 +87,9 @@ pub(crate) fn preprocess(files: &Files, file: FileId, deadline: &Deadline) -> Pr
             TokenKind::Punctuator(Punctuator::Hash | Punctuator::Paste) => {
                 // A macro that contains one is harmless until it is used.
                 let message = if token.at.is_expanded() {
-                    "GLSL ES has no `#` and no `##` in macros"
+                    "`#` and `##` are not available in macros of GLSL ES"
                 } else {
-                    "`#` is not at the beginning of its line"
+                    "`#` must be the first character of its line"
                 };
                 preprocessor.report(Code::PasteOperator.at(token.at, message));
                 token.kind = TokenKind::Stray;
@@ -97,7 +99,10 @@ pub(crate) fn preprocess(files: &Files, file: FileId, deadline: &Deadline) -> Pr
         if let TokenKind::Word(word) = token.kind
             && preprocessor.interner.text(word).len() > MAX_NAME_BYTES
         {
-            let message = format!("WebGL takes no name of more than {MAX_NAME_BYTES} characters");
+            let message = format!(
+                "name longer than {} characters, the limit of WebGL",
+                grouped(MAX_NAME_BYTES as u64)
+            );
             preprocessor.report(Code::Syntax.at(token.at, message));
         }
         tokens.push(Token {
@@ -232,7 +237,9 @@ impl<'a> Preprocessor<'a> {
                 }
                 TokenKind::End => {
                     while let Some(group) = self.groups.pop() {
-                        self.report(Code::UnbalancedCondition.at(group.at, "this has no `#endif`"));
+                        self.report(
+                            Code::UnbalancedCondition.at(group.at, "conditional directive without `#endif`"),
+                        );
                     }
                     return token;
                 }

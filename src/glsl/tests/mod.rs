@@ -1,5 +1,6 @@
 //! Tests of the specification's rules: for each, code that keeps it and code that breaks it.
 
+mod fixes;
 mod limits;
 mod recovery;
 
@@ -66,7 +67,7 @@ fn grammar() {
         ok    const vec2 a = vec2(1), b = a.yx;
         ok    void f(void) { } void g() { f(void); f(); }
         ok    float f(highp vec2, const in float x, inout vec3 p[2]);
-        ok    layout(location = 0) out vec4 colour;
+        ok    layout(location = 0) out vec4 color;
         ok    flat in int i; centroid in vec2 v; uniform float u; invariant out vec4 w;
         E0100 { float a = 1. }
         E0100 { if (true) else ; }
@@ -91,7 +92,7 @@ fn grammar() {
         E0403 void f(uniform float a) { }
         E0403 const float f() { return 1.; }
         E0307 precision highp vec2;
-        ok    invariant gl_FragDepth; out vec4 colours[2]; in mat3 m;
+        ok    invariant gl_FragDepth; out vec4 colors[2]; in mat3 m;
         E0307 in bool b;
         E0307 out mat3 m;
         E0403 { highp bool b; }

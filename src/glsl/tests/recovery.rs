@@ -210,7 +210,7 @@ fn a_missing_semicolon_is_reported_where_it_belongs() {
     let errors = check(&files, file, &Options::default()).unwrap_err();
     assert_eq!(
         diagnostic::short(&errors[0], &files),
-        "a:2:18: error[E0100]: `;` is missing after `1.0`"
+        "a:2:18: error[E0100]: expected `;` after `1.0`"
     );
     assert_eq!(errors.len(), 1);
 }

@@ -73,7 +73,7 @@ impl Quirk {
 }
 
 /// Why workarounds for Mesa 22.3 are kept.
-const AFTER_MESA_22: &str = "when Mesa 22.3, that of Debian 12, need not be supported any more";
+const AFTER_MESA_22: &str = "when Mesa 22.3 (Debian 12) is no longer supported";
 
 /// Loops terminated by force.
 pub const LOOP_CAP: Quirk = Quirk {
@@ -92,7 +92,7 @@ pub const LOOP_CAP: Quirk = Quirk {
 pub const OPAQUE_NUMBERS: Quirk = Quirk {
     name: "opaque-numbers",
     driver: DriverKind::Lavapipe,
-    versions: "Mesa 22.3.6; others were not measured",
+    versions: "Mesa 22.3.6; other versions were not measured",
     symptom: "to see whether a condition is uniform, its compiler walks expressions of uniforms as trees and \
               does not come to the end of an expanded `sin(cos(iTime))`; and it takes the product or \
               quotient of a constant zero for zero even if it is NaN",
@@ -111,8 +111,8 @@ pub const QUIRKS: [Quirk; 11] = [
     Quirk {
         name: "loop-steps",
         driver: DriverKind::Lavapipe,
-        versions: "Mesa 22.3.6; others were not measured",
-        symptom: "the step in SPIR-V's continue construct runs once too often if nothing continues the loop \
+        versions: "Mesa 22.3.6; other versions were not measured",
+        symptom: "the step in SPIR-V's continue construct runs once too often if the loop has no `continue` \
                   and the stepped variable is initialized with a constant vector",
         workaround: "steps move to the end of the body, in lowered GLSL and, by \
                      `src/gpu/quirks/loop_steps.rs`, in modules from WGSL",
@@ -123,10 +123,10 @@ pub const QUIRKS: [Quirk; 11] = [
     Quirk {
         name: "nesting",
         driver: DriverKind::Lavapipe,
-        versions: "Mesa 22.3.6; others were not measured",
+        versions: "Mesa 22.3.6; other versions were not measured",
         symptom: "conditions nested deeper than 80, or 79 with an `else`, and loops deeper than 80 run \
                   whatever their condition is",
-        workaround: "deep statements are flattened under flags; what still nests too deep is not run",
+        workaround: "deep statements are flattened under flags; shaders that still nest too deep are not run",
         source: "src/translate/lower/nesting.rs",
         removal: "when `tests/suite/nesting.rs` passes without it on the supported versions of Mesa",
         scope: Scope::Everywhere,
@@ -134,7 +134,7 @@ pub const QUIRKS: [Quirk; 11] = [
     Quirk {
         name: "half-of-constant",
         driver: DriverKind::Lavapipe,
-        versions: "Mesa 22.3.6; others were not measured",
+        versions: "Mesa 22.3.6; other versions were not measured",
         symptom: "the upper half of `unpackHalf2x16` of a constant is 0",
         workaround: "strict lowering unpacks each half by itself",
         source: "src/translate/lower/polyfill.rs",
@@ -144,9 +144,9 @@ pub const QUIRKS: [Quirk; 11] = [
     Quirk {
         name: "switch-labels",
         driver: DriverKind::Lavapipe,
-        versions: "Mesa 22.3.6; others were not measured",
+        versions: "Mesa 22.3.6; other versions were not measured",
         symptom: "the device is lost at a `switch` of 50,000 labels",
-        workaround: "more than 20,000 labels are an error of the shader",
+        workaround: "more than 20,000 labels are an error in the shader",
         source: "src/glsl/check/statement.rs",
         removal: "never: other drivers compare with each label, too",
         scope: Scope::Everywhere,
@@ -156,7 +156,7 @@ pub const QUIRKS: [Quirk; 11] = [
         driver: DriverKind::Lavapipe,
         versions: "Mesa 22.3.6; Vulkan leaves the sign to all drivers without `SignedZeroInfNanPreserve`",
         symptom: "a zero that an `if` or `?:` chooses, or that is `0.0 - x`, may lose its sign",
-        workaround: "the toolchain check takes both zeros for equal",
+        workaround: "the toolchain check treats both zeros as equal",
         source: "src/verify/compare/check.rs",
         removal: "when all supported drivers keep signs on request",
         scope: Scope::Everywhere,
@@ -164,9 +164,9 @@ pub const QUIRKS: [Quirk; 11] = [
     Quirk {
         name: "runtime-directory",
         driver: DriverKind::Lavapipe,
-        versions: "Mesa 22.3.6; others were not measured",
+        versions: "Mesa 22.3.6; other versions were not measured",
         symptom: "a message on standard error where `XDG_RUNTIME_DIR` is not set",
-        workaround: "the worker's process has it set to the folder for temporary files",
+        workaround: "it is set to the folder for temporary files in the worker process",
         source: "src/gpu/quirks/mod.rs",
         removal: "when Mesa is silent without it",
         scope: Scope::Everywhere,
@@ -174,9 +174,9 @@ pub const QUIRKS: [Quirk; 11] = [
     Quirk {
         name: "coarse-derivatives",
         driver: DriverKind::SwiftShader,
-        versions: "the one that Chromium ships; SPIR-V leaves the precision to all drivers",
+        versions: "the version in Chromium; SPIR-V leaves the precision to all drivers",
         symptom: "`dFdx`, `dFdy` and `fwidth` are those of the quad's first row and column",
-        workaround: "strict words ask for fine derivatives",
+        workaround: "strict code requests fine derivatives",
         source: "src/translate/backend/spirv/mod.rs",
         removal: "never: the specification allows both",
         scope: Scope::Everywhere,
@@ -184,9 +184,9 @@ pub const QUIRKS: [Quirk; 11] = [
     Quirk {
         name: "decorated-constants",
         driver: DriverKind::SwiftShader,
-        versions: "the SPIRV-Tools that Chromium ships",
-        symptom: "its propagation of constants takes `sqrt`, `min` and `max` of constants for unknown if \
-                  they are decorated, and the other branch's constant wins",
+        versions: "the SPIRV-Tools in Chromium",
+        symptom: "its constant propagation treats `sqrt`, `min` and `max` of constants as unknown if \
+                  they are decorated, and uses the other branch's constant",
         workaround: "these functions, which are exact or correctly rounded, carry no `NoContraction`",
         source: "src/translate/backend/spirv/mod.rs",
         removal: "never: the decoration has no use there",
@@ -195,12 +195,12 @@ pub const QUIRKS: [Quirk; 11] = [
     Quirk {
         name: "inexact-functions",
         driver: DriverKind::SwiftShader,
-        versions: "the one that Chromium ships",
+        versions: "the version in Chromium",
         symptom: "`fract` stays below 1, `step` of NaN is 0, `float(uint)` is rounded twice above 2³¹, and \
                   `unpackUnorm2x16` multiplies by 1/65535",
         workaround: "strict lowering expands them",
         source: "src/translate/lower/polyfill.rs",
-        removal: "never: the specification allows other last bits",
+        removal: "never: the specification allows different last bits",
         scope: Scope::Everywhere,
     },
 ];
@@ -245,7 +245,7 @@ mod tests {
                 quirk.removal,
             );
         }
-        expect_file!["../../../docs/drivers.md"].assert_eq(&page);
+        expect_file!["../../../docs/evidence/drivers.md"].assert_eq(&page);
     }
 
     #[test]

@@ -39,6 +39,36 @@ fn text_width<'a>(texts: impl IntoIterator<Item = &'a str>, size: i32) -> i32 {
     texts.into_iter().map(width).max().unwrap_or(0)
 }
 
+/// Formats a tick label: `0.01`, `100`, `10⁻⁵`, `2·10⁻⁵`.
+pub(crate) fn tick(value: f64) -> String {
+    let exponent = libm::log10(value * (1.0 + 1e-9)).floor() as i32;
+    let mantissa = value / libm::exp10(f64::from(exponent));
+    if (-3..=3).contains(&exponent) {
+        return format!("{}", (value * 1e6).round() / 1e6);
+    }
+    let superscript = |digit: char| match digit {
+        '-' => '⁻',
+        digit => "⁰¹²³⁴⁵⁶⁷⁸⁹"
+            .chars()
+            .nth(digit as usize - '0' as usize)
+            .unwrap_or(digit),
+    };
+    let power: String = exponent.to_string().chars().map(superscript).collect();
+    if (mantissa - 1.0).abs() < 1e-6 {
+        format!("10{power}")
+    } else {
+        format!("{}·10{power}", (mantissa * 1e3).round() / 1e3)
+    }
+}
+
+/// The text with its first letter in uppercase.
+pub(crate) fn capitalized(text: &str) -> String {
+    let mut letters = text.chars();
+    letters
+        .next()
+        .map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
 /// Draws an image of the given size.
 fn rasterize(size: (u32, u32), draw: impl FnOnce(BitMapBackend)) -> Image {
     let (width, height) = (size.0 as usize, size.1 as usize);

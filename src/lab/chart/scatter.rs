@@ -7,14 +7,14 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use toyproof_image::Image;
 
-use super::{FAINT, GRAY, INK, PAPER, text_style, text_width};
+use super::{FAINT, GRAY, INK, PAPER, text_style, text_width, tick};
 
 /// A named point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
     /// Must be positive.
     pub x: f64,
-    /// Must be positive.
+    /// Must not be negative; zero has a line of its own below the scale.
     pub y: f64,
     /// The name, which the legend lists for points on the Pareto front.
     pub name: String,
@@ -41,12 +41,11 @@ pub struct Scatter {
     pub reference_lines: Vec<(f64, String)>,
 }
 
-/// The relative margin at the ends of a scale: far less than a pixel.
-const RANGE_MARGIN: f64 = 1e-9;
-const SIZE: (u32, u32) = (1500, 960);
-const FONT_SIZE: i32 = 18;
-const SMALL_SIZE: i32 = 14;
+const SIZE: (u32, u32) = (1280, 760);
+const FONT_SIZE: i32 = 19;
 const TITLE_SIZE: i32 = 26;
+/// The length of tick marks, in pixels.
+const TICK_LENGTH: i32 = 5;
 const LINE_HEIGHT: i32 = 26;
 /// Distinguishable with color-vision deficiency: Okabe and Ito, “Color Universal Design” (2008).
 const COLORS: [RGBColor; 7] = [
@@ -77,20 +76,6 @@ impl Scatter {
         })
     }
 
-    /// The range of powers of ten that contains all values.
-    fn range(values: impl Iterator<Item = f64>) -> Range<f64> {
-        let (low, high) = values.fold((f64::INFINITY, 0.0f64), |(low, high), value| {
-            (low.min(value), high.max(value))
-        });
-        if !(low > 0.0 && high.is_finite() && low <= high) {
-            return 0.1..1.0;
-        }
-        let low = libm::exp10((libm::log10(low) - 0.05).floor());
-        let high = libm::exp10((libm::log10(high) + 0.15).ceil());
-        // Slightly wider, so that the end ticks are labeled: plotters finds them by rounded logarithms.
-        low * (1.0 - RANGE_MARGIN)..high.max(10.0 * low) * (1.0 + RANGE_MARGIN)
-    }
-
     fn draw<B: DrawingBackend>(&self, backend: B) -> DrawResult<(), B> {
         let area = backend.into_drawing_area();
         area.fill(&PAPER)?;
@@ -111,33 +96,31 @@ impl Scatter {
         front: &[&Point],
     ) -> DrawResult<(), B> {
         let lines = self.reference_lines.iter().map(|line| line.0);
-        let x = Self::range(self.points.iter().map(|point| point.x));
-        let y = Self::range(self.points.iter().map(|point| point.y).chain(lines));
+        let x = Scale::new(self.points.iter().map(|point| point.x), false);
+        let has_zero = self.points.iter().any(|point| point.y <= 0.0);
+        let y = Scale::new(self.points.iter().map(|point| point.y).chain(lines), has_zero);
+        let label_width = text_width(self.reference_lines.iter().map(|line| &*line.1), FONT_SIZE);
         let mut chart = ChartBuilder::on(area)
             .margin(20)
-            .margin_right(
-                LINE_HEIGHT + text_width(self.reference_lines.iter().map(|line| &*line.1), SMALL_SIZE),
-            )
+            .margin_right(LINE_HEIGHT + label_width)
             .caption(self.title.as_str(), text_style(TITLE_SIZE, INK))
-            .x_label_area_size(60)
-            .y_label_area_size(80)
-            .build_cartesian_2d(x.clone().log_scale(), y.clone().log_scale())?;
-        chart
-            .configure_mesh()
-            .light_line_style(RGBColor(245, 245, 245))
-            .bold_line_style(FAINT)
-            .axis_style(INK)
-            .label_style(text_style(FONT_SIZE, INK))
-            .axis_desc_style(text_style(FONT_SIZE, INK))
-            .x_label_formatter(&|x| tick(*x))
-            .y_label_formatter(&|y| tick(*y))
-            .x_desc(self.x_title.as_str())
-            .y_desc(self.y_title.as_str())
-            .draw()?;
+            .x_label_area_size(70)
+            .y_label_area_size(95)
+            .build_cartesian_2d(x.range.clone().log_scale(), y.range.clone().log_scale())?;
+        let [x_ends, y_ends] = [&x, &y].map(|scale| (scale.range.start, scale.range.end));
+        for (at, style) in x.grid() {
+            chart.draw_series(LineSeries::new([(at, y_ends.0), (at, y_ends.1)], style))?;
+        }
+        for (at, style) in y.grid() {
+            chart.draw_series(LineSeries::new([(x_ends.0, at), (x_ends.1, at)], style))?;
+        }
+        let frame = [(x_ends.0, y_ends.1), (x_ends.0, y_ends.0), (x_ends.1, y_ends.0)];
+        chart.draw_series(LineSeries::new(frame, INK.stroke_width(1)))?;
         for (at, _) in &self.reference_lines {
-            let ends = [(x.start, *at), (x.end, *at)];
+            let ends = [(x_ends.0, *at), (x_ends.1, *at)];
             chart.draw_series(DashedLineSeries::new(ends, 6, 6, GRAY.stroke_width(1)))?;
         }
+        let front: Vec<Point> = front.iter().map(|&point| y.place(point)).collect();
         // Between two points of the front, nothing is better than the first.
         let corners = front.windows(2).map(|ends| (ends[1].x, ends[0].y));
         let ends = front.iter().map(|point| (point.x, point.y));
@@ -146,7 +129,13 @@ impl Scatter {
             .take(1)
             .chain(corners.zip(ends.skip(1)).flat_map(|(a, b)| [a, b]));
         chart.draw_series(LineSeries::new(steps, INK.stroke_width(2)))?;
-        for point in &self.points {
+        // Points on the front last, above all others.
+        let (above, below): (Vec<Point>, Vec<Point>) = self
+            .points
+            .iter()
+            .map(|point| y.place(point))
+            .partition(|point| point.on_front);
+        for point in below.iter().chain(&above) {
             let size = if point.on_front { 8 } else { 5 };
             chart.draw_series([Circle::new((point.x, point.y), size, color(point.group).filled())])?;
         }
@@ -155,8 +144,19 @@ impl Scatter {
         let lines: Vec<_> = self
             .reference_lines
             .iter()
-            .map(|(at, name)| (at_pixel(x.end, *at), name))
+            .map(|(at, name)| (at_pixel(x_ends.1, *at), name))
             .collect();
+        let x_ticks: Vec<_> = x
+            .ticks()
+            .into_iter()
+            .map(|(at, name)| (at_pixel(at, y_ends.0), name))
+            .collect();
+        let y_ticks: Vec<_> = y
+            .ticks()
+            .into_iter()
+            .map(|(at, name)| (at_pixel(x_ends.0, at), name))
+            .collect();
+        let corners = [at_pixel(x_ends.0, y_ends.0), at_pixel(x_ends.1, y_ends.1)];
         drop(chart);
         let origin = area.get_base_pixel();
         let text = |text: String, (x, y): Pixel, style: TextStyle<'static>| {
@@ -167,11 +167,24 @@ impl Scatter {
         for (range, (x, y)) in front_labels(&pixels) {
             text(range, (x - 8, y + 6), style.clone())?;
         }
-        let style = text_style(SMALL_SIZE, GRAY).pos(Pos::new(HPos::Left, VPos::Center));
+        let style = text_style(FONT_SIZE, GRAY).pos(Pos::new(HPos::Left, VPos::Center));
         for (at, name) in lines {
             text(name.clone(), (at.0 + 8, at.1), style.clone())?;
         }
-        Ok(())
+        let below = text_style(FONT_SIZE, INK).pos(Pos::new(HPos::Center, VPos::Top));
+        for ((x, y), name) in x_ticks {
+            text(name, (x, y + TICK_LENGTH), below.clone())?;
+        }
+        let left = text_style(FONT_SIZE, INK).pos(Pos::new(HPos::Right, VPos::Center));
+        for ((x, y), name) in y_ticks {
+            text(name, (x - TICK_LENGTH, y), left.clone())?;
+        }
+        let [(x0, y0), (x1, y1)] = corners;
+        text(self.x_title.clone(), ((x0 + x1) / 2, y0 + 34), below)?;
+        let upwards = text_style(FONT_SIZE, INK)
+            .transform(FontTransform::Rotate270)
+            .pos(Pos::new(HPos::Center, VPos::Center));
+        text(self.y_title.clone(), (origin.0 + 28, (y0 + y1) / 2), upwards)
     }
 
     /// Draws the colors of the groups, and the names of the points on the front.
@@ -202,26 +215,111 @@ impl Scatter {
     }
 }
 
-fn color(group: usize) -> RGBColor {
-    COLORS[group % COLORS.len()]
+/// A logarithmic scale that is slightly wider than its values.
+struct Scale {
+    range: Range<f64>,
+    /// Where zero is drawn, below all other values.
+    zero: Option<f64>,
 }
 
-/// Formats a tick label: `0.01`, `100`, `10⁻⁵`.
-fn tick(value: f64) -> String {
-    let exponent = libm::log10(value).floor() as i32;
-    let is_power = (value / libm::exp10(f64::from(exponent)) - 1.0).abs() < 1e-6;
-    if (-2..=4).contains(&exponent) || !is_power {
-        return format!("{}", (value * 1e6).round() / 1e6);
+/// The most decades of a scale with ticks at 1, 2 and 5 times powers of ten; with up to one, 3 and 7, too.
+const MAX_DECADES_WITH_FINE_TICKS: f64 = 2.6;
+/// The least decades of a scale: values that are nearly equal look so.
+const MIN_DECADES: f64 = 0.8;
+/// The part of a scale that is empty at each end.
+const MARGIN: f64 = 0.06;
+
+impl Scale {
+    /// A scale for positive values; others are ignored. `has_zero`: whether zero has a place, too.
+    fn new(values: impl Iterator<Item = f64>, has_zero: bool) -> Self {
+        let positive = values.filter(|value| *value > 0.0 && value.is_finite());
+        let logarithms = positive.map(libm::log10);
+        let (low, high) = logarithms.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+            (low.min(value), high.max(value))
+        });
+        let (low, high) = if low <= high { (low, high) } else { (-1.0, 0.0) };
+        let missing = (MIN_DECADES - (high - low)).max(0.0);
+        let (mut low, mut high) = (low - missing / 2.0, high + missing / 2.0);
+        let margin = MARGIN * (high - low);
+        let zero = has_zero.then(|| {
+            low -= 2.0 * margin;
+            libm::exp10(low)
+        });
+        low -= margin;
+        high += margin;
+        Self {
+            range: libm::exp10(low)..libm::exp10(high),
+            zero,
+        }
     }
-    let superscript = |digit: char| match digit {
-        '-' => '⁻',
-        digit => "⁰¹²³⁴⁵⁶⁷⁸⁹"
-            .chars()
-            .nth(digit as usize - '0' as usize)
-            .unwrap_or(digit),
-    };
-    let exponent: String = exponent.to_string().chars().map(superscript).collect();
-    format!("10{exponent}")
+
+    /// The point with a positive y.
+    fn place(&self, point: &Point) -> Point {
+        let y = match self.zero {
+            Some(zero) if point.y <= 0.0 => zero,
+            _ => point.y,
+        };
+        Point { y, ..point.clone() }
+    }
+
+    fn decades(&self) -> f64 {
+        libm::log10(self.range.end / self.range.start)
+    }
+
+    /// The least value above zero.
+    fn least(&self) -> f64 {
+        self.zero.map_or(self.range.start, |zero| {
+            zero * libm::exp10(MARGIN * self.decades())
+        })
+    }
+
+    /// The multiples 1 to 9 of powers of ten in the range, with the multiplier and the exponent.
+    fn multiples(&self) -> impl Iterator<Item = (f64, u32, i32)> {
+        let [first, last] = [self.range.start, self.range.end].map(|end| libm::log10(end).floor() as i32);
+        let all = (first..=last).flat_map(|exponent| (1..10).map(move |digit| (digit, exponent)));
+        let values = all.map(|(digit, exponent)| {
+            (
+                f64::from(digit) * libm::exp10(f64::from(exponent)),
+                digit,
+                exponent,
+            )
+        });
+        let ends = self.least()..self.range.end;
+        values.filter(move |(value, ..)| ends.contains(value))
+    }
+
+    /// The grid lines with their styles: powers of ten are darker.
+    fn grid(&self) -> Vec<(f64, ShapeStyle)> {
+        let light = RGBColor(240, 240, 240).stroke_width(1);
+        let lines = self.multiples().map(|(value, digit, _)| {
+            let style = if digit == 1 { FAINT.stroke_width(1) } else { light };
+            (value, style)
+        });
+        let zero = self.zero.map(|zero| (zero, FAINT.stroke_width(1)));
+        lines.chain(zero).collect()
+    }
+
+    /// The labeled values, and zero.
+    fn ticks(&self) -> Vec<(f64, String)> {
+        let decades = self.decades();
+        let step = (decades / 10.0).ceil().max(1.0) as i32;
+        let is_labeled = |digit: u32, exponent: i32| match digit {
+            1 => exponent % step == 0,
+            2 | 5 => decades <= MAX_DECADES_WITH_FINE_TICKS,
+            3 | 7 => decades <= 1.0,
+            _ => false,
+        };
+        let ticks = self
+            .multiples()
+            .filter(|(_, digit, exponent)| is_labeled(*digit, *exponent));
+        let ticks = ticks.map(|(value, ..)| (value, tick(value)));
+        let zero = self.zero.map(|zero| (zero, "0".to_owned()));
+        ticks.chain(zero).collect()
+    }
+}
+
+fn color(group: usize) -> RGBColor {
+    COLORS[group % COLORS.len()]
 }
 
 type Pixel = (i32, i32);
@@ -260,7 +358,7 @@ mod tests {
             Point {
                 x: 1.0 + 0.02 * i,
                 y: 1e-3 / i,
-                name: format!("way {i}"),
+                name: format!("configuration {i}"),
                 group: 0,
                 on_front: i > 28.0,
             }
@@ -276,20 +374,29 @@ mod tests {
     }
 
     #[test]
-    fn both_ends_of_the_scales_are_labeled() {
-        for power in -6..3 {
-            let mut scatter = scatter();
-            scatter.reference_lines.clear();
-            for point in &mut scatter.points {
-                (point.x, point.y) = (point.x * libm::exp10(f64::from(power)), point.y * 1e3);
-                point.y *= libm::exp10(f64::from(power));
-            }
-            let svg = scatter.svg();
-            for end in [power - 2, power + 1] {
-                let label = tick(libm::exp10(f64::from(end)));
-                assert!(svg.contains(&format!("\n{label}\n")), "{label}");
-            }
-        }
+    fn scales_have_labels_and_a_place_for_zero() {
+        let labels = |values: &[f64], has_zero| {
+            let scale = Scale::new(values.iter().copied(), has_zero);
+            assert!(
+                values
+                    .iter()
+                    .all(|value| *value <= 0.0 || scale.range.contains(value))
+            );
+            scale
+                .ticks()
+                .into_iter()
+                .map(|(_, name)| name)
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(
+            labels(&[0.6, 80.0], false),
+            ["0.5", "1", "2", "5", "10", "20", "50", "100"]
+        );
+        assert_eq!(
+            labels(&[3e-8, 0.0, 1e-2], true),
+            ["10⁻⁷", "10⁻⁶", "10⁻⁵", "10⁻⁴", "0.001", "0.01", "0"]
+        );
+        assert!(labels(&[2.0], false).len() >= 2);
     }
 
     #[test]
@@ -297,7 +404,9 @@ mod tests {
         let scatter = scatter();
         let svg = scatter.svg();
         assert!(
-            svg.matches("<circle").count() > 30 && svg.contains("way 30") && !svg.contains("way 28"),
+            svg.matches("<circle").count() > 30
+                && svg.contains("configuration 30")
+                && !svg.contains("configuration 28"),
             "{svg}"
         );
         let image = scatter.image();
@@ -317,8 +426,8 @@ mod tests {
 
     #[test]
     fn ticks_are_plain_numbers_or_powers_of_ten() {
-        let ticks = [1e-5, 0.01, 0.2, 1.0, 1000.0, 1e12].map(tick);
-        assert_eq!(ticks, ["10⁻⁵", "0.01", "0.2", "1", "1000", "10¹²"]);
+        let ticks = [1e-5, 2e-5, 0.01, 0.2, 1.0, 1000.0, 1e12].map(tick);
+        assert_eq!(ticks, ["10⁻⁵", "2·10⁻⁵", "0.01", "0.2", "1", "1000", "10¹²"]);
     }
 
     #[test]

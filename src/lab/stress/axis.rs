@@ -109,8 +109,12 @@ pub enum EasySteps {
 
 /// A quantity taken to its extremes.
 pub struct Axis {
-    /// A name of one to three words.
+    /// A name of one to three words; it also selects the random cases.
     pub name: &'static str,
+    /// The quantity, as the title of a table's row.
+    pub label: &'static str,
+    /// The quantity with its definition, as the title of a chart's axis.
+    pub axis_title: &'static str,
     /// The kind of its cases.
     pub kind: Kind,
     /// The steps in order.
@@ -124,6 +128,15 @@ pub struct Axis {
 }
 
 impl Axis {
+    /// The description of a step.
+    pub(super) fn describe(&self, step: Step) -> String {
+        match step {
+            Step::Number(_) => format!("{} = {step}", self.label),
+            Step::Label(label) if self.kind == Kind::Secondaries => format!("{}, {label}", self.label),
+            Step::Label(label) => label.to_owned(),
+        }
+    }
+
     /// Samples a case for a step, without checking its margin.
     pub(super) fn sample(&self, random: &mut Random, step: Step) -> Option<Case> {
         (self.sample)(random, step)
@@ -150,16 +163,20 @@ fn labels(labels: &[&'static str]) -> Vec<Step> {
 /// All axes.
 #[must_use]
 pub fn axes() -> Vec<Axis> {
-    let spheres = |name, steps, easy, sample| Axis {
+    let spheres = |name, [label, axis_title]: [&'static str; 2], steps, easy, sample| Axis {
         name,
+        label,
+        axis_title,
         kind: Kind::Spheres,
         steps,
         easy,
         margin: MARGIN,
         sample,
     };
-    let quadrics = |name, steps, easy, margin, sample| Axis {
+    let quadrics = |name, [label, axis_title]: [&'static str; 2], steps, easy, margin, sample| Axis {
         name,
+        label,
+        axis_title,
         kind: Kind::Quadrics,
         steps,
         easy,
@@ -169,8 +186,10 @@ pub fn axes() -> Vec<Axis> {
     let grazing = (1..=20).map(|i| Step::Number(power_of_ten(-i)));
     let missing = (1..=20).rev().map(|i| Step::Number(-power_of_ten(-i)));
     let rays = labels(&["scale 1", "scale 1e3", "ground r = 1000"]);
-    let secondary = |name, steps, sample| Axis {
+    let secondary = |name, label, steps, sample| Axis {
         name,
+        label,
+        axis_title: "scene",
         kind: Kind::Secondaries,
         steps,
         easy: EasySteps::Unordered,
@@ -178,9 +197,16 @@ pub fn axes() -> Vec<Axis> {
         sample,
     };
     vec![
-        spheres("scale", decades(-30, 30, 5), EasySteps::One, scaled_sphere),
+        spheres(
+            "scale",
+            ["scene scale", "factor on all lengths"],
+            decades(-30, 30, 5),
+            EasySteps::One,
+            scaled_sphere,
+        ),
         spheres(
             "distance/radius",
+            ["distance / radius", "distance of the ray origin / sphere radius"],
             decades(0, 12, 1),
             EasySteps::First,
             distant_sphere,
@@ -189,6 +215,10 @@ pub fn axes() -> Vec<Axis> {
             margin: 0.0,
             ..spheres(
                 "grazing",
+                [
+                    "grazing rays, δ",
+                    "δ = 1 − (distance of the line from the center / radius)²; > 0: hit, < 0: miss",
+                ],
                 grazing.chain(missing).collect(),
                 EasySteps::Ends,
                 grazing_sphere,
@@ -196,19 +226,28 @@ pub fn axes() -> Vec<Axis> {
         },
         spheres(
             "origin",
+            ["ray origin", "position of the ray origin"],
             labels(&SPHERE_ORIGINS),
             EasySteps::Unordered,
             origin_near_sphere,
         ),
         spheres(
             "gap of shells",
+            ["gap between shells", "gap between concentric spheres"],
             decades(-7, -1, 1).into_iter().rev().collect(),
             EasySteps::First,
             concentric_shells,
         ),
-        spheres("|d|", decades(-20, 20, 2), EasySteps::One, stretched_direction),
+        spheres(
+            "|d|",
+            ["direction length |d|", "length of the ray direction d"],
+            decades(-20, 20, 2),
+            EasySteps::One,
+            stretched_direction,
+        ),
         spheres(
             "world offset",
+            ["world offset", "distance of the scene from (0, 0, 0)"],
             [Step::Number(0.0)].into_iter().chain(decades(1, 7, 1)).collect(),
             EasySteps::First,
             offset_sphere,
@@ -217,6 +256,7 @@ pub fn axes() -> Vec<Axis> {
             margin: 0.0,
             ..spheres(
                 "parts",
+                ["degenerate input", "kind of degenerate input"],
                 labels(&DEGENERATE_PARTS),
                 EasySteps::Unordered,
                 degenerate_sphere,
@@ -224,6 +264,7 @@ pub fn axes() -> Vec<Axis> {
         },
         quadrics(
             "A/|q|",
+            ["quadratic term A/|q|", "coefficient A of t², relative to |q|"],
             decades(-14, -1, 1).into_iter().rev().collect(),
             EasySteps::First,
             MARGIN,
@@ -231,6 +272,7 @@ pub fn axes() -> Vec<Axis> {
         ),
         quadrics(
             "distance/size",
+            ["distance / size", "distance of the ray origin / size"],
             decades(0, 7, 1),
             EasySteps::First,
             MARGIN,
@@ -238,13 +280,14 @@ pub fn axes() -> Vec<Axis> {
         ),
         quadrics(
             "rays of a quadric",
+            ["special ray", "kind of ray"],
             labels(&SPECIAL_QUADRIC_RAYS),
             EasySteps::Unordered,
             0.0,
             special_quadric_ray,
         ),
-        secondary("mirrored rays", rays.clone(), mirrored_ray),
-        secondary("grazing rays", rays, grazing_secondary_ray),
+        secondary("mirrored rays", "mirror reflection", rays.clone(), mirrored_ray),
+        secondary("grazing rays", "grazing direction", rays, grazing_secondary_ray),
     ]
 }
 

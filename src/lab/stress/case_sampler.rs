@@ -11,10 +11,10 @@ use super::axis::{Case, MARGIN, RaySphere, Step, step_value, to_f32};
 use super::exact;
 
 pub(super) const SPHERE_ORIGINS: [&str; 4] = [
-    "the origin inside",
-    "the origin on the surface",
-    "the origin one ULP inside",
-    "the origin one ULP outside",
+    "origin inside",
+    "origin on the surface",
+    "origin 1 ULP inside",
+    "origin 1 ULP outside",
 ];
 pub(super) const DEGENERATE_PARTS: [&str; 13] = [
     "zero coordinates",
@@ -25,7 +25,7 @@ pub(super) const DEGENERATE_PARTS: [&str; 13] = [
     "denormal direction",
     "infinite origin",
     "infinite direction",
-    "infinite centre",
+    "infinite center",
     "infinite radius",
     "NaN origin",
     "NaN direction",
@@ -178,8 +178,8 @@ pub(super) fn origin_near_sphere(random: &mut Random, step: Step) -> Option<Case
         return None;
     }
     o[i] = match label {
-        "the origin one ULP inside" => f32::from_bits(if outward { bits - 1 } else { bits + 1 }),
-        "the origin one ULP outside" => f32::from_bits(if outward { bits + 1 } else { bits - 1 }),
+        "origin 1 ULP inside" => f32::from_bits(if outward { bits - 1 } else { bits + 1 }),
+        "origin 1 ULP outside" => f32::from_bits(if outward { bits + 1 } else { bits - 1 }),
         _ => o[i],
     };
     let d = random.direction();
@@ -243,7 +243,7 @@ pub(super) fn degenerate_sphere(random: &mut Random, step: Step) -> Option<Case>
         "denormal direction" => ray_sphere.d = ray_sphere.d.map(|x| (f64::from(x) * 1e-40) as f32),
         "infinite origin" => ray_sphere.o[i] = infinite,
         "infinite direction" => ray_sphere.d[i] = infinite,
-        "infinite centre" => ray_sphere.c[i] = infinite,
+        "infinite center" => ray_sphere.c[i] = infinite,
         "infinite radius" => ray_sphere.r = f32::INFINITY,
         "NaN origin" => ray_sphere.o[i] = f32::NAN,
         "NaN direction" => ray_sphere.d[i] = f32::NAN,
@@ -259,11 +259,11 @@ pub(super) fn degenerate_sphere(random: &mut Random, step: Step) -> Option<Case>
 // Rays and quadrics, each in its local coordinates.
 
 pub(super) const SPECIAL_QUADRIC_RAYS: [&str; 5] = [
-    "a ray along a cylinder",
-    "a ray along a cone's side",
-    "a ray along a paraboloid's axis",
-    "a ray through a cone's apex",
-    "a ray through a paraboloid's apex",
+    "ray along a cylinder",
+    "ray along a cone's side",
+    "ray along a paraboloid's axis",
+    "ray through a cone's apex",
+    "ray through a paraboloid's apex",
 ];
 
 /// q, g and k.
@@ -313,10 +313,10 @@ pub(super) fn special_quadric_ray(random: &mut Random, step: Step) -> Option<Cas
     // Multiples of 1/1024, so that sums of two are exact.
     let coarse = |v: [f64; 3]| v.map(|x| (x * 1024.0).round() / 1024.0);
     Some(match label {
-        "a ray along a cylinder" => quadric_case(CYLINDER, o, along),
-        "a ray along a cone's side" => quadric_case(CONE, o, [3.0, 4.0 * random.sign(), 5.0]),
-        "a ray along a paraboloid's axis" => quadric_case(PARABOLOID, o, along),
-        "a ray through a cone's apex" => {
+        "ray along a cylinder" => quadric_case(CYLINDER, o, along),
+        "ray along a cone's side" => quadric_case(CONE, o, [3.0, 4.0 * random.sign(), 5.0]),
+        "ray along a paraboloid's axis" => quadric_case(PARABOLOID, o, along),
+        "ray through a cone's apex" => {
             let d = coarse([x, y, 2.0 * z]);
             quadric_case(CONE, d.map(|x| -4.0 * x), d)
         }

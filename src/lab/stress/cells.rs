@@ -186,9 +186,9 @@ mod tests {
                     assert_eq!(hits, 0, "{context}");
                 }
                 ("parts", Step::Label("zero radius"))
-                | ("origin", Step::Label("the origin inside"))
+                | ("origin", Step::Label("origin inside"))
                 | ("gap of shells", _) => {}
-                ("origin", Step::Label("the origin one ULP inside")) => assert_eq!(hits, 200, "{context}"),
+                ("origin", Step::Label("origin 1 ULP inside")) => assert_eq!(hits, 200, "{context}"),
                 _ => assert!((20..=195).contains(&hits), "{context}"),
             }
         }

@@ -64,7 +64,7 @@ float halfB(vec3 o, vec3 d, vec3 c, float r, float tMin) {
 
 const GEOMETRIC: Formula = Formula {
     name: "geometric",
-    text: "// By Pythagoras from the point of the ray that is nearest to the centre.
+    text: "// By Pythagoras from the point of the ray that is nearest to the center.
 float geometric(vec3 o, vec3 d, vec3 c, float r, float tMin) {
     vec3 f = c - o;
     float a = dot(d, d);
@@ -80,9 +80,9 @@ float geometric(vec3 o, vec3 d, vec3 c, float r, float tMin) {
 /// The recentered discriminant with stable roots: Haines, Günther and Akenine-Möller, “Precision Improvements
 /// for Ray/Sphere Intersection”, Ray Tracing Gems (2019), chapter 7.
 pub const RECENTERED: Formula = Formula {
-    name: "recentred",
-    text: "// The distance of the line from the centre as a vector, and roots that do not cancel.
-float recentred(vec3 o, vec3 d, vec3 c, float r, float tMin) {
+    name: "recentered",
+    text: "// The distance of the line from the center as a vector, and roots that do not cancel.
+float recentered(vec3 o, vec3 d, vec3 c, float r, float tMin) {
     vec3 f = o - c;
     float a = dot(d, d);
     float b = -dot(f, d);
@@ -107,7 +107,7 @@ float powerOfTwo(float x) {
     return power > 0.0 && power < 1.0e38 ? power : 1.0;
 }
 
-// The recentred discriminant, the sphere near size 1 and the direction near length 1.
+// The recentered discriminant, the sphere near size 1 and the direction near length 1.
 float scaled(vec3 o, vec3 d, vec3 c, float r, float tMin) {
     float unit = powerOfTwo(r);
     float size = powerOfTwo(max(abs(d.x), max(abs(d.y), abs(d.z))));
@@ -243,7 +243,7 @@ const QUADRICS: [(&str, &str); 2] = [
 ",
     ),
     (
-        "quadric, recentred",
+        "quadric, recentered",
         "// From the point of the ray that is nearest to the origin, with roots that do not cancel.
 float quadric(vec3 o, vec3 d, vec3 q, float g, float k) {
     float ahead = -dot(o, d) / dot(d, d);
@@ -299,7 +299,7 @@ const STRATEGIES: [Strategy; 7] = [
         ..PLAIN
     },
     Strategy {
-        name: "P + 1e-3 N",
+        name: "p + 1e-3 n",
         start: "p + 1.0e-3 * n",
         ..PLAIN
     },
@@ -319,18 +319,18 @@ const STRATEGIES: [Strategy; 7] = [
     // Pharr, Jakob and Humphreys, “Physically Based Rendering” (4th edition, 2023), 6.8.6: offset to the edge
     // of the rounding-error bounds of a point projected back onto the sphere.
     Strategy {
-        name: "off the error box",
-        helper: "vec3 offBox(vec3 p, vec3 n, vec3 c, float r) {
+        name: "error-bound offset",
+        helper: "vec3 offErrorBounds(vec3 p, vec3 n, vec3 c, float r) {
     vec3 local = (p - c) * (r / length(p - c));
     vec3 error = 5.0 * 5.97e-8 * abs(local) + 5.97e-8 * abs(local + c);
     return local + c + dot(abs(n), error) * n;
 }
 ",
-        start: "offBox(p, n, c.xyz, a.w)",
+        start: "offErrorBounds(p, n, c.xyz, a.w)",
         ..PLAIN
     },
     Strategy {
-        name: "skip the surface",
+        name: "skip own surface",
         tests_own: false,
         ..PLAIN
     },
@@ -347,13 +347,13 @@ impl Strategy {
             ..
         } = self;
         let steps = format!(
-            "    vec3 p = a.xyz + recentred(a.xyz, b.xyz, c.xyz, a.w, 0.0) * b.xyz;
+            "    vec3 p = a.xyz + recentered(a.xyz, b.xyz, c.xyz, a.w, 0.0) * b.xyz;
     vec3 n = normalize(p - c.xyz);
     vec3 away = b.w == 0.0 ? reflect(b.xyz, n) : normalize(normalize(b.xyz - dot(b.xyz, n) * n) + b.w * n);
     vec3 start = {start};
     float tMin = {t_min};
-    float again = {tests_own} ? recentred(start, away, c.xyz, a.w, tMin) : -1.0;
-    float near = recentred(start, away, p + (0.1001 * a.w) * away, 0.1 * a.w, tMin);
+    float again = {tests_own} ? recentered(start, away, c.xyz, a.w, tMin) : -1.0;
+    float near = recentered(start, away, p + (0.1001 * a.w) * away, 0.1 * a.w, tMin);
     bool seen = near > tMin && near < 0.1 * a.w;
 "
         );

@@ -11,6 +11,7 @@ pub mod exact;
 pub mod formula;
 pub mod function;
 mod output;
+mod summary;
 mod tally;
 
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -53,6 +54,7 @@ pub struct Row {
     pub axis: &'static str,
     /// The step.
     #[serde(serialize_with = "output::serialize_step")]
+    #[serde(rename = "step")]
     pub value: Step,
     /// The statistics.
     #[serde(flatten)]

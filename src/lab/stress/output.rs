@@ -1,15 +1,13 @@
-//! Results as a table, JSON, text and heat maps.
+//! Results as CSV, JSON and heat maps.
 
 use serde::{Serialize, Serializer};
-use toyproof_image::Image;
 
 use super::axis::{Axis, Kind, Step, axes};
-use super::tally::join_list;
 use super::{CPU, Report, Row};
-use crate::chart::{Band, HeatMap, Panel};
+use crate::chart::{self, Band, HeatMap, Panel};
 
-const COLUMNS: &str =
-    "formula,precision,device,axis,value,cases,wrong_hits,t_ulp_p50,t_ulp_p99,t_ulp_max,nan,self_hits,lost";
+const COLUMNS: &str = "formula,precision,device,axis,step,cases,failing,wrong_hits,t_error_ulp_median,t_error_ulp_p99,t_error_ulp_max,\
+     non_finite,self_intersections,missed_nearby";
 
 pub(super) fn serialize_step<S: Serializer>(step: &Step, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_str(step)
@@ -45,7 +43,7 @@ impl Report {
             report: &'a Report,
         }
         let whole = Whole {
-            version: 1,
+            version: 2,
             tool: concat!("toyproof ", env!("CARGO_PKG_VERSION")),
             more,
             report: self,
@@ -53,27 +51,12 @@ impl Report {
         // Infinite and NaN values become null.
         serde_json::to_string_pretty(&whole).unwrap_or_default() + "\n"
     }
-
-    /// A line for each formula and precision that fails anywhere, with its failures.
-    #[must_use]
-    pub fn breakdown_lines(&self) -> Vec<String> {
-        let same =
-            |a: &super::Breakdown, b: &super::Breakdown| a.formula == b.formula && a.precision == b.precision;
-        let groups = self.breakdowns.chunk_by(same);
-        groups
-            .map(|group| {
-                let says: Vec<_> = group.iter().map(|one| one.description.clone()).collect();
-                let first = &group[0];
-                format!("{} {} fails {}", first.formula, first.precision, join_list(&says))
-            })
-            .collect()
-    }
 }
 
 impl Row {
     fn cells(&self) -> String {
         let tally = &self.tally;
-        let errors = tally.t_ulp.map_or_else(
+        let errors = tally.t_error_ulp.map_or_else(
             || ",,".to_owned(),
             |errors| errors.map(|error| format!("{error:.3}")).join(","),
         );
@@ -85,17 +68,18 @@ impl Row {
             }
         };
         format!(
-            "{},{},{},{},{},{},{},{errors},{},{},{}",
+            "{},{},{},{},{},{},{},{},{errors},{},{},{}",
             quoted(&self.formula),
             self.precision,
             quoted(&self.device),
             self.axis,
             self.value,
             tally.cases,
+            tally.failing,
             tally.wrong_hits,
-            tally.nan,
-            tally.self_hits,
-            tally.lost
+            tally.non_finite,
+            tally.self_intersections,
+            tally.missed_nearby
         )
     }
 }
@@ -108,52 +92,57 @@ type CellValue = fn(&Row) -> Option<f64>;
 impl Report {
     /// The heat maps that have data, each with its file name without an extension.
     #[must_use]
-    pub fn heat_maps(&self) -> Vec<(&'static str, Image)> {
+    pub fn heat_maps(&self) -> Vec<(&'static str, HeatMap)> {
         let failing: CellValue = |row| (row.tally.cases > 0).then(|| row.tally.failing_share());
-        let error: CellValue = |row| row.tally.t_ulp.map(|[_, p99, _]| p99);
+        let error: CellValue = |row| row.tally.t_error_ulp.map(|[_, p99, _]| p99);
+        let share = format!("Unusable results, share of {} cases per cell:", self.cases);
+        let ulp = "Error of t, 99th percentile, in units in the last place (ULP); blank: no hits:".to_owned();
         let maps = [
             (
                 "stress-spheres",
-                "Rays and spheres: answers that cannot be used",
+                "Ray–sphere intersection: where each formula fails",
                 Kind::Spheres,
-                shares(),
+                (share.clone(), shares()),
                 failing,
             ),
             (
                 "stress-errors",
-                "Rays and spheres: errors of t that one hit in 100 exceeds",
+                "Ray–sphere intersection: accuracy of t for correctly detected hits",
                 Kind::Spheres,
-                errors(),
+                (ulp, errors()),
                 error,
             ),
             (
                 "stress-quadrics",
-                "Rays and quadrics: answers that cannot be used",
+                "Ray–quadric intersection: where each formula fails",
                 Kind::Quadrics,
-                shares(),
+                (share.clone(), shares()),
                 failing,
             ),
             (
                 "stress-secondary",
-                "Rays that leave a sphere: self-hits and near roots lost",
+                "Rays leaving a sphere: self-intersections and missed nearby surfaces",
                 Kind::Secondaries,
-                shares(),
+                (share, shares()),
                 failing,
             ),
         ];
-        let maps = maps.into_iter().filter_map(|(file, title, kind, bands, value)| {
-            let panels: Vec<_> = axes()
-                .iter()
-                .filter(|axis| axis.kind == kind)
-                .filter_map(|axis| self.panel(axis, value))
-                .collect();
-            let map = HeatMap {
-                title: title.to_owned(),
-                bands,
-                panels,
-            };
-            (!map.panels.is_empty()).then(|| (file, map.image()))
-        });
+        let maps = maps
+            .into_iter()
+            .filter_map(|(file, title, kind, (legend, bands), value)| {
+                let panels: Vec<_> = axes()
+                    .iter()
+                    .filter(|axis| axis.kind == kind)
+                    .filter_map(|axis| self.panel(axis, value))
+                    .collect();
+                let map = HeatMap {
+                    title: title.to_owned(),
+                    legend,
+                    bands,
+                    panels,
+                };
+                (!map.panels.is_empty()).then_some((file, map))
+            });
         maps.collect()
     }
 
@@ -171,16 +160,34 @@ impl Report {
                 cpu_rows = Some(group);
             }
             if is_new {
-                let device = if first.device == CPU { "" } else { " GPU" };
-                let name = format!("{} {}{device}", first.formula, first.precision);
+                let device = if first.device == CPU { "" } else { ", GPU" };
+                let name = format!("{}, {}{device}", first.formula, first.precision);
                 lines.push((name, group.iter().map(|row| value(row)).collect()));
             }
         }
-        (!lines.is_empty()).then(|| Panel {
-            title: axis.name.to_owned(),
-            columns: axis.steps.iter().map(ToString::to_string).collect(),
-            rows: lines,
+        // Steps without any value, such as errors of t where there are no hits, have no column.
+        let shown: Vec<usize> = (0..axis.steps.len())
+            .filter(|&step| lines.iter().any(|(_, values)| values[step].is_some()))
+            .collect();
+        let lines = lines.into_iter().map(|(name, values)| {
+            let values = shown.iter().map(|&step| values[step]);
+            (name, values.collect())
+        });
+        (!shown.is_empty()).then(|| Panel {
+            title: chart::capitalized(axis.label),
+            x_title: axis.axis_title.to_owned(),
+            columns: shown.iter().map(|&step| column_label(axis.steps[step])).collect(),
+            rows: lines.collect(),
         })
+    }
+}
+
+/// The label of a step's column: `0`, `1`, `10`, `10⁻³`, `−10⁻³`, or its name.
+fn column_label(step: Step) -> String {
+    match step {
+        Step::Number(number) if number < 0.0 => format!("−{}", chart::tick(-number)),
+        Step::Number(number) if number > 0.0 => chart::tick(number),
+        step => step.to_string(),
     }
 }
 
@@ -199,20 +206,20 @@ fn bands<const N: usize>(bands: [(f64, &str, [u8; 3]); N]) -> Vec<Band> {
 
 fn shares() -> Vec<Band> {
     bands([
-        (0.0, "none", [38, 70, 112]),
+        (0.0, "0 %", [38, 70, 112]),
         (1e-9, "up to 1 %", [120, 165, 205]),
-        (0.01, "1 to 10 %", [250, 215, 120]),
-        (0.1, "10 to 50 %", [235, 130, 60]),
-        (0.5, "more", [170, 25, 35]),
+        (0.01, "1–10 %", [250, 215, 120]),
+        (0.1, "10–50 %", [235, 130, 60]),
+        (0.5, "more than 50 %", [170, 25, 35]),
     ])
 }
 
 fn errors() -> Vec<Band> {
     bands([
-        (0.0, "up to 4 ULP", [38, 70, 112]),
-        (4.0, "to 32", [120, 165, 205]),
-        (32.0, "to 1e3", [250, 215, 120]),
-        (1e3, "to 1e5", [235, 130, 60]),
-        (1e5, "more", [170, 25, 35]),
+        (0.0, "up to 4", [38, 70, 112]),
+        (4.0, "4–32", [120, 165, 205]),
+        (32.0, "32–10³", [250, 215, 120]),
+        (1e3, "10³–10⁵", [235, 130, 60]),
+        (1e5, "more than 10⁵", [170, 25, 35]),
     ])
 }

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::Row;
-use super::axis::{Axis, EasySteps, Kind, Step};
+use super::axis::{Axis, EasySteps, Step, step_value};
 use super::cells::{Alternative, Reference};
 use super::exact::DoubleDouble;
 use super::formula::Reading;
@@ -21,15 +21,15 @@ pub struct Tally {
     pub wrong_hits: u64,
     /// Errors of t for rays that hit the surface and were reported as hits, in units in the last place of the
     /// number type: median, 99th percentile and maximum. `None` if there were no such rays.
-    pub t_ulp: Option<[f64; 3]>,
+    pub t_error_ulp: Option<[f64; 3]>,
     /// Results that are NaN or infinite.
-    pub nan: u64,
-    /// Rays that hit the surface that they leave.
-    pub self_hits: u64,
+    pub non_finite: u64,
+    /// Rays that hit the surface that they start from.
+    pub self_intersections: u64,
     /// Rays that missed a nearby surface.
-    pub lost: u64,
-    /// Cases with an unusable result: a wrong hit, NaN, a t with a relative error above 1/1000, a self-hit, a
-    /// lost hit.
+    pub missed_nearby: u64,
+    /// Cases with an unusable result: a wrong hit, NaN, a t with a relative error above 1/1000, a
+    /// self-intersection, a missed nearby surface.
     pub failing: u64,
 }
 
@@ -93,8 +93,8 @@ impl Tally {
             tally.cases += 1;
             if matches!(reading, Reading::Secondary) {
                 let [own, lost] = [color[0] != 0.0, color[1] != 0.0];
-                tally.self_hits += u64::from(own);
-                tally.lost += u64::from(lost);
+                tally.self_intersections += u64::from(own);
+                tally.missed_nearby += u64::from(lost);
                 tally.failing += u64::from(own || lost);
                 continue;
             }
@@ -103,7 +103,7 @@ impl Tally {
             match (outcome, exact.t) {
                 (Outcome::Hit(t), Some(exact)) => errors.push(exact.ulps(t, digits)),
                 (Outcome::Nan, exact) => {
-                    tally.nan += 1;
+                    tally.non_finite += 1;
                     tally.wrong_hits += u64::from(exact.is_some());
                 }
                 (Outcome::Hit(_), None) | (Outcome::Miss, Some(_)) => tally.wrong_hits += 1,
@@ -112,7 +112,7 @@ impl Tally {
         }
         errors.sort_by(f64::total_cmp);
         let at = |share: f64| errors[((errors.len() - 1) as f64 * share).round() as usize];
-        tally.t_ulp = (!errors.is_empty()).then(|| [at(0.5), at(0.99), at(1.0)]);
+        tally.t_error_ulp = (!errors.is_empty()).then(|| [at(0.5), at(0.99), at(1.0)]);
         tally
     }
 
@@ -121,14 +121,19 @@ impl Tally {
     pub fn failing_share(&self) -> f64 {
         self.failing as f64 / self.cases.max(1) as f64
     }
+
+    /// Whether the share of unusable results is too large.
+    pub(super) fn fails(&self) -> bool {
+        self.failing_share() > MAX_FAILING_SHARE
+    }
 }
 
 // Breakdowns: the steps from which a formula fails.
 
 /// A step fails if the share of unusable results exceeds this.
-const MAX_FAILING_SHARE: f64 = 0.01;
+pub(super) const MAX_FAILING_SHARE: f64 = 0.01;
 
-/// Where a formula fails on an axis.
+/// The first step at which a formula fails in one direction of an axis.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Breakdown {
     /// The formula.
@@ -137,94 +142,85 @@ pub struct Breakdown {
     pub precision: &'static str,
     /// The axis.
     pub axis: &'static str,
+    /// The direction: the quantity with `≤` or `≥`; for a named step its description.
+    pub condition: String,
     /// The first failing step, counted from the easy ones.
-    pub from: String,
+    pub first_failing_step: String,
     /// The share of unusable results in that step, in [0, 1].
-    pub failing: f64,
-    /// The failure as text, to follow “fails”.
-    #[serde(rename = "says")]
-    pub description: String,
+    pub failing_share: f64,
 }
 
 /// All breakdowns in the rows of one formula, precision and device.
 pub(super) fn breakdowns(axes: &[Axis], rows: &[&Row]) -> Vec<Breakdown> {
-    axes.iter().flat_map(|axis| axis_breakdowns(axis, rows)).collect()
+    let found = axes.iter().flat_map(|axis| {
+        let directions = directions(axis).into_iter();
+        directions.filter_map(|direction| {
+            let row = direction.steps.iter().find_map(|step| {
+                let mut rows = rows.iter();
+                rows.find(|row| row.axis == axis.name && row.value == *step && row.tally.fails())
+            })?;
+            let step = match row.value {
+                Step::Number(x) if axis.easy == EasySteps::Ends => Step::Number(x.abs()),
+                step => step,
+            };
+            Some(Breakdown {
+                formula: row.formula.clone(),
+                precision: row.precision,
+                axis: axis.name,
+                condition: direction.condition,
+                first_failing_step: step.to_string(),
+                failing_share: row.tally.failing_share(),
+            })
+        })
+    });
+    found.collect()
 }
 
-/// Joins items as “a, b and c”.
-pub(super) fn join_list(items: &[String]) -> String {
-    match items {
-        [] => String::new(),
-        [one] => one.clone(),
-        [first @ .., last] => format!("{} and {last}", first.join(", ")),
-    }
+/// One direction in which the steps of an axis get harder.
+pub(super) struct Direction {
+    /// The quantity with `≤` or `≥`; for a named step its description.
+    pub(super) condition: String,
+    /// The steps, easiest first.
+    steps: Vec<Step>,
 }
 
-fn axis_breakdowns(axis: &Axis, rows: &[&Row]) -> Vec<Breakdown> {
-    let rows: Vec<&Row> = rows.iter().filter(|row| row.axis == axis.name).copied().collect();
-    let name = axis.name;
-    let breakdown = |row: &Row, description: String| Breakdown {
-        formula: row.formula.clone(),
-        precision: row.precision,
-        axis: name,
-        from: row.value.to_string(),
-        failing: row.tally.failing_share(),
-        description,
+/// The directions in which the steps of an axis get harder.
+pub(super) fn directions(axis: &Axis) -> Vec<Direction> {
+    let label = axis.label;
+    let where_number = |side: fn(f64) -> bool| {
+        let steps = axis.steps.iter().copied();
+        steps.filter(move |step| matches!(step, Step::Number(x) if side(*x)))
     };
-    let fails = |row: &&&Row| row.tally.failing_share() > MAX_FAILING_SHARE;
-    let is = |row: &&&Row, side: fn(f64) -> bool| matches!(row.value, Step::Number(x) if side(x));
-    let found: Vec<_> = match axis.easy {
+    let direction = |condition: String, steps: Vec<Step>| Direction { condition, steps };
+    match axis.easy {
         EasySteps::First => {
-            let first = rows.iter().find(fails);
-            first
-                .map(|row| breakdown(row, format!("from {name} {} on", row.value)))
-                .into_iter()
+            let sign = if step_value(axis.steps[0]) < step_value(axis.steps[axis.steps.len() - 1]) {
+                '≥'
+            } else {
+                '≤'
+            };
+            vec![direction(format!("{label} {sign}"), axis.steps.clone())]
+        }
+        EasySteps::One => vec![
+            direction(format!("{label} ≤"), where_number(|x| x <= 1.0).rev().collect()),
+            direction(format!("{label} ≥"), where_number(|x| x > 1.0).collect()),
+        ],
+        EasySteps::Ends => vec![
+            direction(
+                "grazing hits, |δ| ≤".to_owned(),
+                where_number(|x| x > 0.0).collect(),
+            ),
+            direction(
+                "near misses, |δ| ≤".to_owned(),
+                where_number(|x| x < 0.0).rev().collect(),
+            ),
+        ],
+        EasySteps::Unordered => {
+            let steps = axis.steps.iter();
+            steps
+                .map(|&step| direction(axis.describe(step), vec![step]))
                 .collect()
         }
-        EasySteps::One => {
-            let low = rows.iter().rev().filter(|row| is(row, |x| x <= 1.0)).find(fails);
-            let high = rows.iter().filter(|row| is(row, |x| x > 1.0)).find(fails);
-            let low = low.map(|row| breakdown(row, format!("from {name} {} down", row.value)));
-            let high = high.map(|row| breakdown(row, format!("from {name} {} up", row.value)));
-            low.into_iter().chain(high).collect()
-        }
-        EasySteps::Ends => {
-            let size = |row: &Row| match row.value {
-                Step::Number(x) => Step::Number(x.abs()),
-                label @ Step::Label(_) => label,
-            };
-            let hits = rows.iter().filter(|row| is(row, |x| x > 0.0)).find(fails);
-            let misses = rows.iter().rev().filter(|row| is(row, |x| x < 0.0)).find(fails);
-            let hits =
-                hits.map(|row| breakdown(row, format!("on hits that graze from |δ| {} on", size(row))));
-            let misses =
-                misses.map(|row| breakdown(row, format!("on misses that graze from |δ| {} on", size(row))));
-            hits.into_iter().chain(misses).collect()
-        }
-        EasySteps::Unordered => rows
-            .iter()
-            .filter(fails)
-            .map(|row| breakdown(row, describe_unordered_step(axis, row)))
-            .collect(),
-    };
-    found
-}
-
-fn describe_unordered_step(axis: &Axis, row: &Row) -> String {
-    let percent = |count: u64| 100.0 * count as f64 / row.tally.cases.max(1) as f64;
-    match axis.kind {
-        Kind::Secondaries => {
-            let parts = [
-                (row.tally.self_hits, "meet their own surface"),
-                (row.tally.lost, "lose what is near"),
-            ];
-            let parts = parts.into_iter().filter(|(count, _)| *count > 0);
-            let parts: Vec<_> = parts
-                .map(|(count, says)| format!("{:.1} % {says}", percent(count)))
-                .collect();
-            format!("for {} at {} ({})", axis.name, row.value, join_list(&parts))
-        }
-        _ => format!("with {}", row.value),
     }
 }
 
@@ -252,12 +248,15 @@ mod tests {
         };
         let colors = cases.map(|(t, exact)| ([t, 0.0, 0.0], reference(exact)));
         let tally = Tally::of(&Reading::Root, 24, None, colors.into_iter());
-        assert_eq!((tally.cases, tally.wrong_hits, tally.nan), (8, 3, 2));
+        assert_eq!((tally.cases, tally.wrong_hits, tally.non_finite), (8, 3, 2));
         assert_eq!(tally.failing, 5, "all but two hits and a miss");
-        assert_eq!(tally.t_ulp, Some([1.0, 4_194_304.0, 4_194_304.0]));
+        assert_eq!(tally.t_error_ulp, Some([1.0, 4_194_304.0, 4_194_304.0]));
         let secondary = [[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0; 3]].map(|color| (color, reference(None)));
         let tally = Tally::of(&Reading::Secondary, 24, None, secondary.into_iter());
-        assert_eq!((tally.self_hits, tally.lost, tally.failing), (2, 1, 2));
+        assert_eq!(
+            (tally.self_intersections, tally.missed_nearby, tally.failing),
+            (2, 1, 2)
+        );
     }
 
     #[test]

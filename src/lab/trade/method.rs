@@ -1,8 +1,10 @@
 //! The rendering methods that are compared.
 
+use std::fmt;
 use std::time::{Duration, Instant};
 
-use toyproof_diagnostic::{File, Files};
+use serde::Serialize;
+use toyproof_diagnostic::{File, Files, plural};
 use toyproof_eval::{self as eval, Number, Program, Settings, UndefinedPolicy};
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_gpu::Worker;
@@ -13,11 +15,47 @@ use toyproof_translate::FloatMode;
 
 use crate::trade::schedule::Cost;
 
+/// The settings of a rendering method, shown to users.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+pub struct Configuration {
+    /// The tracer, the evaluator, or a GPU with its float mode.
+    pub renderer: String,
+    /// `f32` or `f64`.
+    pub precision: &'static str,
+    /// The sampler, if the scene requires samples.
+    pub sampler: Option<&'static str>,
+    /// The samples per pixel, if the scene requires samples.
+    pub samples_per_pixel: Option<u32>,
+    /// The maximum depth, if it is not the scene's.
+    pub max_depth: Option<u32>,
+    /// The formula that replaces the shader's own ray–sphere intersection.
+    pub sphere_formula: Option<&'static str>,
+}
+
+impl fmt::Display for Configuration {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}", self.renderer, self.precision)?;
+        if let Some(sampler) = self.sampler {
+            write!(f, ", {sampler}")?;
+        }
+        if let Some(samples) = self.samples_per_pixel {
+            let noun = plural(u64::from(samples), "sample", "samples");
+            write!(f, ", {samples} {noun}")?;
+        }
+        if let Some(depth) = self.max_depth {
+            write!(f, ", depth {depth}")?;
+        }
+        if let Some(formula) = self.sphere_formula {
+            write!(f, ", {formula}")?;
+        }
+        Ok(())
+    }
+}
+
 /// A method of rendering an image.
 #[derive(Debug)]
 pub(super) struct Method {
-    /// A short description.
-    pub(super) name: String,
+    pub(super) configuration: Configuration,
     /// The device and precision that it shares with other methods.
     pub(super) group: Group,
     /// The estimated cost of a frame, in samples; comparable within a group.
@@ -52,9 +90,9 @@ impl Group {
         (Self::Tracer64, "tracer, f64"),
         (Self::Evaluator32, "evaluator, f32"),
         (Self::Evaluator64, "evaluator, f64"),
-        (Self::Strict, "GPU, strict"),
-        (Self::Fast, "GPU, fast"),
-        (Self::OtherDevice, "another GPU"),
+        (Self::Strict, "GPU, strict f32"),
+        (Self::Fast, "GPU, fast f32"),
+        (Self::OtherDevice, "other GPUs, f32"),
     ];
 }
 
@@ -76,15 +114,15 @@ pub(super) enum Backend {
 /// A shader prepared for the evaluator and for GPUs.
 #[derive(Debug)]
 pub(super) struct Shader {
-    /// The formula that replaces its ray–sphere intersection; empty for its own.
-    pub(super) formula: &'static str,
+    /// The formula that replaces its ray–sphere intersection; `None` for its own.
+    pub(super) formula: Option<&'static str>,
     checked: Checked,
     program: Program,
 }
 
 impl Shader {
     /// Prepares a shader; `None` if the text is invalid or the program too large.
-    pub(super) fn new(formula: &'static str, text: &str, options: &glsl::Options) -> Option<Self> {
+    pub(super) fn new(formula: Option<&'static str>, text: &str, options: &glsl::Options) -> Option<Self> {
         let mut files = Files::default();
         let file = files.add(File::new("<trade>", text));
         let checked = glsl::check(&files, file, options).ok()?;
@@ -168,20 +206,18 @@ impl RenderContext<'_> {
     pub(super) fn shader_methods(&self, samples: f64) -> Vec<Method> {
         let mut methods = Vec::new();
         for (index, shader) in self.shaders.iter().enumerate() {
-            let formula = shader.formula;
-            let named = |name: &str| {
-                if formula.is_empty() {
-                    name.to_owned()
-                } else {
-                    format!("{name}, {formula}")
-                }
+            let configuration = |renderer: &str, precision| Configuration {
+                renderer: renderer.to_owned(),
+                precision,
+                sphere_formula: shader.formula,
+                ..Configuration::default()
             };
-            for (double, group, name) in [
-                (false, Group::Evaluator32, "evaluator f32"),
-                (true, Group::Evaluator64, "evaluator f64"),
+            for (double, group, precision) in [
+                (false, Group::Evaluator32, "f32"),
+                (true, Group::Evaluator64, "f64"),
             ] {
                 methods.push(Method {
-                    name: named(name),
+                    configuration: configuration("evaluator", precision),
                     group,
                     cost: samples * if double { 1.5 } else { 1.0 },
                     backend: Backend::Evaluator {
@@ -196,7 +232,7 @@ impl RenderContext<'_> {
                     (FloatMode::Fast, Group::Fast, "fast"),
                 ] {
                     methods.push(Method {
-                        name: named(&format!("{device} {name}")),
+                        configuration: configuration(&format!("{device} {name}"), "f32"),
                         group: if at == 0 { group } else { Group::OtherDevice },
                         cost: samples,
                         backend: Backend::Gpu {
@@ -224,7 +260,7 @@ const SAMPLE_COUNTS: [u32; 4] = [1, 4, 16, 64];
 const SAMPLERS: [(Sampler, &str); 3] = [
     (Sampler::Independent, "independent"),
     (Sampler::Stratified, "stratified"),
-    (Sampler::Sobol, "sobol"),
+    (Sampler::Sobol, "Sobol"),
 ];
 
 /// All methods that use the tracer: varies only the settings that the scene requires.
@@ -235,9 +271,12 @@ pub(super) fn scene_methods(scene: &Scene) -> Vec<Method> {
     if requirements.samples {
         for (sampler, name) in SAMPLERS {
             for samples in SAMPLE_COUNTS {
-                let film_label = format!("{name} {samples}");
                 films.push((
-                    film_label,
+                    Configuration {
+                        sampler: Some(name),
+                        samples_per_pixel: Some(samples),
+                        ..Configuration::default()
+                    },
                     Film {
                         samples,
                         sampler,
@@ -247,18 +286,25 @@ pub(super) fn scene_methods(scene: &Scene) -> Vec<Method> {
             }
         }
         if film.sampler == Sampler::SineHash {
-            films.push((format!("sine-hash {}", film.samples), film));
+            let configuration = Configuration {
+                sampler: Some("sine hash"),
+                samples_per_pixel: Some(film.samples),
+                ..Configuration::default()
+            };
+            films.push((configuration, film));
         }
     } else {
-        films.push((String::new(), film));
+        films.push((Configuration::default(), film));
     }
     if requirements.secondary_rays {
         // The depths 1, 2, 3, 5, 8, … below the scene's maximum depth.
         let (mut depth, mut next) = (1, 2);
         while depth < film.max_depth {
-            let film_label = format!("depth {depth}");
             films.push((
-                film_label,
+                Configuration {
+                    max_depth: Some(depth),
+                    ..Configuration::default()
+                },
                 Film {
                     max_depth: depth,
                     ..film
@@ -267,26 +313,24 @@ pub(super) fn scene_methods(scene: &Scene) -> Vec<Method> {
             (depth, next) = (next, depth + next);
         }
     }
-    let methods = films.into_iter().flat_map(|(film_label, film)| {
-        [
-            (false, Group::Tracer32, "tracer f32"),
-            (true, Group::Tracer64, "tracer f64"),
-        ]
-        .map(|(double, group, name)| Method {
-            name: if film_label.is_empty() {
-                name.to_owned()
-            } else {
-                format!("{name}, {film_label}")
-            },
-            group,
-            cost: f64::from(film.samples) * if double { 1.5 } else { 1.0 },
-            backend: Backend::Tracer {
-                scene: Box::new(Scene {
-                    film,
-                    ..scene.clone()
-                }),
-                double,
-            },
+    let methods = films.into_iter().flat_map(|(configuration, film)| {
+        [(false, Group::Tracer32, "f32"), (true, Group::Tracer64, "f64")].map(|(double, group, precision)| {
+            Method {
+                configuration: Configuration {
+                    renderer: "tracer".to_owned(),
+                    precision,
+                    ..configuration.clone()
+                },
+                group,
+                cost: f64::from(film.samples) * if double { 1.5 } else { 1.0 },
+                backend: Backend::Tracer {
+                    scene: Box::new(Scene {
+                        film,
+                        ..scene.clone()
+                    }),
+                    double,
+                },
+            }
         })
     });
     methods.collect()

@@ -9,13 +9,13 @@ mod table;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+pub use method::Configuration;
 use method::{Group, Method, RenderContext, Shader};
 pub use reference::Error;
 use reference::Reference;
 use schedule::{Cost, Runner};
 pub use schedule::{TimeStatistics, median};
 use serde::Serialize;
-pub use table::ERROR_LIMITS;
 use toyproof_eval as eval;
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_gpu::Worker;
@@ -62,18 +62,17 @@ pub enum Failure {
 /// A method with its measured time and error.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MethodResult {
-    /// The name of the method.
-    #[serde(rename = "way")]
-    pub method: String,
-    /// The renderer and precision.
+    /// The settings of the method.
+    #[serde(flatten)]
+    pub configuration: Configuration,
+    /// The group in charts: the renderer and precision.
     pub group: &'static str,
     /// The time of a frame.
-    pub seconds: TimeStatistics,
+    pub seconds_per_frame: TimeStatistics,
     /// The error relative to the reference.
     pub error: Error,
     /// Whether the method is on the Pareto front: no other is both faster and more accurate.
-    #[serde(rename = "best")]
-    pub on_front: bool,
+    pub on_pareto_front: bool,
 }
 
 /// The results of a study.
@@ -84,16 +83,17 @@ pub struct Report {
     /// The width and height in pixels.
     pub size: [u32; 2],
     /// A description of the reference image.
-    #[serde(rename = "truth")]
     pub reference: String,
     /// The error of the reference itself: a root mean square, in [0, 1].
-    #[serde(rename = "truth_error")]
     pub reference_error: f64,
+    /// How that error was estimated.
+    pub reference_error_estimate: &'static str,
+    /// The time that the whole study took, in seconds.
+    pub seconds: f64,
     /// Methods that failed or exceeded the time budget.
-    #[serde(rename = "left_out")]
     pub skipped: Vec<String>,
     /// The methods, fastest first.
-    #[serde(rename = "ways")]
+    #[serde(rename = "configurations")]
     pub results: Vec<MethodResult>,
 }
 
@@ -121,14 +121,14 @@ pub fn study(subject: Subject, interrupt: &AtomicBool, progress: impl Fn(f64)) -
     let budget = budget.mul_f64(0.97).saturating_sub(Duration::from_millis(100));
     let mut shaders = Vec::new();
     if let Some((text, checked)) = shader {
-        shaders.extend(Shader::new("", text, &options));
+        shaders.extend(Shader::new(None, text, &options));
         let replacements = match stress::function::replacements(text, checked, &options) {
             // The scene's own methods need no shader.
             Err(_) if options.deadline.check().is_err() => Vec::new(),
             replacements => replacements?,
         };
         for (formula, text) in replacements {
-            shaders.extend(Shader::new(formula, &text, &options));
+            shaders.extend(Shader::new(Some(formula), &text, &options));
         }
     }
     let context = RenderContext {
@@ -169,22 +169,27 @@ pub fn study(subject: Subject, interrupt: &AtomicBool, progress: impl Fn(f64)) -
     for ((method, error), seconds) in bench.methods.iter().zip(&bench.errors).zip(seconds) {
         match error {
             Some(error) if !seconds.is_empty() => measured.push(MethodResult {
-                method: method.name.clone(),
+                configuration: method.configuration.clone(),
                 group: group_name(method.group),
-                seconds: TimeStatistics::of(&seconds),
+                seconds_per_frame: TimeStatistics::of(&seconds),
                 error: *error,
-                on_front: false,
+                on_pareto_front: false,
             }),
-            _ => skipped.push(method.name.clone()),
+            _ => skipped.push(method.configuration.to_string()),
         }
     }
-    measured.sort_by(|a, b| a.seconds.median.total_cmp(&b.seconds.median));
+    measured.sort_by(|a, b| {
+        let [a, b] = [a, b].map(|result| result.seconds_per_frame.median);
+        a.total_cmp(&b)
+    });
     mark_pareto_front(&mut measured);
     Ok(Report {
         subject: name,
         size: frame.size,
         reference: reference.description,
         reference_error: reference.error,
+        reference_error_estimate: reference.error_estimate,
+        seconds: start.elapsed().as_secs_f64(),
         skipped,
         results: measured,
     })
@@ -213,8 +218,8 @@ const MIN_ERROR_REDUCTION: f64 = 0.01;
 fn mark_pareto_front(measured: &mut [MethodResult]) {
     let mut least = f64::INFINITY;
     for result in measured {
-        result.on_front = result.error.rmse < (1.0 - MIN_ERROR_REDUCTION) * least;
-        if result.on_front {
+        result.on_pareto_front = result.error.rmse < (1.0 - MIN_ERROR_REDUCTION) * least;
+        if result.on_pareto_front {
             least = result.error.rmse;
         }
     }
@@ -261,7 +266,7 @@ impl<P: Fn(f64)> Runner for Bench<'_, P> {
 impl Report {
     /// The fastest method whose root mean square error is at most `error`; `None` if there is none.
     #[must_use]
-    pub fn cheapest(&self, error: f64) -> Option<&MethodResult> {
+    pub fn fastest(&self, error: f64) -> Option<&MethodResult> {
         self.results.iter().find(|result| result.error.rmse <= error)
     }
 }
@@ -270,77 +275,110 @@ impl Report {
 mod tests {
     use super::*;
 
-    fn result(name: &str, median: f64, rmse: f64) -> MethodResult {
+    fn result(renderer: &str, median: f64, rmse: f64) -> MethodResult {
         MethodResult {
-            method: name.to_owned(),
+            configuration: Configuration {
+                renderer: renderer.to_owned(),
+                precision: "f32",
+                ..Configuration::default()
+            },
             group: "",
-            seconds: TimeStatistics {
+            seconds_per_frame: TimeStatistics {
                 median,
                 ..TimeStatistics::default()
             },
             error: Error {
                 rmse,
                 max: 0.0,
-                mismatches_8bit: 0,
-                flips: None,
+                differing_pixels_8bit: 0,
+                silhouette_flips: None,
             },
-            on_front: false,
+            on_pareto_front: false,
+        }
+    }
+
+    fn report(mut results: Vec<MethodResult>) -> Report {
+        mark_pareto_front(&mut results);
+        Report {
+            subject: "s".to_owned(),
+            size: [1, 1],
+            reference: "tracer f64".to_owned(),
+            reference_error: 0.0,
+            reference_error_estimate: "",
+            seconds: 1.0,
+            skipped: Vec::new(),
+            results,
         }
     }
 
     #[test]
     fn pareto_front_omits_dominated_methods() {
-        let mut ways = [
+        let report = report(vec![
             result("a", 1.0, 0.1),
             result("b", 2.0, 0.2),
             result("c", 3.0, 0.1),
             result("d", 4.0, 0.01),
             result("e", 5.0, 0.0),
-        ];
-        mark_pareto_front(&mut ways);
-        let best: Vec<_> = ways
-            .iter()
-            .filter(|result| result.on_front)
-            .map(|result| &*result.method)
-            .collect();
-        assert_eq!(best, ["a", "d", "e"]);
-        let report = Report {
-            subject: "s".to_owned(),
-            size: [1, 1],
-            reference: String::new(),
-            reference_error: 0.0,
-            skipped: Vec::new(),
-            results: ways.to_vec(),
+        ]);
+        let names = |on_front: bool| -> Vec<_> {
+            let results = report.results.iter();
+            let found = results.filter(|result| result.on_pareto_front == on_front);
+            found.map(|result| &*result.configuration.renderer).collect()
         };
-        assert_eq!(report.cheapest(0.05).map(|result| &*result.method), Some("d"));
-        assert_eq!(report.cheapest(0.0).map(|result| &*result.method), Some("e"));
-        assert_eq!(report.cheapest(-1.0), None);
-        assert_eq!(report.stable_formula_cost(), None);
-        let mut pair = report.clone();
-        pair.results = vec![
-            result("gpu strict", 1.0, 0.1),
-            result("gpu strict, recentred", 1.5, 0.01),
-        ];
-        for result in &mut pair.results {
-            result.group = group_name(Group::Strict);
+        assert_eq!((names(true), names(false)), (vec!["a", "d", "e"], vec!["b", "c"]));
+        let fastest = |error| Some(&*report.fastest(error)?.configuration.renderer);
+        assert_eq!(
+            (fastest(0.05), fastest(0.0), fastest(-1.0)),
+            (Some("d"), Some("e"), None)
+        );
+        assert!(report.csv().starts_with("renderer,precision,") && report.csv().lines().count() == 6);
+        let line = report.fastest_line(0.05);
+        assert!(
+            line.starts_with("fastest configuration with RMSE ≤ 0.05: d f32 ("),
+            "{line}"
+        );
+    }
+
+    #[test]
+    fn summary_names_the_role_of_each_configuration() {
+        let mut report = report(vec![
+            result("a", 0.001, 0.1),
+            result("b", 0.002, 0.003),
+            result("c", 0.003, 0.0015),
+        ]);
+        let summary = report.summary().join("\n");
+        for row in [
+            "1.0e-1         1.00 ms  a f32              fastest",
+            "3.0e-3         2.00 ms  b f32              fastest below 1/255",
+            "1.5e-3         3.00 ms  c f32              fastest below 0.5/255, most accurate",
+            "     –               –  none below 1/1000",
+        ] {
+            assert!(summary.contains(row), "{row}\n{summary}");
         }
+        report.skipped = vec!["d f32".to_owned(), "e f32".to_owned()];
+        let summary = report.summary().join("\n");
         assert!(
-            pair.stable_formula_cost().unwrap().contains("(+50 %)"),
-            "{:?}",
-            pair.stable_formula_cost()
+            summary.contains("2 configurations did not fit in the time budget"),
+            "{summary}"
         );
-        assert!(report.csv().starts_with("way,group,") && report.csv().lines().count() == 6);
-        assert!(
-            report
-                .cheapest_line(0.05, "0.05")
-                .contains("within 0.05 of the truth is d:")
+    }
+
+    #[test]
+    fn costs_of_f64_and_of_the_stable_formula_are_measured_in_pairs() {
+        let mut results = vec![
+            result("tracer", 0.001, 0.01),
+            result("tracer", 0.0013, 0.0101),
+            result("lavapipe strict", 1.0, 0.1),
+            result("lavapipe strict", 1.5, 0.01),
+        ];
+        results[1].configuration.precision = "f64";
+        results[3].configuration.sphere_formula = Some("recentered");
+        let report = report(results);
+        assert_eq!(
+            report.double_precision_cost().unwrap(),
+            "f64 takes 1.3× the time of f32 and changes the RMSE by at most 1.0e-4."
         );
-        let few = Report {
-            results: vec![result("a", 1.0, 0.1)],
-            skipped: vec!["b".to_owned(), "c".to_owned()],
-            ..report
-        };
-        assert!(few.cheapest_line(0.2, "0.2").starts_with("a, the only way"));
-        assert!(few.cheapest_line(0.05, "0.05").contains("no time for 2 ways"));
+        let line = report.stable_formula_cost().unwrap();
+        assert!(line.contains("takes 50 % longer"), "{line}");
     }
 }

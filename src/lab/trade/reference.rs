@@ -18,8 +18,10 @@ pub(super) struct Reference {
     pub(super) image: Image,
     /// Its own error: a root mean square, in [0, 1].
     pub(super) error: f64,
-    /// A description of its origin.
+    /// The renderer and its samples.
     pub(super) description: String,
+    /// How the error was estimated.
+    pub(super) error_estimate: &'static str,
 }
 
 /// Target errors of tiles, rendered in this order until the time is spent.
@@ -48,8 +50,8 @@ impl Reference {
             return Self {
                 image,
                 error,
-                description: "the tracer in f64, at the centres of pixels; its error is what moving the eye by four units in the last place changes"
-                    .to_owned(),
+                description: "tracer f64, 1 sample at each pixel center".to_owned(),
+                error_estimate: "difference after moving the camera by 4 ULP",
             };
         }
         let mut scene = scene.clone();
@@ -64,11 +66,11 @@ impl Reference {
                 image,
                 error: spent.error,
                 description: format!(
-                    "the tracer in f64 with Sobol's samples, {} to {} in a pixel; its error is the largest that a tile of 16x16 pixels is \
-                     estimated to have",
+                    "tracer f64, {} to {} Sobol samples per pixel",
                     grouped(u64::from(spent.per_pixel[1])),
                     grouped(u64::from(spent.per_pixel[0]))
                 ),
+                error_estimate: "largest estimate for a tile of 16×16 pixels",
             });
             let took = start.elapsed().saturating_sub(before);
             if start.elapsed() + took.mul_f64(HALVED_ERROR_TIME_FACTOR) > time {
@@ -80,6 +82,7 @@ impl Reference {
             image: tracer.render(|| ()),
             error: 1.0,
             description: String::new(),
+            error_estimate: "",
         })
     }
 
@@ -91,8 +94,8 @@ impl Reference {
         Ok(Self {
             error: rmse(&image, &perturbed),
             image,
-            description: "the shader in f64; its error is what random rounding of every operation changes"
-                .to_owned(),
+            description: "the shader in f64".to_owned(),
+            error_estimate: "difference after random rounding of every operation",
         })
     }
 }
@@ -107,10 +110,10 @@ pub struct Error {
     /// The maximum absolute difference of a component.
     pub max: f64,
     /// The number of pixels whose 8-bit values differ.
-    pub mismatches_8bit: u64,
+    pub differing_pixels_8bit: u64,
     /// The number of pixels that show the background in only one of the images; `None` if the background is
     /// unknown.
-    pub flips: Option<u64>,
+    pub silhouette_flips: Option<u64>,
 }
 
 impl Error {
@@ -120,8 +123,8 @@ impl Error {
         Self {
             rmse: rmse(reference, image),
             max: comparison.max_abs,
-            mismatches_8bit: comparison.differing_8bit,
-            flips: background.map(|background| {
+            differing_pixels_8bit: comparison.differing_8bit,
+            silhouette_flips: background.map(|background| {
                 let empty = |image: &Image, at: usize| {
                     let pairs = image.pixels()[at].iter().zip(background.pixels()[at]).take(3);
                     pairs
@@ -170,10 +173,18 @@ mod tests {
             "{error:?}"
         );
         assert!((error.max - 0.2).abs() < 1e-7);
-        assert_eq!((error.mismatches_8bit, error.flips), (2, Some(2)));
+        assert_eq!(
+            (error.differing_pixels_8bit, error.silhouette_flips),
+            (2, Some(2))
+        );
         let same = Error::of(&reference, &reference, None);
         assert_eq!(
-            (same.rmse, same.max, same.mismatches_8bit, same.flips),
+            (
+                same.rmse,
+                same.max,
+                same.differing_pixels_8bit,
+                same.silhouette_flips
+            ),
             (0.0, 0.0, 0, None)
         );
     }

@@ -123,6 +123,7 @@ pub struct TimeStatistics {
     /// The median without outliers, in seconds.
     pub median: f64,
     /// The median absolute deviation from it, in seconds.
+    #[serde(rename = "median_absolute_deviation")]
     pub deviation: f64,
     /// The number of outliers.
     pub outliers: usize,

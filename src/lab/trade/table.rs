@@ -3,19 +3,21 @@
 use serde::Serialize;
 use toyproof_diagnostic::{grouped, magnitude, plural};
 
-use super::{MethodResult, Report};
+use super::{Configuration, MethodResult, Report, median};
 use crate::chart::{Point, Scatter};
 use crate::stress::formula::RECENTERED;
+use crate::text_table::{self, Align};
 use crate::trade::method::Group;
 
-const COLUMNS: &str = "way,group,runs,outliers,median_ms,mad_ms,rmse,max,mismatches_8bit,flips,pareto";
+const COLUMNS: &str = "renderer,precision,sampler,samples_per_pixel,max_depth,sphere_formula,group,runs,outliers,\
+     seconds_per_frame,seconds_median_absolute_deviation,rmse,max_error,differing_pixels_8bit,\
+     silhouette_flips,on_pareto_front";
 
-/// Error limits of interest to users, with their text.
-pub const ERROR_LIMITS: [(f64, &str); 3] =
-    [(1.0 / 255.0, "1/255"), (0.5 / 255.0, "0.5/255"), (1e-3, "1/1000")];
+/// Error limits of interest to users, with their text: from the loosest to the strictest.
+const ERROR_LIMITS: [(f64, &str); 3] = [(1.0 / 255.0, "1/255"), (0.5 / 255.0, "0.5/255"), (1e-3, "1/1000")];
 
 impl Report {
-    /// A table (RFC 4180) with a header row. Flips are empty if the background is unknown.
+    /// A table (RFC 4180) with a header row. Settings that do not apply and unknown values are empty.
     #[must_use]
     pub fn csv(&self) -> String {
         let rows = self.results.iter().map(MethodResult::cells);
@@ -34,136 +36,304 @@ impl Report {
             report: &'a Report,
         }
         let whole = Whole {
-            version: 1,
+            version: 2,
             tool: concat!("toyproof ", env!("CARGO_PKG_VERSION")),
             report: self,
         };
         serde_json::to_string_pretty(&whole).unwrap_or_default() + "\n"
     }
 
-    /// A chart of error against time. Methods without any error are drawn below all others.
+    /// A chart of error against time.
     #[must_use]
     pub fn chart(&self) -> Scatter {
-        let errors = self
-            .results
-            .iter()
-            .map(|result| result.error.rmse)
-            .filter(|&rmse| rmse > 0.0);
-        let least = errors.fold(1e-3f64, f64::min) / 10.0;
         let used: Vec<_> = Group::ALL
             .iter()
             .map(|(_, name)| *name)
             .filter(|name| self.results.iter().any(|result| result.group == *name))
             .collect();
         let points = self.results.iter().map(|result| Point {
-            x: 1e3 * result.seconds.median.max(1e-9),
-            y: result.error.rmse.max(least),
-            name: result.method.clone(),
+            x: 1e3 * result.seconds_per_frame.median.max(1e-9),
+            y: result.error.rmse,
+            name: result.configuration.to_string(),
             group: used.iter().position(|name| *name == result.group).unwrap_or(0),
-            on_front: result.on_front,
+            on_front: result.on_pareto_front,
         });
+        // Limits far from all errors would leave most of the chart empty.
+        let errors = self.results.iter().map(|result| result.error.rmse);
+        let lines = ERROR_LIMITS.iter().filter(|(limit, _)| {
+            let is_near = |error: f64| (0.1..=10.0).contains(&(error / limit));
+            errors.clone().any(is_near)
+                || (errors.clone().any(|error| error < *limit) && errors.clone().any(|error| error > *limit))
+        });
+        let [width, height] = self.size;
         Scatter {
-            title: format!("{}: {}x{} pixels", self.subject, self.size[0], self.size[1]),
-            x_title: "median time of a frame (ms)".to_owned(),
-            y_title: "root mean square error, colors in [0, 1] (no error: at the bottom)".to_owned(),
+            title: format!(
+                "{}: error against rendering time, {width}×{height} pixels",
+                self.subject
+            ),
+            x_title: "median time per frame (ms)".to_owned(),
+            y_title: "root mean square error (colors in [0, 1])".to_owned(),
             groups: used.iter().map(|name| (*name).to_owned()).collect(),
             points: points.collect(),
-            reference_lines: ERROR_LIMITS
-                .iter()
-                .map(|&(error, name)| (error, name.to_owned()))
-                .collect(),
+            reference_lines: lines.map(|&(limit, name)| (limit, name.to_owned())).collect(),
         }
+    }
+
+    /// What was measured, the fastest configuration for each error limit, and what f64 costs.
+    #[must_use]
+    pub fn summary(&self) -> Vec<String> {
+        let [width, height] = self.size;
+        let error = match self.reference_error {
+            0.0 => "0".to_owned(),
+            error => format!("about {}", magnitude(error)),
+        };
+        let count = self.results.len() as u64;
+        let mut lines = vec![
+            format!(
+                "Speed against accuracy: {}, {width}×{height} pixels",
+                self.subject
+            ),
+            format!("Reference: {} (its own error: {error})", self.reference),
+            format!(
+                "{} {} measured in {:.1} s",
+                grouped(count),
+                plural(count, "configuration", "configurations"),
+                self.seconds
+            ),
+            String::new(),
+        ];
+        lines.extend(self.role_table());
+        lines.push(String::new());
+        lines.extend(self.double_precision_cost());
+        if !self.skipped.is_empty() {
+            lines.push(self.skipped_line());
+        }
+        lines
+    }
+
+    /// A table of the configurations that a user may choose: the fastest one for each error limit, and the
+    /// most accurate one.
+    fn role_table(&self) -> Vec<String> {
+        let fastest = ERROR_LIMITS.map(|(limit, name)| {
+            let found = self.results.iter().position(|result| result.error.rmse <= limit);
+            (found, name)
+        });
+        let most_accurate = self.results.iter().rposition(|result| result.on_pareto_front);
+        let mut rows = vec![
+            ["RMSE", "time per frame", "configuration", "role"]
+                .map(str::to_owned)
+                .to_vec(),
+        ];
+        for (index, result) in self.results.iter().enumerate() {
+            let limits = fastest.iter().filter(|(found, _)| *found == Some(index));
+            let limits: Vec<&str> = limits.map(|(_, name)| *name).collect();
+            let mut roles = Vec::new();
+            match (index, &limits[..]) {
+                (0, []) => roles.push("fastest".to_owned()),
+                (0, [.., strictest]) => roles.push(format!("fastest, below {strictest}")),
+                (_, []) => {}
+                (_, [only]) => roles.push(format!("fastest below {only}")),
+                (_, [first @ .., last]) => {
+                    roles.push(format!("fastest below {} and {last}", first.join(", ")));
+                }
+            }
+            if most_accurate == Some(index) {
+                roles.push("most accurate".to_owned());
+            }
+            if !roles.is_empty() {
+                rows.push(vec![
+                    magnitude(result.error.rmse),
+                    milliseconds(result.seconds_per_frame.median),
+                    result.configuration.to_string(),
+                    roles.join(", "),
+                ]);
+            }
+        }
+        // The limits are sorted, so the first unreachable one is the one to report.
+        if let Some((_, name)) = fastest.iter().find(|(found, _)| found.is_none()) {
+            rows.push(vec!["–".to_owned(), "–".to_owned(), format!("none below {name}")]);
+        }
+        let columns = [Align::Right, Align::Right, Align::Left, Align::Left];
+        text_table::lines(&columns, &rows)
+    }
+
+    /// A table of all configurations, and how they were measured.
+    #[must_use]
+    pub fn details(&self) -> Vec<String> {
+        let head = [
+            "RMSE",
+            "max. error",
+            "time per frame",
+            "±",
+            "runs",
+            "configuration",
+            "",
+        ];
+        let rows = self.results.iter().map(|result| {
+            vec![
+                magnitude(result.error.rmse),
+                magnitude(result.error.max),
+                milliseconds(result.seconds_per_frame.median),
+                milliseconds(result.seconds_per_frame.deviation),
+                grouped(result.seconds_per_frame.runs as u64),
+                result.configuration.to_string(),
+                if result.on_pareto_front {
+                    "Pareto front"
+                } else {
+                    ""
+                }
+                .to_owned(),
+            ]
+        });
+        let rows: Vec<_> = [head.map(str::to_owned).to_vec()]
+            .into_iter()
+            .chain(rows)
+            .collect();
+        let mut columns = [Align::Right; 7];
+        columns[5..].fill(Align::Left);
+        let mut lines = vec![format!(
+            "Error of the reference: {}. Times: median ± median absolute deviation.",
+            self.reference_error_estimate
+        )];
+        lines.extend(text_table::lines(&columns, &rows));
+        if !self.skipped.is_empty() {
+            lines.push(format!("not measured: {}", self.skipped.join("; ")));
+        }
+        lines.extend(self.stable_formula_cost());
+        lines
+    }
+
+    /// The cost and the effect of f64, over all pairs of configurations that differ only in precision; `None`
+    /// if there are none.
+    #[must_use]
+    pub fn double_precision_cost(&self) -> Option<String> {
+        let pairs = self.results.iter().filter_map(|double| {
+            let single = Configuration {
+                precision: "f32",
+                ..double.configuration.clone()
+            };
+            let is_pair = double.configuration.precision == "f64";
+            let single = self.results.iter().find(|result| result.configuration == single);
+            single.filter(|_| is_pair).map(|single| (single, double))
+        });
+        let pairs: Vec<_> = pairs.collect();
+        let ratio = |(single, double): &(&MethodResult, &MethodResult)| {
+            double.seconds_per_frame.median / single.seconds_per_frame.median.max(1e-9)
+        };
+        let ratios: Vec<f64> = pairs.iter().map(ratio).collect();
+        let changes = pairs
+            .iter()
+            .map(|(single, double)| (single.error.rmse - double.error.rmse).abs());
+        let change = changes.fold(0.0, f64::max);
+        let effect = if change == 0.0 {
+            "does not change the RMSE".to_owned()
+        } else {
+            format!("changes the RMSE by at most {}", magnitude(change))
+        };
+        (!pairs.is_empty())
+            .then(|| format!("f64 takes {:.1}× the time of f32 and {effect}.", median(&ratios)))
     }
 
     /// The cost of the stable ray–sphere formula relative to the shader's own; `None` if that was not
     /// measured.
     #[must_use]
     pub fn stable_formula_cost(&self) -> Option<String> {
-        let groups = [Group::Strict, Group::Evaluator32].map(super::group_name);
-        let mut own = groups.iter().filter_map(|group| {
-            let is_own = |result: &&MethodResult| result.group == *group && !result.method.contains(", ");
-            self.results.iter().find(is_own)
+        let mut stable = self.results.iter().filter(|result| {
+            result.configuration.sphere_formula == Some(RECENTERED.name)
+                && result.configuration.precision == "f32"
         });
-        own.find_map(|own| {
-            let name = format!("{}, {}", own.method, RECENTERED.name);
-            let stable = self.results.iter().find(|result| result.method == name)?;
-            let [before, after] = [own, stable].map(|result| 1e3 * result.seconds.median);
-            Some(format!(
-                "with the {} formula for spheres, {} takes {after:.2} ms a frame where its own takes {before:.2} ({:+.0} %); the error is {} \
-                 where it is {}",
-                RECENTERED.name,
-                own.method,
-                100.0 * (after / before - 1.0),
-                magnitude(stable.error.rmse),
-                magnitude(own.error.rmse)
-            ))
-        })
+        // GPUs before the evaluator.
+        let stable = stable
+            .clone()
+            .find(|result| result.configuration.renderer.ends_with("strict"))
+            .or_else(|| stable.next())?;
+        let own = Configuration {
+            sphere_formula: None,
+            ..stable.configuration.clone()
+        };
+        let own = self.results.iter().find(|result| result.configuration == own)?;
+        let [before, after] = [own, stable].map(|result| result.seconds_per_frame.median);
+        let [error_before, error_after] = [own, stable].map(|result| magnitude(result.error.rmse));
+        let percent = 100.0 * (after / before - 1.0);
+        let slower = if percent < 0.0 { "less time" } else { "longer" };
+        let effect = if error_before == error_after {
+            format!("the RMSE stays {error_after}")
+        } else {
+            format!("the RMSE changes from {error_before} to {error_after}")
+        };
+        Some(format!(
+            "The {} sphere formula takes {:.0} % {slower} on {} ({} instead of {}); {effect}.",
+            RECENTERED.name,
+            percent.abs(),
+            own.configuration,
+            milliseconds(after),
+            milliseconds(before)
+        ))
     }
 
-    /// The cheapest method within an error limit.
+    /// The fastest configuration within an error limit.
     #[must_use]
-    pub fn cheapest_line(&self, error: f64, limit: &str) -> String {
-        let Some(result) = self.cheapest(error) else {
-            let ways = match &self.results[..] {
-                [only] => format!("{}, the only way that was measured, is not", only.method),
-                _ => "no way that was measured is".to_owned(),
-            };
-            let rest = match self.skipped.len() {
-                0 => String::new(),
-                _ => format!("; {}", self.skipped_line()),
-            };
-            return format!("{ways} within {limit} of the truth{rest}");
-        };
-        let which = match self.results.len() {
-            1 => format!(
-                "{}, the only way that was measured, is within {limit} of the truth",
-                result.method
+    pub fn fastest_line(&self, error: f64) -> String {
+        match self.fastest(error) {
+            Some(result) => format!(
+                "fastest configuration with RMSE ≤ {error}: {} ({} per frame, RMSE {})",
+                result.configuration,
+                milliseconds(result.seconds_per_frame.median),
+                magnitude(result.error.rmse)
             ),
-            _ => format!(
-                "the cheapest way to be within {limit} of the truth is {}",
-                result.method
-            ),
-        };
-        format!(
-            "{which}: {:.2} ms a frame (±{:.2}), error {}",
-            1e3 * result.seconds.median,
-            1e3 * result.seconds.deviation,
-            magnitude(result.error.rmse)
-        )
+            None => format!("no measured configuration has RMSE ≤ {error}"),
+        }
     }
 
-    /// The number of methods that were not measured, with advice.
+    /// The number of configurations that were not measured, with advice.
     #[must_use]
     pub fn skipped_line(&self) -> String {
-        let ways = self.skipped.len() as u64;
+        let skipped = self.skipped.len() as u64;
         format!(
-            "there was no time for {} {}; a longer --budget or a smaller --size measures more",
-            grouped(ways),
-            plural(ways, "way", "ways")
+            "{} {} did not fit in the time budget; a longer --budget or a smaller --size measures more",
+            grouped(skipped),
+            plural(skipped, "configuration", "configurations")
         )
     }
+}
+
+/// A time in milliseconds with three significant digits.
+fn milliseconds(seconds: f64) -> String {
+    let time = 1e3 * seconds;
+    let digits = match time {
+        100.0.. => 0,
+        10.0.. => 1,
+        _ => 2,
+    };
+    format!("{time:.digits$} ms")
 }
 
 impl MethodResult {
     fn cells(&self) -> String {
         let Self {
-            method,
+            configuration,
             group,
-            seconds,
+            seconds_per_frame: seconds,
             error,
-            on_front,
+            on_pareto_front,
         } = self;
+        let number = |value: Option<u64>| value.map_or_else(String::new, |value| value.to_string());
         format!(
-            "\"{method}\",\"{group}\",{},{},{:.4},{:.4},{:e},{:e},{},{},{}",
+            "\"{}\",{},{},{},{},{},\"{group}\",{},{},{:e},{:e},{:e},{:e},{},{},{on_pareto_front}",
+            configuration.renderer.replace('"', "\"\""),
+            configuration.precision,
+            configuration.sampler.unwrap_or_default(),
+            number(configuration.samples_per_pixel.map(u64::from)),
+            number(configuration.max_depth.map(u64::from)),
+            configuration.sphere_formula.unwrap_or_default(),
             seconds.runs,
             seconds.outliers,
-            1e3 * seconds.median,
-            1e3 * seconds.deviation,
+            seconds.median,
+            seconds.deviation,
             error.rmse,
             error.max,
-            error.mismatches_8bit,
-            error.flips.map_or_else(String::new, |flips| flips.to_string()),
-            u8::from(*on_front)
+            error.differing_pixels_8bit,
+            number(error.silhouette_flips),
         )
     }
 }

@@ -42,11 +42,11 @@ pub(super) fn run(program: &Program, findings: &mut Findings) {
             }
             let divisors = divisors.get_or_insert_with(|| self::divisors(program, function));
             if depends_on_rounding(program, &mut origins, left, right, divisors) {
-                let message = format!(
-                    "whether these are equal is left to rounding: `{sign}` of a float that was computed"
-                );
+                let message = format!("`{sign}` of computed floats depends on rounding");
                 findings.add(Code::FloatEquality, tree[expr].at, message, |diagnostic| {
-                    diagnostic.note("compare with a tolerance that fits their size: `abs(a - b) < 1e-4`")
+                    diagnostic.help(
+                        "compare with a tolerance relative to their magnitude, such as `abs(a - b) < 1e-4`",
+                    )
                 });
             }
         }

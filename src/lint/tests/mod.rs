@@ -207,13 +207,13 @@ fn course_has_no_warnings() {
 
 #[test]
 fn discriminants_are_deferred_unless_allowed() {
-    let discriminants = |remark: &str| {
+    let discriminants = |comment: &str| {
         let mut files = Files::default();
         let text = format!(
             "void mainImage(out vec4 c, in vec2 p) {{
                 vec3 f = vec3(p, 1.0), d = normalize(vec3(p, -1.0));
                 float b = dot(f, d);
-                float disc = b * b - (dot(f, f) - 4.0); {remark}
+                float disc = b * b - (dot(f, f) - 4.0); {comment}
                 c = vec4(disc);
             }}"
         );

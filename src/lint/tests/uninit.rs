@@ -159,7 +159,7 @@ fn functions_without_final_return() {
             "float pick(float x) { if (x > 1.0) return 2.0; }",
             "c.x = pick(f.x);"
         ),
-        "`pick` may end without a `return`"
+        "`pick` may reach its end without a `return`"
     );
 }
 
@@ -167,11 +167,11 @@ fn functions_without_final_return() {
 fn messages_name_the_unassigned_parts() {
     assert_eq!(
         message("struct Ray { vec3 o, d; };", "Ray r; c.xyz = r.d;"),
-        "`r.d` is read here before it is written"
+        "`r.d` is used uninitialized"
     );
     assert_eq!(
         message("", "vec3 v; v.x = 1.0; c.xyz = v;"),
-        "`v.yz` is read here before it is written"
+        "`v.yz` is used uninitialized"
     );
 }
 
@@ -186,12 +186,15 @@ fn maybe_uninitialized_reads_wait_for_a_run() {
     let [pdf] = &lints.maybe_uninitialized[..] else {
         panic!("{:#?}", lints.maybe_uninitialized);
     };
-    assert_eq!(pdf.message, "`pdf` is read here and not written on all paths");
+    assert_eq!(pdf.message, "`pdf` may be used uninitialized");
     assert_eq!(files.position(pdf.span.unwrap()).line, 5);
     let related: Vec<_> = pdf
         .related
         .iter()
         .map(|(span, label)| (files.position(*span).line, &**label))
         .collect();
-    assert_eq!(related, [(3, "declared here, without a value"), (5, "and here")]);
+    assert_eq!(
+        related,
+        [(3, "declared here without an initializer"), (5, "also here")]
+    );
 }

@@ -110,7 +110,7 @@ struct Analysis<'a> {
 
 impl Analysis<'_> {
     /// Collects the variables, and declares the parameters. An argument that is passed in counts as
-    /// unassigned, too, so that the summary tells what is read of it.
+    /// unassigned, too, so that the summary contains what is read of it.
     fn begin(&mut self, function: FunctionId, body: &Block) {
         let tree = self.program.tree;
         let mut variables = tree[function].parameters.clone();

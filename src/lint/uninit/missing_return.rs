@@ -18,10 +18,11 @@ pub(super) fn report(program: &Program, function: FunctionId, findings: &mut Fin
         last_conditions(body, &mut conditions);
     }
     if !is_list_of_cases(program, &conditions) {
-        let message = format!("`{}` may end without a `return`", tree[function].name);
+        let message = format!("`{}` may reach its end without a `return`", tree[function].name);
         findings.add(Code::MissingReturn, tree[function].at, message, |diagnostic| {
             diagnostic
-                .note("WebGL then gives zero; other hosts give what was there before. End it with a `return`")
+                .note("the result is then undefined; WebGL returns 0")
+                .help("add a `return` at the end")
         });
     }
 }

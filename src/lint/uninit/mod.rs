@@ -21,8 +21,12 @@ use toyproof_glsl::tree::{ExprId, Tree, Type, VariableId, VariableKind};
 use super::Findings;
 use super::program::Program;
 
-/// How reads of an uninitialized variable end, in all messages.
-const CONSEQUENCE: &str = "WebGL makes it zero; other hosts leave in it what was there before. Give it a value where it is declared";
+/// The end of all messages about reads of an uninitialized variable.
+fn with_advice(diagnostic: Diagnostic) -> Diagnostic {
+    diagnostic
+        .note("its value is undefined; WebGL initializes it to 0")
+        .help("initialize it at its declaration")
+}
 
 pub(super) fn run(program: &Program, findings: &mut Findings) {
     let tree = program.tree;
@@ -52,15 +56,17 @@ pub(super) fn run(program: &Program, findings: &mut Findings) {
 
 fn report_reads(tree: &Tree, layout: &Layout, flow: &Flow, findings: &mut Findings) {
     for (&variable, &(expr, parts)) in &flow.definite {
-        let mut message = format!(
-            "`{}` is read here before it is written",
-            layout.name(variable, parts)
-        );
-        if matches!(tree[variable].kind, VariableKind::Parameter(_)) {
-            message += ": an `out` parameter brings nothing in";
-        }
+        let message = format!("`{}` is used uninitialized", layout.name(variable, parts));
+        let is_parameter = matches!(tree[variable].kind, VariableKind::Parameter(_));
         findings.add(Code::Unwritten, tree[expr].at, message, |diagnostic| {
-            declared(tree, variable, diagnostic).note(CONSEQUENCE)
+            let diagnostic = declared(tree, variable, diagnostic);
+            if is_parameter {
+                diagnostic
+                    .note("an `out` parameter has no value until the function assigns it")
+                    .help("assign it first, or declare it `inout`")
+            } else {
+                with_advice(diagnostic)
+            }
         });
     }
     for (&variable, reads) in &flow.maybe {
@@ -68,15 +74,12 @@ fn report_reads(tree: &Tree, layout: &Layout, flow: &Flow, findings: &mut Findin
             continue;
         };
         let name = &tree[variable].name;
-        let warning = Code::MaybeUnwritten.at(
-            tree[first].at,
-            format!("`{name}` is read here and not written on all paths"),
-        );
+        let warning = Code::MaybeUnwritten.at(tree[first].at, format!("`{name}` may be used uninitialized"));
         let mut warning = declared(tree, variable, warning);
         for &other in reads.iter().skip(1).take(MAX_OTHER_READS) {
-            warning = warning.related(tree[other].at.span, "and here");
+            warning = warning.related(tree[other].at.span, "also here");
         }
-        findings.maybe_uninitialized.push(warning.note(CONSEQUENCE));
+        findings.maybe_uninitialized.push(with_advice(warning));
     }
 }
 
@@ -86,16 +89,16 @@ const MAX_OTHER_READS: usize = 3;
 /// Adds the declaration, by which an observed read is known to be of this variable.
 fn declared(tree: &Tree, variable: VariableId, diagnostic: Diagnostic) -> Diagnostic {
     match tree[variable].at {
-        Some(at) => diagnostic.related(at.span, "declared here, without a value"),
+        Some(at) => diagnostic.related(at.span, "declared here without an initializer"),
         None => diagnostic,
     }
 }
 
 fn report_color(tree: &Tree, color: VariableId, findings: &mut Findings) {
     if let Some(at) = tree[color].at {
-        let message = format!("`{}`, the pixel's colour, is never written", tree[color].name);
+        let message = format!("the output color `{}` is never assigned", tree[color].name);
         findings.add(Code::Unwritten, at, message, |diagnostic| {
-            diagnostic.note(CONSEQUENCE)
+            diagnostic.note("the color is undefined; WebGL shows black")
         });
     }
 }
@@ -125,10 +128,11 @@ impl GlobalAccesses {
                 continue;
             }
             let name = layout.name(part.variable, missing);
-            let message = format!("`{name}` is read here, and nothing that runs ever writes it");
+            let message = format!("`{name}` is used, but never assigned");
             findings.add(Code::Unwritten, tree[expr].at, message, |diagnostic| {
                 declared(tree, part.variable, diagnostic)
-                    .note("WebGL makes it zero; is the function called that should fill it?")
+                    .note("its value is undefined; WebGL initializes it to 0")
+                    .help("initialize it, or call the function that assigns it")
             });
         }
     }

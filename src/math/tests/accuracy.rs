@@ -116,7 +116,7 @@ impl Case {
 }
 
 #[test]
-#[expect(clippy::print_stderr, reason = "a sweep tells what it found")]
+#[expect(clippy::print_stderr, reason = "a sweep prints its results")]
 fn no_error_is_larger_than_its_limit_and_no_limit_than_its_error() {
     // TOYPROOF_STRIDE=1 tests all floats, which takes 20 core minutes for each function (with `cargo test
     // --release`).

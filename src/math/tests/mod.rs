@@ -1,4 +1,4 @@
-//! Tests of the functions in f64 against mathematical identities, which hold for any order of operations.
+//! Tests of the functions in f64 against identities that hold for any order of operations.
 
 mod accuracy;
 

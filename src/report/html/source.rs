@@ -229,6 +229,9 @@ mod tests {
             file: Some("invalid".to_owned()),
             line: Some(line),
             column: Some(column),
+            end_line: Some(line),
+            end_column: Some(column + 1),
+            fix: None,
             notes: Vec::new(),
         }
     }

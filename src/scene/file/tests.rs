@@ -12,7 +12,9 @@ fn read(text: &str) -> Result<Scene, Vec<String>> {
 /// `line:column code message`, and the notes on lines of their own.
 fn described(error: &Diagnostic, files: &Files) -> String {
     let at = files.position(error.span.unwrap());
-    let notes: Vec<_> = error.notes.iter().map(|note| format!("\n    {note}")).collect();
+    let notes = error.notes.iter().map(|note| format!("\n    {note}"));
+    let helps = error.helps.iter().map(|help| format!("\n    help: {help}"));
+    let notes: Vec<_> = notes.chain(helps).collect();
     format!(
         "{}:{} {} {}{}",
         at.line,

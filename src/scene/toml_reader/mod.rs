@@ -111,7 +111,7 @@ impl Reader<'_> {
     fn report(&self, code: &'static str, span: Span, message: String, help: &str) {
         let mut error = Diagnostic::error(code, message).at(span);
         if !help.is_empty() {
-            error = error.note(format!("help: {help}"));
+            error = error.help(help);
         }
         self.errors.borrow_mut().push(error);
         self.error_count.set(self.error_count.get() + 1);

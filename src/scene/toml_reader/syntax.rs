@@ -19,7 +19,7 @@ pub(super) fn diagnostic(
     if help.is_empty() {
         diagnostic
     } else {
-        diagnostic.note(format!("help: {help}"))
+        diagnostic.help(help)
     }
 }
 

@@ -54,12 +54,10 @@ pub(super) fn run(cx: &mut LoweringContext) {
     } else {
         return;
     };
-    let message =
-        format!("nested too deeply: this runs under {depth} {what}, those of its callers among them");
-    cx.too_deep =
-        Some(Code::TooDeepToRun.at(at, message).note(
-            "drivers lose count at 80; divide it into steps that stand side by side, or try `--on cpu`",
-        ));
+    let message = format!("nested too deeply: inside {depth} {what}, including those of its callers");
+    cx.too_deep = Some(Code::TooDeepToRun.at(at, message).help(
+        "divide it into consecutive steps, or evaluate it with `--on cpu`; the limit of drivers is 80",
+    ));
 }
 
 /// The numbers of conditions and loops around a statement or an expression.

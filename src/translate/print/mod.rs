@@ -116,7 +116,7 @@ impl<'a> Printer<'a> {
 impl Printer<'_> {
     /// Prints the version, the output, and the inputs that are read.
     fn prelude(&mut self, order: &Order) {
-        self.plain("#version 450 core\nlayout(location = 0) out vec4 toyproof_colour;\n");
+        self.plain("#version 450 core\nlayout(location = 0) out vec4 toyproof_color;\n");
         let tree = &self.cx.tree;
         let channels = order
             .inputs
@@ -176,9 +176,9 @@ impl Printer<'_> {
         self.plain(&format!(
             "
 void main() {{
-{begin}    vec4 toyproof_painted = vec4(0.0, 0.0, 0.0, 1.0);
-    {main_image}(toyproof_painted, gl_FragCoord.xy);
-    toyproof_colour = vec4(toyproof_painted.xyz, 1.0);
+{begin}    vec4 toyproof_image_color = vec4(0.0, 0.0, 0.0, 1.0);
+    {main_image}(toyproof_image_color, gl_FragCoord.xy);
+    toyproof_color = vec4(toyproof_image_color.xyz, 1.0);
 }}
 "
         ));

@@ -28,7 +28,7 @@ pub(super) const BLOCK: [(&str, &str); 10] = [
 
 /// The names of the shader's output, of its color in `main` and of its block. naga takes a name for a type
 /// wherever a type of that name exists.
-const GENERATED_NAMES: [&str; 3] = ["toyproof_colour", "toyproof_painted", "ToyproofFrame"];
+const GENERATED_NAMES: [&str; 3] = ["toyproof_color", "toyproof_image_color", "ToyproofFrame"];
 
 /// The prefix of generated names.
 const GENERATED_PREFIX: &str = "toyproof_";

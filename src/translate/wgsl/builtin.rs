@@ -45,7 +45,7 @@ impl Writer<'_> {
         let name = match function {
             B::Mod => return self.modulo(texts, ty, types.last().copied().unwrap_or(ty)),
             B::Not => {
-                let operand = texts.pop().ok_or(Unprintable("a call"))?.operand();
+                let operand = texts.pop().ok_or(Unprintable::Construct("this call"))?.operand();
                 return Ok(Text {
                     code: format!("!{operand}"),
                     class: Class::Unary,
@@ -76,7 +76,7 @@ impl Writer<'_> {
             B::UnpackUnorm2x16 => "unpack2x16unorm",
             B::UnpackHalf2x16 => "unpack2x16float",
             B::Modf | B::IsNan | B::IsInf | B::Inverse | B::OuterProduct | B::MatrixCompMult => {
-                return Err(Unprintable("that built-in function"));
+                return Err(Unprintable::Construct("this built-in function"));
             }
             other => other.name(),
         };
@@ -100,7 +100,7 @@ impl Writer<'_> {
 
     /// Prints `mod` as a call of a helper function: WGSL's `%` truncates.
     fn modulo(&mut self, texts: Vec<Text>, ty: Type, divisor: Type) -> TextResult {
-        let [x, mut y] = <[Text; 2]>::try_from(texts).map_err(|_| Unprintable("a call"))?;
+        let [x, mut y] = <[Text; 2]>::try_from(texts).map_err(|_| Unprintable::Construct("this call"))?;
         if self.indent == 0 {
             // Module-scope initializers cannot call functions.
             let [x, y] = [x.operand(), y.operand()];
@@ -136,7 +136,9 @@ impl Writer<'_> {
 impl Writer<'_> {
     pub(super) fn lookup(&mut self, function: BuiltIn, arguments: &[ExprId], ty: Type) -> TextResult {
         use BuiltIn as B;
-        let (&sampler, rest) = arguments.split_first().ok_or(Unprintable("a call"))?;
+        let (&sampler, rest) = arguments
+            .split_first()
+            .ok_or(Unprintable::Construct("this call"))?;
         let tree = &self.cx.tree;
         let channel = match tree[sampler].kind {
             ExprKind::Variable(id) => match (tree[id].kind, tree[id].ty) {
@@ -145,12 +147,12 @@ impl Writer<'_> {
                 {
                     channel
                 }
-                _ => return Err(Unprintable("that texture")),
+                _ => return Err(Unprintable::Construct("this texture argument")),
             },
-            _ => return Err(Unprintable("that texture")),
+            _ => return Err(Unprintable::Construct("this texture argument")),
         };
         if function == B::TextureSize {
-            let level = self.value(rest.first().copied().ok_or(Unprintable("a call"))?)?;
+            let level = self.value(rest.first().copied().ok_or(Unprintable::Construct("this call"))?)?;
             let size = self.type_name(ty);
             let texture = self.style.texture(channel);
             return Ok(Text::primary(format!(
@@ -177,7 +179,7 @@ impl Writer<'_> {
             (B::TextureLod, 2) => format!("textureSampleLevel({pair}, {list})"),
             (B::TextureGrad, 3) => format!("textureSampleGrad({pair}, {list})"),
             (B::TexelFetch, 2) => format!("textureLoad({texture}, {list})"),
-            _ => return Err(Unprintable("that lookup of a texture")),
+            _ => return Err(Unprintable::Construct("this texture function")),
         };
         Ok(Text::primary(code))
     }

@@ -23,26 +23,26 @@ impl Writer<'_> {
             Constructor::Struct | Constructor::Array => Self::list(texts),
             Constructor::Scalar => match (types.first(), texts.into_iter().next()) {
                 (Some(&from), Some(text)) => return as_scalar(text, from, ty),
-                _ => return Err(Unprintable("a constructor of nothing")),
+                _ => return Err(Unprintable::Construct("a constructor without arguments")),
             },
             Constructor::Splat => match (types.first(), texts.into_iter().next()) {
                 (Some(&from), Some(text)) => {
                     let scalar = Type::Scalar(ty.scalar().unwrap_or(Scalar::Float));
                     as_scalar(text, from, scalar)?.code
                 }
-                _ => return Err(Unprintable("a constructor of nothing")),
+                _ => return Err(Unprintable::Construct("a constructor without arguments")),
             },
             Constructor::Vector => self.vector(texts, &types, ty)?,
             Constructor::Matrix => self.matrix(texts, &types, ty)?,
             Constructor::Diagonal => {
                 let Type::Matrix { columns, rows } = ty else {
-                    return Err(Unprintable("that matrix"));
+                    return Err(Unprintable::Construct("this matrix constructor"));
                 };
                 let from = types.first().copied().unwrap_or_default();
                 let text = texts
                     .into_iter()
                     .next()
-                    .ok_or(Unprintable("a constructor of nothing"))?;
+                    .ok_or(Unprintable::Construct("a constructor without arguments"))?;
                 let number = as_scalar(text, from, Type::FLOAT)?;
                 let is_short = number
                     .code
@@ -83,13 +83,13 @@ impl Writer<'_> {
                 ))
             }
             Type::Scalar(_) => Ok(as_scalar(text, from, Type::Scalar(scalar))?.code),
-            _ => Err(Unprintable("a vector of a matrix")),
+            _ => Err(Unprintable::Construct("a vector constructed from a matrix")),
         }
     }
 
     fn vector(&mut self, texts: Vec<Text>, types: &[Type], ty: Type) -> Result<String, Unprintable> {
         let Type::Vector(scalar, size) = ty else {
-            return Err(Unprintable("that vector"));
+            return Err(Unprintable::Construct("this vector constructor"));
         };
         let mut room = size;
         let mut parts = Vec::new();
@@ -113,7 +113,7 @@ impl Writer<'_> {
 
     fn matrix(&mut self, texts: Vec<Text>, types: &[Type], ty: Type) -> Result<String, Unprintable> {
         let Type::Matrix { columns, rows } = ty else {
-            return Err(Unprintable("that matrix"));
+            return Err(Unprintable::Construct("this matrix constructor"));
         };
         let are_columns = types.len() == usize::from(columns)
             && types
@@ -148,7 +148,7 @@ impl Writer<'_> {
                     }
                 }
                 Type::Scalar(_) => cells.push(as_scalar(text, from, Type::FLOAT)?.code),
-                _ => return Err(Unprintable("a matrix of matrices")),
+                _ => return Err(Unprintable::Construct("a matrix constructed from matrices")),
             }
         }
         cells.truncate(usize::from(columns) * usize::from(rows));
@@ -165,12 +165,12 @@ impl Writer<'_> {
             }),
         ) = (ty, types.first())
         else {
-            return Err(Unprintable("that matrix"));
+            return Err(Unprintable::Construct("this matrix constructor"));
         };
         let text = texts
             .into_iter()
             .next()
-            .ok_or(Unprintable("a constructor of nothing"))?;
+            .ok_or(Unprintable::Construct("a constructor without arguments"))?;
         let base = if text.class == Class::Primary && !text.code.contains('(') {
             text
         } else {
@@ -207,7 +207,7 @@ pub(super) fn as_scalar(text: Text, from: Type, to: Type) -> TextResult {
         _ => text,
     };
     let (Some(from), Some(scalar)) = (from.scalar(), to.scalar()) else {
-        return Err(Unprintable("a number of what is none"));
+        return Err(Unprintable::Construct("a conversion of a non-numeric value"));
     };
     if from == scalar {
         return Ok(text);

@@ -133,7 +133,7 @@ impl Writer<'_> {
         value: &Text,
     ) -> Result<(), Unprintable> {
         let Type::Vector(_, size) = self.cx.tree[vector].ty else {
-            return Err(Unprintable("a swizzle of what is no vector"));
+            return Err(Unprintable::Construct("a swizzle of a non-vector"));
         };
         let chosen = components.components();
         let ascending = chosen.windows(2).all(|pair| pair[1] == pair[0] + 1);
@@ -194,7 +194,7 @@ impl Writer<'_> {
                     _ => "1",
                 };
                 if matches!(ty, Type::Matrix { .. }) {
-                    return Err(Unprintable("a matrix that is counted up"));
+                    return Err(Unprintable::Construct("`++` or `--` of a matrix"));
                 }
                 if matches!(self.cx.tree[target].kind, ExprKind::Swizzle { .. }) {
                     let after = Text {
@@ -251,11 +251,11 @@ impl Writer<'_> {
         let mut texts = Vec::new();
         for (&argument, &parameter) in arguments.iter().zip(parameters) {
             texts.push(if !is_out(self.cx, parameter) {
-                values.next().ok_or(Unprintable("a call"))?
+                values.next().ok_or(Unprintable::Construct("this call"))?
             } else if let Some(pointer) = self.pointer(argument) {
                 Text::primary(pointer)
             } else {
-                let (_, name) = names.next().ok_or(Unprintable("a call"))?;
+                let (_, name) = names.next().ok_or(Unprintable::Construct("this call"))?;
                 Text::primary(format!("&{name}"))
             });
         }

@@ -75,7 +75,7 @@ impl Writer<'_> {
             &ExprKind::Member { structure, member } => {
                 let name = match tree[structure].ty {
                     Type::Struct(id) => self.names.members.get(&(id, member)).cloned().unwrap_or_default(),
-                    _ => return Err(Unprintable("a member of what is no structure")),
+                    _ => return Err(Unprintable::Construct("a member of a non-structure")),
                 };
                 let structure = self.value(structure)?.operand();
                 Ok(Text::primary(format!("{structure}.{name}")))
@@ -83,7 +83,7 @@ impl Writer<'_> {
             &ExprKind::Index { base, index } => self.index(base, index),
             ExprKind::Length { array } => match tree[*array].ty {
                 Type::Array(array) => Ok(Text::primary(tree.array(array).size.to_string())),
-                _ => Err(Unprintable("the length of what is no array")),
+                _ => Err(Unprintable::Construct("`length()` of a non-array")),
             },
         }
     }
@@ -198,13 +198,13 @@ impl Writer<'_> {
     pub(super) fn read(&mut self, id: VariableId) -> TextResult {
         let variable = &self.cx.tree[id];
         match variable.kind {
-            VariableKind::Input(input) => Ok(Text::primary(self.input(input)?)),
+            VariableKind::Input(input) => Ok(Text::primary(self.input(id, input)?)),
             VariableKind::BuiltIn(BuiltInVariable::FragCoord) => {
                 self.reads_position = true;
                 Ok(Text::primary("gl_FragCoord"))
             }
             VariableKind::BuiltIn(_) | VariableKind::BuiltInConstant => {
-                Err(Unprintable("that built-in variable"))
+                Err(Unprintable::Construct("this built-in variable"))
             }
             _ if is_out(self.cx, id) => Ok(Text {
                 code: format!("*{}", self.variable(id)),
@@ -243,7 +243,8 @@ impl Writer<'_> {
         self.suffixed |= is_abstract;
         let texts = self.values(&[left, right]);
         self.suffixed = outer;
-        let [left, right] = <[Text; 2]>::try_from(texts?).map_err(|_| Unprintable("an operator"))?;
+        let [left, right] =
+            <[Text; 2]>::try_from(texts?).map_err(|_| Unprintable::Construct("this operator"))?;
         self.operation(op, (left, types[0]), (right, types[1]))
     }
 
@@ -262,7 +263,7 @@ impl Writer<'_> {
             && !matches!(op, BinaryOp::Multiply)
             && !(l && r && matches!(op, BinaryOp::Add | BinaryOp::Subtract))
         {
-            return Err(Unprintable("that operation of a matrix"));
+            return Err(Unprintable::Construct("this matrix operation"));
         }
         let (left, right, class) = match op {
             BinaryOp::Multiply | BinaryOp::Divide | BinaryOp::Remainder => (
@@ -337,7 +338,8 @@ impl Writer<'_> {
             let index = self.value(index)?;
             [self.value(base)?, index]
         } else {
-            <[Text; 2]>::try_from(self.values(&[base, index])?).map_err(|_| Unprintable("an index"))?
+            <[Text; 2]>::try_from(self.values(&[base, index])?)
+                .map_err(|_| Unprintable::Construct("this index"))?
         };
         let base = if in_memory || constant {
             base.operand()
@@ -431,7 +433,7 @@ impl Writer<'_> {
             return Ok(Text::primary(name));
         }
         let ExprKind::Conditional { condition, yes, no } = self.cx.tree[id].kind else {
-            return Err(Unprintable("a choice"));
+            return Err(Unprintable::Construct("this conditional expression"));
         };
         let acts = walk::has_side_effects(&self.cx.tree, condition);
         let condition = self.value(condition)?;

@@ -38,7 +38,7 @@ impl Writer<'_> {
         self.line(&format!("struct {name} {{"));
         for (at, member) in tree[id].members.iter().enumerate() {
             if matches!(member.ty, Type::Sampler(_)) {
-                return Err(Unprintable("a sampler in a structure"));
+                return Err(Unprintable::Construct("a sampler in a structure"));
             }
             let name = self.names.members.get(&(id, at)).cloned().unwrap_or_default();
             let ty = self.type_name(member.ty);
@@ -56,7 +56,7 @@ impl Writer<'_> {
     fn global(&mut self, id: VariableId) -> Result<(), Unprintable> {
         let variable = &self.cx.tree[id];
         if matches!(variable.ty, Type::Sampler(_)) {
-            return Err(Unprintable("a sampler that nobody feeds"));
+            return Err(Unprintable::Construct("a sampler that is not a channel"));
         }
         let follows_blank_line = variable.at.is_some_and(|at| self.comments.follows_blank_line(at));
         if follows_blank_line || self.out.ends_with("}\n") {
@@ -88,7 +88,7 @@ impl Writer<'_> {
     fn definition(&mut self, id: FunctionId) -> Result<(), Unprintable> {
         let function = &self.cx.tree[id];
         let Some(body) = &function.body else {
-            return Err(Unprintable("a function without a body"));
+            return Err(Unprintable::Construct("a function without a body"));
         };
         self.line("");
         self.comment(function.at);
@@ -127,7 +127,7 @@ impl Writer<'_> {
         for &parameter in &function.parameters {
             let variable = &self.cx.tree[parameter];
             if matches!(variable.ty, Type::Sampler(_)) {
-                return Err(Unprintable("a sampler as a parameter"));
+                return Err(Unprintable::Construct("a sampler parameter"));
             }
             let ty = self.type_name(variable.ty);
             let own = self.variable(parameter);
@@ -186,7 +186,7 @@ impl Writer<'_> {
 
     /// Prints a helper function of lowering, by parsing its text as GLSL.
     fn helper(&mut self, id: FunctionId, text: &str) -> Result<(), Unprintable> {
-        const BROKEN: Unprintable = Unprintable("a function of lowering's own");
+        const BROKEN: Unprintable = Unprintable::Construct("a generated function");
         let tree = &self.cx.tree;
         let function = &tree[id];
         let parameters = function.parameters.iter().map(|&parameter| {

@@ -22,21 +22,27 @@ mod writer;
 
 pub use style::{Hosted, Style};
 use thiserror::Error;
-use toyproof_diagnostic::{Deadline, Files, Overdue};
+use toyproof_diagnostic::{Deadline, Diagnostic, Files, Overdue};
 use toyproof_glsl::Checked;
 
 use crate::lower::{LoweringContext, Pass, Passes};
 use crate::print::Order;
 
-/// A construct that this writer does not support.
+/// Why this writer cannot print a shader.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("{0}")]
-pub struct Unprintable(pub &'static str);
+pub enum Unprintable {
+    /// A construct that it does not support.
+    #[error("{0} is not supported")]
+    Construct(&'static str),
+    /// A feature that the host does not provide.
+    #[error("{}", .0.message)]
+    Host(Box<Diagnostic>),
+}
 
-/// The reason why no text was printed.
+/// Why no text was printed.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum Failure {
-    /// An unsupported construct.
+    /// An unsupported construct or feature.
     #[error(transparent)]
     Unprintable(#[from] Unprintable),
     /// The deadline passed.

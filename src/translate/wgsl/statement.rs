@@ -59,14 +59,16 @@ impl Writer<'_> {
             } => {
                 let condition = match condition {
                     Some(Condition::Expression(condition)) => Some(*condition),
-                    Some(Condition::Declare(_)) => return Err(Unprintable("a declaration as a condition")),
+                    Some(Condition::Declare(_)) => {
+                        return Err(Unprintable::Construct("a declaration in a condition"));
+                    }
                     None => None,
                 };
                 self.for_loop(init, condition, *step, body)
             }
             StatementKind::While { condition, body } => match *condition {
                 Condition::Expression(condition) => self.while_loop(condition, body),
-                Condition::Declare(_) => Err(Unprintable("a declaration as a condition")),
+                Condition::Declare(_) => Err(Unprintable::Construct("a declaration in a condition")),
             },
             StatementKind::DoWhile { body, condition } => self.do_while(body, *condition),
             StatementKind::Break => {

@@ -1,5 +1,5 @@
 //! The code around a shader: entry point, bindings and direction of y for each kind of host, and stand-ins
-//! for the hosts to run the result here. `docs/conversion.md` cites the hosts' documentation.
+//! for the hosts to run the result here. `docs/guide/converting.md` cites the hosts' documentation.
 //!
 //! The code is in `styles/`, as WGSL with two additions: `$name` stands for a value ([`fill`]), and a line that
 //! ends in `//? a b` is only printed if condition `a` or `b` holds.
@@ -7,7 +7,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
-use toyproof_glsl::tree::{Direction, ExprId, ExprKind, Input, SamplerShape, Swizzle, Type, VariableKind};
+use toyproof_diagnostic::Diagnostic;
+use toyproof_glsl::tree::{
+    Direction, ExprId, ExprKind, Input, Place, Sampler, SamplerShape, Swizzle, Type, VariableId, VariableKind,
+};
 
 use super::writer::{Text, Writer};
 use super::{Unprintable, wrap};
@@ -58,8 +61,8 @@ const COMPUTE_TOYS_NAMES: &str = "main_image gl_FragCoord screen time mouse cust
     DispatchInfo keyDown assert passStore passLoad passSampleLevelBilinearRepeat int uint float \
     int2 int3 int4 uint2 uint3 uint4 float2 float3 float4 bool2 bool3 bool4 float2x2 float3x3 \
     float4x4 data Data ToyproofFrame toyproof_frame toyproof_color \
-    toyproof_size";
-const BEVY_NAMES: &str = "view globals fragment VertexOutput gl_FragCoord iChannel0 iChannel1 iChannel2 iChannel3 \
+    toyproof_size shadertoy_mouse";
+const BEVY_NAMES: &str = "Inputs inputs view globals fragment VertexOutput gl_FragCoord iChannel0 iChannel1 iChannel2 iChannel3 \
     iChannel0_sampler iChannel1_sampler iChannel2_sampler iChannel3_sampler View Globals main ToyproofFrame \
     toyproof_frame";
 
@@ -134,14 +137,16 @@ impl Style {
 }
 
 impl Writer<'_> {
-    /// The code that reads an input.
-    pub(super) fn input(&mut self, input: Input) -> Result<String, Unprintable> {
-        let missing = Err(Unprintable("an input that the host does not have"));
+    /// The code that reads an input, which the variable `id` is.
+    pub(super) fn input(&self, id: VariableId, input: Input) -> Result<String, Unprintable> {
+        let member = MEMBERS.iter().find(|member| member.2 == input);
+        if let Some(member) = member.filter(|_| self.style.is_in_uniform_block(input)) {
+            return Ok(format!("inputs.{}", member.0));
+        }
+        let name = member.map_or(&*self.cx.tree[id].name, |member| member.0);
+        let missing = || Err(self.not_provided(&format!("`{name}`"), self.first_use(id)));
         let code = match self.style {
-            Style::Plain => {
-                let member = MEMBERS.iter().find(|member| member.2 == input);
-                return member.map_or(missing, |member| Ok(format!("inputs.{}", member.0)));
-            }
+            Style::Plain => return missing(),
             Style::WgpuShadertoy => match input {
                 Input::Resolution => "i_resolution",
                 Input::Time => "i_time",
@@ -151,15 +156,16 @@ impl Writer<'_> {
                 Input::Mouse => "i_mouse",
                 Input::Date => "i_date",
                 Input::SampleRate => "44100.0f",
-                Input::ChannelTime | Input::ChannelResolution | Input::Channel(_) => return missing,
+                Input::ChannelTime | Input::ChannelResolution | Input::Channel(_) => return missing(),
             },
             Style::ComputeToys => match input {
                 Input::Resolution => "vec3f(vec2f(textureDimensions(screen)), 1.0)",
                 Input::Time => "time.elapsed",
                 Input::TimeDelta => "time.delta",
                 Input::Frame => "i32(time.frame)",
+                Input::Mouse => "shadertoy_mouse()",
                 Input::SampleRate => "44100.0f",
-                _ => return missing,
+                _ => return missing(),
             },
             Style::Bevy => match input {
                 Input::Resolution => "vec3f(view.viewport.zw, 1.0)",
@@ -167,7 +173,7 @@ impl Writer<'_> {
                 Input::TimeDelta => "globals.delta_time",
                 Input::Frame => "i32(globals.frame_count)",
                 Input::SampleRate => "44100.0f",
-                _ => return missing,
+                _ => return missing(),
             },
         };
         Ok(code.to_owned())
@@ -197,19 +203,23 @@ impl Writer<'_> {
     pub(super) fn style_code(&self, order: &Order) -> Result<[String; 2], Unprintable> {
         let tree = &self.cx.tree;
         let mut inputs = BTreeSet::new();
+        let mut uniforms = BTreeSet::new();
         let mut channels = BTreeMap::new();
         for &id in &order.inputs {
             match (tree[id].kind, tree[id].ty) {
                 (VariableKind::Input(Input::Channel(channel)), Type::Sampler(sampler)) => {
+                    self.check_channel(id, channel, sampler)?;
                     channels.insert(channel, sampler.shape);
                 }
                 (VariableKind::Input(input), _) => {
-                    inputs.extend(MEMBERS.iter().position(|member| member.2 == input));
+                    let member = MEMBERS.iter().position(|member| member.2 == input);
+                    inputs.extend(member);
+                    uniforms.extend(member.filter(|_| self.style.is_in_uniform_block(input)));
                 }
                 _ => {}
             }
         }
-        self.check_host(&channels)?;
+        self.check_derivatives()?;
         let main_image = self.cx.main_image;
         let brings = tree[main_image].parameters.first().map(|&color| tree[color].kind);
         let brings_color = brings == Some(VariableKind::Parameter(Direction::InOut));
@@ -218,17 +228,20 @@ impl Writer<'_> {
             // than ours put declarations before the text, after which directives are not allowed; they use naga,
             // which does not check this.
             "derivatives" => self.uses_derivatives,
-            "inputs" => !inputs.is_empty(),
+            "inputs" => !uniforms.is_empty(),
             "channels" => !channels.is_empty(),
             "position" => self.reads_position,
             "startup" => self.cx.startup_function.is_some(),
             "inout" => brings_color,
             "out" => !brings_color,
-            _ => channel_number(condition).is_some_and(|channel| channels.contains_key(&channel)),
+            _ => match MEMBERS.iter().position(|member| member.0 == condition) {
+                Some(member) => inputs.contains(&member),
+                None => channel_number(condition).is_some_and(|channel| channels.contains_key(&channel)),
+            },
         };
         let startup = self.cx.startup_function.map(|startup| self.function(startup));
         let mut values = vec![
-            ("$members", members(&inputs)),
+            ("$members", self.style.members(&uniforms)),
             ("$startup", startup.unwrap_or_default().to_owned()),
             ("$main_image", self.function(main_image).to_owned()),
         ];
@@ -245,30 +258,92 @@ impl Writer<'_> {
         }))
     }
 
-    /// Checks that the host has everything that the shader reads.
-    fn check_host(&self, channels: &BTreeMap<u8, SamplerShape>) -> Result<(), Unprintable> {
-        let mut shapes = channels.values();
-        match self.style {
-            Style::ComputeToys if self.uses_derivatives => {
-                return Err(Unprintable("a derivative in a compute shader"));
-            }
-            Style::ComputeToys if channels.keys().any(|&channel| channel > 1) => {
-                return Err(Unprintable("a channel that the host does not have"));
-            }
-            Style::Plain | Style::Bevy if shapes.clone().any(|&shape| dimension(shape).is_none()) => {
-                return Err(Unprintable("an array of textures"));
-            }
-            _ => {}
+    /// Checks that the host has a channel, with a texture of that shape.
+    fn check_channel(&self, id: VariableId, channel: u8, sampler: Sampler) -> Result<(), Unprintable> {
+        let name = &self.cx.tree[id].name;
+        if self.style == Style::ComputeToys && channel > 1 {
+            return Err(self.not_provided(&format!("`{name}`"), self.first_use(id)));
         }
-        if self.style != Style::Plain && shapes.any(|&shape| shape != SamplerShape::D2) {
-            return Err(Unprintable("a texture that the host does not have"));
+        match sampler.shape {
+            SamplerShape::D2 => Ok(()),
+            SamplerShape::D3 | SamplerShape::Cube if self.style == Style::Plain => Ok(()),
+            SamplerShape::D2Array if self.style == Style::Plain => {
+                Err(Unprintable::Construct("an array texture"))
+            }
+            _ => {
+                let what = format!("`{name}`, a `{}`,", sampler.name());
+                Err(self.not_provided(&what, self.first_use(id)))
+            }
         }
-        Ok(())
+    }
+
+    /// Checks that derivatives are not taken in a compute shader.
+    fn check_derivatives(&self) -> Result<(), Unprintable> {
+        if self.style != Style::ComputeToys || !self.uses_derivatives {
+            return Ok(());
+        }
+        let exprs = self.cx.tree.exprs.iter();
+        let calls = exprs.filter_map(|(_, expr)| match expr.kind {
+            ExprKind::BuiltIn { function, .. } => Some((function, expr.at)),
+            _ => None,
+        });
+        let call = calls
+            .filter(|(function, _)| function.is_derivative() || function.is_texture())
+            .min_by_key(|(function, at)| (!function.is_derivative(), at.span.start));
+        let (name, at) = call.map_or(("dFdx", None), |(function, at)| (function.name(), Some(at)));
+        Err(self.not_provided(&format!("`{name}`"), at))
+    }
+
+    /// The first place where a variable is used.
+    fn first_use(&self, id: VariableId) -> Option<Place> {
+        let exprs = self.cx.tree.exprs.iter();
+        let uses = exprs.filter(|(_, expr)| matches!(expr.kind, ExprKind::Variable(used) if used == id));
+        uses.map(|(_, expr)| expr.at).min_by_key(|at| at.span.start)
+    }
+
+    /// The error about a feature that the host does not provide.
+    fn not_provided(&self, what: &str, at: Option<Place>) -> Unprintable {
+        let style = self.style.name();
+        let message = format!("{what} is not available in the style `{style}`");
+        let diagnostic = Diagnostic::error("E0902", message);
+        let diagnostic = match at {
+            Some(at) => diagnostic.at(at.span),
+            None => diagnostic,
+        };
+        Unprintable::Host(Box::new(
+            diagnostic.help("use `--style plain`, which provides all inputs"),
+        ))
     }
 }
 
-/// Declares the members of the uniform block that are read.
-fn members(inputs: &BTreeSet<usize>) -> String {
+impl Style {
+    /// Whether the style reads an input from a uniform block of its own.
+    fn is_in_uniform_block(self, input: Input) -> bool {
+        match self {
+            Self::Plain => MEMBERS.iter().any(|member| member.2 == input),
+            Self::WgpuShadertoy | Self::ComputeToys => false,
+            Self::Bevy => matches!(
+                input,
+                Input::FrameRate | Input::ChannelTime | Input::ChannelResolution | Input::Mouse | Input::Date
+            ),
+        }
+    }
+
+    /// Declares the members of the uniform block that are read.
+    fn members(self, inputs: &BTreeSet<usize>) -> String {
+        if self == Self::Plain {
+            return members_at_offsets(inputs);
+        }
+        let declarations = inputs.iter().map(|&member| {
+            let (name, ty, ..) = MEMBERS[member];
+            format!("{name}: {ty},")
+        });
+        declarations.collect::<Vec<_>>().join("\n    ")
+    }
+}
+
+/// Declares members of the uniform block at the offsets of our host.
+fn members_at_offsets(inputs: &BTreeSet<usize>) -> String {
     // The first member is always declared, to keep the offsets of the others.
     let mut members: Vec<usize> = inputs.iter().copied().collect();
     if members.first() != Some(&0) {
@@ -354,9 +429,10 @@ impl Style {
                 upside_down: false,
             };
         };
-        let reads = |condition: &str| {
-            channel_number(condition)
-                .is_some_and(|channel| text.contains(&format!("{},", self.texture(channel))))
+        let reads = |condition: &str| match channel_number(condition) {
+            Some(channel) => text.contains(&format!("{},", self.texture(channel))),
+            None if self.is_in_uniform_block(Input::Mouse) => text.contains(&format!("inputs.{condition}")),
+            None => text.contains("shadertoy_mouse"),
         };
         let [before, after] = around_shader(host).map(|part| fill(part, reads, &[]));
         Hosted {
@@ -399,6 +475,10 @@ impl Style {
                 ),
             ],
             Self::Bevy => &[
+                (
+                    "@group(#{MATERIAL_BIND_GROUP}) @binding(8) var<uniform> inputs: Inputs;",
+                    "var<private> inputs: Inputs;",
+                ),
                 (
                     "@fragment\nfn fragment(in: VertexOutput) -> @location(0) vec4f {",
                     "fn fragment(in: VertexOutput) -> vec4f {",
@@ -446,6 +526,7 @@ mod tests {
                     let known = |name: &str| {
                         assert!(
                             CONDITIONS.contains(&name)
+                                || MEMBERS.iter().any(|member| member.0 == name)
                                 || channel_number(name).is_some_and(|number| number < 4),
                             "{name}"
                         );

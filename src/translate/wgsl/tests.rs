@@ -4,7 +4,7 @@ use toyproof_glsl::{Options, check};
 
 use super::names::Names;
 use super::writer::{Facts, Writer};
-use super::{Failure, LoweringContext, Order, Style, wgsl};
+use super::{Failure, LoweringContext, Order, Style, Unprintable, wgsl};
 
 fn print(shader: &str, style: Style) -> String {
     let mut files = Files::default();
@@ -47,7 +47,7 @@ fn function(text: &str, expected: &Expect) {
 
 #[test]
 fn a_shader_keeps_its_names_and_comments() {
-    let shader = "// A licence.
+    let shader = "// A license.
 
 #define STEPS 3
 /* How far
@@ -62,7 +62,7 @@ void mainImage(out vec4 fragColor, in vec2 fragCoord) {
 }
 ";
     expect![[r"
-        // A licence.
+        // A license.
 
         struct Inputs {
             iResolution: vec3f,
@@ -207,19 +207,91 @@ fn reserved_words_and_overloads_are_renamed() {
 
 #[test]
 fn unsupported_inputs_and_derivatives_are_refused() {
-    let shader = "void mainImage(out vec4 c, in vec2 p) { c = iMouse + dFdx(p.x); }";
-    let refused = "an input that the host does not have";
-    assert_eq!(print(shader, Style::Bevy), refused);
-    let derives = shader.replace("iMouse", "vec4(0.0)");
-    let refused = "a derivative in a compute shader";
-    assert_eq!(print(&derives, Style::ComputeToys), refused);
+    let cases = [
+        (
+            "c = vec4(0.0);\nc += iDate;",
+            Style::ComputeToys,
+            3,
+            "`iDate` is not available in the style `compute-toys`",
+        ),
+        (
+            "c = vec4(iChannelTime[1]);",
+            Style::WgpuShadertoy,
+            2,
+            "`iChannelTime` is not available in the style `wgpu-shadertoy`",
+        ),
+        (
+            "c = vec4(dFdx(p.x));",
+            Style::ComputeToys,
+            2,
+            "`dFdx` is not available in the style `compute-toys`",
+        ),
+        (
+            "c = textureLod(iChannel2, p, 0.0);",
+            Style::ComputeToys,
+            2,
+            "`iChannel2` is not available in the style `compute-toys`",
+        ),
+        (
+            "c = texture(iChannel0, vec3(p, 1.0));",
+            Style::Bevy,
+            2,
+            "`iChannel0`, a `samplerCube`, is not available in the style `bevy`",
+        ),
+    ];
+    for (body, style, line, message) in cases {
+        let mut files = Files::default();
+        let text = format!("void mainImage(out vec4 c, in vec2 p) {{\n{body}\n}}");
+        let file = files.add(File::new("shader", text));
+        let checked = check(&files, file, &Options::default()).unwrap();
+        match wgsl(&checked, &files, style, &Deadline::default()) {
+            Err(Failure::Unprintable(Unprintable::Host(diagnostic))) => {
+                assert_eq!(diagnostic.message, message);
+                assert_eq!(files.position(diagnostic.span.unwrap()).line, line, "{message}");
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+}
+
+#[test]
+fn bevy_declares_the_inputs_of_the_material() {
+    let shader = "void mainImage(out vec4 c, in vec2 p) { c = iMouse + iDate * iTime; }";
+    let text = print(shader, Style::Bevy);
+    let block = "struct Inputs {\n    iMouse: vec4f,\n    iDate: vec4f,\n}\n\
+                 @group(#{MATERIAL_BIND_GROUP}) @binding(8) var<uniform> inputs: Inputs;\n";
+    assert!(text.contains(block), "{text}");
+    assert!(
+        text.contains("inputs.iMouse + inputs.iDate * globals.time"),
+        "{text}"
+    );
+    let without = print(&shader.replace("iMouse + iDate", "vec4(1.0)"), Style::Bevy);
+    assert!(!without.contains("nputs"), "{without}");
+    let all = "void mainImage(out vec4 c, in vec2 p) {
+        c = iMouse + iDate + iFrameRate + iChannelTime[1] + iChannelResolution[2].x;
+    }";
+    let hosted = Style::Bevy.hosted(&print(all, Style::Bevy)).text;
+    let read = crate::naga_ir::ValidModule::of_wgsl(&hosted);
+    assert!(read.is_ok(), "{read:?}\n{hosted}");
+}
+
+#[test]
+fn compute_toys_maps_the_mouse() {
+    let shader = "void mainImage(out vec4 c, in vec2 p) { c = iMouse; }";
+    let text = print(shader, Style::ComputeToys);
+    assert!(
+        text.contains("= shadertoy_mouse();") && text.contains("mouse.click != 0"),
+        "{text}"
+    );
+    let without = print(&shader.replace("iMouse", "vec4(1.0)"), Style::ComputeToys);
+    assert!(!without.contains("mouse"), "{without}");
 }
 
 #[test]
 fn all_code_of_a_style_is_wgsl_in_its_host() {
     let shader = "float steps = 0.0;
         void mainImage(inout vec4 c, in vec2 p) {
-            steps += iTime + float(iFrame);
+            steps += iTime + float(iFrame) + iMouse.z;
             c += textureLod(iChannel0, p / iResolution.xy, 0.0) + textureLod(iChannel1, gl_FragCoord.zw, steps);
         }";
     for style in Style::ALL {
@@ -326,32 +398,32 @@ fn cases_keep_named_labels_and_fall_through() {
 fn letters_bits_blank_lines_and_comments_are_preserved() {
     function(
         "float f(vec2 p) {
-            vec4 colour = vec4(p, 0.0, 1.0); // red and green
+            vec4 color = vec4(p, 0.0, 1.0); // red and green
 
             // The other way.
-            colour.bg = colour.rb;
+            color.bg = color.rb;
             float distance = length(p), length = 0.1; /* hidden */
             int bits = 2;
             bits = 0x0fF & int(p.x) << 3 >> bits;
-            colour.xz *= mod(p.x * 2.0, length) * mod(p, 2.0).x;
-            colour /= distance;
-            return colour.a + float(bits % 3);
+            color.xz *= mod(p.x * 2.0, length) * mod(p, 2.0).x;
+            color /= distance;
+            return color.a + float(bits % 3);
         }",
         &expect![[r"
             fn f(p: vec2f) -> f32 {
-                var colour = vec4f(p, 0.0, 1.0); // red and green
+                var color = vec4f(p, 0.0, 1.0); // red and green
 
                 // The other way.
-                let bg = colour.rb;
-                colour = vec4f(colour.r, bg.g, bg.r, colour.a);
+                let bg = color.rb;
+                color = vec4f(color.r, bg.g, bg.r, color.a);
                 let distance = length(p); // hidden
                 let length_1 = 0.1;
                 var bits = 2;
                 bits = 0x0fF & ((i32(p.x) << 3u) >> u32(bits));
-                let xz = colour.xz * (modulo(p.x * 2.0, length_1) * modulo_vec2f(p, vec2f(2.0)).x);
-                colour = vec4f(xz.x, colour.y, xz.y, colour.w);
-                colour /= distance;
-                return colour.a + f32(remainder(bits, 3));
+                let xz = color.xz * (modulo(p.x * 2.0, length_1) * modulo_vec2f(p, vec2f(2.0)).x);
+                color = vec4f(xz.x, color.y, xz.y, color.w);
+                color /= distance;
+                return color.a + f32(remainder(bits, 3));
             }
         "]],
     );

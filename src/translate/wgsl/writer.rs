@@ -78,7 +78,7 @@ impl<'a> Writer<'a> {
     /// Fails if the deadline has passed; [`super::wgsl`] then reports that instead.
     pub(super) fn check_deadline(&self) -> Result<(), Unprintable> {
         if self.deadline.is_over() {
-            return Err(Unprintable("what takes too long"));
+            return Err(Unprintable::Construct("a shader that exceeds the time limit"));
         }
         Ok(())
     }

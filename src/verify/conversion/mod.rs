@@ -115,7 +115,7 @@ pub enum FallbackReason {
 #[derive(Debug, Error)]
 pub enum WgslError {
     /// The shader has a construct that it does not support.
-    #[error("cannot be written in the style {}: {why}", style.name())]
+    #[error("cannot be written in the style `{}`: {why}", style.name())]
     Unprintable {
         /// The kind of host.
         style: Style,

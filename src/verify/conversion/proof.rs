@@ -130,7 +130,8 @@ pub const FRAMES: [TestFrame; 3] = [
         size: [90, 160],
         time: 10.7,
         frame: 642,
-        mouse: [41.5, 30.5, -12.0, -5.0],
+        // As compute.toys provides it: whole pixels, and the position of the click is not known.
+        mouse: [41.0, 30.0, -41.0, -30.0],
         date: [2026.0, 11.0, 2.0, 3_661.5],
     },
 ];

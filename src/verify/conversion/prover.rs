@@ -180,7 +180,9 @@ impl Unproved {
     #[must_use]
     pub fn is_of_shader(&self) -> bool {
         match self {
-            Self::NoDriver(_) | Self::Overdue(_) | Self::FullyUndefined { .. } | Self::Unobserved { .. } => true,
+            Self::NoDriver(_) | Self::Overdue(_) | Self::FullyUndefined { .. } | Self::Unobserved { .. } => {
+                true
+            }
             Self::Run(failure) => matches!(
                 failure,
                 Failure::Cpu(_)

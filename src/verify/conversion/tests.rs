@@ -61,10 +61,10 @@ fn edited(source: &Source, style: Style, from: &str, to: &str) -> Written {
 #[test]
 fn wgsl_of_every_style_is_proved() {
     for style in Style::ALL {
-        // Only the plain host and wgpu-shadertoy have a date.
+        // compute.toys has no date.
         let shader = match style {
-            Style::Plain | Style::WgpuShadertoy => WAVES.to_owned(),
-            Style::ComputeToys | Style::Bevy => WAVES.replace("iMouse.x", "p.y").replace("iDate.w", "1.0"),
+            Style::Plain | Style::WgpuShadertoy | Style::Bevy => WAVES.to_owned(),
+            Style::ComputeToys => WAVES.replace("iDate.w", "iMouse.z"),
         };
         let proved = prove(&shader, TIME_LIMIT, |source| edited(source, style, "", ""));
         let Ok(Proved::File(proof, _)) = proved else {

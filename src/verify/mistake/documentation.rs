@@ -1,4 +1,4 @@
-//! Tests that `docs/mistakes.md` lists every mistake.
+//! Tests that `docs/guide/mistakes.md` lists every mistake.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use super::exercises::scenes;
 use super::{KnownMistake, catalogue, change, fit, mutant};
 use crate::acne;
 
-const PAGE: &str = include_str!("../../../docs/mistakes.md");
+const PAGE: &str = include_str!("../../../docs/guide/mistakes.md");
 
 /// The rows of the page: for each id the description and the fix.
 fn rows() -> BTreeMap<&'static str, [&'static str; 2]> {
@@ -60,7 +60,7 @@ fn every_mistake_is_documented() {
     }
     for (id, descriptions) in &descriptions {
         let Some([form, fix]) = rows.get(id) else {
-            panic!("docs/mistakes.md has no row for {id}: {descriptions:?}");
+            panic!("docs/guide/mistakes.md has no row for {id}: {descriptions:?}");
         };
         assert!(
             descriptions.iter().any(|description| has_form(description, form)),
@@ -71,7 +71,7 @@ fn every_mistake_is_documented() {
     for id in rows.keys() {
         assert!(
             descriptions.contains_key(id),
-            "docs/mistakes.md lists {id}, which is never reported"
+            "docs/guide/mistakes.md lists {id}, which is never reported"
         );
     }
 }

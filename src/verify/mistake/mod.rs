@@ -31,7 +31,7 @@ use crate::mistake::thumbnail::{
 /// A mistake that a shader may have, or a symptom of many mistakes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct KnownMistake {
-    /// The id, such as `far-root`, under which `docs/mistakes.md` lists it.
+    /// The id, such as `far-root`, under which `docs/guide/mistakes.md` lists it.
     pub id: &'static str,
     /// The bug in the shader, to follow “likely mistake: ”.
     pub description: Cow<'static, str>,

@@ -18,11 +18,11 @@ struct ToyproofFrame {
     float iSampleRate;
 };
 struct FragmentOutput {
-    vec4 toyproof_colour;
+    vec4 toyproof_color;
 };
 const int SAMPLES = 10;
 
-vec4 toyproof_colour = vec4(0.0);
+vec4 toyproof_color = vec4(0.0);
 
 layout(std140) uniform ToyproofFrame_block_0Fragment { ToyproofFrame _group_0_binding_0_fs; };
 
@@ -177,12 +177,12 @@ void mainImage(inout vec4 fragColor, vec2 fragCoord) {
 }
 
 void main_1() {
-    vec4 toyproof_painted = vec4(0.0, 0.0, 0.0, 1.0);
+    vec4 toyproof_image_color = vec4(0.0, 0.0, 0.0, 1.0);
     vec4 _e8 = gen_gl_FragCoord_1;
-    mainImage(toyproof_painted, _e8.xy);
-    vec4 _e10 = toyproof_painted;
+    mainImage(toyproof_image_color, _e8.xy);
+    vec4 _e10 = toyproof_image_color;
     vec3 _e11 = _e10.xyz;
-    toyproof_colour = vec4(_e11.x, _e11.y, _e11.z, 1.0);
+    toyproof_color = vec4(_e11.x, _e11.y, _e11.z, 1.0);
     return;
 }
 
@@ -190,9 +190,9 @@ void main() {
     vec4 gen_gl_FragCoord = gl_FragCoord;
     gen_gl_FragCoord_1 = gen_gl_FragCoord;
     main_1();
-    vec4 _e3 = toyproof_colour;
+    vec4 _e3 = toyproof_color;
     FragmentOutput _tmp_return = FragmentOutput(_e3);
-    _fs2p_location0 = _tmp_return.toyproof_colour;
+    _fs2p_location0 = _tmp_return.toyproof_color;
     return;
 }
 

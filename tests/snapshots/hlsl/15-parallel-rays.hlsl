@@ -33,7 +33,7 @@ struct Sphere {
 };
 
 struct FragmentOutput {
-    float4 toyproof_colour : SV_Target0;
+    float4 toyproof_color : SV_Target0;
 };
 
 static const float NO_HIT = 1000000.0;
@@ -42,7 +42,7 @@ static const int SPHERES = int(5);
 static const float3 AMBIENT = float3(0.1, 0.1, 0.12);
 static const float3 LIGHT = float3(3.0, 5.0, 4.0);
 
-static float4 toyproof_colour = (float4)0;
+static float4 toyproof_color = (float4)0;
 cbuffer global : register(b0) { ToyproofFrame global; }
 static Sphere spheres[5] = (Sphere[5])0;
 static float4 gl_FragCoord_1 = (float4)0;
@@ -229,19 +229,19 @@ void mainImage(inout float4 fragColor, float2 fragCoord_2)
 
 void main_1()
 {
-    float4 toyproof_painted = float4(0.0, 0.0, 0.0, 1.0);
+    float4 toyproof_image_color = float4(0.0, 0.0, 0.0, 1.0);
 
     float4 _e8 = gl_FragCoord_1;
-    mainImage(toyproof_painted, _e8.xy);
-    float4 _e10 = toyproof_painted;
+    mainImage(toyproof_image_color, _e8.xy);
+    float4 _e10 = toyproof_image_color;
     float3 _e11 = _e10.xyz;
-    toyproof_colour = float4(_e11.x, _e11.y, _e11.z, 1.0);
+    toyproof_color = float4(_e11.x, _e11.y, _e11.z, 1.0);
     return;
 }
 
 FragmentOutput ConstructFragmentOutput(float4 arg0) {
     FragmentOutput ret = (FragmentOutput)0;
-    ret.toyproof_colour = arg0;
+    ret.toyproof_color = arg0;
     return ret;
 }
 
@@ -250,7 +250,7 @@ FragmentOutput main(FragmentInput_main fragmentinput_main)
     float4 gl_FragCoord = fragmentinput_main.gl_FragCoord_2;
     gl_FragCoord_1 = gl_FragCoord;
     main_1();
-    float4 _e3 = toyproof_colour;
+    float4 _e3 = toyproof_color;
     const FragmentOutput fragmentoutput = ConstructFragmentOutput(_e3);
     return fragmentoutput;
 }

@@ -36,7 +36,7 @@ struct Sphere {
     metal::float3 color;
 };
 struct FragmentOutput {
-    metal::float4 toyproof_colour;
+    metal::float4 toyproof_color;
 };
 constant float SCREEN_DEPTH = -2.0;
 constant float NO_HIT = 1000000.0;
@@ -167,33 +167,33 @@ void mainImage(
 }
 
 void main_1(
-    thread metal::float4& toyproof_colour,
+    thread metal::float4& toyproof_color,
     constant ToyproofFrame& global,
     thread metal::float4& gl_FragCoord_1
 ) {
-    metal::float4 toyproof_painted = metal::float4(0.0, 0.0, 0.0, 1.0);
+    metal::float4 toyproof_image_color = metal::float4(0.0, 0.0, 0.0, 1.0);
     metal::float4 _e8 = gl_FragCoord_1;
-    mainImage(toyproof_painted, _e8.xy, global);
-    metal::float4 _e10 = toyproof_painted;
+    mainImage(toyproof_image_color, _e8.xy, global);
+    metal::float4 _e10 = toyproof_image_color;
     metal::float3 _e11 = _e10.xyz;
-    toyproof_colour = metal::float4(_e11.x, _e11.y, _e11.z, 1.0);
+    toyproof_color = metal::float4(_e11.x, _e11.y, _e11.z, 1.0);
     return;
 }
 
 struct main_Input {
 };
 struct main_Output {
-    metal::float4 toyproof_colour [[color(0)]];
+    metal::float4 toyproof_color [[color(0)]];
 };
 fragment main_Output main_(
   metal::float4 gl_FragCoord [[position]]
 , constant ToyproofFrame& global [[buffer(0)]]
 ) {
-    metal::float4 toyproof_colour = {};
+    metal::float4 toyproof_color = {};
     metal::float4 gl_FragCoord_1 = {};
     gl_FragCoord_1 = gl_FragCoord;
-    main_1(toyproof_colour, global, gl_FragCoord_1);
-    metal::float4 _e3 = toyproof_colour;
+    main_1(toyproof_color, global, gl_FragCoord_1);
+    metal::float4 _e3 = toyproof_color;
     const auto _tmp = FragmentOutput {_e3};
-    return main_Output { _tmp.toyproof_colour };
+    return main_Output { _tmp.toyproof_color };
 }

@@ -12,10 +12,8 @@ pub struct Mistake {
     /// Its identifier.
     pub name: &'static str,
     /// What the function does, as text to follow its name.
-    #[serde(rename = "says")]
     pub description: &'static str,
     /// Whether the function is right for callers that keep to its precondition.
-    #[serde(rename = "excusable")]
     pub recoverable: bool,
 }
 
@@ -40,7 +38,7 @@ enum Choice {
 #[derive(Debug, Clone, Copy)]
 #[expect(
     clippy::struct_excessive_bools,
-    reason = "each is a thing that is done or not"
+    reason = "each flag is an independent variation of the formula"
 )]
 struct Model {
     /// The factor of b.
@@ -95,38 +93,38 @@ macro_rules! mistakes {
 
 mistakes! {
     "roots-not-halved": "does not divide the roots by 2a", { two: 1.0 };
-    "roots-halved-twice": "divides by 2a though its b is half of the textbook's", { two: 4.0 };
-    "larger-root": "takes the larger root, where the ray leaves the sphere", { choice: Choice::Farther };
-    "behind-the-eye": "does not ask whether t > 0: what lies behind counts", { choice: Choice::Anywhere };
-    "behind-the-eye": "does not ask whether t > 0: what lies behind counts", { choice: Choice::FartherAnywhere };
-    "not-from-inside": "forgets the second root: a ray that starts inside meets nothing", { choice: Choice::NearerAlone };
-    "closest-point": "gives the t at which the ray comes nearest to the centre, not where it meets the sphere", { choice: Choice::Middle };
+    "roots-halved-twice": "divides by 2a, but its b is half of the textbook's b", { two: 4.0 };
+    "larger-root": "returns the larger root, where the ray leaves the sphere", { choice: Choice::Farther };
+    "behind-origin": "does not check t > 0: hits behind the ray's origin count", { choice: Choice::Anywhere };
+    "behind-origin": "does not check t > 0: hits behind the ray's origin count", { choice: Choice::FartherAnywhere };
+    "not-from-inside": "ignores the second root: a ray that starts inside hits nothing", { choice: Choice::NearerAlone };
+    "closest-point": "returns the t of the point nearest to the center, not that of the hit", { choice: Choice::Middle };
     "radius-not-squared": "does not square the radius", { square: |r| r };
-    "radius-added": "adds r² where it is to be subtracted", { square: |r| -r * r };
-    "diameter": "takes the diameter for the radius", { square: |r| 4.0 * r * r };
-    "sign-of-b": "has the sign of b wrong", { b: -1.0 };
-    "discriminant-without-4": "forgets the 4 in b² − 4ac", { four: 1.0 };
-    "half-b-with-4": "keeps the 4 of b² − 4ac though its b is half of the textbook's", { four: 16.0, two: 4.0 };
-    "discriminant-plus": "adds 4ac where it is to be subtracted", { four: -4.0 };
-    "no-square-root": "does not take the root of the discriminant", { root: |disc| disc };
-    "discriminant-not-tested": "does not ask whether the discriminant is negative", { tests_discriminant: false };
-    "centre-ignored": "does not subtract the centre from the origin", { subtracts_center: false };
+    "radius-added": "adds r² instead of subtracting it", { square: |r| -r * r };
+    "diameter": "uses the diameter instead of the radius", { square: |r| 4.0 * r * r };
+    "sign-of-b": "uses b with the wrong sign", { b: -1.0 };
+    "discriminant-without-4": "omits the factor 4 in b² − 4ac", { four: 1.0 };
+    "half-b-with-4": "keeps the factor 4 in b² − 4ac, but its b is half of the textbook's b", { four: 16.0, two: 4.0 };
+    "discriminant-plus": "adds 4ac instead of subtracting it", { four: -4.0 };
+    "no-square-root": "does not take the square root of the discriminant", { root: |disc| disc };
+    "discriminant-not-tested": "does not check for a negative discriminant", { tests_discriminant: false };
+    "center-ignored": "does not subtract the center from the origin", { subtracts_center: false };
 }
 
 /// Reported for mistakes that show only with directions that are not unit vectors.
 const UNIT: Mistake = Mistake {
-    name: "direction-of-length-1",
-    description: "takes a = 1: it is right only for directions of length 1",
+    name: "unit-direction-only",
+    description: "assumes a = 1: its results are right only for directions of length 1",
     recoverable: true,
 };
 const DIVIDES_BY_TWO: Mistake = Mistake {
-    name: "not-over-a",
-    description: "divides the roots by 2, not by 2a: it is right only for directions of length 1",
+    name: "not-divided-by-a",
+    description: "divides the roots by 2, not by 2a: its results are right only for directions of length 1",
     recoverable: true,
 };
 const LENGTHS: Mistake = Mistake {
-    name: "t-in-lengths",
-    description: "normalises the direction: its t counts in lengths, not in directions",
+    name: "t-as-distance",
+    description: "normalizes the direction: its t is a distance, not a multiple of the direction",
     recoverable: true,
 };
 

@@ -19,7 +19,7 @@ pub(super) use signature::clear_misses;
 pub use signature::{MissConvention, RoleMap, Signature, Unrecognized};
 use toyproof_gpu::Worker;
 
-use super::axis::{Case, Kind, RaySphere, Step, axes};
+use super::axis::{Axis, Case, Kind, RaySphere, Step, axes};
 use super::case_sampler::Random;
 use super::cells::{Cells, Reference, reference_of};
 use super::formula::{Reading, Subject, main};
@@ -38,6 +38,35 @@ pub struct Findings {
 }
 
 impl Findings {
+    /// The summary: the mistake, an example, then where the function fails.
+    #[must_use]
+    pub fn summary(&self, name: &str) -> Vec<String> {
+        let mut lines = vec![match (&self.mistake, &self.example) {
+            (Some(mistake), _) => format!("{name} {} ({})", mistake.description, mistake.name),
+            (None, Some(_)) => {
+                format!("{name} makes none of the known mistakes, but fails for extreme input")
+            }
+            (None, None) => format!("{name} is right for all tested input"),
+        }];
+        if let Some(example) = &self.example {
+            lines.push(format!(
+                "for example, simplified from a case with {}:",
+                example.found_at
+            ));
+            lines.extend(example.assignments.iter().map(|line| format!("    {line}")));
+            let actual = match example.actual.strip_prefix("t = ") {
+                Some(t) if example.expected.starts_with("t = ") => t,
+                _ => &example.actual,
+            };
+            lines.push(format!("  expected {}, got {actual}", example.expected));
+        }
+        if !self.report.breakdowns.is_empty() {
+            lines.push(String::new());
+            lines.extend(self.report.function_summary());
+        }
+        lines
+    }
+
     /// All results as JSON.
     #[must_use]
     pub fn json(&self) -> String {
@@ -46,20 +75,17 @@ impl Findings {
     }
 }
 
-/// A ray with a wrong result.
+/// A ray with a wrong result, simplified to few digits.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Example {
     /// Statements that assign the ray and sphere to the function's parameters.
-    #[serde(rename = "paste")]
     pub assignments: Vec<String>,
     /// The right result.
     pub expected: String,
     /// The actual result.
-    #[serde(rename = "came")]
     pub actual: String,
-    /// The axis and step where it was found.
-    #[serde(rename = "at")]
-    pub step: String,
+    /// The step of the case that it was simplified from.
+    pub found_at: String,
 }
 
 /// A shader that calls a function of `text` for each case.
@@ -194,7 +220,7 @@ impl FunctionRunner<'_> {
                     ray_sphere,
                     convention,
                     near,
-                    format!("{} {}", cell.axis, cell.step),
+                    describe_step(&axes, cell.axis, cell.step),
                 )?));
             }
         }
@@ -206,7 +232,7 @@ impl FunctionRunner<'_> {
         ray_sphere: RaySphere,
         convention: &MissConvention,
         near: bool,
-        step: String,
+        found_at: String,
     ) -> Result<Example, Failure> {
         let colors = self.colors::<f32>(&[ray_sphere])?;
         let actual = convention.outcome(colors[0]);
@@ -218,13 +244,18 @@ impl FunctionRunner<'_> {
                 .assignments(ray_sphere.o, ray_sphere.d, ray_sphere.c, ray_sphere.r),
             expected: expected.t.map_or_else(|| "no hit".to_owned(), |t| number(t.high)),
             actual: match actual {
-                Outcome::Miss => format!("no hit ({})", f64::from(colors[0][0] as f32)),
+                Outcome::Miss => format!("no hit (returned {})", f64::from(colors[0][0] as f32)),
                 Outcome::Hit(t) => number(t),
                 Outcome::Nan => "NaN".to_owned(),
             },
-            step,
+            found_at,
         })
     }
+}
+
+fn describe_step(axes: &[Axis], name: &str, step: Step) -> String {
+    let axis = axes.iter().find(|axis| axis.name == name);
+    axis.map_or_else(|| name.to_owned(), |axis| axis.describe(step))
 }
 
 /// How far a step is from typical scenes; named configurations come last.
@@ -233,7 +264,7 @@ fn extremeness(axis: &str, step: Step) -> f64 {
         ("grazing", Step::Number(delta)) => 20.0 - libm::log10(delta.abs()),
         (_, Step::Number(number)) if number > 0.0 => libm::log10(number).abs(),
         (_, Step::Number(_)) => 0.0,
-        ("origin", Step::Label("the origin inside")) => 0.5,
+        ("origin", Step::Label("origin inside")) => 0.5,
         ("origin", Step::Label(_)) => 10.0,
         (_, Step::Label(_)) => 100.0,
     }

@@ -86,18 +86,29 @@ impl Role {
             .map(|(_, role)| role)
     }
 
+    /// The types of values that may have this role.
+    fn type_names(self) -> &'static str {
+        match self {
+            Self::Origin | Self::Direction | Self::Center => "a vec3",
+            Self::Sphere => "a vec4",
+            Self::Radius | Self::TMin | Self::TMax | Self::Second => "a float",
+            Self::T => "a float or a vec2",
+            Self::Flag => "a bool or an int",
+        }
+    }
+
     pub(super) fn description(self) -> &'static str {
         match self {
             Self::Origin => "the ray's origin",
-            Self::Direction => "its direction",
-            Self::Center => "the sphere's centre",
-            Self::Radius => "its radius",
+            Self::Direction => "the ray's direction",
+            Self::Center => "the sphere's center",
+            Self::Radius => "the sphere's radius",
             Self::Sphere => "the sphere",
-            Self::TMin => "the smallest t",
-            Self::TMax => "the largest t",
-            Self::T => "t",
-            Self::Second => "the second t",
-            Self::Flag => "whether it hits",
+            Self::TMin => "the minimum t",
+            Self::TMax => "the maximum t",
+            Self::T => "t of the hit",
+            Self::Second => "t of the second hit",
+            Self::Flag => "the hit flag",
         }
     }
 
@@ -215,10 +226,10 @@ pub(super) fn check_map(
 ) -> Result<(), String> {
     let name = &function.name;
     for (path, role) in map {
-        let (leaves, does) = if role.input().is_some() {
-            (input_leaves, "takes")
+        let (leaves, kind) = if role.input().is_some() {
+            (input_leaves, "an input")
         } else {
-            (output_leaves, "gives")
+            (output_leaves, "an output")
         };
         if leaves.iter().any(|leaf| leaf.path == *path && role.fits(leaf.ty)) {
             continue;
@@ -228,13 +239,14 @@ pub(super) fn check_map(
             let mut paths: Vec<_> = all().map(|leaf| leaf.path.as_str()).collect();
             paths.dedup();
             return Err(format!(
-                "{name} has no parameter `{path}`; --map may speak of {}",
+                "{name} has no parameter `{path}`; it has {}",
                 paths.join(", ")
             ));
         }
         return Err(format!(
-            "--map says that `{path}` is {}, and no value that {name} {does} under that name can be that",
-            role.description()
+            "`{path}` cannot be {}, which must be {kind} of {name} and {}",
+            role.description(),
+            role.type_names()
         ));
     }
     Ok(())

@@ -55,7 +55,10 @@ impl Signature {
         Err(Unrecognized(why.unwrap_or_else(|| {
             let names = tree.functions.iter().map(|(_, function)| function.name.as_str());
             let names: Vec<_> = names.filter(|name| *name != "mainImage").collect();
-            format!("there is no function {name}; there are {}", names.join(", "))
+            format!(
+                "there is no function `{name}`; the shader has {}",
+                names.join(", ")
+            )
         })))
     }
 
@@ -86,14 +89,14 @@ impl Signature {
         match (all.pop(), all.is_empty()) {
             (Some(one), true) => Ok(one),
             (None, _) => Err(Unrecognized(
-                "no function is seen to take a ray and a sphere and to give t; name it with --function, and what it takes with --map"
+                "no function intersects a ray with a sphere; name one with --function and its parameters with --map"
                     .to_owned(),
             )),
             (Some(last), false) => {
                 let names = all.iter().chain([&last]).map(|one| one.name.as_str());
                 let names: Vec<_> = names.collect();
                 let which = names.join(", ");
-                Err(Unrecognized(format!("say with --function which one: {which}")))
+                Err(Unrecognized(format!("several functions intersect a sphere: {which}; choose one with --function")))
             }
         }
     }
@@ -143,17 +146,16 @@ impl Signature {
         if !missing.is_empty() {
             let paths: Vec<_> = input_leaves.iter().map(|leaf| leaf.path.as_str()).collect();
             return Err(format!(
-                "of what {name} takes ({}), it is not clear what is {}; say so with --map, as in --map {}=origin",
+                "no parameter of {name} is recognized as {} (it has {}); name it with --map, such as --map {}=origin",
+                missing.join(" or "),
                 paths.join(", "),
-                missing.join(" and what is "),
                 paths.first().unwrap_or(&"p")
             ));
         }
         let outputs = assign_output_roles(&output_leaves, map);
         if !outputs.iter().any(|(_, role, _)| *role == Role::T) {
             return Err(format!(
-                "it is not clear how {name} gives t: as a float, as a vec2 of both, in an out parameter or in a member; say so with --map, \
-                 as in --map return.depth=t"
+                "no output of {name} is recognized as t; name it with --map, such as --map return.depth=t"
             ));
         }
         Ok(Self {
@@ -246,7 +248,7 @@ impl Signature {
 
 // How a function reports a miss, determined by evaluating it.
 
-/// Rays that clearly miss a sphere: a result common to several of them is the function's way to report a
+/// Rays that clearly miss a sphere: a result common to several of them is how the function reports a
 /// miss.
 pub(in crate::stress) fn clear_misses() -> Vec<RaySphere> {
     let random = &mut Random::new(0, &["clear misses"]);

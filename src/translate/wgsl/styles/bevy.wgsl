@@ -9,8 +9,13 @@
 @group(#{MATERIAL_BIND_GROUP}) @binding(5) var iChannel2_sampler: sampler; //? channel2
 @group(#{MATERIAL_BIND_GROUP}) @binding(6) var iChannel3: texture_2d<f32>; //? channel3
 @group(#{MATERIAL_BIND_GROUP}) @binding(7) var iChannel3_sampler: sampler; //? channel3
+// The material provides these ShaderToy inputs, for example with `#[uniform(8)]`. //? inputs
+struct Inputs { //? inputs
+    $members //? inputs
+} //? inputs
+@group(#{MATERIAL_BIND_GROUP}) @binding(8) var<uniform> inputs: Inputs; //? inputs
 var<private> gl_FragCoord: vec4f; //? position
-//? position
+//? position inputs
 $shader
 
 @fragment

@@ -1,6 +1,12 @@
 var<private> gl_FragCoord: vec4f; //? position
 //? position
 $shader
+//? iMouse
+// The mouse in ShaderToy's coordinates, with the current position in place of that of the click. //? iMouse
+fn shadertoy_mouse() -> vec4f { //? iMouse
+    let position = vec2f(f32(mouse.pos.x), f32(textureDimensions(screen).y) - f32(mouse.pos.y)); //? iMouse
+    return vec4f(position, select(0.0 - position, position, mouse.click != 0)); //? iMouse
+} //? iMouse
 
 @compute @workgroup_size(16, 16)
 fn main_image(@builtin(global_invocation_id) id: vec3u) {

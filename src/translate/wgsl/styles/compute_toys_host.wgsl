@@ -1,5 +1,7 @@
 struct Time { frame: u32, elapsed: f32, delta: f32 }
 var<private> time: Time;
+struct Mouse { pos: vec2u, click: i32 } //? iMouse
+var<private> mouse: Mouse; //? iMouse
 var<private> toyproof_color: vec4f;
 fn toyproof_size() -> vec2u { return vec2u(toyproof_frame.resolution.xy); }
 @group(0) @binding(1) var channel0: texture_2d<f32>; //? channel0
@@ -8,6 +10,9 @@ fn toyproof_size() -> vec2u { return vec2u(toyproof_frame.resolution.xy); }
 $shader
 @fragment fn main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     time = Time(u32(toyproof_frame.frame), toyproof_frame.time, toyproof_frame.time_delta);
+    let clicked = toyproof_frame.mouse; //? iMouse
+    let row = toyproof_frame.resolution.y - clicked.y; //? iMouse
+    mouse = Mouse(vec2u(u32(clicked.x), u32(row)), i32(clicked.z > 0.0)); //? iMouse
     main_image(vec3u(vec2u(position.xy), 0u));
     return toyproof_color;
 }

@@ -1,0 +1,288 @@
+//! The summary of a study as text: where each formula stops being right, and which one is recommended.
+
+use toyproof_diagnostic::{grouped, plural};
+
+use super::axis::{Axis, EasySteps, Kind, Step, axes};
+use super::tally::{Breakdown, MAX_FAILING_SHARE, directions};
+use super::{CPU, Report, Row};
+use crate::text_table::{self, Align};
+
+/// Scales and direction lengths of ordinary scenes are within this factor of 1.
+const MAX_ORDINARY_SCALE: f64 = 1e15;
+
+impl Report {
+    /// The summary of the built-in formulas in f32, then the recommendations.
+    #[must_use]
+    pub fn summary(&self) -> Vec<String> {
+        let mut lines = self.sphere_and_quadric_tables("f32");
+        lines.extend(self.strategy_table("f32"));
+        lines.push(String::new());
+        lines.extend(self.recommendations());
+        lines.extend(self.gpu_lines());
+        lines
+    }
+
+    /// The same tables in f64, for comparison.
+    #[must_use]
+    pub fn double_precision_summary(&self) -> Vec<String> {
+        let mut lines = vec![String::new()];
+        lines.extend(self.sphere_and_quadric_tables("f64"));
+        lines.extend(self.strategy_table("f64"));
+        lines
+    }
+
+    /// The first failing steps of one function, in f32 and f64.
+    #[must_use]
+    pub fn function_summary(&self) -> Vec<String> {
+        let columns = ["f32", "f64"].map(|precision| {
+            let of_precision = move |one: &&Breakdown| one.precision == precision;
+            let found: Vec<&Breakdown> = self.breakdowns.iter().filter(of_precision).collect();
+            (precision.to_owned(), found)
+        });
+        let mut lines = vec![self.table_heading()];
+        lines.extend(first_failing_steps(Kind::Spheres, &columns));
+        lines.extend(self.gpu_lines());
+        lines
+    }
+
+    fn table_heading(&self) -> String {
+        let cases = self.cases as u64;
+        format!(
+            "First step with more than {} % wrong results ({} {} per step, reference: 160-bit arithmetic):",
+            100.0 * MAX_FAILING_SHARE,
+            grouped(cases),
+            plural(cases, "case", "cases")
+        )
+    }
+
+    fn sphere_and_quadric_tables(&self, precision: &'static str) -> Vec<String> {
+        let number_type = number_type(precision);
+        let mut lines = vec![
+            format!("Where ray–sphere formulas stop being right in {number_type}"),
+            self.table_heading(),
+            String::new(),
+        ];
+        lines.extend(first_failing_steps(
+            Kind::Spheres,
+            &self.columns(Kind::Spheres, precision),
+        ));
+        lines.extend([
+            String::new(),
+            format!("Where ray–quadric formulas stop being right in {number_type}:"),
+            String::new(),
+        ]);
+        lines.extend(first_failing_steps(
+            Kind::Quadrics,
+            &self.columns(Kind::Quadrics, precision),
+        ));
+        lines
+    }
+
+    /// The breakdowns of each formula of a kind.
+    fn columns(&self, kind: Kind, precision: &'static str) -> Vec<(String, Vec<&Breakdown>)> {
+        let names = self.formulas(kind, precision).into_iter();
+        names
+            .map(|name| {
+                let breakdowns = self.breakdowns.iter();
+                let of_formula = |one: &&Breakdown| one.formula == name && one.precision == precision;
+                (name.to_owned(), breakdowns.filter(of_formula).collect())
+            })
+            .collect()
+    }
+
+    /// The names of the formulas of a kind that were tested.
+    fn formulas(&self, kind: Kind, precision: &'static str) -> Vec<&str> {
+        let axes = axes();
+        let mut names: Vec<&str> = Vec::new();
+        for row in self.cpu_rows(precision) {
+            let is_of_kind = axes.iter().any(|axis| axis.name == row.axis && axis.kind == kind);
+            if is_of_kind && !names.contains(&row.formula.as_str()) {
+                names.push(&row.formula);
+            }
+        }
+        names
+    }
+
+    fn cpu_rows<'a>(&'a self, precision: &'static str) -> impl Iterator<Item = &'a Row> {
+        let rows = self.rows.iter();
+        rows.filter(move |row| row.device == CPU && row.precision == precision)
+    }
+
+    /// The failures of strategies for rays that leave a surface.
+    fn strategy_table(&self, precision: &'static str) -> Vec<String> {
+        let head = ["start of the ray", "self-intersections", "nearby surfaces missed"];
+        let mut rows = vec![head.map(str::to_owned).to_vec()];
+        for name in self.formulas(Kind::Secondaries, precision) {
+            let worst = |count: fn(&Row) -> u64| {
+                let rows = self.cpu_rows(precision).filter(|row| row.formula == name);
+                let share = |row: &Row| count(row) as f64 / row.tally.cases.max(1) as f64;
+                match rows.map(share).fold(0.0, f64::max) {
+                    0.0 => "–".to_owned(),
+                    share => format!("{:.1} %", 100.0 * share),
+                }
+            };
+            rows.push(vec![
+                name.to_owned(),
+                worst(|row| row.tally.self_intersections),
+                worst(|row| row.tally.missed_nearby),
+            ]);
+        }
+        let mut lines = vec![
+            String::new(),
+            format!(
+                "Rays that leave a sphere in {}, worst of {} scenes:",
+                number_type(precision),
+                scene_count()
+            ),
+            String::new(),
+        ];
+        lines.extend(text_table::lines(
+            &[Align::Left, Align::Right, Align::Right],
+            &rows,
+        ));
+        lines
+    }
+
+    /// The formulas and strategies with the fewest failing steps in f32.
+    fn recommendations(&self) -> Vec<String> {
+        let mut lines = Vec::new();
+        for (kind, what) in [
+            (Kind::Spheres, "spheres"),
+            (Kind::Quadrics, "quadrics"),
+            (Kind::Secondaries, "secondary rays"),
+        ] {
+            let Some((ordinary, failing, steps)) = self.best(kind, true) else {
+                continue;
+            };
+            let extreme = self
+                .best(kind, false)
+                .filter(|(extreme, ..)| *extreme != ordinary);
+            let range = match extreme {
+                Some(_) => format!(
+                    " at scales from {:e} to {MAX_ORDINARY_SCALE:e}",
+                    1.0 / MAX_ORDINARY_SCALE
+                ),
+                None => String::new(),
+            };
+            let mut line = format!("Recommended for {what}: {ordinary} ");
+            line += &match failing {
+                0 => format!("(right in all {steps} steps{range})"),
+                _ => format!("(fewest failures{range}: {failing} of {steps} steps)"),
+            };
+            if let Some((extreme, ..)) = extreme {
+                line += &format!("\n  at any scale: {extreme}");
+            }
+            lines.push(line);
+        }
+        lines
+    }
+
+    /// The formula with the fewest failing steps in f32, the first of several, with the numbers of its
+    /// failing steps and of all steps. `ordinary`: whether extreme scales are ignored.
+    fn best(&self, kind: Kind, ordinary: bool) -> Option<(&str, usize, usize)> {
+        let axes = axes();
+        let counts = |row: &&Row| {
+            let axis = axes.iter().find(|axis| axis.name == row.axis);
+            axis.is_some_and(|axis| !ordinary || is_ordinary(axis, row.value))
+        };
+        let formulas = self.formulas(kind, "f32").into_iter();
+        let failures = formulas.map(|name| {
+            let rows = self.cpu_rows("f32").filter(|row| row.formula == name);
+            let rows: Vec<&Row> = rows.filter(counts).collect();
+            let failing = rows.iter().filter(|row| row.tally.fails()).count();
+            (name, failing, rows.len())
+        });
+        failures.min_by_key(|(_, failing, _)| *failing)
+    }
+
+    /// Whether a GPU's results agree with the CPU's.
+    fn gpu_lines(&self) -> Vec<String> {
+        let mut devices: Vec<&str> = Vec::new();
+        for row in &self.rows {
+            if row.device != CPU && !devices.contains(&row.device.as_str()) {
+                devices.push(&row.device);
+            }
+        }
+        let lines = devices.into_iter().map(|device| {
+            let rows: Vec<&Row> = self.rows.iter().filter(|row| row.device == device).collect();
+            let differs = |row: &&&Row| {
+                let same = |cpu: &Row| {
+                    (&cpu.formula, cpu.axis, cpu.value) == (&row.formula, row.axis, row.value)
+                        && cpu.tally == row.tally
+                };
+                !self.cpu_rows("f32").any(same)
+            };
+            let total = grouped(rows.len() as u64);
+            match rows.iter().filter(differs).count() as u64 {
+                0 => format!("{device}: same results as the CPU in all {total} steps"),
+                count => format!(
+                    "{device}: results differ from the CPU's in {} of {total} steps",
+                    grouped(count)
+                ),
+            }
+        });
+        lines.collect()
+    }
+}
+
+/// Whether a step is not an extreme scale.
+fn is_ordinary(axis: &Axis, step: Step) -> bool {
+    let range = 1.0 / MAX_ORDINARY_SCALE..=MAX_ORDINARY_SCALE;
+    axis.easy != EasySteps::One || !matches!(step, Step::Number(x) if !range.contains(&x))
+}
+
+fn number_type(precision: &'static str) -> &'static str {
+    if precision == "f32" {
+        "float32"
+    } else {
+        "double precision"
+    }
+}
+
+/// The number of steps of all axes of secondary rays.
+fn scene_count() -> usize {
+    let axes = axes();
+    let secondary = axes.iter().filter(|axis| axis.kind == Kind::Secondaries);
+    secondary.map(|axis| axis.steps.len()).sum()
+}
+
+/// A table with a column for each formula, and a row for each direction in which one of them fails.
+fn first_failing_steps(kind: Kind, columns: &[(String, Vec<&Breakdown>)]) -> Vec<String> {
+    let names = columns.iter().map(|(name, _)| name.clone());
+    let mut rows: Vec<Vec<String>> = vec![[String::new()].into_iter().chain(names).collect()];
+    let mut right = Vec::new();
+    for axis in axes().iter().filter(|axis| axis.kind == kind) {
+        let mut fails = false;
+        for direction in directions(axis) {
+            let cell = |breakdowns: &[&Breakdown]| {
+                let mut found = breakdowns.iter();
+                let found =
+                    found.find(|one| one.axis == axis.name && one.condition == direction.condition)?;
+                Some(match axis.easy {
+                    EasySteps::Unordered => format!("{:.0} %", 100.0 * found.failing_share),
+                    _ => found.first_failing_step.clone(),
+                })
+            };
+            let cells: Vec<_> = columns.iter().map(|(_, found)| cell(found)).collect();
+            if cells.iter().any(Option::is_some) {
+                fails = true;
+                let cells = cells.into_iter().map(|cell| cell.unwrap_or("–".to_owned()));
+                rows.push([direction.condition.clone()].into_iter().chain(cells).collect());
+            }
+        }
+        if !fails {
+            right.push(axis.label);
+        }
+    }
+    let mut aligned = vec![Align::Right; columns.len() + 1];
+    aligned[0] = Align::Left;
+    let mut lines = if rows.len() > 1 {
+        text_table::lines(&aligned, &rows)
+    } else {
+        Vec::new()
+    };
+    if !right.is_empty() {
+        lines.push(format!("  no failures: {}", right.join(", ")));
+    }
+    lines
+}

@@ -1,0 +1,408 @@
+//! The README, the book and the scripts that they name work as written.
+
+use std::collections::BTreeSet;
+use std::path::{Component, Path, PathBuf};
+use std::process::Command;
+use std::{env, fs};
+
+use serde_json::Value;
+
+use crate::architecture::sources;
+use crate::program::toyproof;
+use crate::requirements::{require_chromium, require_driver};
+use crate::support::SPHERE;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn read(path: impl AsRef<Path>) -> String {
+    let path = root().join(path);
+    fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// The Markdown files directly in a folder, relative to the root.
+fn pages(folder: &str) -> Vec<PathBuf> {
+    let entries = fs::read_dir(root().join(folder)).unwrap();
+    let mut pages: Vec<_> = entries
+        .map(|entry| Path::new(folder).join(entry.unwrap().file_name()))
+        .filter(|path| path.extension().is_some_and(|extension| extension == "md"))
+        .collect();
+    pages.sort();
+    pages
+}
+
+fn book() -> Vec<PathBuf> {
+    ["docs", "docs/guide", "docs/evidence"]
+        .into_iter()
+        .flat_map(pages)
+        .collect()
+}
+
+/// A fenced block of a page.
+struct Block {
+    /// The word after the fence.
+    language: String,
+    text: String,
+    /// The exit code in a comment `<!-- exit code N: reason -->` before the block.
+    exit_code: i32,
+}
+
+fn blocks(page: &str) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    let mut exit_code = 0;
+    let mut lines = page.lines();
+    while let Some(line) = lines.next() {
+        if let Some(comment) = line.strip_prefix("<!-- exit code ") {
+            let (code, _) = comment.split_once(':').expect("an exit code has a reason");
+            exit_code = code.parse().unwrap();
+        } else if let Some(language) = line.strip_prefix("```") {
+            let text = lines.by_ref().take_while(|line| *line != "```");
+            blocks.push(Block {
+                language: language.to_owned(),
+                text: text.flat_map(|line| [line, "\n"]).collect(),
+                exit_code,
+            });
+            exit_code = 0;
+        }
+    }
+    blocks
+}
+
+/// The block of a page whose text contains some text.
+fn block(page: &str, text: &str) -> String {
+    let blocks = blocks(&read(page)).into_iter();
+    let mut found = blocks.filter(|block| block.text.contains(text));
+    found
+        .next()
+        .unwrap_or_else(|| panic!("{page} has no block with {text}"))
+        .text
+}
+
+/// A folder with the files that the pages assume: the course, three submissions and a rubric.
+fn assumed_files() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    assert_eq!(toyproof(folder.path(), &["scenes", "--write", "glsl"]).code, 0);
+    let solution = fs::read_to_string(folder.path().join("glsl/04-many-objects.glsl")).unwrap();
+    let edit = |from: &str, to: &str| {
+        assert!(solution.contains(from), "{from}");
+        solution.replacen(from, to, 1)
+    };
+    fs::create_dir(folder.path().join("homework")).unwrap();
+    for (name, text) in [
+        ("anna.glsl", solution.clone()),
+        (
+            "mai.glsl",
+            edit("if (!inShadow(hit.point, hit.normal))", "if (true)"),
+        ),
+        (
+            "kim.glsl",
+            edit(
+                "sphere.radius * sphere.radius;\n",
+                "sphere.radius * sphere.radius\n",
+            ),
+        ),
+    ] {
+        fs::write(folder.path().join("homework").join(name), text).unwrap();
+    }
+    let rubric = block("docs/guide/checking.md", "[compiles]");
+    fs::write(folder.path().join("rubric.toml"), rubric).unwrap();
+    folder
+}
+
+/// Runs the `$ …` lines of a page in one folder; for lines with `make`, only the target is looked up. Returns
+/// their number, and adds a line to `failures` for each that ends with another exit code.
+fn run_commands(page: &Path, failures: &mut Vec<String>) -> usize {
+    let folder = assumed_files();
+    let program = Path::new(env!("CARGO_BIN_EXE_toyproof")).parent().unwrap();
+    let path = format!("{}:{}", program.display(), env::var("PATH").unwrap());
+    let mut run = 0;
+    for block in blocks(&read(page)) {
+        if block.language != "console" {
+            continue;
+        }
+        for line in block.text.lines().filter_map(|line| line.strip_prefix("$ ")) {
+            run += 1;
+            let needs_driver = line.contains("--verify") || line.contains("doctor");
+            if (needs_driver && !require_driver())
+                || (line.contains("--browser") && require_chromium().is_none())
+            {
+                continue;
+            }
+            let mut shell = Command::new("sh");
+            if let Some(target) = line.strip_prefix("make ") {
+                shell
+                    .args(["-c", &format!("make -n {target}")])
+                    .current_dir(root());
+            } else {
+                shell
+                    .args(["-c", line])
+                    .current_dir(folder.path())
+                    .env("PATH", &path);
+            }
+            let output = shell.output().unwrap();
+            if output.status.code() != Some(block.exit_code) {
+                let stderr = String::from_utf8_lossy(&output.stderr);
+                failures.push(format!("{}: {line}: {}\n{stderr}", page.display(), output.status));
+            }
+        }
+    }
+    run
+}
+
+#[test]
+fn every_command_of_the_readme_works() {
+    let mut failures = Vec::new();
+    assert!(run_commands(Path::new("README.md"), &mut failures) >= 8);
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn every_command_of_the_guide_works() {
+    let pages = [pages("docs"), pages("docs/guide")].concat();
+    let mut failures = Vec::new();
+    let run: usize = pages.iter().map(|page| run_commands(page, &mut failures)).sum();
+    assert!(run >= 40, "{run}");
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+/// GitHub's and mdBook's identifier of a heading.
+fn slug(heading: &str) -> String {
+    heading
+        .to_lowercase()
+        .chars()
+        .filter(|character| character.is_alphanumeric() || matches!(character, ' ' | '-' | '_'))
+        .map(|character| if character == ' ' { '-' } else { character })
+        .collect()
+}
+
+/// The lines of a page outside of fenced blocks.
+fn prose(page: &str) -> Vec<&str> {
+    let mut outside = true;
+    let mut lines = Vec::new();
+    for line in page.lines() {
+        if line.starts_with("```") {
+            outside = !outside;
+        } else if outside {
+            lines.push(line);
+        }
+    }
+    lines
+}
+
+/// The targets of a line's links and images.
+fn links(line: &str) -> Vec<String> {
+    let without_code: String = line.split('`').step_by(2).collect();
+    let targets = without_code.split("](").skip(1);
+    targets
+        .map(|rest| rest.split(')').next().unwrap().to_owned())
+        .collect()
+}
+
+/// Resolves `..` and `.` without the file system.
+fn normalized(path: &Path) -> PathBuf {
+    let mut result = PathBuf::new();
+    for component in path.components() {
+        match component {
+            Component::ParentDir => assert!(result.pop(), "{} leaves the root", path.display()),
+            Component::CurDir => {}
+            other => result.push(other),
+        }
+    }
+    result
+}
+
+#[test]
+fn links_lead_to_files_and_headings() {
+    let mut checked = 0;
+    for page in [pages("."), book()].concat() {
+        let page = normalized(&page);
+        let text = read(&page);
+        for line in prose(&text) {
+            for link in links(line) {
+                if link.contains("://") {
+                    continue;
+                }
+                let (file, heading) = link.split_once('#').unwrap_or((&link, ""));
+                let target = if file.is_empty() {
+                    page.clone()
+                } else {
+                    normalized(&page.parent().unwrap().join(file))
+                };
+                let place = format!("{}: {link}", page.display());
+                assert!(root().join(&target).exists(), "{place}");
+                // The book has no other files.
+                assert!(!page.starts_with("docs") || target.starts_with("docs"), "{place}");
+                if !heading.is_empty() {
+                    let text = read(&target);
+                    let mut headings = prose(&text).into_iter().filter(|line| line.starts_with('#'));
+                    assert!(
+                        headings.any(|line| slug(line.trim_start_matches('#').trim()) == heading),
+                        "{place}"
+                    );
+                }
+                checked += 1;
+            }
+        }
+    }
+    assert!(checked > 60, "{checked}");
+}
+
+#[test]
+fn the_summary_lists_every_page_of_the_book() {
+    let summary = read("docs/SUMMARY.md");
+    let listed: BTreeSet<_> = prose(&summary)
+        .into_iter()
+        .flat_map(links)
+        .map(|link| Path::new("docs").join(link))
+        .collect();
+    let mut pages: BTreeSet<_> = book().into_iter().collect();
+    pages.remove(Path::new("docs/SUMMARY.md"));
+    assert_eq!(listed, pages);
+}
+
+#[test]
+fn pages_that_the_code_names_exist() {
+    let mut named = 0;
+    for folder in ["src", "tests", "benches", "examples"] {
+        for path in sources(&root().join(folder)) {
+            let text = fs::read_to_string(&path).unwrap();
+            for rest in text.split("docs/").skip(1) {
+                let end = rest.find(|character: char| {
+                    !character.is_alphanumeric() && !matches!(character, '/' | '-' | '_' | '.')
+                });
+                let page = rest[..end.unwrap_or(rest.len())].trim_end_matches('.');
+                if page.ends_with(".md") {
+                    assert!(
+                        root().join("docs").join(page).is_file(),
+                        "{}: docs/{page}",
+                        path.display()
+                    );
+                    named += 1;
+                }
+            }
+        }
+    }
+    assert!(named > 5, "{named}");
+}
+
+#[test]
+fn the_guide_describes_every_command() {
+    let help = toyproof(root(), &["--help"]).stdout;
+    let page = read("docs/guide/commands.md");
+    let list = help.lines().skip_while(|line| *line != "Commands:").skip(1);
+    let names: Vec<_> = list
+        .map_while(|line| line.strip_prefix("  "))
+        .filter_map(|line| line.split_whitespace().next().filter(|_| !line.starts_with(' ')))
+        .filter(|name| *name != "help")
+        .collect();
+    assert!(names.len() >= 10, "{help}");
+    for name in names {
+        let row = format!("\n| `{name}");
+        let described = page.split(&row).skip(1).any(|rest| rest.starts_with([' ', '`']));
+        assert!(described, "{name}");
+    }
+}
+
+#[test]
+fn the_pipeline_of_the_guide_is_that_of_the_example() {
+    let host = read("examples/hosts/host.rs");
+    let blocks = blocks(&read("docs/guide/converting.md"));
+    let quoted = blocks
+        .iter()
+        .filter(|block| block.language == "rust" && !block.text.contains("bevy"));
+    let mut count = 0;
+    for block in quoted {
+        assert!(host.contains(&block.text), "{}", block.text);
+        count += 1;
+    }
+    assert_eq!(count, 3);
+}
+
+/// The script that Gradescope runs, in another folder than `/autograder`.
+#[cfg(unix)]
+#[test]
+fn the_autograder_of_the_guide_writes_marks() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    for name in ["source", "submission"] {
+        fs::create_dir(at(name)).unwrap();
+    }
+    std::os::unix::fs::symlink(env!("CARGO_BIN_EXE_toyproof"), at("source/toyproof")).unwrap();
+    fs::write(at("source/scene.toml"), SPHERE.scene).unwrap();
+    let rubric = block("docs/guide/checking.md", "[compiles]");
+    fs::write(at("source/rubric.toml"), rubric).unwrap();
+    let script = block("docs/guide/checking.md", "cd /autograder/source");
+    let script = script.replace("/autograder", folder.path().to_str().unwrap());
+    let grade = || -> Value {
+        let status = Command::new("sh").args(["-c", &script]).status().unwrap();
+        assert!(status.success(), "{script}");
+        serde_json::from_str(&fs::read_to_string(at("results/results.json")).unwrap()).unwrap()
+    };
+    assert_eq!(grade()["score"], 0);
+    fs::write(at("submission/mine.glsl"), SPHERE.shader).unwrap();
+    let marks = grade();
+    let scores = marks["tests"].as_array().unwrap().iter();
+    let total: f64 = scores.map(|test| test["score"].as_f64().unwrap()).sum();
+    assert!((total - 10.0).abs() < 1e-9, "{marks}");
+}
+
+/// The format that editors match.
+#[test]
+fn short_diagnostics_are_one_line_with_a_position() {
+    let folder = assumed_files();
+    let run = toyproof(
+        folder.path(),
+        &["check", "homework/kim.glsl", "--format", "short"],
+    );
+    assert_eq!(run.code, 1, "{}", run.stderr);
+    let mut lines = run.stdout.lines();
+    assert!(
+        lines.any(|line| line.starts_with("homework/kim.glsl:55:56: error[E0100]: ")),
+        "{}",
+        run.stdout
+    );
+}
+
+/// On a machine with an old compiler and no package manager, `setup.sh` prints commands and installs nothing.
+#[cfg(target_os = "linux")]
+#[test]
+fn setup_names_what_provides_a_missing_tool() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+
+    let folder = tempfile::tempdir().unwrap();
+    let search_path = env::var_os("PATH").unwrap();
+    let find = |name: &str| {
+        let mut folders = env::split_paths(&search_path).map(|folder| folder.join(name));
+        folders.find(|path| path.is_file()).unwrap()
+    };
+    for tool in ["dirname", "id", "sed", "uname", "make"] {
+        symlink(find(tool), folder.path().join(tool)).unwrap();
+    }
+    let add = |name: &str, prints: &str| {
+        let path = folder.path().join(name);
+        fs::write(&path, format!("#!/bin/sh\necho {prints}\n")).unwrap();
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
+    };
+    let setup = || {
+        let mut setup = Command::new(find("sh"));
+        let output = setup
+            .arg(root().join("setup.sh"))
+            .env("PATH", folder.path())
+            .output()
+            .unwrap();
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    add("cargo", "cargo");
+    add("rustc", "rustc 1.63.0");
+    let (code, stderr) = setup();
+    assert_eq!(code, Some(1), "{stderr}");
+    assert!(stderr.contains("rustc 1.63.0 is too old"), "{stderr}");
+    assert!(stderr.contains("https://sh.rustup.rs"), "{stderr}");
+    assert!(stderr.contains("C linker"), "{stderr}");
+
+    add("rustc", "rustc 1.95.0");
+    add("cc", "cc");
+    let (code, stderr) = setup();
+    assert_eq!(code, Some(0), "{stderr}");
+}
