@@ -18,7 +18,7 @@ pub use gradescope::gradescope;
 pub use html::{Exhibit, Gallery, MAX_IMAGE_BYTES, html, subsample};
 pub use junit::junit;
 pub use reason::{Statement, failure_position, loop_truncated, state};
-pub use record::{Alternative, Mistake, Record, Report, SCHEMA, Seconds};
+pub use record::{Alternative, Mistake, Position, Record, Report, SCHEMA, Seconds};
 pub use rubric::{Mark, Rubric, Visibility};
 pub use sarif::sarif;
 pub use terminal::{Detail, Layout, Tally, lines, place, summary};

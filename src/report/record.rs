@@ -2,9 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{self as diagnostic, Files};
+use toyproof_eval as eval;
 use toyproof_verify::compare::{CheckSummary, Comparison};
 use toyproof_verify::mistake::Diagnosis;
-use toyproof_verify::{CheckResult, Evidence, Failure, Findings, Verdict, decide};
+use toyproof_verify::{CheckResult, Evidence, Failure, Findings, Reason, Verdict, decide};
 
 use super::reason::{Statement, state, state_reason};
 
@@ -37,6 +38,11 @@ impl Report {
     #[must_use]
     pub fn device(&self) -> Option<&str> {
         self.device.as_deref()
+    }
+
+    /// The name and the version of the program.
+    pub(super) fn tool(&self) -> &str {
+        &self.tool
     }
 
     /// The shaders' records.
@@ -82,6 +88,9 @@ pub struct Record {
     pub comparison: Option<Comparison>,
     /// The known mistake, or the two, that explain a wrong image; null if none does.
     pub mistake: Option<Mistake>,
+    /// The likely cause of the verdict in the shader's text; null if none is known.
+    #[serde(default)]
+    pub cause: Option<Position>,
     /// The diagnostics on the shader and its scene.
     pub diagnostics: Vec<diagnostic::Json>,
     /// The time of each stage.
@@ -104,6 +113,7 @@ impl Record {
             toolchain: None,
             comparison: None,
             mistake: None,
+            cause: None,
             diagnostics: Vec::new(),
             seconds: Seconds::default(),
         }
@@ -115,6 +125,7 @@ impl Record {
         self.verdict = findings.verdict;
         self.set_statement(state(findings, files));
         self.mistake = findings.mistake.as_ref().map(Mistake::new);
+        self.cause = findings.cause.map(|cause| files.position(cause).into());
         self.algorithm = answer(&findings.algorithm);
         self.precision = answer(&findings.precision);
         self.toolchain = answer(&findings.toolchain);
@@ -135,6 +146,12 @@ impl Record {
     pub fn set_failure(&mut self, failure: Failure, files: &Files) {
         let (verdict, because) = decide(Evidence::NoImage(failure));
         self.verdict = verdict;
+        if let Reason::NoImage(Failure::Cpu(
+            eval::Failure::TooOften { at, .. } | eval::Failure::Timeout { at },
+        )) = &because
+        {
+            self.cause = Some(files.position(at.span).into());
+        }
         self.set_statement(state_reason(&because, files));
     }
 
@@ -150,6 +167,21 @@ impl Record {
         } else {
             "not run: no GPU rendered the shader"
         })
+    }
+}
+
+/// A position in a shader.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub struct Position {
+    /// Line, from 1.
+    pub line: usize,
+    /// Column in characters, from 1.
+    pub column: usize,
+}
+
+impl From<diagnostic::Position> for Position {
+    fn from(diagnostic::Position { line, column }: diagnostic::Position) -> Self {
+        Self { line, column }
     }
 }
 
@@ -242,6 +274,7 @@ pub(super) mod samples {
             toolchain: None,
             comparison: None,
             mistake: None,
+            cause: None,
             diagnostics: Vec::new(),
             seconds: Seconds {
                 gpu: Some(1.0),

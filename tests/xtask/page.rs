@@ -8,9 +8,9 @@ use toyproof_testkit::devtools::Page;
 
 /// Reads the browser's own clock.
 const CLOCK: &str = "(async () => { \
-    const paint = () => performance.getEntriesByName('first-contentful-paint')[0]; \
-    while (!paint()) await new Promise(done => setTimeout(done, 10)); \
-    return [paint().startTime, performance.getEntriesByType('navigation')[0].loadEventEnd] })()";
+    const first = () => performance.getEntriesByName('first-contentful-paint')[0]; \
+    while (!first()) await new Promise(done => setTimeout(done, 10)); \
+    return [first().startTime, performance.getEntriesByType('navigation')[0].loadEventEnd] })()";
 
 /// The processor time of the page's thread, in seconds.
 fn thread_seconds(page: &mut Page) -> f64 {
@@ -31,13 +31,13 @@ pub(super) fn measure(file: &Path, screenshots: Option<&Path>) {
         page.call("Performance.enable", &json!({ "timeDomain": "threadTicks" }));
         page.open(&file);
         let opened = thread_seconds(&mut page);
-        let [painted, loaded]: [f64; 2] = serde_json::from_value(page.value(CLOCK)).expect("two numbers");
+        let [shown_at, loaded]: [f64; 2] = serde_json::from_value(page.value(CLOCK)).expect("two numbers");
         let before = thread_seconds(&mut page);
         page.value("document.querySelector('#shaders tr[data-verdict=ok] a').click()");
         page.until("document.querySelector('article.open dl dd') !== null");
         let shown = thread_seconds(&mut page) - before;
         println!(
-            "{painted:.0} ms until the first paint, {loaded:.0} ms until all is loaded; {opened:.2} s of the thread to \
+            "{shown_at:.0} ms until the first content, {loaded:.0} ms until all is loaded; {opened:.2} s of the thread to \
              open, {shown:.2} s to show an image"
         );
     }

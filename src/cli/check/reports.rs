@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{Files, path_name};
@@ -60,7 +61,7 @@ pub(super) fn write(
 ) -> bool {
     let records = report.shaders();
     let texts: [&dyn Fn() -> Option<String>; REPORT_NAMES.len()] = [
-        &|| Some(html(report, rubric, &gallery(submissions))),
+        &|| Some(html(report, rubric, &gallery(submissions), SystemTime::now())),
         &|| Some(csv(records, rubric)),
         &|| Some(junit(records)),
         &|| Some(sarif(records)),

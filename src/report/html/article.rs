@@ -1,102 +1,237 @@
-//! One shader on the page: its verdict, its checks, its images and its messages.
+//! One shader on the page: its verdict, the likely mistake, its images, its checks and its source.
 
-use toyproof_diagnostic::{Json, grouped, magnitude};
+use toyproof_diagnostic::{grouped, magnitude};
 use toyproof_verify::compare::{CheckSummary, Pixel};
 
-use super::{Exhibit, Text, verdict};
-use crate::report::Record;
+use super::glossary::{Glossary, term};
+use super::overview::total_points;
+use super::source::{SourceLimit, source};
+use super::{Exhibit, Text, sentence};
+use crate::report::{Mistake, Record, Rubric};
 
-pub(super) fn article(index: usize, record: &Record, exhibit: &Exhibit) -> String {
-    let [algorithm, precision, toolchain] = exhibit.checks;
-    let images = [
-        ("actual", exhibit.actual),
-        ("reference", exhibit.reference),
-        ("maths", algorithm),
-        ("rounding", precision),
-        ("toolchain", toolchain),
-    ];
-    let images: String = images
-        .into_iter()
-        .filter_map(|(name, place)| Some(format!(" data-{name}=\"{}\"", place?)))
-        .collect();
-    let scene = record.scene.as_ref();
-    let scene = scene.map(|scene| format!("<p class=\"scene\">Scene: {}</p>\n", Text(scene)));
-    format!(
-        r#"<article id="s{index}" aria-labelledby="h{index}"{images}>
+/// What the article of a shader shows.
+pub(super) struct Article<'a> {
+    pub(super) record: &'a Record,
+    /// The short name.
+    pub(super) name: &'a str,
+    pub(super) exhibit: &'a Exhibit,
+    pub(super) rubric: Option<&'a Rubric>,
+    pub(super) glossary: &'a Glossary,
+    pub(super) limit: SourceLimit,
+}
+
+/// The checks, each of which is a term of the glossary.
+const CHECKS: [&str; 3] = ["algorithm", "precision", "toolchain"];
+
+impl Article<'_> {
+    pub(super) fn html(&self, index: usize) -> String {
+        let Self { record, name, .. } = self;
+        let verdict = record.verdict.to_string();
+        format!(
+            r#"<article id="s{index}" aria-labelledby="h{index}" data-name="{name}"{images}>
 <h2 id="h{index}" tabindex="-1">{name}</h2>
-<p>{verdict} {reason}</p>
-{scene}<div class="pictures"></div>
-{questions}{messages}</article>
+{facts}<p class="result"><span class="verdict {verdict}">{verdict_term}</span> {reason}</p>
+{details}{mistake}{help}<div class="images"></div>
+{checks}{source}</article>
 "#,
-        name = Text(&record.shader),
-        verdict = verdict(record.verdict),
-        reason = Text(&record.reason),
-        scene = scene.unwrap_or_default(),
-        questions = questions(record),
-        messages = messages(&record.diagnostics, &record.shader, exhibit.source.as_deref()),
+            name = Text(name),
+            images = self.images(),
+            facts = self.facts(),
+            verdict_term = term(&verdict, &verdict),
+            reason = sentence(&record.reason),
+            details = details(&record.details),
+            mistake = record
+                .mistake
+                .as_ref()
+                .map(|mistake| self.mistake(mistake))
+                .unwrap_or_default(),
+            help = record.help.as_deref().map(command).unwrap_or_default(),
+            checks = checks(record),
+            source = source(record, self.exhibit.source.as_deref(), self.limit, self.glossary),
+        )
+    }
+
+    /// The attributes that refer to the images.
+    fn images(&self) -> String {
+        let [algorithm, precision, toolchain] = self.exhibit.checks;
+        let images = [
+            ("actual", self.exhibit.actual),
+            ("reference", self.exhibit.reference),
+            ("algorithm", algorithm),
+            ("precision", precision),
+            ("toolchain", toolchain),
+        ];
+        let images = images.into_iter();
+        images
+            .filter_map(|(name, place)| Some(format!(" data-{name}=\"{}\"", place?)))
+            .collect()
+    }
+
+    /// The facts about the shader below its name.
+    fn facts(&self) -> String {
+        let Record {
+            shader,
+            scene,
+            seconds,
+            ..
+        } = self.record;
+        let mut facts = String::new();
+        if shader != self.name {
+            facts += &format!("<span>File: {}</span>", Text(shader));
+        }
+        if let Some(scene) = scene {
+            facts += &format!("<span>Scene: {}</span>", Text(scene));
+        }
+        let seconds = seconds.total();
+        if seconds > 0.0 {
+            facts += &format!("<span>Time: {seconds:.2} s</span>");
+        }
+        if let Some(rubric) = self.rubric {
+            facts += &points(rubric, self.record);
+        }
+        if facts.is_empty() {
+            return facts;
+        }
+        format!("<p class=\"facts\">{facts}</p>\n")
+    }
+
+    /// The likely mistake with links to its explanation; with alternatives, a ranked list. A symptom is not one
+    /// of the mistakes: they cause it.
+    fn mistake(&self, mistake: &Mistake) -> String {
+        let explained = |id: &str, text: &str| match self.glossary.mistake_links(id) {
+            Some(links) => format!(
+                "{} <span class=\"explanation\">Explanation: {links}</span>",
+                sentence(text)
+            ),
+            None => sentence(text),
+        };
+        let first = explained(&mistake.id, &mistake.text);
+        let others = mistake.alternatives.iter();
+        let mut ranked: Vec<_> = others.map(|other| explained(&other.id, &other.text)).collect();
+        let mut html = String::new();
+        if mistake.is_symptom {
+            html += &format!(
+                "<p><strong>{}:</strong> {first}</p>\n",
+                term("symptom", "Symptom")
+            );
+        } else if ranked.is_empty() {
+            html += &format!("<p><strong>Likely mistake:</strong> {first}</p>\n");
+        } else {
+            ranked.insert(0, first);
+        }
+        if !ranked.is_empty() {
+            let ranked: String = ranked.iter().map(|one| format!("<li>{one}</li>\n")).collect();
+            html += &format!(
+                "<p><strong>Possible mistakes</strong>, the most likely first:</p>\n<ol>\n{ranked}</ol>\n"
+            );
+        }
+        format!("<div class=\"mistake\">\n{html}</div>\n")
+    }
+}
+
+fn details(details: &[String]) -> String {
+    if details.is_empty() {
+        return String::new();
+    }
+    let details = details
+        .iter()
+        .map(|detail| format!("<li>{}</li>\n", sentence(detail)));
+    format!("<ul class=\"details\">\n{}</ul>\n", details.collect::<String>())
+}
+
+/// The command that shows more; the script adds a button that copies it.
+fn command(command: &str) -> String {
+    format!(
+        "<p class=\"command\"><span>More:</span> <code>{}</code></p>\n",
+        Text(command)
     )
 }
 
-fn questions(record: &Record) -> String {
-    let questions = [
-        ("maths", &record.algorithm),
-        ("rounding", &record.precision),
-        ("toolchain", &record.toolchain),
-    ];
-    if questions.iter().all(|(_, answer)| answer.is_none()) {
+/// The points, in total and of each check.
+fn points(rubric: &Rubric, record: &Record) -> String {
+    let marks = rubric.marks(record).into_iter();
+    let marks: Vec<_> = marks
+        .map(|mark| format!("{} {} of {}", mark.name, mark.points, mark.of))
+        .collect();
+    let [points, of] = total_points(rubric, record);
+    format!("<span>Points: {points} of {of} ({})</span>", marks.join(", "))
+}
+
+/// The table of the three checks; empty if none ran.
+fn checks(record: &Record) -> String {
+    let summaries = [&record.algorithm, &record.precision, &record.toolchain];
+    if summaries.iter().all(|summary| summary.is_none()) {
         return String::new();
     }
-    let rows: Vec<_> = questions
+    let rows: String = CHECKS
         .into_iter()
-        .map(|(name, answer)| {
-            let why = record.skipped_toolchain_reason().filter(|_| name == "toolchain");
-            let why = why.map(|why| format!(", {why}")).unwrap_or_default();
-            let cells = answer.as_ref().map_or_else(
-                || format!("<td class=\"none\" colspan=\"5\">not asked{why}</td>"),
-                answer_cells,
-            );
-            format!("<tr data-question=\"{name}\"><th scope=\"row\">{name}</th>{cells}</tr>\n")
+        .zip(summaries)
+        .map(|(name, summary)| {
+            let cells = match summary {
+                Some(summary) => check_cells(summary),
+                None => {
+                    let why = record.skipped_toolchain_reason().filter(|_| name == "toolchain");
+                    format!(
+                        "<td class=\"none\" colspan=\"5\">{}</td>",
+                        why.unwrap_or("not run")
+                    )
+                }
+            };
+            format!(
+                "<tr data-check=\"{name}\"><th scope=\"row\">{}</th>{cells}</tr>\n",
+                term(name, name)
+            )
         })
         .collect();
-    let rows = rows.concat();
+    let number = |id: &str, text: &str| format!("<th scope=\"col\" class=\"number\">{}</th>", term(id, text));
     format!(
-        r#"<div class="scroll">
-<table class="questions" aria-label="The three questions">
+        r#"<div class="scroll" tabindex="0" role="region" aria-label="Checks">
+<table class="checks">
+<caption>Checks</caption>
 <thead>
-<tr><th scope="col">Question</th><th scope="col" class="number">Differ</th><th scope="col" class="number">Undecided</th><th scope="col" class="number">Undefined</th><th scope="col" class="number">At most by</th><th scope="col">Look at</th></tr>
+<tr><th scope="col">Check</th>{}{}{}{}<th scope="col">Inspect</th></tr>
 </thead>
 <tbody>
 {rows}</tbody>
 </table>
 </div>
-"#
+"#,
+        number("pixels-off", "Pixels off"),
+        number("ill-conditioned", "Ill-conditioned"),
+        number("undefined", "Undefined"),
+        number("largest", "Largest difference"),
     )
 }
 
-fn answer_cells(answer: &CheckSummary) -> String {
-    let first = answer.first.as_ref().filter(|_| answer.first != answer.worst);
-    let named = [("worst", answer.worst.as_ref()), ("first", first)];
+fn check_cells(check: &CheckSummary) -> String {
+    let first = check.first.as_ref().filter(|_| check.first != check.worst);
+    let named = [("worst", check.worst.as_ref()), ("first", first)];
     let named: Vec<_> = named
         .into_iter()
         .filter_map(|(name, pixel)| Some(place(name, pixel?)))
         .collect();
-    format!(
-        "<td class=\"number\">{} of {}</td><td class=\"number\">{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td>\
-         <td>{}</td>",
-        grouped(answer.differing),
-        grouped(answer.pixels),
-        grouped(answer.ill_conditioned),
-        grouped(answer.undefined),
-        magnitude(answer.max_abs),
-        named.join(" ")
-    )
+    let off = match check.differing {
+        0 => "0".to_owned(),
+        differing => format!("{} of {}", grouped(differing), grouped(check.pixels)),
+    };
+    // On a narrow screen there is no header, and the cells name their columns.
+    let number =
+        |name: &str, number: &str| format!("<td class=\"number\" data-name=\"{name}\">{number}</td>");
+    [
+        number("Pixels off", &off),
+        number("Ill-conditioned", &grouped(check.ill_conditioned)),
+        number("Undefined", &grouped(check.undefined)),
+        number("Largest difference", &magnitude(check.max_abs)),
+        format!("<td>{}</td>", named.join(" ")),
+    ]
+    .concat()
 }
 
 /// Formats a pixel, which the script turns into a button; the numbers are floats, as compared.
 fn place(name: &str, pixel: &Pixel) -> String {
     let color = |[r, g, b]: [f32; 3]| format!("{r}, {g}, {b}");
     format!(
-        "<span class=\"pixel\" data-x=\"{x}\" data-y=\"{y}\" data-expected=\"{}\" data-actual=\"{}\">{name}: {x}, {y}</span>",
+        "<span class=\"pixel\" data-x=\"{x}\" data-y=\"{y}\" data-expected=\"{}\" data-actual=\"{}\">{name} ({x}, {y})</span>",
         color(pixel.expected),
         color(pixel.actual),
         x = pixel.x,
@@ -104,140 +239,68 @@ fn place(name: &str, pixel: &Pixel) -> String {
     )
 }
 
-// The messages on a shader, with excerpts of its text.
-
-/// The maximum number of messages that are shown for one shader.
-const MAX_MESSAGES: usize = 50;
-/// The number of context lines before and after the reported one.
-const CONTEXT_LINES: usize = 2;
-/// The maximum number of characters shown of a line.
-const MAX_LINE_CHARS: usize = 200;
-
-/// Formats the messages, with excerpts for those on `file`.
-fn messages(diagnostics: &[Json], file: &str, source: Option<&str>) -> String {
-    if diagnostics.is_empty() {
-        return String::new();
-    }
-    let lines: Vec<_> = source.map_or_else(Vec::new, |text| text.lines().collect());
-    let shown: Vec<_> = diagnostics
-        .iter()
-        .take(MAX_MESSAGES)
-        .map(|one| format!("<li>{}</li>\n", message(one, file, &lines)))
-        .collect();
-    let shown = shown.concat();
-    let more = match diagnostics.len().saturating_sub(MAX_MESSAGES) {
-        0 => String::new(),
-        more => format!("<p>and {more} more</p>\n"),
-    };
-    format!("<h3>Messages</h3>\n<ol class=\"messages\">\n{shown}</ol>\n{more}")
-}
-
-fn message(diagnostic: &Json, file: &str, lines: &[&str]) -> String {
-    let Json { severity, code, .. } = diagnostic;
-    let mut place = String::new();
-    let mut code_lines = String::new();
-    if let (Some(own), Some(line), Some(column)) = (&diagnostic.file, diagnostic.line, diagnostic.column) {
-        place = format!(" <span class=\"place\">{}:{line}:{column}</span>", Text(own));
-        if own == file && (1..=lines.len()).contains(&line) {
-            let excerpt = excerpt(lines, line, column);
-            code_lines =
-                format!("<pre tabindex=\"0\" aria-label=\"line {line}\"><code>{excerpt}</code></pre>");
-        }
-    }
-    let notes = diagnostic
-        .notes
-        .iter()
-        .map(|note| format!("<p class=\"note\">{}</p>", Text(note)));
-    format!(
-        "<p><strong class=\"{severity}\">{severity} {}</strong> {}{place}</p>{code_lines}{}",
-        Text(code),
-        Text(&diagnostic.message),
-        notes.collect::<String>()
-    )
-}
-
-/// Formats the lines around a position, with line numbers and the reported word marked.
-fn excerpt(lines: &[&str], line: usize, column: usize) -> String {
-    let first = line.saturating_sub(CONTEXT_LINES).max(1);
-    let last = (line + CONTEXT_LINES).min(lines.len());
-    let digits = last.to_string().len();
-    let shown = (first..=last).map(|number| {
-        let text = lines[number - 1];
-        let text = if number == line {
-            mark_word(text, column)
-        } else {
-            Text(text.chars().take(MAX_LINE_CHARS).collect::<String>()).to_string()
-        };
-        format!("<span class=\"line-number\">{number:digits$} </span>{text}\n")
-    });
-    shown.collect()
-}
-
-/// Marks the word that starts in a column; a long line is cut around it.
-fn mark_word(line: &str, column: usize) -> String {
-    let start = column.saturating_sub(1);
-    let skipped = start.saturating_sub(MAX_LINE_CHARS / 2);
-    let before: String = line.chars().take(start).skip(skipped).collect();
-    let is_word = |c: &char| c.is_alphanumeric() || *c == '_';
-    let rest = || line.chars().skip(start);
-    let length = rest().take(MAX_LINE_CHARS).take_while(is_word).count().max(1);
-    let mut word: String = rest().take(length).collect();
-    if word.is_empty() {
-        word.push(' ');
-    }
-    let after: String = rest().skip(length).take(MAX_LINE_CHARS / 2).collect();
-    let cut = if skipped > 0 { "…" } else { "" };
-    format!("{cut}{}<mark>{}</mark>{}", Text(before), Text(word), Text(after))
-}
-
 #[cfg(test)]
 mod tests {
-    use toyproof_diagnostic::Severity;
-
     use super::*;
+    use crate::report::Alternative;
+    use crate::report::record::samples::{correct, question, record};
+    use toyproof_verify::Verdict;
 
-    fn message_at(line: usize, column: usize) -> Json {
-        Json {
-            severity: Severity::Error,
-            code: "E0301".to_owned(),
-            message: "no <i>".to_owned(),
-            file: Some("a".to_owned()),
-            line: Some(line),
-            column: Some(column),
-            end_line: Some(line),
-            end_column: Some(column + 1),
-            fix: None,
-            notes: Vec::new(),
-        }
+    fn article(record: &Record) -> String {
+        let article = Article {
+            record,
+            name: &record.shader,
+            exhibit: &Exhibit::default(),
+            rubric: None,
+            glossary: &Glossary::of(std::slice::from_ref(record)),
+            limit: SourceLimit::of([]),
+        };
+        article.html(0)
     }
 
     #[test]
-    fn the_word_is_marked_in_its_line_and_text_is_escaped() {
-        let text = "one\n<script>\n  é_1 < 2;\nfour\nfive\nsix";
-        let page = messages(&[message_at(3, 3)], "a", Some(text));
-        let code = page
-            .split_once("<code>")
-            .unwrap()
-            .1
-            .split_once("</code>")
-            .unwrap()
-            .0;
-        assert_eq!(
-            code.replace("<span class=\"line-number\">", "")
-                .replace("</span>", ""),
-            "1 one\n2 &lt;script&gt;\n3   <mark>é_1</mark> &lt; 2;\n4 four\n5 five\n"
+    fn mistakes_are_ranked_and_symptoms_are_labeled() {
+        let mut wrong = record(Verdict::Wrong);
+        wrong.mistake = Some(Mistake {
+            // Any explained code does for a mistake.
+            id: "E0301".to_owned(),
+            text: "<first>".to_owned(),
+            is_symptom: false,
+            alternatives: Vec::new(),
+        });
+        let html = article(&wrong);
+        assert!(
+            html.contains("<strong>Likely mistake:</strong> &lt;first&gt; <span"),
+            "{html}"
         );
-        assert!(page.contains("no &lt;i&gt;"), "{page}");
+        assert!(html.contains("href=\"#x-E0301\""), "{html}");
+        wrong.mistake.as_mut().unwrap().alternatives.push(Alternative {
+            id: "unexplained".to_owned(),
+            text: "second".to_owned(),
+        });
+        let html = article(&wrong);
+        assert!(html.contains("<ol>\n<li>&lt;first&gt;"), "{html}");
+        assert!(html.contains("<li>second</li>\n</ol>"), "{html}");
+        wrong.mistake.as_mut().unwrap().is_symptom = true;
+        let html = article(&wrong);
+        assert!(
+            html.contains("href=\"#t-symptom\"") && html.contains("</strong> &lt;first&gt;"),
+            "{html}"
+        );
+        assert!(html.contains("<ol>\n<li>second</li>\n</ol>"), "{html}");
     }
 
     #[test]
-    fn invalid_positions_and_long_lines_are_harmless() {
-        let shown = |line, column, text| messages(&[message_at(line, column)], "a", Some(text));
-        assert!(!shown(9, 1, "one").contains("<code>"));
-        assert!(shown(1, 99, "one").contains("<mark> </mark>"));
-        let long = "x".repeat(1_000_000);
-        assert!(shown(1, 500_000, &long).len() < 1500);
-        let many = vec![message_at(1, 1); 60];
-        assert!(messages(&many, "b", Some("one")).contains("and 10 more"));
+    fn checks_count_pixels() {
+        assert!(!article(&record(Verdict::Invalid)).contains("class=\"checks\""));
+        let mut record = correct();
+        record.algorithm = Some(question([1_000, 0, 0]));
+        (record.toolchain, record.seconds.gpu) = (None, None);
+        let html = article(&record);
+        assert!(
+            html.contains("data-name=\"Pixels off\">1,000 of 1,000</td>"),
+            "{html}"
+        );
+        assert!(html.contains("no GPU rendered the shader"), "{html}");
     }
 }

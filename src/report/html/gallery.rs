@@ -6,8 +6,8 @@ use sha2::{Digest, Sha256};
 use toyproof_image::Rgb8Image;
 
 /// The maximum size of all PNGs of a page, in bytes. Base64 adds a third, and the rest of a page for 500
-/// shaders is about 2 MB, so that the page stays below 20 MB.
-pub const MAX_IMAGE_BYTES: usize = 13_000_000;
+/// shaders, half of which are sources, is less than 4 MB, so that the page stays below 20 MB.
+pub const MAX_IMAGE_BYTES: usize = 12_000_000;
 
 /// The material shown of a shader beside its record. Images are indices into the gallery.
 #[derive(Debug, Default)]
@@ -87,12 +87,12 @@ impl Gallery {
 /// Subsamples an image: every `step`th pixel of every `step`th row of its upper left part of the given size,
 /// from that part's bottom left. Pixels are copied, not averaged.
 #[must_use]
-pub fn subsample(step: u32, picture: &Rgb8Image, [width, height]: [u32; 2]) -> Rgb8Image {
-    let [whole_width, whole_height] = picture.size();
+pub fn subsample(step: u32, image: &Rgb8Image, [width, height]: [u32; 2]) -> Rgb8Image {
+    let [whole_width, whole_height] = image.size();
     let (width, height) = (width.min(whole_width), height.min(whole_height));
     let below = whole_height - height;
     let steps = |side| (0..side).step_by(step as usize);
-    let pixels = steps(height).flat_map(|y| steps(width).map(move |x| picture.get(x, below + y)));
+    let pixels = steps(height).flat_map(|y| steps(width).map(move |x| image.get(x, below + y)));
     Rgb8Image::new(width.div_ceil(step), height.div_ceil(step), pixels.collect())
 }
 
@@ -111,8 +111,8 @@ mod tests {
     fn subsampling_starts_at_the_bottom_left_above_the_legend() {
         // Red is x, green is y; the bottom row is a legend.
         let pixels = (0..4).flat_map(|y| (0..5).map(move |x| [x, y, 0]));
-        let picture = Rgb8Image::new(5, 4, pixels.collect());
-        let thin = subsample(2, &picture, [4, 3]);
+        let image = Rgb8Image::new(5, 4, pixels.collect());
+        let thin = subsample(2, &image, [4, 3]);
         assert_eq!(thin.size(), [2, 2]);
         let places: Vec<_> = thin.pixels().iter().map(|p| (p[0], p[1])).collect();
         assert_eq!(places, [(0, 1), (2, 1), (0, 3), (2, 3)]);

@@ -1,22 +1,31 @@
 //! `report.html`: one self-contained page. A table of all shaders, which needs no script; for each shader its
-//! images, one inspected pixel, and its messages. Nothing is fetched: the page's content security policy
-//! forbids that, and any script but the page's own.
+//! verdict, its images, one inspected pixel, its checks, and its source with the messages; and a glossary.
+//! Nothing is fetched: the page's content security policy forbids that, and any script but the page's own.
 
 mod article;
 mod gallery;
+mod glossary;
+mod markdown;
+mod names;
+mod overview;
+mod source;
 
 use std::fmt::{self, Display, Formatter, Write};
+use std::time::{SystemTime, UNIX_EPOCH};
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use sha2::{Digest, Sha256};
-use toyproof_diagnostic::printable;
+use toyproof_diagnostic::{grouped, plural, printable};
 use toyproof_image::quantize;
-use toyproof_verify::Verdict;
-use toyproof_verify::compare::{CheckSummary, IN_BITS, Legend, SEEN_BY_EYE};
+use toyproof_verify::compare::{IN_BITS, Legend, SEEN_BY_EYE};
 
+use self::article::Article;
 pub use self::gallery::{Exhibit, Gallery, MAX_IMAGE_BYTES, subsample};
-use super::{Record, Report, Rubric, plain, summary};
+use self::glossary::Glossary;
+use self::names::Names;
+use self::source::SourceLimit;
+use super::{Record, Report, Rubric};
 
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
@@ -25,48 +34,114 @@ const HEAD_SCRIPT: &str = "document.documentElement.classList.add('script')";
 /// The template that the script inserts into the open article.
 const VIEWER: &str = include_str!("viewer.html");
 
-/// Formats the page. The gallery has one exhibit per record, in the same order.
+/// Formats the page. The gallery has one exhibit per record, in the same order; `date` is when the run ended.
 #[must_use]
-pub fn html(report: &Report, rubric: Option<&Rubric>, gallery: &Gallery) -> String {
+pub fn html(report: &Report, rubric: Option<&Rubric>, gallery: &Gallery, date: SystemTime) -> String {
     let records = report.shaders();
-    let summary = plain(&summary(records));
-    let summary = Text(&summary);
-    let device = report.device().map(|device| format!(" · {}", Text(device)));
+    let names = Names::of(records);
+    let glossary = Glossary::of(records);
+    let sources = gallery
+        .exhibits()
+        .iter()
+        .filter_map(|exhibit| exhibit.source.as_deref());
+    let limit = SourceLimit::of(sources);
     let articles = records.iter().zip(gallery.exhibits()).enumerate();
     let articles: String = articles
-        .map(|(index, (record, exhibit))| article::article(index, record, exhibit))
+        .map(|(index, (record, exhibit))| {
+            let article = Article {
+                record,
+                name: names.short(record),
+                exhibit,
+                rubric,
+                glossary: &glossary,
+                limit,
+            };
+            article.html(index)
+        })
         .collect();
+    let heading = heading(&names, records);
     format!(
-        r#"<!DOCTYPE html>
+        r##"<!DOCTYPE html>
 <html lang="en">
 <head>
 <meta charset="utf-8">
 <meta http-equiv="Content-Security-Policy" content="{policy}">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <meta name="color-scheme" content="light dark">
-<title>toyproof: {summary}</title>
+<title>{heading}</title>
 <style>{STYLE}</style>
 <script>{HEAD_SCRIPT}</script>
 </head>
 <body>
-<header>
-<h1>toyproof</h1>
-<p>{summary}{device}</p>
-{subsampling_note}</header>
-<main>
-{table}<div id="articles">
+<a class="skip" href="#main">Skip to the content</a>
+<header class="page">
+<h1>{heading}</h1>
+{facts}{subsampling_note}<div class="tools"></div>
+</header>
+<main id="main" tabindex="-1">
+{overview}<div id="articles">
 {articles}</div>
 </main>
-{VIEWER}{pictures}<script>{SCRIPT}</script>
+{glossary}{VIEWER}{images}<script>{SCRIPT}</script>
 </body>
 </html>
-"#,
+"##,
         policy = policy(),
-        device = device.unwrap_or_default(),
+        facts = facts(report, &names, date),
         subsampling_note = subsampling_note(gallery.step()),
-        table = table(records, rubric),
-        pictures = pictures(gallery),
+        overview = overview::overview(records, &names, gallery, rubric),
+        glossary = glossary.html(),
+        images = images(gallery),
     )
+}
+
+/// The title of the page: the folder, else the only shader, else the number of shaders.
+fn heading(names: &Names, records: &[Record]) -> String {
+    let subject = match (names.folder_name(), records) {
+        (_, [only]) => names.short(only).to_owned(),
+        ("", _) => shaders(records),
+        (folder, _) => folder.to_owned(),
+    };
+    format!("toyproof check: {}", Text(subject))
+}
+
+fn shaders(records: &[Record]) -> String {
+    let count = records.len() as u64;
+    format!("{} {}", grouped(count), plural(count, "shader", "shaders"))
+}
+
+/// The facts about the run below the title.
+fn facts(report: &Report, names: &Names, date: SystemTime) -> String {
+    let mut facts = format!("<span class=\"whole\">{}</span>", shaders(report.shaders()));
+    if !names.folder().is_empty() {
+        facts += &format!("<span class=\"whole\">Folder: {}</span>", Text(names.folder()));
+    }
+    let [day, time] = utc(date);
+    facts += &format!("<time datetime=\"{day}T{time}Z\">{day} {time} UTC</time>");
+    if let Some(device) = report.device() {
+        facts += &format!("<span>Device: {}</span>", Text(device));
+    }
+    facts += &format!("<span>{}</span>", Text(report.tool()));
+    format!("<p class=\"facts\">{facts}</p>\n")
+}
+
+/// The day and the time, to the minute, in UTC: `2026-02-28` and `23:59`.
+fn utc(date: SystemTime) -> [String; 2] {
+    let seconds = date.duration_since(UNIX_EPOCH).unwrap_or_default().as_secs();
+    // Years that start in March, in eras of 400 years since 0000-03-01.
+    let days = seconds / 86_400 + 719_468;
+    let (era, day_of_era) = (days / 146_097, days % 146_097);
+    let year_of_era = (day_of_era - day_of_era / 1_460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
+    let day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
+    let march_month = (5 * day_of_year + 2) / 153;
+    let day = day_of_year - (153 * march_month + 2) / 5 + 1;
+    let month = (march_month + 2) % 12 + 1;
+    let year = 400 * era + year_of_era + u64::from(month <= 2);
+    let minutes = seconds / 60 % 1_440;
+    [
+        format!("{year:04}-{month:02}-{day:02}"),
+        format!("{:02}:{:02}", minutes / 60, minutes % 60),
+    ]
 }
 
 /// The content security policy: only the page's own style and scripts, and images embedded in the page.
@@ -85,17 +160,13 @@ fn subsampling_note(step: u32) -> String {
         return String::new();
     }
     format!(
-        "<p class=\"thinned\">Whole pictures would make this page too large: here is one pixel of every {step} by {step}. The files beside \
-         the page have all.</p>\n"
+        "<p class=\"subsampled\">Images in full size would make this page too large: it shows one pixel of every {step} by {step}. \
+         The image files beside the page have all pixels.</p>\n"
     )
 }
 
-fn verdict(verdict: Verdict) -> String {
-    format!("<span class=\"verdict {verdict}\">{verdict}</span>")
-}
-
 /// The images and the legends, as data for the script: a browser decodes only the images that are viewed.
-fn pictures(gallery: &Gallery) -> String {
+fn images(gallery: &Gallery) -> String {
     let entries = |legend: Legend| -> Vec<_> {
         let entries = legend.entries().into_iter();
         entries
@@ -107,113 +178,37 @@ fn pictures(gallery: &Gallery) -> String {
         "eye": entries(SEEN_BY_EYE),
         "bits": entries(IN_BITS),
     });
-    let pictures = gallery.images().iter().enumerate();
-    let pictures: Vec<_> = pictures
+    let images = gallery.images().iter().enumerate();
+    let images: Vec<_> = images
         .map(|(index, png)| {
             let data = STANDARD.encode(png);
             format!("<script id=\"p{index}\" type=\"text/plain\">{data}</script>\n")
         })
         .collect();
-    let pictures = pictures.concat();
+    let images = images.concat();
     // The settings are numbers and our own texts, which cannot end the element.
-    format!("{pictures}<script id=\"settings\" type=\"application/json\">{settings}</script>\n")
-}
-
-// The table of all shaders, and the form that filters its rows.
-
-fn table(records: &[Record], rubric: Option<&Rubric>) -> String {
-    let mut verdicts: Vec<_> = records.iter().map(|record| record.verdict).collect();
-    verdicts.sort_unstable();
-    verdicts.dedup();
-    let choices: Vec<_> = verdicts
-        .into_iter()
-        .map(|one| {
-            let badge = verdict(one);
-            format!("<label class=\"choice\"><input type=\"checkbox\" name=\"verdict\" value=\"{one}\" checked> {badge}</label>\n")
-        })
-        .collect();
-    let choices = choices.concat();
-    let points = match rubric {
-        Some(_) => "<th scope=\"col\" class=\"number\">Points</th>",
-        None => "",
-    };
-    let rows = records.iter().enumerate();
-    let rows: String = rows.map(|(index, record)| row(index, record, rubric)).collect();
-    format!(
-        r#"<section id="overview" aria-label="All shaders">
-<form id="filter" aria-label="Filter" hidden>
-<label>Search <input type="search" name="words" autocomplete="off"></label>
-<fieldset>
-<legend>Verdicts</legend>
-{choices}</fieldset>
-<p id="shown" role="status"></p>
-</form>
-<div class="scroll">
-<table id="shaders" aria-label="Shaders">
-<thead>
-<tr><th scope="col">Shader</th><th scope="col">Verdict</th>{points}<th scope="col" class="number wide">Maths</th><th scope="col" class="number wide">Rounding</th><th scope="col" class="why">Why</th><th scope="col" class="number wide">Seconds</th></tr>
-</thead>
-<tbody>
-{rows}</tbody>
-</table>
-</div>
-</section>
-"#
-    )
-}
-
-/// Formats a row. Cells that are not sorted by their text have a number in `data-by`.
-fn row(index: usize, record: &Record, rubric: Option<&Rubric>) -> String {
-    let points = rubric.map(|rubric| {
-        let marks = rubric.marks(record);
-        let points = rounded(marks.iter().map(|mark| mark.points).sum());
-        let of = rounded(marks.iter().map(|mark| mark.of).sum());
-        format!("<td class=\"number\" data-by=\"{points}\">{points} of {of}</td>")
-    });
-    let seconds = seconds(record.seconds.total());
-    format!(
-        "<tr data-verdict=\"{}\"><th scope=\"row\"><a href=\"#s{index}\">{}</a></th><td data-by=\"{}\">{}</td>{}{}{}\
-         <td class=\"why\">{}</td>{seconds}</tr>\n",
-        record.verdict,
-        Text(&record.shader),
-        record.verdict as u8,
-        verdict(record.verdict),
-        points.unwrap_or_default(),
-        share(record.algorithm.as_ref()),
-        share(record.precision.as_ref()),
-        Text(&record.reason),
-    )
-}
-
-/// Formats the share of the pixels of a check that differ.
-fn share(answer: Option<&CheckSummary>) -> String {
-    let percent = answer.map(|answer| 100.0 * answer.share(answer.differing));
-    let shown = match percent {
-        None => "<span class=\"none\" title=\"not asked\">–</span>".to_owned(),
-        Some(0.0) => "0 %".to_owned(),
-        Some(percent) if percent < 0.01 => "&lt; 0.01 %".to_owned(),
-        Some(percent) => format!("{percent:.2} %"),
-    };
-    let by = percent.unwrap_or(-1.0);
-    format!("<td class=\"number wide\" data-by=\"{by}\">{shown}</td>")
-}
-
-/// Formats the time; a dash if nothing was measured.
-fn seconds(seconds: f64) -> String {
-    let shown = if seconds > 0.0 {
-        format!("{seconds:.1}")
-    } else {
-        "<span class=\"none\" title=\"not measured\">–</span>".to_owned()
-    };
-    format!("<td class=\"number wide\" data-by=\"{seconds}\">{shown}</td>")
-}
-
-fn rounded(points: f64) -> f64 {
-    (100.0 * points).round() / 100.0
+    format!("{images}<script id=\"settings\" type=\"application/json\">{settings}</script>\n")
 }
 
 // Escaping of text for HTML, in an element or between double quotes. Characters that affect the surrounding
 // text, such as bidirectional controls, are escaped too.
+
+/// Escapes a sentence. What is between backticks is code; a number and its percent sign stay on one line.
+fn sentence(text: &str) -> String {
+    let parts: Vec<_> = text.split('`').map(|part| Text(part).to_string()).collect();
+    if parts.len().is_multiple_of(2) {
+        // The backticks are not in pairs.
+        return Text(text).to_string();
+    }
+    let parts = parts.iter().enumerate().map(|(index, part)| {
+        if index % 2 == 1 {
+            format!("<code>{part}</code>")
+        } else {
+            part.replace(" %", "&nbsp;%")
+        }
+    });
+    parts.collect()
+}
 
 /// Displays a value with the special characters of HTML escaped.
 pub(super) struct Text<T>(pub(super) T);
@@ -246,10 +241,12 @@ impl Write for Escaping<'_, '_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::Mistake;
     use crate::report::record::samples::{every_verdict, invalid};
 
     fn page(records: Vec<Record>, gallery: &Gallery) -> String {
-        html(&Report::new(Some("<device>".to_owned()), records), None, gallery)
+        let report = Report::new(Some("<device>".to_owned()), records);
+        html(&report, None, gallery, UNIX_EPOCH)
     }
 
     #[test]
@@ -259,7 +256,14 @@ mod tests {
         for text in [&mut record.shader, &mut record.reason] {
             HOSTILE.clone_into(text);
         }
-        record.scene = Some(HOSTILE.to_owned());
+        (record.scene, record.help) = (Some(HOSTILE.to_owned()), Some(HOSTILE.to_owned()));
+        record.details = vec![HOSTILE.to_owned()];
+        record.mistake = Some(Mistake {
+            id: HOSTILE.to_owned(),
+            text: HOSTILE.to_owned(),
+            is_symptom: true,
+            alternatives: Vec::new(),
+        });
         let diagnostic = &mut record.diagnostics[0];
         (diagnostic.message, diagnostic.file, diagnostic.line) =
             (HOSTILE.to_owned(), Some(HOSTILE.to_owned()), Some(1));
@@ -272,7 +276,7 @@ mod tests {
         });
         let page = page(vec![record], &gallery);
         assert!(!page.contains("<script>hacked") && !page.contains("<img") && !page.contains("<device>"));
-        assert!(page.matches("&lt;img src=x").count() >= 8, "it is there, as text");
+        assert!(page.matches("&lt;img src=x").count() >= 8, "the text is shown");
         assert_eq!(page.matches("<script").count(), 3, "settings and our own two");
     }
 
@@ -303,8 +307,98 @@ mod tests {
 
     #[test]
     fn subsampling_is_reported() {
-        assert!(!page(Vec::new(), &Gallery::new(1)).contains("class=\"thinned\""));
+        assert!(!page(Vec::new(), &Gallery::new(1)).contains("class=\"subsampled\""));
         assert!(page(Vec::new(), &Gallery::new(3)).contains("one pixel of every 3 by 3"));
+    }
+
+    #[test]
+    fn the_head_states_what_was_checked_and_when() {
+        let mut records = every_verdict();
+        for record in &mut records {
+            record.shader.insert_str(0, "class/hw<3/");
+        }
+        let report = Report::new(None, records);
+        let time = UNIX_EPOCH + std::time::Duration::from_secs(951_827_640);
+        let page = html(&report, None, &Gallery::new(1), time);
+        assert!(page.contains("<h1>toyproof check: hw&lt;3</h1>"));
+        assert!(page.contains("Folder: class/hw&lt;3<"));
+        assert!(page.contains("<time datetime=\"2000-02-29T12:34Z\">2000-02-29 12:34 UTC</time>"));
+    }
+
+    #[test]
+    fn days_are_those_of_the_calendar() {
+        for (days, day) in [
+            (0, "1970-01-01"),
+            (789, "1972-02-29"),
+            (790, "1972-03-01"),
+            (11_016, "2000-02-29"),
+            (11_322, "2000-12-31"),
+            (47_540, "2100-02-28"),
+            (47_541, "2100-03-01"),
+        ] {
+            let date = UNIX_EPOCH + std::time::Duration::from_secs(86_400 * days + 86_399);
+            assert_eq!(utc(date), [day, "23:59"], "{days}");
+        }
+    }
+
+    /// The relative luminance of a color of the style, as WCAG 2 defines it.
+    fn luminance(hex: &str) -> f64 {
+        let digits: Vec<_> = hex.chars().map(|digit| digit.to_digit(16).unwrap()).collect();
+        let levels: Vec<_> = match digits[..] {
+            [r, g, b] => vec![17 * r, 17 * g, 17 * b],
+            _ => digits.chunks(2).map(|pair| 16 * pair[0] + pair[1]).collect(),
+        };
+        let linear = |level: u32| match f64::from(level) / 255.0 {
+            low @ ..=0.04045 => low / 12.92,
+            value => ((value + 0.055) / 1.055).powf(2.4),
+        };
+        0.2126 * linear(levels[0]) + 0.7152 * linear(levels[1]) + 0.0722 * linear(levels[2])
+    }
+
+    #[test]
+    fn colors_have_the_contrast_of_wcag_aa() {
+        let color = |name: &str, theme: usize| {
+            let start = format!("--{name}: light-dark(");
+            let (_, rest) = STYLE.split_once(&start).expect(name);
+            let (both, _) = rest.split_once(')').unwrap();
+            luminance(both.split(", ").nth(theme).unwrap().trim_start_matches('#'))
+        };
+        let texts = ["ink", "soft", "accent", "good", "bad", "odd"];
+        let pairs = texts
+            .into_iter()
+            .flat_map(|text| ["paper", "panel", "raised"].map(|back| (text, back, 4.5)))
+            .chain(["paper", "panel", "raised"].map(|back| ("edge", back, 3.0)))
+            .chain([
+                ("good", "good-back", 4.5),
+                ("bad", "bad-back", 4.5),
+                ("odd", "odd-back", 4.5),
+            ])
+            .chain(["ink", "soft"].map(|text| (text, "bad-back", 4.5)))
+            .chain(["ink", "soft", "accent"].map(|text| (text, "odd-back", 4.5)))
+            .chain([("paper", "accent", 4.5)]);
+        for (text, back, least) in pairs {
+            for theme in [0, 1] {
+                let (a, b) = (color(text, theme), color(back, theme));
+                let contrast = (a.max(b) + 0.05) / (a.min(b) + 0.05);
+                assert!(
+                    contrast >= least,
+                    "{text} on {back}, theme {theme}: {contrast:.2}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn code_in_sentences_is_marked_and_escaped() {
+        assert_eq!(
+            sentence("`<a>` is not `b`: 5 %"),
+            "<code>&lt;a&gt;</code> is not <code>b</code>: 5&nbsp;%"
+        );
+        assert_eq!(sentence("a ` <b>"), "a ` &lt;b&gt;");
+        assert_eq!(
+            sentence("</code>`</code>`"),
+            "&lt;/code&gt;<code>&lt;/code&gt;</code>"
+        );
     }
 
     #[test]

@@ -8,20 +8,88 @@
     element.append(...children);
     return element;
   };
+  const button = (text, onclick, properties = {}) => make('button', { type: 'button', textContent: text, onclick, ...properties });
   const settings = JSON.parse($('#settings').textContent);
   const STEP = settings.step;
+  const own = document.currentScript;
 
-  // The table: sorted by a click on a column header, filtered by text and verdicts.
-
+  const main = $('main');
   const body = $('#shaders tbody');
   const rows = [...body.rows];
   const form = $('#filter');
-  const heads = $$('#shaders thead th');
+  // The parts that scripts change, as they were, for the files of single shaders.
+  const originals = new Map([form, $('#shaders thead')].map((element) => [element, element.cloneNode(true)]));
+  const linkOf = (article) => $(`#shaders a[href="#${article.id}"]`);
+  const rowOf = (article) => linkOf(article).closest('tr');
+  const imageSource = (place) => `data:image/png;base64,${document.getElementById(`p${place}`).textContent}`;
+
+  // The head: the date in local time, the theme, printing.
+
+  for (const time of $$('time')) {
+    const date = new Date(time.dateTime);
+    time.title = time.textContent;
+    time.textContent = date.toLocaleString(undefined, { dateStyle: 'medium', timeStyle: 'short' });
+  }
+  const stored = (theme) => {
+    // A browser may refuse storage to a page that is a file.
+    try {
+      if (theme) localStorage.setItem('toyproof-theme', theme);
+      return localStorage.getItem('toyproof-theme');
+    } catch {
+      return null;
+    }
+  };
+  const root = document.documentElement;
+  const prefersDark = matchMedia('(prefers-color-scheme: dark)');
+  const isDark = () => (root.dataset.theme ? root.dataset.theme === 'dark' : prefersDark.matches);
+  const themeButton = button('Dark theme', () => setTheme(isDark() ? 'light' : 'dark'));
+  const setTheme = (theme) => {
+    if (theme === 'dark' || theme === 'light') root.dataset.theme = theme;
+    themeButton.ariaPressed = String(isDark());
+    stored(theme);
+  };
+  setTheme(stored());
+  prefersDark.addEventListener('change', () => setTheme());
+  $('.tools').append(themeButton, button('Print', () => print()));
+
+  // Terms: a tooltip with the definition, on hover and on focus. It stays while the pointer is on it.
+
+  const tip = make('div', { id: 'tip', role: 'tooltip', hidden: true });
+  document.body.append(tip);
+  const hideTip = () => {
+    tip.hidden = true;
+  };
+  const showTip = (element) => {
+    const definition = document.getElementById(`${element.dataset.term}-text`);
+    if (!definition) return;
+    tip.textContent = definition.textContent;
+    tip.hidden = false;
+    const [at, size] = [element.getBoundingClientRect(), tip.getBoundingClientRect()];
+    const below = at.bottom + size.height < innerHeight || at.top < size.height;
+    tip.style.left = `${Math.max(8, Math.min(at.left, innerWidth - size.width - 8))}px`;
+    tip.style.top = `${below ? at.bottom : at.top - size.height}px`;
+  };
+  document.addEventListener('pointerover', ({ target, pointerType }) => {
+    const term = target.closest('[data-term]');
+    if (term && pointerType !== 'touch') showTip(term);
+    else if (!tip.contains(target)) hideTip();
+  });
+  document.addEventListener('focusin', ({ target }) => {
+    const term = target.closest('[data-term]');
+    if (term && target.matches(':focus-visible')) showTip(term);
+    else hideTip();
+  });
+  document.addEventListener('scroll', hideTip, { capture: true, passive: true });
+
+  // The table: sorted by a click on a column header, filtered by text and verdicts.
+
+  const heads = $$('#shaders thead [data-sort]');
   const words = new Intl.Collator(undefined, { numeric: true });
 
   const valueOf = (row, column) => {
-    const by = row.cells[column].dataset.by;
-    return by === undefined ? row.cells[column].textContent : Number(by);
+    // The first cell is the thumbnail.
+    const cell = row.cells[column + 1];
+    return cell.dataset.by === undefined ? cell.textContent : Number(cell.dataset.by);
   };
   const sort = (column) => {
     const down = heads[column].getAttribute('aria-sort') === 'ascending';
@@ -34,12 +102,12 @@
     // The sort is stable: rows that are equal in this column keep their order.
     const sorted = [...rows].sort((a, b) => (down ? -order(a, b) : order(a, b)) || rows.indexOf(a) - rows.indexOf(b));
     body.append(...sorted);
-    moves();
+    updateMoves();
   };
   heads.forEach((head, column) => {
-    const button = make('button', { type: 'button', textContent: head.textContent });
-    button.addEventListener('click', () => sort(column));
-    head.replaceChildren(button);
+    const sorter = button(head.textContent, () => sort(column));
+    if (head.dataset.term) sorter.setAttribute('aria-describedby', `${head.dataset.term}-text`);
+    head.replaceChildren(sorter);
   });
 
   const filter = () => {
@@ -47,40 +115,72 @@
     const verdicts = new Set($$('[name=verdict]:checked', form).map((box) => box.value));
     let shown = 0;
     for (const row of rows) {
-      row.hidden = !verdicts.has(row.dataset.verdict) || !row.textContent.toLowerCase().includes(sought);
+      const text = `${row.textContent} ${$('a', row).title}`.toLowerCase();
+      row.hidden = !verdicts.has(row.dataset.verdict) || !text.includes(sought);
       shown += row.hidden ? 0 : 1;
     }
     $('#shown').textContent = `${shown} of ${rows.length} shown`;
-    moves();
+    updateMoves();
   };
   form.addEventListener('input', filter);
   form.addEventListener('submit', (event) => event.preventDefault());
   form.hidden = false;
 
+  // Thumbnails: a browser decodes those that are scrolled into view.
+
+  const addThumbnail = (cell) => {
+    if (cell.firstChild) return;
+    if (cell.dataset.image === undefined) {
+      cell.append(make('span', { className: 'empty', textContent: 'no image' }));
+      return;
+    }
+    const link = $('a', cell.parentElement);
+    const image = make('img', { alt: `actual image of ${link.textContent}`, src: imageSource(cell.dataset.image) });
+    image.addEventListener('click', () => link.click());
+    cell.append(image);
+  };
+  const thumbnails = rows.map((row) => $('.thumbnail', row));
+  const visible = new IntersectionObserver((entries) => {
+    for (const { target, isIntersecting } of entries) {
+      if (isIntersecting) {
+        visible.unobserve(target);
+        addThumbnail(target);
+      }
+    }
+  });
+  thumbnails.forEach((cell) => visible.observe(cell));
+
   // One shader.
 
   let open = null;
-  const buttons = {
-    back: make('button', { type: 'button', textContent: 'Back to all' }),
-    previous: make('button', { type: 'button', textContent: 'Previous' }),
-    next: make('button', { type: 'button', textContent: 'Next' }),
+  const isSingle = rows.length === 1;
+  const moves = {
+    back: button('Back to all', () => close()),
+    previous: button('Previous', () => go(-1)),
+    next: button('Next', () => go(1)),
   };
-  const bar = make('nav', { className: 'moves', ariaLabel: 'Shaders' }, ...Object.values(buttons));
+  const bar = make(
+    'nav',
+    { className: 'moves', ariaLabel: 'Shaders' },
+    ...Object.values(moves),
+    make('span', { className: 'gap' }),
+    button('Save as HTML', () => saveAlone(open), { title: 'Save the report on this shader as a file of its own' }),
+    button('Print', () => print(), { title: 'Print the report on this shader' }),
+  );
 
-  const linkOf = (article) => $(`#shaders a[href="#${article.id}"]`);
-  const neighbour = (by) => {
+  const neighbor = (by) => {
     const shown = [...body.rows].filter((row) => !row.hidden);
-    const at = shown.indexOf(linkOf(open).closest('tr'));
+    const at = shown.indexOf(rowOf(open));
     return at < 0 ? undefined : shown[at + by];
   };
-  function moves() {
+  function updateMoves() {
     if (open) {
-      buttons.previous.disabled = !neighbour(-1);
-      buttons.next.disabled = !neighbour(1);
+      moves.previous.disabled = !neighbor(-1);
+      moves.next.disabled = !neighbor(1);
     }
   }
   const go = (by) => {
-    const row = neighbour(by);
+    const row = neighbor(by);
     if (row) location.hash = $('a', row).hash;
   };
   const close = () => {
@@ -90,32 +190,112 @@
     show();
     link.focus();
   };
-  buttons.previous.addEventListener('click', () => go(-1));
-  buttons.next.addEventListener('click', () => go(1));
-  buttons.back.addEventListener('click', close);
+  /** Moves the focus by rows of the table. */
+  const focusRow = (link, by) => {
+    const shown = [...body.rows].filter((row) => !row.hidden);
+    const row = shown[shown.indexOf(link.closest('tr')) + by];
+    if (row) $('a', row).focus();
+  };
   document.addEventListener('keydown', (event) => {
-    if (event.key === 'Escape' && open) close();
+    const { key, target } = event;
+    if (event.defaultPrevented || event.altKey || event.ctrlKey || event.metaKey || event.shiftKey) return;
+    const vertical = { ArrowUp: -1, ArrowDown: 1 }[key];
+    const horizontal = { ArrowLeft: -1, ArrowRight: 1 }[key];
+    if (key === 'Escape' && !tip.hidden) {
+      hideTip();
+    } else if (key === 'Escape' && open && !isSingle) {
+      close();
+    } else if (vertical && target.matches('#shaders tbody a')) {
+      event.preventDefault();
+      focusRow(target, vertical);
+    } else if (horizontal && open && !target.closest('input, canvas, pre, .scroll, .source')) {
+      go(horizontal);
+    }
   });
 
+  /** Numbers the lines of the source. */
+  const numberLines = (article) => {
+    for (const block of $$('pre[data-first]', article)) {
+      const first = Number(block.dataset.first);
+      const lines = block.textContent.split('\n');
+      const spans = lines.map((text, index) => {
+        const line = make('span', { className: 'line', textContent: text });
+        line.dataset.line = first + index;
+        return line;
+      });
+      block.firstElementChild.replaceChildren(...spans);
+      delete block.dataset.first;
+    }
+  };
+  const copy = async (text, done) => {
+    try {
+      await navigator.clipboard.writeText(text);
+    } catch {
+      const field = make('textarea', { value: text });
+      document.body.append(field);
+      field.select();
+      document.execCommand('copy');
+      field.remove();
+    }
+    done();
+  };
+  /** Prepares an article when it is shown first. */
+  const prepare = (article) => {
+    if (originals.has(article)) return;
+    originals.set(article, article.cloneNode(true));
+    numberLines(article);
+    for (const command of $$('.command', article)) {
+      const status = make('span', { role: 'status' });
+      const copier = button('Copy', () =>
+        copy($('code', command).textContent, () => {
+          status.textContent = 'copied';
+          setTimeout(() => status.replaceChildren(), 2000);
+          copier.focus();
+        }),
+      );
+      copier.ariaLabel = 'Copy the command';
+      command.append(copier, status);
+    }
+  };
+
+  /** The entries of the glossary that articles refer to. */
+  const entriesOf = (articles) =>
+    new Set(articles.flatMap((article) => $$('[data-term]', article)).map(({ dataset }) => dataset.term));
+  const showEntriesOf = (articles) => {
+    const used = entriesOf(articles);
+    for (const entry of $$('#glossary .entry')) entry.classList.toggle('unused', !used.has(entry.id));
+  };
   const show = () => {
+    const { hash } = location;
+    const named = hash.length > 1 ? document.getElementById(hash.slice(1)) : null;
+    const target = named?.matches('article') ? named : null;
+    // An entry of the glossary is below the open shader.
+    if (named?.matches('details')) named.open = true;
+    if (named && !target && open) return;
+    hideTip();
     if (open) {
       open.classList.remove('open');
+      $('.viewer', open)?.dispatchEvent(new Event('close'));
       $('.viewer', open)?.remove();
-      linkOf(open).closest('tr').classList.remove('open');
+      rowOf(open).classList.remove('open');
       linkOf(open).removeAttribute('aria-current');
     }
-    open = /^#s\d+$/.test(location.hash) ? document.getElementById(location.hash.slice(1)) : null;
-    $('main').classList.toggle('reading', open !== null);
+    open = target ?? (isSingle ? $('article') : null);
+    main.classList.toggle('reading', open !== null);
+    main.classList.toggle('single', isSingle);
+    showEntriesOf(open ? [open] : $$('article'));
     if (!open) return;
+    prepare(open);
     open.classList.add('open');
-    open.prepend(bar);
-    linkOf(open).closest('tr').classList.add('open');
+    if (!isSingle) open.prepend(bar);
+    rowOf(open).classList.add('open');
     linkOf(open).setAttribute('aria-current', 'true');
-    moves();
+    updateMoves();
     if (open.dataset.actual !== undefined) view(open);
+    if (!target) return;
     $('h2', open).focus({ preventScroll: true });
-    if (getComputedStyle($('#articles')).position === 'sticky') $('#articles').scrollTop = 0;
-    else scrollTo(0, 0);
+    rowOf(open).scrollIntoView({ block: 'nearest' });
+    scrollTo(0, 0);
   };
   addEventListener('hashchange', show);
 
@@ -124,7 +304,7 @@
   /** The pixels of an image's upper left part of the given size; of the whole image without a size. */
   const pixels = async (place, size) => {
     const image = new Image();
-    image.src = `data:image/png;base64,${document.getElementById(`p${place}`).textContent}`;
+    image.src = imageSource(place);
     await image.decode();
     const [width, height] = size ?? [image.naturalWidth, image.naturalHeight];
     const canvas = make('canvas', { width, height });
@@ -133,10 +313,11 @@
     return context.getImageData(0, 0, width, height);
   };
 
-  const colourOf = (picture, at) => [...picture.data.subarray(4 * at, 4 * at + 3)];
+  const colorOf = (image, at) => [...image.data.subarray(4 * at, 4 * at + 3)];
   const differenceOf = (a, b) => Math.max(...a.map((value, part) => Math.abs(value - b[part])));
+  const isBand = ([name]) => name.startsWith('>');
   /** The legend's colors for magnitudes, the largest first. */
-  const bands = settings.eye.filter(([name]) => name.startsWith('>')).reverse();
+  const bands = settings.eye.filter(isBand).reverse();
   /** The color of a difference in 8-bit levels. */
   const heat = Array.from({ length: 256 }, (_, levels) => {
     const band = bands.find(([name]) => levels / 255 > Number(name.slice(2)));
@@ -150,29 +331,31 @@
     }
     return map;
   };
-  const swatch = (colour) => {
+  const swatch = (color) => {
     const box = make('span', { className: 'swatch', ariaHidden: 'true' });
-    box.style.backgroundColor = `rgb(${colour})`;
+    box.style.backgroundColor = `rgb(${color})`;
     return box;
   };
 
-  const QUESTIONS = ['maths', 'rounding', 'toolchain'];
+  const CHECKS = ['algorithm', 'precision', 'toolchain'];
   const legendOf = (name) => (name === 'toolchain' ? settings.bits : settings.eye);
+  const BLINK_MS = 800;
 
   async function view(article) {
     const root = $('#viewer').content.cloneNode(true).firstElementChild;
     const data = article.dataset;
-    const pictures = { actual: await pixels(data.actual) };
-    const { width, height } = pictures.actual;
-    for (const name of ['reference', ...QUESTIONS]) {
-      if (data[name] !== undefined) pictures[name] = await pixels(data[name], [width, height]);
+    const images = { actual: await pixels(data.actual) };
+    const { width, height } = images.actual;
+    for (const name of ['reference', ...CHECKS]) {
+      if (data[name] !== undefined) images[name] = await pixels(data[name], [width, height]);
     }
-    if (pictures.reference) pictures.difference = heatMap(pictures.reference, pictures.actual);
+    if (images.reference) images.difference = heatMap(images.reference, images.actual);
     // The user may have moved on in the meantime.
     if (open !== article) return;
     $('.viewer', article)?.remove();
 
     const canvas = $('canvas', root);
+    canvas.ariaLabel = `Image of ${data.name}; the arrow keys select a pixel`;
     Object.assign(canvas, { width, height });
     const context = canvas.getContext('2d');
     const slider = $('[type=range]', root);
@@ -181,52 +364,73 @@
     xField.max = (width - 1) * STEP;
     yField.max = (height - 1) * STEP;
     for (const field of [xField, yField]) field.step = STEP;
-    let current = 'pictures';
+    const views = { slider: images.actual, blink: images.reference, ...images };
+    let current = 'slider';
+    let blinking = 0;
     let [column, row] = [width >> 1, height >> 1];
     let exact = null;
 
-    const paint = () => {
-      context.putImageData(pictures[current] ?? pictures.actual, 0, 0);
-      if (current === 'pictures' && pictures.reference) {
-        context.putImageData(pictures.reference, 0, 0, 0, 0, Math.round((width * slider.value) / slider.max), height);
+    const render = () => {
+      context.putImageData(views[current], 0, 0);
+      $('.shown', root).textContent = '';
+      if (current === 'slider' && images.reference) {
+        context.putImageData(images.reference, 0, 0, 0, 0, Math.round((width * slider.value) / slider.max), height);
       }
       const percent = (100 * slider.value) / slider.max;
       edge.style.left = `${percent}%`;
       slider.ariaValueText = `${Math.round(percent)} % reference`;
       const legend = $('ul.legend', root);
-      const entries = current === 'pictures' ? [] : legendOf(current);
-      const used = entries.filter(([name]) => current !== 'difference' || name.startsWith('>'));
-      legend.replaceChildren(...used.map(([name, colour]) => make('li', {}, swatch(colour), name)));
-      $('.slide', root).hidden = current !== 'pictures' || !pictures.reference;
+      const entries = current in images ? legendOf(current) : [];
+      const used = entries.filter((entry) => current !== 'difference' || isBand(entry));
+      legend.replaceChildren(...used.map(([name, color]) => make('li', {}, swatch(color), name)));
+      $('.slide', root).hidden = current !== 'slider' || !images.reference;
       edge.hidden = $('.slide', root).hidden;
     };
-
-    const told = (name, at) => {
-      const asked = $(`tr[data-question="${name}"] .number`, article) !== null;
-      if (!asked) return ['not asked'];
-      if (!pictures[name]) return ['no difference in any pixel'];
-      const colour = colourOf(pictures[name], at);
-      const entry = legendOf(name).find(([, own]) => own.every((part, index) => part === colour[index]));
-      if (!entry) return ['no difference'];
-      return [swatch(colour), entry[0].startsWith('>') ? `another by ${entry[0]}` : entry[0]];
+    const blink = () => {
+      const name = $('.shown', root).textContent === 'reference' ? 'actual' : 'reference';
+      context.putImageData(images[name], 0, 0);
+      $('.shown', root).textContent = name;
     };
-    const colourText = (colour) => [swatch(colour), `${colour.join(', ')} of 255`];
+    const select = (name) => {
+      clearInterval(blinking);
+      current = name;
+      render();
+      if (current === 'blink') {
+        blink();
+        blinking = setInterval(blink, BLINK_MS);
+      }
+    };
+    root.addEventListener('close', () => clearInterval(blinking));
+
+    const describe = (name, at) => {
+      const hasRun = $(`tr[data-check="${name}"] .number`, article) !== null;
+      if (!hasRun) return ['not run'];
+      if (!images[name]) return ['equal in every pixel'];
+      const color = colorOf(images[name], at);
+      const entry = legendOf(name).find(([, own]) => own.every((part, index) => part === color[index]));
+      if (!entry) return ['equal'];
+      return [swatch(color), isBand(entry) ? `differs by ${entry[0]}` : entry[0]];
+    };
+    const colorText = (color) => [swatch(color), `${color.join(', ')} of 255`];
     const inspect = () => {
       const at = row * width + column;
       const [x, y] = [column * STEP, (height - 1 - row) * STEP];
       xField.value = x;
       yField.value = y;
-      const actual = colourOf(pictures.actual, at);
+      const actual = colorOf(images.actual, at);
       const lines = [];
-      if (pictures.reference) {
-        const reference = colourOf(pictures.reference, at);
-        lines.push(['expected', colourText(reference)], ['actual', colourText(actual)]);
-        lines.push(['difference', [`${differenceOf(reference, actual)} of 255 levels`]]);
+      if (images.reference) {
+        const reference = colorOf(images.reference, at);
+        const levels = differenceOf(reference, actual);
+        lines.push(['expected', colorText(reference)], ['actual', colorText(actual)]);
+        lines.push(['difference', [`${levels} of 255 levels`]]);
       } else {
-        lines.push(['actual', colourText(actual)]);
+        lines.push(['actual', colorText(actual)]);
       }
-      for (const name of QUESTIONS) lines.push([name, told(name, at)]);
-      if (exact) lines.push([`${exact.question}: expected`, [exact.expected]], [`${exact.question}: actual`, [exact.actual]]);
+      for (const name of CHECKS) lines.push([`${name} check`, describe(name, at)]);
+      if (exact) {
+        lines.push([`${exact.check}: expected`, [exact.expected]], [`${exact.check}: actual`, [exact.actual]]);
+      }
       $('dl', root).replaceChildren(...lines.flatMap(([name, parts]) => [make('dt', { textContent: name }), make('dd', {}, ...parts)]));
       Object.assign(cross.style, {
         left: `${(100 * (column + 0.5)) / width}%`,
@@ -262,37 +466,120 @@
     });
     const typed = () => choose(Math.floor(Number(xField.value) / STEP), height - 1 - Math.floor(Number(yField.value) / STEP));
     for (const field of [xField, yField]) field.addEventListener('change', typed);
-    slider.addEventListener('input', paint);
+    slider.addEventListener('input', render);
     for (const radio of $$('[name=view]', root)) {
       const { value } = radio;
-      radio.closest('label').hidden = value !== 'pictures' && !pictures[value];
+      radio.closest('label').hidden = !views[value];
       radio.checked = value === current;
-      radio.addEventListener('change', () => {
-        current = value;
-        paint();
-      });
+      radio.addEventListener('change', () => select(value));
     }
     // The pixels that the checks name become buttons, once.
     for (const span of $$('span.pixel', article)) {
-      const button = make('button', { type: 'button', className: 'pixel', textContent: span.textContent });
-      Object.assign(button.dataset, span.dataset);
-      span.replaceWith(button);
+      const named = button(span.textContent, null, { className: 'pixel' });
+      Object.assign(named.dataset, span.dataset);
+      span.replaceWith(named);
     }
     const named = $$('button.pixel', article);
     const visit = ({ dataset, parentElement }) => {
-      const question = parentElement.closest('tr').dataset.question;
       choose(Math.floor(dataset.x / STEP), height - 1 - Math.floor(dataset.y / STEP), {
-        question,
+        check: parentElement.closest('tr').dataset.check,
         expected: dataset.expected,
         actual: dataset.actual,
       });
     };
-    for (const button of named) button.onclick = () => visit(button);
+    for (const pixel of named) pixel.onclick = () => visit(pixel);
 
-    $('.pictures', article).append(root);
-    paint();
+    $('.images', article).append(root);
+    render();
     if (named.length > 0) visit(named[0]);
     else inspect();
+  }
+
+  // Paper: the shaders that the table shows, or the open one. The images are side by side.
+
+  const figure = (article, name, caption) => {
+    const image = make('img', { alt: `${caption} of ${article.dataset.name}`, src: imageSource(article.dataset[name]) });
+    return make('figure', {}, image, make('figcaption', { textContent: caption }));
+  };
+  const CAPTIONS = {
+    actual: 'Actual image',
+    reference: 'Reference',
+    algorithm: 'Difference: algorithm check',
+    precision: 'Difference: precision check',
+    toolchain: 'Difference: toolchain check',
+  };
+  let folded = [];
+  addEventListener('beforeprint', () => {
+    const printed = open ? [open] : $$('article').filter((article) => !rowOf(article).hidden);
+    for (const article of $$('article')) article.classList.toggle('filtered', !printed.includes(article));
+    for (const article of printed) {
+      prepare(article);
+      const names = Object.keys(CAPTIONS).filter((name) => article.dataset[name] !== undefined);
+      const figures = names.map((name) => figure(article, name, CAPTIONS[name]));
+      if (figures.length > 0) $('.images', article).append(make('div', { className: 'prints' }, ...figures));
+    }
+    folded = printed.flatMap((article) => $$('details:not([open])', article));
+    showEntriesOf(printed);
+    folded.push(...$$('#glossary details:not(.unused, [open])'));
+    for (const details of folded) details.open = true;
+    thumbnails.forEach(addThumbnail);
+  });
+  addEventListener('afterprint', () => {
+    $$('.prints').forEach((prints) => prints.remove());
+    for (const details of folded) details.open = false;
+    showEntriesOf(open ? [open] : $$('article'));
+  });
+
+  // A page of one shader: this page without the other shaders.
+
+  const alone = (article) => {
+    const title = `toyproof check: ${article.dataset.name}`;
+    const page = document.documentElement.cloneNode(false);
+    page.removeAttribute('class');
+    page.removeAttribute('data-theme');
+    const head = document.head.cloneNode(true);
+    $('title', head).textContent = title;
+
+    const header = $('header.page').cloneNode(true);
+    $('h1', header).textContent = title;
+    $('.tools', header).replaceChildren();
+    $$('.whole', header).forEach((fact) => fact.remove());
+
+    const row = rowOf(article).cloneNode(true);
+    row.removeAttribute('class');
+    row.hidden = false;
+    $('a', row).removeAttribute('aria-current');
+    $('.thumbnail', row).replaceChildren();
+    const ownForm = originals.get(form).cloneNode(true);
+    for (const chip of $$('.chip', ownForm)) {
+      if ($('input', chip).value === row.dataset.verdict) $('.count', chip).textContent = '1';
+      else chip.remove();
+    }
+    const table = make('table', { id: 'shaders' });
+    table.append($('#shaders caption').cloneNode(true), originals.get($('#shaders thead')).cloneNode(true), make('tbody', {}, row));
+    const overview = $('#overview').cloneNode(false);
+    overview.append(ownForm, table);
+    const content = main.cloneNode(false);
+    content.removeAttribute('class');
+    content.append(overview, make('div', { id: 'articles' }, originals.get(article).cloneNode(true)));
+
+    const glossary = $('#glossary').cloneNode(true);
+    const used = entriesOf([article]);
+    for (const entry of $$('.entry', glossary)) {
+      entry.classList.remove('unused');
+      if (!used.has(entry.id)) entry.remove();
+    }
+    const places = ['actual', 'reference', ...CHECKS].map((name) => article.dataset[name]);
+    const images = [...new Set(places)].filter(Boolean).map((place) => document.getElementById(`p${place}`).cloneNode(true));
+    const rest = [$('#viewer'), ...images, $('#settings'), own].map((element) => element.cloneNode(true));
+    page.append(head, make('body', {}, $('.skip').cloneNode(true), header, content, glossary, ...rest));
+    return `<!DOCTYPE html>\n${page.outerHTML}\n`;
+  };
+  function saveAlone(article) {
+    const name = article.dataset.name.replace(/\.\w+$/, '').replace(/[^\p{L}\p{N}._-]+/gu, '-');
+    const address = URL.createObjectURL(new Blob([alone(article)], { type: 'text/html' }));
+    make('a', { href: address, download: `toyproof-${name}.html` }).click();
+    setTimeout(() => URL.revokeObjectURL(address), 60_000);
   }
 
   filter();

@@ -1,0 +1,135 @@
+//! The table of all shaders, and the form that filters its rows.
+
+use toyproof_diagnostic::grouped;
+use toyproof_verify::Verdict;
+use toyproof_verify::compare::CheckSummary;
+
+use super::names::Names;
+use super::{Exhibit, Gallery, Text, sentence};
+use crate::report::{Record, Rubric};
+
+pub(super) fn overview(
+    records: &[Record],
+    names: &Names,
+    gallery: &Gallery,
+    rubric: Option<&Rubric>,
+) -> String {
+    let points = match rubric {
+        Some(_) => "<th scope=\"col\" rowspan=\"2\" class=\"number\" data-sort>Points</th>",
+        None => "",
+    };
+    let rows = records.iter().zip(gallery.exhibits()).enumerate();
+    let rows: String = rows
+        .map(|(index, (record, exhibit))| row(index, record, names.short(record), exhibit, rubric))
+        .collect();
+    let checks = [
+        ("t-algorithm", "Algorithm"),
+        ("t-precision", "Precision"),
+        ("t-toolchain", "Toolchain"),
+    ];
+    let checks: String = checks
+        .into_iter()
+        .map(|(term, name)| {
+            format!("<th scope=\"col\" class=\"number wide\" data-sort data-term=\"{term}\">{name}</th>")
+        })
+        .collect();
+    format!(
+        r#"<section id="overview" aria-label="All shaders">
+<form id="filter" role="search" aria-label="Filter the shaders" hidden>
+<label class="search"><span>Search</span> <input type="search" name="words" autocomplete="off" placeholder="Name or reason"></label>
+<fieldset>
+<legend>Verdicts that are shown</legend>
+{chips}</fieldset>
+<p id="shown" role="status"></p>
+</form>
+<table id="shaders">
+<caption>Shaders</caption>
+<thead>
+<tr><td rowspan="2" class="thumbnail"></td><th scope="col" rowspan="2" data-sort>Shader</th><th scope="col" rowspan="2" data-sort>Verdict</th>{points}<th scope="col" rowspan="2" class="why" data-sort>Reason</th><th scope="colgroup" colspan="3" class="group wide" data-term="t-pixels-off">Pixels off</th></tr>
+<tr>{checks}</tr>
+</thead>
+<tbody>
+{rows}</tbody>
+</table>
+</section>
+"#,
+        chips = chips(records),
+    )
+}
+
+/// The number of shaders of each verdict, the best first, as check boxes that show or hide them.
+fn chips(records: &[Record]) -> String {
+    let mut verdicts: Vec<_> = records.iter().map(|record| record.verdict).collect();
+    verdicts.sort_unstable_by(|a, b| b.cmp(a));
+    let chips = verdicts.chunk_by(|a, b| a == b).map(|equal| {
+        let verdict = equal[0];
+        format!(
+            "<label class=\"chip\" data-term=\"t-{verdict}\"><input type=\"checkbox\" name=\"verdict\" value=\"{verdict}\" checked> \
+             {badge} <span class=\"count\">{count}</span></label>\n",
+            badge = badge(verdict),
+            count = grouped(equal.len() as u64)
+        )
+    });
+    chips.collect()
+}
+
+pub(super) fn badge(verdict: Verdict) -> String {
+    format!("<span class=\"verdict {verdict}\">{verdict}</span>")
+}
+
+/// Formats a row. Cells that are not sorted by their text have a number in `data-by`.
+fn row(index: usize, record: &Record, name: &str, exhibit: &Exhibit, rubric: Option<&Rubric>) -> String {
+    let points = rubric.map(|rubric| {
+        let [points, of] = total_points(rubric, record);
+        format!("<td class=\"number\" data-by=\"{points}\">{points} of {of}</td>")
+    });
+    let verdict = record.verdict;
+    let image = match exhibit.actual {
+        Some(image) => format!(" data-image=\"{image}\""),
+        None => String::new(),
+    };
+    format!(
+        "<tr data-verdict=\"{verdict}\"><td class=\"thumbnail\"{image}></td>\
+         <th scope=\"row\"><a href=\"#s{index}\" title=\"{}\">{}</a></th><td data-by=\"{}\">{}</td>{}\
+         <td class=\"why\">{}</td>{}{}{}</tr>\n",
+        Text(&record.shader),
+        breakable(name),
+        verdict as u8,
+        badge(verdict),
+        points.unwrap_or_default(),
+        sentence(&record.reason),
+        pixels_off(record.algorithm.as_ref()),
+        pixels_off(record.precision.as_ref()),
+        pixels_off(record.toolchain.as_ref()),
+    )
+}
+
+/// Escapes a name, which may be broken after the parts of its path rather than within them.
+fn breakable(name: &str) -> String {
+    Text(name)
+        .to_string()
+        .replace('/', "/<wbr>")
+        .replace('_', "_<wbr>")
+}
+
+/// The points that a shader earned, and the maximum.
+pub(super) fn total_points(rubric: &Rubric, record: &Record) -> [f64; 2] {
+    let marks = rubric.marks(record);
+    let rounded = |points: f64| (100.0 * points).round() / 100.0;
+    [
+        rounded(marks.iter().map(|mark| mark.points).sum()),
+        rounded(marks.iter().map(|mark| mark.of).sum()),
+    ]
+}
+
+/// Formats the number of pixels of a check that differ.
+fn pixels_off(check: Option<&CheckSummary>) -> String {
+    match check.map(|check| check.differing) {
+        None => "<td class=\"number wide none\" data-by=\"-1\">not run</td>".to_owned(),
+        Some(0) => "<td class=\"number wide none\" data-by=\"0\">0</td>".to_owned(),
+        Some(count) => format!(
+            "<td class=\"number wide\" data-by=\"{count}\">{}</td>",
+            grouped(count)
+        ),
+    }
+}

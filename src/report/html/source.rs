@@ -1,0 +1,315 @@
+//! The source of a shader with line numbers: the lines of messages are marked, each with its messages below
+//! it, and what is far from them is folded.
+
+use std::collections::BTreeMap;
+
+use toyproof_diagnostic::{Json, grouped, plural};
+
+use super::glossary::Glossary;
+use super::{Text, sentence};
+use crate::report::Record;
+
+/// The maximum number of messages that are shown for one shader.
+const MAX_MESSAGES: usize = 50;
+/// The number of context lines before and after a marked one.
+const CONTEXT_LINES: usize = 3;
+/// The number of lines from which a part is folded.
+const MIN_FOLDED: usize = 4;
+/// The number of lines up to which a source without marks is shown at once.
+const MAX_UNFOLDED: usize = 24;
+/// The maximum number of characters shown of a marked line.
+const MAX_LINE_CHARS: usize = 200;
+
+/// The maximum size of all sources of a page, in bytes.
+const MAX_SOURCE_BYTES: usize = 2_000_000;
+
+/// The size up to which the page has the whole source of a shader; of a longer one it has only the lines
+/// around the marked ones.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SourceLimit(usize);
+
+impl SourceLimit {
+    /// The limit for a page with these sources.
+    pub(super) fn of<'a>(sources: impl IntoIterator<Item = &'a str>) -> Self {
+        // Escaping makes most characters of a shader no longer.
+        let sizes: Vec<_> = sources.into_iter().map(str::len).collect();
+        if sizes.iter().sum::<usize>() <= MAX_SOURCE_BYTES {
+            Self(usize::MAX)
+        } else {
+            Self(MAX_SOURCE_BYTES / sizes.len())
+        }
+    }
+}
+
+/// The marks of a line: the column of the first, and the messages.
+#[derive(Default)]
+struct Marked {
+    column: usize,
+    severity: String,
+    messages: Vec<String>,
+}
+
+/// Formats the source of a shader, and its messages.
+pub(super) fn source(
+    record: &Record,
+    source: Option<&str>,
+    limit: SourceLimit,
+    glossary: &Glossary,
+) -> String {
+    let lines: Vec<_> = source.map_or_else(Vec::new, |text| text.lines().collect());
+    let mut marks: BTreeMap<usize, Marked> = BTreeMap::new();
+    let mut others = Vec::new();
+    for diagnostic in record.diagnostics.iter().take(MAX_MESSAGES) {
+        match diagnostic.line.zip(diagnostic.column) {
+            Some((line, column))
+                if diagnostic.file.as_ref() == Some(&record.shader) && (1..=lines.len()).contains(&line) =>
+            {
+                let marked = marks.entry(line).or_insert_with(|| Marked {
+                    column,
+                    severity: diagnostic.severity.to_string(),
+                    messages: Vec::new(),
+                });
+                marked
+                    .messages
+                    .push(message(diagnostic, &format!("{line}:{column}"), glossary));
+            }
+            at => {
+                let place = match (&diagnostic.file, at) {
+                    (Some(file), Some((line, column))) => format!("{file}:{line}:{column}"),
+                    (file, _) => file.clone().unwrap_or_default(),
+                };
+                others.push(format!("<li>{}</li>\n", message(diagnostic, &place, glossary)));
+            }
+        }
+    }
+    if let Some(cause) = record
+        .cause
+        .filter(|cause| (1..=lines.len()).contains(&cause.line))
+    {
+        marks.entry(cause.line).or_insert_with(|| Marked {
+            column: cause.column,
+            severity: "cause".to_owned(),
+            messages: vec![format!(
+                "<div class=\"message cause\"><p><strong>likely cause</strong> <span class=\"place\">{}:{}</span></p></div>",
+                cause.line, cause.column
+            )],
+        });
+    }
+    let mut html = String::new();
+    if !others.is_empty() {
+        html += &format!(
+            "<h3>Messages</h3>\n<ul class=\"messages\">\n{}</ul>\n",
+            others.concat()
+        );
+    }
+    if !lines.is_empty() {
+        let is_whole = source.is_none_or(|text| text.len() <= limit.0);
+        html += &format!(
+            "<h3>Source</h3>\n<div class=\"source\" tabindex=\"0\" role=\"region\" aria-label=\"Source\">\n<div>\n{}</div>\n</div>\n",
+            listing(&lines, &marks, is_whole)
+        );
+    }
+    if let more @ 1.. = record.diagnostics.len().saturating_sub(MAX_MESSAGES) {
+        html += &format!(
+            "<p>and {} more {}</p>\n",
+            grouped(more as u64),
+            plural(more as u64, "message", "messages")
+        );
+    }
+    html
+}
+
+fn message(diagnostic: &Json, place: &str, glossary: &Glossary) -> String {
+    let Json { severity, code, .. } = diagnostic;
+    let notes = diagnostic.notes.iter();
+    let notes: String = notes
+        .map(|note| format!("<p class=\"note\">{}</p>", sentence(note)))
+        .collect();
+    format!(
+        "<div class=\"message {severity}\"><p><strong>{severity} {}:</strong> {} <span class=\"place\">{}</span></p>{notes}</div>",
+        glossary.link(code),
+        sentence(&diagnostic.message),
+        Text(place)
+    )
+}
+
+/// Formats all lines: marked ones with their messages, those around them, and the others folded.
+fn listing(lines: &[&str], marks: &BTreeMap<usize, Marked>, is_whole: bool) -> String {
+    let mut html = String::new();
+    // The first line that is not formatted yet.
+    let mut next = 1;
+    for (&line, marked) in marks {
+        let from = line.saturating_sub(CONTEXT_LINES).max(next);
+        html += &unmarked(lines, next, from, is_whole);
+        html += &plain_lines(lines, from, line);
+        html += &format!(
+            "<pre class=\"marked {severity}\"><code><span class=\"line\" data-line=\"{line}\">{}</span></code></pre>\n{}\n",
+            mark_word(lines[line - 1], marked.column),
+            marked.messages.concat(),
+            severity = marked.severity,
+        );
+        let following = marks
+            .range(line + 1..)
+            .next()
+            .map_or(lines.len() + 1, |(&line, _)| line);
+        next = (line + 1 + CONTEXT_LINES).min(following).min(lines.len() + 1);
+        html += &plain_lines(lines, line + 1, next);
+    }
+    html + &unmarked(lines, next, lines.len() + 1, is_whole)
+}
+
+/// Formats the lines from `start` up to `end`, exclusive, which are far from marked ones.
+fn unmarked(lines: &[&str], start: usize, end: usize, is_whole: bool) -> String {
+    let count = end - start;
+    if count < MIN_FOLDED && is_whole {
+        return plain_lines(lines, start, end);
+    }
+    let title = match count {
+        1 => format!("Line {start}"),
+        _ => format!("Lines {start}–{}", end - 1),
+    };
+    if !is_whole {
+        return match count {
+            0 => String::new(),
+            _ => format!("<p class=\"fold\">{title} are left out to keep this page small</p>\n"),
+        };
+    }
+    let open = if count == lines.len() && count <= MAX_UNFOLDED {
+        " open"
+    } else {
+        ""
+    };
+    format!(
+        "<details{open}><summary class=\"fold\">{title}</summary>\n{}</details>\n",
+        plain_lines(lines, start, end)
+    )
+}
+
+/// Formats lines, which the script numbers: markup for each line would make the page twice as large.
+fn plain_lines(lines: &[&str], start: usize, end: usize) -> String {
+    if start == end {
+        return String::new();
+    }
+    let text = lines[start - 1..end - 1].join("\n");
+    // The parser of HTML drops a line feed at the start.
+    format!("<pre data-first=\"{start}\"><code>{}</code></pre>\n", Text(text))
+}
+
+/// Marks the word that starts in a column; a long line is cut around it.
+fn mark_word(line: &str, column: usize) -> String {
+    let start = column.saturating_sub(1);
+    let skipped = start.saturating_sub(MAX_LINE_CHARS / 2);
+    let before: String = line.chars().take(start).skip(skipped).collect();
+    let is_word = |c: &char| c.is_alphanumeric() || *c == '_';
+    let rest = || line.chars().skip(start);
+    let length = rest().take(MAX_LINE_CHARS).take_while(is_word).count().max(1);
+    let mut word: String = rest().take(length).collect();
+    if word.is_empty() {
+        word.push(' ');
+    }
+    let after: String = rest().skip(length).take(MAX_LINE_CHARS / 2).collect();
+    let cut = if skipped > 0 { "…" } else { "" };
+    format!("{cut}{}<mark>{}</mark>{}", Text(before), Text(word), Text(after))
+}
+
+#[cfg(test)]
+mod tests {
+    use toyproof_diagnostic::Severity;
+    use toyproof_verify::Verdict;
+
+    use super::*;
+    use crate::report::Position;
+    use crate::report::record::samples::record;
+
+    fn message_at(line: usize, column: usize) -> Json {
+        Json {
+            severity: Severity::Error,
+            code: "E0301".to_owned(),
+            message: "no <i>".to_owned(),
+            file: Some("invalid".to_owned()),
+            line: Some(line),
+            column: Some(column),
+            end_line: Some(line),
+            end_column: Some(column + 1),
+            fix: None,
+            notes: Vec::new(),
+        }
+    }
+
+    fn html(diagnostics: Vec<Json>, text: &str) -> String {
+        let mut record = record(Verdict::Invalid);
+        record.diagnostics = diagnostics;
+        source(&record, Some(text), SourceLimit::of([text]), &Glossary::of(&[]))
+    }
+
+    /// The text of the page without markup.
+    fn text(html: &str) -> String {
+        let mut parts = html.split('<');
+        let mut text = parts.next().unwrap_or_default().to_owned();
+        text.extend(parts.filter_map(|part| Some(part.split_once('>')?.1)));
+        text
+    }
+
+    #[test]
+    fn the_word_is_marked_in_its_line_and_text_is_escaped() {
+        let html = html(
+            vec![message_at(3, 3)],
+            "one\n<script>\n  é_1 < 2;\nfour\nfive\nsix",
+        );
+        assert!(
+            html.contains("data-line=\"3\">  <mark>é_1</mark> &lt; 2;</span>"),
+            "{html}"
+        );
+        assert!(html.contains("no &lt;i&gt;"), "{html}");
+        let positions =
+            ["&lt;script&gt;", "é_1", "error E0301:", "four\nfive\nsix"].map(|part| text(&html).find(part));
+        assert!(positions.is_sorted() && positions[0].is_some(), "{html}");
+        assert!(!html.contains("<details"), "{html}");
+    }
+
+    #[test]
+    fn lines_far_from_marks_are_folded_and_none_is_lost() {
+        let lines: Vec<_> = (1..=40).map(|line| format!("line{line};")).collect();
+        let html = html(
+            vec![message_at(20, 1), message_at(22, 1), message_at(22, 5)],
+            &lines.join("\n"),
+        );
+        let folds: Vec<_> = html.split("<summary class=\"fold\">").skip(1).collect();
+        let titles: Vec<_> = folds.iter().map(|fold| fold.split('<').next().unwrap()).collect();
+        assert_eq!(titles, ["Lines 1–16", "Lines 26–40"]);
+        let text = text(&html);
+        for line in &lines {
+            assert_eq!(text.matches(line).count(), 1, "{line}");
+        }
+        assert_eq!(html.matches("class=\"message error\"").count(), 3);
+    }
+
+    #[test]
+    fn the_likely_cause_is_marked() {
+        let mut record = record(Verdict::Timeout);
+        record.cause = Some(Position { line: 2, column: 1 });
+        let html = source(&record, Some("a\nb"), SourceLimit::of([]), &Glossary::of(&[]));
+        assert!(
+            html.contains("<mark>b</mark>") && html.contains("likely cause"),
+            "{html}"
+        );
+    }
+
+    #[test]
+    fn of_sources_that_are_too_large_only_excerpts_are_shown() {
+        let text = "float x;\n".repeat(400_000);
+        let html = html(vec![message_at(5, 1)], &text);
+        assert!(html.len() < 2_000, "{}", html.len());
+        assert!(html.contains("Lines 9–400000 are left out"), "{html}");
+    }
+
+    #[test]
+    fn invalid_positions_and_long_lines_are_harmless() {
+        assert!(!html(vec![message_at(9, 1)], "one").contains("<mark>"));
+        assert!(html(vec![message_at(1, 99)], "one").contains("<mark> </mark>"));
+        let long = "x".repeat(1_000_000);
+        assert!(html(vec![message_at(1, 500_000)], &long).len() < 1500);
+        let many = html(vec![message_at(1, 1); 60], "one");
+        assert!(many.contains("and 10 more messages"));
+    }
+}
