@@ -35,12 +35,11 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         if index > 0 {
             terminal.result("");
         }
-        match report::explain(code) {
-            Some(explanation) => print(&explanation, terminal),
-            None => {
-                report_unknown(code, terminal);
-                exit = Exit::Error;
-            }
+        if let Some(explanation) = report::explain(code) {
+            print(&explanation, terminal);
+        } else {
+            report_unknown(code, terminal);
+            exit = Exit::Error;
         }
     }
     exit

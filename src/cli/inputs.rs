@@ -276,9 +276,8 @@ pub(super) fn parse_time_limit(text: &str) -> Result<Duration, String> {
         .parse()
         .ok()
         .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
-    let time = match seconds.map_or_else(|| humantime::parse_duration(text), Ok) {
-        Ok(time) => time,
-        Err(_) => return Err("expected seconds or a number with a unit: 10, 500ms, 2m".to_owned()),
+    let Ok(time) = seconds.map_or_else(|| humantime::parse_duration(text), Ok) else {
+        return Err("expected seconds or a number with a unit: 10, 500ms, 2m".to_owned());
     };
     if time > MAX_TIME_LIMIT {
         return Err("the longest time limit is 24 hours".to_owned());

@@ -60,7 +60,7 @@ pub struct Cli {
         help_heading = "Output"
     )]
     quiet: bool,
-    /// Color the output: `auto` on terminals, unless NO_COLOR is set
+    /// Color the output: `auto` on terminals, unless `NO_COLOR` is set
     #[arg(
         long,
         global = true,

@@ -163,7 +163,7 @@ fn keep_folders(inputs: &mut [Result<Input, ReadError>]) {
             let first = parts.next().flatten();
             first.is_some() && parts.all(|part| part == first)
         };
-        let length = (0..).take_while(|&index| common(index)).count();
+        let length = (0..folders[0].len()).take_while(|&index| common(index)).count();
         let relative = |input: &Input| -> Option<PathBuf> {
             let rest: Vec<_> = input.path()?.components().skip(length).collect();
             let is_inside = rest.iter().all(|part| matches!(part, Component::Normal(_)));

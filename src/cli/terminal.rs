@@ -1,7 +1,7 @@
 //! All output to the terminal.
 
 use std::collections::BTreeMap;
-use std::fmt::{self, Display};
+use std::fmt::{self, Display, Write as _};
 use std::io::{self, Write};
 use std::panic::PanicHookInfo;
 use std::path::Path;
@@ -210,7 +210,10 @@ impl Terminal {
         }
         for (code, count) in warnings {
             if let more @ 1.. = count.saturating_sub(WARNINGS_SHOWN) {
-                text += &format!("{more} more {code}: -v shows all; `toyproof explain {code}` explains it\n");
+                let _ = writeln!(
+                    text,
+                    "{more} more {code}: -v shows all; `toyproof explain {code}` explains it"
+                );
             }
         }
         if !text.is_empty() {
@@ -304,7 +307,6 @@ impl Terminal {
                 }),
                 _ => {
                     let _ = bars.clear();
-                    #[expect(clippy::exit, reason = "the user wants the program to end now")]
                     std::process::exit(130);
                 }
             });

@@ -278,7 +278,7 @@ mod tests {
         let diagnostic = Diagnostic::error("E0200", "unknown function `saturate`")
             .at(span(5, 13))
             .fix(fix);
-        let text = human(&diagnostic, &files, false);
+        let text = human(&diagnostic, &files, None, false);
         assert_eq!(text.matches("write `clamp(x, 0.0, 1.0)`").count(), 1, "{text}");
         assert!(text.contains("^^^^^^^^ write `clamp"), "{text}");
         let merged = JsonFix {
@@ -292,7 +292,10 @@ mod tests {
         assert_eq!(json(&diagnostic, &files).fix, Some(merged));
         let named = Diagnostic::error("E0200", "unknown name `a`; did you mean `b`?").at(span(13, 14));
         let named = named.fix(Fix::new("did you mean `b`?", span(13, 14), "b"));
-        assert_eq!(human(&named, &files, false).matches("did you mean").count(), 1);
+        assert_eq!(
+            human(&named, &files, None, false).matches("did you mean").count(),
+            1
+        );
         assert!(json(&named, &files).notes.is_empty());
         let contradictory = named
             .clone()

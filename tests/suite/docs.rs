@@ -306,7 +306,10 @@ fn pages_that_the_code_names_exist() {
                     !character.is_alphanumeric() && !matches!(character, '/' | '-' | '_' | '.')
                 });
                 let page = rest[..end.unwrap_or(rest.len())].trim_end_matches('.');
-                if page.ends_with(".md") {
+                if Path::new(page)
+                    .extension()
+                    .is_some_and(|extension| extension == "md")
+                {
                     assert!(
                         root().join("docs").join(page).is_file(),
                         "{}: docs/{page}",

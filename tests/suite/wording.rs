@@ -107,10 +107,8 @@ fn literals(tokens: TokenStream, texts: &mut Vec<String>) {
                     is_test |= inner.is_none() && (text.starts_with("cfg (test") || text == "test");
                 }
             }
-            TokenTree::Group(group) => {
-                if !std::mem::take(&mut is_test) {
-                    literals(group.stream(), texts);
-                }
+            TokenTree::Group(group) if !std::mem::take(&mut is_test) => {
+                literals(group.stream(), texts);
             }
             TokenTree::Literal(literal) => {
                 let text = literal.to_string();

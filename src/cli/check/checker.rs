@@ -267,7 +267,7 @@ impl<'a> Checker<'a> {
             Verdict::Invalid => {
                 let mut diagnostics = record.diagnostics.iter();
                 let error = diagnostics.find(|one| one.severity == Severity::Error)?;
-                return explain(&report::explain(&error.code)?.code);
+                return explain(report::explain(&error.code)?.code);
             }
             _ => return None,
         };

@@ -162,45 +162,11 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         return Exit::Error;
     };
     let standard = output == Path::new("-");
-    let of_extension = (!standard && !output.is_dir()).then(|| To::of(&output)).flatten();
-    let to = match (args.to, of_extension) {
-        (Some(to), Some(of)) if !to.may_end_as(of) => {
-            terminal.error(format_args!(
-                "the extension of {} means {}, but --to is {}",
-                path_name(&output),
-                of.name(),
-                to.name()
-            ));
-            terminal.help("leave out --to, or give the output another extension");
-            return Exit::Error;
-        }
-        (to, of) => to.or(of),
-    };
-    let Some(to) = to.or((standard || several || output.is_dir()).then_some(To::Wgsl)) else {
-        terminal.error(format_args!("unknown language of {}", path_name(&output)));
-        terminal.help("give it an extension (.wgsl .spv .metal .hlsl .frag), or name the language with --to");
+    let Some(to) = target_language(args, &output, several, terminal) else {
         return Exit::Error;
     };
-    if several && (standard || of_extension.is_some()) {
-        needs_folder(&output, terminal);
-        return Exit::Error;
-    }
-    if standard && to == To::Spv && io::stdout().is_terminal() {
-        terminal.error("SPIR-V is binary and is not written to a terminal");
-        terminal.help("name a file with -o");
-        return Exit::Error;
-    }
-    if standard && args.format == Format::Json {
-        terminal.error("--format json needs standard output, and so does the converted shader");
-        terminal.help("name a file or a folder with -o");
-        return Exit::Error;
-    }
-    if args.style != StyleName::Plain && to != To::Wgsl {
-        terminal.error("--style applies to WGSL only");
-        return Exit::Error;
-    }
-    if args.browser && !matches!(to, To::Wgsl | To::Glsl) {
-        terminal.error("--browser applies to WGSL and GLSL, the languages that browsers run");
+    if let Err(error) = check_target(args, to) {
+        terminal.error(error);
         return Exit::Error;
     }
     let browser = args.browser.then(browser::find).flatten();
@@ -228,10 +194,6 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         language: &args.language,
         driver: &args.driver,
     };
-    let threads = args
-        .jobs
-        .map_or_else(cores, usize::from)
-        .clamp(1, inputs.len().max(1));
     let one = standard || (!several && !output.is_dir());
     let suffix = format!(".{}", to.extension());
     let mut names = Names::new(&[&suffix], &[]);
@@ -250,22 +212,80 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     if !jobs.iter().all(|job| may_write(&job.path, &originals, terminal)) {
         return Exit::Error;
     }
-    let names = jobs.iter().map(Job::name).collect::<Vec<_>>();
-    let names = names.iter().map(String::as_str);
+    let names: Vec<_> = jobs.iter().map(Job::name).collect();
     Batch {
         args,
         terminal,
-        layout: Layout::new(names, terminal.width(), Detail::Normal, false),
+        layout: Layout::new(
+            names.iter().map(String::as_str),
+            terminal.width(),
+            Detail::Normal,
+            false,
+        ),
         to,
         output,
         several,
-        threads,
+        threads: args
+            .jobs
+            .map_or_else(cores, usize::from)
+            .clamp(1, jobs.len().max(1)),
         exit: Exit::Success,
         tally: Tally::default(),
         rows: Vec::new(),
         start: Instant::now(),
     }
     .convert(&jobs, &settings)
+}
+
+/// Returns the language that the arguments or the extension of the output name; prints an error if they disagree,
+/// or if the output cannot take the results.
+fn target_language(args: &Args, output: &Path, several: bool, terminal: &Terminal) -> Option<To> {
+    let standard = output == Path::new("-");
+    let of_extension = (!standard && !output.is_dir()).then(|| To::of(output)).flatten();
+    let to = match (args.to, of_extension) {
+        (Some(to), Some(of)) if !to.may_end_as(of) => {
+            terminal.error(format_args!(
+                "the extension of {} means {}, but --to is {}",
+                path_name(output),
+                of.name(),
+                to.name()
+            ));
+            terminal.help("leave out --to, or give the output another extension");
+            return None;
+        }
+        (to, of) => to.or(of),
+    };
+    let Some(to) = to.or((standard || several || output.is_dir()).then_some(To::Wgsl)) else {
+        terminal.error(format_args!("unknown language of {}", path_name(output)));
+        terminal.help("give it an extension (.wgsl .spv .metal .hlsl .frag), or name the language with --to");
+        return None;
+    };
+    if several && (standard || of_extension.is_some()) {
+        needs_folder(output, terminal);
+        return None;
+    }
+    if standard && to == To::Spv && io::stdout().is_terminal() {
+        terminal.error("SPIR-V is binary and is not written to a terminal");
+        terminal.help("name a file with -o");
+        return None;
+    }
+    if standard && args.format == Format::Json {
+        terminal.error("--format json needs standard output, and so does the converted shader");
+        terminal.help("name a file or a folder with -o");
+        return None;
+    }
+    Some(to)
+}
+
+/// Checks that the options apply to the target language.
+fn check_target(args: &Args, to: To) -> Result<(), &'static str> {
+    if args.style != StyleName::Plain && to != To::Wgsl {
+        return Err("--style applies to WGSL only");
+    }
+    if args.browser && !matches!(to, To::Wgsl | To::Glsl) {
+        return Err("--browser applies to WGSL and GLSL, the languages that browsers run");
+    }
+    Ok(())
 }
 
 /// Returns the output that the arguments name, or its default; prints an error if several shaders have none.

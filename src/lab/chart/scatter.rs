@@ -180,11 +180,15 @@ impl Scatter {
             text(name, (x - TICK_LENGTH, y), left.clone())?;
         }
         let [(x0, y0), (x1, y1)] = corners;
-        text(self.x_title.clone(), ((x0 + x1) / 2, y0 + 34), below)?;
+        text(self.x_title.clone(), (i32::midpoint(x0, x1), y0 + 34), below)?;
         let upwards = text_style(FONT_SIZE, INK)
             .transform(FontTransform::Rotate270)
             .pos(Pos::new(HPos::Center, VPos::Center));
-        text(self.y_title.clone(), (origin.0 + 28, (y0 + y1) / 2), upwards)
+        text(
+            self.y_title.clone(),
+            (origin.0 + 28, i32::midpoint(y0, y1)),
+            upwards,
+        )
     }
 
     /// Draws the colors of the groups, and the names of the points on the front.

@@ -161,6 +161,7 @@ fn labels(labels: &[&'static str]) -> Vec<Step> {
 }
 
 /// All axes.
+#[expect(clippy::too_many_lines, reason = "a table")]
 #[must_use]
 pub fn axes() -> Vec<Axis> {
     let spheres = |name, [label, axis_title]: [&'static str; 2], steps, easy, sample| Axis {

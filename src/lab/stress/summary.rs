@@ -1,5 +1,6 @@
 //! The summary of a study as text: where each formula stops being right, and which one is recommended.
 
+use std::fmt::Write as _;
 use toyproof_diagnostic::{grouped, plural};
 
 use super::axis::{Axis, EasySteps, Kind, Step, axes};
@@ -165,13 +166,14 @@ impl Report {
                 None => String::new(),
             };
             let mut line = format!("Recommended for {what}: {ordinary} ");
-            line += &if right == steps {
+            let range = if right == steps {
                 format!("(right in all {steps} steps{range})")
             } else {
                 format!("(largest range without failures{range}: {right} of {steps} steps)")
             };
+            line += &range;
             if let Some((extreme, ..)) = extreme {
-                line += &format!("\n  at any scale: {extreme}");
+                let _ = write!(line, "\n  at any scale: {extreme}");
             }
             lines.push(line);
         }

@@ -1,5 +1,6 @@
 //! One shader on the page: its verdict, the likely mistake, its images, its checks and its source.
 
+use std::fmt::Write as _;
 use toyproof_diagnostic::{grouped, magnitude};
 use toyproof_verify::compare::{CheckSummary, Pixel};
 
@@ -77,14 +78,14 @@ impl Article<'_> {
         } = self.record;
         let mut facts = String::new();
         if shader != self.name {
-            facts += &format!("<span>File: {}</span>", Text(shader));
+            let _ = write!(facts, "<span>File: {}</span>", Text(shader));
         }
         if let Some(scene) = scene {
-            facts += &format!("<span>Scene: {}</span>", Text(scene));
+            let _ = write!(facts, "<span>Scene: {}</span>", Text(scene));
         }
         let seconds = seconds.total();
         if seconds > 0.0 {
-            facts += &format!("<span>Time: {seconds:.2} s</span>");
+            let _ = write!(facts, "<span>Time: {seconds:.2} s</span>");
         }
         if let Some(rubric) = self.rubric {
             facts += &points(rubric, self.record);
@@ -110,18 +111,21 @@ impl Article<'_> {
         let mut ranked: Vec<_> = others.map(|other| explained(&other.id, &other.text)).collect();
         let mut html = String::new();
         if mistake.is_symptom {
-            html += &format!(
-                "<p><strong>{}:</strong> {first}</p>\n",
+            let _ = writeln!(
+                html,
+                "<p><strong>{}:</strong> {first}</p>",
                 term("symptom", "Symptom")
             );
         } else if ranked.is_empty() {
-            html += &format!("<p><strong>Likely mistake:</strong> {first}</p>\n");
+            let _ = writeln!(html, "<p><strong>Likely mistake:</strong> {first}</p>");
         } else {
             ranked.insert(0, first);
         }
         if !ranked.is_empty() {
-            let ranked: String = ranked.iter().map(|one| format!("<li>{one}</li>\n")).collect();
-            html += &format!(
+            let ranked = ranked.iter().map(|one| format!("<li>{one}</li>\n"));
+            let ranked = ranked.collect::<Vec<_>>().concat();
+            let _ = write!(
+                html,
                 "<p><strong>Possible mistakes</strong>, the most likely first:</p>\n<ol>\n{ranked}</ol>\n"
             );
         }
@@ -163,26 +167,26 @@ fn checks(record: &Record) -> String {
     if summaries.iter().all(|summary| summary.is_none()) {
         return String::new();
     }
-    let rows: String = CHECKS
+    let rows = CHECKS
         .into_iter()
         .zip(summaries)
         .map(|(name, summary)| {
-            let cells = match summary {
-                Some(summary) => check_cells(summary),
-                None => {
-                    let why = record.skipped_toolchain_reason().filter(|_| name == "toolchain");
-                    format!(
-                        "<td class=\"none\" colspan=\"5\">{}</td>",
-                        why.unwrap_or("not run")
-                    )
-                }
+            let cells = if let Some(summary) = summary {
+                check_cells(summary)
+            } else {
+                let why = record.skipped_toolchain_reason().filter(|_| name == "toolchain");
+                format!(
+                    "<td class=\"none\" colspan=\"5\">{}</td>",
+                    why.unwrap_or("not run")
+                )
             };
             format!(
                 "<tr data-check=\"{name}\"><th scope=\"row\">{}</th>{cells}</tr>\n",
                 term(name, name)
             )
         })
-        .collect();
+        .collect::<Vec<_>>()
+        .concat();
     let number = |id: &str, text: &str| format!("<th scope=\"col\" class=\"number\">{}</th>", term(id, text));
     format!(
         r#"<div class="scroll" tabindex="0" role="region" aria-label="Checks">

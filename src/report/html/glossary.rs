@@ -148,7 +148,8 @@ impl Glossary {
             .map(|(id, term, definition)| {
                 format!("<div class=\"entry\" id=\"t-{id}\"><dt>{term}</dt><dd id=\"t-{id}-text\">{}</dd></div>\n", sentence(definition))
             })
-            .collect();
+            .collect::<Vec<_>>()
+            .concat();
         let explanations: String = self
             .0
             .values()
@@ -160,7 +161,8 @@ impl Glossary {
                     markdown::html(text)
                 )
             })
-            .collect();
+            .collect::<Vec<_>>()
+            .concat();
         let explanations = if explanations.is_empty() {
             explanations
         } else {

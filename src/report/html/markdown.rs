@@ -2,6 +2,7 @@
 //! inline code and strong emphasis. All text is escaped.
 
 use super::Text;
+use std::fmt::Write as _;
 
 /// Converts Markdown to HTML.
 pub(super) fn html(text: &str) -> String {
@@ -9,12 +10,11 @@ pub(super) fn html(text: &str) -> String {
     let mut fence: Option<Vec<&str>> = None;
     for line in text.lines() {
         if line.trim_start().starts_with("```") {
-            match fence.take() {
-                Some(lines) => blocks.html += &code(&lines.join("\n")),
-                None => {
-                    blocks.end();
-                    fence = Some(Vec::new());
-                }
+            if let Some(lines) = fence.take() {
+                blocks.html += &code(&lines.join("\n"));
+            } else {
+                blocks.end();
+                fence = Some(Vec::new());
             }
         } else if let Some(lines) = &mut fence {
             lines.push(line);
@@ -67,17 +67,19 @@ impl<'a> Blocks<'a> {
     }
 
     fn end(&mut self) {
-        self.html += &match self.open.take() {
+        let block = match self.open.take() {
             None => String::new(),
             Some((Kind::Paragraph, lines)) => format!("<p>{}</p>\n", inline(&lines.join("\n"))),
             Some((Kind::Preformatted, lines)) => code(&lines.join("\n")),
             Some((Kind::List, lines)) => {
                 let text = format!("\n{}", lines.join("\n")).replace("\n* ", "\n- ");
                 let items = text.split("\n- ").skip(1);
-                let items: String = items.map(|item| format!("<li>{}</li>\n", inline(item))).collect();
+                let items = items.map(|item| format!("<li>{}</li>\n", inline(item)));
+                let items = items.collect::<Vec<_>>().concat();
                 format!("<ul>\n{items}</ul>\n")
             }
         };
+        self.html.push_str(&block);
     }
 }
 
@@ -90,7 +92,7 @@ fn inline(text: &str) -> String {
     let mut html = String::new();
     for (index, part) in text.split('`').enumerate() {
         if index % 2 == 1 {
-            html += &format!("<code>{}</code>", Text(part));
+            let _ = write!(html, "<code>{}</code>", Text(part));
         } else {
             html += &strong(&Text(without_links(part)).to_string());
         }

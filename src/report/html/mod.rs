@@ -114,14 +114,18 @@ fn shaders(records: &[Record]) -> String {
 fn facts(report: &Report, names: &Names, date: SystemTime) -> String {
     let mut facts = format!("<span class=\"whole\">{}</span>", shaders(report.shaders()));
     if !names.folder().is_empty() {
-        facts += &format!("<span class=\"whole\">Folder: {}</span>", Text(names.folder()));
+        let _ = write!(
+            facts,
+            "<span class=\"whole\">Folder: {}</span>",
+            Text(names.folder())
+        );
     }
     let [day, time] = utc(date);
-    facts += &format!("<time datetime=\"{day}T{time}Z\">{day} {time} UTC</time>");
+    let _ = write!(facts, "<time datetime=\"{day}T{time}Z\">{day} {time} UTC</time>");
     if let Some(device) = report.device() {
-        facts += &format!("<span>Device: {}</span>", Text(device));
+        let _ = write!(facts, "<span>Device: {}</span>", Text(device));
     }
-    facts += &format!("<span>{}</span>", Text(report.tool()));
+    let _ = write!(facts, "<span>{}</span>", Text(report.tool()));
     format!("<p class=\"facts\">{facts}</p>\n")
 }
 

@@ -32,7 +32,8 @@ pub(super) fn overview(
         .map(|(term, name)| {
             format!("<th scope=\"col\" class=\"number wide\" data-sort data-term=\"{term}\">{name}</th>")
         })
-        .collect();
+        .collect::<Vec<_>>()
+        .concat();
     format!(
         r#"<section id="overview" aria-label="All shaders">
 <form id="filter" role="search" aria-label="Filter the shaders" hidden>

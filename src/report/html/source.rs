@@ -2,6 +2,7 @@
 //! it, and what is far from them is folded.
 
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 
 use toyproof_diagnostic::{Json, grouped, plural};
 
@@ -97,21 +98,24 @@ pub(super) fn source(
     }
     let mut html = String::new();
     if !others.is_empty() {
-        html += &format!(
+        let _ = write!(
+            html,
             "<h3>Messages</h3>\n<ul class=\"messages\">\n{}</ul>\n",
             others.concat()
         );
     }
     if !lines.is_empty() {
         let is_whole = source.is_none_or(|text| text.len() <= limit.0);
-        html += &format!(
+        let _ = write!(
+            html,
             "<h3>Source</h3>\n<div class=\"source\" tabindex=\"0\" role=\"region\" aria-label=\"Source\">\n<div>\n{}</div>\n</div>\n",
             listing(&lines, &marks, is_whole)
         );
     }
     if let more @ 1.. = record.diagnostics.len().saturating_sub(MAX_MESSAGES) {
-        html += &format!(
-            "<p>and {} more {}</p>\n",
+        let _ = writeln!(
+            html,
+            "<p>and {} more {}</p>",
             grouped(more as u64),
             plural(more as u64, "message", "messages")
         );
@@ -122,9 +126,8 @@ pub(super) fn source(
 fn message(diagnostic: &Json, place: &str, glossary: &Glossary) -> String {
     let Json { severity, code, .. } = diagnostic;
     let notes = diagnostic.notes.iter();
-    let notes: String = notes
-        .map(|note| format!("<p class=\"note\">{}</p>", sentence(note)))
-        .collect();
+    let notes = notes.map(|note| format!("<p class=\"note\">{}</p>", sentence(note)));
+    let notes = notes.collect::<Vec<_>>().concat();
     format!(
         "<div class=\"message {severity}\"><p><strong>{severity} {}:</strong> {} <span class=\"place\">{}</span></p>{notes}</div>",
         glossary.link(code),
@@ -142,7 +145,8 @@ fn listing(lines: &[&str], marks: &BTreeMap<usize, Marked>, is_whole: bool) -> S
         let from = line.saturating_sub(CONTEXT_LINES).max(next);
         html += &unmarked(lines, next, from, is_whole);
         html += &plain_lines(lines, from, line);
-        html += &format!(
+        let _ = write!(
+            html,
             "<pre class=\"marked {severity}\"><code><span class=\"line\" data-line=\"{line}\">{}</span></code></pre>\n{}\n",
             mark_word(lines[line - 1], marked.column),
             marked.messages.concat(),

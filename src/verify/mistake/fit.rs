@@ -338,7 +338,8 @@ fn of_objects(scene: &Scene) -> Vec<SceneNumber> {
 
 /// Numbers that a shader may have but the scene does not.
 fn of_shader(shader: &MarkedShader) -> Vec<Parameter> {
-    let all: [(_, fn(&str) -> String, _, _, _); 2] = [
+    type Describe = fn(&str) -> String;
+    let all: [(_, Describe, _, _, _); 2] = [
         (
             "light-falloff",
             |value| format!("light decreases as {value} / distance²; lights in the scene have no falloff"),

@@ -168,7 +168,7 @@ fn the_table_sorts_and_filters_and_no_shader_text_runs() {
         "descending"
     );
     page.value(&click("Shader"));
-    sorted.sort();
+    sorted.sort_unstable();
     assert_eq!(page.value(NAMES).as_array().unwrap().len(), sorted.len());
 
     let search = |words: &str| {
