@@ -85,8 +85,11 @@ impl Terminal {
 
     /// Prints a result on standard output.
     pub(super) fn result(&self, text: &str) {
-        self.bars
-            .suspend(|| self.check_write(writeln!(anstream::stdout().lock(), "{text}")));
+        // Nothing else may be printed inside `suspend`, which locks the bars.
+        let written = self
+            .bars
+            .suspend(|| writeln!(anstream::stdout().lock(), "{text}"));
+        self.check_write(written);
     }
 
     /// Prints a paragraph on standard output, wrapped at the terminal's width.
@@ -96,10 +99,11 @@ impl Terminal {
 
     /// Writes bytes to standard output; returns whether that succeeded.
     pub(super) fn bytes(&self, bytes: &[u8]) -> bool {
-        self.bars.suspend(|| {
+        let written = self.bars.suspend(|| {
             let mut stdout = io::stdout().lock();
-            self.check_write(stdout.write_all(bytes).and_then(|()| stdout.flush()))
-        })
+            stdout.write_all(bytes).and_then(|()| stdout.flush())
+        });
+        self.check_write(written)
     }
 
     /// Reports the first failed write to standard output. A closed pipe is not an error: the reader has all

@@ -79,7 +79,13 @@
     if (term && target.matches(':focus-visible')) showTip(term);
     else hideTip();
   });
-  document.addEventListener('scroll', hideTip, { capture: true, passive: true });
+  const moveTip = () => {
+    // Focus may scroll the page to the term, whose definition then moves along.
+    const focused = document.activeElement?.closest('[data-term]');
+    if (!tip.hidden && focused?.matches(':focus-visible')) showTip(focused);
+    else hideTip();
+  };
+  document.addEventListener('scroll', moveTip, { capture: true, passive: true });
 
   // The table: sorted by a click on a column header, filtered by text and verdicts.
 
