@@ -286,8 +286,9 @@ impl Terminal {
     /// Lets the command finish what is in progress when the user interrupts it (Ctrl-C): the first interrupt
     /// prints `message` and sets the returned flag, the second exits at once.
     pub(super) fn watch_interrupts(&self, message: &'static str) -> Arc<AtomicBool> {
-        self.handle_interrupts();
+        // Before the handler, which ends the program without a message.
         let _ = self.interrupts.message.set(message);
+        self.handle_interrupts();
         Arc::clone(&self.interrupts.flag)
     }
 
