@@ -409,7 +409,7 @@ mod tests {
         assert!(wrapped.lines().all(|line| display_width(line) <= 70), "{wrapped}");
         assert_eq!(
             wrapped.lines().nth(1),
-            Some("                                 reference (16.4 %)")
+            Some("                                 the reference (16.4 %)")
         );
     }
 

@@ -90,7 +90,7 @@ pub fn read<T>(
         errors.truncate(MAX_ERRORS);
         let last = errors.pop().map(|last| {
             let noun = plural(omitted, "error is", "errors are");
-            last.note(format!("note: {} more {noun} not shown", grouped(omitted)))
+            last.note(format!("{} more {noun} not shown", grouped(omitted)))
         });
         errors.extend(last);
     }
