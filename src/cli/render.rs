@@ -12,7 +12,7 @@ use toyproof_scene::{self as scene, FrameTime, Requirements, Sampler, Scene};
 use toyproof_tracer::{Real, Tracer};
 
 use super::inputs::may_write;
-use super::run::{Precision, default_image};
+use super::run::{Precision, default_image, has_image_extension};
 use super::scenes::read_scene;
 use super::sequence::{self, Frames, Sequence};
 use super::terminal::file_size;
@@ -114,6 +114,9 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     }
     terminal.detail(&format!("the scene requires {requirements}"));
     let output = args.output.clone().unwrap_or_else(|| default_image(&args.scene));
+    if !has_image_extension(&output, terminal) {
+        return Exit::Error;
+    }
     let mut previous = PreviousTracers::default();
     let succeeded = match args.frames {
         None => {

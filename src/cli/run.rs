@@ -103,7 +103,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let mut names = Names::new(&[".png"], &[]);
     let mut exit = Exit::Success;
     let channels = args.frame.files().map(PathBuf::as_path).collect();
-    if !may_write(&output, &channels, terminal) {
+    if !may_write(&output, &channels, terminal) || (one && !has_image_extension(&output, terminal)) {
         return Exit::Error;
     }
     let mut runner = Runner {
@@ -148,6 +148,26 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
 /// The default name of an image, in the current folder.
 pub(super) fn default_image(input: &Path) -> PathBuf {
     Path::new(input.file_name().unwrap_or_default()).with_extension("png")
+}
+
+/// Returns whether images can be written to a file of this name; prints an error if not.
+pub(super) fn has_image_extension(path: &Path, terminal: &Terminal) -> bool {
+    if path == Path::new("-") {
+        return true;
+    }
+    match image::check_extension(path) {
+        Ok(()) => true,
+        Err(error) => {
+            terminal.error(error);
+            if path
+                .extension()
+                .is_some_and(|extension| ["gif", "mp4", "webm"].iter().any(|video| extension == *video))
+            {
+                terminal.help("write a sequence with --frames A..B -o NAME.png, and encode it with ffmpeg");
+            }
+            false
+        }
+    }
 }
 
 /// An image that was written, as JSON has it.

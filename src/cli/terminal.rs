@@ -221,7 +221,9 @@ impl Terminal {
             }
         }
         if !text.is_empty() {
-            self.message(text.trim_end_matches('\n'));
+            // Excerpts are followed by an empty line.
+            let end = if self.quiet { "" } else { "\n" };
+            self.message(&(text.trim_end_matches('\n').to_owned() + end));
         }
     }
 

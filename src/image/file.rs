@@ -1,6 +1,6 @@
 //! PNG (8 bits) and EXR (32-bit floats) files.
 
-use std::io::Cursor;
+use std::io::{self, Cursor};
 use std::path::{Path, PathBuf};
 
 use image::{DynamicImage, ExtendedColorType, ImageEncoder, ImageFormat, ImageReader, Limits, Rgba32FImage};
@@ -15,7 +15,7 @@ pub enum ImageError {
     #[error("{0}: unsupported image format: use .png (8 bits) or .exr (floats)")]
     Extension(PathBuf),
     /// The file is not an image, or cannot be read.
-    #[error("{path}: not a readable image: {error}")]
+    #[error("cannot read {path} as an image: {error}")]
     Unreadable {
         /// The file.
         path: PathBuf,
@@ -144,6 +144,14 @@ pub fn read_shown(path: &Path) -> Result<Rgb8Image, ImageError> {
     Ok(Rgb8Image::new(rgb.width(), rgb.height(), pixels.collect()))
 }
 
+/// Checks that images can be written to a file with this extension.
+///
+/// # Errors
+/// [`ImageError::Extension`].
+pub fn check_extension(path: &Path) -> Result<(), ImageError> {
+    Format::of(path).map(|_| ())
+}
+
 fn decode(path: &Path) -> Result<DynamicImage, ImageError> {
     let unreadable = |error: String| ImageError::Unreadable {
         path: path.to_owned(),
@@ -151,7 +159,10 @@ fn decode(path: &Path) -> Result<DynamicImage, ImageError> {
     };
     let mut reader = ImageReader::open(path)
         .and_then(ImageReader::with_guessed_format)
-        .map_err(|error| unreadable(error.to_string()))?;
+        .map_err(|error| match error.kind() {
+            io::ErrorKind::NotFound => unreadable("no such file".to_owned()),
+            _ => unreadable(error.to_string()),
+        })?;
     if !matches!(reader.format(), Some(ImageFormat::Png | ImageFormat::OpenExr)) {
         return Err(unreadable("only PNG and EXR are supported".to_owned()));
     }
@@ -207,11 +218,6 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
         std::fs::write(&path, "not an image").unwrap();
-        assert!(
-            read(&path)
-                .unwrap_err()
-                .to_string()
-                .contains("not a readable image")
-        );
+        assert!(read(&path).unwrap_err().to_string().contains("as an image"));
     }
 }

@@ -17,7 +17,7 @@ mod frame;
 pub mod output;
 mod rgb8;
 
-pub use file::{ImageError, encode, encode_shown, read, read_shown};
+pub use file::{ImageError, check_extension, encode, encode_shown, read, read_shown};
 pub use frame::{BLOCK_BYTES, FRAME_RATE, Frame, SAMPLE_RATE};
 pub use rgb8::Rgb8Image;
 use serde::{Deserialize, Serialize};

@@ -49,6 +49,14 @@ pub fn state(findings: &Findings, files: &Files) -> Statement {
             [r, g, b] => format!("every pixel has the same color, ({r}, {g}, {b}) of 255"),
         });
     }
+    if let (Reason::AlgorithmDiffers(share), None) = (&findings.reason, &findings.mistake)
+        && share.count == share.of
+        && findings.actual.only_color().is_none()
+    {
+        statement
+            .details
+            .push("no pixel agrees: is this the right scene?".to_owned());
+    }
     if let (Verdict::Unstable, Some(cause)) = (findings.verdict, findings.cause) {
         let at = files.position(cause);
         statement.details.push(format!(

@@ -10,7 +10,7 @@ use crate::architecture::sources;
 use crate::program::toyproof;
 
 /// Retired words and phrases, each as a regular expression for whole words, and the term that replaces it.
-const RETIRED: [(&str, &str); 40] = [
+const RETIRED: [(&str, &str); 41] = [
     ("paint(s|ed|er|ing)?", "render"),
     ("pictures?", "image"),
     ("told|tells?", "report, check"),
@@ -41,6 +41,10 @@ const RETIRED: [(&str, &str); 40] = [
     ("all the same", "anyway"),
     ("does without|do without", "needs no"),
     ("nobody", "no one is needed in a message"),
+    (
+        "time is up|calls written out|rounds of loops",
+        "time limit exceeded, inlined, iterations",
+    ),
     ("colou?rs? of another|another colou?r", "differs"),
     ("colour(s|ed|ful|ing|less)?", "color"),
     ("cent(red|res?|ring)", "center"),

@@ -168,6 +168,16 @@ impl Outcome {
         if matches!(&failure, Failure::Gpu(failure) if failure.is_without_driver()) {
             self.record.help = Some("toyproof doctor".to_owned());
         }
+        let is_late = match &failure {
+            Failure::LoopTruncated(_) => true,
+            Failure::Gpu(failure) => failure.is_timeout(),
+            _ => false,
+        };
+        if is_late {
+            // The evaluator names the line of the loop.
+            let shader = shell_word(&self.record.shader);
+            self.record.help = Some(format!("toyproof check {shader} --device cpu"));
+        }
         self.record.set_failure(failure, files);
     }
 
