@@ -267,6 +267,14 @@ impl Terminal {
         bar
     }
 
+    /// Shows a progress bar over a share of `steps`, such as of a time budget, on a terminal only.
+    pub(super) fn share_bar(&self, steps: u64, label: &str) -> ProgressBar {
+        let bar = self.bar(steps, label);
+        let style = ProgressStyle::with_template("{prefix} {percent} % {wide_bar} ETA {eta}");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        bar
+    }
+
     /// Shows a spinner with a label, on a terminal only.
     pub(super) fn spinner(&self, label: &str) -> ProgressBar {
         self.handle_interrupts();

@@ -102,7 +102,7 @@ fn measure(args: &Args, interrupted: &AtomicBool, terminal: &Terminal) -> Result
         start,
         budget: args.budget,
     };
-    let bar = terminal.bar(1000, "time budget used");
+    let bar = terminal.share_bar(1000, "time budget");
     let report = trade::study(subject, interrupted, |share| {
         bar.set_position((1000.0 * share) as u64);
     });
