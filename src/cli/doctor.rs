@@ -17,10 +17,10 @@ use super::{Exit, Terminal};
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "Example:\n  toyproof doctor --device lavapipe")]
 pub(super) struct Args {
-    /// The device that a command would be given: `auto`, `lavapipe`, `cpu`, or a substring of an adapter's name
+    /// The device to test: `auto`, `lavapipe`, `cpu`, or a substring of an adapter's name
     #[arg(long, alias = "on", value_name = "DEVICE", default_value = "auto", value_parser = inputs::parse_device)]
     device: DeviceSelector,
-    /// The form of standard output
+    /// The format of standard output
     #[arg(long, value_enum, default_value_t = Format::Human, help_heading = "Output", hide_possible_values = true)]
     format: Format,
 }

@@ -139,7 +139,7 @@ pub enum Failure {
     #[error(transparent)]
     Refused(#[from] Refusal),
     /// A pixel exceeded the limit of loop iterations.
-    #[error("a pixel ran more than {limit} rounds of loops")]
+    #[error("a pixel exceeded the limit of {limit} loop iterations")]
     TooOften {
         /// The limit.
         limit: u32,
@@ -147,13 +147,13 @@ pub enum Failure {
         at: Place,
     },
     /// The deadline passed inside a loop.
-    #[error("the time is up, and a loop still runs")]
+    #[error("time limit exceeded inside a loop")]
     Timeout {
         /// The loop.
         at: Place,
     },
     /// The deadline passed between two parts of the image.
-    #[error("the time is up")]
+    #[error("time limit exceeded")]
     TimeUp,
     /// [`Settings::interrupt`] was set.
     #[error("interrupted")]

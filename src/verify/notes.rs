@@ -32,7 +32,7 @@ pub(super) fn notes(observed: &Observations, excludes_pixels: bool, lints: &Lint
         .any(|warning| warning.code == Code::LongLoop.as_str());
     if observed.beyond_cap > 0 && !is_warned {
         let message = format!(
-            "loops run more than {} iterations in {} {}; Mesa before 23 stops them there",
+            "the loops exceed {} iterations in {} {}, after which Mesa before 23 stops them",
             grouped(u64::from(MESA_CAP)),
             grouped(observed.beyond_cap),
             plural(observed.beyond_cap, "pixel", "pixels")

@@ -41,13 +41,13 @@ const STACK_BYTES: usize = 128 << 20;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum Refusal {
     /// It has too many values after inlining.
-    #[error("with all calls written out, this shader is too long to be evaluated on the CPU")]
+    #[error("the shader is too large after inlining to be evaluated on the CPU")]
     TooLong,
-    /// It nests too deep after inlining.
-    #[error("with all calls written out, this shader nests too deep to be evaluated on the CPU")]
+    /// It is nested too deeply after inlining.
+    #[error("the shader is nested too deeply after inlining to be evaluated on the CPU")]
     TooDeep,
     /// There is not enough memory for it, or for the stack.
-    #[error("there is not enough memory to evaluate this shader on the CPU")]
+    #[error("not enough memory to evaluate the shader on the CPU")]
     NoMemory,
     /// Compilation exceeds its time limit.
     #[error(transparent)]

@@ -138,7 +138,7 @@ pub enum Unproved {
         against: Against,
     },
     /// Every pixel depends on undefined behavior.
-    #[error("every pixel depends on undefined behavior: {} at {at}", fault.words())]
+    #[error("every pixel depends on undefined behavior, such as {} at {at}", fault.words())]
     FullyUndefined {
         /// The operation that occurs in most pixels.
         fault: Fault,
