@@ -158,7 +158,7 @@ pub enum Unproved {
     #[error("Chromium can only test shaders whose channels are 2D textures")]
     BrowserChannel,
     /// The browser does not render the original.
-    #[error("Chromium does not render the original: {0}")]
+    #[error("the original shader cannot be rendered with WebGL 2: {0}")]
     BrowserOriginal(browser::Failure),
     /// The browser does not render the conversion.
     #[error(transparent)]
