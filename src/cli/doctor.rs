@@ -185,7 +185,7 @@ impl DriverReport {
         terminal.result(&format!("    driver          {} ({kind})", self.version));
         if let Some(limit) = self.loop_limit {
             terminal.result(&format!(
-                "    loops           cut off after {} iterations (Mesa before 23); `check` reports where",
+                "    loops           stopped after {} iterations (Mesa before 23); `check` reports where",
                 grouped(u64::from(limit))
             ));
         }
