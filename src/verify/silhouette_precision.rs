@@ -319,7 +319,7 @@ mod tests {
         assert_eq!(
             warning.unwrap().message,
             "float32 is too imprecise here for the silhouette of the sphere at (0.1, 0.05, -1000) with radius 1: \
-             hits are arbitrary in a band up to 17 pixels wide"
+             rays hit or miss arbitrarily in a band up to 17 pixels wide"
         );
     }
 }
