@@ -95,7 +95,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         return Exit::Error;
     }
     if standard && (args.frames.is_some() || args.format == Format::Json) {
-        terminal.error("standard output takes a single image, without JSON");
+        terminal.error("standard output takes a single image, not a sequence or JSON");
         terminal.help("name a file with -o");
         return Exit::Error;
     }
