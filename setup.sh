@@ -1,6 +1,6 @@
 #!/bin/sh
 # Checks what the build needs (Rust, make, a C linker) and installs a Vulkan driver that runs on the CPU.
-# Needs no password: what only an administrator may install is printed as a command. Can be run repeatedly.
+# Never asks for a password: if installing needs one, the command is printed instead. Can be run repeatedly.
 set -eu
 cd "$(dirname "$0")"
 
@@ -25,7 +25,7 @@ packages_for() {
     fi
 }
 
-# Root needs no sudo; other users use it only where it asks for no password.
+# Root needs no sudo; other users use sudo only if it works without a password.
 root_prefix() {
     if [ "$(id -u)" -eq 0 ]; then
         as_root=
@@ -39,7 +39,7 @@ root_prefix() {
 # install WHAT PACKAGES: installs packages, or prints the command.
 install() {
     if [ -z "$manager" ]; then
-        log "$1 is missing, and the package manager of this system is unknown; install it by hand"
+        log "$1 is missing, and the package manager of this system is unknown; install it manually"
         return 1
     fi
     if [ "$as_root" = none ]; then
@@ -50,11 +50,11 @@ install() {
     if has apt-get; then
         DEBIAN_FRONTEND=noninteractive
         export DEBIAN_FRONTEND
-        ${as_root}apt-get update -q >/dev/null 2>&1 || log "the list of packages could not be updated"
+        ${as_root}apt-get update -q >/dev/null 2>&1 || log "cannot update the list of packages; continuing with the old one"
     fi
     # The words of the command are separate arguments.
     # shellcheck disable=SC2086
-    ${as_root}$manager $2 >&2 || { log "the command failed"; return 1; }
+    ${as_root}$manager $2 >&2 || { log "installing $1 failed; the messages above state the reason"; return 1; }
 }
 
 has_driver() {
@@ -82,7 +82,7 @@ check_rust() {
     has_rust && return 0
     if has rustup; then
         log "Rust $needed or later is missing; running: rustup update stable"
-        rustup update stable >&2 || log "the command failed"
+        rustup update stable >&2 || log "rustup update failed; the messages above state the reason"
         has_rust && return 0
         log "the default toolchain is older than Rust $needed; run: rustup default stable"
         return 1
@@ -111,9 +111,9 @@ if ! has make || ! has cc; then
     fi
 fi
 if [ "$(uname -s)" = Darwin ]; then
-    log "shaders run on toyproof's CPU evaluator, since Vulkan is not available on macOS"
+    log "shaders run on toyproof's CPU evaluator, because Vulkan is not available on macOS"
 elif ! has_driver; then
     install "the optional Vulkan driver lavapipe" "${driver:-}" ||
         log "without a Vulkan driver, shaders run on toyproof's CPU evaluator and the toolchain check is skipped"
 fi
-[ "$ready" = yes ] || { log "install what is missing, then run this again"; exit 1; }
+[ "$ready" = yes ] || { log "install what is missing, then run ./setup.sh again"; exit 1; }

@@ -20,7 +20,7 @@ use crate::report;
 
 /// Trace one pixel of a shader line by line, in f32 beside f64
 ///
-/// Pixels are counted as on ShaderToy: from the left and from the bottom, from 0.
+/// Pixel coordinates are those of ShaderToy: x from the left, y from the bottom, starting at 0.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
@@ -29,13 +29,13 @@ Examples:
 pub(super) struct Args {
     /// The shader: a file, or - for standard input
     shader: PathBuf,
-    /// The pixel, from the left and from the bottom, from 0
+    /// The pixel: x from the left, y from the bottom, starting at 0
     #[arg(long, value_name = "X,Y", value_parser = parse_pixel, allow_hyphen_values = true)]
     pixel: [u32; 2],
-    /// The scene whose size the image has [default: the .toml file beside the shader]
+    /// The scene that sets the size of the image [default: the .toml file beside the shader]
     #[arg(long, value_name = "SCENE")]
     scene: Option<PathBuf>,
-    /// The form of standard output: `human` shows what each line stores and decides (-v: every
+    /// The format of standard output: `human` shows what each line stores and decides (-v: every
     /// subexpression), `json` everything
     #[arg(long, value_enum, default_value_t = Format::Human, help_heading = "Output", hide_possible_values = true)]
     format: Format,
@@ -136,6 +136,6 @@ fn parse_pixel(text: &str) -> Result<[u32; 2], String> {
         .map(|(x, y)| (x.trim().parse(), y.trim().parse()));
     match parts {
         Some((Ok(x), Ok(y))) => Ok([x, y]),
-        _ => Err("expected two integers, X,Y, from the left and from the bottom".to_owned()),
+        _ => Err("expected two integers X,Y, from the left and from the bottom".to_owned()),
     }
 }

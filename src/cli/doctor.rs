@@ -17,10 +17,10 @@ use super::{Exit, Terminal};
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "Example:\n  toyproof doctor --device lavapipe")]
 pub(super) struct Args {
-    /// The device that a command would be given: `auto`, `lavapipe`, `cpu`, or a substring of an adapter's name
+    /// The device to test: `auto`, `lavapipe`, `cpu`, or a substring of an adapter's name
     #[arg(long, alias = "on", value_name = "DEVICE", default_value = "auto", value_parser = inputs::parse_device)]
     device: DeviceSelector,
-    /// The form of standard output
+    /// The format of standard output
     #[arg(long, value_enum, default_value_t = Format::Human, help_heading = "Output", hide_possible_values = true)]
     format: Format,
 }
@@ -185,7 +185,7 @@ impl DriverReport {
         terminal.result(&format!("    driver          {} ({kind})", self.version));
         if let Some(limit) = self.loop_limit {
             terminal.result(&format!(
-                "    loops           cut off after {} iterations (Mesa before 23); `check` reports where",
+                "    loops           stopped after {} iterations (Mesa before 23); `check` reports where",
                 grouped(u64::from(limit))
             ));
         }

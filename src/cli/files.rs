@@ -112,7 +112,7 @@ impl ReadError {
                 name = path_name(path)
             ),
             Self::NoShader(_) => {
-                "no shader in this folder (looked for .glsl .frag .fs .shadertoy, also in the folders below)"
+                "no shader in this folder or its subfolders (searched for .glsl .frag .fs .shadertoy)"
                     .to_owned()
             }
             Self::Unreadable { error, .. } => format!("cannot be read: {error}"),
@@ -263,7 +263,7 @@ impl fmt::Display for Skipped {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "skipped `{}`: it links to `{}`, outside `{}`; name the file itself if it is to be read",
+            "skipped `{}`: it links to `{}`, outside `{}`; to read it, name the file itself",
             path_name(&self.link),
             path_name(&self.target),
             path_name(&self.folder)
@@ -353,8 +353,9 @@ impl Walk<'_> {
         for entry in entries {
             self.entries += 1;
             if self.entries > MAX_ENTRIES {
-                let error =
-                    format!("there are more than {MAX_ENTRIES} files and folders in it; name a smaller one");
+                let error = format!(
+                    "the folder contains more than {MAX_ENTRIES} files and folders; name a smaller one"
+                );
                 self.fail(self.folder.to_owned(), io::Error::other(error));
                 self.links.clear();
                 return;

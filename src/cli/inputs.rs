@@ -125,7 +125,8 @@ impl FrameArgs {
 pub(super) struct LanguageArgs {
     /// Accept desktop-GLSL extensions that WebGL 2 rejects
     ///
-    /// Accepted are global variables initialized from uniforms, and integers where floats are expected.
+    /// These are global variables initialized from uniforms, integers where floats are expected, and arrays of
+    /// arrays.
     #[arg(long)]
     lenient: bool,
     /// Treat warnings as errors: `warnings` for all, or a code such as W0005
@@ -141,7 +142,7 @@ pub(super) struct LanguageArgs {
 pub(super) struct DriverArgs {
     /// The device that runs shaders: `auto`, `lavapipe`, `cpu`, or a substring of an adapter's name
     ///
-    /// `auto` is lavapipe where it is installed, else the first Vulkan driver, else the CPU. `cpu` is toyproof's
+    /// `auto` selects lavapipe if it is installed, else the first Vulkan driver, else the CPU. `cpu` is toyproof's
     /// own evaluator: it needs no driver, and the toolchain check is skipped.
     #[arg(long, alias = "on", value_name = "DEVICE", default_value = "auto", value_parser = parse_device)]
     device: DeviceSelector,
@@ -184,7 +185,7 @@ impl Deny {
     }
 }
 
-/// The form of standard output.
+/// The format of standard output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum Format {
     Human,
@@ -348,7 +349,7 @@ pub(super) fn parse_device(text: &str) -> Result<DeviceSelector, String> {
 
 pub(super) fn parse_adapter(text: &str) -> Result<AdapterSelector, String> {
     Ok(match text {
-        "" => return Err("expected auto, lavapipe, cpu, or a part of an adapter's name".to_owned()),
+        "" => return Err("expected auto, lavapipe, cpu, or a substring of an adapter's name".to_owned()),
         "auto" => AdapterSelector::Auto,
         "lavapipe" => AdapterSelector::Lavapipe,
         name => AdapterSelector::Named(name.to_owned()),

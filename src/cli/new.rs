@@ -45,7 +45,7 @@ fn parse_name(text: &str) -> Result<String, String> {
         Ok(name.to_owned())
     } else {
         Err("a name consists of letters, digits, `-`, `_`, `.` and spaces, and starts with a letter or digit; \
-             `-o` chooses the folder"
+             use `-o` to choose the folder"
             .to_owned())
     }
 }

@@ -28,13 +28,13 @@ Examples:
   toyproof render 09-soft-shadows --sampler sobol --max-error 0.002
   toyproof render 11-animation -o frames/orrery.png --frames 0..479")]
 pub(super) struct Args {
-    /// The scene: a file, or a name that `toyproof scenes` lists
+    /// The scene: a file, or a name listed by `toyproof scenes`
     scene: PathBuf,
     /// The image: .png (8 bits), .exr (floats), or - for PNG on standard output [default: SCENE.png in the
     /// current folder]
     #[arg(short, long, value_name = "IMAGE")]
     output: Option<PathBuf>,
-    /// The number type that the tracer computes with
+    /// The number type of the tracer
     #[arg(long, value_enum, default_value_t = Precision::F64, hide_possible_values = true, value_name = "f32|f64")]
     precision: Precision,
     /// Samples per pixel [default: the scene's]
@@ -269,7 +269,7 @@ Examples:
   toyproof export 04-many-objects -o mine.glsl
   toyproof check mine.glsl --scene 04-many-objects")]
 pub(super) struct ExportArgs {
-    /// The scene: a file, or a name that `toyproof scenes` lists
+    /// The scene: a file, or a name listed by `toyproof scenes`
     scene: PathBuf,
     /// The shader (.glsl), or - for standard output
     #[arg(

@@ -40,7 +40,7 @@ pub(super) struct Args {
     /// The number type of floats; f64 runs on the CPU
     #[arg(long, value_enum, default_value_t = Precision::F32, hide_possible_values = true, value_name = "f32|f64")]
     precision: Precision,
-    /// The form of the results; `json` needs an output other than standard output
+    /// The format of the results; `json` needs an output other than standard output
     #[arg(long, value_enum, default_value_t = Format::Human, help_heading = "Output", hide_possible_values = true)]
     format: Format,
     /// Render frames A to B, at 60 frames per second, into numbered files
@@ -95,7 +95,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         return Exit::Error;
     }
     if standard && (args.frames.is_some() || args.format == Format::Json) {
-        terminal.error("standard output takes a single image and nothing else");
+        terminal.error("standard output takes a single image, not a sequence or JSON");
         terminal.help("name a file with -o");
         return Exit::Error;
     }

@@ -112,7 +112,7 @@ impl Sequence {
                     grouped(bar.position()),
                     grouped(self.frames.count())
                 ));
-                terminal.help("the same command renders the others");
+                terminal.help("run the same command again to render the others");
                 return false;
             }
             if !frame(&one) {
@@ -129,7 +129,7 @@ impl Sequence {
         let _ = std::fs::remove_file(&self.record);
         if let Some(stale) = self.stale_frame() {
             terminal.warn(format_args!(
-                "{} has another size: it is left from an earlier sequence",
+                "{} is left over from an earlier sequence with another size",
                 path_name(&stale)
             ));
             terminal.help("delete the old frames before you encode a video");

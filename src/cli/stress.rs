@@ -33,7 +33,7 @@ pub(super) struct Args {
     /// Function that intersects a ray with a sphere [default: the only one that is recognized]
     #[arg(long, value_name = "NAME", requires = "shader")]
     function: Option<String>,
-    /// Roles of the function's parameters, where their names do not show them
+    /// Roles of the function's parameters, if their names do not indicate them
     ///
     /// Inputs: origin, direction, center, radius, sphere (center and radius in a vec4), tmin, tmax. Outputs:
     /// t, second (t of the second hit), hit. The path `return` is the function's result.

@@ -139,7 +139,7 @@ pub enum Failure {
     #[error(transparent)]
     Refused(#[from] Refusal),
     /// A pixel exceeded the limit of loop iterations.
-    #[error("a pixel exceeds the limit of {limit} loop iterations")]
+    #[error("a pixel exceeded the limit of {limit} loop iterations")]
     TooOften {
         /// The limit.
         limit: u32,

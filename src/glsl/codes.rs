@@ -52,7 +52,7 @@ codes! {
     TooMuchExpansion "E0013" "A macro expansion that is too large",
     // The grammar, §3 and §9.
     Syntax "E0100" "A syntax error",
-    TooDeep "E0101" "Too deep nesting",
+    TooDeep "E0101" "Nesting that is too deep",
     BadNumber "E0102" "A malformed number",
     NumberRange "E0103" "An integer out of range",
     ReservedWord "E0104" "A reserved word",
@@ -84,7 +84,7 @@ codes! {
     MisplacedJump "E0408" "A `break` or `continue` outside a loop",
     NoMainImage "E0409" "A missing or invalid `mainImage`",
     TooSlow "E0410" "A shader that takes too long to compile",
-    TooDeepToRun "E0411" "Control flow nested too deep for drivers",
+    TooDeepToRun "E0411" "Control flow nested too deeply for drivers",
     // Warnings.
     ReservedName "W0001" "A reserved name",
     UnknownExtension "W0002" "An unsupported extension that is enabled",

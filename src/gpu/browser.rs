@@ -22,7 +22,7 @@ use toyproof_image::{Frame, Image};
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum Failure {
     /// It rejects the shader with this message.
-    #[error("Chromium refuses it: {0}")]
+    #[error("Chromium cannot render the shader: {0}")]
     Refused(String),
     /// It did not respond in time.
     #[error("Chromium did not answer within {:.1} s", .0.as_secs_f64())]

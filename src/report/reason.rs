@@ -90,13 +90,13 @@ pub(super) fn state_reason(reason: &Reason, files: &Files) -> Statement {
         ))
         .detail("the algorithm and precision checks need the CPU evaluator"),
         Reason::ToolchainDiffers(differing) => Statement::new(format!(
-            "{} {} on the GPU from the same float32 arithmetic on the CPU {}",
+            "{} {} between the GPU and the same float32 arithmetic on the CPU {}",
             pixels(*differing),
             plural(differing.count, "differs", "differ"),
             percentage(*differing)
         ))
         .detail("naga, the driver or toyproof is at fault, not the shader"),
-        Reason::NoReference => Statement::new("rendered; there is no scene to compare it with"),
+        Reason::NoReference => Statement::new("the shader renders; there is no scene to compare it with"),
         Reason::AlgorithmDiffers(share) => Statement::new(differing(*share)),
         Reason::SelfIntersection(share) => Statement::new(format!(
             "{} {} on rounding errors {}",
@@ -119,7 +119,7 @@ pub(super) fn state_reason(reason: &Reason, files: &Files) -> Statement {
         ))
         .detail("a change of 1 ULP changes their color, even in double precision"),
         Reason::Imprecise(share) => Statement::new(format!(
-            "correct in double precision; {} {} in float32 {}",
+            "the shader is correct in double precision, but {} {} in float32 {}",
             pixels(*share),
             plural(share.count, "differs", "differ"),
             percentage(*share)
@@ -155,7 +155,7 @@ fn agrees(differing: Share, excluded: u64, tied: u64) -> Statement {
     match tied {
         0 => statement,
         tied => statement.detail(format!(
-            "in {} {} an edge of the scene passes exactly through the sample point",
+            "in {} {}, an edge of the scene passes exactly through the sample point",
             grouped(tied),
             plural(tied, "pixel", "pixels")
         )),
@@ -164,7 +164,8 @@ fn agrees(differing: Share, excluded: u64, tied: u64) -> Statement {
 
 fn by_means(pixels: Share, sampler: Sampler, means: Means) -> Statement {
     let other_numbers = format!(
-        "{} because the shader uses other random numbers than the scene's sampler, `{}`; means were compared instead",
+        "{} because the shader does not use the random numbers of the scene's sampler, `{}`; \
+         means were compared instead",
         of_all(pixels, ["differs", "differ"]),
         sampler.name()
     );
@@ -178,17 +179,17 @@ fn by_means(pixels: Share, sampler: Sampler, means: Means) -> Statement {
             let much = match deviations {
                 None => String::new(),
                 Some(deviations) if deviations.is_finite() => {
-                    format!(" by {deviations:.0} standard deviations")
+                    format!(", by {deviations:.0} standard deviations")
                 }
                 Some(_) => ", and the shader is not random there".to_owned(),
             };
             Statement::new(format!(
-                "the mean color differs from the reference, most around pixel ({x}, {y}){much}"
+                "the mean color differs from the reference, most strongly around pixel ({x}, {y}){much}"
             ))
             .detail(other_numbers)
         }
         Means::FewerSamples { own, scene, variance } => Statement::new(format!(
-            "right in the mean, but with {own} {} per pixel instead of {scene}",
+            "the mean is right, but the shader takes {own} {} per pixel instead of {scene}",
             plural(u64::from(own), "sample", "samples")
         ))
         .detail(noise(variance))
@@ -198,12 +199,14 @@ fn by_means(pixels: Share, sampler: Sampler, means: Means) -> Statement {
         )
         .detail("seed the random numbers of each pixel from its coordinates, or use the scene's sampler")
         .detail(other_numbers),
-        Means::TooNoisy { variance } => Statement::new("too noisy to compare means with the reference")
-            .detail(noise(variance))
-            .detail("sample the lights directly, or take more samples per pixel")
-            .detail(other_numbers),
+        Means::TooNoisy { variance } => {
+            Statement::new("the image is too noisy to compare means with the reference")
+                .detail(noise(variance))
+                .detail("sample the lights directly, or take more samples per pixel")
+                .detail(other_numbers)
+        }
         Means::Underpowered => {
-            Statement::new("too few samples or pixels to compare means with the reference")
+            Statement::new("there are too few samples or pixels to compare means with the reference")
                 .detail("check a larger image, or use the scene's sampler")
                 .detail(other_numbers)
         }
@@ -259,8 +262,8 @@ fn first_error(diagnostics: &[Diagnostic], files: &Files) -> String {
 #[must_use]
 pub fn loop_truncated(pixels: u64) -> String {
     format!(
-        "a loop does not end, or exceeds the driver's limit on iterations: it was cut off in {} {} \
-         (Mesa before 23 stops at 65,535 iterations)",
+        "the driver stopped a loop in {} {}: the loop does not end, or exceeds the limit of Mesa before 23, \
+         65,535 iterations",
         grouped(pixels),
         plural(pixels, "pixel", "pixels")
     )

@@ -59,7 +59,7 @@ impl fmt::Display for Part {
 
 /// A panic that was contained.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("internal error while {part}: {message}; please report this bug in toyproof with the input")]
+#[error("internal error while {part}: {message}; this is a bug in toyproof; please report it with the input")]
 pub struct Panic {
     /// Where it was contained.
     pub part: Part,

@@ -32,10 +32,10 @@ pub(super) fn notes(observed: &Observations, excludes_pixels: bool, lints: &Lint
         .any(|warning| warning.code == Code::LongLoop.as_str());
     if observed.beyond_cap > 0 && !is_warned {
         let message = format!(
-            "loops run more than {} iterations in {} {}; Mesa before 23 stops them there",
-            grouped(u64::from(MESA_CAP)),
+            "the loops of {} {} run more than {} iterations, the limit of Mesa before 23",
             grouped(observed.beyond_cap),
-            plural(observed.beyond_cap, "pixel", "pixels")
+            plural(observed.beyond_cap, "pixel", "pixels"),
+            grouped(u64::from(MESA_CAP))
         );
         notes.push(Diagnostic::warning(Code::LongRun.as_str(), message));
     }

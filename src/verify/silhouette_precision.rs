@@ -79,7 +79,7 @@ impl SilhouetteBand {
         let (radius, distance, width) = (self.radius, self.distance, self.width);
         let message = format!(
             "float32 is too imprecise here for the silhouette of the sphere at ({x}, {y}, {z}) with radius {radius}: \
-             hits are arbitrary in a band up to {width:.0} pixels wide"
+             rays hit or miss arbitrarily in a band up to {width:.0} pixels wide"
         );
         let note = format!(
             "the error grows with the square of the distance to the sphere, {distance:.0}; for a unit direction d, use \
@@ -319,7 +319,7 @@ mod tests {
         assert_eq!(
             warning.unwrap().message,
             "float32 is too imprecise here for the silhouette of the sphere at (0.1, 0.05, -1000) with radius 1: \
-             hits are arbitrary in a band up to 17 pixels wide"
+             rays hit or miss arbitrarily in a band up to 17 pixels wide"
         );
     }
 }

@@ -362,7 +362,7 @@ fn unprovable_shaders_name_the_operation_and_position() {
     fs::write(folder.path().join("a.glsl"), text).unwrap();
     let run = toyproof(folder.path(), &["convert", "a.glsl", "--verify", "-o", "a.wgsl"]);
     assert_eq!(run.code, 2, "{}", run.stderr);
-    let why = "every pixel depends on undefined behavior: `pow` of a negative base, or of base 0 and an exponent ≤ 0 at a.glsl:2:17; not written";
+    let why = "every pixel depends on undefined behavior, such as `pow` of a negative base, or of base 0 and an exponent ≤ 0 at a.glsl:2:17; not written";
     assert!(run.stdout.contains(why), "{}", run.stdout);
 }
 
@@ -448,10 +448,10 @@ fn files_in_every_language_state_their_proof() {
             if glslang {
                 "as read by glslangValidator (Glslang Version"
             } else {
-                "no compiler for the text was installed"
+                "No compiler for the text was installed"
             },
         ),
-        ("metal", "no compiler for the text was installed"),
+        ("metal", "No compiler for the text was installed"),
     ] {
         let out = folder.path().join(format!("out.{ending}"));
         let arguments = [

@@ -144,7 +144,7 @@ fn an_interrupted_sequence_names_the_way_to_resume() {
         "{stderr}"
     );
     assert!(
-        stderr.contains("help: the same command renders the others"),
+        stderr.contains("help: run the same command again to render the others"),
         "{stderr}"
     );
 }

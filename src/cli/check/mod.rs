@@ -43,7 +43,7 @@ pub(super) struct Args {
     /// Shaders: files, folders, or - for standard input
     #[arg(required = true)]
     shaders: Vec<PathBuf>,
-    /// The scene to compare with: a file, or a name that `toyproof scenes` lists
+    /// The scene to compare with: a file, or a name listed by `toyproof scenes`
     #[arg(long, value_name = "SCENE")]
     scene: Option<PathBuf>,
     /// Write images and reports into this folder
@@ -58,13 +58,13 @@ pub(super) struct Args {
     /// A result is reused if shader, scene and flags are unchanged. The earlier run may have been interrupted.
     #[arg(long, requires = "out", help_heading = "Reports")]
     resume: bool,
-    /// Points for compiling and for each check, for report.csv and Gradescope's results.json
+    /// A rubric (.toml): points for compiling and for each check, for report.csv and Gradescope's results.json
     #[arg(long, value_name = "RUBRIC.toml", requires = "out", help_heading = "Reports")]
     rubric: Option<PathBuf>,
-    /// The form of standard output
+    /// The format of standard output
     #[arg(long, value_enum, default_value_t = CheckFormat::Human, help_heading = "Output")]
     format: CheckFormat,
-    /// The number of shaders that are checked at a time [default: the number of cores]
+    /// The number of shaders to check in parallel [default: the number of cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256), allow_negative_numbers = true)]
     jobs: Option<u16>,
     #[command(flatten)]
@@ -75,10 +75,10 @@ pub(super) struct Args {
     driver: DriverArgs,
 }
 
-/// The form of standard output.
+/// The format of standard output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum CheckFormat {
-    /// A verdict for each shader, with what explains it
+    /// A verdict for each shader, with an explanation
     Human,
     /// A line `file:line:column: error[E0100]: message` for each diagnostic, for editors
     Short,
@@ -260,7 +260,7 @@ impl Batch<'_> {
             ));
             if self.args.out.is_some() {
                 self.terminal
-                    .help("the same command with --resume checks the others");
+                    .help("run the same command with --resume to check the others");
             }
             self.failed = true;
         }

@@ -56,14 +56,14 @@ fn header_text(name: &str, status: &ProofStatus) -> String {
             if let Some((name, shown)) = &readers.browser {
                 let _ = writeln!(
                     head,
-                    "// {name} on SwiftShader renders these frames as it renders the original with WebGL 2: {}.",
+                    "// {name} on SwiftShader renders these frames like the original with WebGL 2: {}.",
                     describe_browser(*shown)
                 );
             }
         }
         ProofStatus::Proved(Proved::Source(proof)) => {
             head.push_str(
-                "// Proved is the module that this text was written from; no compiler for the text was installed.\n",
+                "// Proved: the module that this text was written from. No compiler for the text was installed.\n",
             );
             let _ = writeln!(head, "// The module, run on {},", proof.device);
             settings(&mut head, proof);
@@ -83,9 +83,7 @@ fn header_text(name: &str, status: &ProofStatus) -> String {
 /// Appends what it was compared with, in which frames, and how many pixels were left out.
 fn settings(head: &mut String, proof: &Proof) {
     let against = match proof.against {
-        Against::Evaluator => {
-            "renders the same image as toyproof's evaluator renders of the original in float32"
-        }
+        Against::Evaluator => "renders the same image as the original in toyproof's float32 evaluator",
         Against::StrictRun => "renders the same image as the original does there with strict arithmetic",
     };
     let frames: Vec<_> = FRAMES

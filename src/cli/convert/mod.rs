@@ -58,25 +58,25 @@ pub(super) struct Args {
     /// The target language [default: by the extension of the output, else wgsl]
     #[arg(long, value_enum, value_name = "LANGUAGE")]
     to: Option<To>,
-    /// The kind of host that WGSL is written for: entry point, bindings, direction of y
+    /// The host of the WGSL, which determines its entry point, bindings and direction of y
     #[arg(long, value_enum, default_value_t = StyleName::Plain)]
     style: StyleName,
     /// Run the result and compare it with the shader; write it only if all pixels are equal, bit for bit
     #[arg(long, help_heading = "Verification")]
     verify: bool,
-    /// Also run it in Chromium, which must show colors within 1/255 of the shader's
+    /// Also run the result in Chromium; its colors must be within 1/255 of the shader's
     ///
     /// WGSL runs with WebGPU, GLSL with WebGL 2, both on Chromium's software driver. The shader itself runs
     /// with WebGL 2.
     #[arg(long, requires = "verify", help_heading = "Verification")]
     browser: bool,
-    /// Write the output even if verification fails; a comment in it says so
+    /// Write the output even if verification fails; a comment in it states the failure
     #[arg(long, requires = "verify", help_heading = "Verification")]
     force: bool,
-    /// The form of the results; `json` needs an output other than standard output
+    /// The format of the results; `json` needs an output other than standard output
     #[arg(long, value_enum, default_value_t = Format::Human, help_heading = "Output", hide_possible_values = true)]
     format: Format,
-    /// The number of shaders that are converted at a time [default: the number of cores]
+    /// The number of shaders to convert in parallel [default: the number of cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256), allow_negative_numbers = true)]
     jobs: Option<u16>,
     #[command(flatten)]
@@ -256,7 +256,10 @@ fn target_language(args: &Args, output: &Path, several: bool, terminal: &Termina
         (to, of) => to.or(of),
     };
     let Some(to) = to.or((standard || several || output.is_dir()).then_some(To::Wgsl)) else {
-        terminal.error(format_args!("unknown language of {}", path_name(output)));
+        terminal.error(format_args!(
+            "cannot determine the language of {}",
+            path_name(output)
+        ));
         terminal.help("give it an extension (.wgsl .spv .metal .hlsl .frag), or name the language with --to");
         return None;
     };

@@ -43,7 +43,7 @@ pub enum Refusal {
     /// It has too many values after inlining.
     #[error("the shader is too large after inlining to be evaluated on the CPU")]
     TooLong,
-    /// It nests too deep after inlining.
+    /// It is nested too deeply after inlining.
     #[error("the shader is nested too deeply after inlining to be evaluated on the CPU")]
     TooDeep,
     /// There is not enough memory for it, or for the stack.

@@ -25,7 +25,7 @@ impl Checker<'_> {
     fn conversion_note(&self, from: Type, to: Type) -> Option<String> {
         (!self.lenient && is_desktop_conversion(from, to)).then(|| {
             format!(
-                "WebGL2 has no implicit conversion from {} to {}, unlike desktop GLSL and `--lenient`",
+                "WebGL 2 has no implicit conversion from {} to {}, unlike desktop GLSL; `--lenient` accepts it",
                 self.quoted_type(from),
                 self.quoted_type(to)
             )

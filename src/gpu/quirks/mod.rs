@@ -79,7 +79,7 @@ const AFTER_MESA_22: &str = "when Mesa 22.3 (Debian 12) is no longer supported";
 pub const LOOP_CAP: Quirk = Quirk {
     name: "loop-cap",
     driver: DriverKind::Lavapipe,
-    versions: "Mesa before 23: 22.3.6 has the limit, 25.0.7 has none. Measured on each device",
+    versions: "Mesa before 23: 22.3.6 has the limit, 25.0.7 does not. Measured on each device",
     symptom: "all loops of a pixel end after 65,535 iterations in total, without an error",
     workaround: "the device's limit is measured; where loops may reach it, the frame is rendered again with \
                  its loops instrumented, and a pixel in which one was terminated fails the shader",
@@ -93,9 +93,9 @@ pub const OPAQUE_NUMBERS: Quirk = Quirk {
     name: "opaque-numbers",
     driver: DriverKind::Lavapipe,
     versions: "Mesa 22.3.6; other versions were not measured",
-    symptom: "to see whether a condition is uniform, its compiler walks expressions of uniforms as trees and \
-              does not come to the end of an expanded `sin(cos(iTime))`; and it takes the product or \
-              quotient of a constant zero for zero even if it is NaN",
+    symptom: "to see whether a condition is uniform, the compiler walks expressions of uniforms as trees and \
+              does not finish for an expanded `sin(cos(iTime))`; it also folds the product or quotient of \
+              a constant zero to zero, even if it is NaN",
     workaround: "in strict runs, numbers of the uniform block and zeros that are multiplied or divided are \
                  combined by exclusive or with bits of `gl_FragCoord.z` that are 0",
     source: "src/gpu/quirks/mesa_barriers.rs",
@@ -125,8 +125,9 @@ pub const QUIRKS: [Quirk; 11] = [
         driver: DriverKind::Lavapipe,
         versions: "Mesa 22.3.6; other versions were not measured",
         symptom: "conditions nested deeper than 80, or 79 with an `else`, and loops deeper than 80 run \
-                  whatever their condition is",
-        workaround: "deep statements are flattened under flags; shaders that still nest too deep are not run",
+                  regardless of their condition",
+        workaround: "deep statements are flattened under flags; shaders that are still nested too deeply are not \
+                     run",
         source: "src/translate/lower/nesting.rs",
         removal: "when `tests/suite/nesting.rs` passes without it on the supported versions of Mesa",
         scope: Scope::Everywhere,

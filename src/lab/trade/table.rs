@@ -290,7 +290,7 @@ impl Report {
     pub fn skipped_line(&self) -> String {
         let skipped = self.skipped.len() as u64;
         format!(
-            "{} {} did not fit in the time budget; a longer --budget or a smaller --size measures more",
+            "{} {} did not fit in the time budget; use a longer --budget or a smaller --size to measure more",
             grouped(skipped),
             plural(skipped, "configuration", "configurations")
         )

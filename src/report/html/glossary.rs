@@ -48,7 +48,7 @@ const TERMS: [(&str, &str, &str); 18] = [
     (
         "reference",
         "reference",
-        "The correct image of the scene, which toyproof's ray tracer renders.",
+        "The expected image: the scene, rendered by toyproof's ray tracer.",
     ),
     (
         "algorithm",
@@ -65,7 +65,7 @@ const TERMS: [(&str, &str, &str); 18] = [
     (
         "toolchain",
         "toolchain check",
-        "Compares the image of the GPU with the same float32 arithmetic on the CPU, bit by bit. A difference is \
+        "Compares the image of the GPU with the same float32 arithmetic on the CPU, bit for bit. A difference is \
          caused by the shader translator or the driver, not by the shader.",
     ),
     (
@@ -82,8 +82,8 @@ const TERMS: [(&str, &str, &str); 18] = [
     (
         "undefined",
         "undefined behavior",
-        "What GLSL leaves undefined, such as the value of an uninitialized variable or `pow` of a negative \
-         number. Pixels that depend on it are not compared.",
+        "An operation whose result GLSL leaves undefined, such as a read of an uninitialized variable or `pow` of \
+         a negative number. Pixels whose color depends on one are not compared.",
     ),
     (
         "ulp",
@@ -99,7 +99,7 @@ const TERMS: [(&str, &str, &str); 18] = [
     (
         "symptom",
         "symptom",
-        "A description of the wrong image. Many mistakes cause it, so it does not name one.",
+        "A description of a wrong image that many mistakes can cause. It does not name the mistake.",
     ),
 ];
 

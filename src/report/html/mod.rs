@@ -164,8 +164,8 @@ fn subsampling_note(step: u32) -> String {
         return String::new();
     }
     format!(
-        "<p class=\"subsampled\">Images in full size would make this page too large: it shows one pixel of every {step} by {step}. \
-         The image files beside the page have all pixels.</p>\n"
+        "<p class=\"subsampled\">Full-size images would make this page too large, so it shows one \
+         pixel of every {step} by {step}. The image files beside the page have all pixels.</p>\n"
     )
 }
 

@@ -39,7 +39,7 @@ pub(super) fn overview(
 <form id="filter" role="search" aria-label="Filter the shaders" hidden>
 <label class="search"><span>Search</span> <input type="search" name="words" autocomplete="off" placeholder="Name or reason"></label>
 <fieldset>
-<legend>Verdicts that are shown</legend>
+<legend>Show verdicts</legend>
 {chips}</fieldset>
 <p id="shown" role="status"></p>
 </form>

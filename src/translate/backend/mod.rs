@@ -25,7 +25,7 @@ pub enum Target {
     Msl,
     /// HLSL, shader model 5.1.
     Hlsl,
-    /// GLSL ES 3.00 for WebGL2.
+    /// GLSL ES 3.00 for WebGL 2.
     Glsl,
 }
 
@@ -185,7 +185,7 @@ fn write_msl(module: &ValidModule) -> Result<String, TranslateError> {
     .map_err(TranslateError::new)
 }
 
-/// Writes GLSL ES 3.00 for WebGL2 hosts; naga combines textures with their samplers.
+/// Writes GLSL ES 3.00 for WebGL 2 hosts; naga combines textures with their samplers.
 fn write_glsl(module: &ValidModule) -> Result<String, TranslateError> {
     let options = glsl::Options {
         version: glsl::Version::new_gles(300),

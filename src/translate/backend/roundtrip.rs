@@ -70,7 +70,7 @@ fn with_expanded_zeros(line: &str) -> String {
 
 /// Converts GLSL that was written from a lowered shader to a `ShaderToy` shader.
 ///
-/// `ShaderToy` declares the inputs, the output and the entry point itself, so the declarations that a WebGL2
+/// `ShaderToy` declares the inputs, the output and the entry point itself, so the declarations that a WebGL 2
 /// host needs are replaced, line by line; everything else stays as written. A declaration that is not
 /// recognized stays too, and the front end rejects it: a mistake here cannot make a wrong file a proved one.
 #[must_use]
@@ -106,7 +106,7 @@ pub fn shadertoy(module: &ValidModule) -> Result<String, TranslateError> {
     Ok(with_shadertoy_inputs(&text, &values.join(", ")))
 }
 
-/// Replaces the interface of a WebGL2 host by `ShaderToy`'s; `values` initializes the members of the block.
+/// Replaces the interface of a WebGL 2 host by `ShaderToy`'s; `values` initializes the members of the block.
 fn with_shadertoy_inputs(text: &str, values: &str) -> String {
     let own = unused_prefix(text);
     // The text has a `main`, and may have a `mainImage` that it calls.

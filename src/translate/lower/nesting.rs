@@ -56,7 +56,7 @@ pub(super) fn run(cx: &mut LoweringContext) {
     };
     let message = format!("nested too deeply: inside {depth} {what}, including those of its callers");
     cx.too_deep = Some(Code::TooDeepToRun.at(at, message).help(
-        "divide it into consecutive steps, or evaluate it with `--on cpu`; the limit of drivers is 80",
+        "divide it into consecutive steps, or evaluate it with `--device cpu`; drivers allow at most 80 levels",
     ));
 }
 

@@ -145,7 +145,7 @@ pub(super) fn lower_negation(cx: &mut LoweringContext) {
     });
 }
 
-/// Rewrites `!=` of floats as `!(a == b)`, which is true if either is NaN, as GLSL and WebGL2 require.
+/// Rewrites `!=` of floats as `!(a == b)`, which is true if either is NaN, as GLSL and WebGL 2 require.
 ///
 /// naga writes SPIR-V's ordered comparison (`OpFOrdNotEqual`), which is false for NaN, so that `x != x` never
 /// detects one.

@@ -102,7 +102,7 @@ pub enum Unproved {
     #[error("toyproof's GLSL front end rejects the output: {0}")]
     FrontEnd(String),
     /// The evaluator does not run SPIR-V.
-    #[error("the evaluator does not run SPIR-V")]
+    #[error("SPIR-V can be verified only with a Vulkan driver; the evaluator does not run it")]
     Binary,
     /// There is no driver to run it.
     #[error("a proof requires a Vulkan driver: {0}")]
@@ -138,7 +138,7 @@ pub enum Unproved {
         against: Against,
     },
     /// Every pixel depends on undefined behavior.
-    #[error("every pixel depends on undefined behavior: {} at {at}", fault.words())]
+    #[error("every pixel depends on undefined behavior, such as {} at {at}", fault.words())]
     FullyUndefined {
         /// The operation that occurs in most pixels.
         fault: Fault,
@@ -147,7 +147,9 @@ pub enum Unproved {
     },
     /// A channel is a cube map or a volume, which are black in the compared frames, so that what is read from it
     /// cannot be observed.
-    #[error("iChannel{channel} is {shape}, which is black here, so what is read from it cannot be compared")]
+    #[error(
+        "iChannel{channel} is {shape}, which is black in the compared frames, so reads of it cannot be verified"
+    )]
     Unobserved {
         /// The number of the channel.
         channel: usize,
@@ -155,10 +157,10 @@ pub enum Unproved {
         shape: &'static str,
     },
     /// The browser cannot be given one of the channels.
-    #[error("Chromium can only test shaders whose channels are 2D textures")]
+    #[error("in Chromium, only shaders whose channels are 2D textures can be tested")]
     BrowserChannel,
     /// The browser does not render the original.
-    #[error("Chromium does not render the original: {0}")]
+    #[error("the original shader cannot be rendered with WebGL 2: {0}")]
     BrowserOriginal(browser::Failure),
     /// The browser does not render the conversion.
     #[error(transparent)]

@@ -29,7 +29,7 @@ pub(super) static CAMERA: &[Mistake] = mistakes! {
         [ScreenX = "fragCoord.x / iResolution.x - 0.5", ScreenY = "(fragCoord.y / iResolution.y - 0.5)"];
     "pixel-corner": "rays pass through the corners of pixels instead of their centers",
         [AspectStatement = "fragCoord -= 0.5;\n    …"];
-    "half-pixel-twice": "half a pixel is added to `fragCoord`, which already is the pixel's center",
+    "half-pixel-twice": "half a pixel is added to `fragCoord`, which is already the pixel's center",
         [AspectStatement = "fragCoord += 0.5;\n    …"],
         [ScreenY = "((fragCoord.y + 0.5) / iResolution.y * 2.0 - 1.0)"],
         [ScreenX = "(fragCoord.x + 0.5) / iResolution.x * 2.0 - 1.0"];
@@ -53,12 +53,12 @@ pub(super) static FILM: &[Mistake] = mistakes! {
         [GammaExponent = "«Gamma»"];
     "gamma-of-2": "gamma correction uses the square root instead of the scene's gamma",
         [GammaStatement = "color = sqrt(color);"];
-    "extra-gamma": "colors are raised to the power 1/2.2, which the scene does not do",
+    "extra-gamma": "colors are raised to the power 1/2.2, although the scene does not require it",
         [FinalColor = "pow(color, vec3(1.0 / 2.2))"];
-    "extra-inverse-gamma": "colors are raised to the power 2.2, which the scene does not do",
+    "extra-inverse-gamma": "colors are raised to the power 2.2, although the scene does not require it",
         [FinalColor = "pow(color, vec3(2.2))"];
     "no-tone-map": "tone mapping is missing", [ToneMapStatement = ""];
-    "extra-tone-map": "the tone map c / (c + 1) is applied, which the scene does not do",
+    "extra-tone-map": "the tone map c / (c + 1) is applied, although the scene does not require it",
         [FinalColor = "color / (color + 1.0)"];
     "gamma-before-tone-map": "gamma correction is applied before tone mapping",
         [ToneMapStatement = "«GammaStatement»", GammaStatement = "«ToneMapStatement»"];

@@ -33,11 +33,13 @@ pub(super) fn camera(changes: &mut Changes) {
                     |scene| scene.camera.projection = Projection::Pinhole { screen_distance },
                 );
             }
-            let description = "the parallel projection is twice as wide: its width is not halved";
+            let description =
+                "the parallel projection is twice as wide as the scene's: its width is not halved";
             changes.add("projection-width-not-halved", description, |scene| {
                 scene.camera.projection = Projection::Parallel { width: 2.0 * width };
             });
-            let description = "the parallel projection is half as wide: its width is halved twice";
+            let description =
+                "the parallel projection is half as wide as the scene's: its width is halved twice";
             changes.add("projection-width-halved-twice", description, |scene| {
                 scene.camera.projection = Projection::Parallel { width: 0.5 * width };
             });

@@ -35,7 +35,7 @@ pub(super) fn motions(changes: &mut Changes) {
         };
         add(
             "enclosing-motion-missing",
-            format!("{which} does not follow the motion that it is within"),
+            format!("{which} does not follow its enclosing motion"),
             &|motion| motion.within = None,
         );
         for (axis, name) in [

@@ -30,9 +30,13 @@ pub(super) fn objects(changes: &mut Changes) {
         (
             2.0,
             "diameter-as-radius",
-            "all spheres are twice as large: their diameter is used as the radius",
+            "all spheres are twice as large as the scene's: their diameter is used as the radius",
         ),
-        (0.5, "radius-halved", "all spheres are half as large"),
+        (
+            0.5,
+            "radius-halved",
+            "all spheres are half as large as the scene's",
+        ),
     ] {
         changes.add(id, description, |scene| {
             for object in &mut scene.objects {
