@@ -68,6 +68,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     }
     let pixels = grouped(comparison.pixels);
     match comparison.differing {
+        0 if comparison.max_abs == 0.0 => terminal.result(&format!("all {pixels} pixels are equal")),
         0 => terminal.result(&format!(
             "all {pixels} pixels agree to within {}",
             magnitude(comparison.max_abs)

@@ -7,7 +7,8 @@ use toyproof_diagnostic::{Deadline, path_name};
 use toyproof_eval::{Failure, Program};
 use toyproof_glsl::Checked;
 use toyproof_image::Frame;
-use toyproof_scene::Scene;
+use toyproof_scene::{FrameTime, Scene};
+use toyproof_tracer::Tracer;
 use toyproof_verify::debug;
 
 use super::check::References;
@@ -32,7 +33,7 @@ pub(super) struct Args {
     /// The pixel: x from the left, y from the bottom, starting at 0
     #[arg(long, value_name = "X,Y", value_parser = parse_pixel, allow_hyphen_values = true)]
     pixel: [u32; 2],
-    /// The scene that sets the size of the image [default: the .toml file beside the shader]
+    /// The scene of the expected color, which also sets the size [default: the .toml file beside the shader]
     #[arg(long, value_name = "SCENE")]
     scene: Option<PathBuf>,
     /// The format of standard output: `human` shows what each line stores and decides (-v: every
@@ -57,8 +58,8 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         ));
         return Exit::Error;
     };
-    let frame = match frame(args, input) {
-        Ok(frame) => frame,
+    let (frame, scene) = match frame_and_scene(args, input) {
+        Ok(found) => found,
         Err(error) => {
             terminal.error(error);
             return Exit::Error;
@@ -67,7 +68,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let shader = Shader::load(input, &args.language, Deadline::after(args.timeout));
     terminal.diagnostics(&shader.lints.warnings, &shader.files);
     match &shader.checked {
-        Ok(checked) => print_trace(args, &shader, checked, &frame, terminal),
+        Ok(checked) => print_trace(args, (&shader, checked), (&frame, scene), terminal),
         Err(Unusable::Invalid(diagnostics)) => {
             terminal.diagnostics(diagnostics, &shader.files);
             Exit::ShaderFault
@@ -79,15 +80,15 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     }
 }
 
-/// The frame, in the size that the arguments give, else that of the scene beside the shader.
-fn frame(args: &Args, input: &Result<Input, ReadError>) -> Result<Frame, String> {
+/// The frame, in the size that the arguments give, else that of the scene; and the scene, if there is one.
+fn frame_and_scene(args: &Args, input: &Result<Input, ReadError>) -> Result<(Frame, Option<Scene>), String> {
     let mut frame = args.frame.frame()?;
     let reference = input
         .as_ref()
         .ok()
         .and_then(|found| References::new(args.scene.as_deref()).find(found));
     let scene: Option<Scene> = reference.and_then(|reference| reference.scene.ok());
-    if let (None, Some(scene)) = (args.frame.size, scene) {
+    if let (None, Some(scene)) = (args.frame.size, &scene) {
         frame.size = scene.film.size;
     }
     let ([x, y], [width, height]) = (args.pixel, frame.size);
@@ -98,10 +99,25 @@ fn frame(args: &Args, input: &Result<Input, ReadError>) -> Result<Frame, String>
             height - 1
         ));
     }
-    Ok(frame)
+    Ok((frame, scene))
 }
 
-fn print_trace(args: &Args, shader: &Shader, checked: &Checked, frame: &Frame, terminal: &Terminal) -> Exit {
+/// The color of the scene in a pixel, in double precision.
+fn expected_color(mut scene: Scene, frame: &Frame, [x, y]: [u32; 2]) -> [f64; 3] {
+    scene.film.size = frame.size;
+    let time = FrameTime {
+        frame: frame.frame,
+        time: f64::from(frame.time),
+    };
+    Tracer::<f64>::at(&scene, time).pixel(x, y)
+}
+
+fn print_trace(
+    args: &Args,
+    (shader, checked): (&Shader, &Checked),
+    (frame, scene): (&Frame, Option<Scene>),
+    terminal: &Terminal,
+) -> Exit {
     let spinner = terminal.spinner(&shader.name);
     let deadline = Instant::now() + args.timeout;
     let program = Program::within(checked, args.timeout).map_err(Failure::from);
@@ -120,6 +136,7 @@ fn print_trace(args: &Args, shader: &Shader, checked: &Checked, frame: &Frame, t
         tree: &checked.tree,
         pixel: args.pixel,
         size: frame.size,
+        expected: scene.map(|scene| expected_color(scene, frame, args.pixel)),
     };
     let trace = report::PixelTrace::new(&subject, &traced);
     match args.format {

@@ -48,8 +48,9 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
 fn print(explanation: &Explanation, terminal: &Terminal) {
     let Explanation { code, title, text } = explanation;
     terminal.paragraph(&format!("{code}: {title}"));
-    terminal.result("");
-    terminal.result(&plain(text, terminal.width()));
+    if !text.is_empty() {
+        terminal.result(&format!("\n{}", plain(text, terminal.width())));
+    }
 }
 
 fn report_unknown(code: &str, terminal: &Terminal) {

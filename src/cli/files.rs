@@ -11,6 +11,8 @@ use std::path::{Path, PathBuf};
 use toyproof_diagnostic::{Diagnostic, File, Files, Span, path_name};
 use walkdir::{DirEntry, WalkDir};
 
+use crate::cli::scenes::builtin_name;
+
 /// The extensions of shaders, by which folders are searched.
 pub(super) const EXTENSIONS: [&str; 4] = ["glsl", "frag", "fs", "shadertoy"];
 
@@ -105,7 +107,13 @@ impl ReadError {
     /// What is wrong with it.
     pub(crate) fn reason(&self) -> String {
         match self {
-            Self::Missing(_) => "no such file or folder".to_owned(),
+            Self::Missing(path) => match builtin_name(path) {
+                None => "no such file or folder".to_owned(),
+                Some(name) => format!(
+                    "no such file or folder; `{name}` is a built-in scene (to render it: `toyproof render {name}`; to compare \
+                     a shader with it: `toyproof check SHADER --scene {name}`)"
+                ),
+            },
             Self::Scene(path) => format!(
                 "this is a scene, not a shader (to compare a shader with it: `toyproof check SHADER --scene {name}`; to \
                  render it: `toyproof render {name}`)",

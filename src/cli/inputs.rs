@@ -143,14 +143,13 @@ pub(super) struct DriverArgs {
     /// The device that runs shaders: `auto`, `lavapipe`, `cpu`, or a substring of an adapter's name
     ///
     /// `auto` selects lavapipe if it is installed, else the first Vulkan driver, else the CPU. `cpu` is toyproof's
-    /// own evaluator: it needs no driver, and the toolchain check is skipped.
+    /// own evaluator: it needs no driver. There is no toolchain check, since that compares a GPU with the CPU.
     #[arg(long, alias = "on", value_name = "DEVICE", default_value = "auto", value_parser = parse_device)]
     device: DeviceSelector,
-    /// The float arithmetic: `strict` (the default) or `fast`
+    /// The float arithmetic: `strict` or `fast` [default: strict; for `convert`: fast]
     ///
     /// strict: no reassociation or contraction; sin, pow and the like are expanded to operations with the same
-    /// bits on every device. fast: native functions, and the driver may rearrange arithmetic. `convert` uses
-    /// native functions unless `--float strict` is given.
+    /// bits on every device. fast: native functions, and the driver may rearrange arithmetic.
     #[arg(long, value_enum, value_name = "MODE", hide_possible_values = true)]
     float: Option<Float>,
     /// The time limit for one shader: seconds, or a number with a unit (500ms, 2m)

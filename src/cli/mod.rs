@@ -48,7 +48,7 @@ use self::terminal::Terminal;
 pub struct Cli {
     #[command(subcommand)]
     command: Command,
-    /// Print more: the numbers of all checks, times, the driver
+    /// Print more details
     #[arg(short, long, global = true, help_heading = "Output")]
     verbose: bool,
     /// Print results and errors only, one line each

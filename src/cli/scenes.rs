@@ -80,6 +80,14 @@ pub(super) fn read_scene(path: &Path) -> Result<File, String> {
     }
 }
 
+/// The name of the built-in scene that a path is, with or without `.toml`.
+pub(super) fn builtin_name(path: &Path) -> Option<&'static str> {
+    let path = path.to_str()?;
+    let stem = path.strip_suffix(".toml").unwrap_or(path);
+    let mut names = course_files().filter_map(|(name, _)| name.strip_suffix(".toml"));
+    names.find(|name| *name == stem)
+}
+
 fn builtin_scene(path: &Path) -> Result<File, String> {
     let name = path_name(path);
     let stem = name.strip_suffix(".toml").unwrap_or(&name);

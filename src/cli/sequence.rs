@@ -134,17 +134,20 @@ impl Sequence {
             ));
             terminal.help("delete the old frames before you encode a video");
         }
-        terminal.confirm(
-            &self.output,
-            &format!(
-                "{} {} (-{:04} to -{:04}), {:.1} s",
+        let mut frames = self.frames.numbered(&self.output);
+        if let Some(SequenceFrame { path: first, .. }) = frames.next() {
+            let last = frames
+                .last()
+                .map(|last| format!("to {}, ", path_name(&last.path)));
+            let facts = format!(
+                "{}{} {}, {:.1} s",
+                last.unwrap_or_default(),
                 grouped(self.frames.count()),
                 plural(self.frames.count(), "frame", "frames"),
-                self.frames.first,
-                self.frames.last,
                 start.elapsed().as_secs_f64()
-            ),
-        );
+            );
+            terminal.confirm(&first, &facts);
+        }
         true
     }
 }

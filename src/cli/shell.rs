@@ -50,7 +50,7 @@ pub(super) fn man(args: &ManArgs, terminal: &Terminal) -> Exit {
     };
     let written = fs::create_dir_all(folder).and_then(|()| clap_mangen::generate_to(Cli::command(), folder));
     match written {
-        Ok(()) => terminal.confirm(folder, "manual pages of all commands"),
+        Ok(()) => terminal.confirm(folder, "one manual page for each command"),
         Err(error) => {
             terminal.error(format_args!("cannot write to {}: {error}", path_name(folder)));
             return Exit::Error;

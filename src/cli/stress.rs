@@ -26,7 +26,7 @@ use super::{Exit, Terminal};
 #[command(after_long_help = "Examples:\n  toyproof stress -o stress\n  \
                         toyproof stress my.glsl --function intersectSphere -o stress\n  \
                         toyproof stress my.glsl --function hit --map p=origin,v=direction,ball.at=center -o stress\n\n\
-                        Exit code: 0 if no mistake was found, 1 if the function makes a known mistake that its callers cannot avoid, 2 for other errors")]
+                        Exit code: 0 if no mistake was found, 1 if the function makes a known mistake that its callers cannot avoid, 2 for other errors.")]
 pub(super) struct Args {
     /// Shader with the function to test [default: the built-in formulas]
     shader: Option<PathBuf>,

@@ -322,6 +322,7 @@ impl Terminal {
                 }),
                 _ => {
                     let _ = bars.clear();
+                    let _ = writeln!(anstream::stderr().lock(), "interrupted");
                     std::process::exit(130);
                 }
             });

@@ -9,20 +9,15 @@ pub(crate) enum Align {
 
 /// Lines with the cells of each row in columns, indented by two spaces, without trailing spaces.
 pub(crate) fn lines(columns: &[Align], rows: &[Vec<String>]) -> Vec<String> {
-    let width = |column: usize| {
-        let cells = rows.iter().filter_map(|row| row.get(column));
-        cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
-    };
-    let widths: Vec<usize> = (0..columns.len()).map(width).collect();
-    let line = |row: &Vec<String>| {
-        let cells = row.iter().zip(columns.iter().zip(&widths));
-        let cells = cells.map(|(cell, (align, width))| match align {
-            Align::Left => format!("  {cell:<width$}"),
-            Align::Right => format!("  {cell:>width$}"),
-        });
-        cells.collect::<String>().trim_end().to_owned()
-    };
-    rows.iter().map(line).collect()
+    let aligned = columns.iter().enumerate();
+    let right: Vec<usize> = aligned
+        .filter(|(_, align)| **align == Align::Right)
+        .map(|(column, _)| column)
+        .collect();
+    let lines = toyproof_diagnostic::columns(rows, &right).into_iter();
+    lines
+        .map(|line| format!("  {line}").trim_end().to_owned())
+        .collect()
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! The explanations of diagnostic codes and of mistakes, from the pages that document them.
+//! The explanations of diagnostic codes and of mistakes, from the pages that document them, and of terms.
 
 use std::borrow::Cow;
 
@@ -11,10 +11,10 @@ const MISTAKES: &str = include_str!("../../docs/guide/mistakes.md");
 /// The start of a section.
 const HEADING: &str = "\n## ";
 
-/// The explanation of a diagnostic code or of a mistake.
+/// The explanation of a diagnostic code, of a mistake or of a term.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Explanation {
-    /// `E` or `W` and four digits, or the name of a mistake.
+    /// `E` or `W` and four digits, or the name of a mistake or of a term, such as `unstable`.
     pub code: &'static str,
     /// A title of one line.
     pub title: &'static str,
@@ -23,9 +23,112 @@ pub struct Explanation {
     pub text: Cow<'static, str>,
 }
 
-/// Returns all explanations, in the order of the pages.
+/// The terms, each with its id and its definition.
+pub(super) const TERMS: [(&str, &str, &str); 18] = [
+    (
+        "correct",
+        "correct",
+        "The image of the shader agrees with the reference.",
+    ),
+    (
+        "ok",
+        "ok",
+        "The shader renders. There is no scene to compare its image with.",
+    ),
+    (
+        "wrong",
+        "wrong",
+        "The algorithm of the shader differs from the reference: it renders another image even in double precision.",
+    ),
+    (
+        "unstable",
+        "unstable",
+        "The algorithm is correct, but some pixels differ visibly because float32 is not precise enough for it, or \
+         because these pixels are ill-conditioned.",
+    ),
+    (
+        "inconclusive",
+        "inconclusive",
+        "There is no verdict, because too many pixels cannot be compared: they depend on undefined behavior or on \
+         random numbers, or the shader cannot be evaluated in time.",
+    ),
+    ("invalid", "invalid", "The shader does not compile."),
+    (
+        "timeout",
+        "timeout",
+        "The shader does not end, or takes too long.",
+    ),
+    (
+        "error",
+        "error",
+        "The driver or toyproof failed. The shader is not at fault.",
+    ),
+    (
+        "reference",
+        "reference",
+        "The expected image: the scene, rendered by toyproof's ray tracer.",
+    ),
+    (
+        "algorithm",
+        "algorithm check",
+        "Compares the shader, evaluated in double precision, with the reference. A difference is a mistake in the \
+         algorithm, not a rounding error.",
+    ),
+    (
+        "precision",
+        "precision check",
+        "Compares the shader in float32 with the same shader in double precision. A difference is caused by \
+         rounding errors.",
+    ),
+    (
+        "toolchain",
+        "toolchain check",
+        "Compares the image of the GPU with the same float32 arithmetic on the CPU, bit for bit. A difference is \
+         caused by the shader translator or the driver, not by the shader.",
+    ),
+    (
+        "pixels-off",
+        "pixels off",
+        "The number of pixels that differ in a check by more than its tolerance.",
+    ),
+    (
+        "ill-conditioned",
+        "ill-conditioned",
+        "A pixel whose color changes visibly if one operation is rounded differently by 1 ULP, even in double \
+         precision. It is not counted as off.",
+    ),
+    (
+        "undefined",
+        "undefined behavior",
+        "An operation whose result GLSL leaves undefined, such as a read of an uninitialized variable or `pow` of \
+         a negative number. Pixels whose color depends on one are not compared.",
+    ),
+    (
+        "ulp",
+        "ULP",
+        "Unit in the last place: the distance between two neighboring floating-point numbers.",
+    ),
+    (
+        "largest",
+        "largest difference",
+        "The largest difference of a color component, from 0 to 1, over all pixels that are compared. 1/255 = 0.0039 \
+         is one level of an 8-bit image.",
+    ),
+    (
+        "symptom",
+        "symptom",
+        "A description of a wrong image that many mistakes can cause. It does not name the mistake.",
+    ),
+];
+
+/// Returns all explanations: of codes and mistakes in the order of their pages, then of terms.
 pub fn explanations() -> impl Iterator<Item = Explanation> {
-    diagnostics().chain(mistakes())
+    let terms = TERMS.iter().map(|&(code, _, title)| Explanation {
+        code,
+        title,
+        text: "".into(),
+    });
+    diagnostics().chain(mistakes()).chain(terms)
 }
 
 /// Returns the explanation of a code or of a mistake, in any case.

@@ -31,12 +31,16 @@ pub struct Layout {
     pub names: usize,
     /// The width of the terminal in columns; none where lines are not wrapped, as in a file.
     pub width: Option<usize>,
-    /// Whether errors are listed below the shader, as they are where their source lines are not shown.
-    pub lists_errors: bool,
+    /// Whether errors, or the warnings of a shader without a good verdict, are listed below the shader, as they
+    /// are where their source lines are not shown.
+    pub lists_diagnostics: bool,
 }
 
 /// The widest column of names; longer names move their reasons to the right.
 const MAX_NAME_COLUMN: usize = 40;
+
+/// The least width of the column of reasons; where there is less room, they are below the names.
+const MIN_SENTENCE: usize = 40;
 
 /// The width of the column of verdicts.
 const VERDICT_COLUMN: usize = 13;
@@ -48,14 +52,14 @@ impl Layout {
         names: impl IntoIterator<Item = &'a str>,
         width: Option<usize>,
         detail: Detail,
-        lists_errors: bool,
+        lists_diagnostics: bool,
     ) -> Self {
         let names = names.into_iter().map(display_width).max().unwrap_or(0);
         Self {
             detail,
             names: names.min(MAX_NAME_COLUMN),
             width,
-            lists_errors,
+            lists_diagnostics,
         }
     }
 
@@ -68,13 +72,14 @@ impl Layout {
             spaces(display_width(label), VERDICT_COLUMN),
             spaces(display_width(name), self.names + 1)
         );
-        // Where long names leave little room, sentences continue below the name.
         let column = VERDICT_COLUMN + self.names + 2;
-        let indent = match self.width {
-            Some(width) if column > width / 2 => VERDICT_COLUMN,
-            _ => column,
-        };
-        wrap(&prefix, indent, sentence, self.width)
+        match self.width {
+            Some(width) if column + MIN_SENTENCE > width && column + display_width(sentence) > width => {
+                let below = wrap(&" ".repeat(VERDICT_COLUMN), VERDICT_COLUMN, sentence, self.width);
+                format!("{}\n{below}", prefix.trim_end())
+            }
+            _ => wrap(&prefix, column, sentence, self.width),
+        }
     }
 
     /// A line below a result.
@@ -89,7 +94,7 @@ impl Layout {
 /// Formats one shader: verdict, name and reason, and below them what the layout asks for.
 #[must_use]
 pub fn lines(record: &Record, layout: &Layout) -> String {
-    let errors = errors(record);
+    let errors = diagnostics(record, Severity::Error);
     let reason = match errors.len() {
         0 => record.reason.clone(),
         _ if layout.detail == Detail::Short => record.reason.clone(),
@@ -100,8 +105,10 @@ pub fn lines(record: &Record, layout: &Layout) -> String {
     let label = record.verdict.to_string();
     let mut lines = vec![layout.row((&label, style(record.verdict)), &record.shader, &reason)];
     if layout.detail >= Detail::Normal {
-        if layout.lists_errors {
-            lines.extend(error_lines(&errors, &record.shader, layout));
+        if layout.lists_diagnostics && !record.verdict.is_good() {
+            let warnings = diagnostics(record, Severity::Warning);
+            let listed = if errors.is_empty() { &warnings } else { &errors };
+            lines.extend(diagnostic_lines(listed, &record.shader, layout));
         }
         // Of a shader without a fault, the reason is enough.
         if !record.verdict.is_good() || layout.detail == Detail::Full {
@@ -122,18 +129,18 @@ pub fn lines(record: &Record, layout: &Layout) -> String {
     lines.join("\n")
 }
 
-fn errors(record: &Record) -> Vec<&Json> {
+fn diagnostics(record: &Record, severity: Severity) -> Vec<&Json> {
     let diagnostics = record.diagnostics.iter();
     diagnostics
-        .filter(|diagnostic| diagnostic.severity == Severity::Error)
+        .filter(|diagnostic| diagnostic.severity == severity)
         .collect()
 }
 
-/// The most errors of one shader that are listed.
-const MAX_LISTED_ERRORS: usize = 5;
+/// The largest number of diagnostics of one shader that are listed.
+const MAX_LISTED: usize = 5;
 
-/// A line for each error: position, message and code.
-fn error_lines(errors: &[&Json], shader: &str, layout: &Layout) -> Vec<String> {
+/// A line for each diagnostic: position, message and code.
+fn diagnostic_lines(diagnostics: &[&Json], shader: &str, layout: &Layout) -> Vec<String> {
     let place = |error: &Json| {
         let position = match (error.line, error.column) {
             (Some(line), Some(column)) => format!("{line}:{column}"),
@@ -144,7 +151,7 @@ fn error_lines(errors: &[&Json], shader: &str, layout: &Layout) -> Vec<String> {
             _ => position,
         }
     };
-    let shown = &errors[..errors.len().min(MAX_LISTED_ERRORS)];
+    let shown = &diagnostics[..diagnostics.len().min(MAX_LISTED)];
     let places: Vec<_> = shown.iter().map(|error| place(error)).collect();
     let column = places.iter().map(String::len).max().unwrap_or(0);
     let mut lines: Vec<_> = shown
@@ -157,7 +164,7 @@ fn error_lines(errors: &[&Json], shader: &str, layout: &Layout) -> Vec<String> {
             )
         })
         .collect();
-    if let more @ 1.. = errors.len() - shown.len() {
+    if let more @ 1.. = diagnostics.len() - shown.len() {
         lines.push(layout.below("", &format!("and {} more", grouped(more as u64))));
     }
     lines

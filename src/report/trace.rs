@@ -16,6 +16,8 @@ pub struct PixelTrace {
     /// From the left and from the bottom, in pixels.
     pixel: [u32; 2],
     size: [u32; 2],
+    /// The color of the scene; null without a scene.
+    expected: Option<[Component; 3]>,
     /// The final colors; null if the pixel is discarded.
     f32: Option<[Component; 3]>,
     f64: Option<[Component; 3]>,
@@ -77,6 +79,8 @@ pub struct TracedPixel<'a> {
     pub pixel: [u32; 2],
     /// The size of the frame in pixels.
     pub size: [u32; 2],
+    /// The color of the reference; none without a scene.
+    pub expected: Option<[f64; 3]>,
 }
 
 impl PixelTrace {
@@ -94,6 +98,7 @@ impl PixelTrace {
             shader: subject.shader.to_owned(),
             pixel: subject.pixel,
             size: subject.size,
+            expected: subject.expected.map(color),
             f32: explanation.single.map(color),
             f64: explanation.double.map(color),
             divergence_at: explanation.divergence,
@@ -290,13 +295,21 @@ impl PixelTrace {
         let [x, y] = self.pixel;
         let [width, height] = self.size;
         let mut text = format!("{}, pixel ({x}, {y}) of {width}×{height}\n", self.shader);
+        if let Some(expected) = self.expected {
+            let expected = expected.map(|part| part.digits(false)).join(", ");
+            let _ = writeln!(text, "  expected color     ({expected})");
+        }
         for (name, color, single) in [("f32", self.f32, true), ("f64", self.f64, false)] {
             let color = color.map(|color| color.map(|part| part.digits(single)).join(", "));
             let color = color.map_or_else(|| "discarded".to_owned(), |color| format!("({color})"));
             let _ = writeln!(text, "  color in {name}       {color}");
         }
         text.push_str(&self.headline());
-        text.push('\n');
+        let _ = writeln!(
+            text,
+            "\n{:>5} {:NAME_WIDTH$} {:>NUMBER_WIDTH$} {:>NUMBER_WIDTH$} {:>12}",
+            "line", "", "f32", "f64", "difference"
+        );
         let mut writer = Writer {
             text,
             whole,

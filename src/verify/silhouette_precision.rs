@@ -18,6 +18,9 @@ const DISCRIMINANT_ERROR: f64 = 4.4;
 const DISCRIMINANT_ERROR_PARALLEL: f64 = 1.1;
 /// The smallest width of a band that is reported, in pixels; narrower bands look like any other edge.
 const MIN_BAND_WIDTH: f64 = 1.0;
+
+/// The width in pixels from which a band covers most of any image.
+const MAX_WIDTH: f64 = 1_000.0;
 /// The number of points of a silhouette that are tested on the screen.
 const SILHOUETTE_POINTS: u32 = 256;
 
@@ -76,10 +79,15 @@ pub(super) fn warning(bands: &[SilhouetteBand], at: Span) -> Option<Diagnostic> 
 impl SilhouetteBand {
     fn warning(&self, at: Span) -> Diagnostic {
         let [x, y, z] = self.center.to_array();
-        let (radius, distance, width) = (self.radius, self.distance, self.width);
+        let (radius, distance) = (self.radius, self.distance);
+        let width = if self.width < MAX_WIDTH {
+            format!("in a band up to {:.0} pixels wide", self.width)
+        } else {
+            "everywhere".to_owned()
+        };
         let message = format!(
             "float32 is too imprecise here for the silhouette of the sphere at ({x}, {y}, {z}) with radius {radius}: \
-             rays hit or miss arbitrarily in a band up to {width:.0} pixels wide"
+             rays hit or miss arbitrarily {width}"
         );
         let note = format!(
             "the error grows with the square of the distance to the sphere, {distance:.0}; for a unit direction d, use \

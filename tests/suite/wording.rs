@@ -14,7 +14,10 @@ const RETIRED: [(&str, &str); 41] = [
     ("paint(s|ed|er|ing)?", "render"),
     ("pictures?", "image"),
     ("told|tells?", "report, check"),
-    ("maths|mathematics", "algorithm"),
+    (
+        r"maths(_\w+)?|mathematics|rounding_\w+|\w+_undecided",
+        "algorithm",
+    ),
     ("rounding (check|question|errors? decides?)", "precision"),
     ("the (three )?questions?", "checks"),
     ("undecided", "ill-conditioned"),

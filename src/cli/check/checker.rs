@@ -168,11 +168,13 @@ impl Outcome {
         if matches!(&failure, Failure::Gpu(failure) if failure.is_without_driver()) {
             self.record.help = Some("toyproof doctor".to_owned());
         }
-        let is_late = match &failure {
-            Failure::LoopTruncated(_) => true,
-            Failure::Gpu(failure) => failure.is_timeout(),
-            _ => false,
-        };
+        let explains = |one: &diagnostic::Json| report::explain(&one.code).is_some();
+        let is_late = !self.record.diagnostics.iter().any(explains)
+            && match &failure {
+                Failure::LoopTruncated(_) => true,
+                Failure::Gpu(failure) => failure.is_timeout(),
+                _ => false,
+            };
         if is_late {
             // The evaluator names the line of the loop.
             let shader = shell_word(&self.record.shader);
@@ -274,12 +276,12 @@ impl<'a> Checker<'a> {
                 &record.algorithm
             }
             Verdict::Unstable => &record.precision,
-            Verdict::Invalid => {
-                let mut diagnostics = record.diagnostics.iter();
-                let error = diagnostics.find(|one| one.severity == Severity::Error)?;
-                return explain(report::explain(&error.code)?.code);
+            Verdict::Invalid | Verdict::Timeout | Verdict::Inconclusive => {
+                let of = |severity| record.diagnostics.iter().find(|one| one.severity == severity);
+                let diagnostic = of(Severity::Error).or_else(|| of(Severity::Warning))?;
+                return explain(report::explain(&diagnostic.code)?.code);
             }
-            _ => return None,
+            Verdict::Error | Verdict::Correct | Verdict::Ok => return None,
         };
         let check = check.as_ref()?;
         let pixel = check.worst.as_ref().or(check.first.as_ref())?;

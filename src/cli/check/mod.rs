@@ -160,10 +160,10 @@ fn layout(submissions: &[Submission], format: CheckFormat, terminal: &Terminal) 
         _ => Detail::Normal,
     };
     let names = submissions.iter().map(|submission| submission.name.as_str());
-    let lists_errors = submissions.len() > MAX_WITH_SOURCE;
+    let lists_diagnostics = submissions.len() > MAX_WITH_SOURCE;
     // Each line of the short form is one diagnostic.
     let width = terminal.width().filter(|_| format == CheckFormat::Human);
-    Layout::new(names, width, detail, lists_errors)
+    Layout::new(names, width, detail, lists_diagnostics)
 }
 
 /// A run over all shaders of one command.
@@ -285,7 +285,7 @@ impl Batch<'_> {
     /// Prints the messages and the result line of a shader.
     fn report_outcome(&mut self, index: usize, outcome: Outcome) {
         for message in &outcome.messages {
-            self.print(message);
+            self.print(message, outcome.record.verdict);
         }
         match self.args.format {
             CheckFormat::Human => {
@@ -313,13 +313,16 @@ impl Batch<'_> {
 
     /// Prints a message. Of many shaders, diagnostics are not shown with their source lines: errors are listed
     /// below their shader, and warnings are counted.
-    fn print(&mut self, message: &Message) {
+    fn print(&mut self, message: &Message, verdict: Verdict) {
         match message {
             Message::Diagnostics(diagnostics, _)
                 if !self.terminal.is_verbose() && (!self.has_sources || self.terminal.is_quiet()) =>
             {
                 let warnings = diagnostics.iter().filter(|one| one.severity == Severity::Warning);
-                self.hidden_warnings += warnings.count() as u64;
+                // Those of other shaders are listed.
+                if verdict.is_good() || self.terminal.is_quiet() {
+                    self.hidden_warnings += warnings.count() as u64;
+                }
             }
             Message::Diagnostics(..) if self.args.format == CheckFormat::Short => {}
             message => message.print(self.terminal),

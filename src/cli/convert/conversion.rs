@@ -115,7 +115,7 @@ impl Settings<'_> {
             (Err(Unusable::Invalid(diagnostics)), _) => {
                 Err(Refusal::Diagnostics(diagnostics.clone(), Exit::ShaderFault))
             }
-            (Err(Unusable::Unreadable(error)), _) => Err(Refusal::Unreadable(error.to_string())),
+            (Err(Unusable::Unreadable(error)), _) => Err(Refusal::Unreadable(error.reason.clone())),
         };
         (shader, converted)
     }

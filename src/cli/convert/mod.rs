@@ -512,11 +512,11 @@ impl Batch<'_> {
                 (Status::Proved, message)
             }
             ProofStatus::Proved(Proved::Source(proof)) => {
-                let language = self.to.name();
-                let message = format!(
-                    "{}, up to naga's {language} writer; install glslang-tools to verify the text too",
-                    header::describe_proof(proof)
-                );
+                let mut message = header::describe_proof(proof);
+                let _ = write!(message, ", up to naga's {} writer", self.to.name());
+                if self.to == To::Hlsl {
+                    message += "; install glslang-tools to verify the text too";
+                }
                 (Status::Proved, message)
             }
             ProofStatus::NotProved(why) if written => {

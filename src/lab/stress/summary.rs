@@ -11,13 +11,22 @@ use crate::text_table::{self, Align};
 /// Scales and direction lengths of ordinary scenes are within this factor of 1.
 const MAX_ORDINARY_SCALE: f64 = 1e15;
 
+/// The meaning of the cells, between the tables and the recommendations.
+const LEGEND: [&str; 5] = [
+    "",
+    "–: no failure in the tested range. ≤ and ≥: the first step that fails. %: the share of wrong results.",
+    "δ = 1 − (distance of the ray's line from the center / radius)², so that grazing rays have δ near 0.",
+    "docs/evidence/accuracy.md describes the formulas.",
+    "",
+];
+
 impl Report {
     /// The summary of the built-in formulas in f32, then the recommendations.
     #[must_use]
     pub fn summary(&self) -> Vec<String> {
         let mut lines = self.sphere_and_quadric_tables("f32");
         lines.extend(self.strategy_table("f32"));
-        lines.push(String::new());
+        lines.extend(LEGEND.map(str::to_owned));
         lines.extend(self.recommendations());
         lines.extend(self.gpu_lines());
         lines

@@ -1,6 +1,6 @@
 //! The table of all shaders, and the form that filters its rows.
 
-use toyproof_diagnostic::grouped;
+use toyproof_diagnostic::{Severity, grouped};
 use toyproof_verify::Verdict;
 use toyproof_verify::compare::CheckSummary;
 
@@ -98,11 +98,25 @@ fn row(index: usize, record: &Record, name: &str, exhibit: &Exhibit, rubric: Opt
         verdict as u8,
         badge(verdict),
         points.unwrap_or_default(),
-        sentence(&record.reason),
+        why(record),
         pixels_off(record.algorithm.as_ref()),
         pixels_off(record.precision.as_ref()),
         pixels_off(record.toolchain.as_ref()),
     )
+}
+
+/// Formats the reason, and below it the likely mistake or the first error.
+fn why(record: &Record) -> String {
+    let mistake = record.mistake.as_ref().map(|mistake| mistake.text.as_str());
+    let mut errors = record
+        .diagnostics
+        .iter()
+        .filter(|diagnostic| diagnostic.severity == Severity::Error);
+    // A single error is the reason itself.
+    let error = errors.next().filter(|_| errors.next().is_some());
+    let more = mistake.or(error.map(|error| error.message.as_str()));
+    let more = more.map(|more| format!("<br><span class=\"more\">{}</span>", sentence(more)));
+    sentence(&record.reason) + &more.unwrap_or_default()
 }
 
 /// Escapes a name, which may be broken after the parts of its path rather than within them.

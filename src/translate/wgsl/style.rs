@@ -311,7 +311,7 @@ impl Writer<'_> {
             None => diagnostic,
         };
         Unprintable::Host(Box::new(
-            diagnostic.help("use `--style plain`, which provides all inputs"),
+            diagnostic.help("use `--style plain`, which has every input and derivatives"),
         ))
     }
 }
