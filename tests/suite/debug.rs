@@ -139,6 +139,20 @@ fn explain_names_the_line_that_loses_digits() {
 }
 
 #[test]
+fn the_expected_color_is_shown_with_a_scene() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let debug = |rest: &[&str]| {
+        let arguments = [&["debug", "glsl/02-sphere.glsl", "--pixel", "320,180"], rest].concat();
+        toyproof(root, &arguments).stdout
+    };
+    let human = debug(&[]);
+    assert!(human.contains("\n  expected color     (0.99999"), "{human}");
+    let json: Value = serde_json::from_str(&debug(&["--format", "json"])).unwrap();
+    let [expected, actual] = ["expected", "f64"].map(|name| json[name][0].as_f64().unwrap());
+    assert!((expected - actual).abs() < 1e-9, "{expected} {actual}");
+}
+
+#[test]
 fn explain_follows_uniform_and_shared_values() {
     let folder = tempfile::tempdir().unwrap();
     let causes = [

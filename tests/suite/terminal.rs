@@ -286,6 +286,48 @@ fn codes_and_mistakes_are_explained() {
 }
 
 #[test]
+fn terms_are_explained() {
+    let run = toyproof(Path::new("."), &["explain", "ill-conditioned"]);
+    assert!(
+        run.stdout
+            .starts_with("ill-conditioned: A pixel whose color changes"),
+        "{}",
+        run.stdout
+    );
+    assert_eq!(run.stdout.lines().count(), 1);
+}
+
+/// Of many shaders, the warnings of those without a good verdict may explain it.
+#[test]
+fn a_late_shader_in_a_folder_lists_its_warnings() {
+    let folder = homework();
+    let endless = "void mainImage(out vec4 c, in vec2 p) {\n  c = p.xyxy;\n  while (true) c.x += 1.0;\n}\n";
+    fs::write(folder.path().join("hw/endless.glsl"), endless).unwrap();
+    let run = toyproof(folder.path(), &words(&format!("{CHECK} --timeout 1")));
+    assert!(run.stdout.contains("\n             3:"), "{}", run.stdout);
+    assert!(
+        run.stdout
+            .contains("[W0009]\n             help: toyproof explain W0009"),
+        "{}",
+        run.stdout
+    );
+    assert!(!run.stderr.contains("-v shows them"), "{}", run.stderr);
+}
+
+#[test]
+fn the_name_of_a_built_in_scene_is_recognized_where_a_shader_is_expected() {
+    let folder = tempfile::tempdir().unwrap();
+    for arguments in ["check 02-sphere", "run 02-sphere", "convert 02-sphere"] {
+        let run = toyproof(folder.path(), &words(arguments));
+        let all = run.stdout + &run.stderr;
+        assert!(
+            all.contains("`02-sphere` is a built-in scene"),
+            "{arguments}: {all}"
+        );
+    }
+}
+
+#[test]
 fn shells_and_man_know_every_command() {
     let folder = tempfile::tempdir().unwrap();
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
