@@ -25,7 +25,9 @@ pub use self::deadline::{Deadline, Overdue};
 pub use self::file::{File, FileId, Files, Position, Span};
 pub use self::layout::{columns, display_width, wrap};
 pub use self::render::{Json, JsonFix, human, json, short};
-pub use self::text::{grouped, magnitude, nearest, path_name, plural, printable, printable_lines};
+pub use self::text::{
+    color_difference, grouped, magnitude, nearest, path_name, plural, printable, printable_lines,
+};
 
 /// The severity of a diagnostic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]

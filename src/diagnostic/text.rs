@@ -135,6 +135,16 @@ pub fn magnitude(error: f64) -> String {
     }
 }
 
+/// Formats a difference of color components from 0 to 1: 0.580, 1.2e-7, or 0.
+#[must_use]
+pub fn color_difference(difference: f64) -> String {
+    if difference >= 0.001 {
+        format!("{difference:.3}")
+    } else {
+        magnitude(difference)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -212,6 +222,10 @@ mod tests {
         assert_eq!(
             [0.0, -0.0, 1.25e-7, 3.0].map(magnitude),
             ["0", "0", "1.2e-7", "3.0e0"]
+        );
+        assert_eq!(
+            [0.0, 1.0, 0.58, 2.5e-4].map(color_difference),
+            ["0", "1.000", "0.580", "2.5e-4"]
         );
     }
 }

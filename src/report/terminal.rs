@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use anstyle::{AnsiColor, Style};
-use toyproof_diagnostic::{Json, Severity, columns, display_width, grouped, magnitude, plural, wrap};
+use toyproof_diagnostic::{Json, Severity, color_difference, columns, display_width, grouped, plural, wrap};
 use toyproof_verify::Verdict;
 use toyproof_verify::compare::{CheckSummary, Comparison, Pixel};
 
@@ -239,7 +239,7 @@ fn check_row(name: &str, check: &CheckSummary) -> Vec<String> {
         grouped(check.differing),
         grouped(check.ill_conditioned),
         grouped(check.undefined),
-        magnitude(check.max_abs),
+        color_difference(check.max_abs),
         first,
         colors,
     ]

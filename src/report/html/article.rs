@@ -1,7 +1,7 @@
 //! One shader on the page: its verdict, the likely mistake, its images, its checks and its source.
 
 use std::fmt::Write as _;
-use toyproof_diagnostic::{grouped, magnitude};
+use toyproof_diagnostic::{color_difference, grouped};
 use toyproof_verify::compare::{CheckSummary, Pixel};
 
 use super::glossary::{Glossary, term};
@@ -225,7 +225,7 @@ fn check_cells(check: &CheckSummary) -> String {
         number("Pixels off", &off),
         number("Ill-conditioned", &grouped(check.ill_conditioned)),
         number("Undefined", &grouped(check.undefined)),
-        number("Largest difference", &magnitude(check.max_abs)),
+        number("Largest difference", &color_difference(check.max_abs)),
         format!("<td>{}</td>", named.join(" ")),
     ]
     .concat()

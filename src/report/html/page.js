@@ -411,7 +411,7 @@
     const describe = (name, at) => {
       const hasRun = $(`tr[data-check="${name}"] .number`, article) !== null;
       if (!hasRun) return ['not run'];
-      if (!images[name]) return ['equal in every pixel'];
+      if (!images[name]) return ['within the tolerance in every pixel'];
       const color = colorOf(images[name], at);
       const entry = legendOf(name).find(([, own]) => own.every((part, index) => part === color[index]));
       if (!entry) return ['equal'];
