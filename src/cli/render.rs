@@ -7,12 +7,12 @@ use std::time::Instant;
 use clap::ValueEnum;
 use indicatif::ProgressBar;
 use toyproof_diagnostic::{Files, grouped, magnitude, path_name, plural};
-use toyproof_image::{self as image, Image};
+use toyproof_image::Image;
 use toyproof_scene::{self as scene, FrameTime, Requirements, Sampler, Scene};
 use toyproof_tracer::{Real, Tracer};
 
 use super::inputs::may_write;
-use super::run::{Precision, default_image, has_image_extension};
+use super::run::{Precision, default_image, encode, has_image_extension};
 use super::scenes::read_scene;
 use super::sequence::{self, Frames, Sequence};
 use super::terminal::file_size;
@@ -167,17 +167,8 @@ fn render_frame(
         Precision::F32 => trace(scene, frame_time, &mut previous.single, args, terminal),
         Precision::F64 => trace(scene, frame_time, &mut previous.double, args, terminal),
     };
-    let format = if path == Path::new("-") {
-        Path::new("-.png")
-    } else {
-        path
-    };
-    let bytes = match image::encode(&rendered, format) {
-        Ok(bytes) => bytes,
-        Err(error) => {
-            terminal.error(error);
-            return false;
-        }
+    let Some(bytes) = encode(&rendered, path, terminal) else {
+        return false;
     };
     let written = terminal.write(path, &bytes);
     // The frames of a sequence are confirmed together.

@@ -170,6 +170,18 @@ pub(super) fn has_image_extension(path: &Path, terminal: &Terminal) -> bool {
     }
 }
 
+/// Encodes an image for a file, by its extension, or as PNG for standard output; prints an error on failure.
+pub(super) fn encode(image: &Image, path: &Path, terminal: &Terminal) -> Option<Vec<u8>> {
+    let format = if path == Path::new("-") {
+        Path::new("-.png")
+    } else {
+        path
+    };
+    image::encode(image, format)
+        .map_err(|error| terminal.error(error))
+        .ok()
+}
+
 /// An image that was written, as JSON has it.
 #[derive(Debug, Serialize)]
 struct WrittenImage {
@@ -343,17 +355,8 @@ impl Runner<'_> {
 
     /// Writes an image, and confirms it unless it is one of a sequence.
     fn write(&mut self, rendered: &Rendered, shader: &str, path: &Path, confirms: bool) -> Exit {
-        let format = if path == Path::new("-") {
-            Path::new("-.png")
-        } else {
-            path
-        };
-        let bytes = match image::encode(&rendered.image, format) {
-            Ok(bytes) => bytes,
-            Err(error) => {
-                self.terminal.error(error);
-                return Exit::Error;
-            }
+        let Some(bytes) = encode(&rendered.image, path, self.terminal) else {
+            return Exit::Error;
         };
         if !self.terminal.write_output(self.output, path, &bytes) {
             return Exit::Error;
