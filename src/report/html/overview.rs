@@ -107,15 +107,22 @@ fn row(index: usize, record: &Record, name: &str, exhibit: &Exhibit, rubric: Opt
 
 /// Formats the reason, and below it the likely mistake or the first error.
 fn why(record: &Record) -> String {
-    let mistake = record.mistake.as_ref().map(|mistake| mistake.text.as_str());
+    let mistake = record.mistake.as_ref().map(|mistake| {
+        let label = if mistake.is_symptom {
+            "Symptom"
+        } else {
+            "Likely mistake"
+        };
+        format!("{label}: {}", mistake.text)
+    });
     let mut errors = record
         .diagnostics
         .iter()
         .filter(|diagnostic| diagnostic.severity == Severity::Error);
     // A single error is the reason itself.
     let error = errors.next().filter(|_| errors.next().is_some());
-    let more = mistake.or(error.map(|error| error.message.as_str()));
-    let more = more.map(|more| format!("<br><span class=\"more\">{}</span>", sentence(more)));
+    let more = mistake.or(error.map(|error| error.message.clone()));
+    let more = more.map(|more| format!("<br><span class=\"more\">{}</span>", sentence(&more)));
     sentence(&record.reason) + &more.unwrap_or_default()
 }
 
