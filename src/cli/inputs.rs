@@ -69,7 +69,7 @@ impl FrameArgs {
         named.filter(|path| path.as_os_str() != "noise")
     }
 
-    /// The flags that set this frame, for a command that the user may run; channels are left out.
+    /// The flags that set this frame, for a command that the user may run.
     pub(super) fn flags(&self) -> Vec<String> {
         let list = |numbers: [f32; 4]| numbers.map(|number| number.to_string()).join(",");
         let mut flags = Vec::new();

@@ -1,6 +1,5 @@
 //! Image sequences: the numbers of their frames, their files, and which are still to be rendered.
 
-use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::time::Instant;
@@ -157,7 +156,6 @@ impl Sequence {
     fn stale_frame(&self) -> Option<PathBuf> {
         let size = |path: &Path| image::read(path).ok().map(|image| image.size());
         let last = self.frames.numbered(&self.output).last()?.path;
-        let is_own: HashSet<_> = self.frames.numbered(&self.output).map(|one| one.path).collect();
         let prefix = format!("{}-", self.output.file_stem()?.to_string_lossy());
         let is_frame = |path: &PathBuf| {
             let stem = path
@@ -165,9 +163,10 @@ impl Sequence {
                 .unwrap_or_default()
                 .to_string_lossy()
                 .into_owned();
-            let number = stem.strip_prefix(&prefix).unwrap_or_default();
-            let is_number = !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit());
-            is_number && path.extension() == self.output.extension() && !is_own.contains(path)
+            let number = stem.strip_prefix(&prefix).and_then(|number| number.parse().ok());
+            let is_other =
+                number.is_some_and(|number| !(self.frames.first..=self.frames.last).contains(&number));
+            is_other && path.extension() == self.output.extension()
         };
         let folder = self.output.parent().filter(|folder| *folder != Path::new(""));
         let entries = std::fs::read_dir(folder.unwrap_or(Path::new("."))).ok()?;

@@ -28,10 +28,10 @@ pub fn wrap(prefix: &str, indent: usize, text: &str, width: Option<usize>) -> St
     textwrap::fill(text, options).trim_end().to_owned()
 }
 
-/// Aligns the cells of a table, of as many columns in each row; the columns of these indices are aligned to the
-/// right, and the last column is not padded.
+/// Aligns the cells of a table; the columns of the indices `right` are aligned to the right. Each line starts with
+/// `indent`, and none ends with spaces.
 #[must_use]
-pub fn columns(rows: &[Vec<String>], right: &[usize]) -> Vec<String> {
+pub fn columns(indent: &str, rows: &[Vec<String>], right: &[usize]) -> Vec<String> {
     let count = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width = |column: usize| {
         let cells = rows.iter().filter_map(|row| row.get(column));
@@ -47,7 +47,8 @@ pub fn columns(rows: &[Vec<String>], right: &[usize]) -> Vec<String> {
                 format!("{cell}{spaces}")
             }
         });
-        cells.collect::<Vec<_>>().join("  ").trim_end().to_owned()
+        let line = cells.collect::<Vec<_>>().join("  ");
+        format!("{indent}{line}").trim_end().to_owned()
     };
     rows.iter().map(line).collect()
 }
@@ -80,6 +81,6 @@ mod tests {
             vec!["a".to_owned(), "1,000".to_owned()],
             vec!["ä→b".to_owned(), "2".to_owned()],
         ];
-        assert_eq!(columns(&rows, &[1]), ["a    1,000", "ä→b      2"]);
+        assert_eq!(columns("", &rows, &[1]), ["a    1,000", "ä→b      2"]);
     }
 }

@@ -10,5 +10,4 @@
 
 pub mod chart;
 pub mod stress;
-mod text_table;
 pub mod trade;

@@ -218,7 +218,11 @@ fn check_lines(record: &Record) -> Vec<String> {
     let mut lines = Vec::new();
     if !rows.is_empty() {
         let header = header.map(str::to_owned);
-        lines.extend(columns(&[vec![header.to_vec()], rows].concat(), &[1, 2, 3, 4]));
+        lines.extend(columns(
+            "",
+            &[vec![header.to_vec()], rows].concat(),
+            &[1, 2, 3, 4],
+        ));
     }
     if let Some(why) = record.skipped_toolchain_reason() {
         lines.push(format!("toolchain  {why}"));

@@ -135,6 +135,8 @@ pub(super) struct Outcome {
     pub(super) device: Option<String>,
     /// Whether something failed that the verdict does not show.
     pub(super) failed: bool,
+    /// Whether the driver, which names no line, exceeded the time limit.
+    is_late_on_gpu: bool,
 }
 
 impl Outcome {
@@ -145,6 +147,7 @@ impl Outcome {
             messages: Vec::new(),
             device: None,
             failed: false,
+            is_late_on_gpu: false,
         }
     }
 
@@ -168,18 +171,11 @@ impl Outcome {
         if matches!(&failure, Failure::Gpu(failure) if failure.is_without_driver()) {
             self.record.help = Some("toyproof doctor".to_owned());
         }
-        let explains = |one: &diagnostic::Json| report::explain(&one.code).is_some();
-        let is_late = !self.record.diagnostics.iter().any(explains)
-            && match &failure {
-                Failure::LoopTruncated(_) => true,
-                Failure::Gpu(failure) => failure.is_timeout(),
-                _ => false,
-            };
-        if is_late {
-            // The evaluator names the line of the loop.
-            let shader = shell_word(&self.record.shader);
-            self.record.help = Some(format!("toyproof check {shader} --device cpu"));
-        }
+        self.is_late_on_gpu = match &failure {
+            Failure::LoopTruncated(_) => true,
+            Failure::Gpu(failure) => failure.is_timeout(),
+            _ => false,
+        };
         self.record.set_failure(failure, files);
     }
 
@@ -254,13 +250,14 @@ impl<'a> Checker<'a> {
             (Err(failure), _) => outcome.set_failure(failure, &shader.files),
         }
         if outcome.record.help.is_none() {
-            outcome.record.help = self.help(&outcome.record);
+            outcome.record.help = self.help(&outcome);
         }
         outcome
     }
 
     /// The command that shows more of a fault.
-    fn help(&self, record: &Record) -> Option<String> {
+    fn help(&self, outcome: &Outcome) -> Option<String> {
+        let record = &outcome.record;
         let explain = |code: &str| Some(format!("toyproof explain {code}"));
         let check = match record.verdict {
             Verdict::Wrong => match &record.mistake {
@@ -278,21 +275,32 @@ impl<'a> Checker<'a> {
             Verdict::Unstable => &record.precision,
             Verdict::Invalid | Verdict::Timeout | Verdict::Inconclusive => {
                 let of = |severity| record.diagnostics.iter().find(|one| one.severity == severity);
-                let diagnostic = of(Severity::Error).or_else(|| of(Severity::Warning))?;
-                return explain(report::explain(&diagnostic.code)?.code);
+                let diagnostic = of(Severity::Error).or_else(|| of(Severity::Warning));
+                return match diagnostic.and_then(|one| report::explain(&one.code)) {
+                    Some(explanation) => explain(explanation.code),
+                    // The evaluator names the line of the loop.
+                    None if outcome.is_late_on_gpu => {
+                        Some(self.command("check", record, "--device cpu".to_owned()))
+                    }
+                    None => None,
+                };
             }
             Verdict::Error | Verdict::Correct | Verdict::Ok => return None,
         };
         let check = check.as_ref()?;
         let pixel = check.worst.as_ref().or(check.first.as_ref())?;
-        let mut command = vec!["toyproof debug".to_owned(), shell_word(&record.shader)];
-        command.push(format!("--pixel {},{}", pixel.x, pixel.y));
+        Some(self.command("debug", record, format!("--pixel {},{}", pixel.x, pixel.y)))
+    }
+
+    /// A command on a shader, with the flags of this run that it takes.
+    fn command(&self, name: &str, record: &Record, flag: String) -> String {
+        let mut command = vec![format!("toyproof {name}"), shell_word(&record.shader), flag];
         if let Some(scene) = &self.args.scene {
             command.push(format!("--scene {}", shell_word(&path_name(scene))));
         }
         command.extend(self.args.frame.flags());
         command.extend(self.args.language.flags());
-        Some(command.join(" "))
+        command.join(" ")
     }
 
     fn verify(

@@ -237,8 +237,8 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     .convert(&jobs, &settings)
 }
 
-/// Returns the language that the arguments or the extension of the output name; prints an error if they disagree,
-/// or if the output cannot take the results.
+/// Returns the language that the arguments or the extension of the output name; prints an error if they
+/// disagree, or if the output cannot take the results.
 fn target_language(args: &Args, output: &Path, several: bool, terminal: &Terminal) -> Option<To> {
     let standard = output == Path::new("-");
     let of_extension = (!standard && !output.is_dir()).then(|| To::of(output)).flatten();

@@ -1,12 +1,11 @@
 //! The summary of a study as text: where each formula stops being right, and which one is recommended.
 
 use std::fmt::Write as _;
-use toyproof_diagnostic::{grouped, plural};
+use toyproof_diagnostic::{columns, grouped, plural};
 
 use super::axis::{Axis, EasySteps, Kind, Step, axes};
 use super::tally::{Breakdown, MAX_FAILING_SHARE, directions};
 use super::{CPU, Report, Row};
-use crate::text_table::{self, Align};
 
 /// Scales and direction lengths of ordinary scenes are within this factor of 1.
 const MAX_ORDINARY_SCALE: f64 = 1e15;
@@ -146,10 +145,7 @@ impl Report {
             ),
             String::new(),
         ];
-        lines.extend(text_table::lines(
-            &[Align::Left, Align::Right, Align::Right],
-            &rows,
-        ));
+        lines.extend(columns("  ", &rows, &[1, 2]));
         lines
     }
 
@@ -294,10 +290,8 @@ fn first_failing_steps(kind: Kind, columns: &[(String, Vec<&Breakdown>)]) -> Vec
             right.push(axis.label);
         }
     }
-    let mut aligned = vec![Align::Right; columns.len() + 1];
-    aligned[0] = Align::Left;
     let mut lines = if rows.len() > 1 {
-        text_table::lines(&aligned, &rows)
+        toyproof_diagnostic::columns("  ", &rows, &(1..=columns.len()).collect::<Vec<_>>())
     } else {
         Vec::new()
     };

@@ -1,12 +1,11 @@
 //! Results of a study as CSV, JSON, a chart, and text.
 
 use serde::Serialize;
-use toyproof_diagnostic::{grouped, magnitude, plural};
+use toyproof_diagnostic::{columns, grouped, magnitude, plural};
 
 use super::{Configuration, MethodResult, Report, median};
 use crate::chart::{Point, Scatter};
 use crate::stress::formula::RECENTERED;
-use crate::text_table::{self, Align};
 use crate::trade::method::Group;
 
 const COLUMNS: &str = "renderer,precision,sampler,samples_per_pixel,max_depth,sphere_formula,group,runs,outliers,\
@@ -153,8 +152,7 @@ impl Report {
         if let Some((_, name)) = fastest.iter().find(|(found, _)| found.is_none()) {
             rows.push(vec!["–".to_owned(), "–".to_owned(), format!("none below {name}")]);
         }
-        let columns = [Align::Right, Align::Right, Align::Left, Align::Left];
-        text_table::lines(&columns, &rows)
+        columns("  ", &rows, &[0, 1])
     }
 
     /// A table of all configurations, and how they were measured.
@@ -189,13 +187,11 @@ impl Report {
             .into_iter()
             .chain(rows)
             .collect();
-        let mut columns = [Align::Right; 7];
-        columns[5..].fill(Align::Left);
         let mut lines = vec![format!(
             "Error of the reference: {}. Times: median ± median absolute deviation.",
             self.reference_error_estimate
         )];
-        lines.extend(text_table::lines(&columns, &rows));
+        lines.extend(columns("  ", &rows, &[0, 1, 2, 3, 4]));
         if !self.skipped.is_empty() {
             lines.push(format!("not measured: {}", self.skipped.join("; ")));
         }
