@@ -48,6 +48,8 @@ pub(crate) enum ValueDef {
     Word(u32),
     /// One component of an input of the frame.
     Input(Input, u8),
+    /// A parameter: a scalar that is given for each run.
+    Parameter(Kind, u32),
     /// `gl_FragCoord.x` or `.y`.
     FragCoord(Axis),
     /// The result of an operation; unused operands are [`NONE`].
@@ -166,7 +168,7 @@ impl Function {
             }
             ValueDef::Operation(operation, _) => operation.kind(),
             ValueDef::Load(cell) => self.cells[cell.0 as usize],
-            ValueDef::LoadAt { kind, .. } => kind,
+            ValueDef::Parameter(kind, _) | ValueDef::LoadAt { kind, .. } => kind,
         }
     }
 }
@@ -181,7 +183,12 @@ impl ValueDef {
                 .for_each(visit),
             Self::LoadAt { index, .. } => visit(index),
             Self::Texel { at, .. } => at.into_iter().for_each(visit),
-            Self::Float(_) | Self::Word(_) | Self::Input(..) | Self::FragCoord(_) | Self::Load(_) => {}
+            Self::Float(_)
+            | Self::Word(_)
+            | Self::Input(..)
+            | Self::Parameter(..)
+            | Self::FragCoord(_)
+            | Self::Load(_) => {}
         }
     }
 

@@ -66,6 +66,7 @@ mod number;
 mod observe;
 mod ops;
 mod opt;
+mod parametric;
 mod program;
 mod render;
 #[cfg(test)]
@@ -77,6 +78,7 @@ pub use build::Refusal;
 pub use frame::Framebuffer;
 pub use number::{Number, RandomRounding, Seed};
 pub use observe::{Fault, MESA_CAP, Observations, Observed, Site};
+pub use parametric::{ParametricProgram, PointEvaluator};
 pub use program::Program;
 pub use render::{Failure, Places, Rendered, RenderedF32, Settings, Substitute, UndefinedPolicy};
 pub use trace::{

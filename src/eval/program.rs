@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use toyproof_diagnostic::Deadline;
 use toyproof_glsl::Checked;
-use toyproof_glsl::tree::Place;
+use toyproof_glsl::tree::{Place, VariableId};
 use toyproof_image::Frame;
 
 use crate::build::{self, BuildOptions, Refusal, UndefinedMode, compile, with_stack};
@@ -113,7 +113,7 @@ impl Program {
         options: BuildOptions,
     ) -> Result<&'a Compiled, Refusal> {
         let deadline = self.limit.map_or_else(Deadline::default, Deadline::after);
-        let compiled = slot.get_or_init(|| Compiled::new(&self.checked, options, &deadline));
+        let compiled = slot.get_or_init(|| Compiled::new(&self.checked, &[], options, &deadline));
         compiled.as_ref().map_err(|&refusal| refusal)
     }
 
@@ -233,13 +233,18 @@ pub struct Compiled {
 }
 
 impl Compiled {
-    fn new(checked: &Checked, options: BuildOptions, deadline: &Deadline) -> Result<Self, Refusal> {
+    pub(crate) fn new(
+        checked: &Checked,
+        parameters: &[VariableId],
+        options: BuildOptions,
+        deadline: &Deadline,
+    ) -> Result<Self, Refusal> {
         with_stack(|| {
             let build::Program {
                 mut function,
                 sites,
                 schema,
-            } = compile(checked, options, deadline)?;
+            } = compile(checked, parameters, options, deadline)?;
             deadline.check()?;
             number_values(&mut function, options.trace);
             deadline.check()?;

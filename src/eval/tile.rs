@@ -220,7 +220,7 @@ impl<'a, N: Number> FrameJob<'a, N> {
     }
 
     /// Returns the colors of a chunk, and which of its pixels were discarded.
-    fn outputs(&self, batch: &Batch<'_, N>, chunk: usize) -> ([Lanes<N>; 3], Lanes<u32>) {
+    pub(crate) fn outputs(&self, batch: &Batch<'_, N>, chunk: usize) -> ([Lanes<N>; 3], Lanes<u32>) {
         let color = self.prepared.color.map(|location| match location {
             Location::Row(row) => batch.float_row(row)[chunk].get(),
             Location::Scalar(scalar) => [batch.float_scalars[scalar as usize].get(); LANES],

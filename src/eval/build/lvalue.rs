@@ -60,7 +60,7 @@ impl Builder<'_> {
                 Location::Values(vec![self.word(value as u32)])
             }
             _ if matches!(ty, Type::Sampler(_)) => Location::Channel(None),
-            VariableKind::Uniform | VariableKind::Varying => Location::Values(self.zeros(ty)),
+            VariableKind::Uniform | VariableKind::Varying => Location::Values(self.uniform(variable)),
             // A built-in output such as `gl_FragDepth`, or an erroneous declaration.
             _ => {
                 let zeros = self.zeros(ty);
@@ -75,6 +75,17 @@ impl Builder<'_> {
         };
         self.locations.insert(variable, location.clone());
         location
+    }
+
+    /// Returns a uniform: a parameter, or zero.
+    fn uniform(&self, variable: VariableId) -> Vec<Value> {
+        let ty = self.tree[variable].ty;
+        match (self.parameters.get(&variable), ty) {
+            (Some(&number), Type::Scalar(scalar)) => {
+                vec![self.value(ValueDef::Parameter(scalar_kind(scalar), number))]
+            }
+            _ => self.zeros(ty),
+        }
     }
 
     /// Returns `gl_FragCoord`: the center of the pixel, with z = 0 and w = 1.

@@ -95,10 +95,17 @@ pub(crate) struct Program {
     pub(crate) schema: TraceSchema,
 }
 
-/// Compiles a shader to the intermediate representation.
-pub(crate) fn compile(checked: &Checked, options: BuildOptions, deadline: &Deadline) -> Result<Program> {
+/// Compiles a shader to the intermediate representation. Uniforms that are among the `parameters` get their
+/// values for each run; all others are zero.
+pub(crate) fn compile(
+    checked: &Checked,
+    parameters: &[VariableId],
+    options: BuildOptions,
+    deadline: &Deadline,
+) -> Result<Program> {
     let mut builder = Builder {
         tree: &checked.tree,
+        parameters: parameters.iter().copied().zip(0..).collect(),
         deadline,
         options,
         writer: RefCell::default(),
@@ -167,7 +174,11 @@ impl IrWriter {
     fn push(&mut self, def: ValueDef) -> Value {
         let constant = matches!(
             def,
-            ValueDef::Float(_) | ValueDef::Word(_) | ValueDef::Input(..) | ValueDef::FragCoord(_)
+            ValueDef::Float(_)
+                | ValueDef::Word(_)
+                | ValueDef::Input(..)
+                | ValueDef::Parameter(..)
+                | ValueDef::FragCoord(_)
         );
         if constant && let Some(&value) = self.known.get(&def) {
             return value;
@@ -195,6 +206,8 @@ struct InlinedCall {
 /// Builds the function of a tree.
 struct Builder<'a> {
     tree: &'a Tree,
+    /// The uniforms whose values are given for each run, with their numbers.
+    parameters: HashMap<VariableId, u32>,
     deadline: &'a Deadline,
     options: BuildOptions,
     writer: RefCell<IrWriter>,
@@ -370,6 +383,10 @@ impl Builder<'_> {
             return Err(Refusal::TooLong);
         }
         Ok(())
+    }
+
+    fn def(&self, value: Value) -> ValueDef {
+        self.writer.borrow().defs[value.0 as usize]
     }
 
     fn float(&self, value: f64) -> Value {

@@ -32,6 +32,8 @@ pub struct Prepared<N: Number> {
     /// Red, green, blue.
     pub(crate) color: [Location; 3],
     pub(crate) discarded: Location,
+    /// The numbers, kinds and scalars of the parameters that are used.
+    pub(crate) parameters: Vec<(u32, Kind, u32)>,
     /// The rows of `gl_FragCoord.xy`, where they are used.
     pub(crate) coordinates: [Option<u32>; 2],
 }
@@ -69,6 +71,7 @@ impl Compiled {
         let code = writer.steps();
         let mut floats = vec![N::default(); locations.scalars.floats as usize];
         let mut words = vec![0; locations.scalars.words as usize];
+        let mut parameters = Vec::new();
         let mut coordinates = [None; 2];
         for (at, def) in function.defs.iter().enumerate() {
             let location = locations.value(Value(at as u32));
@@ -82,6 +85,9 @@ impl Compiled {
                 }
                 (ValueDef::Input(input, component), Some(Location::Scalar(to))) => {
                     floats[to as usize] = float_input(frame, input, component);
+                }
+                (ValueDef::Parameter(kind, number), Some(Location::Scalar(to))) => {
+                    parameters.push((number, kind, to));
                 }
                 (ValueDef::FragCoord(axis), Some(Location::Row(row))) => {
                     coordinates[axis as usize] = Some(row * width as u32);
@@ -106,6 +112,7 @@ impl Compiled {
             width,
             color: [red, green, blue].map(place),
             discarded: place(discarded),
+            parameters,
             coordinates,
         }
     }
@@ -351,7 +358,11 @@ impl<N: Number> Writer<'_, N> {
                 let run = ops::texel(kind == Kind::Float);
                 self.push(run, out, [places[0], places[1], which], offset);
             }
-            ValueDef::Float(_) | ValueDef::Word(_) | ValueDef::Input(..) | ValueDef::FragCoord(_) => {}
+            ValueDef::Float(_)
+            | ValueDef::Word(_)
+            | ValueDef::Input(..)
+            | ValueDef::Parameter(..)
+            | ValueDef::FragCoord(_) => {}
         }
     }
 }

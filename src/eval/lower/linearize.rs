@@ -178,7 +178,11 @@ impl Linearizer<'_> {
     fn compute(&mut self, value: Value) {
         if matches!(
             self.function.def(value),
-            ValueDef::Float(_) | ValueDef::Word(_) | ValueDef::Input(..) | ValueDef::FragCoord(_)
+            ValueDef::Float(_)
+                | ValueDef::Word(_)
+                | ValueDef::Input(..)
+                | ValueDef::Parameter(..)
+                | ValueDef::FragCoord(_)
         ) {
             return;
         }

@@ -84,10 +84,12 @@ fn avx2<N: Number, R: Run<N>>(batch: &Batch<'_, N>, instruction: &Instruction<N>
     R::run(batch, instruction, at)
 }
 
-/// Runs instructions from the first until one jumps past the last.
-pub(crate) fn run<N: Number>(batch: &Batch<'_, N>, code: &[Instruction<N>]) {
+/// Runs instructions from the first until one jumps past the last. Returns their number.
+pub(crate) fn run<N: Number>(batch: &Batch<'_, N>, code: &[Instruction<N>]) -> u64 {
     let mut at = 0;
+    let mut count = 0;
     while let Some(instruction) = code.get(at) {
+        count += 1;
         #[expect(
             unsafe_code,
             reason = "a function made for this processor's vector instructions can only be called so"
@@ -97,6 +99,7 @@ pub(crate) fn run<N: Number>(batch: &Batch<'_, N>, code: &[Instruction<N>]) {
             at = unsafe { (instruction.run)(batch, instruction, at) };
         }
     }
+    count
 }
 
 /// Executes a block for each chunk that has an active pixel.

@@ -237,7 +237,10 @@ impl ValueNumbering<'_> {
             let def = self.templates[at];
             match def {
                 ValueDef::Word(word) => self.replacements[at] = self.word(word),
-                ValueDef::Float(_) | ValueDef::Input(..) | ValueDef::FragCoord(_) => {
+                ValueDef::Float(_)
+                | ValueDef::Input(..)
+                | ValueDef::Parameter(..)
+                | ValueDef::FragCoord(_) => {
                     self.replacements[at] = self.push_value(def);
                 }
                 ValueDef::Operation(..)
@@ -251,7 +254,11 @@ impl ValueNumbering<'_> {
     fn push_value(&mut self, def: ValueDef) -> Value {
         let mut constant = !matches!(
             def,
-            ValueDef::FragCoord(_) | ValueDef::Load(_) | ValueDef::LoadAt { .. } | ValueDef::Texel { .. }
+            ValueDef::Parameter(..)
+                | ValueDef::FragCoord(_)
+                | ValueDef::Load(_)
+                | ValueDef::LoadAt { .. }
+                | ValueDef::Texel { .. }
         );
         def.for_each_operand(|operand| constant &= self.is_constant[operand.0 as usize]);
         if !constant {
@@ -303,9 +310,11 @@ impl ValueNumbering<'_> {
         };
         let key = (def, self.epoch(def));
         let found = match def {
-            ValueDef::Word(_) | ValueDef::Float(_) | ValueDef::Input(..) | ValueDef::FragCoord(_) => {
-                Some(self.replacements[at])
-            }
+            ValueDef::Word(_)
+            | ValueDef::Float(_)
+            | ValueDef::Input(..)
+            | ValueDef::Parameter(..)
+            | ValueDef::FragCoord(_) => Some(self.replacements[at]),
             ValueDef::Load(cell) => self.cell_values.get(cell),
             ValueDef::Operation(operation, operands) => self.fold_operation(operation, operands),
             _ => None,

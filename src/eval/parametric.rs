@@ -1,0 +1,264 @@
+//! Shaders with parameters: uniforms whose values are given for each run. Many variants of a shader, selected by
+//! parameters, are compiled once and evaluated at a few points each.
+
+use std::cell::RefCell;
+use std::time::Duration;
+
+use toyproof_diagnostic::Deadline;
+use toyproof_glsl::Checked;
+use toyproof_glsl::tree::VariableId;
+use toyproof_image::Frame;
+
+use crate::batch::{Active, Batch, LANES, Lanes};
+use crate::build::{BuildOptions, Refusal};
+use crate::frame::Texture;
+use crate::ir::Kind;
+use crate::lower::isel::Prepared;
+use crate::ops::run;
+use crate::program::{Backend, Compiled};
+use crate::render::{Failure, Limits, Settings};
+use crate::tile::{BandError, FrameJob};
+
+/// A shader with parameters, compiled for one frame in f64.
+#[derive(Debug)]
+pub struct ParametricProgram {
+    compiled: Compiled,
+    prepared: Prepared<f64>,
+}
+
+impl ParametricProgram {
+    /// Compiles a shader. The `parameters` are declared as uniforms of type `float`, `int` or `bool` in its tree.
+    /// The result of an undefined operation is that of a strict GPU run.
+    ///
+    /// # Errors
+    /// If the shader is too large once its calls are inlined, or takes longer than `limit` to compile.
+    pub fn new(
+        checked: &Checked,
+        parameters: &[VariableId],
+        frame: &Frame,
+        limit: Duration,
+    ) -> Result<Self, Refusal> {
+        let deadline = Deadline::after(limit);
+        let compiled = Compiled::new(checked, parameters, BuildOptions::default(), &deadline)?;
+        let prepared = f64::prepare(&compiled, frame);
+        Ok(Self { compiled, prepared })
+    }
+
+    /// The number of instructions.
+    #[must_use]
+    pub fn instructions(&self) -> usize {
+        self.prepared.code.len()
+    }
+
+    /// Runs `work` with an evaluator of points of the frame, whose size, time and channels are those that the
+    /// program was compiled for. Of the settings, the limits and the interrupt count.
+    pub fn evaluate<T>(
+        &self,
+        frame: &Frame,
+        settings: &Settings<'_, f64>,
+        work: impl FnOnce(&mut PointEvaluator<'_>) -> T,
+    ) -> T {
+        let textures = frame.channels.each_ref().map(|image| image.as_ref().map(Texture));
+        let limits = Limits::of(settings);
+        let job = FrameJob::new(
+            &self.compiled,
+            &self.prepared,
+            &textures,
+            &limits,
+            settings,
+            frame.size,
+        );
+        let batch = RefCell::new(job.batch());
+        work(&mut PointEvaluator {
+            program: self,
+            job: &job,
+            batch: &batch,
+            limits: &limits,
+            max_iterations: settings.max_iterations,
+            iterations: 0,
+            work: 0.0,
+        })
+    }
+}
+
+/// The cost of dispatching an instruction, relative to executing it for one chunk of pixels.
+const DISPATCH: f64 = 1.0;
+
+/// Evaluates a [`ParametricProgram`] at points.
+pub struct PointEvaluator<'a> {
+    program: &'a ParametricProgram,
+    job: &'a FrameJob<'a, f64>,
+    batch: &'a RefCell<Batch<'a, f64>>,
+    limits: &'a Limits<'a>,
+    max_iterations: u32,
+    iterations: u32,
+    work: f64,
+}
+
+impl PointEvaluator<'_> {
+    /// The colors at some points, in the coordinates of `fragCoord`. `values` are those of the parameters, in
+    /// their order; a `bool` is 0 or 1. Four points in a row form a quad, across which derivatives are taken.
+    ///
+    /// # Errors
+    /// If a limit is exceeded.
+    pub fn colors(&mut self, values: &[f64], points: &[[f64; 2]]) -> Result<Vec<[f64; 3]>, Failure> {
+        let prepared = &self.program.prepared;
+        let mut batch = self.batch.borrow_mut();
+        for &(number, kind, scalar) in &prepared.parameters {
+            let value = values.get(number as usize).copied().unwrap_or_default();
+            match kind {
+                Kind::Float => batch.float_scalars[scalar as usize].set(value),
+                Kind::Word => batch.word_scalars[scalar as usize].set(word(value)),
+            }
+        }
+        self.iterations = 0;
+        let mut colors = Vec::with_capacity(points.len());
+        for points in points.chunks(prepared.width * LANES) {
+            let chunks = points.len().div_ceil(LANES);
+            self.begin(&mut batch, points, chunks);
+            let instructions = run(&batch, &prepared.code);
+            self.work += instructions as f64 * (DISPATCH + chunks as f64);
+            if let Some(stop) = batch.stopped.take() {
+                let end = BandError::LoopStopped(stop);
+                return Err(end.failure(&self.program.compiled, self.limits, self.max_iterations));
+            }
+            self.iterations = self.iterations.max(batch.max_iterations());
+            for chunk in 0..chunks {
+                let (color, discarded) = self.job.outputs(&batch, chunk);
+                let count = LANES.min(points.len() - chunk * LANES);
+                colors.extend((0..count).map(|lane| match discarded[lane] {
+                    0 => color.map(|component| component[lane]),
+                    _ => [0.0; 3],
+                }));
+            }
+        }
+        Ok(colors)
+    }
+
+    /// The largest number of loop iterations of a point of the last call.
+    #[must_use]
+    pub fn iterations(&self) -> u32 {
+        self.iterations
+    }
+
+    /// The work so far: instructions times the chunks of pixels for which each was executed, and the cost of
+    /// dispatching it. It does not depend on the machine.
+    #[must_use]
+    pub fn work(&self) -> f64 {
+        self.work
+    }
+
+    /// Activates the chunks that hold the points. The last chunk is filled with copies of the last point.
+    fn begin(&self, batch: &mut Batch<'_, f64>, points: &[[f64; 2]], chunks: usize) {
+        for (axis, row) in self.program.prepared.coordinates.into_iter().enumerate() {
+            let Some(row) = row else { continue };
+            for (chunk, cell) in batch.float_row(row).iter().enumerate().take(chunks) {
+                let lanes: Lanes<f64> =
+                    std::array::from_fn(|lane| points[(chunk * LANES + lane).min(points.len() - 1)][axis]);
+                cell.set(lanes);
+            }
+        }
+        batch.active[0].set(Active {
+            chunks: u32::MAX >> (32 - chunks),
+            all: true,
+        });
+        batch.iterations.set(0);
+        for iterations in &batch.own_iterations {
+            iterations.set([0; LANES]);
+        }
+    }
+}
+
+/// A parameter's value as a word; a `bool` is 0 or all bits.
+fn word(value: f64) -> u32 {
+    if value == 0.0 { 0 } else { u32::MAX }
+}
+
+#[cfg(test)]
+mod tests {
+    use toyproof_diagnostic::{File, Files};
+    use toyproof_glsl::tree::{Type, Variable, VariableKind};
+
+    use super::*;
+    use crate::Program;
+
+    fn checked(text: &str) -> Checked {
+        let mut files = Files::default();
+        let file = files.add(File::new("a", text));
+        toyproof_glsl::check(&files, file, &toyproof_glsl::Options::default()).unwrap()
+    }
+
+    const TEXT: &str = "uniform bool flip; uniform float scale;
+        void mainImage(out vec4 c, in vec2 p) {
+            float x = p.x / iResolution.x;
+            for (int i = 0; i < int(p.y); i++) { x += 0.125; }
+            c = vec4(flip ? scale * x : x, fract(p.y * 0.1), 0, 1);
+        }";
+
+    fn parameters(checked: &Checked) -> Vec<VariableId> {
+        let variables = checked.tree.variables.iter();
+        variables
+            .filter(|(_, variable): &(VariableId, &Variable)| variable.kind == VariableKind::Uniform)
+            .map(|(id, variable)| {
+                assert!(matches!(variable.ty, Type::Scalar(_)));
+                id
+            })
+            .collect()
+    }
+
+    #[test]
+    fn parameters_change_the_colors_and_points_have_those_of_a_whole_image() {
+        let checked = checked(TEXT);
+        let frame = Frame {
+            size: [48, 32],
+            ..Frame::default()
+        };
+        let program =
+            ParametricProgram::new(&checked, &parameters(&checked), &frame, Duration::from_secs(9)).unwrap();
+        let image = Program::new(&checked).unwrap();
+        let image = image.render(&frame, &Settings::<f64>::default()).unwrap();
+        let image = image.framebuffer.image();
+        // More points than one batch holds, in an order of their own.
+        let pixels: Vec<[u32; 2]> = (0..1000).map(|at| [at * 7 % 48, at * 5 % 32]).collect();
+        let points: Vec<[f64; 2]> = pixels
+            .iter()
+            .map(|&[x, y]| [f64::from(x) + 0.5, f64::from(y) + 0.5])
+            .collect();
+        program.evaluate(&frame, &Settings::default(), |evaluator| {
+            let plain = evaluator.colors(&[0.0, 3.0], &points).unwrap();
+            assert_eq!(evaluator.iterations(), 32);
+            for (&[x, y], color) in pixels.iter().zip(&plain) {
+                let [r, g, ..] = image.get(x, y);
+                assert_eq!([color[0] as f32, color[1] as f32], [r, g]);
+            }
+            let scaled = evaluator.colors(&[1.0, 3.0], &points[..20]).unwrap();
+            assert!(
+                scaled
+                    .iter()
+                    .zip(&plain)
+                    .all(|(one, other)| one[0] == 3.0 * other[0])
+            );
+            assert_eq!(evaluator.colors(&[0.0, 0.0], &points).unwrap(), plain);
+        });
+    }
+
+    #[test]
+    fn a_limit_of_iterations_ends_a_run_and_not_the_next() {
+        let checked = checked(TEXT);
+        let frame = Frame::default();
+        let program =
+            ParametricProgram::new(&checked, &parameters(&checked), &frame, Duration::from_secs(9)).unwrap();
+        let settings = Settings::<f64> {
+            max_iterations: 10,
+            ..Settings::default()
+        };
+        program.evaluate(&frame, &settings, |evaluator| {
+            let high = evaluator.colors(&[0.0, 0.0], &[[0.5, 100_000.5]]);
+            assert!(
+                matches!(high, Err(Failure::TooOften { limit: 10, .. })),
+                "{high:?}"
+            );
+            assert!(evaluator.colors(&[0.0, 0.0], &[[0.5, 2.5]]).is_ok());
+        });
+    }
+}
