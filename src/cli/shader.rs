@@ -122,7 +122,8 @@ fn read(found: &Input, files: &mut Files, options: &glsl::Options) -> Result<Che
     match files::read(found) {
         Ok(text) => {
             let file = files.add(text);
-            glsl::check(files, file, options).map_err(|errors| Unusable::Invalid(errors.into()))
+            glsl::check(files, file, options)
+                .map_err(|errors| Unusable::Invalid(glsl::with_single_edit(files, file, errors, options)))
         }
         Err(error) => Err(Unusable::of(error, files)),
     }

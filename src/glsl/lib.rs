@@ -59,11 +59,13 @@ mod foreign;
 mod keywords;
 mod parse;
 mod preprocess;
+mod single_edit;
 mod token;
 pub mod tree;
 
 pub use codes::{Code, IN_MACRO, MAX_REPORTED, overdue};
 pub use preprocess::ControlComment;
+pub use single_edit::{single_edit, with_single_edit};
 use toyproof_diagnostic::{Deadline, Diagnostic, Diagnostics, FileId, Files, Severity};
 use tree::{FunctionId, SamplerShape, Tree};
 

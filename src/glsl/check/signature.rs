@@ -20,6 +20,12 @@ impl BuiltIn {
     pub fn named(name: &str) -> Option<Self> {
         NAMES.get(name).copied()
     }
+
+    /// The type of its value for arguments of these types; none if no signature accepts exactly them.
+    #[must_use]
+    pub fn result(self, arguments: &[Type]) -> Option<Type> {
+        find(self, arguments, |given, wanted| given == wanted).map(|found| found.result)
+    }
 }
 
 /// The first signature of a function for whose parameters `fit(given, parameter)` holds for all arguments.

@@ -15,7 +15,7 @@ use toyproof_diagnostic::{Diagnostic, File, Fix, Span};
 
 pub(super) use self::bracket::balance;
 pub(crate) use self::expression::LiteralError;
-use self::recover::Layout;
+pub(crate) use self::recover::Layout;
 use crate::MAX_NESTING;
 use crate::check::Checker;
 use crate::codes::Code;

@@ -185,12 +185,12 @@ const TAB_WIDTH: usize = 4;
 
 /// The source text of the tokens.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Layout<'a> {
+pub(crate) struct Layout<'a> {
     text: &'a str,
 }
 
 impl<'a> Layout<'a> {
-    pub(super) fn new(file: &'a File) -> Self {
+    pub(crate) fn new(file: &'a File) -> Self {
         Self { text: file.text() }
     }
 
@@ -202,7 +202,7 @@ impl<'a> Layout<'a> {
     }
 
     /// The indentation of the token's line in columns.
-    pub(super) fn indent(self, token: Token) -> usize {
+    pub(crate) fn indent(self, token: Token) -> usize {
         let before = &self.text[..token.at.span.start as usize];
         let line = before.rfind('\n').map_or(0, |newline| newline + 1);
         let blanks = self.text[line..]

@@ -133,6 +133,26 @@ pub(crate) fn preprocess(files: &Files, file: FileId, deadline: &Deadline) -> Pr
     }
 }
 
+/// The tokens of a text as it is written, and their texts: directives are not executed, macros not expanded,
+/// and ends of lines are tokens. Errors are not reported.
+pub(crate) fn source_tokens(files: &Files, file: FileId) -> (Vec<Token>, Interner) {
+    let mut interner = Interner::default();
+    let mut lexer = Lexer::new(file, files.get(file).text());
+    let mut ignored = Vec::new();
+    let mut tokens = Vec::new();
+    loop {
+        let PpToken { kind, at, .. } = lexer.next(&mut interner, &mut ignored);
+        if kind == TokenKind::End {
+            return (tokens, interner);
+        }
+        tokens.push(Token {
+            kind,
+            at,
+            reported: false,
+        });
+    }
+}
+
 /// The kinds of tokens seen so far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Seen {
