@@ -36,6 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         lints: &lints,
         expected: Some(&Expected::new(scene, &frame)),
         hypotheses: None,
+        search: None,
         frame: &frame,
         float: FloatMode::Strict,
         timeout: Duration::from_secs(10),

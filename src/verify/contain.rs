@@ -16,6 +16,8 @@ pub enum Part {
     Shader,
     /// The search for the mistake that explains a wrong image.
     Mistake,
+    /// The search for the edit that repairs a wrong shader.
+    Repair,
     /// The search for the line where an unstable shader loses digits.
     Cause,
     /// Notes on values that are not finite and on spheres whose silhouette float32 cannot resolve.
@@ -30,10 +32,11 @@ pub enum Part {
 
 impl Part {
     /// All parts.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Command,
         Self::Shader,
         Self::Mistake,
+        Self::Repair,
         Self::Cause,
         Self::Notes,
         Self::Image,
@@ -48,6 +51,7 @@ impl fmt::Display for Part {
             Self::Command => "running the command",
             Self::Shader => "checking the shader",
             Self::Mistake => "searching for a likely mistake",
+            Self::Repair => "searching for a repair",
             Self::Cause => "searching for the line that loses precision",
             Self::Notes => "collecting notes",
             Self::Image => "encoding an image",

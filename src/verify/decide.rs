@@ -238,6 +238,14 @@ pub enum Reason {
     },
 }
 
+impl Reason {
+    /// Whether the means were compared, because the shader has random numbers of its own.
+    #[must_use]
+    pub fn compares_means(&self) -> bool {
+        matches!(self, Self::OtherRandomNumbers { .. })
+    }
+}
+
 /// What the comparison of the means of a shader and its scene shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Means {

@@ -4,18 +4,23 @@ use std::collections::HashMap;
 use std::time::{Duration, Instant};
 
 use toyproof_diagnostic::{Diagnostic, Span};
-use toyproof_eval::{self as eval, Program};
+use toyproof_eval::{self as eval, Places, Program};
 use toyproof_image::{Image, Rgb8Image};
 
 use crate::compare::{self, CheckSummary, Comparison, DiffLevel, PixelStatus};
 use crate::contain::{Panic, Part, contain};
 use crate::decide::{CheckEvidence, Checks, Evidence, MAX_UNSTABLE, Reason, Share, Verdict, decide};
 use crate::mistake::Diagnosis;
+use crate::repair::{self, NoisyImage, SearchResult};
+use crate::reseed::Reseeding;
 use crate::stochastic::SampledRows;
 use crate::{Case, acne, notes};
 
 /// The largest number of pairs of mistakes that are searched for in a wrong image: a few seconds' work.
 const MAX_PAIRS: usize = 512;
+
+/// The largest numbers of columns and of rows of pixels with which repairs of a stochastic shader are tried.
+const NOISY_SIDE: u32 = 24;
 
 /// The largest number of pixels that do not agree whose colors are kept.
 const MAX_KEPT_COLORS: usize = 1 << 16;
@@ -48,6 +53,8 @@ pub struct Findings {
     pub cause: Option<Span>,
     /// The known mistake, or the two, that explain a wrong image.
     pub mistake: Option<Diagnosis>,
+    /// The repairs of a wrong shader and its suspect lines; none if they were not searched for.
+    pub search: Option<SearchResult>,
     /// The known mistake that explains the few differing pixels of a correct image.
     pub tolerated_mistake: Option<Diagnosis>,
     /// Internal errors; the parts in which they occurred are missing here.
@@ -133,10 +140,11 @@ impl Findings {
         // searched for only if the comparison of random pixels reaches no verdict: with other random numbers,
         // two mistakes do not render the image of the pair.
         self.search_for_mistake(case, program, if sampled_rows.is_some() { 0 } else { MAX_PAIRS });
+        let mut reseeding = None;
         if self.is_unexplained()
             && let Some(sampled_rows) = sampled_rows
         {
-            self.compare_means(&mut evidence, sampled_rows, case, program, deadline);
+            reseeding = self.compare_means(&mut evidence, sampled_rows, case, program, deadline);
         }
         if self.is_unexplained()
             && let Some(expected) = case.expected
@@ -155,6 +163,8 @@ impl Findings {
         if evidence.random_numbers.is_none() {
             self.explain_few_pixels(case, program);
         }
+        let noisy = sampled_rows.zip(reseeding);
+        self.search_for_repair(case, program, noisy, deadline);
         self.notes
             .extend(notes::unbound(case.checked, case.lints, case.frame));
         self.locate_loss_of_precision(case, program, deadline);
@@ -166,7 +176,7 @@ impl Findings {
     }
 
     /// Compares the means of a shader that differs only in pixels that depend on random numbers, and decides
-    /// again.
+    /// again. Returns how the shader's random numbers were changed, if they were.
     fn compare_means(
         &mut self,
         evidence: &mut CheckEvidence,
@@ -174,14 +184,9 @@ impl Findings {
         case: &Case,
         program: &Program,
         deadline: Instant,
-    ) {
-        let Some(algorithm) = &self.algorithm else {
-            return;
-        };
-        let Some(compared) = sampled_rows.compare_means(algorithm, &evidence.checks, program, case, deadline)
-        else {
-            return;
-        };
+    ) -> Option<Reseeding> {
+        let algorithm = self.algorithm.as_ref()?;
+        let compared = sampled_rows.compare_means(algorithm, &evidence.checks, program, case, deadline)?;
         let precision = self.precision.as_ref();
         evidence.random_numbers = Some(compared.random_numbers);
         (self.verdict, self.reason) = decide(evidence.clone().into());
@@ -204,6 +209,7 @@ impl Findings {
             });
             self.mistake = self.contained(diagnosis);
         }
+        compared.reseeding
     }
 
     /// Searches for the mistake that explains a wrong image, or for two, among at most `pairs` pairs.
@@ -211,6 +217,32 @@ impl Findings {
         if let (Verdict::Wrong, None, Some(hypotheses)) = (self.verdict, &self.mistake, case.hypotheses) {
             let diagnosis = contain(Part::Mistake, || hypotheses.recognize(program, case.frame, pairs));
             self.mistake = self.contained(diagnosis);
+        }
+    }
+
+    /// Searches for edits that repair a wrong image, and for the lines that it depends on. `noisy` is there if
+    /// the shader has random numbers of its own.
+    fn search_for_repair(
+        &mut self,
+        case: &Case,
+        program: &Program,
+        noisy: Option<(&SampledRows, Reseeding)>,
+        deadline: Instant,
+    ) {
+        if let (Verdict::Wrong, Some(options), Some(algorithm)) = (self.verdict, case.search, &self.algorithm)
+        {
+            let compares_means = self.reason.compares_means();
+            let image = || {
+                let (rows, reseeding) = noisy?;
+                let places = Places::spread(case.frame.size, [NOISY_SIDE; 2]);
+                let pixels = rows.noisy_pixels(program, case, reseeding, &places, deadline)?;
+                Some(NoisyImage { pixels, places })
+            };
+            let means: Option<&dyn Fn() -> Option<NoisyImage>> = compares_means.then_some(&image);
+            let search = contain(Part::Repair, || {
+                repair::search(case, options, algorithm, means, deadline)
+            });
+            self.search = self.contained(search);
         }
     }
 

@@ -56,6 +56,7 @@
 //!     lints: &lints,
 //!     expected: Some(&expected),
 //!     hypotheses: None,
+//!     search: None,
 //!     frame: &frame,
 //!     float: FloatMode::Strict,
 //!     timeout: Duration::from_secs(10),
@@ -116,6 +117,7 @@ mod on_gpu;
 #[cfg(not(feature = "gpu"))]
 #[path = "no_gpu.rs"]
 mod on_gpu;
+pub mod repair;
 mod replicates;
 mod reseed;
 mod sample_loops;
@@ -148,6 +150,7 @@ pub use self::notes::unbound;
 pub use self::on_gpu::{GpuFailure, Worker};
 use crate::contain::Panic;
 use crate::mistake::Hypotheses;
+use crate::repair::SearchOptions;
 use crate::session::VerifySession;
 
 /// A shader to verify, and how.
@@ -163,6 +166,8 @@ pub struct Case<'a> {
     pub hypotheses: Option<&'a Hypotheses>,
     /// The frame.
     pub frame: &'a Frame,
+    /// How to search for repairs of a wrong shader; none if not at all.
+    pub search: Option<SearchOptions<'a>>,
     /// How far the driver may rearrange arithmetic. If it may, there is no toolchain check.
     pub float: FloatMode,
     /// The time limit of an image.

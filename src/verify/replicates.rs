@@ -214,8 +214,10 @@ pub(super) struct SceneComparison {
     pub(super) reseeding: Reseeding,
 }
 
-/// The means of a shader and of the tracer at other places, each over 2 × [`REPLICATES`] sets of random
-/// numbers.
+/// The number of sets of random numbers of [`noisy_pixels`].
+pub(super) const MEAN_SETS: usize = 2 * REPLICATES;
+
+/// The means of a shader and of the tracer at other places, each over [`MEAN_SETS`] sets of random numbers.
 pub(super) fn noisy_pixels(
     program: &Program,
     case: &Case,
@@ -231,7 +233,7 @@ pub(super) fn noisy_pixels(
         places: places.clone(),
         deadline,
     };
-    let count = 2 * REPLICATES as u32;
+    let count = MEAN_SETS as u32;
     let salted: Option<Vec<Vec<ShaderPixel>>> =
         (1..=count).map(|salt| shader.salted(reseeding, salt)).collect();
     let salted = salted?;

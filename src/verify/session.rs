@@ -256,6 +256,7 @@ impl<'a> VerifySession<'a> {
             notes: Vec::new(),
             cause: None,
             mistake: None,
+            search: None,
             tolerated_mistake: None,
             panics: Vec::new(),
             eval: self.eval,

@@ -117,6 +117,7 @@ fn warnings_of(files: &Files, checked: &Checked, scene: Option<&Scene>) -> Vec<D
         lints: &lints,
         expected: expected.as_ref(),
         hypotheses: None,
+        search: None,
         frame: &frame,
         float: FloatMode::Strict,
         timeout: Duration::from_secs(60),

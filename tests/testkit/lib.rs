@@ -32,6 +32,7 @@ use toyproof::tracer::Tracer;
 use toyproof::translate::FloatMode;
 use toyproof::verify::compare::CheckSummary;
 use toyproof::verify::mistake::Hypotheses;
+use toyproof::verify::repair::{DEFAULT_BUDGET, SearchOptions};
 use toyproof::verify::{Case, Expected, Findings, verify};
 
 /// A shader of the course and its scene.
@@ -239,8 +240,31 @@ pub fn check_and_name_on_cpu(shader: &str, exercise: &Exercise) -> Findings {
     check_against(Some(&hypotheses), None, shader, exercise)
 }
 
+/// Checks a shader by the evaluator alone, and searches for repairs.
+///
+/// # Panics
+/// Like [`check_exercise`].
+pub fn check_and_repair(shader: &str, exercise: &Exercise) -> Findings {
+    let search = SearchOptions {
+        source: shader,
+        lenient: false,
+        budget: DEFAULT_BUDGET,
+    };
+    check_with(None, Some(search), None, shader, exercise)
+}
+
 fn check_against(
     hypotheses: Option<&Hypotheses>,
+    worker: Option<&mut Worker>,
+    shader: &str,
+    exercise: &Exercise,
+) -> Findings {
+    check_with(hypotheses, None, worker, shader, exercise)
+}
+
+fn check_with(
+    hypotheses: Option<&Hypotheses>,
+    search: Option<SearchOptions>,
     worker: Option<&mut Worker>,
     shader: &str,
     exercise: &Exercise,
@@ -252,6 +276,7 @@ fn check_against(
         lints: &lints,
         expected: Some(&Expected::new(scene(exercise), &frame)),
         hypotheses,
+        search,
         frame: &frame,
         float: FloatMode::Strict,
         timeout: Duration::from_secs(60),

@@ -356,6 +356,7 @@ pub(super) fn evaluate(
             lints: &Lints::default(),
             expected: None,
             hypotheses: None,
+            search: None,
             frame,
             float: FloatMode::Strict,
             timeout,

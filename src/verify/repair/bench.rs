@@ -1,0 +1,413 @@
+//! A shader under test: its probes, the suspicion of its parts, and trials of candidates.
+
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+use rayon::prelude::*;
+use toyproof_eval::{ParametricProgram, PointEvaluator, Settings};
+
+use super::Suspect;
+use super::edit::{Candidate, Change, Trials};
+use super::fit::{fitted, fitted_colors};
+use super::localize::{DISTURBANCES, Suspicion, disturbed, of_statements, suspicion, suspicions};
+use super::probe::{Outcome, Probes};
+use super::schema::{Selection, compile};
+use super::shader::Shader;
+use super::term::Numbers;
+use crate::Case;
+
+/// How much the cost of an edit in the least suspicious place exceeds that in the most suspicious one, when
+/// edits are tried and when they are reported; and the cost of a place on which no wrong pixel depends.
+const PLACE_WEIGHT: f64 = 14.0;
+const COVERAGE_WEIGHT: f64 = 10.0;
+const REPAIR_PLACE_WEIGHT: f64 = 5.0;
+
+/// The cost of leaving the whole difference.
+const REMAINING_WEIGHT: f64 = 20.0;
+
+/// The number of candidates that are compiled together.
+pub(super) const GROUP: usize = 32;
+
+/// The number of candidates between two decisions on how to go on.
+pub(super) const WAVE: usize = 8 * GROUP;
+
+/// The factor by which an edited pixel may run more loop iterations than the shader's, and a number of
+/// iterations that is always allowed.
+const ITERATION_FACTOR: u32 = 8;
+const MIN_ITERATIONS: u32 = 2000;
+
+/// The time limit for compiling a group.
+const COMPILE_LIMIT: Duration = Duration::from_secs(2);
+
+/// The work of a group that is too large, or takes too long to compile.
+const REFUSED_WORK: f64 = 3e8;
+
+/// The work of compiling an instruction, in terms of instructions that are executed for one chunk of pixels.
+const COMPILE_FACTOR: f64 = 200.0;
+
+/// The share of the budget for measuring suspicion, the least number of probes, and the share at which it ends.
+const LOCALIZATION_SHARE: f64 = 0.12;
+const MIN_LOCALIZATION_PROBES: usize = 48;
+const MAX_LOCALIZATION_SHARE: f64 = 0.3;
+
+/// The largest number of suspects.
+const MAX_SUSPECTS: usize = 3;
+
+/// The share of the differences that an edit must remove to be half of a repair.
+const MIN_PROGRESS: f64 = 0.25;
+
+/// A shader with its probes.
+pub(super) struct Bench<'a> {
+    case: &'a Case<'a>,
+    pub(super) shader: &'a Shader<'a>,
+    probes: Probes,
+    deadline: Instant,
+    stop: AtomicBool,
+    /// The colors of the shader at the probes.
+    before: Vec<[f64; 3]>,
+    max_iterations: u32,
+    /// The suspicion of each site and of each statement.
+    sites: Vec<Suspicion>,
+    statements: Vec<Suspicion>,
+    /// The work so far.
+    pub(super) work: f64,
+    /// The work of one probe.
+    pub(super) probe_work: f64,
+}
+
+/// A candidate that was tried, with its numbers.
+#[derive(Debug, Clone)]
+pub(super) struct Trial {
+    pub(super) candidate: Candidate,
+    pub(super) outcome: Outcome,
+}
+
+/// A part of the work with its results.
+type Worked<T> = (Vec<T>, f64);
+
+impl<'a> Bench<'a> {
+    /// Evaluates the shader at the probes and measures how suspicious its parts are; none if it cannot be
+    /// evaluated, or is right at all probes.
+    pub(super) fn new(
+        case: &'a Case<'a>,
+        shader: &'a Shader<'a>,
+        probes: &Probes,
+        budget: f64,
+        deadline: Instant,
+    ) -> Option<Self> {
+        let mut bench = Self {
+            case,
+            shader,
+            probes: probes.clone(),
+            deadline,
+            stop: AtomicBool::new(false),
+            before: Vec::new(),
+            max_iterations: u32::MAX >> 4,
+            sites: Vec::new(),
+            statements: Vec::new(),
+            work: 0.0,
+            probe_work: 0.0,
+        };
+        let program = compile(shader, &[], case.frame, COMPILE_LIMIT).ok()?;
+        let nothing = Selection::of(0, &[], &Numbers::default());
+        let colors = |probes: &Probes| {
+            bench.evaluate(&program, |evaluator| {
+                let colors = probes.colors(evaluator, &nothing)?;
+                Some((colors, evaluator.iterations(), evaluator.work()))
+            })
+        };
+        let (before, ..) = colors(probes)?;
+        let probes = probes.with_colors(&before)?;
+        let (before, iterations, work) = colors(&probes)?;
+        bench.probes = probes;
+        bench.before = before;
+        bench.max_iterations = iterations.saturating_mul(ITERATION_FACTOR).max(MIN_ITERATIONS);
+        bench.probe_work = work / bench.probes.all.len() as f64;
+        // Fewer probes, if evaluating all of them once for each site would cost too much.
+        let share = LOCALIZATION_SHARE * budget / (work * shader.sites.len() as f64);
+        let count = (share.min(1.0) * bench.probes.all.len() as f64) as usize;
+        bench.localize(
+            count.max(MIN_LOCALIZATION_PROBES),
+            MAX_LOCALIZATION_SHARE * budget,
+        );
+        Some(bench)
+    }
+
+    fn evaluate<T>(&self, program: &ParametricProgram, work: impl FnOnce(&mut PointEvaluator) -> T) -> T {
+        let settings = Settings::<f64> {
+            max_iterations: self.max_iterations,
+            deadline: Some(self.deadline),
+            interrupt: Some(&self.stop),
+            ..Settings::default()
+        };
+        program.evaluate(self.case.frame, &settings, work)
+    }
+
+    /// Compiles some candidates and runs `work` with an evaluator of them.
+    fn with_group<T>(
+        &self,
+        candidates: &[&Candidate],
+        work: impl FnOnce(&mut PointEvaluator) -> Vec<T>,
+    ) -> Worked<T> {
+        let Ok(program) = compile(self.shader, candidates, self.case.frame, COMPILE_LIMIT) else {
+            return (Vec::new(), REFUSED_WORK);
+        };
+        self.evaluate(&program, |evaluator| {
+            let results = work(evaluator);
+            (
+                results,
+                evaluator.work() + COMPILE_FACTOR * program.instructions() as f64,
+            )
+        })
+    }
+
+    /// Collects the results of groups, in their order.
+    fn collect<T>(&mut self, groups: Vec<Worked<T>>) -> Vec<T> {
+        self.work += groups.iter().map(|(_, work)| work).sum::<f64>();
+        groups.into_iter().flat_map(|(results, _)| results).collect()
+    }
+
+    /// Whether a budget or the time is spent.
+    pub(super) fn is_spent(&self, budget: f64) -> bool {
+        self.work > budget || Instant::now() >= self.deadline
+    }
+
+    // Suspicion.
+
+    /// Measures how suspicious each site and each statement is, at that number of probes. What the budget does
+    /// not suffice for is not suspicious.
+    fn localize(&mut self, count: usize, budget: f64) {
+        let count = count.min(self.probes.all.len());
+        let mut measured: Vec<Option<Suspicion>> = vec![None; self.shader.sites.len()];
+        for by in DISTURBANCES {
+            let disturbed: Vec<(usize, Candidate)> = (0..self.shader.sites.len())
+                .filter(|&site| measured[site].unwrap_or_default().coverage == 0.0)
+                .filter_map(|site| Some((site, disturbed(self.shader, site, by)?)))
+                .collect();
+            for wave in disturbed.chunks(WAVE) {
+                if self.is_spent(budget) {
+                    break;
+                }
+                let groups = wave
+                    .par_chunks(GROUP)
+                    .map(|group| self.influences(group, count, by.weight));
+                let groups = groups.collect();
+                for (site, suspicion) in self.collect(groups) {
+                    measured[site] = Some(suspicion);
+                }
+            }
+        }
+        self.sites = suspicions(self.shader, &measured);
+        self.statements = of_statements(self.shader, &self.sites);
+    }
+
+    /// The suspicion of each site of a group of disturbances.
+    fn influences(
+        &self,
+        group: &[(usize, Candidate)],
+        count: usize,
+        weight: f64,
+    ) -> Worked<(usize, Suspicion)> {
+        let candidates: Vec<&Candidate> = group.iter().map(|(_, candidate)| candidate).collect();
+        self.with_group(&candidates, |evaluator| {
+            let influence = |(number, (site, _)): (usize, &(usize, Candidate))| {
+                let selection = Selection::of(group.len(), &[number], &Numbers::default());
+                let colors = self.probes.first_colors(evaluator, &selection, count)?;
+                Some((
+                    *site,
+                    suspicion(&self.probes.all[..count], &self.before, &colors, weight),
+                ))
+            };
+            group.iter().enumerate().filter_map(influence).collect()
+        })
+    }
+
+    /// The place of a candidate in the order of trials: the smaller, the earlier.
+    pub(super) fn rank(&self, candidate: &Candidate) -> f64 {
+        let Suspicion { ochiai, coverage } = self.suspicion(candidate);
+        f64::from(candidate.cost) + PLACE_WEIGHT * (1.0 - ochiai) + COVERAGE_WEIGHT * (1.0 - coverage)
+    }
+
+    /// The place of a candidate that passes among the repairs: where it is matters less, and how well it fits
+    /// means more, if the fit is not exact.
+    pub(super) fn merit(&self, trial: &Trial) -> f64 {
+        let candidate = &trial.candidate;
+        let place = REPAIR_PLACE_WEIGHT * (1.0 - self.suspicion(candidate).ochiai);
+        f64::from(candidate.cost) + place + REMAINING_WEIGHT * trial.outcome.remaining
+    }
+
+    /// The suspicion of what a candidate changes.
+    fn suspicion(&self, candidate: &Candidate) -> Suspicion {
+        match &candidate.change {
+            Change::Expression { site, .. } => self.sites[*site],
+            Change::Statements(actions) => {
+                let all = actions.iter().map(|&(at, _)| self.statements[at]);
+                all.reduce(Suspicion::max).unwrap_or_default()
+            }
+        }
+    }
+
+    /// The sites and the statements, the most suspicious first.
+    pub(super) fn in_order(&self) -> (Vec<usize>, Vec<usize>) {
+        let order = |all: &[Suspicion]| {
+            let mut order: Vec<usize> = (0..all.len()).collect();
+            order.sort_by(|&a, &b| all[b].ochiai.total_cmp(&all[a].ochiai));
+            order
+        };
+        (order(&self.sites), order(&self.statements))
+    }
+
+    /// The most suspicious sites of at least one operation, name or number.
+    pub(super) fn suspicious_sites(&self, count: usize) -> Vec<usize> {
+        let mut sites: Vec<usize> = (0..self.sites.len())
+            .filter(|&site| self.sites[site].ochiai > 0.0 && self.shader.sites[site].exprs.len() == 1)
+            .collect();
+        // Of equals, whole expressions first.
+        let user = |site: usize| self.shader.sites[site].user.is_some();
+        sites.sort_by(|&a, &b| {
+            self.sites[b]
+                .ochiai
+                .total_cmp(&self.sites[a].ochiai)
+                .then(user(a).cmp(&user(b)))
+        });
+        sites.truncate(count);
+        sites
+    }
+
+    /// The most suspicious statements, on different lines. Where edits make progress, the mistake is more likely:
+    /// of statements with the same coefficient, those count more (mutation-based localization; Papadakis and Le
+    /// Traon, "Metallaxis-FL", 2015).
+    pub(super) fn suspects(&self, progress: &[Trial]) -> Vec<Suspect> {
+        let mut improved = vec![0.0_f64; self.statements.len()];
+        for trial in progress {
+            let outcome = &trial.outcome;
+            let repaired = outcome.repaired as f64 / (outcome.evaluated.max(1) as f64);
+            let best = &mut improved[trial.candidate.statement(self.shader)];
+            *best = best.max(1.0 - outcome.remaining).max(repaired);
+        }
+        let score = |at: usize| self.statements[at].ochiai * f64::midpoint(1.0, improved[at].min(1.0));
+        let mut order: Vec<usize> = (0..self.statements.len()).collect();
+        order.sort_by(|&a, &b| score(b).total_cmp(&score(a)));
+        let line = |at: usize| {
+            let before = self
+                .shader
+                .source
+                .get(..self.shader.statements[at].span.start as usize);
+            before.unwrap_or("").matches('\n').count()
+        };
+        let mut lines = Vec::new();
+        let mut suspects = Vec::new();
+        for at in order {
+            if suspects.len() == MAX_SUSPECTS || self.statements[at].ochiai == 0.0 {
+                break;
+            }
+            if !lines.contains(&line(at)) {
+                lines.push(line(at));
+                suspects.push(Suspect {
+                    span: self.shader.statements[at].span,
+                    score: score(at),
+                });
+            }
+        }
+        suspects
+    }
+
+    // Trials.
+
+    /// Tries candidates, and returns those that pass or make progress.
+    pub(super) fn try_all(&mut self, candidates: &[(f64, Candidate)]) -> Vec<Trial> {
+        let groups = candidates
+            .par_chunks(GROUP)
+            .map(|group| self.try_group(group))
+            .collect();
+        self.collect(groups)
+    }
+
+    fn try_group(&self, group: &[(f64, Candidate)]) -> Worked<Trial> {
+        let candidates: Vec<&Candidate> = group.iter().map(|(_, candidate)| candidate).collect();
+        self.with_group(&candidates, |evaluator| {
+            let mut trials = Vec::new();
+            for (number, candidate) in candidates.iter().enumerate() {
+                let mut attempt = Attempt {
+                    bench: self,
+                    candidate,
+                    select: &|numbers| Selection::of(candidates.len(), &[number], numbers),
+                    evaluator,
+                    trials: &mut trials,
+                };
+                attempt.run();
+            }
+            trials
+        })
+    }
+}
+
+/// The trials of one candidate.
+struct Attempt<'a, 'e> {
+    bench: &'a Bench<'a>,
+    candidate: &'a Candidate,
+    select: &'a dyn Fn(&Numbers) -> Selection,
+    evaluator: &'a mut PointEvaluator<'e>,
+    trials: &'a mut Vec<Trial>,
+}
+
+impl Attempt<'_, '_> {
+    fn run(&mut self) {
+        let (bench, candidate) = (self.bench, self.candidate);
+        let (probes, before) = (&bench.probes, &bench.before);
+        match &candidate.trials {
+            Trials::Once => {
+                self.test(&Numbers::default(), candidate.cost);
+            }
+            Trials::Values { values, fit } => {
+                let mut passes = false;
+                for &(value, cost) in values {
+                    passes |= self.test(&one(value), cost);
+                }
+                let Some((cost, start)) = fit.filter(|_| !passes) else {
+                    return;
+                };
+                let select = self.select;
+                let found = fitted(
+                    probes,
+                    self.evaluator,
+                    |number| select(&one(number)),
+                    start,
+                    before,
+                );
+                for number in found {
+                    if self.test(&one(number), cost) {
+                        break;
+                    }
+                }
+            }
+            Trials::Color(start) => {
+                for numbers in fitted_colors(probes, self.evaluator, self.select, start, before) {
+                    if self.test(&numbers, candidate.cost) {
+                        break;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Tries the candidate with these numbers, and returns whether it passes.
+    fn test(&mut self, numbers: &Numbers, cost: u32) -> bool {
+        let (probes, before) = (&self.bench.probes, &self.bench.before);
+        let Some(outcome) = probes.test(self.evaluator, &(self.select)(numbers), before) else {
+            return false;
+        };
+        let is_progress = outcome.repaired > outcome.broken
+            || (outcome.broken == 0 && outcome.remaining < 1.0 - MIN_PROGRESS);
+        if outcome.passes || is_progress {
+            let candidate = self.candidate.with_numbers(numbers, cost);
+            self.trials.push(Trial { candidate, outcome });
+        }
+        outcome.passes
+    }
+}
+
+/// The numbers of an edit that has one.
+fn one(number: f64) -> Numbers {
+    [number, 0.0, 0.0]
+}

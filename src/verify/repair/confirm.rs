@@ -1,0 +1,200 @@
+//! Confirms repairs: the edited text is checked as if its author had written it, in a second frame and in the
+//! first.
+
+use std::sync::OnceLock;
+
+use toyproof_diagnostic::{Deadline, Edit, File, Files, Fix, Span};
+use toyproof_glsl::{self as glsl, Checked};
+use toyproof_image::Frame;
+use toyproof_lint::Lints;
+
+use super::edit::EditKind;
+use super::{Repair, SearchOptions};
+use crate::mistake::KnownMistake;
+use crate::{Case, Expected, Findings, Verdict, verify};
+
+/// The second frame: another size and shape of the image, and another time if the scene moves.
+const OTHER_SIZE: [u32; 2] = [132, 100];
+const OTHER_TIME: f32 = 1.3;
+
+/// The largest number of samples of its image, all pixels together.
+const MAX_SAMPLES: u32 = 1 << 19;
+
+/// Confirms the repairs of one shader.
+pub(super) struct Judge<'a> {
+    case: &'a Case<'a>,
+    expected: &'a Expected,
+    options: SearchOptions<'a>,
+    /// The second frame and its reference.
+    other: OnceLock<(Frame, Expected)>,
+}
+
+impl<'a> Judge<'a> {
+    pub(super) fn new(case: &'a Case<'a>, expected: &'a Expected, options: SearchOptions<'a>) -> Self {
+        Self {
+            case,
+            expected,
+            options,
+            other: OnceLock::new(),
+        }
+    }
+
+    /// Returns the repair if the edited shader is right in both frames.
+    pub(super) fn confirm(&self, fix: Fix, kinds: &[EditKind]) -> Option<Repair> {
+        let (_, checked) = self.edited(&fix)?;
+        let findings = self.findings(&checked, self.case.frame, self.expected)?;
+        let summary = &findings.algorithm.as_ref()?.summary;
+        let by_means = findings.reason.compares_means();
+        // Means are compared over so many sets of random numbers that a second frame says little more.
+        if !by_means {
+            let (frame, expected) = self.other.get_or_init(|| self.other_frame());
+            self.findings(&checked, frame, expected)?;
+        }
+        let differing = if by_means { 0 } else { summary.differing };
+        Some(Repair {
+            fix,
+            mistake: mistake(kinds),
+            agreeing: summary.pixels - differing,
+            pixels: summary.pixels,
+            by_means,
+            image: findings.actual,
+        })
+    }
+
+    /// The shader with the edits, if it is valid.
+    pub(super) fn edited(&self, fix: &Fix) -> Option<(String, Checked)> {
+        let text = apply(self.options.source, fix)?;
+        let mut files = Files::default();
+        let file = files.add(File::new("<repair>", text.as_str()));
+        let options = glsl::Options {
+            lenient: self.options.lenient,
+            channels: self.case.checked.channels.map(Some),
+            deadline: Deadline::after(self.case.timeout),
+        };
+        let checked = glsl::check(&files, file, &options).ok()?;
+        Some((text, checked))
+    }
+
+    /// The findings, if nothing speaks against the algorithm.
+    fn findings(&self, checked: &Checked, frame: &Frame, expected: &Expected) -> Option<Findings> {
+        let case = Case {
+            checked,
+            lints: &Lints::default(),
+            expected: Some(expected),
+            hypotheses: None,
+            search: None,
+            frame,
+            ..*self.case
+        };
+        let findings = verify(None, &case).ok()?;
+        matches!(findings.verdict, Verdict::Correct | Verdict::Unstable).then_some(findings)
+    }
+
+    fn other_frame(&self) -> (Frame, Expected) {
+        let scene = self.expected.scene();
+        let mut frame = self.case.frame.clone();
+        frame.size = OTHER_SIZE;
+        while frame.size[0] * frame.size[1] * scene.film.samples > MAX_SAMPLES && frame.size[1] > 16 {
+            frame.size = frame.size.map(|side| side * 3 / 4);
+        }
+        if !scene.motions.is_empty() {
+            frame.time += OTHER_TIME;
+        }
+        let expected = Expected::new(scene.clone(), &frame);
+        (frame, expected)
+    }
+}
+
+/// The text after all edits, which are sorted and do not overlap; none if they do.
+pub(super) fn apply(source: &str, fix: &Fix) -> Option<String> {
+    let mut text = String::with_capacity(source.len() + 64);
+    let mut end = 0;
+    for edit in &fix.edits {
+        text.push_str(source.get(end..edit.span.start as usize)?);
+        text.push_str(&edit.replacement);
+        end = edit.span.end as usize;
+    }
+    text.push_str(source.get(end..)?);
+    Some(text)
+}
+
+/// The edits of a text, and those of the text that they result in, as edits of the first; none if they overlap.
+pub(super) fn compose(first: &Fix, second: &Fix) -> Option<Fix> {
+    let mut edits = first.edits.clone();
+    for edit in &second.edits {
+        // How much longer the first edits in front of this one, and inside of it, make the text.
+        let (mut shift, mut inside) = (0_i64, 0_i64);
+        let [mut start, mut end] = [edit.span.start, edit.span.end].map(i64::from);
+        for before in &first.edits {
+            let from = i64::from(before.span.start) + shift + inside;
+            let to = from + before.replacement.len() as i64;
+            let growth = before.replacement.len() as i64 - i64::from(before.span.end - before.span.start);
+            if start >= to {
+                shift += growth;
+            } else if start <= from && to <= end {
+                // The second edit's text contains what the first one wrote.
+                inside += growth;
+                edits.retain(|own| own.span != before.span);
+            } else if end > from {
+                return None;
+            }
+        }
+        start -= shift;
+        end -= shift + inside;
+        let [start, end] = [start, end].map(u32::try_from);
+        edits.push(Edit {
+            span: Span::new(first.edits.first()?.span.file, start.ok()?, end.ok()?),
+            replacement: edit.replacement.clone(),
+        });
+    }
+    edits.sort_by_key(|edit| edit.span.start);
+    let overlap = edits.windows(2).any(|pair| pair[0].span.end > pair[1].span.start);
+    (!overlap).then(|| Fix {
+        message: format!("{}, and {}", first.message, second.message),
+        edits,
+    })
+}
+
+/// The mistake that edits of these kinds repair.
+fn mistake(kinds: &[EditKind]) -> KnownMistake {
+    match kinds {
+        [only] => only.mistake(),
+        _ => EditKind::Two.mistake(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fix(edits: &[(u32, u32, &str)]) -> Fix {
+        let file = Files::default().add(File::new("a", ""));
+        let edits = edits.iter().map(|&(start, end, replacement)| Edit {
+            span: Span::new(file, start, end),
+            replacement: replacement.to_owned(),
+        });
+        Fix {
+            message: "edit".to_owned(),
+            edits: edits.collect(),
+        }
+    }
+
+    #[test]
+    fn composed_edits_give_the_text_of_both() {
+        let source = "a = b + c; d = e;";
+        let first = fix(&[(4, 5, "long"), (8, 9, "")]);
+        let text = apply(source, &first).unwrap();
+        assert_eq!(text, "a = long + ; d = e;");
+        for (start, end, replacement) in [(0, 1, "x"), (17, 18, "f"), (9, 10, "-"), (13, 14, "")] {
+            let second = fix(&[(start, end, replacement)]);
+            let both = compose(&first, &second).unwrap();
+            assert_eq!(apply(source, &both), apply(&text, &second), "{second:?}");
+        }
+        // The second edit encloses the first.
+        let whole = fix(&[(4, 10, "f(long)")]);
+        let both = compose(&first, &whole).unwrap();
+        assert_eq!(both.edits.len(), 2);
+        assert_eq!(apply(source, &both), apply(&text, &whole));
+        assert_eq!(compose(&first, &fix(&[(5, 6, "i")])), None);
+    }
+}

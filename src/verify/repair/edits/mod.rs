@@ -1,0 +1,221 @@
+//! Generates candidates: the edits that undo common mistakes, at every place of a shader.
+
+mod donor;
+mod expression;
+mod insertion;
+mod name;
+mod number;
+mod plausibility;
+mod statement;
+
+use std::collections::HashSet;
+
+use toyproof_glsl::tree::{ExprKind, Input, Member, Scalar, Swizzle, Tree, Type, VariableId, VariableKind};
+
+pub(super) use self::donor::candidates as donor_candidates;
+pub(super) use self::number::Constants;
+use super::edit::{Candidate, Change, EditKind, Trials};
+use super::shader::Shader;
+use super::term::{Term, TermKind};
+
+/// The candidates for the sites and statements of a shader in that order, the most suspicious first.
+pub(super) fn candidates(
+    shader: &Shader,
+    constants: &Constants,
+    sites: &[usize],
+    statements: &[usize],
+) -> Vec<Candidate> {
+    let mut writer = Writer::new(shader, constants);
+    for &site in sites {
+        if writer.all.len() >= MAX_CANDIDATES {
+            break;
+        }
+        writer.site(site);
+    }
+    let of_sites = writer.all.len();
+    for &statement in statements {
+        if writer.all.len() >= of_sites + MAX_CANDIDATES {
+            break;
+        }
+        writer.statement(statement);
+    }
+    plausibility::adjust(shader, constants, &mut writer.all);
+    writer.all.into_iter().flat_map(Candidate::by_cost).collect()
+}
+
+/// The largest number of candidates for sites, and for statements, and of values of a type in scope: a shader may
+/// be large.
+const MAX_CANDIDATES: usize = 40_000;
+const MAX_VALUES: usize = 24;
+
+/// The number of variables that index an array.
+const MAX_INDICES: usize = 2;
+
+/// Collects candidates.
+struct Writer<'a> {
+    shader: &'a Shader<'a>,
+    tree: &'a Tree,
+    constants: &'a Constants,
+    /// The bits of the numbers that the shader has: of the scene's, those that it has not are missing.
+    own_numbers: HashSet<u64>,
+    all: Vec<Candidate>,
+}
+
+impl<'a> Writer<'a> {
+    fn new(shader: &'a Shader<'a>, constants: &'a Constants) -> Self {
+        let numbers = shader
+            .tree
+            .exprs
+            .iter()
+            .filter_map(|(id, _)| number::number(shader.tree, id));
+        Self {
+            shader,
+            tree: shader.tree,
+            constants,
+            own_numbers: numbers.map(f64::to_bits).collect(),
+            all: Vec::new(),
+        }
+    }
+
+    fn site(&mut self, site: usize) {
+        let shader = self.shader;
+        self.number(site);
+        if shader.sites[site].exprs.len() > 1 {
+            // The text of a macro's body: only its numbers change.
+            return;
+        }
+        if matches!(
+            self.tree[shader.sites[site].exprs[0]].kind,
+            ExprKind::Assign { .. }
+        ) {
+            self.assignment(site);
+            return;
+        }
+        self.expression(site);
+        self.name(site);
+        self.insertion(site);
+    }
+
+    /// Adds the replacement of a site's expression.
+    fn replace(&mut self, site: usize, kind: EditKind, cost: u32, term: Term) {
+        self.replace_with(site, kind, cost, term, Trials::Once);
+    }
+
+    fn replace_with(&mut self, site: usize, kind: EditKind, cost: u32, term: Term, trials: Trials) {
+        let expr = self.shader.sites[site].exprs[0];
+        if term.ty == self.tree[expr].ty && term.kind != TermKind::Keep(expr) {
+            self.all.push(Candidate {
+                change: Change::Expression { site, term },
+                trials,
+                cost,
+                kind,
+            });
+        }
+    }
+
+    /// The values of a type that the variables in scope at a statement have.
+    fn values(&self, statement: usize, ty: Type) -> Vec<Term> {
+        let scope = &self.shader.statements[statement].scope;
+        let mut values = Vec::new();
+        // The innermost of equal names hides the others.
+        let mut names: HashSet<&str> = HashSet::new();
+        for &variable in scope.iter().rev() {
+            if values.len() >= MAX_VALUES {
+                break;
+            }
+            let name = self.tree[variable].name.as_str();
+            if !name.is_empty() && names.insert(name) {
+                self.values_of(variable, ty, &mut values);
+                self.elements(variable, scope, ty, &mut values);
+            }
+        }
+        values
+    }
+
+    /// The elements of an array at the indices that the shader uses, and their members.
+    fn elements(&self, array: VariableId, scope: &[VariableId], ty: Type, values: &mut Vec<Term>) {
+        let Type::Array(id) = self.tree[array].ty else {
+            return;
+        };
+        if matches!(self.tree[array].kind, VariableKind::Input(_)) {
+            return;
+        }
+        let element = self.tree.array(id).element;
+        let indices = scope
+            .iter()
+            .rev()
+            .filter(|&&index| self.tree[index].ty == Type::INT);
+        for &index in indices
+            .filter(|&&index| self.tree[index].kind == VariableKind::Local)
+            .take(MAX_INDICES)
+        {
+            let [base, index] = [array, index].map(|id| Box::new(Term::variable(self.tree, id)));
+            let element = Term::new(TermKind::Index(base, index), element);
+            self.parts(&element, ty, values, 1);
+        }
+    }
+
+    fn values_of(&self, variable: VariableId, ty: Type, values: &mut Vec<Term>) {
+        let own = &self.tree[variable];
+        match own.kind {
+            VariableKind::Input(Input::Resolution) if ty == Type::FLOAT => {
+                let whole = Term::variable(self.tree, variable);
+                let components = [[0], [1]].iter().filter_map(|at| Swizzle::new(at));
+                values.extend(
+                    components.map(|components| {
+                        Term::new(TermKind::Swizzle(Box::new(whole.clone()), components), ty)
+                    }),
+                );
+            }
+            VariableKind::Input(Input::Time) | VariableKind::Global | VariableKind::Const if own.ty == ty => {
+                values.push(Term::variable(self.tree, variable));
+            }
+            VariableKind::Local | VariableKind::Parameter(_) => {
+                self.parts(&Term::variable(self.tree, variable), ty, values, 2);
+            }
+            _ => {}
+        }
+    }
+
+    /// The term, or its members, that have a type.
+    fn parts(&self, term: &Term, ty: Type, values: &mut Vec<Term>, depth: u32) {
+        if term.ty == ty {
+            values.push(term.clone());
+        }
+        if let Type::Struct(id) = term.ty
+            && depth > 0
+        {
+            for (at, Member { ty: own, .. }) in self.tree[id].members.iter().enumerate() {
+                let member = Term::new(TermKind::Member(Box::new(term.clone()), at), *own);
+                self.parts(&member, ty, values, depth - 1);
+            }
+        }
+    }
+}
+
+/// Whether a term reads an input of the frame.
+fn is_input(tree: &Tree, term: &Term) -> bool {
+    match &term.kind {
+        TermKind::Variable(variable) => matches!(tree[*variable].kind, VariableKind::Input(_)),
+        TermKind::Swizzle(vector, _) => is_input(tree, vector),
+        _ => false,
+    }
+}
+
+/// Whether an expression is a name: a variable, a member or an element.
+fn is_name(kind: &ExprKind) -> bool {
+    matches!(
+        kind,
+        ExprKind::Variable(_) | ExprKind::Member { .. } | ExprKind::Index { .. } | ExprKind::Swizzle { .. }
+    )
+}
+
+/// Whether a type is a float or a vector of floats.
+fn is_float(ty: Type) -> bool {
+    matches!(ty, Type::Scalar(Scalar::Float) | Type::Vector(Scalar::Float, _))
+}
+
+/// Whether an expression is a literal.
+fn is_literal(kind: &ExprKind) -> bool {
+    matches!(kind, ExprKind::Literal(_))
+}

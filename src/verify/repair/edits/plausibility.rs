@@ -1,0 +1,293 @@
+//! How plausible an edit is, judged by the shader that renders the scene: an edit that writes its numbers and
+//! vectors, or operations of the same shape, is more likely than one that removes them.
+
+use std::collections::{HashMap, HashSet};
+
+use toyproof_glsl::tree::{Constructor, ExprId, ExprKind, Literal, Tree, UnaryOp, Value};
+
+use super::super::edit::{Candidate, Change, Trials};
+use super::super::shader::Shader;
+use super::super::term::{Term, TermKind};
+use super::number::{Constants, number};
+
+/// What an edit gains by writing a vector or a number of the scene, or loses by removing one.
+const VECTOR: i32 = 5;
+const NUMBER: i32 = 4;
+
+/// What it gains or loses for each enclosing operation that has, or had, a shape of the scene's shader; and the
+/// largest gain or loss.
+const SHAPE: i32 = 2;
+const MAX_SHAPES: i32 = 2;
+
+/// The depth to which shapes are compared; deeper operands are described by their types.
+const MAX_DEPTH: u32 = 3;
+
+/// The shapes of the operations in a shader.
+#[derive(Debug, Default)]
+pub(in crate::repair) struct Shapes(HashSet<String>);
+
+impl Shapes {
+    /// The shapes of all operations of a tree, to every depth.
+    pub(in crate::repair) fn of(tree: &Tree) -> Self {
+        let mut shapes = HashSet::new();
+        for (id, expr) in tree.exprs.iter() {
+            if is_operation(&expr.kind) {
+                shapes.extend((1..=MAX_DEPTH).map(|depth| shape(tree, id, depth, None)));
+            }
+        }
+        Self(shapes)
+    }
+}
+
+/// Adjusts the costs of candidates.
+pub(super) fn adjust(shader: &Shader, constants: &Constants, candidates: &mut [Candidate]) {
+    let places: HashMap<ExprId, usize> = shader
+        .sites
+        .iter()
+        .enumerate()
+        .map(|(at, site)| (site.exprs[0], at))
+        .collect();
+    let parts = places
+        .keys()
+        .flat_map(|&expr| (1..=MAX_DEPTH).map(move |depth| (expr, depth)));
+    let is_known = |&(expr, depth): &(ExprId, u32)| {
+        constants
+            .shapes
+            .0
+            .contains(&shape(shader.tree, expr, depth, None))
+    };
+    let judge = Judge {
+        shader,
+        constants,
+        known: parts.filter(is_known).collect(),
+        places,
+    };
+    for candidate in candidates {
+        let Change::Expression { site, term } = &candidate.change else {
+            continue;
+        };
+        let shape = judge.shape(*site, term);
+        let adjusted = |cost: u32, gain: i32| u32::try_from(cost as i32 - gain).unwrap_or(0);
+        match &mut candidate.trials {
+            Trials::Values { values, fit } => {
+                let mut least = u32::MAX;
+                for (value, cost) in values.iter_mut() {
+                    let numbers = [*value, 0.0, 0.0];
+                    *cost = adjusted(*cost, shape + judge.numbers(*site, &term.with_fitted(&numbers)));
+                    least = least.min(*cost);
+                }
+                if let Some((cost, _)) = fit {
+                    *cost = adjusted(*cost, shape + judge.numbers(*site, term));
+                }
+                candidate.cost = least.min(candidate.cost);
+            }
+            _ => candidate.cost = adjusted(candidate.cost, shape + judge.numbers(*site, term)),
+        }
+    }
+}
+
+struct Judge<'a> {
+    shader: &'a Shader<'a>,
+    constants: &'a Constants,
+    /// The site of each expression.
+    places: HashMap<ExprId, usize>,
+    /// The expressions that have a shape of the scene's shader, and to which depths.
+    known: HashSet<(ExprId, u32)>,
+}
+
+impl Judge<'_> {
+    /// The gain of an edit for the numbers that it writes and removes.
+    fn numbers(&self, site: usize, term: &Term) -> i32 {
+        let tree = self.shader.tree;
+        let expr = self.shader.sites[site].exprs[0];
+        // The vector that contains the number, with the signs between them.
+        let mut part = expr;
+        while let Some(user) = self.user(part)
+            && matches!(
+                tree[user].kind,
+                ExprKind::Unary {
+                    op: UnaryOp::Minus,
+                    ..
+                }
+            )
+        {
+            part = user;
+        }
+        let vector = [Some(part), self.user(part)]
+            .into_iter()
+            .flatten()
+            .find(|&whole| {
+                matches!(
+                    tree[whole].kind,
+                    ExprKind::Construct {
+                        constructor: Constructor::Vector,
+                        ..
+                    }
+                )
+            });
+        if let Some(vector) = vector
+            && let Some(old) = components(tree, vector, None)
+        {
+            let new = components(tree, vector, Some((expr, term)));
+            let is_scene = |vector: &Vec<f64>| self.constants.has_vector(vector);
+            return match (is_scene(&old), new.as_ref().is_some_and(is_scene)) {
+                (false, true) => VECTOR,
+                (true, false) => -VECTOR,
+                _ => 0,
+            };
+        }
+        let (Some(old), new) = (number(tree, expr), value(term, tree)) else {
+            return 0;
+        };
+        let is_scene = |number: f64| self.constants.has(number);
+        match (is_scene(old), new.is_some_and(is_scene)) {
+            (false, true) => NUMBER,
+            (true, false) => -NUMBER,
+            _ => 0,
+        }
+    }
+
+    /// The gain of an edit for the shapes of the operations that enclose it.
+    fn shape(&self, site: usize, term: &Term) -> i32 {
+        let tree = self.shader.tree;
+        let expr = self.shader.sites[site].exprs[0];
+        let mut gain = 0;
+        let mut whole = Some(expr);
+        // A shape shows the edit only if it is deep enough.
+        for distance in 0..MAX_DEPTH {
+            let Some(part) = whole else { break };
+            for depth in distance + 1..=MAX_DEPTH {
+                let new = shape(tree, part, depth, Some((expr, term)));
+                let is_known = self.constants.shapes.0.contains(&new);
+                gain += i32::from(is_known) - i32::from(self.known.contains(&(part, depth)));
+            }
+            whole = self.user(part);
+        }
+        // What an insertion encloses keeps its shape.
+        let least = if term.keeps(expr) { 0 } else { -MAX_SHAPES };
+        SHAPE * gain.clamp(least, MAX_SHAPES)
+    }
+
+    fn user(&self, expr: ExprId) -> Option<ExprId> {
+        let site = self.places.get(&expr)?;
+        self.shader.sites[*site].user
+    }
+}
+
+/// The components of a vector of literals, perhaps after an edit.
+fn components(tree: &Tree, vector: ExprId, edit: Option<(ExprId, &Term)>) -> Option<Vec<f64>> {
+    if let Some((expr, term)) = edit
+        && expr == vector
+    {
+        let TermKind::Construct(_, arguments) = &term.kind else {
+            return None;
+        };
+        return arguments.iter().map(|argument| value(argument, tree)).collect();
+    }
+    let ExprKind::Construct { arguments, .. } = &tree[vector].kind else {
+        return None;
+    };
+    let component = |&argument: &ExprId| edited_number(tree, argument, edit);
+    arguments.iter().map(component).collect()
+}
+
+/// The number that an expression is, perhaps after an edit.
+fn edited_number(tree: &Tree, expr: ExprId, edit: Option<(ExprId, &Term)>) -> Option<f64> {
+    match (&tree[expr].kind, edit) {
+        (_, Some((own, term))) if own == expr => value(term, tree),
+        (
+            ExprKind::Unary {
+                op: UnaryOp::Minus,
+                operand,
+            },
+            _,
+        ) => edited_number(tree, *operand, edit).map(|number| -number),
+        _ => number(tree, expr),
+    }
+}
+
+/// The number that a term is.
+fn value(term: &Term, tree: &Tree) -> Option<f64> {
+    match &term.kind {
+        TermKind::Float(value) => Some(*value),
+        TermKind::Int(value) => Some(f64::from(*value)),
+        TermKind::Keep(expr) => number(tree, *expr),
+        TermKind::Unary(UnaryOp::Minus, operand) => value(operand, tree).map(|value| -value),
+        _ => None,
+    }
+}
+
+/// Whether an expression is an operation, rather than a name or a number.
+pub(super) fn is_operation(kind: &ExprKind) -> bool {
+    matches!(
+        kind,
+        ExprKind::Unary { .. }
+            | ExprKind::Binary { .. }
+            | ExprKind::BuiltIn { .. }
+            | ExprKind::Construct { .. }
+            | ExprKind::Swizzle { .. }
+            | ExprKind::Conditional { .. }
+    )
+}
+
+/// The shape of an expression to a depth, perhaps after an edit: its operations, and the types of the names.
+fn shape(tree: &Tree, expr: ExprId, depth: u32, edit: Option<(ExprId, &Term)>) -> String {
+    if let Some((own, term)) = edit
+        && own == expr
+    {
+        // What a term keeps is the shader's own.
+        return term_shape(tree, term, depth);
+    }
+    let part = |operand: ExprId| shape(tree, operand, depth - 1, edit);
+    let list = |arguments: &[ExprId]| {
+        arguments
+            .iter()
+            .map(|&operand| part(operand))
+            .collect::<Vec<_>>()
+            .join(",")
+    };
+    let leaf = || tree.type_name(tree[expr].ty);
+    match &tree[expr].kind {
+        ExprKind::Literal(Literal { value, .. }) => literal(*value),
+        _ if depth == 0 => leaf(),
+        ExprKind::Unary { op, operand } => format!("{}{}", op.symbol(), part(*operand)),
+        ExprKind::Binary { op, left, right } => format!("({}{}{})", part(*left), op.symbol(), part(*right)),
+        ExprKind::Conditional { condition, yes, no } => list(&[*condition, *yes, *no]),
+        ExprKind::BuiltIn { function, arguments } => format!("{}({})", function.name(), list(arguments)),
+        ExprKind::Construct { arguments, .. } => format!("{}({})", leaf(), list(arguments)),
+        ExprKind::Swizzle { vector, components } => format!("{}.{}", part(*vector), components.name()),
+        _ => leaf(),
+    }
+}
+
+fn term_shape(tree: &Tree, term: &Term, depth: u32) -> String {
+    let part = |operand: &Term| term_shape(tree, operand, depth - 1);
+    let list = |arguments: &[Term]| arguments.iter().map(part).collect::<Vec<_>>().join(",");
+    let leaf = || tree.type_name(term.ty);
+    match &term.kind {
+        TermKind::Keep(expr) => shape(tree, *expr, depth, None),
+        TermKind::Float(value) => literal(Value::Float(*value)),
+        TermKind::Int(value) => literal(Value::Int(*value)),
+        TermKind::Bool(value) => value.to_string(),
+        TermKind::Fitted(_) => "?".to_owned(),
+        _ if depth == 0 => leaf(),
+        TermKind::Unary(op, operand) => format!("{}{}", op.symbol(), part(operand)),
+        TermKind::Binary(op, left, right) => format!("({}{}{})", part(left), op.symbol(), part(right)),
+        TermKind::Conditional(parts) => list(parts.as_slice()),
+        TermKind::BuiltIn(function, arguments) => format!("{}({})", function.name(), list(arguments)),
+        TermKind::Construct(_, arguments) => format!("{}({})", leaf(), list(arguments)),
+        TermKind::Swizzle(vector, components) => format!("{}.{}", part(vector), components.name()),
+        _ => leaf(),
+    }
+}
+
+/// A number of a formula, such as 0, 1 and 2; others belong to the scene, and only their type counts.
+fn literal(value: Value) -> String {
+    match value {
+        Value::Float(value) if [0.0, 1.0, 2.0, 0.5].contains(&value) => value.to_string(),
+        Value::Float(_) => "float".to_owned(),
+        Value::Int(value) => value.to_string(),
+        Value::Uint(value) => value.to_string(),
+        Value::Bool(value) => value.to_string(),
+    }
+}

@@ -1,0 +1,182 @@
+//! Edits of statements: deleted, moved and inserted ones, and other targets and operators of assignments.
+
+use toyproof_glsl::tree::{BinaryOp, Direction, ExprKind, Scalar, Type, VariableId, VariableKind};
+
+use super::super::edit::{Action, Candidate, Change, EditKind, Trials};
+use super::super::shader::Shape;
+use super::super::term::{Term, TermKind};
+use super::Writer;
+
+/// The costs: another operator of an assignment, another target, another value, deletions, moves and insertions.
+const OPERATOR: u32 = 11;
+const TARGET: u32 = 16;
+const VALUE: u32 = 20;
+const DELETION: u32 = 17;
+const MOVE: u32 = 20;
+const ASSIGNMENT: u32 = 24;
+
+/// The largest number of variables and members that are assigned.
+const MAX_TARGETS: usize = 24;
+
+impl Writer<'_> {
+    pub(super) fn statement(&mut self, at: usize) {
+        let statement = &self.shader.statements[at];
+        if statement.at.is_none() || statement.is_expanded {
+            return;
+        }
+        if matches!(
+            statement.kind,
+            Shape::Expression(_) | Shape::If { .. } | Shape::Jump | Shape::Return
+        ) {
+            self.change(
+                EditKind::SuperfluousStatement,
+                DELETION,
+                vec![(at, Action::Delete)],
+            );
+        }
+        if let Some(next) = statement.next {
+            let is_declaration = |at: usize| matches!(self.shader.statements[at].kind, Shape::Declaration(_));
+            let is_jump = |at: usize| matches!(self.shader.statements[at].kind, Shape::Jump | Shape::Return);
+            if !is_jump(next) {
+                let actions = if !is_declaration(next) {
+                    Some(vec![(at, Action::CopyBefore(next)), (next, Action::Delete)])
+                } else if !is_declaration(at) {
+                    Some(vec![(next, Action::CopyAfter(at)), (at, Action::Delete)])
+                } else {
+                    None
+                };
+                if let Some(actions) = actions {
+                    self.change(EditKind::MisplacedStatement, MOVE, actions);
+                }
+            }
+        }
+        if matches!(statement.kind, Shape::Expression(_) | Shape::Declaration(_)) {
+            self.assignments(at);
+        }
+    }
+
+    fn change(&mut self, kind: EditKind, cost: u32, actions: Vec<(usize, Action)>) {
+        self.all.push(Candidate {
+            change: Change::Statements(actions),
+            trials: Trials::Once,
+            cost,
+            kind,
+        });
+    }
+
+    /// Inserts an assignment of one variable to another behind a statement.
+    fn assignments(&mut self, at: usize) {
+        let tree = self.tree;
+        let statement = &self.shader.statements[at];
+        let declared = match statement.kind {
+            Shape::Declaration(variable) => Some(variable),
+            _ => None,
+        };
+        let is_target = |kind| {
+            matches!(
+                kind,
+                VariableKind::Local
+                    | VariableKind::Parameter(Direction::Out | Direction::InOut | Direction::In)
+            )
+        };
+        let is_value = |ty: Type| {
+            matches!(
+                ty,
+                Type::Scalar(_) | Type::Vector(Scalar::Float, _) | Type::Struct(_)
+            )
+        };
+        let targets = statement
+            .scope
+            .iter()
+            .rev()
+            .filter(|&&id| is_target(tree[id].kind));
+        let targets: Vec<Term> = targets
+            .flat_map(|&id| self.assignable(id))
+            .take(MAX_TARGETS)
+            .collect();
+        for target in targets {
+            let ty = target.ty;
+            if !is_value(ty) {
+                continue;
+            }
+            let mut values = self.values(at, ty);
+            values.extend(
+                declared
+                    .filter(|&id| tree[id].ty == ty)
+                    .map(|id| Term::variable(tree, id)),
+            );
+            for value in values {
+                if value != target {
+                    let kind = TermKind::Assign(None, Box::new(target.clone()), Box::new(value));
+                    let assignment = Action::After(Term::new(kind, ty));
+                    self.change(EditKind::MissingStatement, ASSIGNMENT, vec![(at, assignment)]);
+                }
+            }
+        }
+    }
+
+    /// A variable and its members.
+    fn assignable(&self, variable: VariableId) -> Vec<Term> {
+        let whole = Term::variable(self.tree, variable);
+        let mut all = vec![whole.clone()];
+        if let Type::Struct(id) = whole.ty {
+            let members = self.tree[id].members.iter().enumerate();
+            all.extend(
+                members
+                    .map(|(at, member)| Term::new(TermKind::Member(Box::new(whole.clone()), at), member.ty)),
+            );
+        }
+        all
+    }
+
+    /// Edits of an assignment itself.
+    pub(super) fn assignment(&mut self, site: usize) {
+        use BinaryOp::{Add, Divide, Multiply, Subtract};
+        let tree = self.tree;
+        let shader = self.shader;
+        let expr = shader.sites[site].exprs[0];
+        let ExprKind::Assign { op, target, value } = tree[expr].kind else {
+            return;
+        };
+        let ty = tree[expr].ty;
+        let assign = |op: Option<BinaryOp>, target: Term| {
+            let value = Box::new(Term::keep(tree, value));
+            Term::new(TermKind::Assign(op, Box::new(target), value), ty)
+        };
+        for other in [None, Some(Add), Some(Multiply), Some(Subtract), Some(Divide)] {
+            let fits = match other {
+                None => tree[value].ty == ty,
+                Some(op) => super::super::term::binary_type(op, ty, tree[value].ty) == Some(ty),
+            };
+            if other != op && fits {
+                self.replace(
+                    site,
+                    EditKind::Operator,
+                    OPERATOR,
+                    assign(other, Term::keep(tree, target)),
+                );
+            }
+        }
+        // A value of another type, such as a color in place of a number.
+        if let Some(op) = op.filter(|_| tree[value].ty != ty) {
+            for other in self.values(shader.sites[site].statement, ty) {
+                let target = Box::new(Term::keep(tree, target));
+                let term = Term::new(TermKind::Assign(Some(op), target, Box::new(other)), ty);
+                self.replace(site, EditKind::Variable, VALUE, term);
+            }
+        }
+        let old = shader.text(tree[target].at.span);
+        for other in self.values(shader.sites[site].statement, tree[target].ty) {
+            let is_variable = |term: &Term| match &term.kind {
+                TermKind::Variable(id) => {
+                    matches!(tree[*id].kind, VariableKind::Local | VariableKind::Parameter(_))
+                }
+                TermKind::Member(structure, _) => matches!(structure.kind, TermKind::Variable(_)),
+                _ => false,
+            };
+            if is_variable(&other) && other.text(tree, shader.source, 0) != old {
+                self.replace(site, EditKind::Variable, TARGET, assign(op, other));
+            }
+        }
+    }
+}

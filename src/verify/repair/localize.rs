@@ -1,0 +1,166 @@
+//! Spectrum-based fault localization: which values the wrong pixels depend on more often than the right ones.
+//!
+//! A pixel depends on a value if its color changes when the value is changed, which is a dynamic slice
+//! found by execution, not by analysis: a statement that a pixel does not run, or whose result it does not use,
+//! has no influence. Suspicion is Ochiai's coefficient (Abreu, Zoeteweij and van Gemund, "On the accuracy of
+//! spectrum-based fault localization", 2007): with w and r the wrong and right pixels that depend on the value,
+//! of W wrong ones, s = w / √(W·(w + r)).
+
+use toyproof_glsl::tree::{BinaryOp, ExprKind, Scalar, Type, UnaryOp};
+
+use super::edit::{Candidate, Change, EditKind, Trials};
+use super::probe::Probe;
+use super::shader::{Shader, Shape};
+use super::term::Term;
+
+/// A change of a float: a factor and a term.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Disturbance {
+    factor: f64,
+    term: f64,
+    /// How much an influence that only this change shows is worth.
+    pub(super) weight: f64,
+}
+
+/// First a change so small that most conditions stay as they are; then, for values without influence, one that
+/// moves a ray's start or a hit's distance by more than an epsilon.
+pub(super) const DISTURBANCES: [Disturbance; 2] = [
+    Disturbance {
+        factor: 1.0 + 1.0 / 256.0,
+        term: 1.0 / 1024.0,
+        weight: 1.0,
+    },
+    Disturbance {
+        factor: -1.5,
+        term: 0.25,
+        weight: 0.8,
+    },
+];
+
+/// The difference at which a color has changed.
+const CHANGED: f64 = 1e-9;
+
+/// The share of its user's suspicion that an operand has at least, where a small change need not show: in a
+/// comparison, and for types that are not changed.
+const INHERITED: f64 = 0.9;
+
+/// The candidate that changes the value of a site; none if its type has no such change.
+pub(super) fn disturbed(shader: &Shader, site: usize, by: Disturbance) -> Option<Candidate> {
+    let tree = shader.tree;
+    let expr = shader.sites[site].exprs[0];
+    let own = Term::keep(tree, expr);
+    if matches!(tree[expr].kind, ExprKind::Assign { .. }) {
+        return None;
+    }
+    let term = match tree[expr].ty {
+        Type::Scalar(Scalar::Float) | Type::Vector(Scalar::Float, _) => {
+            let product = Term::binary(BinaryOp::Multiply, own, Term::float(by.factor))?;
+            Term::binary(BinaryOp::Add, product, Term::float(by.term))?
+        }
+        Type::Matrix { .. } => Term::binary(BinaryOp::Multiply, own, Term::float(by.factor))?,
+        Type::Scalar(Scalar::Int) => Term::binary(BinaryOp::Add, own, Term::int(1))?,
+        Type::BOOL => Term::unary(UnaryOp::Not, own),
+        _ => return None,
+    };
+    Some(Candidate {
+        change: Change::Expression { site, term },
+        trials: Trials::Once,
+        cost: 0,
+        kind: EditKind::Expression,
+    })
+}
+
+/// How suspicious a value is.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Suspicion {
+    /// Ochiai's coefficient.
+    pub(super) ochiai: f64,
+    /// The share of the wrong pixels that depend on the value. An edit repairs no others.
+    pub(super) coverage: f64,
+}
+
+impl Suspicion {
+    fn scaled(self, factor: f64) -> Self {
+        Self {
+            ochiai: factor * self.ochiai,
+            coverage: factor * self.coverage,
+        }
+    }
+
+    pub(super) fn max(self, other: Self) -> Self {
+        Self {
+            ochiai: self.ochiai.max(other.ochiai),
+            coverage: self.coverage.max(other.coverage),
+        }
+    }
+}
+
+/// The suspicion of a value whose change changes these colors to those.
+pub(super) fn suspicion(probes: &[Probe], before: &[[f64; 3]], after: &[[f64; 3]], weight: f64) -> Suspicion {
+    let (mut wrong, mut right) = (0.0, 0.0);
+    for ((probe, old), new) in probes.iter().zip(before).zip(after) {
+        let has_changed = (0..3).any(|i| {
+            let same = (old[i].clamp(0.0, 1.0) - new[i].clamp(0.0, 1.0)).abs() <= CHANGED;
+            !(same || old[i].is_nan() && new[i].is_nan())
+        });
+        if has_changed {
+            *(if probe.is_wrong { &mut wrong } else { &mut right }) += 1.0;
+        }
+    }
+    if wrong == 0.0 {
+        return Suspicion::default();
+    }
+    let all_wrong = probes.iter().filter(|probe| probe.is_wrong).count() as f64;
+    Suspicion {
+        ochiai: weight * wrong / (all_wrong * (wrong + right)).sqrt(),
+        coverage: wrong / all_wrong,
+    }
+}
+
+/// The suspicion of each site: measured, or that of the expression that uses its value. `measured` is none
+/// where a site was not changed.
+pub(super) fn suspicions(shader: &Shader, measured: &[Option<Suspicion>]) -> Vec<Suspicion> {
+    let tree = shader.tree;
+    let mut suspicions: Vec<Suspicion> = measured.iter().map(|own| own.unwrap_or_default()).collect();
+    let places: std::collections::HashMap<_, usize> = shader
+        .sites
+        .iter()
+        .enumerate()
+        .map(|(at, site)| (site.exprs[0], at))
+        .collect();
+    // Users come after their operands.
+    for at in (0..shader.sites.len()).rev() {
+        let Some(user) = shader.sites[at].user.and_then(|user| places.get(&user)) else {
+            continue;
+        };
+        let is_compared = tree[shader.sites[*user].exprs[0]].ty == Type::BOOL;
+        if is_compared || measured[at].is_none() {
+            suspicions[at] = suspicions[at].max(suspicions[*user].scaled(INHERITED));
+        }
+    }
+    // What is stored is as suspicious as the value that is stored.
+    for at in 0..shader.sites.len() {
+        if let ExprKind::Assign { value, .. } = tree[shader.sites[at].exprs[0]].kind
+            && let Some(&value) = places.get(&value)
+        {
+            suspicions[at] = suspicions[value];
+        }
+    }
+    suspicions
+}
+
+/// The suspicion of each statement: that of its most suspicious value. A jump has that of the statement in
+/// front of it, which is the head of its `if`.
+pub(super) fn of_statements(shader: &Shader, sites: &[Suspicion]) -> Vec<Suspicion> {
+    let mut suspicions = vec![Suspicion::default(); shader.statements.len()];
+    for (site, &suspicion) in shader.sites.iter().zip(sites) {
+        let own = &mut suspicions[site.statement];
+        *own = own.max(suspicion);
+    }
+    for at in 1..suspicions.len() {
+        if shader.statements[at].kind == Shape::Jump {
+            suspicions[at] = suspicions[at - 1];
+        }
+    }
+    suspicions
+}

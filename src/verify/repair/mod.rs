@@ -1,0 +1,79 @@
+//! Repair: finds the lines that a wrong image depends on, and the smallest edits of the shader's own text after
+//! which its image is the expected one.
+
+mod bench;
+mod confirm;
+mod edit;
+mod edits;
+mod fit;
+mod localize;
+mod probe;
+mod scan;
+mod schema;
+mod search;
+mod shader;
+mod term;
+
+use toyproof_diagnostic::{Fix, Span};
+use toyproof_image::Rgb8Image;
+
+pub(crate) use self::search::{NoisyImage, search};
+use crate::mistake::KnownMistake;
+
+/// The mistakes that repairs are named after.
+#[cfg(test)]
+pub(crate) fn mistakes() -> impl Iterator<Item = KnownMistake> {
+    edit::EditKind::ALL.iter().map(|kind| kind.mistake())
+}
+
+/// What a search needs besides the shader and its reference.
+#[derive(Debug, Clone, Copy)]
+pub struct SearchOptions<'a> {
+    /// The text of the shader's file.
+    pub source: &'a str,
+    /// Whether the shader was checked leniently, see [`toyproof_glsl::Options::lenient`].
+    pub lenient: bool,
+    /// The work that may be done, in units of about a second on one core. Work is counted, not timed, so that
+    /// the result is the same on any machine and with any number of threads.
+    pub budget: f64,
+}
+
+/// The default of [`SearchOptions::budget`].
+pub const DEFAULT_BUDGET: f64 = 5.0;
+
+/// An edit of the shader, or two at once, after which its image is the expected one.
+#[derive(Debug, Clone)]
+pub struct Repair {
+    /// The edits, with a sentence such as ``replace `tca + thc` with `tca - thc` ``.
+    pub fix: Fix,
+    /// What is wrong with the shader, named by the kind of the edit.
+    pub mistake: KnownMistake,
+    /// The number of pixels that agree with the reference after the edit.
+    pub agreeing: u64,
+    /// The number of pixels that were compared.
+    pub pixels: u64,
+    /// Whether their means agree, because the shader has random numbers of its own.
+    pub by_means: bool,
+    /// The image after the edit, as displayed.
+    pub image: Rgb8Image,
+}
+
+/// A part of the shader on which the wrong pixels depend more than the others.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Suspect {
+    /// The statement.
+    pub span: Span,
+    /// The suspicion, from 0 to 1.
+    pub score: f64,
+}
+
+/// What the search found.
+#[derive(Debug, Clone, Default)]
+pub struct SearchResult {
+    /// At most three repairs, the most likely first. Each alone repairs the image.
+    pub repairs: Vec<Repair>,
+    /// At most three suspects, on different lines, the most suspicious first; also if there are repairs.
+    pub suspects: Vec<Suspect>,
+    /// Whether the budget ended before all edits were tried.
+    pub is_cut: bool,
+}

@@ -1,0 +1,227 @@
+//! Mutant schemata (Untch, Offutt and Harrold, "Mutation analysis using mutant schemata", ISSTA 1993): one program
+//! that contains many edits of a shader, each selected by a parameter. It is compiled once for all of them.
+
+use std::collections::{BTreeMap, HashMap};
+use std::time::Duration;
+
+use toyproof_eval::{ParametricProgram, Refusal};
+use toyproof_glsl::Checked;
+use toyproof_glsl::tree::{
+    Arm, Block, ExprId, ExprKind, FunctionId, Place, Statement, StatementKind, Tree, Type, Variable,
+    VariableId, VariableKind,
+};
+use toyproof_image::Frame;
+
+use super::edit::{Action, Candidate, Change, statement_id};
+use super::shader::{Shader, StatementId, find, renumbered};
+use super::term::{Numbers, Term, push};
+
+/// The number of fitted numbers.
+const NUMBERS: usize = std::mem::size_of::<Numbers>() / std::mem::size_of::<f64>();
+
+/// The parameters' values that select edits, one for each, and the fitted numbers at the end.
+#[derive(Debug, Clone)]
+pub(super) struct Selection(Vec<f64>);
+
+impl Selection {
+    /// Selects some edits of a program with `count` edits.
+    pub(super) fn of(count: usize, selected: &[usize], numbers: &Numbers) -> Self {
+        let mut values = vec![0.0; count];
+        for &at in selected {
+            values[at] = 1.0;
+        }
+        values.extend(numbers);
+        Self(values)
+    }
+
+    pub(super) fn values(&self) -> &[f64] {
+        &self.0
+    }
+}
+
+/// Compiles a shader with edits that can be selected.
+pub(super) fn compile(
+    shader: &Shader,
+    candidates: &[&Candidate],
+    frame: &Frame,
+    limit: Duration,
+) -> Result<ParametricProgram, Refusal> {
+    let mut writer = Writer::new(shader.checked.clone(), candidates.len());
+    for (number, candidate) in candidates.iter().enumerate() {
+        writer.add(shader, number, candidate);
+    }
+    writer.statements();
+    ParametricProgram::new(&writer.checked, &writer.parameters, frame, limit)
+}
+
+struct Writer {
+    checked: Checked,
+    /// A `bool` for each candidate, and a `float` for each fitted number.
+    parameters: Vec<VariableId>,
+    /// Where the original of a replaced expression is.
+    moved: HashMap<ExprId, ExprId>,
+    /// The changes of statements, by candidate.
+    actions: BTreeMap<StatementId, Vec<(usize, Insertion)>>,
+}
+
+/// A change at a statement, in terms of the tree.
+enum Insertion {
+    Delete,
+    Before(Statement),
+    After(Statement),
+}
+
+impl Writer {
+    fn new(mut checked: Checked, count: usize) -> Self {
+        let types = std::iter::repeat_n(Type::BOOL, count).chain([Type::FLOAT; NUMBERS]);
+        let parameters = types.map(|ty| {
+            checked.tree.variables.push(Variable {
+                name: String::new(),
+                ty,
+                kind: VariableKind::Uniform,
+                initializer: None,
+                value: None,
+                at: None,
+            })
+        });
+        Self {
+            parameters: parameters.collect(),
+            checked,
+            moved: HashMap::new(),
+            actions: BTreeMap::new(),
+        }
+    }
+
+    /// The parameters for the fitted numbers.
+    fn fitted(&self) -> Vec<VariableId> {
+        self.parameters[self.parameters.len() - NUMBERS..].to_vec()
+    }
+
+    fn add(&mut self, shader: &Shader, number: usize, candidate: &Candidate) {
+        match &candidate.change {
+            Change::Expression { site, term } => {
+                for &expr in &shader.sites[*site].exprs {
+                    self.replace(number, expr, term);
+                }
+            }
+            Change::Statements(actions) => {
+                for (at, action) in actions {
+                    self.action(shader, number, *at, action);
+                }
+            }
+        }
+    }
+
+    /// Makes an expression a choice between a term and what it was.
+    fn replace(&mut self, number: usize, expr: ExprId, term: &Term) {
+        let fitted = self.fitted();
+        let tree = &mut self.checked.tree;
+        let old = tree[expr].clone();
+        let (ty, at) = (old.ty, old.at);
+        let before = tree.exprs.push(old);
+        let original = *self.moved.entry(expr).or_insert(before);
+        let condition = push(tree, ExprKind::Variable(self.parameters[number]), Type::BOOL, at);
+        let yes = term.build(tree, [expr, original], &fitted);
+        tree[expr].kind = ExprKind::Conditional {
+            condition,
+            yes,
+            no: before,
+        };
+        tree[expr].ty = ty;
+        tree[expr].constant = false;
+    }
+
+    fn action(&mut self, shader: &Shader, number: usize, at: usize, action: &Action) {
+        let Some(id) = statement_id(shader, at) else {
+            return;
+        };
+        let copy = |other: usize| {
+            let other = statement_id(shader, other)?;
+            let body = shader.tree[other.function].body.as_ref()?;
+            find(body, &mut 0, other.number)
+        };
+        let assignment = |writer: &mut Self, term: &Term| {
+            let place = shader.statements[at].span;
+            let fitted = writer.fitted();
+            let tree = &mut writer.checked.tree;
+            // An assignment replaces no expression.
+            let nothing = push(
+                tree,
+                ExprKind::Variable(fitted[0]),
+                Type::FLOAT,
+                Place::plain(place),
+            );
+            let expr = term.build(tree, [nothing; 2], &fitted);
+            Some(Statement {
+                kind: StatementKind::Expression(expr),
+                at: Place::plain(place),
+            })
+        };
+        let insertion = match action {
+            Action::Delete => Some(Insertion::Delete),
+            Action::CopyBefore(other) => copy(*other).map(Insertion::Before),
+            Action::CopyAfter(other) => copy(*other).map(Insertion::After),
+            Action::After(term) => assignment(self, term).map(Insertion::After),
+        };
+        if let Some(insertion) = insertion {
+            self.actions.entry(id).or_default().push((number, insertion));
+        }
+    }
+
+    /// Applies the changes of statements to the functions.
+    fn statements(&mut self) {
+        let mut functions: Vec<FunctionId> = self.actions.keys().map(|id| id.function).collect();
+        functions.dedup();
+        for function in functions {
+            let Some(body) = self.checked.tree[function].body.take() else {
+                continue;
+            };
+            let (tree, actions, parameters) = (&mut self.checked.tree, &mut self.actions, &self.parameters);
+            let body = renumbered(body, &mut 0, &mut |number, statement, out| {
+                let id = StatementId { function, number };
+                change(
+                    tree,
+                    parameters,
+                    actions.remove(&id).unwrap_or_default(),
+                    statement,
+                    out,
+                );
+            });
+            self.checked.tree[function].body = Some(body);
+        }
+    }
+}
+
+/// Writes a statement with the changes that may be selected there.
+fn change(
+    tree: &mut Tree,
+    parameters: &[VariableId],
+    actions: Vec<(usize, Insertion)>,
+    statement: Statement,
+    out: &mut Block,
+) {
+    let at = statement.at;
+    let mut selected = |number: usize, body: Block, otherwise: Option<Block>| {
+        let condition = push(tree, ExprKind::Variable(parameters[number]), Type::BOOL, at);
+        Statement {
+            kind: StatementKind::If {
+                arms: vec![Arm { condition, body }],
+                otherwise,
+            },
+            at,
+        }
+    };
+    let (mut deleted, mut after) = (Vec::new(), Vec::new());
+    for (number, insertion) in actions {
+        match insertion {
+            Insertion::Delete => deleted.push(number),
+            Insertion::Before(new) => out.push(selected(number, vec![new], None)),
+            Insertion::After(new) => after.push(selected(number, vec![new], None)),
+        }
+    }
+    let kept = deleted.into_iter().fold(statement, |statement, number| {
+        selected(number, Block::new(), Some(vec![statement]))
+    });
+    out.push(kept);
+    out.extend(after);
+}
