@@ -44,6 +44,7 @@ mod planted_faults;
 mod povray;
 mod program;
 mod random_draws;
+mod repairs;
 mod reports;
 mod requirements;
 mod rules;

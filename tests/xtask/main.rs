@@ -5,6 +5,7 @@
 mod corpus;
 mod faults;
 mod page;
+mod repairs;
 mod sensitivity;
 
 use std::io;
@@ -55,6 +56,20 @@ enum Task {
         #[arg(long)]
         screenshots: Option<PathBuf>,
     },
+    /// Measure how many wrong shaders are repaired, and at which lines
+    Repairs {
+        /// A file with a line of JSON for each shader: `file`, `scene`, `group`, `lines`; the planted faults if none
+        manifest: Option<PathBuf>,
+        /// Only shaders whose names contain this, or of this group
+        #[arg(long, default_value = "")]
+        only: String,
+        /// The work of a search
+        #[arg(long, default_value_t = toyproof::verify::repair::DEFAULT_BUDGET)]
+        search: f64,
+        /// Search for known mistakes as well
+        #[arg(long)]
+        names: bool,
+    },
     /// Run shaders: the process that other tasks start
     #[command(hide = true)]
     Worker,
@@ -69,6 +84,12 @@ fn main() -> ExitCode {
         Task::Corpus { folder, limit } => corpus::compare_bits(&folder, limit),
         Task::Conversions { shaders, converted } => corpus::compare_conversions(&shaders, &converted),
         Task::Page { file, screenshots } => page::measure(&file, screenshots.as_deref()),
+        Task::Repairs {
+            manifest,
+            only,
+            search,
+            names,
+        } => repairs::measure(manifest.as_deref(), &only, search, names),
         Task::Worker => {
             toyproof::gpu::serve(io::stdin().lock(), io::stdout().lock()).expect("the parent listens");
         }

@@ -1,0 +1,232 @@
+//! How many wrong shaders are repaired, and at which lines.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+use toyproof::diagnostic::{File, Files};
+use toyproof::image::Frame;
+use toyproof::lint::Lints;
+use toyproof::scene;
+use toyproof::translate::FloatMode;
+use toyproof::verify::mistake::Hypotheses;
+use toyproof::verify::repair::SearchOptions;
+use toyproof::verify::{Case, Expected, Verdict, verify};
+use toyproof_testkit::faults::faults;
+use toyproof_testkit::{checked, edited};
+
+/// The size of the images.
+const SIZE: [u32; 2] = [160, 90];
+
+/// A wrong shader, and where its mistakes are.
+struct Sample {
+    name: String,
+    group: String,
+    shader: String,
+    scene: PathBuf,
+    /// Any of these lines counts as the mistake's.
+    lines: Vec<usize>,
+}
+
+/// Prints each sample's repairs, and the rates of each group. Without a manifest the samples are the planted
+/// faults of the exercises; its lines are JSON objects with `file`, `scene`, `group` and `lines`.
+pub(super) fn measure(manifest: Option<&Path>, only: &str, budget: f64, names: bool) {
+    let samples = match manifest {
+        Some(manifest) => read(manifest),
+        None => planted(),
+    };
+    let mut rates: BTreeMap<&str, Rates> = BTreeMap::new();
+    for sample in samples
+        .iter()
+        .filter(|sample| sample.name.contains(only) || sample.group == only)
+    {
+        let of_group = rates.entry(sample.group.as_str()).or_default();
+        try_sample(sample, budget, names, of_group);
+    }
+    for (group, rates) in &mut rates {
+        rates.print(group);
+    }
+}
+
+fn planted() -> Vec<Sample> {
+    let samples = faults().map(|(title, exercise, edits)| {
+        let shader = edited(exercise, edits);
+        let before: Vec<&str> = exercise.shader.lines().collect();
+        let after: Vec<&str> = shader.lines().collect();
+        let same = before.iter().zip(&after).take_while(|(a, b)| a == b).count();
+        Sample {
+            name: format!("{}: {title}", exercise.name),
+            group: "planted".to_owned(),
+            scene: PathBuf::from(format!("glsl/{}.toml", exercise.name)),
+            lines: (same..=same + 1).collect(),
+            shader,
+        }
+    });
+    samples.collect()
+}
+
+fn read(manifest: &Path) -> Vec<Sample> {
+    let folder = manifest.parent().unwrap_or(Path::new("."));
+    let text = fs::read_to_string(manifest).expect("the manifest can be read");
+    let samples = text.lines().filter(|line| !line.trim().is_empty()).map(|line| {
+        let case: Value = serde_json::from_str(line).expect("a JSON object for each line");
+        let text = |key: &str| case[key].as_str().unwrap_or_default().to_owned();
+        let lines = case["lines"].as_array().map_or(&[][..], Vec::as_slice);
+        Sample {
+            name: text("file"),
+            group: text("group"),
+            shader: fs::read_to_string(folder.join(text("file"))).expect("the shader can be read"),
+            scene: PathBuf::from(format!("glsl/{}.toml", text("scene"))),
+            lines: lines
+                .iter()
+                .filter_map(Value::as_u64)
+                .map(|line| line as usize)
+                .collect(),
+        }
+    });
+    samples.collect()
+}
+
+/// The results of a group.
+#[derive(Default)]
+struct Rates {
+    wrong: usize,
+    others: usize,
+    repaired: usize,
+    named: usize,
+    named_or_repaired: usize,
+    /// Repairs whose first line, or any of whose lines, is the mistake's.
+    first_line: usize,
+    any_line: usize,
+    /// Unrepaired shaders whose suspects include the mistake's line.
+    suspects: usize,
+    suspect_in_three: usize,
+    times: Vec<Duration>,
+}
+
+fn try_sample(sample: &Sample, budget: f64, names: bool, rates: &mut Rates) {
+    let mut files = Files::default();
+    let scene_text = fs::read_to_string(&sample.scene).expect("the scene can be read");
+    let scene_file = files.add(File::new("scene", scene_text));
+    let scene = scene::parse(&files, scene_file).expect("the scene is valid");
+    let frame = Frame {
+        size: SIZE,
+        ..Frame::default()
+    };
+    let checked = checked(&sample.shader);
+    let expected = Expected::new(scene.clone(), &frame);
+    let hypotheses = names.then(|| Hypotheses::of(&scene, &frame)).flatten();
+    let case = Case {
+        checked: &checked,
+        lints: &Lints::default(),
+        expected: Some(&expected),
+        hypotheses: hypotheses.as_ref(),
+        search: Some(SearchOptions {
+            source: &sample.shader,
+            lenient: false,
+            budget,
+        }),
+        frame: &frame,
+        float: FloatMode::Strict,
+        timeout: Duration::from_secs(20),
+        pool: None,
+    };
+    let start = Instant::now();
+    let findings = match verify(None, &case) {
+        Ok(findings) => findings,
+        Err(failure) => {
+            println!("{}: {failure}", sample.name);
+            rates.others += 1;
+            return;
+        }
+    };
+    let time = start.elapsed();
+    for panic in &findings.panics {
+        println!("PANIC {}: {panic}", sample.name);
+    }
+    if findings.verdict != Verdict::Wrong {
+        println!("{:?} {}", findings.verdict, sample.name);
+        rates.others += 1;
+        return;
+    }
+    let search = findings.search.unwrap_or_default();
+    let line = |start: u32| sample.shader[..start as usize].matches('\n').count() + 1;
+    let is_mistake = |start: u32| sample.lines.contains(&line(start));
+    let of_repair = |repair: &toyproof::verify::repair::Repair| {
+        repair.fix.edits.iter().any(|edit| is_mistake(edit.span.start))
+    };
+    rates.wrong += 1;
+    rates.times.push(time);
+    rates.repaired += usize::from(!search.repairs.is_empty());
+    rates.named += usize::from(findings.mistake.is_some());
+    rates.named_or_repaired += usize::from(findings.mistake.is_some() || !search.repairs.is_empty());
+    let first = search.repairs.first().is_some_and(of_repair);
+    let any = search.repairs.iter().any(of_repair);
+    rates.first_line += usize::from(first);
+    rates.any_line += usize::from(any);
+    let suspects = search
+        .suspects
+        .iter()
+        .any(|suspect| is_mistake(suspect.span.start));
+    rates.suspects += usize::from(search.repairs.is_empty());
+    rates.suspect_in_three += usize::from(search.repairs.is_empty() && suspects);
+    let mark = match (search.repairs.is_empty(), first, any) {
+        (true, ..) => "NONE ",
+        (_, true, _) => "first",
+        (_, _, true) => "any  ",
+        _ => "other",
+    };
+    println!(
+        "{mark} {:5.2} s {} lines {:?}{}",
+        time.as_secs_f64(),
+        sample.name,
+        sample.lines,
+        if search.is_cut { " (cut)" } else { "" }
+    );
+    for repair in &search.repairs {
+        let at = repair.fix.edits.first().map_or(0, |edit| line(edit.span.start));
+        println!(
+            "        {at}: {} [{}] {} of {}",
+            repair.fix.message, repair.mistake.id, repair.agreeing, repair.pixels
+        );
+    }
+    if search.repairs.is_empty() {
+        let suspects: Vec<String> = search
+            .suspects
+            .iter()
+            .map(|suspect| format!("{} ({:.2})", line(suspect.span.start), suspect.score))
+            .collect();
+        println!("        suspects {}", suspects.join(", "));
+    }
+}
+
+impl Rates {
+    fn print(&mut self, group: &str) {
+        self.times.sort_unstable();
+        let percent = |count: usize, of: usize| 100.0 * count as f64 / of.max(1) as f64;
+        let time = |share: f64| {
+            let at = (self.times.len() as f64 * share) as usize;
+            self.times
+                .get(at.min(self.times.len().saturating_sub(1)))
+                .map_or(0.0, Duration::as_secs_f64)
+        };
+        println!(
+            "{group}: {} wrong ({} others); repaired {:.1} %; at the line: first {:.1} %, any {:.1} %; \
+             named {:.1} %, named or repaired {:.1} %; suspect in three {} of {}; median {:.2} s, 95 % {:.2} s, most {:.2} s",
+            self.wrong,
+            self.others,
+            percent(self.repaired, self.wrong),
+            percent(self.first_line, self.wrong),
+            percent(self.any_line, self.wrong),
+            percent(self.named, self.wrong),
+            percent(self.named_or_repaired, self.wrong),
+            self.suspect_in_three,
+            self.suspects,
+            time(0.5),
+            time(0.95),
+            time(1.0),
+        );
+    }
+}
