@@ -207,6 +207,10 @@ impl From<Float> for FloatMode {
 }
 
 impl LanguageArgs {
+    pub(super) fn is_lenient(&self) -> bool {
+        self.lenient
+    }
+
     pub(super) fn options(&self, deadline: Deadline) -> glsl::Options {
         glsl::Options {
             lenient: self.lenient,

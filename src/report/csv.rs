@@ -3,14 +3,16 @@
 use toyproof_diagnostic::Severity;
 use toyproof_verify::compare::CheckSummary;
 
-use super::{Mark, Record, Rubric};
+use super::{Mark, Record, Repair, Rubric};
 
-const COLUMNS: [&str; 21] = [
+const COLUMNS: [&str; 23] = [
     "shader",
     "scene",
     "verdict",
     "reason",
     "mistake",
+    "fix_line",
+    "fix",
     "points",
     "max_points",
     "pixels",
@@ -30,7 +32,7 @@ const COLUMNS: [&str; 21] = [
 ];
 
 /// Formats the table; its first row names the columns. Checks that did not run are empty, and points without
-/// a rubric.
+/// a rubric. `fix_line` is the line of the first edit.
 #[must_use]
 pub fn csv(records: &[Record], rubric: Option<&Rubric>) -> String {
     let rows = records.iter().map(|record| row(record, rubric));
@@ -71,6 +73,8 @@ fn row(record: &Record, rubric: Option<&Rubric>) -> [String; COLUMNS.len()] {
         record.verdict.to_string(),
         escape_formula(&record.reason),
         cell(record.mistake.as_ref().map(|mistake| &mistake.id)),
+        cell(record.fix.as_ref().map(|fix| fix.range.line)),
+        escape_formula(&cell(record.fix.as_ref().map(Repair::summary))),
         sum(|mark| mark.points),
         sum(|mark| mark.of),
         cell(answers.into_iter().flatten().map(|answer| answer.pixels).next()),
@@ -107,6 +111,7 @@ fn escape_formula(text: &str) -> String {
 mod tests {
     use super::*;
     use crate::report::record::samples::{correct, invalid};
+    use crate::report::repair::samples::repaired;
 
     #[test]
     fn texts_are_quoted_and_formulas_are_escaped() {
@@ -117,13 +122,22 @@ mod tests {
         assert_eq!(lines.next().unwrap().split(',').collect::<Vec<_>>(), COLUMNS);
         assert_eq!(
             lines.next().unwrap(),
-            "correct,scene.toml,correct,it is correct,,,,1000,0,0,0,0.25,0,0.25,0,0.25,,,0,0,1.500"
+            "correct,scene.toml,correct,it is correct,,,,,,1000,0,0,0,0.25,0,0.25,0,0.25,,,0,0,1.500"
         );
         assert_eq!(
             lines.next().unwrap(),
-            "\"'=cmd|'/c calc'!A1,\"\"x\"\"\n.glsl\",scene.toml,invalid,it is invalid,,,,,,,,,,,,,,,1,0,1.500"
+            "\"'=cmd|'/c calc'!A1,\"\"x\"\"\n.glsl\",scene.toml,invalid,it is invalid,,,,,,,,,,,,,,,,,1,0,1.500"
         );
         assert_eq!(lines.collect::<Vec<_>>(), [""]);
+    }
+
+    #[test]
+    fn a_fix_has_its_line_and_its_edits() {
+        let text = csv(&[repaired()], None);
+        assert!(
+            text.contains(",wrong-operator,2,line 2: replace `b + c` with `b - c`,"),
+            "{text}"
+        );
     }
 
     #[test]

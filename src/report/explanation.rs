@@ -24,7 +24,7 @@ pub struct Explanation {
 }
 
 /// The terms, each with its id and its definition.
-pub(super) const TERMS: [(&str, &str, &str); 18] = [
+pub(super) const TERMS: [(&str, &str, &str); 20] = [
     (
         "correct",
         "correct",
@@ -113,6 +113,18 @@ pub(super) const TERMS: [(&str, &str, &str); 18] = [
         "largest difference",
         "The largest difference of a color component, from 0 to 1, over all pixels that are compared. 1/255 = 0.0039 \
          is one level of an 8-bit image.",
+    ),
+    (
+        "fix",
+        "fix",
+        "An edit of the shader after which its image agrees with the reference. It was found by trying edits; the \
+         author may have meant another one.",
+    ),
+    (
+        "suspect-lines",
+        "suspect lines",
+        "The lines on which the wrong pixels depend more than the others, the most suspicious first. One of them \
+         probably contains the mistake.",
     ),
     (
         "symptom",

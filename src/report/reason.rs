@@ -1,6 +1,6 @@
 //! The reason of a verdict in words: one short sentence, and the details below it.
 
-use toyproof_diagnostic::{Diagnostic, Files, Severity, Span, grouped, plural, printable};
+use toyproof_diagnostic::{Diagnostic, Files, Severity, grouped, plural, printable};
 use toyproof_eval as eval;
 use toyproof_gpu as gpu;
 use toyproof_scene::Sampler;
@@ -41,15 +41,20 @@ pub fn state(findings: &Findings, files: &Files) -> Statement {
             Mistake::new(mistake).text
         ));
     }
-    if let (Verdict::Wrong, None, Some(color)) =
-        (findings.verdict, &findings.mistake, findings.actual.only_color())
+    let is_repaired = findings
+        .search
+        .as_ref()
+        .is_some_and(|search| !search.repairs.is_empty());
+    let is_explained = findings.mistake.is_some() || is_repaired;
+    if let (Verdict::Wrong, false, Some(color)) =
+        (findings.verdict, is_explained, findings.actual.only_color())
     {
         statement.details.push(match color {
             [0, 0, 0] => "every pixel is black".to_owned(),
             [r, g, b] => format!("every pixel has the same color, ({r}, {g}, {b}) of 255"),
         });
     }
-    if let (Reason::AlgorithmDiffers(share), None) = (&findings.reason, &findings.mistake)
+    if let (Reason::AlgorithmDiffers(share), false) = (&findings.reason, is_explained)
         && share.count == share.of
         && findings.actual.only_color().is_none()
     {
@@ -63,7 +68,7 @@ pub fn state(findings: &Findings, files: &Files) -> Statement {
             "most precision is lost at line {}, column {}: {}",
             at.line,
             at.column,
-            excerpt(files, cause)
+            excerpt(files.text(cause))
         ));
     }
     statement
@@ -72,9 +77,9 @@ pub fn state(findings: &Findings, files: &Files) -> Statement {
 /// The longest quoted piece of source text, in characters.
 const MAX_EXCERPT: usize = 60;
 
-/// The source text of a span on one line, in backticks.
-fn excerpt(files: &Files, span: Span) -> String {
-    let words: Vec<_> = files.text(span).split_whitespace().collect();
+/// A piece of source text on one line, shortened, in backticks.
+pub(super) fn excerpt(text: &str) -> String {
+    let words: Vec<_> = text.split_whitespace().collect();
     let text = words.join(" ");
     let shown: String = text.chars().take(MAX_EXCERPT).collect();
     let rest = if shown.len() < text.len() { " …" } else { "" };

@@ -4,10 +4,12 @@ use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{self as diagnostic, Files};
 use toyproof_eval as eval;
 use toyproof_verify::compare::{CheckSummary, Comparison};
-use toyproof_verify::mistake::Diagnosis;
+use toyproof_verify::mistake::{Diagnosis, KnownMistake};
+use toyproof_verify::repair::SearchResult;
 use toyproof_verify::{CheckResult, Evidence, Failure, Findings, Reason, Verdict, decide};
 
 use super::reason::{Statement, state, state_reason};
+use super::{Repair, Suspect};
 
 /// The JSON Schema of a [`Report`].
 pub const SCHEMA: &str = include_str!("verdict.schema.json");
@@ -60,7 +62,7 @@ impl Report {
 }
 
 /// The findings on one shader. Checks that did not run are null.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Record {
     /// Its name, as the user gave it.
     pub shader: String,
@@ -88,6 +90,15 @@ pub struct Record {
     pub comparison: Option<Comparison>,
     /// The known mistake, or the two, that explain a wrong image; null if none does.
     pub mistake: Option<Mistake>,
+    /// The most likely edit after which a wrong shader is correct; null if none was found.
+    #[serde(default)]
+    pub fix: Option<Repair>,
+    /// The statements of a wrong shader that most likely contain the mistake, the most suspicious first.
+    #[serde(default)]
+    pub suspects: Vec<Suspect>,
+    /// Whether the search for a fix ended before all edits were tried.
+    #[serde(default)]
+    pub is_search_cut: bool,
     /// The likely cause of the verdict in the shader's text; null if none is known.
     #[serde(default)]
     pub cause: Option<Position>,
@@ -113,6 +124,9 @@ impl Record {
             toolchain: None,
             comparison: None,
             mistake: None,
+            fix: None,
+            suspects: Vec::new(),
+            is_search_cut: false,
             cause: None,
             diagnostics: Vec::new(),
             seconds: Seconds::default(),
@@ -125,6 +139,9 @@ impl Record {
         self.verdict = findings.verdict;
         self.set_statement(state(findings, files));
         self.mistake = findings.mistake.as_ref().map(Mistake::new);
+        if let Some(search) = &findings.search {
+            self.set_search(search, files);
+        }
         self.cause = findings.cause.map(|cause| files.position(cause).into());
         self.algorithm = answer(&findings.algorithm);
         self.precision = answer(&findings.precision);
@@ -139,6 +156,17 @@ impl Record {
         if let Some(gpu_run) = &findings.gpu_run {
             seconds.translate = Some(gpu_run.translate.as_secs_f64());
             seconds.gpu = Some((gpu_run.compile + gpu_run.draw).as_secs_f64());
+        }
+    }
+
+    /// Adds what the search for a fix found. The fix names the mistake if no known one explains the image.
+    pub(super) fn set_search(&mut self, search: &SearchResult, files: &Files) {
+        self.fix = Repair::first_of(&search.repairs, files);
+        let suspects = search.suspects.iter();
+        self.suspects = suspects.map(|suspect| Suspect::new(suspect, files)).collect();
+        self.is_search_cut = search.is_cut;
+        if self.mistake.is_none() {
+            self.mistake = search.repairs.first().map(|repair| Mistake::of(&repair.mistake));
         }
     }
 
@@ -226,10 +254,29 @@ impl Mistake {
             alternatives: alternatives.collect(),
         }
     }
+
+    /// What to call it in a report.
+    pub(super) fn label(&self) -> &'static str {
+        if self.is_symptom {
+            "symptom"
+        } else {
+            "likely mistake"
+        }
+    }
+
+    /// A single mistake without alternatives.
+    fn of(mistake: &KnownMistake) -> Self {
+        Self {
+            id: mistake.id.to_owned(),
+            text: mistake.description.to_string(),
+            is_symptom: mistake.is_symptom,
+            alternatives: Vec::new(),
+        }
+    }
 }
 
 /// Times in seconds; null for stages that did not run.
-#[derive(Debug, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Seconds {
     /// naga: parse, validate, write.
     pub translate: Option<f64>,
@@ -263,24 +310,15 @@ pub(super) mod samples {
     /// A record with this verdict, which is also its name, without checks.
     pub(in crate::report) fn record(verdict: Verdict) -> Record {
         Record {
-            shader: verdict.to_string(),
             scene: Some("scene.toml".to_owned()),
             verdict,
             reason: format!("it is {verdict}"),
-            details: Vec::new(),
-            help: None,
-            algorithm: None,
-            precision: None,
-            toolchain: None,
-            comparison: None,
-            mistake: None,
-            cause: None,
-            diagnostics: Vec::new(),
             seconds: Seconds {
                 gpu: Some(1.0),
                 eval: Some(0.5),
                 ..Seconds::default()
             },
+            ..Record::new(verdict.to_string())
         }
     }
 
@@ -367,6 +405,8 @@ pub(super) mod samples {
 mod tests {
     use super::*;
     use crate::report::record::samples::{every_verdict, record};
+    use crate::report::repair::samples::{repaired, suspected};
+    use crate::report::{Hints, repair};
 
     #[test]
     fn reports_follow_the_schema_and_broken_ones_do_not() {
@@ -384,7 +424,10 @@ mod tests {
             ..record(Verdict::Ok)
         };
         let mut records = every_verdict();
-        records.push(with_checks);
+        records.extend([with_checks, repaired(), suspected()]);
+        let mut hidden = repaired();
+        hidden.redact(Hints::Line);
+        records.push(hidden);
         let report = Report::new(Some("x".to_owned()), records);
         let mut json: serde_json::Value = serde_json::from_str(&report.json()).unwrap();
         assert!(
@@ -392,9 +435,70 @@ mod tests {
             "{:?}",
             validator.iter_errors(&json).collect::<Vec<_>>()
         );
-        json["shaders"][0]["verdict"] = "splendid".into();
-        assert!(!validator.is_valid(&json));
+        for (path, value) in [
+            ("/shaders/9/fix/line", 0.into()),
+            ("/shaders/9/fix/edits", serde_json::json!([])),
+            ("/shaders/9/fix/alternatives/0/agreeing", "many".into()),
+            ("/shaders/10/suspects/0/score", 2.into()),
+            ("/shaders/0/verdict", "splendid".into()),
+        ] {
+            let mut json = json.clone();
+            *json.pointer_mut(path).unwrap() = value;
+            assert!(!validator.is_valid(&json), "{path}");
+        }
         json["shaders"][0].as_object_mut().unwrap().remove("verdict");
         assert!(!validator.is_valid(&json));
+    }
+    #[test]
+    fn the_fix_has_the_keys_that_programs_read() {
+        let json = serde_json::to_value(repaired()).unwrap();
+        let fix = &json["fix"];
+        let edit = serde_json::json!({
+            "line": 2, "column": 12, "end_line": 2, "end_column": 17,
+            "replacement": "b - c", "text": "replace `b + c` with `b - c`",
+        });
+        assert_eq!(fix["edits"], serde_json::json!([edit]));
+        for (key, value) in edit.as_object().unwrap() {
+            assert_eq!(fix[key], *value, "{key}");
+        }
+        let rest = ["id", "file", "agreeing", "pixels"].map(|key| fix[key].clone());
+        assert_eq!(
+            serde_json::json!(rest),
+            serde_json::json!(["wrong-operator", "wrong", 14_400, 14_400])
+        );
+        assert_eq!(fix["alternatives"][0]["id"], "wrong-number");
+        assert_eq!(fix["alternatives"][0]["edits"].as_array().unwrap().len(), 2);
+        let suspect = &json["suspects"][0];
+        assert_eq!((&suspect["line"], &suspect["score"]), (&4.into(), &0.5.into()));
+        assert_eq!(json["is_search_cut"], true);
+    }
+
+    #[test]
+    fn records_are_read_back_also_from_older_reports() {
+        let json = serde_json::to_value(repaired()).unwrap();
+        let read: Record = serde_json::from_value(json.clone()).unwrap();
+        assert_eq!(serde_json::to_value(&read).unwrap(), json);
+        let mut older = json;
+        for key in ["fix", "suspects", "is_search_cut"] {
+            older.as_object_mut().unwrap().remove(key).unwrap();
+        }
+        let read: Record = serde_json::from_value(older).unwrap();
+        assert_eq!((read.fix, read.suspects.len()), (None, 0));
+    }
+
+    #[test]
+    fn a_fix_names_the_mistake_unless_a_known_one_explains_the_image() {
+        assert_eq!(repaired().mistake.unwrap().id, "wrong-operator");
+        let (files, result) = repair::samples::search();
+        let mut known = record(Verdict::Wrong);
+        known.mistake = Some(Mistake {
+            id: "no-shadows".to_owned(),
+            text: "shadows are missing".to_owned(),
+            is_symptom: false,
+            alternatives: Vec::new(),
+        });
+        known.set_search(&result, &files);
+        assert_eq!(known.mistake.unwrap().id, "no-shadows");
+        assert_eq!(known.fix.unwrap().id, "wrong-operator");
     }
 }

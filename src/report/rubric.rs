@@ -225,7 +225,9 @@ fn algorithm(check: CheckPoints, record: &Record) -> Mark {
         .into_iter()
         .chain(mistake)
         .collect();
-    check.mark(name, passed, lost, why.join("; "))
+    let hints = terminal::fix_lines(record).into_iter();
+    let hints = hints.map(|(label, sentence)| format!("\n{label}: {sentence}"));
+    check.mark(name, passed, lost, why.join("; ") + &hints.collect::<String>())
 }
 
 /// Ill-conditioned pixels count as lost to the precision check, too.

@@ -2,13 +2,14 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::iter;
 
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use serde::Serialize;
 use toyproof_diagnostic::{self as diagnostic, Severity};
 use toyproof_verify::Verdict;
 
-use super::{Record, terminal};
+use super::{Record, Repair, SourceRange, terminal};
 
 /// The characters that are not percent-encoded in a path: letters, digits, the other unreserved characters of
 /// RFC 3986, and `/`.
@@ -140,13 +141,34 @@ fn verdict_result(
             .find_map(|answer| answer.first.as_ref())
             .map(terminal::place),
     );
+    lines.extend(
+        record
+            .mistake
+            .as_ref()
+            .map(|mistake| format!("{}: {}", mistake.label(), mistake.text)),
+    );
+    let hints = terminal::fix_lines(record).into_iter();
+    lines.extend(hints.map(|(label, sentence)| format!("{label}: {sentence}")));
+    let repairs = record
+        .fix
+        .iter()
+        .flat_map(|fix| iter::once(fix).chain(&fix.alternatives));
     SarifResult {
         rule_index: rules.index_of(&id, Some((title, help.into()))),
         rule_id: id,
         level: Severity::Error,
         message: Message::new(lines.join("\n")),
-        locations: [Location::new(&record.shader, None)],
-        fixes: Vec::new(),
+        locations: [mistake_location(record)],
+        fixes: repairs.filter_map(Fix::of_repair).collect(),
+    }
+}
+
+/// The first line of the fix, else the most suspicious one, else the whole file.
+fn mistake_location(record: &Record) -> Location {
+    match (&record.fix, record.suspects.first()) {
+        (Some(fix), _) => Location::new(&fix.file, Some(fix.range.into())),
+        (None, Some(suspect)) => Location::new(&record.shader, Some(suspect.range.into())),
+        (None, None) => Location::new(&record.shader, None),
     }
 }
 
@@ -234,7 +256,7 @@ struct Fix {
 #[serde(rename_all = "camelCase")]
 struct ArtifactChange {
     artifact_location: ArtifactLocation,
-    replacements: [Replacement; 1],
+    replacements: Vec<Replacement>,
 }
 
 #[derive(Serialize)]
@@ -252,14 +274,35 @@ impl Fix {
             end_line: Some(fix.end_line),
             end_column: Some(fix.end_column),
         };
+        let replacement = Replacement {
+            deleted_region,
+            inserted_content: Message::new(fix.replacement.clone()),
+        };
+        Self::of_replacements(file, fix.message.clone(), vec![replacement])
+    }
+
+    /// All edits of a repair; none where they are hidden.
+    fn of_repair(repair: &Repair) -> Option<Self> {
+        let replacements = repair.edits.iter().map(|edit| {
+            Some(Replacement {
+                deleted_region: edit.range.into(),
+                inserted_content: Message::new(edit.replacement.clone()?),
+            })
+        });
+        let replacements = replacements.collect::<Option<_>>()?;
+        Some(Self::of_replacements(
+            &repair.file,
+            repair.sentence(),
+            replacements,
+        ))
+    }
+
+    fn of_replacements(file: &str, description: String, replacements: Vec<Replacement>) -> Self {
         Self {
-            description: Message::new(fix.message.clone()),
+            description: Message::new(description),
             artifact_changes: [ArtifactChange {
                 artifact_location: ArtifactLocation::new(file),
-                replacements: [Replacement {
-                    deleted_region,
-                    inserted_content: Message::new(fix.replacement.clone()),
-                }],
+                replacements,
             }],
         }
     }
@@ -318,6 +361,17 @@ impl Region {
     }
 }
 
+impl From<SourceRange> for Region {
+    fn from(range: SourceRange) -> Self {
+        Self {
+            start_line: range.line,
+            start_column: range.column,
+            end_line: Some(range.end_line),
+            end_column: Some(range.end_column),
+        }
+    }
+}
+
 impl ArtifactLocation {
     fn new(file: &str) -> Self {
         let path = utf8_percent_encode(file, ENCODE_IN_PATH);
@@ -348,6 +402,7 @@ mod tests {
 
     use super::*;
     use crate::report::record::samples::{every_verdict, invalid};
+    use crate::report::repair::samples::{repaired, suspected};
 
     /// The part of the SARIF 2.1.0 schema that is used here, without additional properties.
     fn schema() -> Value {
@@ -508,6 +563,31 @@ mod tests {
         );
         json["runs"][0]["results"][0]["level"] = "dreadful".into();
         assert!(!validator.is_valid(&json));
+    }
+
+    #[test]
+    fn a_wrong_shader_is_located_at_its_fix_or_its_first_suspect() {
+        let json: Value = serde_json::from_str(&sarif(&[repaired(), suspected()])).unwrap();
+        let validator = jsonschema::validator_for(&schema()).unwrap();
+        assert!(validator.is_valid(&json), "{json}");
+        let results = &json["runs"][0]["results"];
+        let region = |at: usize| results[at]["locations"][0]["physicalLocation"]["region"].clone();
+        let sum = json!({ "startLine": 2, "startColumn": 12, "endLine": 2, "endColumn": 17 });
+        let number = json!({ "startLine": 4, "startColumn": 11, "endLine": 4, "endColumn": 14 });
+        assert_eq!([region(0), region(1)], [sum.clone(), number.clone()]);
+        let message = results[0]["message"]["text"].as_str().unwrap();
+        assert!(
+            message.contains("likely mistake: an operator is wrong\nfix: line 2: replace"),
+            "{message}"
+        );
+        let fixes = results[0]["fixes"].as_array().unwrap();
+        assert_eq!(fixes.len(), 2);
+        let both = json!([
+            { "deletedRegion": sum, "insertedContent": { "text": "" } },
+            { "deletedRegion": number, "insertedContent": { "text": "2.0" } },
+        ]);
+        assert_eq!(fixes[1]["artifactChanges"][0]["replacements"], both);
+        assert_eq!(results[1].get("fixes"), None);
     }
 
     #[test]

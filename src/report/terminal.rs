@@ -9,6 +9,7 @@ use toyproof_diagnostic::{Json, Severity, color_difference, columns, display_wid
 use toyproof_verify::Verdict;
 use toyproof_verify::compare::{CheckSummary, Comparison, Pixel};
 
+use super::repair::suspect_lines;
 use super::{Mistake, Record};
 
 /// How much is printed of each shader.
@@ -16,9 +17,9 @@ use super::{Mistake, Record};
 pub enum Detail {
     /// The verdict, the name and the reason: one line.
     Short,
-    /// Also the likely mistake and the command that shows more.
+    /// Also the likely mistake, the fix or the suspect lines, and the command that shows more.
     Normal,
-    /// Also the numbers of the three checks.
+    /// Also the text of the suspect lines and the numbers of the three checks.
     Full,
 }
 
@@ -117,8 +118,11 @@ pub fn lines(record: &Record, layout: &Layout) -> String {
         if let Some(mistake) = &record.mistake {
             lines.extend(mistake_lines(mistake, layout));
         }
+        let hints = fix_lines(record).into_iter();
+        lines.extend(hints.map(|(label, sentence)| layout.below(&format!("{label}: "), &sentence)));
     }
     if layout.detail >= Detail::Full {
+        lines.extend(search_lines(record, layout));
         lines.extend(check_lines(record).iter().map(|line| layout.below("", line)));
     }
     if layout.detail >= Detail::Normal
@@ -172,11 +176,7 @@ fn diagnostic_lines(diagnostics: &[&Json], shader: &str, layout: &Layout) -> Vec
 
 /// The likely mistake, or a ranked list if others explain the image as well.
 fn mistake_lines(mistake: &Mistake, layout: &Layout) -> Vec<String> {
-    let label = if mistake.is_symptom {
-        "symptom"
-    } else {
-        "likely mistake"
-    };
+    let label = mistake.label();
     if mistake.alternatives.is_empty() {
         return vec![layout.below(&format!("{label}: "), &mistake.text)];
     }
@@ -194,6 +194,36 @@ fn mistake_lines(mistake: &Mistake, layout: &Layout) -> Vec<String> {
         .then(|| layout.below("symptom: ", &mistake.text));
     symptom.into_iter().chain([heading]).chain(ranked).collect()
 }
+
+/// The fix of a wrong shader and its alternatives, else its suspect lines: each with its label.
+pub(super) fn fix_lines(record: &Record) -> Vec<(&'static str, String)> {
+    let Some(fix) = &record.fix else {
+        return suspect_lines(&record.suspects).into_iter().collect();
+    };
+    let alternatives = fix.alternatives.iter().map(|other| ("or", other.summary()));
+    [("fix", fix.sentence())]
+        .into_iter()
+        .chain(alternatives)
+        .collect()
+}
+
+/// The text of each suspect statement, and whether the search for a fix was incomplete; nothing if there is a
+/// fix.
+fn search_lines(record: &Record, layout: &Layout) -> Vec<String> {
+    if record.fix.is_some() {
+        return Vec::new();
+    }
+    let suspects = record.suspects.iter().map(|suspect| {
+        let label = format!("  {}:{}  ", suspect.range.line, suspect.range.column);
+        layout.below(&label, &suspect.text)
+    });
+    let cut = record.is_search_cut.then(|| layout.below("", CUT_SEARCH));
+    suspects.chain(cut).collect()
+}
+
+/// What is stated of a search that found no fix and was not complete.
+pub(super) const CUT_SEARCH: &str =
+    "the search for a fix reached its limit; a larger --search tries more edits";
 
 /// The table of the checks, and the comparison of the images.
 fn check_lines(record: &Record) -> Vec<String> {
@@ -383,6 +413,7 @@ fn style(verdict: Verdict) -> Style {
 mod tests {
     use super::*;
     use crate::report::record::samples::{correct, invalid, record};
+    use crate::report::repair::samples::{repaired, suspected};
 
     fn text(record: &Record, detail: Detail, width: Option<usize>) -> String {
         let layout = Layout::new([record.shader.as_str()], width, detail, true);
@@ -458,6 +489,40 @@ mod tests {
         let mut symptom = wrong();
         symptom.mistake.as_mut().unwrap().is_symptom = true;
         assert!(text(&symptom, Detail::Normal, None).contains("symptom: N·L"));
+    }
+
+    #[test]
+    fn a_fix_is_below_the_mistake_with_its_alternatives() {
+        assert_eq!(
+            text(&repaired(), Detail::Normal, None),
+            "wrong        wrong  it is wrong\n\
+             \x20            likely mistake: an operator is wrong\n\
+             \x20            fix: line 2: replace `b + c` with `b - c`; then all 14,400 pixels agree\n\
+             \x20            or: line 2: remove `b + c`, and line 4: replace `1.0` with `2.0`\n\
+             \x20            help: toyproof explain wrong-operator"
+        );
+        let full = text(&repaired(), Detail::Full, None);
+        assert!(!full.contains("suspect") && !full.contains(CUT_SEARCH), "{full}");
+        assert_eq!(text(&repaired(), Detail::Short, None).lines().count(), 1);
+    }
+
+    #[test]
+    fn without_a_fix_the_suspect_lines_are_listed() {
+        let normal = text(&suspected(), Detail::Normal, None);
+        assert_eq!(
+            normal.lines().nth(1),
+            Some("             suspect lines: 4, 2"),
+            "{normal}"
+        );
+        let full = text(&suspected(), Detail::Full, None);
+        let below = format!(
+            "suspect lines: 4, 2\n\
+             \x20              4:11  `1.0`\n\
+             \x20              2:12  `b + c`\n\
+             \x20            {CUT_SEARCH}\n"
+        );
+        assert!(full.contains(&below), "{full}");
+        assert_eq!(text(&suspected(), Detail::Short, None).lines().count(), 1);
     }
 
     #[test]

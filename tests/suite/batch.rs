@@ -319,6 +319,8 @@ fn changed_shaders_are_checked_again() {
         "{}",
         again.stderr
     );
+    let unsearched = check(folder.path(), &["--search", "0", "--resume"]);
+    assert!(!unsearched.stderr.contains("reused"), "{}", unsearched.stderr);
     let path = folder.path().join("hw/002.glsl");
     fs::write(&path, SPHERE.shader).unwrap();
     let mended = check(folder.path(), &["--resume"]);

@@ -7,16 +7,17 @@ use std::path::{Path, PathBuf};
 
 use expect_test::expect_file;
 use toyproof::diagnostic::{File, Files, human};
-use toyproof::glsl::{Options, check};
+use toyproof::glsl::{Options, check, with_single_edit};
 
 /// Everything that is reported of a shader, as a terminal shows it.
 fn messages(path: &Path) -> String {
     let mut files = Files::default();
     let name = path.file_name().unwrap().to_str().unwrap();
     let file = files.add(File::new(name, fs::read_to_string(path).unwrap()));
-    match check(&files, file, &Options::default()) {
+    let options = Options::default();
+    match check(&files, file, &options) {
         Ok(checked) => panic!("{name} is accepted, with {:?}", checked.warnings),
-        Err(errors) => errors
+        Err(errors) => with_single_edit(&files, file, errors, &options)
             .iter()
             .map(|error| human(error, &files, None, false))
             .collect(),

@@ -13,6 +13,7 @@ use toyproof_image as image;
 use toyproof_image::{Frame, output};
 use toyproof_scene::Scene;
 use toyproof_verify::contain::{Part, contain};
+use toyproof_verify::repair::SearchOptions;
 use toyproof_verify::{Case, Failure, Findings, Verdict, verify};
 
 use super::Args;
@@ -72,7 +73,7 @@ fn key(found: &Input, args: &Args, references: &References) -> Option<String> {
         hash.update((part.len() as u64).to_le_bytes());
         hash.update(part);
     };
-    let settings = (&args.frame, &args.language, &args.driver);
+    let settings = (&args.frame, &args.language, &args.driver, args.search);
     add(format!("{:?}", build()?).as_bytes());
     add(format!("{settings:?} {:?} {}", args.scene, found.name()).as_bytes());
     add(files::read(found).ok()?.text().as_bytes());
@@ -332,6 +333,11 @@ impl<'a> Checker<'a> {
             lints: &shader.lints,
             expected: cached.as_ref().map(|cached| &cached.expected),
             hypotheses,
+            search: (self.args.search > 0.0).then(|| SearchOptions {
+                source: shader.text(checked),
+                lenient: self.args.language.is_lenient(),
+                budget: self.args.search,
+            }),
             frame: &frame,
             float: self.args.driver.float(),
             timeout: self.args.driver.timeout(),

@@ -21,8 +21,9 @@ pub(super) struct ImageKind {
     pub(super) make: fn(&Findings) -> Option<Cow<'_, Rgb8Image>>,
 }
 
-/// The rendered image, the reference, their difference, and an image for each check that finds a difference.
-pub(super) const IMAGES: [ImageKind; 6] = [
+/// The rendered image, the reference, their difference, the image after the fix of a wrong shader, and an
+/// image for each check that finds a difference.
+pub(super) const IMAGES: [ImageKind; 7] = [
     ImageKind {
         suffix: "-actual.png",
         make: |findings| Some(Cow::Borrowed(&findings.actual)),
@@ -36,6 +37,13 @@ pub(super) const IMAGES: [ImageKind; 6] = [
         make: |findings| {
             let (_, marks) = findings.comparison.as_ref()?;
             Some(difference(findings, marks, SEEN_BY_EYE))
+        },
+    },
+    ImageKind {
+        suffix: "-fixed.png",
+        make: |findings| {
+            let fix = findings.search.as_ref()?.repairs.first()?;
+            Some(Cow::Borrowed(&fix.image))
         },
     },
     ImageKind {
@@ -101,7 +109,7 @@ fn exhibit(submission: &Submission, step: u32, gallery: &mut Gallery) -> Exhibit
     let Some(stem) = &submission.output_stem else {
         return exhibit;
     };
-    let [actual, reference, _, checks @ ..] = IMAGES.map(|kind| with_suffix(stem, kind.suffix));
+    let [actual, reference, _, fixed, checks @ ..] = IMAGES.map(|kind| with_suffix(stem, kind.suffix));
     // The images of checks have a legend at the bottom, which the page does not show.
     let size = if step == 1 {
         None
@@ -117,6 +125,7 @@ fn exhibit(submission: &Submission, step: u32, gallery: &mut Gallery) -> Exhibit
     };
     exhibit.actual = add(&actual);
     exhibit.reference = add(&reference);
+    exhibit.fixed = add(&fixed);
     exhibit.checks = checks.map(|path| add(&path));
     exhibit
 }

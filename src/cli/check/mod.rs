@@ -14,6 +14,7 @@ use clap::ValueEnum;
 use toyproof_diagnostic::{Severity, grouped, path_name, plural};
 use toyproof_verify::Verdict;
 use toyproof_verify::contain::{Part, contain};
+use toyproof_verify::repair::DEFAULT_BUDGET;
 
 use self::checker::{Checker, Message, Outcome, Submission, WorkerContext};
 use self::images::IMAGES;
@@ -25,7 +26,7 @@ use super::names::Names;
 use super::pool::{self, InOrder};
 use super::shader::find;
 use super::{Exit, Terminal};
-use crate::report::{self, Detail, Layout, Record, Report, Rubric};
+use crate::report::{self, Detail, Hints, Layout, Record, Report, Rubric};
 
 /// Check shaders against a reference, and give a verdict on each
 ///
@@ -48,9 +49,10 @@ pub(super) struct Args {
     scene: Option<PathBuf>,
     /// Write images and reports into this folder
     ///
-    /// For each shader: the images NAME-actual.png, NAME-reference.png, NAME-difference.png, and
-    /// NAME-algorithm.png, NAME-precision.png and NAME-toolchain.png where a check finds differences. For all:
-    /// report.html, report.csv, verdict.json, junit.xml and report.sarif.
+    /// For each shader: the images NAME-actual.png, NAME-reference.png, NAME-difference.png,
+    /// NAME-algorithm.png, NAME-precision.png and NAME-toolchain.png where a check finds differences, and
+    /// NAME-fixed.png where a fix was found. For all: report.html, report.csv, verdict.json, junit.xml and
+    /// report.sarif.
     #[arg(long, value_name = "DIR", help_heading = "Reports")]
     out: Option<PathBuf>,
     /// Reuse results of an earlier run into the same folder
@@ -61,12 +63,24 @@ pub(super) struct Args {
     /// A rubric (.toml): points for compiling and for each check, for report.csv and Gradescope's results.json
     #[arg(long, value_name = "RUBRIC.toml", requires = "out", help_heading = "Reports")]
     rubric: Option<PathBuf>,
+    /// What reports show of the mistake in a wrong shader [default: line for students' reports, else fix]
+    ///
+    /// Students' reports are junit.xml and Gradescope's results.json. If this option is given, it applies to
+    /// all reports and to the terminal. results.jsonl, which --resume reads, always has everything.
+    #[arg(long, value_enum, value_name = "HINTS", help_heading = "Reports")]
+    hints: Option<HintLevel>,
     /// The format of standard output
     #[arg(long, value_enum, default_value_t = CheckFormat::Human, help_heading = "Output")]
     format: CheckFormat,
     /// The number of shaders to check in parallel [default: the number of cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256), allow_negative_numbers = true)]
     jobs: Option<u16>,
+    /// How long to search for a fix of a wrong shader; 0 turns the search off
+    ///
+    /// The search tries edits of the shader until its image is the expected one. A unit is about a second of
+    /// one core. Work is counted, not timed, so that the result is the same on every machine.
+    #[arg(long, value_name = "N", default_value_t = DEFAULT_BUDGET, value_parser = parse_search, allow_negative_numbers = true)]
+    search: f64,
     #[command(flatten)]
     frame: FrameArgs,
     #[command(flatten)]
@@ -84,6 +98,49 @@ enum CheckFormat {
     Short,
     /// verdict.json
     Json,
+}
+
+/// What reports show of the mistake in a wrong shader.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum HintLevel {
+    /// Nothing
+    None,
+    /// The likely mistake, and the line of the fix or the suspect lines
+    Line,
+    /// Also the edit
+    Fix,
+}
+
+impl From<HintLevel> for Hints {
+    fn from(level: HintLevel) -> Self {
+        match level {
+            HintLevel::None => Self::None,
+            HintLevel::Line => Self::Line,
+            HintLevel::Fix => Self::Fix,
+        }
+    }
+}
+
+impl Args {
+    /// The hints in reports for teachers.
+    fn teachers_hints(&self) -> Hints {
+        self.hints.map_or(Hints::Fix, Hints::from)
+    }
+
+    /// The hints in reports for students.
+    fn students_hints(&self) -> Hints {
+        self.hints.map_or(Hints::Line, Hints::from)
+    }
+}
+
+/// The largest value of `--search`: an hour for each shader.
+const MAX_SEARCH: f64 = 3600.0;
+
+fn parse_search(text: &str) -> Result<f64, String> {
+    let search = text.parse().ok();
+    search
+        .filter(|search| (0.0..=MAX_SEARCH).contains(search))
+        .ok_or_else(|| format!("expected a number from 0 to {MAX_SEARCH}, in seconds of one core"))
 }
 
 /// The largest number of shaders whose errors and warnings are shown with their source lines.
@@ -283,7 +340,8 @@ impl Batch<'_> {
     }
 
     /// Prints the messages and the result line of a shader.
-    fn report_outcome(&mut self, index: usize, outcome: Outcome) {
+    fn report_outcome(&mut self, index: usize, mut outcome: Outcome) {
+        outcome.record.redact(self.args.teachers_hints());
         for message in &outcome.messages {
             self.print(message, outcome.record.verdict);
         }
@@ -355,7 +413,14 @@ impl Batch<'_> {
         if let Some(out) = &args.out {
             // Before the reports are written, which would create the folder again.
             let is_there = results.as_ref().map_or(Ok(()), Results::check_place);
-            let written = reports::write(&report, &reported, rubric.as_ref(), out, terminal);
+            let written = reports::write(
+                &report,
+                &reported,
+                rubric.as_ref(),
+                args.students_hints(),
+                out,
+                terminal,
+            );
             match is_there {
                 Ok(()) if written => {
                     terminal.note(&format!("report: {}", path_name(&out.join("report.html"))));
@@ -413,5 +478,53 @@ fn print_summary(report: &Report, hidden_warnings: u64, elapsed: Duration, termi
             plural(without, "shader", "shaders")
         ));
         terminal.help("name a scene with --scene, or put NAME.toml beside NAME.glsl");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::{Args as _, FromArgMatches};
+
+    use super::*;
+
+    fn args(flags: &[&str]) -> Result<Args, clap::Error> {
+        let command = Args::augment_args(clap::Command::new("check"));
+        let arguments = ["check", "a.glsl"].iter().chain(flags);
+        command
+            .try_get_matches_from(arguments)
+            .and_then(|matches| Args::from_arg_matches(&matches))
+    }
+
+    #[test]
+    fn students_see_lines_and_teachers_edits_unless_hints_are_given() {
+        for (flags, expected) in [
+            (&[][..], [Hints::Fix, Hints::Line]),
+            (&["--hints", "none"], [Hints::None; 2]),
+            (&["--hints", "line"], [Hints::Line; 2]),
+            (&["--hints", "fix"], [Hints::Fix; 2]),
+        ] {
+            let args = args(flags).unwrap();
+            assert_eq!(
+                [args.teachers_hints(), args.students_hints()],
+                expected,
+                "{flags:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_search_has_a_limit() {
+        assert!(args(&[]).unwrap().search > 0.0);
+        for (text, expected) in [("0", 0.0), ("0.5", 0.5), ("3600", 3600.0)] {
+            let search = args(&["--search", text]).unwrap().search;
+            assert!((search - expected).abs() < f64::EPSILON, "{text}: {search}");
+        }
+        for text in ["-1", "NaN", "inf", "3601", "2s"] {
+            let error = args(&["--search", text]).unwrap_err().to_string();
+            assert!(
+                error.contains("expected a number from 0 to 3600"),
+                "{text}: {error}"
+            );
+        }
     }
 }

@@ -16,7 +16,7 @@ use super::checker::Submission;
 use super::images::gallery;
 use crate::cli::shader::Unusable;
 use crate::cli::{Terminal, files};
-use crate::report::{Record, Report, Rubric, csv, gradescope, html, junit, sarif};
+use crate::report::{Hints, Record, Report, Rubric, csv, gradescope, html, junit, sarif};
 
 /// Reads the rubric that the arguments name, if any.
 ///
@@ -51,21 +51,27 @@ pub(super) const REPORT_NAMES: [&str; 6] = [
 ];
 
 /// Writes the reports into the folder; returns false on failure. The submissions are those of the report's
-/// records, in the same order. `results.json` is written only with a rubric.
+/// records, in the same order. `results.json` is written only with a rubric. Students read `junit.xml` and
+/// `results.json`, which show the `hints`.
 pub(super) fn write(
     report: &Report,
     submissions: &[&Submission],
     rubric: Option<&Rubric>,
+    hints: Hints,
     out: &Path,
     terminal: &Terminal,
 ) -> bool {
     let records = report.shaders();
+    let mut students = records.to_vec();
+    for record in &mut students {
+        record.redact(hints);
+    }
     let texts: [&dyn Fn() -> Option<String>; REPORT_NAMES.len()] = [
         &|| Some(html(report, rubric, &gallery(submissions), SystemTime::now())),
         &|| Some(csv(records, rubric)),
-        &|| Some(junit(records)),
+        &|| Some(junit(&students)),
         &|| Some(sarif(records)),
-        &|| rubric.map(|rubric| gradescope(records, rubric)),
+        &|| rubric.map(|rubric| gradescope(&students, rubric)),
         &|| Some(report.json()),
     ];
     let written = REPORT_NAMES

@@ -1,4 +1,4 @@
-//! One shader on the page: its verdict, the likely mistake, its images, its checks and its source.
+//! One shader on the page: its verdict, the likely mistake, the fix, its images, its checks and its source.
 
 use std::fmt::Write as _;
 use toyproof_diagnostic::{color_difference, grouped};
@@ -8,7 +8,9 @@ use super::glossary::{Glossary, term};
 use super::overview::total_points;
 use super::source::{SourceLimit, source};
 use super::{Exhibit, Text, sentence};
-use crate::report::{Mistake, Record, Rubric};
+use crate::report::repair::suspect_lines;
+use crate::report::terminal::CUT_SEARCH;
+use crate::report::{Mistake, Record, Repair, Rubric};
 
 /// What the article of a shader shows.
 pub(super) struct Article<'a> {
@@ -32,7 +34,7 @@ impl Article<'_> {
             r#"<article id="s{index}" aria-labelledby="h{index}" data-name="{name}"{images}>
 <h2 id="h{index}" tabindex="-1">{name}</h2>
 {facts}<p class="result"><span class="verdict {verdict}">{verdict_term}</span> {reason}</p>
-{details}{mistake}{help}<div class="images"></div>
+{details}{mistake}{fix}{help}<div class="images"></div>
 {checks}{source}</article>
 "#,
             name = Text(name),
@@ -46,6 +48,7 @@ impl Article<'_> {
                 .as_ref()
                 .map(|mistake| self.mistake(mistake))
                 .unwrap_or_default(),
+            fix = self.fix(),
             help = record.help.as_deref().map(command).unwrap_or_default(),
             checks = checks(record),
             source = source(record, self.exhibit.source.as_deref(), self.limit, self.glossary),
@@ -58,6 +61,7 @@ impl Article<'_> {
         let images = [
             ("actual", self.exhibit.actual),
             ("reference", self.exhibit.reference),
+            ("fixed", self.exhibit.fixed.filter(|_| self.record.fix.is_some())),
             ("algorithm", algorithm),
             ("precision", precision),
             ("toolchain", toolchain),
@@ -130,6 +134,48 @@ impl Article<'_> {
             );
         }
         format!("<div class=\"mistake\">\n{html}</div>\n")
+    }
+
+    /// The fix with its alternatives, else the suspect lines.
+    fn fix(&self) -> String {
+        let Record {
+            fix,
+            suspects,
+            is_search_cut,
+            ..
+        } = self.record;
+        let mut html = String::new();
+        if let Some(fix) = fix {
+            // The explanation of the likely mistake is beside it.
+            let mistake = self.record.mistake.as_ref().map(|mistake| mistake.id.as_str());
+            let explained = |repair: &Repair, text: &str| {
+                let new = Some(repair.id.as_str()).filter(|id| Some(*id) != mistake);
+                let links = new.and_then(|id| self.glossary.mistake_links(id));
+                let links =
+                    links.map(|links| format!(" <span class=\"explanation\">Explanation: {links}</span>"));
+                sentence(text) + &links.unwrap_or_default()
+            };
+            let first = explained(fix, &fix.sentence());
+            let _ = writeln!(html, "<p><strong>{}:</strong> {first}</p>", term("fix", "Fix"));
+            for other in &fix.alternatives {
+                let other = explained(other, &other.summary());
+                let _ = writeln!(html, "<p><strong>Or:</strong> {other}</p>");
+            }
+        } else if let Some((_, lines)) = suspect_lines(suspects) {
+            let label = match suspects[..] {
+                [_] => "Suspect line",
+                _ => "Suspect lines",
+            };
+            let label = term("suspect-lines", label);
+            let _ = writeln!(html, "<p><strong>{label}:</strong> {lines}</p>");
+            if *is_search_cut {
+                let _ = writeln!(html, "<p>{}</p>", sentence(CUT_SEARCH));
+            }
+        }
+        if html.is_empty() {
+            return html;
+        }
+        format!("<div class=\"repair\">\n{html}</div>\n")
     }
 }
 
@@ -247,7 +293,9 @@ fn place(name: &str, pixel: &Pixel) -> String {
 mod tests {
     use super::*;
     use crate::report::Alternative;
+    use crate::report::Hints;
     use crate::report::record::samples::{correct, question, record};
+    use crate::report::repair::samples::{SOURCE, repaired, suspected};
     use toyproof_verify::Verdict;
 
     fn article(record: &Record) -> String {
@@ -292,6 +340,53 @@ mod tests {
             "{html}"
         );
         assert!(html.contains("<ol>\n<li>second</li>\n</ol>"), "{html}");
+    }
+
+    #[test]
+    fn a_fix_is_shown_with_its_image_and_its_line() {
+        let exhibit = Exhibit {
+            source: Some(SOURCE.to_owned()),
+            fixed: Some(7),
+            ..Exhibit::default()
+        };
+        let shown = |record: &Record| {
+            let article = Article {
+                record,
+                name: &record.shader,
+                exhibit: &exhibit,
+                rubric: None,
+                glossary: &Glossary::of(std::slice::from_ref(record)),
+                limit: SourceLimit::of([SOURCE]),
+            };
+            article.html(0)
+        };
+        let html = shown(&repaired());
+        assert!(
+            html.contains(
+                "line 2: replace <code>b + c</code> with <code>b - c</code>; then all 14,400 pixels agree"
+            ),
+            "{html}"
+        );
+        assert!(html.contains("<strong>Or:</strong> line 2: remove"), "{html}");
+        assert_eq!(html.matches("href=\"#x-wrong-operator\"").count(), 1, "{html}");
+        assert_eq!(html.matches("href=\"#x-wrong-number\"").count(), 1, "{html}");
+        assert!(html.contains("data-fixed=\"7\""), "{html}");
+        assert!(html.contains("return <mark>b + c</mark>;"), "{html}");
+        assert!(!html.contains("Suspect"), "{html}");
+        let html = shown(&suspected());
+        assert!(html.contains("Suspect lines</a>:</strong> 4, 2</p>"), "{html}");
+        assert!(html.contains("= <mark>1.0</mark>;"), "{html}");
+        assert!(!html.contains("data-fixed"), "{html}");
+        let mut hidden = repaired();
+        hidden.redact(Hints::Line);
+        let html = shown(&hidden);
+        assert!(
+            html.contains("an edit of line 2") && !html.contains("b - c"),
+            "{html}"
+        );
+        hidden.redact(Hints::None);
+        let html = shown(&hidden);
+        assert!(!html.contains("data-fixed") && !html.contains("<mark>"), "{html}");
     }
 
     #[test]

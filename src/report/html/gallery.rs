@@ -18,6 +18,8 @@ pub struct Exhibit {
     pub actual: Option<usize>,
     /// The reference image.
     pub reference: Option<usize>,
+    /// The image after the fix of a wrong shader.
+    pub fixed: Option<usize>,
     /// The difference images of the checks: algorithm, precision, toolchain. None where all pixels agree or
     /// the check did not run.
     pub checks: [Option<usize>; 3],

@@ -1,6 +1,7 @@
 //! The glossary: the terms of the page, and the explanations of the codes and mistakes that occur on it.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::iter;
 
 use super::{Text, markdown, sentence};
 use crate::report::explanation::TERMS;
@@ -17,9 +18,12 @@ impl Glossary {
             let alternatives = mistake.alternatives.iter().map(|other| other.id.as_str());
             mistake_ids(&mistake.id).chain(alternatives.flat_map(mistake_ids))
         });
+        let repairs = records.iter().filter_map(|record| record.fix.as_ref());
+        let repairs = repairs.flat_map(|fix| iter::once(fix).chain(&fix.alternatives));
         let used: BTreeSet<&str> = diagnostics
             .map(|diagnostic| diagnostic.code.as_str())
             .chain(mistakes)
+            .chain(repairs.map(|repair| repair.id.as_str()))
             .collect();
         let explanations = explanations().filter(|explanation| used.contains(explanation.code));
         Self(
@@ -100,6 +104,7 @@ mod tests {
 
     use super::*;
     use crate::report::record::samples::{every_verdict, invalid};
+    use crate::report::repair::samples::repaired;
     use crate::report::{Alternative, Mistake};
 
     #[test]
@@ -130,6 +135,10 @@ mod tests {
             assert!(html.contains(&format!("id=\"x-{code}\"")), "{code}");
         }
         assert!(!html.contains("id=\"x-E0302\""));
+        let fixed = Glossary::of(&[repaired()]).html();
+        for id in ["wrong-operator", "wrong-number"] {
+            assert!(fixed.contains(&format!("id=\"x-{id}\"")), "{id}");
+        }
         let links = glossary.mistake_links("E0100+E0200").unwrap();
         assert_eq!(links.matches("<a ").count(), 2);
         assert_eq!(glossary.mistake_links("<b>"), None);

@@ -247,6 +247,7 @@ mod tests {
     use super::*;
     use crate::report::Mistake;
     use crate::report::record::samples::{every_verdict, invalid};
+    use crate::report::repair::samples::repaired;
 
     fn page(records: Vec<Record>, gallery: &Gallery) -> String {
         let report = Report::new(Some("<device>".to_owned()), records);
@@ -268,6 +269,15 @@ mod tests {
             is_symptom: true,
             alternatives: Vec::new(),
         });
+        let mut fix = repaired().fix.unwrap();
+        for text in [&mut fix.id, &mut fix.file] {
+            HOSTILE.clone_into(text);
+        }
+        fix.text = Some(HOSTILE.to_owned());
+        fix.edits[0].text = Some(HOSTILE.to_owned());
+        fix.edits[0].range.line = 1;
+        fix.alternatives = vec![fix.clone()];
+        record.fix = Some(fix);
         let diagnostic = &mut record.diagnostics[0];
         (diagnostic.message, diagnostic.file, diagnostic.line) =
             (HOSTILE.to_owned(), Some(HOSTILE.to_owned()), Some(1));
@@ -280,7 +290,7 @@ mod tests {
         });
         let page = page(vec![record], &gallery);
         assert!(!page.contains("<script>hacked") && !page.contains("<img") && !page.contains("<device>"));
-        assert!(page.matches("&lt;img src=x").count() >= 8, "the text is shown");
+        assert!(page.matches("&lt;img src=x").count() >= 11, "the text is shown");
         assert_eq!(page.matches("<script").count(), 3, "settings and our own two");
     }
 

@@ -344,6 +344,7 @@
   };
 
   const CHECKS = ['algorithm', 'precision', 'toolchain'];
+  const HEAT_MAPS = ['difference', ...CHECKS];
   const legendOf = (name) => (name === 'toolchain' ? settings.bits : settings.eye);
   const BLINK_MS = 800;
 
@@ -352,7 +353,7 @@
     const data = article.dataset;
     const images = { actual: await pixels(data.actual) };
     const { width, height } = images.actual;
-    for (const name of ['reference', ...CHECKS]) {
+    for (const name of ['reference', 'fixed', ...CHECKS]) {
       if (data[name] !== undefined) images[name] = await pixels(data[name], [width, height]);
     }
     if (images.reference) images.difference = heatMap(images.reference, images.actual);
@@ -386,7 +387,7 @@
       edge.style.left = `${percent}%`;
       slider.ariaValueText = `${Math.round(percent)} % reference`;
       const legend = $('ul.legend', root);
-      const entries = current in images ? legendOf(current) : [];
+      const entries = HEAT_MAPS.includes(current) ? legendOf(current) : [];
       const used = entries.filter((entry) => current !== 'difference' || isBand(entry));
       legend.replaceChildren(...used.map(([name, color]) => make('li', {}, swatch(color), name)));
       $('.slide', root).hidden = current !== 'slider' || !images.reference;
@@ -433,6 +434,7 @@
       } else {
         lines.push(['actual', colorText(actual)]);
       }
+      if (images.fixed) lines.push(['after the fix', colorText(colorOf(images.fixed, at))]);
       for (const name of CHECKS) lines.push([`${name} check`, describe(name, at)]);
       if (exact) {
         lines.push([`${exact.check}: expected`, [exact.expected]], [`${exact.check}: actual`, [exact.actual]]);
@@ -510,6 +512,7 @@
   const CAPTIONS = {
     actual: 'Actual image',
     reference: 'Reference',
+    fixed: 'Image after the fix',
     algorithm: 'Difference: algorithm check',
     precision: 'Difference: precision check',
     toolchain: 'Difference: toolchain check',
@@ -575,7 +578,7 @@
       entry.classList.remove('unused');
       if (!used.has(entry.id)) entry.remove();
     }
-    const places = ['actual', 'reference', ...CHECKS].map((name) => article.dataset[name]);
+    const places = ['actual', 'reference', 'fixed', ...CHECKS].map((name) => article.dataset[name]);
     const images = [...new Set(places)].filter(Boolean).map((place) => document.getElementById(`p${place}`).cloneNode(true));
     const rest = [$('#viewer'), ...images, $('#settings'), own].map((element) => element.cloneNode(true));
     page.append(head, make('body', {}, $('.skip').cloneNode(true), header, content, glossary, ...rest));

@@ -1,5 +1,5 @@
-//! The source of a shader with line numbers: the lines of messages are marked, each with its messages below
-//! it, and what is far from them is folded.
+//! The source of a shader with line numbers: the lines of messages and of the fix are marked, each with its
+//! messages below it, and what is far from them is folded.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -8,7 +8,7 @@ use toyproof_diagnostic::{Json, grouped, plural};
 
 use super::glossary::Glossary;
 use super::{Text, sentence};
-use crate::report::Record;
+use crate::report::{Record, SourceRange};
 
 /// The maximum number of messages that are shown for one shader.
 const MAX_MESSAGES: usize = 50;
@@ -42,13 +42,29 @@ impl SourceLimit {
     }
 }
 
-/// The marks of a line: the column of the first, and the messages.
-#[derive(Default)]
+/// The marks of a line: the column and the length of the first, and the messages.
 struct Marked {
     column: usize,
-    severity: String,
+    /// In characters; none for the word that starts in the column.
+    length: Option<usize>,
+    /// The class of the line: a severity, or what else is reported there.
+    class: String,
     messages: Vec<String>,
 }
+
+impl Marked {
+    fn new(column: usize, length: Option<usize>, class: impl Into<String>) -> Self {
+        Self {
+            column,
+            length,
+            class: class.into(),
+            messages: Vec::new(),
+        }
+    }
+}
+
+/// The marked lines of a shader, by their numbers.
+type Marks = BTreeMap<usize, Marked>;
 
 /// Formats the source of a shader, and its messages.
 pub(super) fn source(
@@ -58,18 +74,16 @@ pub(super) fn source(
     glossary: &Glossary,
 ) -> String {
     let lines: Vec<_> = source.map_or_else(Vec::new, |text| text.lines().collect());
-    let mut marks: BTreeMap<usize, Marked> = BTreeMap::new();
+    let mut marks = Marks::new();
     let mut others = Vec::new();
     for diagnostic in record.diagnostics.iter().take(MAX_MESSAGES) {
         match diagnostic.line.zip(diagnostic.column) {
             Some((line, column))
                 if diagnostic.file.as_ref() == Some(&record.shader) && (1..=lines.len()).contains(&line) =>
             {
-                let marked = marks.entry(line).or_insert_with(|| Marked {
-                    column,
-                    severity: diagnostic.severity.to_string(),
-                    messages: Vec::new(),
-                });
+                let marked = marks
+                    .entry(line)
+                    .or_insert_with(|| Marked::new(column, None, diagnostic.severity.to_string()));
                 marked
                     .messages
                     .push(message(diagnostic, &format!("{line}:{column}"), glossary));
@@ -88,14 +102,14 @@ pub(super) fn source(
         .filter(|cause| (1..=lines.len()).contains(&cause.line))
     {
         marks.entry(cause.line).or_insert_with(|| Marked {
-            column: cause.column,
-            severity: "cause".to_owned(),
             messages: vec![format!(
                 "<div class=\"message cause\"><p><strong>likely cause</strong> <span class=\"place\">{}:{}</span></p></div>",
                 cause.line, cause.column
             )],
+            ..Marked::new(cause.column, None, "cause")
         });
     }
+    mark_fix(record, lines.len(), &mut marks);
     let mut html = String::new();
     if !others.is_empty() {
         let _ = write!(
@@ -123,6 +137,49 @@ pub(super) fn source(
     html
 }
 
+/// Marks the lines of the fix, else the suspect lines.
+fn mark_fix(record: &Record, line_count: usize, marks: &mut Marks) {
+    let mut mark = |range: SourceRange, class: &str, text: String| {
+        let SourceRange { line, column, .. } = range;
+        if !(1..=line_count).contains(&line) {
+            return;
+        }
+        let length = if range.end_line == line {
+            range.end_column.saturating_sub(column)
+        } else {
+            MAX_LINE_CHARS
+        };
+        let marked = marks
+            .entry(line)
+            .or_insert_with(|| Marked::new(column, Some(length), class));
+        marked.messages.push(format!(
+            "<div class=\"message {class}\"><p>{text} <span class=\"place\">{line}:{column}</span></p></div>"
+        ));
+    };
+    match &record.fix {
+        Some(fix) if fix.file == record.shader => {
+            for edit in &fix.edits {
+                let text = edit.text.as_deref().unwrap_or("an edit of this line");
+                mark(
+                    edit.range,
+                    "fix",
+                    format!("<strong>fix:</strong> {}", sentence(text)),
+                );
+            }
+        }
+        Some(_) => {}
+        None => {
+            for suspect in &record.suspects {
+                mark(
+                    suspect.range,
+                    "suspect",
+                    "<strong>suspect line</strong>".to_owned(),
+                );
+            }
+        }
+    }
+}
+
 fn message(diagnostic: &Json, place: &str, glossary: &Glossary) -> String {
     let Json { severity, code, .. } = diagnostic;
     let notes = diagnostic.notes.iter();
@@ -137,7 +194,7 @@ fn message(diagnostic: &Json, place: &str, glossary: &Glossary) -> String {
 }
 
 /// Formats all lines: marked ones with their messages, those around them, and the others folded.
-fn listing(lines: &[&str], marks: &BTreeMap<usize, Marked>, is_whole: bool) -> String {
+fn listing(lines: &[&str], marks: &Marks, is_whole: bool) -> String {
     let mut html = String::new();
     // The first line that is not formatted yet.
     let mut next = 1;
@@ -147,10 +204,10 @@ fn listing(lines: &[&str], marks: &BTreeMap<usize, Marked>, is_whole: bool) -> S
         html += &plain_lines(lines, from, line);
         let _ = write!(
             html,
-            "<pre class=\"marked {severity}\"><code><span class=\"line\" data-line=\"{line}\">{}</span></code></pre>\n{}\n",
-            mark_word(lines[line - 1], marked.column),
+            "<pre class=\"marked {class}\"><code><span class=\"line\" data-line=\"{line}\">{}</span></code></pre>\n{}\n",
+            mark_text(lines[line - 1], marked.column, marked.length),
             marked.messages.concat(),
-            severity = marked.severity,
+            class = marked.class,
         );
         let following = marks
             .range(line + 1..)
@@ -199,14 +256,15 @@ fn plain_lines(lines: &[&str], start: usize, end: usize) -> String {
     format!("<pre data-first=\"{start}\"><code>{}</code></pre>\n", Text(text))
 }
 
-/// Marks the word that starts in a column; a long line is cut around it.
-fn mark_word(line: &str, column: usize) -> String {
+/// Marks the text that starts in a column: so many characters, else a word. A long line is cut around it.
+fn mark_text(line: &str, column: usize, length: Option<usize>) -> String {
     let start = column.saturating_sub(1);
     let skipped = start.saturating_sub(MAX_LINE_CHARS / 2);
     let before: String = line.chars().take(start).skip(skipped).collect();
     let is_word = |c: &char| c.is_alphanumeric() || *c == '_';
     let rest = || line.chars().skip(start);
-    let length = rest().take(MAX_LINE_CHARS).take_while(is_word).count().max(1);
+    let word_length = || rest().take(MAX_LINE_CHARS).take_while(is_word).count();
+    let length = length.unwrap_or_else(word_length).clamp(1, MAX_LINE_CHARS);
     let mut word: String = rest().take(length).collect();
     if word.is_empty() {
         word.push(' ');
@@ -224,6 +282,7 @@ mod tests {
     use super::*;
     use crate::report::Position;
     use crate::report::record::samples::record;
+    use crate::report::repair::samples::{SOURCE, repaired, suspected};
 
     fn message_at(line: usize, column: usize) -> Json {
         Json {
@@ -297,6 +356,32 @@ mod tests {
             html.contains("<mark>b</mark>") && html.contains("likely cause"),
             "{html}"
         );
+    }
+
+    #[test]
+    fn the_fix_or_the_suspect_lines_are_marked_with_their_whole_text() {
+        let shown = |record: &Record| source(record, Some(SOURCE), SourceLimit::of([]), &Glossary::of(&[]));
+        let fixed = shown(&repaired());
+        assert!(
+            fixed.contains("<pre class=\"marked fix\"><code><span class=\"line\" data-line=\"2\">    return <mark>b + c</mark>;"),
+            "{fixed}"
+        );
+        assert!(
+            fixed.contains(
+                "fix:</strong> replace <code>b + c</code> with <code>b - c</code> <span class=\"place\">2:12"
+            ),
+            "{fixed}"
+        );
+        assert_eq!(fixed.matches("<mark>").count(), 1);
+        let suspected = shown(&suspected());
+        assert_eq!(suspected.matches("<pre class=\"marked suspect\">").count(), 2);
+        assert_eq!(suspected.matches("suspect line</strong>").count(), 2);
+        let mut other_file = repaired();
+        other_file.fix.as_mut().unwrap().file = "common.glsl".to_owned();
+        assert!(!shown(&other_file).contains("<mark>"));
+        let mut outside = repaired();
+        outside.fix.as_mut().unwrap().edits[0].range.line = 99;
+        assert!(!shown(&outside).contains("<mark>"));
     }
 
     #[test]

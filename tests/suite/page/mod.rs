@@ -539,6 +539,71 @@ fn one_shader_is_saved_as_a_page_of_its_own() {
 }
 
 #[test]
+fn the_image_after_the_fix_is_beside_the_others() {
+    let Some(mut page) = page() else { return };
+    let mut gallery = Gallery::new(1);
+    let mut plain = |level: f32| {
+        let image = Image::new(8, 8, vec![[level, level, level, 1.0]; 64]);
+        Some(gallery.add_image(image::encode(&image, Path::new("x.png")).unwrap()))
+    };
+    let [actual, reference, fixed] = [0.0, 1.0, 0.6].map(&mut plain);
+    gallery.add_exhibit(Exhibit {
+        source: Some("float a() {\n    return b + c;\n}\n".to_owned()),
+        actual,
+        reference,
+        fixed,
+        ..Exhibit::default()
+    });
+    let edit = json!({
+        "line": 2, "column": 12, "end_line": 2, "end_column": 17,
+        "replacement": "b - c", "text": "replace `b + c` with `b - c`",
+    });
+    let mut fix = json!({
+        "id": "wrong-operator", "file": "hw/eve.glsl", "agreeing": 64, "pixels": 64, "edits": [edit],
+    });
+    fix.as_object_mut()
+        .unwrap()
+        .extend(edit.as_object().unwrap().clone());
+    let record = Record {
+        verdict: Verdict::Wrong,
+        reason: "all 64 pixels differ".to_owned(),
+        fix: Some(serde_json::from_value(fix).unwrap()),
+        ..Record::new("hw/eve.glsl".to_owned())
+    };
+    let text = html(&Report::new(None, vec![record]), None, &gallery, UNIX_EPOCH);
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("out/report.html");
+    fs::create_dir(file.parent().unwrap()).unwrap();
+    fs::write(&file, text).unwrap();
+    page.window([1400, 900], false);
+    page.open(&file);
+    page.until("document.querySelector('article.open dl dd') !== null");
+    page.value("document.querySelector('article.open [name=view][value=fixed]').click()");
+    assert_eq!(page.value(CANVAS), "153, 153, 153 of 255");
+    assert_eq!(page.value(INSPECTED)["after the fix"], "153, 153, 153 of 255");
+    assert_eq!(
+        page.value("document.querySelectorAll('article.open ul.legend li').length"),
+        0,
+        "the image has no legend"
+    );
+    assert_eq!(
+        page.value("document.querySelector('.marked.fix mark').textContent"),
+        "b + c"
+    );
+    shot(&mut page, "fix");
+    page.value("dispatchEvent(new Event('beforeprint'))");
+    assert_eq!(
+        page.value("[...document.querySelectorAll('article.open figure img')].map(image => image.alt)"),
+        json!([
+            "Actual image of eve.glsl",
+            "Reference of eve.glsl",
+            "Image after the fix of eve.glsl"
+        ])
+    );
+    is_quiet(&mut page);
+}
+
+#[test]
 fn on_paper_each_shader_has_its_images_and_its_whole_source() {
     let Some(mut page) = page() else { return };
     let folder = tempfile::tempdir().unwrap();
@@ -572,6 +637,7 @@ fn on_paper_each_shader_has_its_images_and_its_whole_source() {
         json!([
             "Actual image of bob.glsl",
             "Reference of bob.glsl",
+            "Image after the fix of bob.glsl",
             "Difference: algorithm check of bob.glsl"
         ])
     );

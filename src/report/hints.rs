@@ -1,0 +1,93 @@
+//! The hints that a report gives to the author of a wrong shader.
+
+use super::Record;
+
+/// What a report shows of the search for a mistake in a wrong shader. Errors and warnings are always shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Hints {
+    /// Neither the likely mistake nor lines nor edits.
+    None,
+    /// The likely mistake, and the lines of the fix or the suspect lines.
+    Line,
+    /// Also the edits.
+    Fix,
+}
+
+impl Record {
+    /// Removes what the author must not see; every format of the record then lacks it.
+    pub fn redact(&mut self, hints: Hints) {
+        if hints < Hints::Fix
+            && let Some(fix) = &mut self.fix
+        {
+            fix.hide_edits();
+        }
+        if hints < Hints::Line {
+            self.fix = None;
+            self.suspects.clear();
+            self.is_search_cut = false;
+            if self.mistake.take().is_some() {
+                // The command explains the mistake.
+                self.help = None;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::repair::samples::{repaired, suspected};
+    use crate::report::{Report, Rubric, csv, gradescope, junit, sarif};
+
+    /// Every text format of a record with these hints.
+    fn formats(mut record: Record, hints: Hints) -> Vec<String> {
+        record.redact(hints);
+        let rubric = Rubric::of(1.0, 8.0, 1.0);
+        let records = [record];
+        let mut texts = vec![
+            csv(&records, Some(&rubric)),
+            junit(&records),
+            sarif(&records),
+            gradescope(&records, &rubric),
+        ];
+        texts.push(Report::new(None, records.into()).json());
+        texts
+    }
+
+    #[test]
+    fn lines_are_shown_without_edits() {
+        for text in formats(repaired(), Hints::Line) {
+            assert!(!text.contains("b - c") && !text.contains("2.0"), "{text}");
+        }
+        let gradescope = &formats(repaired(), Hints::Line)[3];
+        assert!(
+            gradescope.contains("fix: an edit of line 2; then all"),
+            "{gradescope}"
+        );
+        let junit = &formats(suspected(), Hints::Line)[1];
+        assert!(junit.contains("suspect lines: 4, 2"), "{junit}");
+    }
+
+    #[test]
+    fn without_hints_neither_mistakes_nor_lines_are_shown() {
+        for record in [repaired, suspected] {
+            for text in formats(record(), Hints::None) {
+                for part in ["operator", "line 2", "4, 2", "b + c", "explain"] {
+                    assert!(!text.contains(part), "{part}: {text}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn with_all_hints_nothing_is_removed() {
+        let mut record = repaired();
+        record.redact(Hints::Fix);
+        assert_eq!(record.fix, repaired().fix);
+        let gradescope = &formats(repaired(), Hints::Fix)[3];
+        assert!(
+            gradescope.contains("replace `b + c` with `b - c`"),
+            "{gradescope}"
+        );
+    }
+}
