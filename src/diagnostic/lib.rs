@@ -26,7 +26,7 @@ pub use self::file::{File, FileId, Files, Position, Span};
 pub use self::layout::{columns, display_width, wrap};
 pub use self::render::{Json, JsonFix, human, json, short};
 pub use self::text::{
-    color_difference, grouped, magnitude, nearest, path_name, plural, printable, printable_lines,
+    color_difference, grouped, magnitude, nearest, path_name, plural, printable, printable_lines, similar,
 };
 
 /// The severity of a diagnostic.

@@ -80,29 +80,41 @@ pub(super) fn mask_controls(text: &str) -> Option<String> {
 
 // Suggestions for misspelled names.
 
+/// Maximum length of names for which similar ones are searched.
+const MAX_COMPARED_LETTERS: usize = 64;
+
 /// The candidate of which a name is most likely a misspelling, if any is likely; the first of equally likely
 /// ones. The distance is the number of swapped, missing, added and changed letters, up to a third of the
 /// name. Case hardly counts: `smoothStep` is `smoothstep`.
 pub fn nearest<'c>(name: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
-    let length = name.chars().count();
-    // Such long names are not typed by hand, and the distance takes quadratic time.
-    if length > 64 {
-        return None;
-    }
-    let lower = name.to_lowercase();
-    let distance = |candidate: &str| match candidate {
-        _ if candidate == name || candidate.is_empty() => None,
-        // Names of up to two letters get no suggestion but another case.
-        _ if length.abs_diff(candidate.len()) > length / 3 => None,
-        _ if candidate.eq_ignore_ascii_case(name) => Some(0),
-        _ => Some(strsim::osa_distance(&lower, &candidate.to_lowercase())),
-    };
-    candidates
-        .into_iter()
-        .filter_map(|candidate| Some((distance(candidate)?, candidate)))
-        .filter(|&(distance, _)| distance <= length / 3)
+    // Names of up to two letters get no suggestion but another case.
+    let limit = name.chars().count() / 3;
+    similar(name, candidates)
+        .filter(|&(distance, _)| distance <= limit)
         .min_by_key(|&(distance, _)| distance)
         .map(|(_, candidate)| candidate)
+}
+
+/// The candidates that differ from a name by at most a third of its letters, or by one letter, with their
+/// distances as in [`nearest`].
+pub fn similar<'c>(
+    name: &str,
+    candidates: impl IntoIterator<Item = &'c str>,
+) -> impl Iterator<Item = (usize, &'c str)> {
+    let length = name.chars().count();
+    let limit = (length / 3).max(1);
+    let lower = name.to_lowercase();
+    candidates.into_iter().filter_map(move |candidate| {
+        let distance = match candidate {
+            // Such long names are not typed by hand, and the distance takes quadratic time.
+            _ if length > MAX_COMPARED_LETTERS => return None,
+            _ if candidate == name || candidate.is_empty() => return None,
+            _ if length.abs_diff(candidate.len()) > limit => return None,
+            _ if candidate.eq_ignore_ascii_case(name) => 0,
+            _ => strsim::osa_distance(&lower, &candidate.to_lowercase()),
+        };
+        (distance <= limit).then_some((distance, candidate))
+    })
 }
 
 /// Returns the form of a word for a count.
