@@ -21,6 +21,9 @@ const VECTOR: u32 = 13;
 const FITTED: u32 = 30;
 const VARIABLE: u32 = 16;
 
+/// The largest number that an edit writes: larger ones stand for infinity.
+const MAX_NUMBER: f64 = 1e6;
+
 /// The smallest factor of a hash, such as `43758.5453123`.
 const MIN_HASH_FACTOR: f64 = 1000.0;
 
@@ -151,7 +154,7 @@ impl Writer<'_> {
         let mut values: Vec<(f64, u32)> = Vec::new();
         let mut add = |value: f64, cost| {
             let is_new = values.iter().all(|(known, _)| known.to_bits() != value.to_bits());
-            if is_new && value.is_finite() && value.to_bits() != old.to_bits() {
+            if is_new && value.abs() <= MAX_NUMBER && value.to_bits() != old.to_bits() {
                 values.push((value, cost));
             }
         };
