@@ -1,5 +1,5 @@
-//! Shaders with parameters: uniforms whose values are given for each run. Many variants of a shader, selected by
-//! parameters, are compiled once and evaluated at a few points each.
+//! Shaders with parameters: uniforms whose values are given for each run. Many variants of a shader, selected
+//! by parameters, are compiled once and evaluated at a few points each.
 
 use std::cell::RefCell;
 use std::time::Duration;
@@ -27,8 +27,8 @@ pub struct ParametricProgram {
 }
 
 impl ParametricProgram {
-    /// Compiles a shader. The `parameters` are declared as uniforms of type `float`, `int` or `bool` in its tree.
-    /// The result of an undefined operation is that of a strict GPU run.
+    /// Compiles a shader. The `parameters` are declared as uniforms of type `float`, `int` or `bool` in its
+    /// tree. The result of an undefined operation is that of a strict GPU run.
     ///
     /// # Errors
     /// If the shader is too large once its calls are inlined, or takes longer than `limit` to compile.

@@ -18,8 +18,8 @@ type Planted = (
     &'static str,
 );
 
-/// One of each kind of edit. The mistake is the only place whose edit renders the scene, or the most plausible
-/// one of several.
+/// One of each kind of edit. The mistake is the only place whose edit renders the scene, or the most
+/// plausible one of several.
 const PLANTED: &[Planted] = &[
     (
         &SPHERE,

@@ -1,5 +1,5 @@
-//! What the test suite and `cargo xtask` share: edited exercises of the course, checked as by `toyproof check`,
-//! but through the library.
+//! What the test suite and `cargo xtask` share: edited exercises of the course, checked as by `toyproof
+//! check`, but through the library.
 
 #![expect(
     clippy::must_use_candidate,

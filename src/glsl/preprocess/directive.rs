@@ -9,7 +9,7 @@ use crate::token::TokenKind;
 use crate::tree::Place;
 
 /// The directives (§3.4).
-const DIRECTIVES: [&str; 13] = [
+pub(crate) const DIRECTIVES: [&str; 13] = [
     "define",
     "undef",
     "if",

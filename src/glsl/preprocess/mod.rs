@@ -15,6 +15,7 @@ use std::collections::HashMap;
 use toyproof_diagnostic::{Deadline, Diagnostic, FileId, Files, Fix, grouped};
 
 use self::condition::Group;
+pub(crate) use self::directive::DIRECTIVES;
 use self::expand::Stream;
 pub use self::lexer::ControlComment;
 use self::lexer::{Lexer, PpToken};

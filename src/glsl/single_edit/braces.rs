@@ -3,6 +3,7 @@
 use toyproof_diagnostic::Span;
 
 use super::candidates::Candidates;
+use super::source::Source;
 use crate::keywords::Keyword;
 use crate::token::Punctuator;
 
@@ -158,11 +159,7 @@ fn missing_open(candidates: &mut Candidates) {
             }),
             Some(Punctuator::RightBrace) => {
                 let indent = source.indent(index);
-                let is_additional = match open.last() {
-                    Some(block) => source.begins_line(index) && indent > block.indent,
-                    None => true,
-                };
-                if !is_additional {
+                if !is_additional(source, open.last(), index) {
                     open.pop();
                     continue;
                 }
@@ -182,6 +179,11 @@ fn missing_open(candidates: &mut Candidates) {
     }
 }
 
+/// Whether a `}` closes no block, or is indented deeper than the block that it closes.
+fn is_additional(source: &Source, block: Option<&Open>, index: usize) -> bool {
+    block.is_none_or(|block| source.begins_line(index) && source.indent(index) > block.indent)
+}
+
 /// Removes a `}` whose indentation differs from that of its block.
 fn additional_close(candidates: &mut Candidates) {
     let source = candidates.source;
@@ -194,10 +196,7 @@ fn additional_close(candidates: &mut Candidates) {
                 indent: source.indent(index),
             }),
             Some(Punctuator::RightBrace) if count < MAX_OF_A_KIND => {
-                let is_additional = match open.last() {
-                    Some(block) => source.begins_line(index) && source.indent(index) > block.indent,
-                    None => true,
-                };
+                let is_additional = is_additional(source, open.last(), index);
                 if is_additional {
                     candidates.remove(2 + 3 * count, index);
                     count += 1;

@@ -2,7 +2,8 @@
 //!
 //! Candidates are collected from the errors: fixes that they carry, edits of tokens near them, braces that
 //! the indentation contradicts. Each has a cost, which grows with the size of the change and its distance
-//! from the first error. In the order of their costs, [`check`](crate::check) verifies them on the edited text.
+//! from the first error. In the order of their costs, [`check`](crate::check) verifies them on the edited
+//! text.
 
 mod braces;
 mod candidates;

@@ -9,6 +9,7 @@ use super::source::Source;
 use crate::codes::Code;
 use crate::foreign::Foreign;
 use crate::keywords::{Keyword, Word};
+use crate::preprocess::DIRECTIVES;
 use crate::token::{Punctuator, Symbol};
 use crate::tree::BuiltIn;
 
@@ -26,21 +27,6 @@ const MAX_GLUED_BYTES: usize = 64;
 
 /// Maximum number of occurrences of a name that one edit changes.
 const MAX_OCCURRENCES: usize = 100;
-
-/// The names of preprocessor directives.
-const DIRECTIVES: [&str; 11] = [
-    "define",
-    "undef",
-    "if",
-    "ifdef",
-    "ifndef",
-    "elif",
-    "else",
-    "endif",
-    "extension",
-    "version",
-    "pragma",
-];
 
 pub(super) fn collect(candidates: &mut Candidates, errors: &Diagnostics) {
     let names = Names::new(candidates.source);

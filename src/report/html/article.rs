@@ -100,8 +100,8 @@ impl Article<'_> {
         format!("<p class=\"facts\">{facts}</p>\n")
     }
 
-    /// The likely mistake with links to its explanation; with alternatives, a ranked list. A symptom is not one
-    /// of the mistakes: they cause it.
+    /// The likely mistake with links to its explanation; with alternatives, a ranked list. A symptom is not
+    /// one of the mistakes: they cause it.
     fn mistake(&self, mistake: &Mistake) -> String {
         let explained = |id: &str, text: &str| match self.glossary.mistake_links(id) {
             Some(links) => format!(

@@ -256,7 +256,8 @@ fn plain_lines(lines: &[&str], start: usize, end: usize) -> String {
     format!("<pre data-first=\"{start}\"><code>{}</code></pre>\n", Text(text))
 }
 
-/// Marks the text that starts in a column: so many characters, else a word. A long line is cut around it.
+/// Marks the text that starts in a column: the given number of characters, else a word. A long line is cut
+/// around it.
 fn mark_text(line: &str, column: usize, length: Option<usize>) -> String {
     let start = column.saturating_sub(1);
     let skipped = start.saturating_sub(MAX_LINE_CHARS / 2);

@@ -45,7 +45,7 @@ impl<'a> Judge<'a> {
         let findings = self.findings(&checked, self.case.frame, self.expected)?;
         let summary = &findings.algorithm.as_ref()?.summary;
         let by_means = findings.reason.compares_means();
-        // Means are compared over so many sets of random numbers that a second frame says little more.
+        // Means are compared over many sets of random numbers; a second frame would add little evidence.
         if !by_means {
             let (frame, expected) = self.other.get_or_init(|| self.other_frame());
             self.findings(&checked, frame, expected)?;
@@ -118,7 +118,8 @@ pub(super) fn apply(source: &str, fix: &Fix) -> Option<String> {
     Some(text)
 }
 
-/// The edits of a text, and those of the text that they result in, as edits of the first; none if they overlap.
+/// The edits of a text, and those of the text that they result in, as edits of the first; none if they
+/// overlap.
 pub(super) fn compose(first: &Fix, second: &Fix) -> Option<Fix> {
     let mut edits = first.edits.clone();
     for edit in &second.edits {

@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use toyproof_diagnostic::{Edit, Fix, Span};
-use toyproof_glsl::tree::{ExprId, ExprKind, Tree, UnaryOp};
+use toyproof_glsl::tree::ExprId;
 
 use super::scan;
-use super::shader::{Shader, Shape, StatementId};
-use super::term::{Numbers, Term, context, is_parenthesized};
+use super::shader::{Shader, Shape};
+use super::term::{Numbers, PRIMARY, Term, context, is_parenthesized};
 use crate::mistake::KnownMistake;
 
 /// An edit that may repair a shader.
@@ -172,7 +172,7 @@ fn replacement(shader: &Shader, site: usize, term: &Term) -> Option<Fix> {
     let (tree, source) = (shader.tree, shader.source);
     let old = shader.text(site.span);
     let required = match site.user {
-        _ if is_parenthesized(old) || site.exprs.len() > 1 => 14,
+        _ if is_parenthesized(old) || site.exprs.len() > 1 => PRIMARY,
         Some(user) => context(tree, user, site.exprs[0]),
         None => 0,
     };
@@ -195,7 +195,7 @@ fn replacement(shader: &Shader, site: usize, term: &Term) -> Option<Fix> {
         let [from, to] = [site.span.start, site.span.end].map(|at| (at - whole.start) as usize);
         shown_new = format!("{}{new}{}", &text[..from], &text[to..]);
         text.clone_into(&mut shown_old);
-        user = parent(tree, expr, shader);
+        user = parent(shader, expr);
     }
     let message = format!(
         "replace `{}` with `{}`",
@@ -206,7 +206,7 @@ fn replacement(shader: &Shader, site: usize, term: &Term) -> Option<Fix> {
 }
 
 /// The expression that uses another, if its site is known.
-fn parent(_: &Tree, expr: ExprId, shader: &Shader) -> Option<ExprId> {
+fn parent(shader: &Shader, expr: ExprId) -> Option<ExprId> {
     let site = shader.sites.iter().find(|site| site.exprs[0] == expr)?;
     site.user
 }
@@ -287,22 +287,5 @@ fn shortened(text: &str) -> String {
     match text.char_indices().nth(MAX_SHOWN) {
         Some((end, _)) => format!("{}…", &text[..end]),
         None => text,
-    }
-}
-
-/// The number of a statement in its function, for the change of the tree.
-pub(super) fn statement_id(shader: &Shader, at: usize) -> Option<StatementId> {
-    shader.statements[at].at
-}
-
-/// Whether an expression is a number with a sign.
-pub(super) fn is_number(tree: &Tree, expr: ExprId) -> bool {
-    match &tree[expr].kind {
-        ExprKind::Literal(_) => true,
-        ExprKind::Unary {
-            op: UnaryOp::Minus,
-            operand,
-        } => matches!(tree[*operand].kind, ExprKind::Literal(_)),
-        _ => false,
     }
 }

@@ -1,4 +1,5 @@
-//! Fits one number of an edit to the wrong pixels by the secant method (Press et al., Numerical Recipes, §9.2).
+//! Fits one number of an edit to the wrong pixels by the secant method (Press et al., Numerical Recipes,
+//! §9.2).
 
 use toyproof_eval::PointEvaluator;
 
@@ -19,8 +20,8 @@ const MAX_STARTS: usize = 2;
 /// The numbers of decimal digits to which a fitted number is rounded: authors write short numbers.
 const DIGITS: std::ops::RangeInclusive<usize> = 1..=8;
 
-/// Returns the numbers that make some wrong pixel right, each followed by what it may be a rounding of. `start`
-/// is the number with which the edit changes nothing, `before` the colors there.
+/// Returns the numbers that make some wrong pixel right, each followed by what it may be a rounding of.
+/// `start` is the number with which the edit changes nothing, `before` the colors there.
 pub(super) fn fitted(
     probes: &Probes,
     evaluator: &mut PointEvaluator,
@@ -100,8 +101,8 @@ fn fitted_to_means(
     })
 }
 
-/// Returns colors that make some wrong pixel right, one fitted number for each of its components, the shortest
-/// decimals first.
+/// Returns colors that make some wrong pixel right, one fitted number for each of its components, the
+/// shortest decimals first.
 pub(super) fn fitted_colors(
     probes: &Probes,
     evaluator: &mut PointEvaluator,

@@ -1,10 +1,10 @@
 //! Spectrum-based fault localization: which values the wrong pixels depend on more often than the right ones.
 //!
-//! A pixel depends on a value if its color changes when the value is changed, which is a dynamic slice
-//! found by execution, not by analysis: a statement that a pixel does not run, or whose result it does not use,
-//! has no influence. Suspicion is Ochiai's coefficient (Abreu, Zoeteweij and van Gemund, "On the accuracy of
-//! spectrum-based fault localization", 2007): with w and r the wrong and right pixels that depend on the value,
-//! of W wrong ones, s = w / √(W·(w + r)).
+//! A pixel depends on a value if its color changes when the value is changed, which is a dynamic slice found
+//! by execution, not by analysis: a statement that a pixel does not run, or whose result it does not use, has
+//! no influence. Suspicion is Ochiai's coefficient (Abreu, Zoeteweij and van Gemund, "On the accuracy of
+//! spectrum-based fault localization", 2007): with w and r the wrong and right pixels that depend on the
+//! value, of W wrong ones, s = w / √(W·(w + r)).
 
 use toyproof_glsl::tree::{BinaryOp, ExprKind, Scalar, Type, UnaryOp};
 
@@ -22,8 +22,8 @@ pub(super) struct Disturbance {
     pub(super) weight: f64,
 }
 
-/// First a change so small that most conditions stay as they are; then, for values without influence, one that
-/// moves a ray's start or a hit's distance by more than an epsilon.
+/// First a change so small that most conditions stay as they are; then, for values without influence, one
+/// that moves a ray's start or a hit's distance by more than an epsilon.
 pub(super) const DISTURBANCES: [Disturbance; 2] = [
     Disturbance {
         factor: 1.0 + 1.0 / 256.0,
@@ -163,4 +163,34 @@ pub(super) fn of_statements(shader: &Shader, sites: &[Suspicion]) -> Vec<Suspici
         }
     }
     suspicions
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn suspicion_is_ochiais_coefficient_over_the_pixels_that_change() {
+        let probes: Vec<Probe> = (0..8).map(|at| Probe::exact([0.5; 3], at < 4)).collect();
+        let before = [[0.5; 3]; 8];
+        let changed = |pixels: &[usize]| {
+            let mut after = before;
+            for &at in pixels {
+                after[at][1] = 0.6;
+            }
+            suspicion(&probes, &before, &after, 1.0)
+        };
+        assert_eq!(
+            changed(&[0, 1, 2, 3]),
+            Suspicion {
+                ochiai: 1.0,
+                coverage: 1.0
+            }
+        );
+        // w = 2, W = 4, r = 1: 2 / sqrt(4 * 3).
+        let some = changed(&[0, 1, 7]);
+        assert!((some.ochiai - 2.0 / 12f64.sqrt()).abs() < 1e-12);
+        assert_eq!(some.coverage, 0.5);
+        assert_eq!(changed(&[4, 5]), Suspicion::default());
+    }
 }

@@ -1,7 +1,6 @@
-//! Repair: finds the lines that a wrong image depends on, and the smallest edits of the shader's own text after
-//! which its image is the expected one.
+//! Repair: finds the lines that a wrong image depends on, and the smallest edits of the shader's own text
+//! after which its image is the expected one.
 
-mod bench;
 mod confirm;
 mod edit;
 mod edits;
@@ -13,6 +12,7 @@ mod schema;
 mod search;
 mod shader;
 mod term;
+mod under_test;
 
 use toyproof_diagnostic::{Fix, Span};
 use toyproof_image::Rgb8Image;

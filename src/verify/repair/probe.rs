@@ -1,5 +1,5 @@
-//! Probes: a few pixels that stand for the whole image, wrong ones of every kind and right ones. A candidate is
-//! evaluated at them, most telling first, and rejected as soon as too many are wrong.
+//! Probes: a few pixels that stand for the whole image, wrong ones of every kind and right ones. A candidate
+//! is evaluated at them, most telling first, and rejected as soon as too many are wrong.
 //!
 //! Where a shader has random numbers of its own, no pixel has an exact color. Then the difference of a
 //! candidate from the expected means is projected onto the shader's own bias ([`Bias`]).
@@ -259,7 +259,8 @@ impl Probes {
                 let is_right = distance <= EXACT_TOLERANCE;
                 if probe.is_wrong {
                     outcome.repaired += usize::from(is_right);
-                    old_error += probe.distance(before[at]);
+                    // The distance of NaN is infinite.
+                    old_error += probe.distance(before[at]).min(1.0);
                     new_error += distance.min(1.0);
                 } else {
                     outcome.broken += usize::from(!is_right);
@@ -417,8 +418,52 @@ fn bit_reversed(count: usize) -> Vec<usize> {
 }
 
 #[cfg(test)]
+impl Probe {
+    /// A probe whose only accepted color is this.
+    pub(super) fn exact(color: [f64; 3], is_wrong: bool) -> Self {
+        Self {
+            point: [0.5; 2],
+            range: ColorRange {
+                low: color,
+                high: color,
+            },
+            bias: None,
+            is_wrong,
+        }
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_projection_tells_the_biased_shader_from_the_unbiased_one() {
+        let places = Places {
+            columns: (0..8).map(f64::from).collect(),
+            rows: (0..4).map(f64::from).collect(),
+        };
+        // The left half of each row is too bright by 0.2.
+        let bias = |at: usize| if at % 8 < 4 { 0.2 } else { 0.0 };
+        let pixels: Vec<NoisyPixel> = (0..32)
+            .map(|at| NoisyPixel {
+                own: [0.4 + bias(at); 3],
+                reference: [0.4; 3],
+                variance: [1e-6; 3],
+            })
+            .collect();
+        let probes = Probes::of_means(&pixels, &places).unwrap();
+        assert_eq!(probes.all.iter().filter(|probe| probe.is_wrong).count(), 16);
+        let amplitude = |color: &dyn Fn(&Probe) -> f64| {
+            let colors: Vec<_> = probes.all.iter().map(|probe| [color(probe); 3]).collect();
+            probes.project(&colors).unwrap().amplitude
+        };
+        let is_left = |probe: &Probe| probe.point[0] < 4.0;
+        let own = amplitude(&|probe| if is_left(probe) { 0.6 } else { 0.4 });
+        assert!((own - 1.0).abs() < 1e-12, "{own}");
+        assert!(amplitude(&|_| 0.4).abs() < 1e-12);
+        assert!(probes.project(&[[f64::NAN; 3]]).is_none());
+    }
 
     #[test]
     fn pixels_of_rare_kinds_come_first() {

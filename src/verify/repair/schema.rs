@@ -1,5 +1,6 @@
-//! Mutant schemata (Untch, Offutt and Harrold, "Mutation analysis using mutant schemata", ISSTA 1993): one program
-//! that contains many edits of a shader, each selected by a parameter. It is compiled once for all of them.
+//! Mutant schemata (Untch, Offutt and Harrold, "Mutation analysis using mutant schemata", ISSTA 1993): one
+//! program that contains many edits of a shader, each selected by a parameter. It is compiled once for all of
+//! them.
 
 use std::collections::{BTreeMap, HashMap};
 use std::time::Duration;
@@ -12,7 +13,7 @@ use toyproof_glsl::tree::{
 };
 use toyproof_image::Frame;
 
-use super::edit::{Action, Candidate, Change, statement_id};
+use super::edit::{Action, Candidate, Change};
 use super::shader::{Shader, StatementId, find, renumbered};
 use super::term::{Numbers, Term, push};
 
@@ -132,11 +133,11 @@ impl Writer {
     }
 
     fn action(&mut self, shader: &Shader, number: usize, at: usize, action: &Action) {
-        let Some(id) = statement_id(shader, at) else {
+        let Some(id) = shader.statements[at].at else {
             return;
         };
         let copy = |other: usize| {
-            let other = statement_id(shader, other)?;
+            let other = shader.statements[other].at?;
             let body = shader.tree[other.function].body.as_ref()?;
             find(body, &mut 0, other.number)
         };

@@ -1,17 +1,17 @@
-//! The search for repairs: candidates are tried in the order of their cost and of the suspicion of their place,
-//! until some are confirmed or the budget is spent; then pairs of them.
+//! The search for repairs: candidates are tried in the order of their cost and of the suspicion of their
+//! place, until some are confirmed or the budget is spent; then pairs of them.
 
 use std::time::Instant;
 
 use toyproof_diagnostic::Fix;
 use toyproof_eval::Places;
 
-use super::bench::{Bench, Trial, WAVE};
 use super::confirm::{Judge, compose};
 use super::edit::{Candidate, EditKind};
 use super::edits::{Constants, candidates, donor_candidates};
 use super::probe::Probes;
 use super::shader::Shader;
+use super::under_test::{ShaderUnderTest, Trial, WAVE};
 use super::{Repair, SearchOptions, SearchResult, Suspect};
 use crate::mistake::NoisyPixel;
 use crate::{Case, CheckResult};
@@ -35,8 +35,8 @@ const MAX_ATTEMPTS_BY_MEANS: usize = 4;
 /// The share of the budget for exact colors, if the means of a shader were compared.
 const EXACT_SHARE: f64 = 0.6;
 
-/// The merit of a repair above which an expression of the scene's shader may be more likely: fitted numbers.
-const MAX_NATURAL_MERIT: f64 = 28.0;
+/// The rank of a repair above which an expression of the scene's shader may be more likely: fitted numbers.
+const MAX_NATURAL_RANK: f64 = 28.0;
 
 /// The shares of the budget after which single edits, and donors, are no longer tried.
 const SINGLES_SHARE: f64 = 0.6;
@@ -131,7 +131,7 @@ struct Search<'a> {
 struct Found {
     repair: Repair,
     /// Its place among the repairs.
-    merit: f64,
+    rank: f64,
     /// The statement that it changes.
     statement: usize,
 }
@@ -139,61 +139,62 @@ struct Found {
 impl Search<'_> {
     /// Searches for edits after which the probes are right: single ones, donors, then pairs.
     fn run(&mut self, probes: &Probes, budget: f64) {
-        let Some(mut bench) = Bench::new(self.case, self.shader, probes, budget, self.deadline) else {
+        let Some(mut tested) = ShaderUnderTest::new(self.case, self.shader, probes, budget, self.deadline)
+        else {
             return;
         };
-        let partial = self.explore(&mut bench, None, SINGLES_SHARE * budget);
-        self.suspects = Some(bench.suspects(&partial));
-        if self.found.iter().all(|found| found.merit > MAX_NATURAL_MERIT) {
-            self.donors(&mut bench, DONORS_SHARE * budget);
+        let partial = self.explore(&mut tested, None, SINGLES_SHARE * budget);
+        self.suspects = Some(tested.suspects(&partial));
+        if self.found.iter().all(|found| found.rank > MAX_NATURAL_RANK) {
+            self.donors(&mut tested, DONORS_SHARE * budget);
         }
         if self.found.is_empty() && !probes.are_means() {
-            self.pairs(&bench, probes, partial, budget - bench.work);
+            self.pairs(&tested, probes, partial, budget - tested.work);
         }
     }
 
     /// Tries all edits of a shader, in addition to a first edit that it has already, and confirms those that
     /// pass. Returns those that make progress only.
-    fn explore(&mut self, bench: &mut Bench, first: Option<&First>, budget: f64) -> Vec<Trial> {
-        let (sites, statements) = bench.in_order();
-        let all = candidates(bench.shader, &self.constants, &sites, &statements);
-        self.try_in_order(bench, all, first, budget)
+    fn explore(&mut self, tested: &mut ShaderUnderTest, first: Option<&First>, budget: f64) -> Vec<Trial> {
+        let (sites, statements) = tested.in_order();
+        let all = candidates(tested.shader, &self.constants, &sites, &statements);
+        self.try_in_order(tested, all, first, budget)
     }
 
     /// Tries expressions of the scene's shader in the most suspicious places.
-    fn donors(&mut self, bench: &mut Bench, budget: f64) {
-        let sites = bench.suspicious_sites(MAX_DONOR_SITES);
-        let all = donor_candidates(bench.shader, &self.constants, &sites);
-        self.try_in_order(bench, all, None, budget);
+    fn donors(&mut self, tested: &mut ShaderUnderTest, budget: f64) {
+        let sites = tested.suspicious_sites(MAX_DONOR_SITES);
+        let all = donor_candidates(tested.shader, &self.constants, &sites);
+        self.try_in_order(tested, all, None, budget);
     }
 
     fn try_in_order(
         &mut self,
-        bench: &mut Bench,
+        tested: &mut ShaderUnderTest,
         candidates: Vec<Candidate>,
         first: Option<&First>,
         budget: f64,
     ) -> Vec<Trial> {
         let mut all: Vec<(f64, Candidate)> = candidates
             .into_iter()
-            .map(|candidate| (bench.rank(&candidate), candidate))
+            .map(|candidate| (tested.trial_rank(&candidate), candidate))
             .collect();
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut partial = Vec::new();
         for wave in all.chunks(WAVE) {
-            let is_spent = bench.is_spent(budget);
+            let is_spent = tested.is_spent(budget);
             self.is_cut |= is_spent;
             if is_spent || wave[0].0 > self.best + ALTERNATIVE_MARGIN || self.is_complete() {
                 break;
             }
-            let (mut passing, progress): (Vec<Trial>, Vec<Trial>) = bench
+            let (mut passing, progress): (Vec<Trial>, Vec<Trial>) = tested
                 .try_all(wave)
                 .into_iter()
                 .partition(|trial| trial.outcome.passes);
             partial.extend(progress);
-            passing.sort_by(|a, b| bench.merit(a).total_cmp(&bench.merit(b)));
+            passing.sort_by(|a, b| tested.report_rank(a).total_cmp(&tested.report_rank(b)));
             for trial in passing {
-                self.confirm(bench, &trial, first);
+                self.confirm(tested, &trial, first);
             }
         }
         partial
@@ -204,18 +205,17 @@ impl Search<'_> {
         self.found.len() >= MAX_CONFIRMED || self.attempts >= MAX_ATTEMPTS
     }
 
-    fn confirm(&mut self, bench: &mut Bench, trial: &Trial, first: Option<&First>) {
+    fn confirm(&mut self, tested: &mut ShaderUnderTest, trial: &Trial, first: Option<&First>) {
         let candidate = &trial.candidate;
-        let statement = candidate.statement(bench.shader);
-        let merit = bench.merit(trial);
+        let statement = candidate.statement(tested.shader);
+        let rank = tested.report_rank(trial);
         // Alternatives in the same statement would hide those elsewhere.
-        let is_better = |found: &Found| {
-            found.statement == statement && found.repair.is_complete() && found.merit <= merit
-        };
+        let is_better =
+            |found: &Found| found.statement == statement && found.repair.is_complete() && found.rank <= rank;
         if self.is_complete() || self.found.iter().any(is_better) {
             return;
         }
-        let fix = candidate.fix(bench.shader);
+        let fix = candidate.fix(tested.shader);
         let fix = match first {
             None => fix,
             Some(first) => fix.and_then(|second| compose(&first.fix, &second)),
@@ -223,34 +223,34 @@ impl Search<'_> {
         let Some(fix) = fix else { return };
         // An image takes the work of as many probes; in double precision, in f32, and in a second frame.
         let pixels = f64::from(self.case.frame.size[0]) * f64::from(self.case.frame.size[1]);
-        let work = CONFIRMATION_FACTOR * pixels * bench.probe_work;
+        let work = CONFIRMATION_FACTOR * pixels * tested.probe_work;
         self.confirmation_work += work;
         if !self.found.is_empty() && self.confirmation_work > self.confirmation_budget {
             return;
         }
-        bench.work += work;
+        tested.work += work;
         self.attempts += 1;
         let kinds: Vec<EditKind> = first
             .map(|first| first.kind)
             .into_iter()
-            .chain([candidate.kind(bench.shader)])
+            .chain([candidate.kind(tested.shader)])
             .collect();
         if let Some(repair) = self.judge.confirm(fix, &kinds) {
             if repair.is_complete() {
-                self.best = self.best.min(bench.rank(candidate));
+                self.best = self.best.min(tested.trial_rank(candidate));
             }
             self.found.retain(|found| found.statement != statement);
             self.found.push(Found {
                 repair,
-                merit,
+                rank,
                 statement,
             });
         }
     }
 
     /// Tries a second edit after each of the most promising first ones.
-    fn pairs(&mut self, bench: &Bench, probes: &Probes, partial: Vec<Trial>, mut budget: f64) {
-        let firsts = firsts(bench, partial);
+    fn pairs(&mut self, tested: &ShaderUnderTest, probes: &Probes, partial: Vec<Trial>, mut budget: f64) {
+        let firsts = firsts(tested, partial);
         let count = firsts.len();
         for (at, first) in firsts.iter().enumerate() {
             if budget <= 0.0 || Instant::now() >= self.deadline {
@@ -261,7 +261,7 @@ impl Search<'_> {
                 continue;
             };
             let shader = Shader::new(&checked, &text);
-            let Some(mut bench) = Bench::new(
+            let Some(mut tested) = ShaderUnderTest::new(
                 self.case,
                 &shader,
                 probes,
@@ -270,8 +270,8 @@ impl Search<'_> {
             ) else {
                 continue;
             };
-            self.explore(&mut bench, Some(first), budget / (count - at) as f64);
-            budget -= bench.work;
+            self.explore(&mut tested, Some(first), budget / (count - at) as f64);
+            budget -= tested.work;
             if !self.found.is_empty() {
                 break;
             }
@@ -283,7 +283,7 @@ impl Search<'_> {
     fn repairs(mut self) -> Vec<Repair> {
         let left = |found: &Found| found.repair.pixels - found.repair.agreeing;
         self.found
-            .sort_by(|a, b| left(a).cmp(&left(b)).then(a.merit.total_cmp(&b.merit)));
+            .sort_by(|a, b| left(a).cmp(&left(b)).then(a.rank.total_cmp(&b.rank)));
         self.found
             .into_iter()
             .take(MAX_REPAIRS)
@@ -306,31 +306,33 @@ struct First {
 }
 
 /// The edits that repair most of the wrong pixels, or remove most of the difference, without breaking others.
-fn firsts(bench: &Bench, mut partial: Vec<Trial>) -> Vec<First> {
-    let merit = |trial: &Trial| {
+fn firsts(tested: &ShaderUnderTest, mut partial: Vec<Trial>) -> Vec<First> {
+    let progress = |trial: &Trial| {
         let outcome = &trial.outcome;
         let pixels = outcome.repaired as f64 - 2.0 * outcome.broken as f64;
         pixels / outcome.evaluated.max(1) as f64 + 0.5 * (1.0 - outcome.remaining).clamp(0.0, 1.0)
     };
     partial.sort_by(|a, b| {
-        let rank = |trial: &Trial| bench.rank(&trial.candidate);
-        merit(b).total_cmp(&merit(a)).then(rank(a).total_cmp(&rank(b)))
+        let rank = |trial: &Trial| tested.trial_rank(&trial.candidate);
+        progress(b)
+            .total_cmp(&progress(a))
+            .then(rank(a).total_cmp(&rank(b)))
     });
     let mut statements: Vec<usize> = Vec::new();
     let mut firsts = Vec::new();
     for trial in partial {
-        let statement = trial.candidate.statement(bench.shader);
+        let statement = trial.candidate.statement(tested.shader);
         let known = statements.iter().filter(|&&known| known == statement).count();
         if firsts.len() == MAX_FIRSTS {
             break;
         }
         if known < MAX_FIRSTS_OF_STATEMENT
-            && let Some(fix) = trial.candidate.fix(bench.shader)
+            && let Some(fix) = trial.candidate.fix(tested.shader)
         {
             statements.push(statement);
             firsts.push(First {
                 fix,
-                kind: trial.candidate.kind(bench.shader),
+                kind: trial.candidate.kind(tested.shader),
             });
         }
     }

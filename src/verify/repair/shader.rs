@@ -89,7 +89,7 @@ impl<'a> Shader<'a> {
                 statements: Vec::new(),
             },
             scope: Vec::new(),
-            spelled: HashMap::new(),
+            macro_sites: HashMap::new(),
             number: 0,
         };
         collector.inputs();
@@ -113,7 +113,7 @@ struct Collector<'a> {
     shader: Shader<'a>,
     scope: Vec<VariableId>,
     /// The sites in macro bodies, by their spelling.
-    spelled: HashMap<Span, usize>,
+    macro_sites: HashMap<Span, usize>,
     /// The number of the next statement of the function.
     number: usize,
 }
@@ -270,7 +270,7 @@ impl Collector<'_> {
     fn site(&mut self, expr: ExprId, user: Option<ExprId>, statement: usize) {
         let at = self.shader.tree[expr].at;
         if at.is_expanded()
-            && let Some(&known) = self.spelled.get(&at.spelling)
+            && let Some(&known) = self.macro_sites.get(&at.spelling)
         {
             self.shader.sites[known].exprs.push(expr);
             return;
@@ -280,7 +280,7 @@ impl Collector<'_> {
             if !matches!(self.shader.tree[expr].kind, ExprKind::Literal(_)) {
                 return;
             }
-            self.spelled.insert(at.spelling, self.shader.sites.len());
+            self.macro_sites.insert(at.spelling, self.shader.sites.len());
         }
         self.shader.sites.push(Site {
             exprs: vec![expr],

@@ -44,7 +44,7 @@ pub(super) enum TermKind {
 
 /// The precedence of operands that need no parentheses in any context, of prefix operators, and of `?:` and
 /// assignments; binary operators lie between (GLSL ES 3.00.6 §5.1).
-const PRIMARY: u8 = 14;
+pub(super) const PRIMARY: u8 = 14;
 const PREFIX: u8 = 12;
 const CONDITIONAL: u8 = 0;
 const ASSIGNMENT: u8 = 0;

@@ -1,5 +1,5 @@
-//! Donors: expressions of the shader that renders the scene, with the names of the author's shader in place of
-//! its own. They repair what no small edit does.
+//! Donors: expressions of the shader that renders the scene, with the names of the author's shader in place
+//! of its own. They repair what no small edit does.
 
 use std::collections::{HashMap, HashSet};
 
@@ -84,8 +84,8 @@ struct Translation<'a> {
 }
 
 impl Translation<'_> {
-    /// The expression as a term; none if it cannot be written in another shader. `bound` are the values of the
-    /// parameters and variables of inlined functions.
+    /// The expression as a term; none if it cannot be written in another shader. `bound` are the values of
+    /// the parameters and variables of inlined functions.
     fn term(&mut self, expr: ExprId, bound: &HashMap<VariableId, Term>, depth: u32) -> Option<Term> {
         self.size += 1;
         if self.size > MAX_SIZE {

@@ -4,6 +4,7 @@ use toyproof_glsl::tree::{BinaryOp, BuiltIn, Constructor, ExprId, ExprKind, Type
 
 use super::super::edit::EditKind;
 use super::super::term::{Term, TermKind};
+use super::number::number;
 use super::{Writer, is_literal};
 
 /// The costs: another operator or function, another comparison, exchanged operands, deletions.
@@ -50,7 +51,7 @@ impl Writer<'_> {
                     constructor,
                     Constructor::Vector | Constructor::Matrix | Constructor::Struct
                 );
-                let is_number = |&argument: &ExprId| super::super::edit::is_number(tree, argument);
+                let is_number = |&argument: &ExprId| number(tree, argument).is_some();
                 if is_kind && !arguments.iter().all(is_number) {
                     let (constructor, arguments) = (*constructor, arguments.clone());
                     let construct = |arguments| {

@@ -43,8 +43,8 @@ pub(super) fn candidates(
     writer.all.into_iter().flat_map(Candidate::by_cost).collect()
 }
 
-/// The largest number of candidates for sites, and for statements, and of values of a type in scope: a shader may
-/// be large.
+/// The largest number of candidates for sites, and for statements, and of values of a type in scope: a shader
+/// may be large.
 const MAX_CANDIDATES: usize = 40_000;
 const MAX_VALUES: usize = 24;
 

@@ -13,7 +13,8 @@ use super::Writer;
 use super::donor::{Donor, donors};
 use super::plausibility::Shapes;
 
-/// The costs: numbers of the scene that are missing in the shader, and that it has, others, vectors of the scene, fitted numbers, and variables.
+/// The costs: numbers of the scene that are missing in the shader, and that it has, others, vectors of the
+/// scene, fitted numbers, and variables.
 const SCENE: u32 = 10;
 const OWN: u32 = 14;
 const RELATED: u32 = 12;
@@ -27,7 +28,8 @@ const MAX_NUMBER: f64 = 1e6;
 /// The smallest factor of a hash, such as `43758.5453123`.
 const MIN_HASH_FACTOR: f64 = 1000.0;
 
-/// What the shader that renders the scene consists of: its numbers, vectors, shapes of operations, and donors.
+/// What the shader that renders the scene consists of: its numbers, vectors, shapes of operations, and
+/// donors.
 #[derive(Debug, Default)]
 pub(in crate::repair) struct Constants {
     pub(super) floats: Vec<f64>,

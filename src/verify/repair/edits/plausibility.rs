@@ -14,8 +14,8 @@ use super::number::{Constants, number};
 const VECTOR: i32 = 5;
 const NUMBER: i32 = 4;
 
-/// What it gains or loses for each enclosing operation that has, or had, a shape of the scene's shader; and the
-/// largest gain or loss.
+/// What it gains or loses for each enclosing operation that has, or had, a shape of the scene's shader; and
+/// the largest gain or loss.
 const SHAPE: i32 = 2;
 const MAX_SHAPES: i32 = 2;
 

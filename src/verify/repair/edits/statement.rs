@@ -7,7 +7,8 @@ use super::super::shader::Shape;
 use super::super::term::{Term, TermKind};
 use super::Writer;
 
-/// The costs: another operator of an assignment, another target, another value, deletions, moves and insertions.
+/// The costs: another operator of an assignment, another target, another value, deletions, moves and
+/// insertions.
 const OPERATOR: u32 = 11;
 const TARGET: u32 = 16;
 const VALUE: u32 = 20;

@@ -1,6 +1,5 @@
 //! A shader under test: its probes, the suspicion of its parts, and trials of candidates.
 
-use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
@@ -45,7 +44,8 @@ const REFUSED_WORK: f64 = 3e8;
 /// The work of compiling an instruction, in terms of instructions that are executed for one chunk of pixels.
 const COMPILE_FACTOR: f64 = 200.0;
 
-/// The share of the budget for measuring suspicion, the least number of probes, and the share at which it ends.
+/// The share of the budget for measuring suspicion, the least number of probes, and the share at which it
+/// ends.
 const LOCALIZATION_SHARE: f64 = 0.12;
 const MIN_LOCALIZATION_PROBES: usize = 48;
 const MAX_LOCALIZATION_SHARE: f64 = 0.3;
@@ -57,12 +57,11 @@ const MAX_SUSPECTS: usize = 3;
 const MIN_PROGRESS: f64 = 0.25;
 
 /// A shader with its probes.
-pub(super) struct Bench<'a> {
+pub(super) struct ShaderUnderTest<'a> {
     case: &'a Case<'a>,
     pub(super) shader: &'a Shader<'a>,
     probes: Probes,
     deadline: Instant,
-    stop: AtomicBool,
     /// The colors of the shader at the probes.
     before: Vec<[f64; 3]>,
     max_iterations: u32,
@@ -85,7 +84,7 @@ pub(super) struct Trial {
 /// A part of the work with its results.
 type Worked<T> = (Vec<T>, f64);
 
-impl<'a> Bench<'a> {
+impl<'a> ShaderUnderTest<'a> {
     /// Evaluates the shader at the probes and measures how suspicious its parts are; none if it cannot be
     /// evaluated, or is right at all probes.
     pub(super) fn new(
@@ -95,12 +94,11 @@ impl<'a> Bench<'a> {
         budget: f64,
         deadline: Instant,
     ) -> Option<Self> {
-        let mut bench = Self {
+        let mut tested = Self {
             case,
             shader,
             probes: probes.clone(),
             deadline,
-            stop: AtomicBool::new(false),
             before: Vec::new(),
             max_iterations: u32::MAX >> 4,
             sites: Vec::new(),
@@ -111,7 +109,7 @@ impl<'a> Bench<'a> {
         let program = compile(shader, &[], case.frame, COMPILE_LIMIT).ok()?;
         let nothing = Selection::of(0, &[], &Numbers::default());
         let colors = |probes: &Probes| {
-            bench.evaluate(&program, |evaluator| {
+            tested.evaluate(&program, |evaluator| {
                 let colors = probes.colors(evaluator, &nothing)?;
                 Some((colors, evaluator.iterations(), evaluator.work()))
             })
@@ -119,25 +117,24 @@ impl<'a> Bench<'a> {
         let (before, ..) = colors(probes)?;
         let probes = probes.with_colors(&before)?;
         let (before, iterations, work) = colors(&probes)?;
-        bench.probes = probes;
-        bench.before = before;
-        bench.max_iterations = iterations.saturating_mul(ITERATION_FACTOR).max(MIN_ITERATIONS);
-        bench.probe_work = work / bench.probes.all.len() as f64;
+        tested.probes = probes;
+        tested.before = before;
+        tested.max_iterations = iterations.saturating_mul(ITERATION_FACTOR).max(MIN_ITERATIONS);
+        tested.probe_work = work / tested.probes.all.len() as f64;
         // Fewer probes, if evaluating all of them once for each site would cost too much.
         let share = LOCALIZATION_SHARE * budget / (work * shader.sites.len() as f64);
-        let count = (share.min(1.0) * bench.probes.all.len() as f64) as usize;
-        bench.localize(
+        let count = (share.min(1.0) * tested.probes.all.len() as f64) as usize;
+        tested.localize(
             count.max(MIN_LOCALIZATION_PROBES),
             MAX_LOCALIZATION_SHARE * budget,
         );
-        Some(bench)
+        Some(tested)
     }
 
     fn evaluate<T>(&self, program: &ParametricProgram, work: impl FnOnce(&mut PointEvaluator) -> T) -> T {
         let settings = Settings::<f64> {
             max_iterations: self.max_iterations,
             deadline: Some(self.deadline),
-            interrupt: Some(&self.stop),
             ..Settings::default()
         };
         program.evaluate(self.case.frame, &settings, work)
@@ -174,8 +171,8 @@ impl<'a> Bench<'a> {
 
     // Suspicion.
 
-    /// Measures how suspicious each site and each statement is, at that number of probes. What the budget does
-    /// not suffice for is not suspicious.
+    /// Measures how suspicious each site and each statement is, at that number of probes. What the budget
+    /// does not suffice for is not suspicious.
     fn localize(&mut self, count: usize, budget: f64) {
         let count = count.min(self.probes.all.len());
         let mut measured: Vec<Option<Suspicion>> = vec![None; self.shader.sites.len()];
@@ -223,14 +220,14 @@ impl<'a> Bench<'a> {
     }
 
     /// The place of a candidate in the order of trials: the smaller, the earlier.
-    pub(super) fn rank(&self, candidate: &Candidate) -> f64 {
+    pub(super) fn trial_rank(&self, candidate: &Candidate) -> f64 {
         let Suspicion { ochiai, coverage } = self.suspicion(candidate);
         f64::from(candidate.cost) + PLACE_WEIGHT * (1.0 - ochiai) + COVERAGE_WEIGHT * (1.0 - coverage)
     }
 
     /// The place of a candidate that passes among the repairs: where it is matters less, and how well it fits
     /// means more, if the fit is not exact.
-    pub(super) fn merit(&self, trial: &Trial) -> f64 {
+    pub(super) fn report_rank(&self, trial: &Trial) -> f64 {
         let candidate = &trial.candidate;
         let place = REPAIR_PLACE_WEIGHT * (1.0 - self.suspicion(candidate).ochiai);
         f64::from(candidate.cost) + place + REMAINING_WEIGHT * trial.outcome.remaining
@@ -274,9 +271,9 @@ impl<'a> Bench<'a> {
         sites
     }
 
-    /// The most suspicious statements, on different lines. Where edits make progress, the mistake is more likely:
-    /// of statements with the same coefficient, those count more (mutation-based localization; Papadakis and Le
-    /// Traon, "Metallaxis-FL", 2015).
+    /// The most suspicious statements, on different lines. Where edits make progress, the mistake is more
+    /// likely: of statements with the same coefficient, those count more (mutation-based localization;
+    /// Papadakis and Le Traon, "Metallaxis-FL", 2015).
     pub(super) fn suspects(&self, progress: &[Trial]) -> Vec<Suspect> {
         let mut improved = vec![0.0_f64; self.statements.len()];
         for trial in progress {
@@ -329,7 +326,7 @@ impl<'a> Bench<'a> {
             let mut trials = Vec::new();
             for (number, candidate) in candidates.iter().enumerate() {
                 let mut attempt = Attempt {
-                    bench: self,
+                    tested: self,
                     candidate,
                     select: &|numbers| Selection::of(candidates.len(), &[number], numbers),
                     evaluator,
@@ -344,7 +341,7 @@ impl<'a> Bench<'a> {
 
 /// The trials of one candidate.
 struct Attempt<'a, 'e> {
-    bench: &'a Bench<'a>,
+    tested: &'a ShaderUnderTest<'a>,
     candidate: &'a Candidate,
     select: &'a dyn Fn(&Numbers) -> Selection,
     evaluator: &'a mut PointEvaluator<'e>,
@@ -353,8 +350,8 @@ struct Attempt<'a, 'e> {
 
 impl Attempt<'_, '_> {
     fn run(&mut self) {
-        let (bench, candidate) = (self.bench, self.candidate);
-        let (probes, before) = (&bench.probes, &bench.before);
+        let (tested, candidate) = (self.tested, self.candidate);
+        let (probes, before) = (&tested.probes, &tested.before);
         match &candidate.trials {
             Trials::Once => {
                 self.test(&Numbers::default(), candidate.cost);
@@ -393,7 +390,7 @@ impl Attempt<'_, '_> {
 
     /// Tries the candidate with these numbers, and returns whether it passes.
     fn test(&mut self, numbers: &Numbers, cost: u32) -> bool {
-        let (probes, before) = (&self.bench.probes, &self.bench.before);
+        let (probes, before) = (&self.tested.probes, &self.tested.before);
         let Some(outcome) = probes.test(self.evaluator, &(self.select)(numbers), before) else {
             return false;
         };
