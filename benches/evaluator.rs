@@ -97,7 +97,7 @@ fn main() {
                 time(|| render::<f32>(&program, UndefinedPolicy::Observed, ())),
                 time(|| render::<f64>(&program, UndefinedPolicy::Plain, ())),
                 time(|| render::<f64>(&program, UndefinedPolicy::Observed, ())),
-                time(|| render::<RandomRounding>(&program, UndefinedPolicy::Plain, Seed(1))),
+                time(|| render::<RandomRounding>(&program, UndefinedPolicy::Plain, Seed::double(1))),
             ];
             // The first round warms up.
             if round > 0 {

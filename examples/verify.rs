@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let case = Case {
         checked: &checked,
         lints: &lints,
-        expected: Some(&Expected::new(scene, &frame)),
+        expected: Some(&Expected::of_scene(scene, &frame)),
         hypotheses: None,
         search: None,
         frame: &frame,

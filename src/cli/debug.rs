@@ -11,8 +11,9 @@ use toyproof_scene::{FrameTime, Scene};
 use toyproof_tracer::Tracer;
 use toyproof_verify::debug;
 
-use super::check::References;
+use super::check::Scenes;
 use super::inputs::{Format, FrameArgs, LanguageArgs, parse_time_limit};
+use super::reference::{GivenReference, ReferenceArgs};
 use super::run::not_evaluated;
 use super::shader::{Shader, Unusable, find};
 use super::{Exit, Terminal};
@@ -26,16 +27,16 @@ use crate::report;
 #[command(after_long_help = "\
 Examples:
   toyproof debug mine.glsl --pixel 320,180
-  toyproof debug mine.glsl --pixel 320,180 --scene 03-shading -v")]
+  toyproof debug mine.glsl --pixel 320,180 --scene 03-shading -v
+  toyproof debug mine.glsl --pixel 320,180 --reference solution.glsl")]
 pub(super) struct Args {
     /// The shader: a file, or - for standard input
     shader: PathBuf,
     /// The pixel: x from the left, y from the bottom, starting at 0
     #[arg(long, value_name = "X,Y", value_parser = parse_pixel, allow_hyphen_values = true)]
     pixel: [u32; 2],
-    /// The scene of the expected color, which also sets the size [default: the .toml file beside the shader]
-    #[arg(long, value_name = "SCENE")]
-    scene: Option<PathBuf>,
+    #[command(flatten)]
+    reference: ReferenceArgs,
     /// The format of standard output: `human` shows what each line stores and decides (-v: every
     /// subexpression), `json` everything
     #[arg(long, value_enum, default_value_t = Format::Human, help_heading = "Output", hide_possible_values = true)]
@@ -58,7 +59,10 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         ));
         return Exit::Error;
     };
-    let (frame, scene) = match frame_and_scene(args, input) {
+    let Ok(given) = GivenReference::read(&args.reference, &args.language, args.timeout, terminal) else {
+        return Exit::Error;
+    };
+    let (frame, scene) = match frame_and_scene(args, input, given.as_ref()) {
         Ok(found) => found,
         Err(error) => {
             terminal.error(error);
@@ -68,7 +72,10 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let shader = Shader::load(input, &args.language, Deadline::after(args.timeout));
     terminal.diagnostics(&shader.lints.warnings, &shader.files);
     match &shader.checked {
-        Ok(checked) => print_trace(args, (&shader, checked), (&frame, scene), terminal),
+        Ok(checked) => {
+            let reference = Reference { scene, given };
+            print_trace(args, (&shader, checked), &frame, reference, terminal).unwrap_or_else(|exit| exit)
+        }
         Err(Unusable::Invalid(diagnostics)) => {
             terminal.diagnostics(diagnostics, &shader.files);
             Exit::ShaderFault
@@ -80,14 +87,31 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     }
 }
 
-/// The frame, in the size that the arguments give, else that of the scene; and the scene, if there is one.
-fn frame_and_scene(args: &Args, input: &Result<Input, ReadError>) -> Result<(Frame, Option<Scene>), String> {
+/// What the expected color comes from.
+struct Reference {
+    scene: Option<Scene>,
+    given: Option<GivenReference>,
+}
+
+/// The frame, in the size that the arguments give, else that of the reference image or of the scene; and the
+/// scene, if there is one.
+fn frame_and_scene(
+    args: &Args,
+    input: &Result<Input, ReadError>,
+    given: Option<&GivenReference>,
+) -> Result<(Frame, Option<Scene>), String> {
     let mut frame = args.frame.frame()?;
-    let reference = input
-        .as_ref()
-        .ok()
-        .and_then(|found| References::new(args.scene.as_deref()).find(found));
-    let scene: Option<Scene> = reference.and_then(|reference| reference.scene.ok());
+    let scene = match given {
+        Some(given) => {
+            given.resize(&mut frame, args.frame.size)?;
+            None
+        }
+        None => {
+            let scenes = Scenes::new(args.reference.scene.as_deref());
+            let found = input.as_ref().ok().and_then(|found| scenes.find(found));
+            found.and_then(|found| found.scene.ok())
+        }
+    };
     if let (None, Some(scene)) = (args.frame.size, &scene) {
         frame.size = scene.film.size;
     }
@@ -112,12 +136,49 @@ fn expected_color(mut scene: Scene, frame: &Frame, [x, y]: [u32; 2]) -> [f64; 3]
     Tracer::<f64>::at(&scene, time).pixel(x, y)
 }
 
+/// Prints the trace of the pixel, beside that of a reference shader.
 fn print_trace(
     args: &Args,
-    (shader, checked): (&Shader, &Checked),
-    (frame, scene): (&Frame, Option<Scene>),
+    shader: (&Shader, &Checked),
+    frame: &Frame,
+    reference: Reference,
     terminal: &Terminal,
-) -> Exit {
+) -> Result<Exit, Exit> {
+    let Reference { scene, given } = reference;
+    let [x, y] = args.pixel;
+    let mut expected = scene.map(|scene| expected_color(scene, frame, args.pixel));
+    if let Some(image) = given.as_ref().and_then(GivenReference::image) {
+        let [r, g, b, _] = image.get(x, y);
+        expected = Some([r, g, b].map(f64::from));
+    }
+    let reference = match given.as_ref().and_then(GivenReference::shader) {
+        None => None,
+        Some(shader) => {
+            // Its fault is not that of the shader that is traced.
+            let (trace, color) = traced(args, shader, frame, None, terminal).map_err(|_| Exit::Error)?;
+            expected = color;
+            Some(trace)
+        }
+    };
+    let (trace, _) = traced(args, shader, frame, expected, terminal)?;
+    let trace = trace.beside(reference);
+    match args.format {
+        Format::Json if !terminal.bytes(trace.json().as_bytes()) => return Err(Exit::Error),
+        Format::Json => {}
+        Format::Human => terminal.result(&trace.human(terminal.is_verbose())),
+    }
+    Ok(Exit::Success)
+}
+
+/// The trace of the pixel in one shader, and its color in f64, unless it is discarded; prints why there is
+/// none.
+fn traced(
+    args: &Args,
+    (shader, checked): (&Shader, &Checked),
+    frame: &Frame,
+    expected: Option<[f64; 3]>,
+    terminal: &Terminal,
+) -> Result<(report::PixelTrace, Option<[f64; 3]>), Exit> {
     let spinner = terminal.spinner(&shader.name);
     let deadline = Instant::now() + args.timeout;
     let program = Program::within(checked, args.timeout).map_err(Failure::from);
@@ -126,25 +187,16 @@ fn print_trace(
         Err(failure) => Err(failure.clone()),
     };
     spinner.finish_and_clear();
-    let traced = match traced {
-        Ok(traced) => traced,
-        Err(failure) => return not_evaluated(&failure, shader, terminal),
-    };
+    let traced = traced.map_err(|failure| not_evaluated(&failure, shader, terminal))?;
     let subject = report::TracedPixel {
         shader: &shader.name,
         files: &shader.files,
         tree: &checked.tree,
         pixel: args.pixel,
         size: frame.size,
-        expected: scene.map(|scene| expected_color(scene, frame, args.pixel)),
+        expected,
     };
-    let trace = report::PixelTrace::new(&subject, &traced);
-    match args.format {
-        Format::Json if !terminal.bytes(trace.json().as_bytes()) => return Exit::Error,
-        Format::Json => {}
-        Format::Human => terminal.result(&trace.human(terminal.is_verbose())),
-    }
-    Exit::Success
+    Ok((report::PixelTrace::new(&subject, &traced), traced.double))
 }
 
 fn parse_pixel(text: &str) -> Result<[u32; 2], String> {

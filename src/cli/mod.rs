@@ -12,6 +12,7 @@ mod inputs;
 mod names;
 mod new;
 mod pool;
+mod reference;
 mod render;
 mod run;
 mod scenes;

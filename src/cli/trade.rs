@@ -12,7 +12,7 @@ use toyproof_lab::trade::{self, Report, Subject};
 use toyproof_lint::Lints;
 use toyproof_scene::{Scene, export};
 
-use super::check::References;
+use super::check::Scenes;
 use super::inputs::{FrameArgs, LanguageArgs, parse_adapter, parse_time_limit, worker};
 use super::render::load_scene;
 use super::shader::{Shader, Unusable, find};
@@ -175,7 +175,7 @@ fn shader_for_scene(path: &Path, scene: Option<&Scene>, args: &Args, deadline: &
 fn scene_for_shader(path: &Path) -> Option<Scene> {
     let found = files::find(path).inputs;
     let found = found.first()?.as_ref().ok()?;
-    References::new(None).find(found)?.scene.ok()
+    Scenes::new(None).find(found)?.scene.ok()
 }
 
 /// Creates a worker for each device that `--on` selects.

@@ -330,29 +330,53 @@ define_number! {
     log2: libm::log2, native::log2;
 }
 
-/// An f64 whose every inexact result is moved by −1, 0 or +1 units in the last place.
+/// An f64 whose every inexact result is moved by −1, 0 or +1 units in the last place, of f64 or of f32.
 ///
 /// This is the random rounding of CADNA (Vignes, “Discrete Stochastic Arithmetic”, Numerical Algorithms 37,
 /// 2004) and Verrou. Exact results stay exact, or float loop counters would miscount.
 #[derive(Debug, Clone, Copy, Default, PartialEq, PartialOrd)]
 pub struct RandomRounding(pub f64);
 
+/// The number of bits that the significand of f64 has more than that of f32.
+const EXTRA_BITS: u32 = f64::MANTISSA_DIGITS - f32::MANTISSA_DIGITS;
+
 /// The seed of a perturbation: the same seed gives the same image.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Seed(pub u64);
+pub struct Seed {
+    number: u64,
+    /// The unit by which results are moved, as a power of two of f64's unit in the last place.
+    unit: u32,
+}
 
 impl Seed {
+    /// A perturbation by units in the last place of f64.
+    #[must_use]
+    pub fn double(number: u64) -> Self {
+        Self { number, unit: 0 }
+    }
+
+    /// A perturbation by units in the last place of f32: what rounding to f32 may change (Parker, “Monte Carlo
+    /// Arithmetic”, 1997, calls it a virtual precision).
+    #[must_use]
+    pub fn single(number: u64) -> Self {
+        Self {
+            number,
+            unit: EXTRA_BITS,
+        }
+    }
+
     #[inline(always)]
     fn round_randomly_unless(self, value: f64, exact: bool) -> RandomRounding {
         let bits = value.to_bits();
         // Two iterations of xor-folding and 32×32-bit multiplication, which vectorize.
-        let seed = self.0.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32;
+        let seed = self.number.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32;
         let mut hash = low(bits ^ bits >> 32 ^ seed) * 0x9e37_79b9;
         hash = low(hash ^ hash >> 32) * 0x85eb_ca6b;
         // −1, 0 and +1 with equal probability: the third of the 32-bit range that the hash lies in. The upper
         // half of a product is not uniform by itself: it never exceeds the factor.
         let third = (low(hash ^ hash >> 32) * 3) >> 32;
-        let moved = f64::from_bits(bits.wrapping_add(third).wrapping_sub(1));
+        let step = third.wrapping_sub(1) << self.unit;
+        let moved = f64::from_bits(bits.wrapping_add(step));
         let size = value.abs();
         let unchanged = exact || !(size > f64::MIN_POSITIVE && size < f64::MAX);
         RandomRounding(if unchanged { value } else { moved })
@@ -383,13 +407,21 @@ mod tests {
         let [third, three] = [1.0 / 3.0, 3.0].map(RandomRounding);
         let mut seen = [0; 3];
         for seed in 0..3_000 {
-            let moved = Number::add(third, RandomRounding(0.7), Seed(seed)).0;
+            let moved = Number::add(third, RandomRounding(0.7), Seed::double(seed)).0;
             let step = moved.to_bits() as i64 - (1.0f64 / 3.0 + 0.7).to_bits() as i64;
             seen[(step + 1) as usize] += 1;
-            assert_eq!(Number::add(three, three, Seed(seed)).0, 6.0);
-            assert_eq!(Number::div(RandomRounding(6.0), three, Seed(seed)).0, 2.0);
-            assert_eq!(Number::sqrt(RandomRounding(9.0), Seed(seed)).0, 3.0);
+            assert_eq!(Number::add(three, three, Seed::double(seed)).0, 6.0);
+            assert_eq!(Number::div(RandomRounding(6.0), three, Seed::double(seed)).0, 2.0);
+            assert_eq!(Number::sqrt(RandomRounding(9.0), Seed::double(seed)).0, 3.0);
         }
         assert!(seen.iter().all(|&count| count > 800), "{seen:?}");
+    }
+
+    #[test]
+    fn random_rounding_in_single_precision_moves_results_by_an_ulp_of_f32() {
+        let (third, sum) = (RandomRounding(1.0 / 3.0), 1.0f64 / 3.0 + 0.7);
+        let moved = (0..100).map(|seed| Number::add(third, RandomRounding(0.7), Seed::single(seed)).0 - sum);
+        let largest = moved.fold(0.0, |largest: f64, moved| largest.max(moved.abs()));
+        assert_eq!(largest, f64::from(f32::EPSILON));
     }
 }

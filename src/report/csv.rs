@@ -5,9 +5,10 @@ use toyproof_verify::compare::CheckSummary;
 
 use super::{Mark, Record, Repair, Rubric};
 
-const COLUMNS: [&str; 23] = [
+const COLUMNS: [&str; 24] = [
     "shader",
     "scene",
+    "reference",
     "verdict",
     "reason",
     "mistake",
@@ -70,6 +71,7 @@ fn row(record: &Record, rubric: Option<&Rubric>) -> [String; COLUMNS.len()] {
     [
         escape_formula(&record.shader),
         escape_formula(record.scene.as_deref().unwrap_or_default()),
+        escape_formula(record.reference.as_deref().unwrap_or_default()),
         record.verdict.to_string(),
         escape_formula(&record.reason),
         cell(record.mistake.as_ref().map(|mistake| &mistake.id)),
@@ -122,11 +124,11 @@ mod tests {
         assert_eq!(lines.next().unwrap().split(',').collect::<Vec<_>>(), COLUMNS);
         assert_eq!(
             lines.next().unwrap(),
-            "correct,scene.toml,correct,it is correct,,,,,,1000,0,0,0,0.25,0,0.25,0,0.25,,,0,0,1.500"
+            "correct,scene.toml,,correct,it is correct,,,,,,1000,0,0,0,0.25,0,0.25,0,0.25,,,0,0,1.500"
         );
         assert_eq!(
             lines.next().unwrap(),
-            "\"'=cmd|'/c calc'!A1,\"\"x\"\"\n.glsl\",scene.toml,invalid,it is invalid,,,,,,,,,,,,,,,,,1,0,1.500"
+            "\"'=cmd|'/c calc'!A1,\"\"x\"\"\n.glsl\",scene.toml,,invalid,it is invalid,,,,,,,,,,,,,,,,,1,0,1.500"
         );
         assert_eq!(lines.collect::<Vec<_>>(), [""]);
     }

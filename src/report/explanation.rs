@@ -33,7 +33,7 @@ pub(super) const TERMS: [(&str, &str, &str); 20] = [
     (
         "ok",
         "ok",
-        "The shader renders. There is no scene to compare its image with.",
+        "The shader renders. There is no reference to compare its image with.",
     ),
     (
         "wrong",
@@ -66,7 +66,8 @@ pub(super) const TERMS: [(&str, &str, &str); 20] = [
     (
         "reference",
         "reference",
-        "The expected image: the scene, rendered by toyproof's ray tracer.",
+        "The expected image: the scene, rendered by toyproof's ray tracer; the reference shader, evaluated in double \
+         precision; or the reference image.",
     ),
     (
         "algorithm",

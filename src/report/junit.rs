@@ -34,7 +34,7 @@ fn test_case(record: &Record) -> TestCase {
     let passed = status.is_none();
     let name = xml_text(&record.shader);
     let mut case = TestCase::new(name, status.unwrap_or_else(TestCaseStatus::success));
-    case.set_classname(xml_text(record.scene.as_deref().unwrap_or("no scene")))
+    case.set_classname(xml_text(record.compared_with().unwrap_or("no reference")))
         .set_time(time(record));
     if passed {
         case.set_system_out(details);

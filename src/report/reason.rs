@@ -4,7 +4,7 @@ use toyproof_diagnostic::{Diagnostic, Files, Severity, grouped, plural, printabl
 use toyproof_eval as eval;
 use toyproof_gpu as gpu;
 use toyproof_scene::Sampler;
-use toyproof_verify::{Failure, Findings, MAX_DIFFERING, Means, Reason, Share, Verdict};
+use toyproof_verify::{Failure, Findings, MAX_DIFFERING, Means, Reason, ReferenceKind, Share, Verdict};
 
 use super::Mistake;
 
@@ -60,7 +60,13 @@ pub fn state(findings: &Findings, files: &Files) -> Statement {
     {
         statement
             .details
-            .push("no pixel agrees: is this the right scene?".to_owned());
+            .push("no pixel agrees: is this the right reference?".to_owned());
+    }
+    if findings.reference_kind == Some(ReferenceKind::Image) {
+        statement.details.push(
+            "only the image was compared: it does not show where rounding decides the reference's colors"
+                .to_owned(),
+        );
     }
     if let (Verdict::Unstable, Some(cause)) = (findings.verdict, findings.cause) {
         let at = files.position(cause);
@@ -101,7 +107,7 @@ pub(super) fn state_reason(reason: &Reason, files: &Files) -> Statement {
             percentage(*differing)
         ))
         .detail("naga, the driver or toyproof is at fault, not the shader"),
-        Reason::NoReference => Statement::new("the shader renders; there is no scene to compare it with"),
+        Reason::NoReference => Statement::new("the shader renders; there is no reference to compare it with"),
         Reason::AlgorithmDiffers(share) => Statement::new(differing(*share)),
         Reason::SelfIntersection(share) => Statement::new(format!(
             "{} {} on rounding errors {}",
@@ -116,6 +122,13 @@ pub(super) fn state_reason(reason: &Reason, files: &Files) -> Statement {
             percentage(*share)
         ))
         .detail("these pixels cannot be compared, and the others are too few for a verdict"),
+        Reason::ReferenceIllConditioned(share) => Statement::new(format!(
+            "{} {} ill-conditioned in the reference {}",
+            pixels(*share),
+            plural(share.count, "is", "are"),
+            percentage(*share)
+        ))
+        .detail("a change of 1 ULP changes the reference's own color there, so nothing can be compared"),
         Reason::IllConditioned(share) => Statement::new(format!(
             "{} {} ill-conditioned {}",
             pixels(*share),
@@ -160,7 +173,8 @@ fn agrees(differing: Share, excluded: u64, tied: u64) -> Statement {
     match tied {
         0 => statement,
         tied => statement.detail(format!(
-            "in {} {}, an edge of the scene passes exactly through the sample point",
+            "in {} {}, rounding decides the color of the reference itself, as where an edge passes exactly through the \
+             sample point",
             grouped(tied),
             plural(tied, "pixel", "pixels")
         )),
@@ -245,7 +259,9 @@ fn without_image(failure: &Failure, files: &Files) -> String {
         }
         Failure::LoopTruncated(pixels) => loop_truncated(*pixels),
         Failure::Cpu(failure) => format!("{failure}{}", failure_position(failure, files)),
-        Failure::Unreadable(_) | Failure::Gpu(_) | Failure::Panic(_) => failure.to_string(),
+        Failure::Unreadable(_) | Failure::Reference(_) | Failure::Gpu(_) | Failure::Panic(_) => {
+            failure.to_string()
+        }
     }
 }
 

@@ -66,8 +66,11 @@ impl Report {
 pub struct Record {
     /// Its name, as the user gave it.
     pub shader: String,
-    /// The scene's name, if there is one.
+    /// The name of the scene, if it was compared with one.
     pub scene: Option<String>,
+    /// The file name of the shader or image that it was compared with instead.
+    #[serde(default)]
+    pub reference: Option<String>,
     /// The verdict.
     pub verdict: Verdict,
     /// Why, in one short sentence.
@@ -78,7 +81,7 @@ pub struct Record {
     /// The command that shows more; null if there is nothing to show.
     #[serde(default)]
     pub help: Option<String>,
-    /// The shader in f64 against the scene; null without a scene.
+    /// The shader in f64 against the reference; null without one.
     pub algorithm: Option<CheckSummary>,
     /// The shader in f32 against the shader in f64.
     pub precision: Option<CheckSummary>,
@@ -115,6 +118,7 @@ impl Record {
         Self {
             shader,
             scene: None,
+            reference: None,
             verdict: Verdict::Error,
             reason: String::new(),
             details: Vec::new(),
@@ -181,6 +185,11 @@ impl Record {
             self.cause = Some(files.position(at.span).into());
         }
         self.set_statement(state_reason(&because, files));
+    }
+
+    /// What it was compared with: the name of the scene, or of the reference.
+    pub(super) fn compared_with(&self) -> Option<&str> {
+        self.scene.as_deref().or(self.reference.as_deref())
     }
 
     fn set_statement(&mut self, statement: Statement) {
@@ -284,7 +293,7 @@ pub struct Seconds {
     pub gpu: Option<f64>,
     /// The evaluator: compile, and render every image in f32 and f64.
     pub eval: Option<f64>,
-    /// The reference tracer.
+    /// The reference: tracing a scene, or evaluating a shader.
     pub trace: Option<f64>,
 }
 

@@ -16,7 +16,7 @@ pub struct PixelTrace {
     /// From the left and from the bottom, in pixels.
     pixel: [u32; 2],
     size: [u32; 2],
-    /// The color of the scene; null without a scene.
+    /// The color of the reference; null without one.
     expected: Option<[Component; 3]>,
     /// The final colors; null if the pixel is discarded.
     f32: Option<[Component; 3]>,
@@ -31,6 +31,8 @@ pub struct PixelTrace {
     /// Whether the last steps are missing because there were too many.
     cut: bool,
     steps: Vec<TraceStep>,
+    /// The trace of the reference shader in the same pixel; null without one.
+    reference: Option<Box<PixelTrace>>,
 }
 
 /// One step.
@@ -79,7 +81,7 @@ pub struct TracedPixel<'a> {
     pub pixel: [u32; 2],
     /// The size of the frame in pixels.
     pub size: [u32; 2],
-    /// The color of the reference; none without a scene.
+    /// The color of the reference; none without one.
     pub expected: Option<[f64; 3]>,
 }
 
@@ -106,6 +108,16 @@ impl PixelTrace {
             not_finite_at: explanation.not_finite,
             cut: explanation.is_cut,
             steps: lines.collect(),
+            reference: None,
+        }
+    }
+
+    /// Adds the trace of the reference shader in the same pixel.
+    #[must_use]
+    pub fn beside(self, reference: Option<Self>) -> Self {
+        Self {
+            reference: reference.map(Box::new),
+            ..self
         }
     }
 
@@ -333,6 +345,10 @@ impl PixelTrace {
             writer
                 .text
                 .push_str("  … the remaining steps were not recorded: the trace is too long\n");
+        }
+        if let Some(reference) = &self.reference {
+            writer.text.push_str("\nreference: ");
+            writer.text.push_str(&reference.human(whole));
         }
         writer.text
     }

@@ -9,14 +9,12 @@ use toyproof_eval::{
     Failure, Fault, Number, Observations, Observed, Program, RandomRounding, RenderedF32, Seed, Settings,
     Substitute, UndefinedPolicy,
 };
-use toyproof_image::Image;
-
-use super::{Case, EVALUATOR_TIME_FACTOR};
+use toyproof_image::{Frame, Image};
 
 /// Renders a shader band by band.
 pub(super) struct Evaluator<'a> {
     program: &'a Program,
-    case: &'a Case<'a>,
+    frame: &'a Frame,
     /// Set when the images are no longer needed.
     stop: &'a AtomicBool,
     /// The deadline of all images.
@@ -44,33 +42,34 @@ pub(super) struct Band {
     pub(super) observed: Observations,
 }
 
-/// An image in f32, with its undefined pixels and observations.
-pub(super) struct Single {
+/// An image in one number type, with its undefined pixels and observations.
+pub(super) struct Evaluated {
+    /// Rounded to f32.
     pub(super) image: Image,
     /// Pixels whose color depends on undefined behavior.
     pub(super) undefined: Vec<bool>,
-    /// Observations in f32.
     pub(super) observed: Observations,
 }
 
 impl<'a> Evaluator<'a> {
-    /// Creates an evaluator with the time limit `each` for an image and a deadline for all.
+    /// Creates an evaluator with the time limits `each` for an image and `perturbed` for all perturbed ones, and
+    /// a deadline for all.
     pub(super) fn new(
         program: &'a Program,
-        case: &'a Case<'a>,
-        each: Duration,
+        frame: &'a Frame,
+        [each, perturbed]: [Duration; 2],
         deadline: Instant,
         stop: &'a AtomicBool,
     ) -> Self {
         let pair = || [TimeBudget::new(each), TimeBudget::new(each)];
         Self {
             program,
-            case,
+            frame,
             stop,
             deadline,
             single: pair(),
             double: pair(),
-            perturbed: TimeBudget::new(case.timeout * EVALUATOR_TIME_FACTOR),
+            perturbed: TimeBudget::new(perturbed),
         }
     }
 
@@ -79,10 +78,23 @@ impl<'a> Evaluator<'a> {
     }
 
     /// Renders some rows in f32 alone.
-    pub(super) fn single(&self, rows: &Range<u32>) -> Result<Single, Failure> {
-        let rendered = self.render_as::<f32>(rows, UndefinedPolicy::Observed, &self.single[0])?;
-        let undefined = self.undefined_pixels::<f32>(rows, &rendered, &self.single[1]);
-        Ok(Single {
+    pub(super) fn single(&self, rows: &Range<u32>) -> Result<Evaluated, Failure> {
+        self.evaluate::<f32>(rows, &self.single)
+    }
+
+    /// Renders some rows in f64 alone.
+    pub(super) fn double(&self, rows: &Range<u32>) -> Result<Evaluated, Failure> {
+        self.evaluate::<f64>(rows, &self.double)
+    }
+
+    fn evaluate<N: Number>(
+        &self,
+        rows: &Range<u32>,
+        [budget, substituted]: &[TimeBudget; 2],
+    ) -> Result<Evaluated, Failure> {
+        let rendered = self.render_as::<N>(rows, UndefinedPolicy::Observed, budget)?;
+        let undefined = self.undefined_pixels::<N>(rows, &rendered, substituted);
+        Ok(Evaluated {
             image: rendered.image,
             undefined,
             observed: rendered.observations,
@@ -99,9 +111,8 @@ impl<'a> Evaluator<'a> {
         let single = self.render_as::<f32>(rows, UndefinedPolicy::Observed, &self.single[0])?;
         report_iterations(single.observations.max_iterations);
         let mut undefined = self.undefined_pixels::<f32>(rows, &single, &self.single[1]);
-        let double = self.render_as::<f64>(rows, UndefinedPolicy::Observed, &self.double[0])?;
-        let undefined_in_double = self.undefined_pixels::<f64>(rows, &double, &self.double[1]);
-        for (undefined, undefined_in_double) in undefined.iter_mut().zip(undefined_in_double) {
+        let double = self.double(rows)?;
+        for (undefined, undefined_in_double) in undefined.iter_mut().zip(double.undefined) {
             *undefined |= undefined_in_double;
         }
         Ok(Band {
@@ -112,18 +123,18 @@ impl<'a> Evaluator<'a> {
         })
     }
 
-    /// Renders some rows in f64 with every operation perturbed by a unit in the last place or not at all, at
-    /// least in the `wanted` pixels; none if the time limit is exceeded.
-    pub(super) fn perturbed(&self, rows: &Range<u32>, seed: u64, wanted: &[bool]) -> Option<Image> {
+    /// Renders some rows in f64 with every operation perturbed by a unit of the seed or not at all, at least in
+    /// the `wanted` pixels; none if the time limit is exceeded.
+    pub(super) fn perturbed(&self, rows: &Range<u32>, seed: Seed, wanted: &[bool]) -> Option<Image> {
         self.perturbed.spend(self.deadline, |deadline| {
             let settings = Settings::<RandomRounding> {
                 undefined: UndefinedPolicy::Plain,
-                noise: Seed(seed),
+                noise: seed,
                 deadline: Some(deadline),
                 wanted: Some(wanted),
                 ..Settings::default()
             };
-            let rendered = self.program.render_rows(self.case.frame, rows.clone(), &settings);
+            let rendered = self.program.render_rows(self.frame, rows.clone(), &settings);
             rendered.ok().map(|rendered| rendered.image)
         })
     }
@@ -178,7 +189,7 @@ impl<'a> Evaluator<'a> {
                 interrupt: Some(self.stop),
                 ..Settings::default()
             };
-            self.program.render_rows(self.case.frame, rows.clone(), &settings)
+            self.program.render_rows(self.frame, rows.clone(), &settings)
         })
     }
 }

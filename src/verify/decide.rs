@@ -29,7 +29,7 @@ pub enum Verdict {
     Inconclusive,
     /// Its image agrees with the reference.
     Correct,
-    /// It renders, and there is no scene to compare with.
+    /// It renders, and there is no reference to compare with.
     Ok,
 }
 
@@ -66,8 +66,8 @@ pub const MAX_DIFFERING: f64 = 0.001;
 /// it.
 pub const MAX_UNSTABLE: f64 = 0.003;
 
-/// The largest share of undefined pixels for which there is a verdict: a check that excludes everything
-/// proves nothing.
+/// The largest share of undefined pixels, and of pixels that are ill-conditioned in the reference, for which
+/// there is a verdict: a check that excludes everything proves nothing.
 pub const MAX_UNDEFINED: f64 = 0.05;
 
 /// The ratio of variances above which the noise of a stochastic shader is reported.
@@ -106,7 +106,7 @@ impl From<CheckEvidence> for Evidence {
 /// The results of the three checks; none for a check that was not run.
 #[derive(Debug, Clone, Default)]
 pub struct Checks {
-    /// The shader in f64 against the tracer in f64.
+    /// The shader in f64 against the reference in f64.
     pub algorithm: Option<CheckSummary>,
     /// The image in f32 against the shader in f64.
     pub precision: Option<CheckSummary>,
@@ -214,6 +214,8 @@ pub enum Reason {
     SelfIntersection(Share),
     /// These pixels depend on undefined behavior: `inconclusive`.
     Undefined(Share),
+    /// In these pixels, rounding decides the color of the reference: `inconclusive`.
+    ReferenceIllConditioned(Share),
     /// These pixels are ill-conditioned in double precision: `unstable`.
     IllConditioned(Share),
     /// These pixels differ visibly between float32 and double precision: `unstable`.
@@ -224,7 +226,8 @@ pub enum Reason {
         differing: Share,
         /// The number of pixels that are ill-conditioned or depend on undefined behavior.
         excluded: u64,
-        /// The number of pixels through whose sample an edge of the scene itself passes.
+        /// The number of pixels in which rounding decides the color of the reference itself, such as where an
+        /// edge of a scene passes through the sample.
         tied: u64,
     },
     /// The shader differs from its scene only by its random numbers.
@@ -336,6 +339,7 @@ fn without_image(failure: &Failure) -> Verdict {
         | Failure::LoopTruncated(_) => Verdict::Timeout,
         Failure::Unreadable(_)
         | Failure::InvalidScene(_)
+        | Failure::Reference(_)
         | Failure::Gpu(_)
         | Failure::Cpu(Refused(_) | Interrupted)
         | Failure::Panic(_) => Verdict::Error,
@@ -365,6 +369,10 @@ fn by_checks(checks: &Checks) -> (Verdict, Reason) {
     let undefined = Share::of(algorithm, algorithm.undefined);
     if undefined.ratio() > MAX_UNDEFINED {
         return (Verdict::Inconclusive, Reason::Undefined(undefined));
+    }
+    let tied = Share::of(algorithm, algorithm.tied);
+    if tied.ratio() > MAX_UNDEFINED {
+        return (Verdict::Inconclusive, Reason::ReferenceIllConditioned(tied));
     }
     let ill_conditioned = Share::of(algorithm, algorithm.ill_conditioned - algorithm.tied);
     if ill_conditioned.ratio() > MAX_UNSTABLE {
@@ -552,7 +560,10 @@ mod tests {
     fn edges_of_the_scene_do_not_count_against_the_shader() {
         let mut checks = checks([0, 500, 0], 0, SAME);
         checks.algorithm.as_mut().unwrap().tied = 470;
-        assert_eq!(verdict(checks), Verdict::Correct);
+        assert_eq!(verdict(checks.clone()), Verdict::Correct);
+        let algorithm = checks.algorithm.as_mut().unwrap();
+        (algorithm.ill_conditioned, algorithm.tied) = (501, 501);
+        assert_eq!(verdict(checks), Verdict::Inconclusive, "too few pixels are left");
     }
 
     #[test]

@@ -14,7 +14,7 @@ use crate::mistake::Diagnosis;
 use crate::repair::{self, NoisyImage, SearchResult};
 use crate::reseed::Reseeding;
 use crate::stochastic::SampledRows;
-use crate::{Case, acne, notes};
+use crate::{Case, Expected, ReferenceKind, acne, notes};
 
 /// The largest number of pairs of mistakes that are searched for in a wrong image: a few seconds' work.
 const MAX_PAIRS: usize = 512;
@@ -32,7 +32,7 @@ pub struct Findings {
     pub verdict: Verdict,
     /// Why.
     pub reason: Reason,
-    /// The algorithm check; none without a scene.
+    /// The algorithm check; none without a reference.
     pub algorithm: Option<CheckResult>,
     /// The precision check.
     pub precision: Option<CheckResult>,
@@ -40,8 +40,10 @@ pub struct Findings {
     pub toolchain: Option<CheckResult>,
     /// The comparison of the shader's image with the reference.
     pub comparison: Option<(Comparison, Vec<DiffLevel>)>,
-    /// The tracer's image.
+    /// The reference's image.
     pub reference: Option<Rgb8Image>,
+    /// What the reference is; none without one.
+    pub reference_kind: Option<ReferenceKind>,
     /// The GPU's image, or the evaluator's in f32 without a GPU.
     pub actual: Rgb8Image,
     /// The GPU and its times; none if the evaluator rendered the image.
@@ -61,7 +63,7 @@ pub struct Findings {
     pub panics: Vec<Panic>,
     /// The evaluator's time for all its images.
     pub eval: Duration,
-    /// The tracer's time; nearly 0 where the reference was cached.
+    /// The time of rendering the reference; nearly 0 where it was cached.
     pub trace: Option<Duration>,
 }
 
@@ -147,11 +149,10 @@ impl Findings {
             reseeding = self.compare_means(&mut evidence, sampled_rows, case, program, deadline);
         }
         if self.is_unexplained()
-            && let Some(expected) = case.expected
+            && let Some(tracer) = case.expected.and_then(Expected::tracer)
         {
             let (algorithm, precision) = (self.algorithm.as_ref(), self.precision.as_ref());
-            evidence.self_intersection =
-                acne::detect(expected.tracer(), case.frame.size, algorithm, precision);
+            evidence.self_intersection = acne::detect(tracer, case.frame.size, algorithm, precision);
             if evidence.self_intersection.is_some() {
                 self.decide(evidence.clone().into());
                 self.mistake = Some(Diagnosis::of(acne::mistake()));

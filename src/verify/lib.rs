@@ -50,7 +50,7 @@
 //! let checked = toyproof_glsl::check(&files, shader, &Default::default())?;
 //! let lints = toyproof_lint::lint(&files, &checked, &Deadline::default());
 //! let frame = Frame { size: [16, 9], ..Frame::default() };
-//! let expected = Expected::new(scene, &frame);
+//! let expected = Expected::of_scene(scene, &frame);
 //! let case = Case {
 //!     checked: &checked,
 //!     lints: &lints,
@@ -144,7 +144,10 @@ pub use self::decide::{
     CheckEvidence, Checks, Evidence, MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABLE, MeanComparison, Means,
     OtherRandomNumbers, Reason, Share, Verdict, decide,
 };
-pub use self::expected::Expected;
+pub use self::expected::{
+    DEFAULT_TOLERANCE, Expected, ImageReference, Quantization, ReferenceFindings, ReferenceKind,
+    SceneReference, ShaderReference,
+};
 pub use self::findings::{CheckResult, Findings, GpuRun};
 pub use self::notes::unbound;
 pub use self::on_gpu::{GpuFailure, Worker};
@@ -160,7 +163,7 @@ pub struct Case<'a> {
     pub checked: &'a Checked,
     /// The lints' results for it.
     pub lints: &'a Lints,
-    /// The reference, if there is a scene; its frame and its film's size must be those of `frame`.
+    /// The reference, if there is one; its frame must be `frame`.
     pub expected: Option<&'a Expected>,
     /// The mistakes that are searched for in a wrong image, for that scene and frame.
     pub hypotheses: Option<&'a Hypotheses>,
@@ -189,6 +192,9 @@ pub enum Failure {
     /// The scene is invalid.
     #[error("the scene is invalid")]
     InvalidScene(Vec<Diagnostic>),
+    /// The reference cannot be evaluated.
+    #[error("the reference cannot be evaluated: {0}")]
+    Reference(eval::Failure),
     /// The GPU failed.
     #[error(transparent)]
     Gpu(#[from] GpuFailure),
@@ -239,15 +245,17 @@ pub fn verify(worker: Option<&mut Worker>, case: &Case) -> Result<Findings, Fail
     }
     let stop = AtomicBool::new(false);
     // With a GPU, the time limit applies to the GPU.
-    let limit = case.timeout
-        * if worker.is_some() {
-            EVALUATOR_TIME_FACTOR
-        } else {
-            1
-        };
+    let longest = case.timeout * EVALUATOR_TIME_FACTOR;
+    let limit = if worker.is_some() { longest } else { case.timeout };
     let (counts, iteration_counts) = mpsc::channel();
     let evaluator = match &program {
-        Ok(program) => Ok(Evaluator::new(program, case, limit, deadline, &stop)),
+        Ok(program) => Ok(Evaluator::new(
+            program,
+            case.frame,
+            [limit, longest],
+            deadline,
+            &stop,
+        )),
         Err(refusal) => Err((*refusal).into()),
     };
     let session = VerifySession::new(case, evaluator, deadline, counts);

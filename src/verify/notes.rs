@@ -177,11 +177,15 @@ impl NotFinite {
     }
 
     /// Reports the origin of the first such color; none if all are finite, or if it was not found.
-    pub(super) fn diagnostic(&self, program: &Program, case: &Case, deadline: Instant) -> Option<Diagnostic> {
+    pub(super) fn diagnostic(
+        &self,
+        program: &Program,
+        frame: &Frame,
+        deadline: Instant,
+    ) -> Option<Diagnostic> {
         let [x, y] = self.first?;
         let count = self.count;
-        let deadline = deadline.min(Instant::now() + case.timeout);
-        let explained = explain(program, case.frame, [x, y], Some(deadline)).ok()?;
+        let explained = explain(program, frame, [x, y], Some(deadline)).ok()?;
         let step = explained.not_finite.map(|at| &explained.steps[at])?;
         let value = step.single.iter().flatten().find_map(|value| match value {
             TraceValue::Float(value) if !value.is_finite() => Some(digits(*value, true)),

@@ -89,13 +89,8 @@ fn without_compiler(
     };
     let stop = AtomicBool::new(false);
     let (counts, _) = mpsc::channel();
-    let evaluator = Evaluator::new(
-        program,
-        case,
-        case.timeout * EVALUATOR_TIME_FACTOR,
-        deadline,
-        &stop,
-    );
+    let limits = [case.timeout * EVALUATOR_TIME_FACTOR; 2];
+    let evaluator = Evaluator::new(program, case.frame, limits, deadline, &stop);
     let mut findings = on_cpu(case, VerifySession::new(case, Ok(evaluator), deadline, counts))?;
     findings.notes.push(notes::slow_compilation(case.timeout));
     Ok(findings)

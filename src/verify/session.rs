@@ -6,18 +6,16 @@ use std::sync::mpsc::{Receiver, Sender};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use rayon::prelude::*;
-use toyproof_eval::{self as eval, Observations};
+use toyproof_eval::{self as eval, Observations, Seed};
 use toyproof_image::{Image, Rgb8Image};
 use toyproof_scene::Scene;
-use toyproof_tracer::{ColorRange, EpsilonFamily, EpsilonSet, RayEpsilons};
 use toyproof_translate::FloatMode;
 
-use crate::compare::{self, Comparison, DiffLevel, Mixed, PixelStatus, Reference};
+use crate::compare::{self, Comparison, DiffLevel, EpsilonColors, Mixed, Reference};
 use crate::contain::{Part, contain};
 use crate::cpu::{Band, Evaluator};
 use crate::decide::{Reason, Verdict};
-use crate::expected::NumberType;
+use crate::expected::{NumberType, ReferenceBand, SceneBand};
 use crate::notes::{self, NotFinite};
 use crate::silhouette_precision::{self, SilhouetteBand};
 use crate::stochastic::SampledRows;
@@ -69,9 +67,10 @@ impl<'a> VerifySession<'a> {
         let empty = || Rgb8Image::empty(width, height);
         let silhouettes = case
             .expected
+            .and_then(Expected::as_scene)
             .filter(|_| !case.lints.discriminants.is_empty())
-            .map(|expected| {
-                let scene = expected.at_moment();
+            .map(|reference| {
+                let scene = reference.at_moment();
                 let candidates = silhouette_precision::candidates(&scene);
                 (scene, candidates, empty())
             });
@@ -93,7 +92,8 @@ impl<'a> VerifySession<'a> {
             silhouettes: silhouettes.filter(|(_, candidates, _)| !candidates.is_empty()),
             sampled_rows: case
                 .expected
-                .and_then(|expected| SampledRows::new(expected.tracer(), case.frame.size)),
+                .and_then(Expected::tracer)
+                .and_then(|tracer| SampledRows::new(tracer, case.frame.size)),
             eval: Duration::ZERO,
             trace: Duration::ZERO,
         }
@@ -106,7 +106,7 @@ impl<'a> VerifySession<'a> {
     /// Returns why there is no image, where no GPU renders one.
     pub(super) fn bands(&mut self, gpu: Option<&Receiver<Image>>) -> Result<(), Failure> {
         for rows in self.case.frame.bands() {
-            let (band, reference) = self.render(&rows);
+            let (band, reference) = self.render(&rows)?;
             let actual = match gpu {
                 None => None,
                 Some(gpu) => match gpu.recv() {
@@ -123,8 +123,8 @@ impl<'a> VerifySession<'a> {
         Ok(())
     }
 
-    /// Renders a band with the evaluator and the tracer in parallel.
-    fn render(&mut self, rows: &Range<u32>) -> (Option<Band>, Option<Arc<Image>>) {
+    /// Renders a band and its reference in parallel.
+    fn render(&mut self, rows: &Range<u32>) -> Result<(Option<Band>, Option<Arc<ReferenceBand>>), Failure> {
         let height = self.case.frame.size[1];
         let counts = |most| {
             let is_last = rows.end == height;
@@ -153,11 +153,11 @@ impl<'a> VerifySession<'a> {
             self.counts = None;
             None
         });
-        let reference = traced.map(|(reference, trace)| {
-            self.trace += trace;
-            reference
-        });
-        (band, reference)
+        let Some((reference, trace)) = traced else {
+            return Ok((band, None));
+        };
+        self.trace += trace;
+        Ok((band, Some(reference.map_err(Failure::Reference)?)))
     }
 
     /// Compares a band; `drawn` is the GPU's.
@@ -165,7 +165,7 @@ impl<'a> VerifySession<'a> {
         &mut self,
         rows: &Range<u32>,
         band: Option<&Band>,
-        reference: Option<&Image>,
+        reference: Option<&ReferenceBand>,
         drawn: Option<&Image>,
     ) {
         let offset = rows.start;
@@ -173,8 +173,8 @@ impl<'a> VerifySession<'a> {
             self.actual.extend(actual);
             self.not_finite.record(actual, offset);
             if let (Some(reference), Some(image)) = (reference, &mut self.reference) {
-                image.extend(reference);
-                let (comparison, levels) = compare::compare(reference, actual);
+                image.extend(&reference.image);
+                let (comparison, levels) = compare::compare(&reference.image, actual);
                 match &mut self.comparison {
                     None => self.comparison = Some((comparison, levels)),
                     Some((whole, all)) => {
@@ -191,16 +191,14 @@ impl<'a> VerifySession<'a> {
         if let Some(reference) = reference {
             self.check_algorithm(rows, band, reference);
             if let Some(sampled_rows) = &mut self.sampled_rows {
-                sampled_rows.record(&band.double, reference, offset);
+                sampled_rows.record(&band.double, &reference.image, offset);
             }
         }
         let mut statuses = compare::precision(&band.double, actual, &band.undefined);
         if let Some(expected) = self.case.expected {
-            exclude_tied(
-                &mut statuses,
-                |x, y| expected.is_tied(x, offset + y, NumberType::Single),
-                actual.size()[0],
-            );
+            compare::exclude_tied(&mut statuses, |wanted| {
+                expected.tied(rows, wanted, NumberType::Single)
+            });
         }
         self.precision.extend(&band.double, actual, &statuses, offset);
         if let (Some(drawn), FloatMode::Strict) = (drawn, self.case.float) {
@@ -215,30 +213,38 @@ impl<'a> VerifySession<'a> {
         self.observed.merge(&band.observed);
     }
 
-    fn check_algorithm(&mut self, rows: &Range<u32>, band: &Band, reference: &Image) {
+    fn check_algorithm(&mut self, rows: &Range<u32>, band: &Band, reference: &ReferenceBand) {
         let (Some(expected), Ok(evaluator)) = (self.case.expected, &self.evaluator) else {
             return;
         };
-        let offset = rows.start;
         let from_row = FromRow {
             expected,
-            offset,
+            rows,
+            scene: expected.as_scene().map(|scene| SceneBand {
+                scene,
+                offset: rows.start,
+            }),
             derives: self.case.checked.takes_derivatives(),
         };
+        let mut undefined = band.undefined.clone();
+        for (own, &reference) in undefined.iter_mut().zip(&reference.undefined) {
+            *own |= reference;
+        }
         let (statuses, perturbing) = timed(|| {
-            let perturbed = |seed, wanted: &[bool]| evaluator.perturbed(rows, seed, wanted);
-            let mixed = &mut self.mixed;
+            let perturbed = |seed, wanted: &[bool]| evaluator.perturbed(rows, Seed::double(seed), wanted);
+            let (expected, actual) = (&reference.image, &band.double);
             compare::algorithm(
-                reference,
-                &band.double,
-                &band.undefined,
+                expected,
+                actual,
+                &undefined,
                 &from_row,
-                mixed,
+                &mut self.mixed,
                 perturbed,
             )
         });
         self.eval += perturbing;
-        self.algorithm.extend(reference, &band.double, &statuses, offset);
+        self.algorithm
+            .extend(&reference.image, &band.double, &statuses, rows.start);
     }
 
     /// Returns the findings; `gpu_run` is the GPU that rendered the image.
@@ -251,6 +257,7 @@ impl<'a> VerifySession<'a> {
             toolchain: None,
             comparison: self.comparison,
             reference: self.reference,
+            reference_kind: self.case.expected.map(Expected::kind),
             actual: self.actual,
             gpu_run,
             notes: Vec::new(),
@@ -273,7 +280,11 @@ impl<'a> VerifySession<'a> {
                 let (not_finite, silhouettes, actual) = (self.not_finite, self.silhouettes, &findings.actual);
                 let notes = contain(Part::Notes, || {
                     let mut notes: Vec<_> = not_finite
-                        .diagnostic(program, case, self.deadline)
+                        .diagnostic(
+                            program,
+                            case.frame,
+                            self.deadline.min(Instant::now() + case.timeout),
+                        )
                         .into_iter()
                         .collect();
                     if let (Some((scene, silhouettes, double)), Some(&at)) =
@@ -294,51 +305,27 @@ impl<'a> VerifySession<'a> {
     }
 }
 
-/// The reference of a band that begins at a row.
+/// The reference of a band.
 struct FromRow<'a> {
     expected: &'a Expected,
-    offset: u32,
+    rows: &'a Range<u32>,
+    /// The band of the scene, if the reference is one.
+    scene: Option<SceneBand<'a>>,
     /// Whether the shader takes derivatives.
     derives: bool,
 }
 
 impl Reference for FromRow<'_> {
-    fn color_range(&self, x: u32, y: u32, epsilons: EpsilonSet) -> ColorRange {
-        self.expected.color_range(x, self.offset + y, epsilons)
+    fn tolerance(&self) -> f64 {
+        self.expected.tolerance()
     }
-    fn families(&self) -> &[EpsilonFamily] {
-        self.expected.families()
-    }
-    fn pixel_with_epsilons(&self, x: u32, y: u32, epsilons: &RayEpsilons) -> [f64; 3] {
-        self.expected.pixel_with_epsilons(x, self.offset + y, epsilons)
-    }
-    fn samples(&self) -> u32 {
-        self.expected.tracer().samples()
+    fn epsilons(&self) -> Option<&dyn EpsilonColors> {
+        self.scene.as_ref().map(|scene| scene as &dyn EpsilonColors)
     }
     fn is_across_edge(&self, x: u32, y: u32) -> bool {
-        self.derives && self.expected.tracer().is_quad_mixed(x, self.offset + y)
+        self.derives && self.scene.as_ref().is_some_and(|scene| scene.is_quad_mixed(x, y))
     }
-    fn is_tied(&self, x: u32, y: u32) -> bool {
-        self.expected.is_tied(x, self.offset + y, NumberType::Double)
+    fn tied(&self, wanted: &[bool]) -> Vec<bool> {
+        self.expected.tied(self.rows, wanted, NumberType::Double)
     }
-}
-
-/// The largest share of a band's pixels that may change with the number type because of the scene's edges; if
-/// more change, edges are not the cause.
-const MAX_TIED: f64 = 0.05;
-
-/// Excludes pixels that change with the number type because the scene has an edge there: no shader can
-/// resolve its side in float32.
-fn exclude_tied(statuses: &mut [PixelStatus], is_tied: impl Fn(u32, u32) -> bool + Sync, width: u32) {
-    let differs = |status: &&PixelStatus| **status == PixelStatus::Differs;
-    let count = statuses.iter().filter(differs).count();
-    if count as f64 > MAX_TIED * statuses.len() as f64 {
-        return;
-    }
-    statuses.par_iter_mut().enumerate().for_each(|(at, status)| {
-        let at = at as u32;
-        if *status == PixelStatus::Differs && is_tied(at % width, at / width) {
-            *status = PixelStatus::Tied;
-        }
-    });
 }

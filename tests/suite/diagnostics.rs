@@ -110,7 +110,7 @@ fn warnings_of(files: &Files, checked: &Checked, scene: Option<&Scene>) -> Vec<D
         channels: [true, true, true, false].map(|bound| bound.then(noise)),
         ..Frame::default()
     };
-    let expected = scene.map(|scene| Expected::new(scene.clone(), &frame));
+    let expected = scene.map(|scene| Expected::of_scene(scene.clone(), &frame));
     let lints = lint(files, checked, &Deadline::default());
     let case = Case {
         checked,

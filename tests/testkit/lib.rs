@@ -274,7 +274,7 @@ fn check_with(
     let case = Case {
         checked: &checked,
         lints: &lints,
-        expected: Some(&Expected::new(scene(exercise), &frame)),
+        expected: Some(&Expected::of_scene(scene(exercise), &frame)),
         hypotheses,
         search,
         frame: &frame,

@@ -116,7 +116,7 @@ fn try_sample(sample: &Sample, budget: f64, names: bool, rates: &mut Rates) {
         ..Frame::default()
     };
     let checked = checked(&sample.shader);
-    let expected = Expected::new(scene.clone(), &frame);
+    let expected = Expected::of_scene(scene.clone(), &frame);
     let hypotheses = names.then(|| Hypotheses::of(&scene, &frame)).flatten();
     let case = Case {
         checked: &checked,

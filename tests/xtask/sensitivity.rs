@@ -164,7 +164,7 @@ impl Subject {
                 &program,
                 &frame,
                 Settings {
-                    noise: Seed(seed),
+                    noise: Seed::double(seed),
                     ..Settings::default()
                 },
             )

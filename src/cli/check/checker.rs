@@ -2,6 +2,7 @@
 
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::SystemTime;
 
@@ -65,8 +66,8 @@ fn build() -> Option<(u64, SystemTime)> {
     Some((file.len(), file.modified().ok()?))
 }
 
-/// Hashes everything that a record depends on: the build of toyproof, the shader, its scene, the flags, and
-/// the contents of the files that the flags name.
+/// Hashes everything that a record depends on: the build of toyproof, the shader, its reference, the flags,
+/// and the contents of the files that the flags name.
 fn key(found: &Input, args: &Args, references: &References) -> Option<String> {
     let mut hash = Sha256::new();
     let mut add = |part: &[u8]| {
@@ -75,10 +76,11 @@ fn key(found: &Input, args: &Args, references: &References) -> Option<String> {
     };
     let settings = (&args.frame, &args.language, &args.driver, args.search);
     add(format!("{:?}", build()?).as_bytes());
-    add(format!("{settings:?} {:?} {}", args.scene, found.name()).as_bytes());
+    let named = (&args.reference.scene, &args.reference.reference);
+    add(format!("{settings:?} {named:?} {}", found.name()).as_bytes());
     add(files::read(found).ok()?.text().as_bytes());
-    if let Some((_, scene)) = references.text(found) {
-        add(scene.ok()?.text().as_bytes());
+    if let Some(content) = references.content(found) {
+        add(&content.ok()?);
     }
     for path in args.frame.files() {
         add(&std::fs::read(path).ok()?);
@@ -237,7 +239,9 @@ impl<'a> Checker<'a> {
         let found = submission.input.as_ref().ok();
         let reference = found.and_then(|found| self.references.find(found));
         let mut outcome = Outcome::known(Record::new(shader.name.clone()));
-        outcome.record.scene = reference.as_ref().map(|reference| reference.name.clone());
+        if let Some(reference) = &reference {
+            reference.record(&mut outcome.record);
+        }
         outcome.report(shader.lints.warnings.clone(), &shader.files);
         let findings = self.verify(context, &mut outcome, &shader, reference.as_ref());
         if let (Some(out), Some(stem)) = (&self.args.out, &submission.output_stem) {
@@ -245,8 +249,8 @@ impl<'a> Checker<'a> {
         }
         match (findings, reference) {
             (Ok(findings), _) => outcome.set_findings(&findings, &shader.files),
-            (Err(failure @ Failure::InvalidScene(_)), Some(reference)) => {
-                outcome.set_failure(failure, &reference.files);
+            (Err(failure @ Failure::InvalidScene(_)), Some(Reference::Scene(scene))) => {
+                outcome.set_failure(failure, &scene.files);
             }
             (Err(failure), _) => outcome.set_failure(failure, &shader.files),
         }
@@ -296,9 +300,7 @@ impl<'a> Checker<'a> {
     /// A command on a shader, with the flags of this run that it takes.
     fn command(&self, name: &str, record: &Record, flag: String) -> String {
         let mut command = vec![format!("toyproof {name}"), shell_word(&record.shader), flag];
-        if let Some(scene) = &self.args.scene {
-            command.push(format!("--scene {}", shell_word(&path_name(scene))));
-        }
+        command.extend(self.args.reference.flags());
         command.extend(self.args.frame.flags());
         command.extend(self.args.language.flags());
         command.join(" ")
@@ -309,18 +311,21 @@ impl<'a> Checker<'a> {
         context: &mut WorkerContext,
         outcome: &mut Outcome,
         shader: &Shader,
-        reference: Option<&Reference>,
+        reference: Option<&Reference<'_>>,
     ) -> Result<Findings, Failure> {
         let checked = shader.checked.as_ref().map_err(|unusable| match unusable {
             Unusable::Unreadable(error) => Failure::Unreadable(error.reason.clone()),
             Unusable::Invalid(diagnostics) => Failure::Invalid(diagnostics.clone()),
         })?;
         let mut frame = self.frame.clone();
-        let scene = match reference {
+        let cached = match reference {
             None => None,
-            Some(reference) => Some(self.sized(reference.scene.clone()?, &mut frame)),
+            Some(Reference::Scene(scene)) => {
+                let scene = self.sized(scene.scene.clone()?, &mut frame);
+                Some(self.scenes.get(scene, &frame))
+            }
+            Some(Reference::Given(given)) => Some(Arc::clone(&given.cached)),
         };
-        let cached = scene.map(|scene| self.scenes.get(scene, &frame));
         let hypotheses = contain(Part::Mistake, || {
             cached.as_ref().and_then(|cached| cached.hypotheses(&frame))
         });

@@ -18,25 +18,28 @@ use toyproof_verify::repair::DEFAULT_BUDGET;
 
 use self::checker::{Checker, Message, Outcome, Submission, WorkerContext};
 use self::images::IMAGES;
-pub(super) use self::reference::References;
+use self::reference::References;
+pub(super) use self::reference::Scenes;
 use self::reports::Results;
 use super::inputs::short_device;
 use super::inputs::{DriverArgs, FrameArgs, LanguageArgs};
 use super::names::Names;
 use super::pool::{self, InOrder};
+use super::reference::ReferenceArgs;
 use super::shader::find;
 use super::{Exit, Terminal};
 use crate::report::{self, Detail, Hints, Layout, Record, Report, Rubric};
 
 /// Check shaders against a reference, and give a verdict on each
 ///
-/// The reference of a shader is the scene that --scene names, else the .toml file beside the shader. A shader
-/// without one is `ok` if it renders: nothing is compared.
+/// The reference of a shader is the scene that --scene names, or the shader or image that --reference names,
+/// else the .toml file beside the shader. A shader without one is `ok` if it renders: nothing is compared.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
   toyproof scenes --write course && toyproof check course --out report
   toyproof check homework --scene 02-sphere --out marks --rubric rubric.toml
+  toyproof check homework --reference solution.glsl --out marks
   toyproof check mine.glsl --scene scene.toml --format json
 
 Exit code: 0 if every shader is correct or ok, 1 if one is not, 2 for any other error.")]
@@ -44,9 +47,8 @@ pub(super) struct Args {
     /// Shaders: files, folders, or - for standard input
     #[arg(required = true)]
     shaders: Vec<PathBuf>,
-    /// The scene to compare with: a file, or a name listed by `toyproof scenes`
-    #[arg(long, value_name = "SCENE")]
-    scene: Option<PathBuf>,
+    #[command(flatten)]
+    reference: ReferenceArgs,
     /// Write images and reports into this folder
     ///
     /// For each shader: the images NAME-actual.png, NAME-reference.png, NAME-difference.png,
@@ -57,7 +59,7 @@ pub(super) struct Args {
     out: Option<PathBuf>,
     /// Reuse results of an earlier run into the same folder
     ///
-    /// A result is reused if shader, scene and flags are unchanged. The earlier run may have been interrupted.
+    /// A result is reused if shader, reference and flags are unchanged. The earlier run may have been interrupted.
     #[arg(long, requires = "out", help_heading = "Reports")]
     resume: bool,
     /// A rubric (.toml): points for compiling and for each check, for report.csv and Gradescope's results.json
@@ -148,7 +150,7 @@ const MAX_WITH_SOURCE: usize = 3;
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     // A worker is created and dropped here, so that wrong arguments are reported before any work starts.
-    let frame = match args.driver.worker().and_then(|_| args.frame.frame()) {
+    let mut frame = match args.driver.worker().and_then(|_| args.frame.frame()) {
         Ok(frame) => frame,
         Err(error) => {
             terminal.error(error);
@@ -158,10 +160,9 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let Ok(rubric) = reports::rubric(args, terminal) else {
         return Exit::Error;
     };
-    let references = References::new(args.scene.as_deref());
-    if !references.is_usable(terminal) {
+    let Ok(references) = References::new(args, &mut frame, terminal) else {
         return Exit::Error;
-    }
+    };
     let mut results = None;
     if let Some(out) = &args.out {
         match Results::open(out, args.resume) {
@@ -473,11 +474,11 @@ fn print_summary(report: &Report, hidden_warnings: u64, elapsed: Duration, termi
     // Of a single shader, its reason says so.
     if without > 0 && records.len() > 1 {
         terminal.warn(format_args!(
-            "nothing was compared for {} {}: no scene was given",
+            "nothing was compared for {} {}: no reference was given",
             grouped(without),
             plural(without, "shader", "shaders")
         ));
-        terminal.help("name a scene with --scene, or put NAME.toml beside NAME.glsl");
+        terminal.help("name a scene with --scene or a shader or image with --reference, or put NAME.toml beside NAME.glsl");
     }
 }
 

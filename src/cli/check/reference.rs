@@ -1,4 +1,4 @@
-//! The scenes that shaders are compared with, and what is computed once per scene.
+//! What shaders are compared with, and what is computed once for it.
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
@@ -10,25 +10,107 @@ use toyproof_scene::{self as scene, Scene};
 use toyproof_verify::mistake::Hypotheses;
 use toyproof_verify::{Expected, Failure};
 
+use super::Args;
 use crate::cli::Terminal;
 use crate::cli::files::{self, Input, InputSource, ReadError, Skipped};
+use crate::cli::reference::GivenReference;
 use crate::cli::scenes::read_scene;
+use crate::report::Record;
 
-/// The reference scene of a shader.
-pub(in crate::cli) struct Reference {
+/// The scene of a shader.
+pub(in crate::cli) struct SceneOfShader {
     pub(in crate::cli) name: String,
     pub(in crate::cli) scene: Result<Scene, Failure>,
     pub(in crate::cli) files: Files,
 }
 
 /// Finds the scenes of shaders.
-pub(in crate::cli) struct References {
+pub(in crate::cli) struct Scenes {
     /// The path and the text, or the error, of the scene that `--scene` names. It may be a pipe, so it is
     /// read once.
     named: Option<(PathBuf, Result<File, String>)>,
 }
 
+/// What a shader is compared with.
+pub(super) enum Reference<'a> {
+    /// A scene, its own or the one that `--scene` names.
+    Scene(SceneOfShader),
+    /// The shader or image that `--reference` names.
+    Given(&'a PreparedReference),
+}
+
+impl Reference<'_> {
+    /// Records the name.
+    pub(super) fn record(&self, record: &mut Record) {
+        match self {
+            Self::Scene(scene) => record.scene = Some(scene.name.clone()),
+            Self::Given(given) => record.reference = Some(given.name.clone()),
+        }
+    }
+}
+
+/// The shader or image that `--reference` names, rendered in the frame of all shaders.
+pub(super) struct PreparedReference {
+    name: String,
+    hash: [u8; 32],
+    pub(super) cached: Arc<CachedReference>,
+}
+
+/// Finds what shaders are compared with.
+pub(super) enum References {
+    /// The scene of each.
+    Scenes(Scenes),
+    /// The same reference for all.
+    Given(PreparedReference),
+}
+
 impl References {
+    /// Reads what the arguments name. The frame gets the size of a reference image.
+    ///
+    /// # Errors
+    /// It is unusable; what is wrong with it has been printed.
+    pub(super) fn new(args: &Args, frame: &mut Frame, terminal: &Terminal) -> Result<Self, ()> {
+        let timeout = args.driver.timeout();
+        let Some(given) = GivenReference::read(&args.reference, &args.language, timeout, terminal)? else {
+            let scenes = Scenes::new(args.reference.scene.as_deref());
+            return if scenes.is_usable(terminal) {
+                Ok(Self::Scenes(scenes))
+            } else {
+                Err(())
+            };
+        };
+        given
+            .resize(frame, args.frame.size)
+            .map_err(|error| terminal.error(error))?;
+        let expected = given.expected(frame, timeout, terminal)?;
+        Ok(Self::Given(PreparedReference {
+            name: given.name,
+            hash: given.hash,
+            cached: Arc::new(CachedReference::new(expected)),
+        }))
+    }
+
+    /// Returns what a shader is compared with; none if it has no scene.
+    pub(super) fn find(&self, found: &Input) -> Option<Reference<'_>> {
+        match self {
+            Self::Scenes(scenes) => scenes.find(found).map(Reference::Scene),
+            Self::Given(given) => Some(Reference::Given(given)),
+        }
+    }
+
+    /// Bytes that identify the content of a shader's reference, if it has one; an error if it cannot be read.
+    pub(super) fn content(&self, found: &Input) -> Option<Result<Vec<u8>, String>> {
+        match self {
+            Self::Scenes(scenes) => {
+                let (_, text) = scenes.text(found)?;
+                Some(text.map(|text| text.text().as_bytes().to_vec()))
+            }
+            Self::Given(given) => Some(Ok(given.hash.to_vec())),
+        }
+    }
+}
+
+impl Scenes {
     /// Reads the scene that `--scene` names, if any.
     pub(in crate::cli) fn new(named: Option<&Path>) -> Self {
         let named = named.map(|path| (path.to_owned(), read_scene(path)));
@@ -36,14 +118,15 @@ impl References {
     }
 
     /// Checks the scene that `--scene` names, if any, and prints what is wrong with it.
-    pub(super) fn is_usable(&self, terminal: &Terminal) -> bool {
+    fn is_usable(&self, terminal: &Terminal) -> bool {
         let Some((path, text)) = &self.named else {
             return true;
         };
         if files::is_shader(path) {
             let name = path_name(path);
             terminal.error(format_args!(
-                "{name} is a shader; `--scene` takes a scene file or the name of a scene"
+                "{name} is a shader; `--scene` takes a scene file or the name of a scene\n\
+                 help: name a shader to compare with with --reference"
             ));
             return false;
         }
@@ -63,7 +146,7 @@ impl References {
 
     /// The path of a shader's scene, and its text or the error: the scene that `--scene` names, else the one
     /// beside the shader, unless that is a link that leads out of the folder.
-    pub(super) fn text(&self, found: &Input) -> Option<(PathBuf, Result<File, String>)> {
+    fn text(&self, found: &Input) -> Option<(PathBuf, Result<File, String>)> {
         match (&self.named, &found.source) {
             (Some(named), _) => Some(named.clone()),
             (None, InputSource::File(shader)) => {
@@ -83,14 +166,14 @@ impl References {
     }
 
     /// Parses the scene of a shader; none if it has none.
-    pub(in crate::cli) fn find(&self, found: &Input) -> Option<Reference> {
+    pub(in crate::cli) fn find(&self, found: &Input) -> Option<SceneOfShader> {
         let (path, text) = self.text(found)?;
         let mut files = Files::default();
         let scene = text.map_err(Failure::Unreadable).and_then(|text| {
             let file = files.add(text);
             scene::parse(&files, file).map_err(|errors| Failure::InvalidScene(errors.into()))
         });
-        Some(Reference {
+        Some(SceneOfShader {
             name: path_name(&path),
             scene,
             files,
@@ -112,17 +195,24 @@ fn leaving_link(found: &Input, shader: &Path, beside: &Path) -> Option<Skipped> 
 const MAX_CACHED_SCENES: usize = 8;
 const MAX_CACHED_BYTES: usize = 256 << 20;
 
-/// A scene with the results that are computed once and shared.
+/// A reference with the results that are computed once and shared.
 #[derive(Debug)]
-pub(super) struct CachedScene {
+pub(super) struct CachedReference {
     pub(super) expected: Expected,
     hypotheses: OnceLock<Option<Hypotheses>>,
 }
 
-impl CachedScene {
-    /// The hypotheses that a wrong image is compared with.
+impl CachedReference {
+    fn new(expected: Expected) -> Self {
+        Self {
+            expected,
+            hypotheses: OnceLock::new(),
+        }
+    }
+
+    /// The hypotheses that a wrong image is compared with; none without a scene.
     pub(super) fn hypotheses(&self, frame: &Frame) -> Option<&Hypotheses> {
-        let hypotheses = || Hypotheses::of(self.expected.scene(), frame);
+        let hypotheses = || Hypotheses::of(self.expected.scene()?, frame);
         self.hypotheses.get_or_init(hypotheses).as_ref()
     }
 }
@@ -130,22 +220,21 @@ impl CachedScene {
 /// A cache of the most recently used scenes, the latest first. All have the same frame time.
 #[derive(Debug, Default)]
 pub(super) struct SceneCache {
-    latest: Mutex<VecDeque<Arc<CachedScene>>>,
+    latest: Mutex<VecDeque<Arc<CachedReference>>>,
 }
 
 impl SceneCache {
     /// Returns the cached results of a scene in this frame, creating them if needed.
-    pub(super) fn get(&self, scene: Scene, frame: &Frame) -> Arc<CachedScene> {
+    pub(super) fn get(&self, scene: Scene, frame: &Frame) -> Arc<CachedReference> {
         let mut latest = self.latest.lock().unwrap_or_else(PoisonError::into_inner);
-        let before = latest.iter().position(|known| *known.expected.scene() == scene);
-        let known = before.and_then(|at| latest.remove(at)).unwrap_or_else(|| {
-            Arc::new(CachedScene {
-                expected: Expected::new(scene, frame),
-                hypotheses: OnceLock::new(),
-            })
-        });
+        let before = latest
+            .iter()
+            .position(|known| known.expected.scene() == Some(&scene));
+        let known = before
+            .and_then(|at| latest.remove(at))
+            .unwrap_or_else(|| Arc::new(CachedReference::new(Expected::of_scene(scene, frame))));
         latest.push_front(Arc::clone(&known));
-        let bytes = |latest: &VecDeque<Arc<CachedScene>>| {
+        let bytes = |latest: &VecDeque<Arc<CachedReference>>| {
             let bytes = latest.iter().map(|known| known.expected.bytes());
             bytes.sum::<usize>()
         };

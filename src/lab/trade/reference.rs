@@ -90,7 +90,7 @@ impl Reference {
     pub(super) fn of_shader(shader: &Shader, frame: &Frame, time: Duration) -> Result<Self, eval::Failure> {
         let deadline = Instant::now() + time;
         let image = shader.render::<f64>(frame, (), deadline)?;
-        let perturbed = shader.render::<RandomRounding>(frame, Seed(1), deadline)?;
+        let perturbed = shader.render::<RandomRounding>(frame, Seed::double(1), deadline)?;
         Ok(Self {
             error: rmse(&image, &perturbed),
             image,

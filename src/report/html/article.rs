@@ -77,6 +77,7 @@ impl Article<'_> {
         let Record {
             shader,
             scene,
+            reference,
             seconds,
             ..
         } = self.record;
@@ -84,8 +85,10 @@ impl Article<'_> {
         if shader != self.name {
             let _ = write!(facts, "<span>File: {}</span>", Text(shader));
         }
-        if let Some(scene) = scene {
-            let _ = write!(facts, "<span>Scene: {}</span>", Text(scene));
+        for (kind, name) in [("Scene", scene), ("Reference", reference)] {
+            if let Some(name) = name {
+                let _ = write!(facts, "<span>{kind}: {}</span>", Text(name));
+            }
         }
         let seconds = seconds.total();
         if seconds > 0.0 {

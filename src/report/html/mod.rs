@@ -262,6 +262,7 @@ mod tests {
             HOSTILE.clone_into(text);
         }
         (record.scene, record.help) = (Some(HOSTILE.to_owned()), Some(HOSTILE.to_owned()));
+        record.reference = Some(HOSTILE.to_owned());
         record.details = vec![HOSTILE.to_owned()];
         record.mistake = Some(Mistake {
             id: HOSTILE.to_owned(),

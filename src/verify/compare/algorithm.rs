@@ -1,4 +1,4 @@
-//! The algorithm check: the shader in f64 against the tracer in f64.
+//! The algorithm check: the shader in f64 against the reference in f64.
 
 use rayon::prelude::*;
 use toyproof_image::Image;
@@ -14,12 +14,21 @@ pub const PERTURBATIONS: u64 = 8;
 /// epsilons are not the cause: of the correct rewrites, the one whose epsilons differ most differs in 0.2 %.
 const MAX_MIXED_SHARE: f64 = 0.01;
 
-/// The largest share of a band's pixels that are tested for an edge of the scene in the pixel: fewer lie on
-/// the rows and columns along which a scene with round numbers has edges.
-const MAX_TIED_SHARE: f64 = 0.05;
-
-/// The reference of a shader. Coordinates are in the band.
+/// The reference of a shader in a band. Coordinates are in the band.
 pub trait Reference: Sync {
+    /// The largest difference of a component of colors that agree.
+    fn tolerance(&self) -> f64;
+    /// The colors for the ray epsilons that authors may choose; none if nothing is known about rays.
+    fn epsilons(&self) -> Option<&dyn EpsilonColors>;
+    /// Whether the shader takes derivatives, and the pixel's quad lies across an edge.
+    fn is_across_edge(&self, x: u32, y: u32) -> bool;
+    /// Of the `wanted` pixels, bottom row first, those in which the reference itself changes color when its
+    /// numbers are perturbed by less than a shader's precision.
+    fn tied(&self, wanted: &[bool]) -> Vec<bool>;
+}
+
+/// The colors of a reference for different ray epsilons. Coordinates are in the band.
+pub trait EpsilonColors: Sync {
     /// The accepted colors of a pixel for a few of the legal ray epsilons.
     fn color_range(&self, x: u32, y: u32, epsilons: EpsilonSet) -> ColorRange;
     /// All ray epsilons that a shader may have.
@@ -28,11 +37,6 @@ pub trait Reference: Sync {
     fn pixel_with_epsilons(&self, x: u32, y: u32, epsilons: &RayEpsilons) -> [f64; 3];
     /// The number of samples of a pixel, to which its cost is proportional.
     fn samples(&self) -> u32;
-    /// Whether the shader takes derivatives, and the pixel's quad lies across an edge.
-    fn is_across_edge(&self, x: u32, y: u32) -> bool;
-    /// Whether the reference itself changes color in the pixel when the scene's numbers are perturbed by less
-    /// than a shader's precision.
-    fn is_tied(&self, x: u32, y: u32) -> bool;
 }
 
 /// State that is kept between bands: how many more pixels may be compared with other ray epsilons, and the
@@ -72,19 +76,14 @@ fn spend(budget: &mut f64, pixels: usize) -> bool {
     is_enough
 }
 
-/// Compares a band of the shader in f64, `actual`, with the tracer in f64, `expected`, bottom row first;
+/// Compares a band of the shader in f64, `actual`, with the reference in f64, `expected`, bottom row first;
 /// coordinates are in the band.
 ///
-/// A pixel agrees if no component is farther than [`EXACT_TOLERANCE`] from the range of the tracer's colors
-/// for the legal ray epsilons. More epsilons are tried only where pixels are still outside: `mixed` ones if
-/// few are, then the shader's own, which are fitted to some of the pixels, then all that authors use, in each
-/// pixel by itself. A pixel outside of all is excluded if it lies on an edge across which the shader takes
-/// derivatives, whose values GLSL leaves to the driver. It is excluded, too, if the reference itself is
-/// ill-conditioned there: an edge of the scene passes through the pixel's sample. Otherwise it is
-/// ill-conditioned if the shader's own color changes by more than the tolerance in one of the images of
-/// `perturbed`, which renders the shader with every operation perturbed, given a seed and the wanted pixels
-/// (Vignes, "A stochastic arithmetic for reliable scientific computation", 1993). `perturbed` is called only
-/// if something differs, and may return none.
+/// A pixel agrees if no component is farther than the tolerance from the reference, or, if it is a scene, from
+/// the range of the tracer's colors for the legal ray epsilons. A pixel outside is excluded if it lies on an
+/// edge across which the shader takes derivatives, whose values GLSL leaves to the driver. It is excluded, too,
+/// if the reference itself is ill-conditioned there. Otherwise it is ill-conditioned if the shader's own color
+/// changes by more than the tolerance in one of the images of `perturbed`, see [`changed_by_rounding`].
 ///
 /// # Panics
 /// If the sizes differ.
@@ -94,58 +93,30 @@ pub fn algorithm(
     undefined: &[bool],
     reference: &impl Reference,
     mixed: &mut Mixed,
-    mut perturbed: impl FnMut(u64, &[bool]) -> Option<Image>,
+    perturbed: impl FnMut(u64, &[bool]) -> Option<Image>,
 ) -> Vec<PixelStatus> {
     assert_eq!(expected.size(), actual.size());
-    let is_within = |pixel: &Pixel, epsilons| {
-        let range = reference.color_range(pixel.x, pixel.y, epsilons);
-        range.distance(pixel.actual.map(f64::from)) <= EXACT_TOLERANCE
-    };
+    let tolerance = reference.tolerance();
     let mut statuses: Vec<_> = undefined
         .par_iter()
         .enumerate()
         .map(|(index, &undefined)| {
             if undefined {
-                return PixelStatus::Undefined;
-            }
-            let pixel = Pixel::at(index, expected, actual);
-            if pixel.difference() <= EXACT_TOLERANCE || is_within(&pixel, EpsilonSet::Alike) {
+                PixelStatus::Undefined
+            } else if Pixel::at(index, expected, actual).difference() <= tolerance {
                 PixelStatus::Agrees
             } else {
                 PixelStatus::Differs
             }
         })
         .collect();
-    let reclassify = |statuses: &mut [PixelStatus], other, is_other: &(dyn Fn(&Pixel) -> bool + Sync)| {
-        statuses.par_iter_mut().enumerate().for_each(|(index, status)| {
-            if *status == PixelStatus::Differs && is_other(&Pixel::at(index, expected, actual)) {
-                *status = other;
-            }
-        });
-    };
-    if spend(&mut mixed.budget, differing(&statuses)) {
-        reclassify(&mut statuses, PixelStatus::Agrees, &|pixel| {
-            is_within(pixel, EpsilonSet::Mixed)
-        });
-    }
-    if differing(&statuses) > 0 {
-        let left = statuses.iter().enumerate();
-        let left = left.filter(|&(_, &status)| status == PixelStatus::Differs);
-        let left: Vec<Pixel> = left
-            .map(|(index, _)| Pixel::at(index, expected, actual))
-            .collect();
-        mixed.fitted = fit_epsilons(reference, &left, mixed.fitted);
-        if let Some(fitted) = mixed.fitted {
-            reclassify(&mut statuses, PixelStatus::Agrees, &|pixel| {
-                matches_epsilons(reference, pixel, &fitted.epsilons)
-            });
-        }
-    }
-    let count = differing(&statuses);
-    if count > 0 && is_affordable(reference, count) && spend(&mut mixed.single_pixel_budget, count) {
-        reclassify(&mut statuses, PixelStatus::Agrees, &|pixel| {
-            matches_any_family(reference, pixel)
-        });
+    if let Some(colors) = reference.epsilons() {
+        let mut band = Band {
+            expected,
+            actual,
+            statuses: &mut statuses,
+        };
+        accept_epsilons(&mut band, colors, mixed);
     }
     for (index, status) in statuses.iter_mut().enumerate() {
         let pixel = Pixel::at(index, expected, actual);
@@ -153,33 +124,119 @@ pub fn algorithm(
             *status = PixelStatus::Undefined;
         }
     }
-    if differing(&statuses) as f64 <= MAX_TIED_SHARE * statuses.len() as f64 {
-        reclassify(&mut statuses, PixelStatus::Tied, &|pixel| {
-            reference.is_tied(pixel.x, pixel.y)
-        });
+    exclude_tied(&mut statuses, |wanted| reference.tied(wanted));
+    let changed = changed_by_rounding(actual, &are_differing(&statuses), tolerance, perturbed);
+    replace(&mut statuses, &changed, PixelStatus::IllConditioned);
+    statuses
+}
+
+fn are_differing(statuses: &[PixelStatus]) -> Vec<bool> {
+    let differs = |status: &PixelStatus| *status == PixelStatus::Differs;
+    statuses.iter().map(differs).collect()
+}
+
+fn replace(statuses: &mut [PixelStatus], selected: &[bool], other: PixelStatus) {
+    for (status, _) in statuses
+        .iter_mut()
+        .zip(selected)
+        .filter(|&(_, &selected)| selected)
+    {
+        *status = other;
     }
-    // After two perturbed images in which no differing pixel changes, the rest is decided.
+}
+
+/// Excludes differing pixels in which the reference itself changes with the number type: no shader can resolve
+/// them in float32.
+pub(crate) fn exclude_tied(statuses: &mut [PixelStatus], tied: impl FnOnce(&[bool]) -> Vec<bool>) {
+    let tied = tied(&are_differing(statuses));
+    replace(statuses, &tied, PixelStatus::Tied);
+}
+
+/// Of the `wanted` pixels of an image, those whose color changes by more than the tolerance in one of the
+/// images of `perturbed`, which evaluates the same shader with every operation perturbed, given a seed and the
+/// wanted pixels (Vignes, "A stochastic arithmetic for reliable scientific computation", 1993). It is called
+/// only if there are wanted pixels, and may return none.
+pub(crate) fn changed_by_rounding(
+    image: &Image,
+    wanted: &[bool],
+    tolerance: f64,
+    mut perturbed: impl FnMut(u64, &[bool]) -> Option<Image>,
+) -> Vec<bool> {
+    let mut left = wanted.to_vec();
+    let mut changed = vec![false; wanted.len()];
+    // After two perturbed images in which no wanted pixel changes, the rest is decided.
     let mut unchanged_images = 0;
     for seed in 0..PERTURBATIONS {
-        let wanted: Vec<_> = statuses.iter().map(|&own| own == PixelStatus::Differs).collect();
-        if unchanged_images == 2 || !wanted.contains(&true) {
+        if unchanged_images == 2 || !left.contains(&true) {
             break;
         }
-        let Some(perturbed) = perturbed(seed, &wanted) else {
+        let Some(perturbed) = perturbed(seed, &left) else {
             break;
         };
-        let mut changed = false;
-        for (index, status) in statuses.iter_mut().enumerate() {
-            if *status == PixelStatus::Differs
-                && Pixel::at(index, actual, &perturbed).difference() > EXACT_TOLERANCE
-            {
-                *status = PixelStatus::IllConditioned;
-                changed = true;
+        unchanged_images += 1;
+        for index in 0..left.len() {
+            if left[index] && Pixel::at(index, image, &perturbed).difference() > tolerance {
+                (left[index], changed[index]) = (false, true);
+                unchanged_images = 0;
             }
         }
-        unchanged_images = if changed { 0 } else { unchanged_images + 1 };
     }
-    statuses
+    changed
+}
+
+/// A band that is compared.
+struct Band<'a> {
+    expected: &'a Image,
+    actual: &'a Image,
+    statuses: &'a mut [PixelStatus],
+}
+
+impl Band<'_> {
+    /// The differing pixels that satisfy the condition agree.
+    fn accept(&mut self, agrees: impl Fn(&Pixel) -> bool + Sync) {
+        let (expected, actual) = (self.expected, self.actual);
+        self.statuses
+            .par_iter_mut()
+            .enumerate()
+            .for_each(|(index, status)| {
+                if *status == PixelStatus::Differs && agrees(&Pixel::at(index, expected, actual)) {
+                    *status = PixelStatus::Agrees;
+                }
+            });
+    }
+
+    fn differing(&self) -> Vec<Pixel> {
+        let statuses = self.statuses.iter().enumerate();
+        let differing = statuses.filter(|&(_, &status)| status == PixelStatus::Differs);
+        differing
+            .map(|(index, _)| Pixel::at(index, self.expected, self.actual))
+            .collect()
+    }
+}
+
+/// Accepts the colors for the legal ray epsilons: first for a few. More epsilons are tried only where pixels
+/// are still outside: `mixed` ones if few are, then the shader's own, which are fitted to some of the pixels,
+/// then all that authors use, in each pixel by itself.
+fn accept_epsilons(band: &mut Band, colors: &dyn EpsilonColors, mixed: &mut Mixed) {
+    let is_within = |pixel: &Pixel, epsilons| {
+        let range = colors.color_range(pixel.x, pixel.y, epsilons);
+        range.distance(pixel.actual.map(f64::from)) <= EXACT_TOLERANCE
+    };
+    band.accept(|pixel| is_within(pixel, EpsilonSet::Alike));
+    if spend(&mut mixed.budget, differing(band.statuses)) {
+        band.accept(|pixel| is_within(pixel, EpsilonSet::Mixed));
+    }
+    let left = band.differing();
+    if !left.is_empty() {
+        mixed.fitted = fit_epsilons(colors, &left, mixed.fitted);
+        if let Some(fitted) = mixed.fitted {
+            band.accept(|pixel| matches_epsilons(colors, pixel, &fitted.epsilons));
+        }
+    }
+    let count = differing(band.statuses);
+    if count > 0 && is_affordable(colors, count) && spend(&mut mixed.single_pixel_budget, count) {
+        band.accept(|pixel| matches_any_family(colors, pixel));
+    }
 }
 
 fn differing(statuses: &[PixelStatus]) -> usize {
@@ -212,7 +269,7 @@ struct FittedEpsilons {
 /// Returns the ray epsilons that explain most of some pixels, if any explain some; `before` are those that
 /// explained earlier ones.
 fn fit_epsilons(
-    reference: &impl Reference,
+    reference: &dyn EpsilonColors,
     differing: &[Pixel],
     before: Option<FittedEpsilons>,
 ) -> Option<FittedEpsilons> {
@@ -263,7 +320,7 @@ fn fit_epsilons(
 }
 
 /// Whether a pixel has the reference's color for these ray epsilons.
-fn matches_epsilons(reference: &impl Reference, pixel: &Pixel, epsilons: &RayEpsilons) -> bool {
+fn matches_epsilons(reference: &dyn EpsilonColors, pixel: &Pixel, epsilons: &RayEpsilons) -> bool {
     let color = reference.pixel_with_epsilons(pixel.x, pixel.y, epsilons);
     (0..3).all(|i| {
         let [own, other] = [f64::from(pixel.actual[i]), color[i]].map(|part| part.clamp(0.0, 1.0));
@@ -272,14 +329,14 @@ fn matches_epsilons(reference: &impl Reference, pixel: &Pixel, epsilons: &RayEps
 }
 
 /// Whether that number of pixels can be compared one by one.
-fn is_affordable(reference: &impl Reference, pixels: usize) -> bool {
+fn is_affordable(reference: &dyn EpsilonColors, pixels: usize) -> bool {
     let epsilons: usize = reference.families().iter().map(Vec::len).sum();
     pixels * epsilons * reference.samples() as usize <= MAX_FIT_SAMPLES
 }
 
 /// Whether a pixel lies between the reference's colors for two neighboring epsilons of a family: where glass
 /// is seen at a grazing angle, a color is not a monotonic function of the offset.
-fn matches_any_family(reference: &impl Reference, pixel: &Pixel) -> bool {
+fn matches_any_family(reference: &dyn EpsilonColors, pixel: &Pixel) -> bool {
     reference.families().iter().any(|family| {
         let colors = family
             .iter()
@@ -339,6 +396,22 @@ mod tests {
     }
 
     impl<H: Fn(u32, EpsilonSet) -> ColorRange + Sync> Reference for Black<H> {
+        fn tolerance(&self) -> f64 {
+            EXACT_TOLERANCE
+        }
+        fn epsilons(&self) -> Option<&dyn EpsilonColors> {
+            Some(self)
+        }
+        fn is_across_edge(&self, x: u32, _: u32) -> bool {
+            (self.edge)(x)
+        }
+        fn tied(&self, wanted: &[bool]) -> Vec<bool> {
+            let pixels = (0..).zip(wanted);
+            pixels.map(|(x, &wanted)| wanted && (self.tied)(x)).collect()
+        }
+    }
+
+    impl<H: Fn(u32, EpsilonSet) -> ColorRange + Sync> EpsilonColors for Black<H> {
         fn color_range(&self, x: u32, _: u32, epsilons: EpsilonSet) -> ColorRange {
             (self.range)(x, epsilons)
         }
@@ -350,12 +423,6 @@ mod tests {
         }
         fn samples(&self) -> u32 {
             1
-        }
-        fn is_across_edge(&self, x: u32, _: u32) -> bool {
-            (self.edge)(x)
-        }
-        fn is_tied(&self, x: u32, _: u32) -> bool {
-            (self.tied)(x)
         }
     }
 
@@ -558,17 +625,5 @@ mod tests {
                 PixelStatus::Agrees
             ]
         );
-        // Where most pixels differ, edges are not tested: no scene is like that.
-        reds.fill(0.5);
-        let mixed = &mut Mixed::of(100);
-        let statuses = algorithm(
-            &row(&[0.0; 100]),
-            &row(&reds),
-            &[false; 100],
-            &reference,
-            mixed,
-            |_, _| None,
-        );
-        assert!(!statuses.contains(&PixelStatus::Tied));
     }
 }

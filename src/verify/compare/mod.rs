@@ -2,7 +2,7 @@
 //!
 //! | check | expected | actual | a difference means |
 //! |---|---|---|---|
-//! | [`algorithm`] | the tracer in f64 | the shader in f64 | the algorithm is wrong |
+//! | [`algorithm`] | the reference in f64 | the shader in f64 | the algorithm is wrong |
 //! | [`precision`] | the shader in f64 | the GPU in f32 | float32 is not enough here |
 //! | [`toolchain`] | the shader in f32 on the CPU | the GPU in f32 | naga, toyproof or the driver broke it |
 
@@ -13,7 +13,8 @@ mod legend;
 mod mean;
 mod replicate;
 
-pub use algorithm::{Mixed, PERTURBATIONS, Reference, algorithm};
+pub use algorithm::{EpsilonColors, Mixed, PERTURBATIONS, Reference, algorithm};
+pub(crate) use algorithm::{changed_by_rounding, exclude_tied};
 pub use check::{
     CheckSummary, EXACT_TOLERANCE, PixelStatus, SEEN, TOLERANCE, diff_levels, precision, toolchain,
 };

@@ -11,14 +11,13 @@ use toyproof_glsl::tree::SamplerShape;
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_gpu::{self as gpu, ShaderArtifact, Worker};
 use toyproof_image::{self as image, Frame, Image};
-use toyproof_lint::Lints;
 use toyproof_translate::FloatMode;
 use toyproof_translate::backend::roundtrip;
 use toyproof_translate::naga_ir::ValidModule;
 
 use crate::compare::{self, CheckSummary};
-use crate::cpu::{Evaluator, Single};
-use crate::{Case, EVALUATOR_TIME_FACTOR, Failure, TOTAL_TIME_FACTOR, join, within};
+use crate::cpu::{Evaluated, Evaluator};
+use crate::{EVALUATOR_TIME_FACTOR, Failure, TOTAL_TIME_FACTOR, join, within};
 
 use super::prover::Unproved;
 
@@ -344,26 +343,16 @@ pub(super) fn evaluate(
     frames: &[Frame],
     timeout: Duration,
     stop: &AtomicBool,
-) -> Result<Vec<Single>, Failure> {
+) -> Result<Vec<Evaluated>, Failure> {
     let program =
         Program::within(checked, timeout * EVALUATOR_TIME_FACTOR).map_err(|refusal| match refusal {
             Refusal::TooSlow(overdue) => Failure::Overdue(overdue),
             refusal => Failure::Cpu(eval::Failure::from(refusal)),
         })?;
-    let single = |frame: &Frame| -> Result<Single, Failure> {
-        let case = Case {
-            checked,
-            lints: &Lints::default(),
-            expected: None,
-            hypotheses: None,
-            search: None,
-            frame,
-            float: FloatMode::Strict,
-            timeout,
-            pool: None,
-        };
+    let single = |frame: &Frame| -> Result<Evaluated, Failure> {
         let deadline = Instant::now() + timeout * TOTAL_TIME_FACTOR;
-        let evaluator = Evaluator::new(&program, &case, timeout * EVALUATOR_TIME_FACTOR, deadline, stop);
+        let limits = [timeout * EVALUATOR_TIME_FACTOR; 2];
+        let evaluator = Evaluator::new(&program, frame, limits, deadline, stop);
         Ok(evaluator.single(&frame.rows())?)
     };
     frames.iter().map(single).collect()

@@ -26,7 +26,7 @@ pub(super) struct Judge<'a> {
     expected: &'a Expected,
     options: SearchOptions<'a>,
     /// The second frame and its reference.
-    other: OnceLock<(Frame, Expected)>,
+    other: OnceLock<Option<(Frame, Expected)>>,
 }
 
 impl<'a> Judge<'a> {
@@ -47,7 +47,7 @@ impl<'a> Judge<'a> {
         let by_means = findings.reason.compares_means();
         // Means are compared over many sets of random numbers; a second frame would add little evidence.
         if !by_means {
-            let (frame, expected) = self.other.get_or_init(|| self.other_frame());
+            let (frame, expected) = self.other.get_or_init(|| self.other_frame()).as_ref()?;
             self.findings(&checked, frame, expected)?;
         }
         let differing = if by_means { 0 } else { summary.differing };
@@ -90,18 +90,18 @@ impl<'a> Judge<'a> {
         matches!(findings.verdict, Verdict::Correct | Verdict::Unstable).then_some(findings)
     }
 
-    fn other_frame(&self) -> (Frame, Expected) {
-        let scene = self.expected.scene();
+    /// None if the reference cannot be rendered there.
+    fn other_frame(&self) -> Option<(Frame, Expected)> {
         let mut frame = self.case.frame.clone();
         frame.size = OTHER_SIZE;
-        while frame.size[0] * frame.size[1] * scene.film.samples > MAX_SAMPLES && frame.size[1] > 16 {
+        while frame.size[0] * frame.size[1] * self.expected.samples() > MAX_SAMPLES && frame.size[1] > 16 {
             frame.size = frame.size.map(|side| side * 3 / 4);
         }
-        if !scene.motions.is_empty() {
+        if self.expected.is_animated() {
             frame.time += OTHER_TIME;
         }
-        let expected = Expected::new(scene.clone(), &frame);
-        (frame, expected)
+        let expected = self.expected.in_frame(&frame)?;
+        Some((frame, expected))
     }
 }
 

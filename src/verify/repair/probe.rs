@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use toyproof_eval::{Places, PointEvaluator};
-use toyproof_tracer::{ColorRange, EpsilonSet};
+use toyproof_tracer::ColorRange;
 
 use super::schema::Selection;
 use crate::compare::{EXACT_TOLERANCE, PixelStatus};
@@ -112,7 +112,7 @@ impl Probes {
         let pixel = |at: usize| [(at % width) as u32, (at / width) as u32];
         let reference = |at: usize| {
             let [x, y] = pixel(at);
-            expected.tracer().pixel(x, y)
+            expected.pixel(x, y)
         };
         let wrong: Vec<usize> = pixels(PixelStatus::Differs).collect();
         let right: Vec<usize> = pixels(PixelStatus::Agrees).collect();
@@ -124,7 +124,7 @@ impl Probes {
             let [x, y] = pixel(at);
             Probe {
                 point: [f64::from(x) + 0.5, f64::from(y) + 0.5],
-                range: expected.color_range(x, y, EpsilonSet::Alike),
+                range: expected.color_range(x, y),
                 bias: None,
                 is_wrong,
             }

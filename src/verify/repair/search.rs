@@ -66,7 +66,7 @@ pub(crate) fn search(
     let mut search = Search {
         case,
         shader: &shader,
-        constants: Constants::of(expected.scene()),
+        constants: Constants::of(expected),
         judge: Judge::new(case, expected, options),
         deadline,
         found: Vec::new(),

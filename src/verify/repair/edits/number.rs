@@ -12,6 +12,7 @@ use super::super::term::{Term, TermKind};
 use super::Writer;
 use super::donor::{Donor, donors};
 use super::plausibility::Shapes;
+use crate::Expected;
 
 /// The costs: numbers of the scene that are missing in the shader, and that it has, others, vectors of the
 /// scene, fitted numbers, and variables.
@@ -28,7 +29,7 @@ const MAX_NUMBER: f64 = 1e6;
 /// The smallest factor of a hash, such as `43758.5453123`.
 const MIN_HASH_FACTOR: f64 = 1000.0;
 
-/// What the shader that renders the scene consists of: its numbers, vectors, shapes of operations, and
+/// What the reference shader, or the one that renders the scene, consists of: its numbers, vectors, shapes of operations, and
 /// donors.
 #[derive(Debug, Default)]
 pub(in crate::repair) struct Constants {
@@ -40,8 +41,16 @@ pub(in crate::repair) struct Constants {
 }
 
 impl Constants {
-    /// Collects the numbers of a scene; none if it cannot be exported.
-    pub(in crate::repair) fn of(scene: &Scene) -> Self {
+    /// Collects the numbers of a reference; none if it has no shader.
+    pub(in crate::repair) fn of(expected: &Expected) -> Self {
+        match (expected.shader(), expected.scene()) {
+            (Some(shader), _) => Self::in_tree(&shader.tree),
+            (None, Some(scene)) => Self::in_scene(scene),
+            (None, None) => Self::default(),
+        }
+    }
+
+    fn in_scene(scene: &Scene) -> Self {
         let mut files = Files::default();
         let Ok(shader) = export::marked_shader(scene) else {
             return Self::default();

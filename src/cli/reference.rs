@@ -1,0 +1,275 @@
+//! The reference that `--reference` names: a shader or an image, the same for all shaders of a command.
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use sha2::{Digest, Sha256};
+use toyproof_diagnostic::{Deadline, grouped, path_name};
+use toyproof_glsl::Checked;
+use toyproof_image::{self as image, Frame, Image};
+use toyproof_verify::{
+    DEFAULT_TOLERANCE, Expected, ImageReference, MAX_UNDEFINED, Quantization, ShaderReference, unbound,
+};
+
+use super::Terminal;
+use super::inputs::{LanguageArgs, shell_word};
+use super::shader::{Shader, Unusable};
+use crate::cli::files::{Input, InputSource};
+use crate::report;
+
+/// What shaders are compared with.
+#[derive(Debug, Clone, clap::Args)]
+pub(super) struct ReferenceArgs {
+    /// The scene to compare with: a file, or a name listed by `toyproof scenes`
+    #[arg(long, value_name = "SCENE", conflicts_with = "reference")]
+    pub(super) scene: Option<PathBuf>,
+    /// The shader (.glsl) or image (.png, .exr) to compare with, instead of a scene
+    ///
+    /// A shader is evaluated in double precision, once for all shaders and with the same inputs as theirs. An
+    /// image also sets the size.
+    #[arg(long, value_name = "SHADER|IMAGE")]
+    pub(super) reference: Option<PathBuf>,
+    /// The largest difference of a color from --reference, in 8-bit levels [default: 0.5; for PNG: 1]
+    #[arg(long, value_name = "LEVELS", value_parser = parse_tolerance, requires = "reference", allow_negative_numbers = true)]
+    tolerance: Option<f64>,
+}
+
+fn parse_tolerance(text: &str) -> Result<f64, String> {
+    let tolerance = text.parse().ok();
+    tolerance
+        .filter(|tolerance| (0.0..=255.0).contains(tolerance))
+        .ok_or_else(|| "expected a number of 8-bit levels from 0 to 255, such as 0.5".to_owned())
+}
+
+/// The default tolerance of images of 8 bits: one level, since a color between two levels may be rounded to
+/// either.
+const EIGHT_BIT_TOLERANCE: f64 = 1.0 / 255.0;
+
+impl ReferenceArgs {
+    /// The flags that name the same reference, for a command that the user may run.
+    pub(super) fn flags(&self) -> Vec<String> {
+        let named = [("--scene", &self.scene), ("--reference", &self.reference)];
+        let named = named
+            .into_iter()
+            .filter_map(|(flag, path)| Some(format!("{flag} {}", shell_word(&path_name(path.as_ref()?)))));
+        let tolerance = self.tolerance.map(|levels| format!("--tolerance {levels}"));
+        named.chain(tolerance).collect()
+    }
+
+    /// The tolerance of colors in [0, 1], if it is given.
+    fn tolerance(&self) -> Option<f64> {
+        self.tolerance.map(|levels| levels / 255.0)
+    }
+}
+
+/// A shader or an image that `--reference` names.
+pub(super) struct GivenReference {
+    pub(super) name: String,
+    content: Content,
+    tolerance: f64,
+    /// A hash of everything that a comparison with it depends on.
+    pub(super) hash: [u8; 32],
+}
+
+enum Content {
+    /// The shader, and its tree.
+    Shader(Box<Shader>, Box<Checked>),
+    Image(Image, Quantization),
+}
+
+impl GivenReference {
+    /// Reads what `--reference` names, if anything; prints what is wrong with it.
+    ///
+    /// # Errors
+    /// It is unusable.
+    pub(super) fn read(
+        args: &ReferenceArgs,
+        language: &LanguageArgs,
+        timeout: Duration,
+        terminal: &Terminal,
+    ) -> Result<Option<Self>, ()> {
+        let Some(path) = &args.reference else {
+            return Ok(None);
+        };
+        let (content, bytes) = read(path, language, timeout, terminal)?;
+        let default = match content {
+            Content::Image(_, Quantization::EightBit) => EIGHT_BIT_TOLERANCE,
+            Content::Image(_, Quantization::Float) | Content::Shader(..) => DEFAULT_TOLERANCE,
+        };
+        let tolerance = args.tolerance().unwrap_or(default);
+        let mut hash = Sha256::new();
+        hash.update(tolerance.to_le_bytes());
+        hash.update(bytes);
+        Ok(Some(Self {
+            name: path_name(path),
+            content,
+            tolerance,
+            hash: hash.finalize().into(),
+        }))
+    }
+
+    /// The shader, if it is one.
+    pub(super) fn shader(&self) -> Option<(&Shader, &Checked)> {
+        match &self.content {
+            Content::Shader(shader, checked) => Some((shader, checked)),
+            Content::Image(..) => None,
+        }
+    }
+
+    /// The image, if it is one.
+    pub(super) fn image(&self) -> Option<&Image> {
+        match &self.content {
+            Content::Image(image, _) => Some(image),
+            Content::Shader(..) => None,
+        }
+    }
+
+    /// Gives the frame the size of an image.
+    ///
+    /// # Errors
+    /// If `--size` gives another one.
+    pub(super) fn resize(&self, frame: &mut Frame, size: Option<[u32; 2]>) -> Result<(), String> {
+        let Some(image) = self.image() else {
+            return Ok(());
+        };
+        if let Some([w, h]) = size.filter(|&size| size != image.size()) {
+            let ([width, height], name) = (image.size(), &self.name);
+            return Err(format!(
+                "{name} has {width}×{height} pixels, and --size is {w}x{h}; only images of equal size can be \
+                 compared\nhelp: leave --size out"
+            ));
+        }
+        frame.size = image.size();
+        Ok(())
+    }
+
+    /// Renders the reference in a frame, which has the size of an image; prints what is wrong with it.
+    ///
+    /// # Errors
+    /// Shaders cannot be compared with it.
+    pub(super) fn expected(
+        &self,
+        frame: &Frame,
+        timeout: Duration,
+        terminal: &Terminal,
+    ) -> Result<Expected, ()> {
+        match &self.content {
+            Content::Image(image, quantization) => {
+                let image = ImageReference::new(image.clone(), *quantization, self.tolerance);
+                Ok(Expected::Image(image))
+            }
+            Content::Shader(shader, checked) => self.evaluated(shader, checked, frame, timeout, terminal),
+        }
+    }
+
+    /// Evaluates the shader, and reports what is undefined in it.
+    fn evaluated(
+        &self,
+        shader: &Shader,
+        checked: &Checked,
+        frame: &Frame,
+        timeout: Duration,
+        terminal: &Terminal,
+    ) -> Result<Expected, ()> {
+        let name = &self.name;
+        let spinner = terminal.spinner(name);
+        let evaluated = ShaderReference::new(checked, &shader.lints, frame, self.tolerance, timeout);
+        spinner.finish_and_clear();
+        let (reference, findings) = evaluated.map_err(|failure| {
+            let position = report::failure_position(&failure, &shader.files);
+            terminal.error(format_args!(
+                "the reference {name} cannot be evaluated: {failure}{position}; no shader was checked"
+            ));
+        })?;
+        terminal.diagnostics(&shader.lints.warnings, &shader.files);
+        terminal.diagnostics(&unbound(checked, &shader.lints, frame), &shader.files);
+        terminal.diagnostics(&findings.notes, &shader.files);
+        let undefined = findings.undefined;
+        let share = format!(
+            "the reference {name} has no defined color in {} of {} pixels ({:.1} %)",
+            grouped(undefined.count),
+            grouped(undefined.of),
+            100.0 * undefined.ratio()
+        );
+        if undefined.ratio() > MAX_UNDEFINED {
+            terminal.error(format_args!(
+                "{share}; no shader was checked\nhelp: correct the reference, or check another frame"
+            ));
+            return Err(());
+        }
+        if undefined.count > 0 {
+            terminal.warn(format_args!("{share}; they are left out of the comparison"));
+        }
+        Ok(Expected::Shader(Box::new(reference)))
+    }
+}
+
+/// Reads a shader or an image, by its extension, and the bytes that identify its content.
+fn read(
+    path: &Path,
+    language: &LanguageArgs,
+    timeout: Duration,
+    terminal: &Terminal,
+) -> Result<(Content, Vec<u8>), ()> {
+    let name = path_name(path);
+    let extension = path.extension().and_then(OsStr::to_str).map(str::to_lowercase);
+    let quantization = match extension.as_deref() {
+        _ if path.is_dir() => {
+            terminal.error(format_args!(
+                "{name} is a folder; `--reference` takes a single shader or an image"
+            ));
+            return Err(());
+        }
+        Some("toml") => {
+            terminal.error(format_args!(
+                "{name} is a scene\nhelp: name it with --scene instead of --reference"
+            ));
+            return Err(());
+        }
+        Some("json") => {
+            terminal.error(format_args!(
+                "{name} is a project of several passes; `--reference` takes a single shader or an image"
+            ));
+            return Err(());
+        }
+        Some("png") => Some(Quantization::EightBit),
+        Some("exr") => Some(Quantization::Float),
+        Some("jpg" | "jpeg" | "gif" | "bmp" | "webp" | "tga" | "tif" | "tiff" | "hdr") => {
+            terminal.error(format_args!(
+                "{name}: images are read from .png and .exr files only"
+            ));
+            return Err(());
+        }
+        _ => None,
+    };
+    if let Some(quantization) = quantization {
+        let image = image::read(path).map_err(|error| terminal.error(error))?;
+        let bytes = std::fs::read(path).map_err(|error| terminal.error(format_args!("{name}: {error}")))?;
+        return Ok((Content::Image(image, quantization), bytes));
+    }
+    let input = Input {
+        source: InputSource::File(path.to_owned()),
+        relative: path.into(),
+        folder: None,
+    };
+    let shader = Shader::load(&Ok(input), language, Deadline::after(timeout));
+    match &shader.checked {
+        Ok(checked) => {
+            let bytes = shader.text(checked).as_bytes().to_vec();
+            let checked = Box::new(checked.clone());
+            Ok((Content::Shader(Box::new(shader), checked), bytes))
+        }
+        Err(Unusable::Invalid(diagnostics)) => {
+            terminal.diagnostics(diagnostics, &shader.files);
+            terminal.error(format_args!(
+                "the reference {name} is invalid; no shader was checked"
+            ));
+            Err(())
+        }
+        Err(Unusable::Unreadable(error)) => {
+            terminal.error(error);
+            Err(())
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! What shaders are compared with in one frame: a scene, another shader or an image. Its results are cached
+//! from one shader to the next.
+
+mod bands;
+mod image;
+mod scene;
+mod shader;
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use toyproof_eval as eval;
+use toyproof_glsl::Checked;
+use toyproof_image::Frame;
+use toyproof_scene::Scene;
+use toyproof_tracer::{ColorRange, EpsilonSet, Tracer};
+
+pub(crate) use self::bands::ReferenceBand;
+pub use self::image::{ImageReference, Quantization};
+pub(crate) use self::scene::SceneBand;
+pub use self::scene::SceneReference;
+pub use self::shader::{DEFAULT_TOLERANCE, ReferenceFindings, ShaderReference};
+use crate::compare::{EXACT_TOLERANCE, SEEN};
+
+/// The number type whose rounding is simulated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum NumberType {
+    /// In f64.
+    Double,
+    /// In f32.
+    Single,
+}
+
+/// What shaders are compared with in one frame. Results are computed on first use, from any thread: the
+/// reference of many shaders is rendered once, unless it is too large for the cache.
+#[derive(Debug)]
+pub enum Expected {
+    /// A scene, which the tracer renders.
+    Scene(Box<SceneReference>),
+    /// A shader, evaluated in f64.
+    Shader(Box<ShaderReference>),
+    /// An image, of which nothing else is known.
+    Image(ImageReference),
+}
+
+/// The kind of an [`Expected`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ReferenceKind {
+    /// A scene.
+    Scene,
+    /// A shader.
+    Shader,
+    /// An image.
+    Image,
+}
+
+impl Expected {
+    /// Creates the reference of a scene at the time and in the size of the frame.
+    #[must_use]
+    pub fn of_scene(scene: Scene, frame: &Frame) -> Self {
+        Self::Scene(Box::new(SceneReference::new(scene, frame)))
+    }
+
+    /// The kind.
+    #[must_use]
+    pub fn kind(&self) -> ReferenceKind {
+        match self {
+            Self::Scene(_) => ReferenceKind::Scene,
+            Self::Shader(_) => ReferenceKind::Shader,
+            Self::Image(_) => ReferenceKind::Image,
+        }
+    }
+
+    /// The scene, if it is one.
+    #[must_use]
+    pub fn scene(&self) -> Option<&Scene> {
+        self.as_scene().map(SceneReference::scene)
+    }
+
+    pub(crate) fn as_scene(&self) -> Option<&SceneReference> {
+        match self {
+            Self::Scene(scene) => Some(scene),
+            Self::Shader(_) | Self::Image(_) => None,
+        }
+    }
+
+    /// The tracer of the scene, if it is one.
+    pub(crate) fn tracer(&self) -> Option<&Tracer<f64>> {
+        self.as_scene().map(SceneReference::tracer)
+    }
+
+    /// The shader, if it is one.
+    pub(crate) fn shader(&self) -> Option<&Checked> {
+        match self {
+            Self::Shader(shader) => Some(shader.checked()),
+            Self::Scene(_) | Self::Image(_) => None,
+        }
+    }
+
+    /// The reference in another frame; none if it is an image, or cannot be rendered there.
+    pub(crate) fn in_frame(&self, frame: &Frame) -> Option<Self> {
+        match self {
+            Self::Scene(scene) => Some(Self::of_scene(scene.scene().clone(), frame)),
+            Self::Shader(shader) => Some(Self::Shader(Box::new(shader.in_frame(frame)?))),
+            Self::Image(_) => None,
+        }
+    }
+
+    /// The approximate memory of the cached results, in bytes.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        match self {
+            Self::Scene(scene) => scene.bytes(),
+            Self::Shader(shader) => shader.bytes(),
+            Self::Image(image) => image.bytes(),
+        }
+    }
+
+    /// The largest difference of a component of colors that agree.
+    #[must_use]
+    pub fn tolerance(&self) -> f64 {
+        match self {
+            Self::Scene(_) => EXACT_TOLERANCE,
+            Self::Shader(shader) => shader.tolerance(),
+            Self::Image(image) => image.tolerance(),
+        }
+    }
+
+    /// The tolerance of images in this number type.
+    fn tolerance_in(&self, number_type: NumberType) -> f64 {
+        match number_type {
+            NumberType::Double => self.tolerance(),
+            NumberType::Single => SEEN.max(self.tolerance()),
+        }
+    }
+
+    /// Returns a band of the reference. Callers block while another thread renders it, so no rayon thread may
+    /// call this.
+    ///
+    /// # Errors
+    /// If a shader that is too large for the cache cannot be evaluated again.
+    pub(crate) fn rows(&self, rows: &Range<u32>) -> Result<Arc<ReferenceBand>, eval::Failure> {
+        match self {
+            Self::Scene(scene) => Ok(scene.rows(rows)),
+            Self::Shader(shader) => shader.rows(rows),
+            Self::Image(image) => Ok(image.rows(rows)),
+        }
+    }
+
+    /// The color of a pixel; NaN where it is not known.
+    pub(crate) fn pixel(&self, x: u32, y: u32) -> [f64; 3] {
+        match self {
+            Self::Scene(scene) => scene.tracer().pixel(x, y),
+            Self::Shader(shader) => shader.pixel(x, y),
+            Self::Image(image) => image.pixel(x, y),
+        }
+    }
+
+    /// The accepted colors of a pixel: others agree if they are within [`EXACT_TOLERANCE`] of these.
+    pub(crate) fn color_range(&self, x: u32, y: u32) -> ColorRange {
+        match self {
+            Self::Scene(scene) => scene.color_range(x, y, EpsilonSet::Alike),
+            Self::Shader(_) | Self::Image(_) => {
+                let color = self.pixel(x, y);
+                let beyond = self.tolerance() - EXACT_TOLERANCE;
+                ColorRange {
+                    low: color.map(|part| part - beyond),
+                    high: color.map(|part| part + beyond),
+                }
+            }
+        }
+    }
+
+    /// The number of samples of a pixel, as far as it is known: a shader takes any number.
+    pub(crate) fn samples(&self) -> u32 {
+        self.tracer().map_or(1, Tracer::samples)
+    }
+
+    /// Whether the image depends on the time.
+    pub(crate) fn is_animated(&self) -> bool {
+        match self {
+            Self::Scene(scene) => !scene.scene().motions.is_empty(),
+            Self::Shader(shader) => shader.reads_time(),
+            Self::Image(_) => false,
+        }
+    }
+
+    /// Of the `wanted` pixels of some rows, those in which the reference itself changes color by rounding in
+    /// this number type, whatever a shader's formulas.
+    pub(crate) fn tied(&self, rows: &Range<u32>, wanted: &[bool], number_type: NumberType) -> Vec<bool> {
+        match self {
+            Self::Scene(scene) => scene.tied(rows, wanted, number_type),
+            Self::Shader(shader) => shader.tied(rows, wanted, number_type, self.tolerance_in(number_type)),
+            Self::Image(_) => vec![false; wanted.len()],
+        }
+    }
+}

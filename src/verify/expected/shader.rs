@@ -1,0 +1,203 @@
+//! A shader as reference: evaluated in f64 once for all shaders that are compared with it.
+
+use std::ops::Range;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+use toyproof_diagnostic::Diagnostic;
+use toyproof_eval::{self as eval, Observations, Places, Program, Seed, Settings, UndefinedPolicy};
+use toyproof_glsl::Checked;
+use toyproof_glsl::tree::{ExprKind, Input, VariableKind};
+use toyproof_image::Frame;
+use toyproof_lint::Lints;
+
+use super::NumberType;
+use super::bands::{Bands, ReferenceBand};
+use crate::compare::changed_by_rounding;
+use crate::cpu::Evaluator;
+use crate::decide::Share;
+use crate::notes::{self, NotFinite};
+use crate::{EVALUATOR_TIME_FACTOR, TOTAL_TIME_FACTOR};
+
+/// The default tolerance of colors: half of an 8-bit level.
+pub const DEFAULT_TOLERANCE: f64 = 0.5 / 255.0;
+
+/// A shader that others are compared with, in one frame.
+#[derive(Debug)]
+pub struct ShaderReference {
+    program: Arc<Program>,
+    frame: Frame,
+    tolerance: f64,
+    timeout: Duration,
+    bands: Bands,
+}
+
+/// What the evaluation of a reference shader showed.
+#[derive(Debug)]
+pub struct ReferenceFindings {
+    /// Undefined operations, uninitialized reads and colors that are not finite, with their lines.
+    pub notes: Vec<Diagnostic>,
+    /// The pixels without a defined color: they depend on undefined behavior, or are NaN.
+    pub undefined: Share,
+}
+
+impl ShaderReference {
+    /// Evaluates a shader in a frame. Colors agree with it if no component differs by more than `tolerance`,
+    /// in [0, 1]; `timeout` is the time limit of a shader's image.
+    ///
+    /// # Errors
+    /// If the shader cannot be evaluated in time.
+    pub fn new(
+        checked: &Checked,
+        lints: &Lints,
+        frame: &Frame,
+        tolerance: f64,
+        timeout: Duration,
+    ) -> Result<(Self, ReferenceFindings), eval::Failure> {
+        let program = Arc::new(Program::within(checked, timeout * EVALUATOR_TIME_FACTOR)?);
+        Self::evaluated(program, lints, frame, tolerance, timeout)
+    }
+
+    /// The same shader in another frame; none if it cannot be evaluated there.
+    pub(super) fn in_frame(&self, frame: &Frame) -> Option<Self> {
+        let program = Arc::clone(&self.program);
+        let lints = Lints::default();
+        let evaluated = Self::evaluated(program, &lints, frame, self.tolerance, self.timeout);
+        evaluated.ok().map(|(reference, _)| reference)
+    }
+
+    fn evaluated(
+        program: Arc<Program>,
+        lints: &Lints,
+        frame: &Frame,
+        tolerance: f64,
+        timeout: Duration,
+    ) -> Result<(Self, ReferenceFindings), eval::Failure> {
+        let reference = Self {
+            bands: Bands::new(frame),
+            program,
+            frame: frame.clone(),
+            tolerance,
+            timeout,
+        };
+        let findings = reference.evaluate(lints)?;
+        Ok((reference, findings))
+    }
+
+    /// Evaluates all bands once.
+    fn evaluate(&self, lints: &Lints) -> Result<ReferenceFindings, eval::Failure> {
+        let mut observed = Observations::default();
+        let mut not_finite = NotFinite::default();
+        let mut undefined = Share { count: 0, of: 0 };
+        for rows in self.frame.bands() {
+            let (band, observed_there) = self.render(&rows)?;
+            not_finite.record(&band.image, rows.start);
+            undefined.of += band.image.pixels().len() as u64;
+            undefined.count += band.undefined.iter().filter(|&&undefined| undefined).count() as u64;
+            observed.merge(&observed_there);
+            self.bands.get_or_render(&rows, || band);
+        }
+        let mut notes = notes::notes(&observed, undefined.count > 0, lints);
+        let deadline = Instant::now() + self.timeout;
+        notes.extend(not_finite.diagnostic(&self.program, &self.frame, deadline));
+        notes.retain(|note| !lints.allows(note));
+        Ok(ReferenceFindings { notes, undefined })
+    }
+
+    fn render(&self, rows: &Range<u32>) -> Result<(ReferenceBand, Observations), eval::Failure> {
+        let evaluated = self.with_evaluator(|evaluator| evaluator.double(rows))?;
+        let mut undefined = evaluated.undefined;
+        for (undefined, color) in undefined.iter_mut().zip(evaluated.image.pixels()) {
+            *undefined |= color[..3].iter().any(|part| part.is_nan());
+        }
+        let band = ReferenceBand {
+            image: evaluated.image,
+            undefined,
+        };
+        Ok((band, evaluated.observed))
+    }
+
+    fn with_evaluator<T>(&self, work: impl FnOnce(&Evaluator) -> T) -> T {
+        let limits = [self.timeout * EVALUATOR_TIME_FACTOR; 2];
+        let deadline = Instant::now() + self.timeout * TOTAL_TIME_FACTOR;
+        let stop = AtomicBool::new(false);
+        work(&Evaluator::new(
+            &self.program,
+            &self.frame,
+            limits,
+            deadline,
+            &stop,
+        ))
+    }
+
+    /// The shader.
+    pub(super) fn checked(&self) -> &Checked {
+        self.program.checked()
+    }
+
+    pub(super) fn reads_time(&self) -> bool {
+        let tree = &self.checked().tree;
+        let is_time = |kind: &ExprKind| matches!(kind, ExprKind::Variable(variable) if tree[*variable].kind == VariableKind::Input(Input::Time));
+        tree.exprs.iter().any(|(_, expr)| is_time(&expr.kind))
+    }
+
+    pub(super) fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
+    pub(super) fn bytes(&self) -> usize {
+        self.bands.bytes()
+    }
+
+    pub(super) fn rows(&self, rows: &Range<u32>) -> Result<Arc<ReferenceBand>, eval::Failure> {
+        match self.bands.get(rows) {
+            Some(band) => Ok(band),
+            None => self.render(rows).map(|(band, _)| Arc::new(band)),
+        }
+    }
+
+    pub(super) fn pixel(&self, x: u32, y: u32) -> [f64; 3] {
+        // Derivatives need the whole quad.
+        let along = |at: u32| {
+            [at / 2 * 2, at / 2 * 2 + 1]
+                .map(|at| f64::from(at) + 0.5)
+                .to_vec()
+        };
+        let quad = Places {
+            columns: along(x),
+            rows: along(y),
+        };
+        let settings = Settings::<f64> {
+            undefined: UndefinedPolicy::Plain,
+            deadline: Some(Instant::now() + self.timeout),
+            ..Settings::default()
+        };
+        let evaluated = self.program.at(&self.frame, &quad, &settings);
+        evaluated.map_or([f64::NAN; 3], |image| {
+            let [r, g, b, _] = image.get(x % 2, y % 2);
+            [r, g, b].map(f64::from)
+        })
+    }
+
+    pub(super) fn tied(
+        &self,
+        rows: &Range<u32>,
+        wanted: &[bool],
+        number_type: NumberType,
+        tolerance: f64,
+    ) -> Vec<bool> {
+        let band = match self.rows(rows) {
+            Ok(band) if wanted.contains(&true) => band,
+            _ => return vec![false; wanted.len()],
+        };
+        let seed = match number_type {
+            NumberType::Double => Seed::double,
+            NumberType::Single => Seed::single,
+        };
+        self.with_evaluator(|evaluator| {
+            let perturbed = |number, wanted: &[bool]| evaluator.perturbed(rows, seed(number), wanted);
+            changed_by_rounding(&band.image, wanted, tolerance, perturbed)
+        })
+    }
+}
