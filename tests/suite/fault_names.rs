@@ -3,9 +3,9 @@
 use toyproof::verify::Verdict;
 use toyproof::verify::mistake::Hypotheses;
 
-use crate::equivalent_rewrites::rewrites;
 use crate::fair_verdicts::glass;
 use crate::support::faults::{self, faults, hypotheses, name, named_faults};
+use crate::support::rewrites::rewrites;
 use crate::support::{
     EVERY_EXERCISE, Exercise, REFLECTIONS, SPHERE, WHITTED, check_and_name_on_cpu, edit, edited, try_edit,
 };

@@ -15,6 +15,7 @@
 pub mod devtools;
 pub mod exercises;
 pub mod faults;
+pub mod rewrites;
 pub mod wait;
 
 use std::env;
@@ -27,13 +28,13 @@ use toyproof::glsl::{self, Checked};
 use toyproof::gpu::Worker;
 use toyproof::image::{Frame, Image};
 use toyproof::lint::{Lints, lint};
-use toyproof::scene::{self, FrameTime, Scene};
+use toyproof::scene::{self, FrameTime, Scene, export};
 use toyproof::tracer::Tracer;
 use toyproof::translate::FloatMode;
 use toyproof::verify::compare::CheckSummary;
 use toyproof::verify::mistake::Hypotheses;
 use toyproof::verify::repair::{DEFAULT_BUDGET, SearchOptions};
-use toyproof::verify::{Case, Expected, Findings, verify};
+use toyproof::verify::{Case, Expected, Findings, ShaderReference, verify};
 
 /// A shader of the course and its scene.
 #[derive(Debug, Clone, Copy)]
@@ -253,6 +254,28 @@ pub fn check_and_repair(shader: &str, exercise: &Exercise) -> Findings {
     check_with(None, Some(search), None, shader, exercise)
 }
 
+/// A reference shader for an exercise: the one that renders its scene, as `toyproof export` writes it.
+///
+/// # Panics
+/// If it cannot be evaluated.
+pub fn exported_reference(exercise: &Exercise, tolerance: f64) -> Expected {
+    let text = export::shader(&scene(exercise)).expect("every scene of the course can be exported");
+    let (checked, lints) = linted(&text);
+    let frame = frame(exercise, exercise.size);
+    let timeout = Duration::from_secs(60);
+    let (reference, _) = ShaderReference::new(&checked, &lints, &frame, tolerance, timeout)
+        .unwrap_or_else(|failure| panic!("{failure}\n{text}"));
+    Expected::Shader(Box::new(reference))
+}
+
+/// Checks a shader against a reference in the exercise's frame, by the evaluator alone.
+///
+/// # Panics
+/// Like [`check_exercise`].
+pub fn check_reference(expected: &Expected, shader: &str, exercise: &Exercise) -> Findings {
+    check_expected(expected, None, None, None, shader, exercise)
+}
+
 fn check_against(
     hypotheses: Option<&Hypotheses>,
     worker: Option<&mut Worker>,
@@ -270,11 +293,24 @@ fn check_with(
     exercise: &Exercise,
 ) -> Findings {
     let frame = frame(exercise, exercise.size);
+    let expected = Expected::of_scene(scene(exercise), &frame);
+    check_expected(&expected, hypotheses, search, worker, shader, exercise)
+}
+
+fn check_expected(
+    expected: &Expected,
+    hypotheses: Option<&Hypotheses>,
+    search: Option<SearchOptions>,
+    worker: Option<&mut Worker>,
+    shader: &str,
+    exercise: &Exercise,
+) -> Findings {
+    let frame = frame(exercise, exercise.size);
     let (checked, lints) = linted(shader);
     let case = Case {
         checked: &checked,
         lints: &lints,
-        expected: Some(&Expected::of_scene(scene(exercise), &frame)),
+        expected: Some(expected),
         hypotheses,
         search,
         frame: &frame,

@@ -5,6 +5,7 @@
 mod corpus;
 mod faults;
 mod page;
+mod references;
 mod repairs;
 mod sensitivity;
 
@@ -70,6 +71,15 @@ enum Task {
         #[arg(long)]
         names: bool,
     },
+    /// Print the verdicts that change where the exported shader of a scene is the reference instead of the scene
+    References {
+        /// Only exercises whose names contain this
+        #[arg(default_value = "")]
+        exercise: String,
+        /// The tolerance, in 8-bit levels
+        #[arg(long, default_value_t = 255.0 * toyproof::verify::DEFAULT_TOLERANCE)]
+        tolerance: f64,
+    },
     /// Run shaders: the process that other tasks start
     #[command(hide = true)]
     Worker,
@@ -90,6 +100,7 @@ fn main() -> ExitCode {
             search,
             names,
         } => repairs::measure(manifest.as_deref(), &only, search, names),
+        Task::References { exercise, tolerance } => references::print_disagreements(&exercise, tolerance),
         Task::Worker => {
             toyproof::gpu::serve(io::stdin().lock(), io::stdout().lock()).expect("the parent listens");
         }

@@ -5,7 +5,9 @@ use toyproof::eval::{Number, Program, RandomRounding, Seed, Settings};
 use toyproof::image::{Frame, Image};
 use toyproof::scene::{FrameTime, Point, Projection, Scene, Shape};
 use toyproof::tracer::{ColorRange, EpsilonFamily, EpsilonSet, RayEpsilons, Tracer};
-use toyproof::verify::compare::{CheckSummary, Mixed, PERTURBATIONS, Reference, algorithm};
+use toyproof::verify::compare::{
+    CheckSummary, EXACT_TOLERANCE, EpsilonColors, Mixed, PERTURBATIONS, Reference, algorithm,
+};
 use toyproof::verify::{CheckEvidence, Checks, Evidence, Verdict, decide};
 use toyproof_testkit::{EXERCISES, Exercise, checked, frame, scene};
 
@@ -123,6 +125,23 @@ struct Traced {
 }
 
 impl Reference for Traced {
+    fn tolerance(&self) -> f64 {
+        EXACT_TOLERANCE
+    }
+    fn epsilons(&self) -> Option<&dyn EpsilonColors> {
+        Some(self)
+    }
+    /// The exercises take no derivatives.
+    fn is_across_edge(&self, _: u32, _: u32) -> bool {
+        false
+    }
+    /// No edge of an exercise passes through the center of a pixel.
+    fn tied(&self, wanted: &[bool]) -> Vec<bool> {
+        vec![false; wanted.len()]
+    }
+}
+
+impl EpsilonColors for Traced {
     fn color_range(&self, x: u32, y: u32, styles: EpsilonSet) -> ColorRange {
         self.tracer.color_range(x, y, styles)
     }
@@ -134,14 +153,6 @@ impl Reference for Traced {
     }
     fn samples(&self) -> u32 {
         self.tracer.samples()
-    }
-    /// The exercises take no derivatives.
-    fn is_across_edge(&self, _: u32, _: u32) -> bool {
-        false
-    }
-    /// No edge of an exercise passes through the center of a pixel.
-    fn is_tied(&self, _: u32, _: u32) -> bool {
-        false
     }
 }
 
