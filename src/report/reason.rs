@@ -181,15 +181,16 @@ fn agrees(differing: Share, excluded: u64, tied: u64) -> Statement {
     }
 }
 
-fn by_means(pixels: Share, sampler: Sampler, means: Means) -> Statement {
-    let other_numbers = format!(
-        "{} because the shader does not use the random numbers of the scene's sampler, `{}`; \
-         means were compared instead",
+fn by_means(pixels: Share, sampler: Option<Sampler>, means: Means) -> Statement {
+    let whose = sampler.map_or("reference", |_| "scene's sampler");
+    let own_name = sampler.map_or_else(String::new, |sampler| format!(", `{}`", sampler.name()));
+    let own_numbers = format!(
+        "{} because the shader does not use the random numbers of the {whose}{own_name}",
         of_all(pixels, ["differs", "differ"]),
-        sampler.name()
     );
-    let noise =
-        |variance: f64| format!("its noise has {variance:.1} times the variance of the scene's sampler");
+    let other_numbers = format!("{own_numbers}; means were compared instead");
+    let noise = |variance: f64| format!("its noise has {variance:.1} times the variance of the {whose}");
+    let source = sampler.map_or("the reference's random numbers", |_| "the scene's sampler");
     match means {
         Means::Different {
             at: [x, y],
@@ -216,7 +217,9 @@ fn by_means(pixels: Share, sampler: Sampler, means: Means) -> Statement {
         Means::Correlated => Statement::new(
             "the random numbers of neighboring pixels are correlated, so means cannot be compared",
         )
-        .detail("seed the random numbers of each pixel from its coordinates, or use the scene's sampler")
+        .detail(format!(
+            "seed the random numbers of each pixel from its coordinates, or use {source}"
+        ))
         .detail(other_numbers),
         Means::TooNoisy { variance } => {
             Statement::new("the image is too noisy to compare means with the reference")
@@ -224,9 +227,14 @@ fn by_means(pixels: Share, sampler: Sampler, means: Means) -> Statement {
                 .detail("sample the lights directly, or take more samples per pixel")
                 .detail(other_numbers)
         }
+        Means::UnknownNoise => {
+            Statement::new("the shader is stochastic, and means cannot be compared with the reference")
+                .detail("either the reference or the shader cannot be rendered with other random numbers")
+                .detail(own_numbers)
+        }
         Means::Underpowered => {
             Statement::new("there are too few samples or pixels to compare means with the reference")
-                .detail("check a larger image, or use the scene's sampler")
+                .detail(format!("check a larger image, or use {source}"))
                 .detail(other_numbers)
         }
         Means::Same {

@@ -126,20 +126,20 @@ pub struct CheckEvidence {
     pub self_intersection: Option<Share>,
 }
 
-/// A shader that differs from a stochastic scene only in pixels that depend on random numbers.
+/// A shader that differs from a stochastic reference only in pixels that depend on random numbers.
 #[derive(Debug, Clone)]
 pub struct OtherRandomNumbers {
-    /// The scene's sampler.
-    pub sampler: Sampler,
-    /// The number of samples per pixel of the scene.
-    pub samples: u32,
+    /// The scene's sampler; none for other references.
+    pub sampler: Option<Sampler>,
+    /// The number of samples per pixel of the reference, if it is known.
+    pub samples: Option<u32>,
     /// The comparison of the means.
     pub means: MeanComparison,
     /// The checks without the pixels that depend on random numbers.
     pub other_pixels: Checks,
 }
 
-/// How the means of a shader and of its scene were compared.
+/// How the means of a shader and of its reference were compared.
 #[derive(Debug, Clone)]
 pub enum MeanComparison {
     /// By replicates: evaluations of the shader with other random numbers.
@@ -158,6 +158,8 @@ pub enum MeanComparison {
         /// The number of pixels that were compared.
         pixels: u64,
     },
+    /// Not at all: the reference, or the shader, cannot be rendered with other random numbers.
+    UnknownNoise,
 }
 
 /// A number of pixels.
@@ -230,12 +232,12 @@ pub enum Reason {
         /// edge of a scene passes through the sample.
         tied: u64,
     },
-    /// The shader differs from its scene only by its random numbers.
+    /// The shader differs from its reference only by its random numbers.
     OtherRandomNumbers {
         /// The pixels that differ.
         differing: Share,
-        /// The scene's sampler.
-        sampler: Sampler,
+        /// The scene's sampler; none for other references.
+        sampler: Option<Sampler>,
         /// What the comparison of the means shows.
         means: Means,
     },
@@ -249,7 +251,7 @@ impl Reason {
     }
 }
 
-/// What the comparison of the means of a shader and its scene shows.
+/// What the comparison of the means of a shader and its reference shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Means {
     /// They differ: `wrong`.
@@ -277,6 +279,8 @@ pub enum Means {
     },
     /// The samples or pixels are too few: `inconclusive`.
     Underpowered,
+    /// The reference, or the shader, cannot be rendered with other random numbers: `inconclusive`.
+    UnknownNoise,
     /// They agree: `correct`.
     Same {
         /// The upper bound of the difference over the image.
@@ -400,6 +404,7 @@ fn by_means(random: &OtherRandomNumbers, checks: &Checks) -> (Verdict, Reason) {
             pixels,
             fewer_samples,
         } => by_replicates(&test, pixels, fewer_samples, random.samples),
+        MeanComparison::UnknownNoise => (Verdict::Inconclusive, Means::UnknownNoise),
         MeanComparison::OneImage { test, pixels } => match test {
             MeanTest::Different(at) => {
                 let deviations = None;
@@ -439,7 +444,7 @@ fn by_replicates(
     test: &ReplicateTest,
     pixels: u64,
     fewer_samples: Option<u32>,
-    samples: u32,
+    samples: Option<u32>,
 ) -> (Verdict, Means) {
     let &ReplicateTest {
         bias: (deviations, at),
@@ -461,12 +466,8 @@ fn by_replicates(
         (Verdict::Inconclusive, Means::TooNoisy { variance })
     } else if !is_precise {
         (Verdict::Inconclusive, Means::Underpowered)
-    } else if let Some(own) = fewer_samples {
-        let means = Means::FewerSamples {
-            own,
-            scene: samples,
-            variance,
-        };
+    } else if let (Some(own), Some(scene)) = (fewer_samples, samples) {
+        let means = Means::FewerSamples { own, scene, variance };
         (Verdict::Wrong, means)
     } else {
         let means = Means::Same {
@@ -586,8 +587,8 @@ mod tests {
         decided(CheckEvidence {
             checks: checks([5_000, 0, 0], 0, SAME),
             random_numbers: Some(OtherRandomNumbers {
-                sampler: Sampler::Sobol,
-                samples: 16,
+                sampler: Some(Sampler::Sobol),
+                samples: Some(16),
                 means,
                 other_pixels,
             }),

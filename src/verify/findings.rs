@@ -13,7 +13,7 @@ use crate::decide::{CheckEvidence, Checks, Evidence, MAX_UNSTABLE, Reason, Share
 use crate::mistake::Diagnosis;
 use crate::repair::{self, NoisyImage, SearchResult};
 use crate::reseed::Reseeding;
-use crate::stochastic::SampledRows;
+use crate::stochastic::Stochastic;
 use crate::{Case, Expected, ReferenceKind, acne, notes};
 
 /// The largest number of pairs of mistakes that are searched for in a wrong image: a few seconds' work.
@@ -119,14 +119,14 @@ impl Findings {
         (self.verdict, self.reason) = decide(evidence);
     }
 
-    /// Decides from the checks, and searches for what explains a difference. `sampled_rows` are there if the
-    /// scene is stochastic.
+    /// Decides from the checks, and searches for what explains a difference. `stochastic` is there if
+    /// the reference may be.
     pub(super) fn explain(
         &mut self,
         case: &Case,
         program: &Program,
         deadline: Instant,
-        sampled_rows: Option<&SampledRows>,
+        stochastic: Option<&Stochastic>,
     ) {
         let summary = |check: &Option<CheckResult>| check.as_ref().map(|check| check.summary.clone());
         let mut evidence = CheckEvidence {
@@ -141,12 +141,12 @@ impl Findings {
         // A mistake that explains every pixel is reported whatever random numbers the shader uses. Pairs are
         // searched for only if the comparison of random pixels reaches no verdict: with other random numbers,
         // two mistakes do not render the image of the pair.
-        self.search_for_mistake(case, program, if sampled_rows.is_some() { 0 } else { MAX_PAIRS });
+        self.search_for_mistake(case, program, if stochastic.is_some() { 0 } else { MAX_PAIRS });
         let mut reseeding = None;
         if self.is_unexplained()
-            && let Some(sampled_rows) = sampled_rows
+            && let Some(stochastic) = stochastic
         {
-            reseeding = self.compare_means(&mut evidence, sampled_rows, case, program, deadline);
+            reseeding = self.compare_means(&mut evidence, stochastic, case, program, deadline);
         }
         if self.is_unexplained()
             && let Some(tracer) = case.expected.and_then(Expected::tracer)
@@ -158,13 +158,13 @@ impl Findings {
                 self.mistake = Some(Diagnosis::of(acne::mistake()));
             }
         }
-        if sampled_rows.is_some() && evidence.random_numbers.is_none() {
+        if stochastic.is_some() && evidence.random_numbers.is_none() {
             self.search_for_mistake(case, program, MAX_PAIRS);
         }
         if evidence.random_numbers.is_none() {
             self.explain_few_pixels(case, program);
         }
-        let noisy = sampled_rows.zip(reseeding);
+        let noisy = stochastic.zip(reseeding);
         self.search_for_repair(case, program, noisy, deadline);
         self.notes
             .extend(notes::unbound(case.checked, case.lints, case.frame));
@@ -181,13 +181,13 @@ impl Findings {
     fn compare_means(
         &mut self,
         evidence: &mut CheckEvidence,
-        sampled_rows: &SampledRows,
+        stochastic: &Stochastic,
         case: &Case,
         program: &Program,
         deadline: Instant,
     ) -> Option<Reseeding> {
         let algorithm = self.algorithm.as_ref()?;
-        let compared = sampled_rows.compare_means(algorithm, &evidence.checks, program, case, deadline)?;
+        let compared = stochastic.compare_means(algorithm, &evidence.checks, program, case, deadline)?;
         let precision = self.precision.as_ref();
         evidence.random_numbers = Some(compared.random_numbers);
         (self.verdict, self.reason) = decide(evidence.clone().into());
@@ -197,7 +197,7 @@ impl Findings {
             (self.verdict, &mut evidence.random_numbers, precision)
         {
             random_numbers.other_pixels.precision =
-                Some(sampled_rows.precision_of_others(algorithm, precision));
+                Some(stochastic.precision_of_others(algorithm, precision));
             self.decide(evidence.clone().into());
         }
         if let (Verdict::Wrong, Some(hypotheses), Some(reseeding)) =
@@ -205,7 +205,7 @@ impl Findings {
         {
             let diagnosis = contain(Part::Mistake, || {
                 let pixels =
-                    sampled_rows.noisy_pixels(program, case, reseeding, hypotheses.places(), deadline)?;
+                    stochastic.noisy_pixels(program, case, reseeding, hypotheses.places(), deadline)?;
                 hypotheses.recognize_noisy(&pixels)
             });
             self.mistake = self.contained(diagnosis);
@@ -227,7 +227,7 @@ impl Findings {
         &mut self,
         case: &Case,
         program: &Program,
-        noisy: Option<(&SampledRows, Reseeding)>,
+        noisy: Option<(&Stochastic, Reseeding)>,
         deadline: Instant,
     ) {
         if let (Verdict::Wrong, Some(options), Some(algorithm)) = (self.verdict, case.search, &self.algorithm)

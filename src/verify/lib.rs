@@ -119,6 +119,7 @@ mod on_gpu;
 mod on_gpu;
 pub mod repair;
 mod replicates;
+mod resampled;
 mod reseed;
 mod sample_loops;
 mod session;

@@ -5,7 +5,6 @@ use std::time::Instant;
 use rayon::prelude::*;
 use toyproof_eval::{Places, Program, Settings, UndefinedPolicy};
 use toyproof_image::Image;
-use toyproof_tracer::Tracer;
 
 use super::reseed::{Reseeding, is_deterministic};
 use super::{Case, CheckResult};
@@ -15,30 +14,22 @@ use crate::compare::{
 };
 use crate::decide::MAX_DIFFERING;
 use crate::mistake::NoisyPixel;
-use crate::stochastic::{SELECTION_SETS, differs};
+use crate::resampled::{Estimate, Resampled, differs, mean, pixels, variance};
 
 /// The number of further replicates that estimate the weights of pixels, so that weights are independent of
 /// the values that are compared.
 const WEIGHT_REPLICATES: usize = 4;
 
-/// The halves of the tracer's sets of random numbers that estimate the means.
-const ESTIMATE_HALVES: [std::ops::Range<u32>; 2] = [9..13, 13..17];
-
-/// The largest numbers of samples, of paths and of pixels of a replicate.
-const MAX_SAMPLES: u32 = 1 << 18;
-const MAX_PATHS: u32 = 1 << 17;
-const MAX_PIXELS: u32 = 1 << 15;
-
 /// The largest mean of samples: above it, the inverse of a tone map has no precision left.
 const MAX_SAMPLE_MEAN: f64 = 1e4;
 
-/// The share of the scene's random pixels that must change, or the reseeding had no effect. Where a rare
+/// The share of the reference's random pixels that must change, or the reseeding had no effect. Where a rare
 /// event decides, such as a direction that hits a lamp, most of them do not.
 const MIN_CHANGED_SHARE: f64 = 0.1;
 
 /// The largest ratio of the squared distances from the reference of a shader with other random numbers and
 /// with its own.
-const MAX_DISTANCE_RATIO: f64 = 2.0;
+pub(super) const MAX_DISTANCE_RATIO: f64 = 2.0;
 
 /// A pixel that is the same in all replicates may still be random if it is within this many standard
 /// deviations of its neighbors.
@@ -47,97 +38,60 @@ const MAX_RARE_DEVIATION: f64 = 3.0;
 /// Why a shader cannot be compared by its replicates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Incomparable {
-    /// The shader differs in pixels that are random neither in the scene nor in the shader.
+    /// The shader differs in pixels that are random neither in the reference nor in the shader.
     NotRandom,
-    /// The shader uses the scene's own random numbers, so that its pixels must be the reference's.
-    SceneNumbers,
+    /// The shader uses the reference's own random numbers, so that its pixels must be the reference's.
+    SameNumbers,
+    /// The reference cannot be rendered with other random numbers.
+    UnknownNoise,
     /// No reseeding works for the shader, or the time limit is exceeded.
     NotReseeded,
 }
 
-/// The tracer's estimates for a pixel.
-struct TracedPixel {
-    /// The means of samples of each set in [`SELECTION_SETS`].
-    selection: Vec<[f64; 3]>,
-    halves: [[f64; 3]; 2],
-    /// The variance of one set of samples, estimated from the sets of the halves.
-    variance: [f64; 3],
-}
-
-impl TracedPixel {
-    fn at(tracer: &Tracer<f64>, pixel: [u32; 2]) -> Self {
-        let sets = |sets: std::ops::Range<u32>| -> Vec<[f64; 3]> {
-            sets.map(|set| tracer.resampled_mean(pixel, set)).collect()
-        };
-        let halves = ESTIMATE_HALVES.map(sets);
-        let all = halves.concat();
-        Self {
-            selection: sets(SELECTION_SETS),
-            variance: variance(&all),
-            halves: halves.map(|half| mean(&half)),
-        }
-    }
-
-    fn mean(&self) -> [f64; 3] {
-        mean(&self.halves)
-    }
-
-    /// Whether the pixel's color depends on random numbers.
-    fn differs(&self, tracer: &Tracer<f64>) -> bool {
-        let first = tracer.tone_mapped(self.selection[0]);
-        let mut others = self.selection.iter().chain(&self.halves);
-        others.any(|&other| differs(first, tracer.tone_mapped(other)))
-    }
-}
-
-fn mean(all: &[[f64; 3]]) -> [f64; 3] {
-    [0, 1, 2].map(|i| all.iter().map(|each| each[i]).sum::<f64>() / all.len() as f64)
-}
-
-fn variance(all: &[[f64; 3]]) -> [f64; 3] {
-    let mean = mean(all);
-    [0, 1, 2].map(|i| {
-        let squares = all.iter().map(|each| (each[i] - mean[i]).powi(2));
-        squares.sum::<f64>() / (all.len() - 1) as f64
-    })
-}
-
-/// Compares the replicates of a shader that differs from its scene with the tracer.
+/// Compares the replicates of a shader that differs from its reference with those of the reference.
 ///
 /// # Errors
 /// Returns why the shader cannot be compared this way.
-pub(super) fn compare_with_scene(
+pub(super) fn compare_with(
     program: &Program,
     case: &Case,
-    tracer: &Tracer<f64>,
+    reference: &dyn Resampled,
     algorithm: &CheckResult,
     deadline: Instant,
-) -> Result<SceneComparison, Incomparable> {
+) -> Result<ReferenceComparison, Incomparable> {
     let shader = ReplicatedShader {
         program,
         case,
-        tracer,
-        places: places(case.frame.size, tracer),
+        reference,
+        places: places(case.frame.size, reference),
         deadline,
     };
     let unsalted = shader.unsalted().ok_or(Incomparable::NotReseeded)?;
-    let [columns, rows] = shader.places.pixels();
-    let pixels = rows.iter().flat_map(|&y| columns.iter().map(move |&x| [x, y]));
-    let pixels: Vec<[u32; 2]> = pixels.collect();
-    let traced: Vec<TracedPixel> = pixels
+    let pixels = pixels(&shader.places);
+    let estimates = reference
+        .estimates(&shader.places)
+        .ok_or(Incomparable::UnknownNoise)?;
+    let is_random_in_reference: Vec<bool> = estimates
         .par_iter()
-        .map(|&pixel| TracedPixel::at(tracer, pixel))
+        .map(|estimate| estimate.is_random(reference))
         .collect();
-    let is_random_in_scene: Vec<bool> = traced.par_iter().map(|traced| traced.differs(tracer)).collect();
-    if uses_scene_numbers(tracer, &pixels, &unsalted, &traced) {
-        return Err(Incomparable::SceneNumbers);
+    if uses_reference_numbers(reference, &unsalted, &estimates) {
+        return Err(Incomparable::SameNumbers);
     }
-    let compare =
-        |(reseeding, sets)| shader.compare(reseeding, sets, &pixels, &traced, &is_random_in_scene, algorithm);
+    let compare = |(reseeding, sets)| {
+        shader.compare(
+            reseeding,
+            sets,
+            &pixels,
+            &estimates,
+            &is_random_in_reference,
+            algorithm,
+        )
+    };
     let mut first = None;
     // A salt may make a hash equal in neighboring pixels, where another reseeding does not.
     for reseeding in Reseeding::all() {
-        let Some(sets) = shader.replicates(reseeding, &unsalted, &traced, &is_random_in_scene) else {
+        let Some(sets) = shader.replicates(reseeding, &unsalted, &estimates, &is_random_in_reference) else {
             continue;
         };
         let comparison = compare((reseeding, sets));
@@ -161,17 +115,17 @@ pub(super) fn compare_with_scene(
 }
 
 /// The number of columns and of rows of pixels that are sampled to detect whether a shader is random.
-const RANDOMNESS_GRID: u32 = 32;
+pub(super) const RANDOMNESS_GRID: u32 = 32;
 
 /// The smallest change of a random pixel with other random numbers; moving the pixel by a thousandth of its
 /// size changes it less.
-const MIN_RANDOM_CHANGE: f64 = 20.0 * EXACT_TOLERANCE;
+pub(super) const MIN_RANDOM_CHANGE: f64 = 20.0 * EXACT_TOLERANCE;
 
 /// Whether enough of the differing pixels are random in the shader.
 pub(super) fn is_random(
     program: &Program,
     case: &Case,
-    tracer: &Tracer<f64>,
+    reference: &dyn Resampled,
     algorithm: &CheckResult,
     deadline: Instant,
 ) -> bool {
@@ -179,7 +133,7 @@ pub(super) fn is_random(
     let shader = ReplicatedShader {
         program,
         case,
-        tracer,
+        reference,
         places: Places::spread(size, [RANDOMNESS_GRID; 2]),
         deadline,
     };
@@ -206,7 +160,7 @@ pub(super) fn is_random(
 }
 
 /// The result of a comparison.
-pub(super) struct SceneComparison {
+pub(super) struct ReferenceComparison {
     pub(super) test: ReplicateTest,
     /// The number of pixels that were compared.
     pub(super) pixels: usize,
@@ -217,11 +171,11 @@ pub(super) struct SceneComparison {
 /// The number of sets of random numbers of [`noisy_pixels`].
 pub(super) const MEAN_SETS: usize = 2 * REPLICATES;
 
-/// The means of a shader and of the tracer at other places, each over [`MEAN_SETS`] sets of random numbers.
+/// The means of a shader and of the reference at other places, each over [`MEAN_SETS`] sets of random numbers.
 pub(super) fn noisy_pixels(
     program: &Program,
     case: &Case,
-    tracer: &Tracer<f64>,
+    reference: &dyn Resampled,
     reseeding: Reseeding,
     places: &Places,
     deadline: Instant,
@@ -229,7 +183,7 @@ pub(super) fn noisy_pixels(
     let shader = ReplicatedShader {
         program,
         case,
-        tracer,
+        reference,
         places: places.clone(),
         deadline,
     };
@@ -237,11 +191,15 @@ pub(super) fn noisy_pixels(
     let salted: Option<Vec<Vec<ShaderPixel>>> =
         (1..=count).map(|salt| shader.salted(reseeding, salt)).collect();
     let salted = salted?;
-    let [columns, rows] = places.pixels();
-    let pixels = (0..columns.len() * rows.len()).into_par_iter().map(|at| {
-        let pixel = [columns[at % columns.len()], rows[at / columns.len()]];
-        let own: Vec<_> = salted.iter().map(|set| set[at].tone_mapped).collect();
-        let reference: Vec<_> = (1..=count).map(|set| tracer.resampled(pixel, set)).collect();
+    let expected = reference.sets(places, count)?;
+    let of_pixel =
+        |sets: &[Vec<[f64; 3]>], at: usize| -> Vec<[f64; 3]> { sets.iter().map(|set| set[at]).collect() };
+    let own: Vec<Vec<_>> = salted
+        .iter()
+        .map(|set| set.iter().map(|pixel| pixel.tone_mapped).collect())
+        .collect();
+    let pixels = (0..expected[0].len()).into_par_iter().map(|at| {
+        let (own, reference) = (of_pixel(&own, at), of_pixel(&expected, at));
         let variances = [&own, &reference].map(|all| variance(all));
         NoisyPixel {
             own: mean(&own),
@@ -252,20 +210,14 @@ pub(super) fn noisy_pixels(
     Some(pixels.collect())
 }
 
-/// Whether a shader uses the scene's random numbers.
-fn uses_scene_numbers(
-    tracer: &Tracer<f64>,
-    pixels: &[[u32; 2]],
-    own: &[ShaderPixel],
-    traced: &[TracedPixel],
-) -> bool {
-    let of_each = (0..pixels.len()).into_par_iter().map(|at| {
-        let [x, y] = pixels[at];
-        let reference = tracer.inverse_tone_mapped(tracer.pixel(x, y));
-        let (mean, selected) = (traced[at].mean(), variance(&traced[at].selection));
+/// Whether a shader uses the reference's random numbers.
+fn uses_reference_numbers(reference: &dyn Resampled, own: &[ShaderPixel], estimates: &[Estimate]) -> bool {
+    let of_each = own.par_iter().zip(estimates).map(|(own, estimate)| {
+        let expected = reference.inverse_tone_mapped(estimate.own);
+        let (mean, selected) = (estimate.mean(), variance(&estimate.selection));
         let mut sums = [0.0; 3];
         for i in 0..3 {
-            let [a, b] = [own[at].mean[i] - mean[i], reference[i] - mean[i]];
+            let [a, b] = [own.mean[i] - mean[i], expected[i] - mean[i]];
             let weight = 1.0 / (selected[i] + MIN_STANDARD_DEVIATION * MIN_STANDARD_DEVIATION);
             let terms = [a * a, a * b, b * b].map(|term| if term.is_finite() { weight * term } else { 0.0 });
             (0..3).for_each(|at| sums[at] += terms[at]);
@@ -280,13 +232,8 @@ fn uses_scene_numbers(
 }
 
 /// Pixels spread over an image.
-fn places(size: [u32; 2], tracer: &Tracer<f64>) -> Places {
-    let samples = if tracer.traces_paths() {
-        MAX_PATHS
-    } else {
-        MAX_SAMPLES
-    };
-    let max_pixels = f64::from((samples / tracer.samples()).clamp(1, MAX_PIXELS));
+fn places(size: [u32; 2], reference: &dyn Resampled) -> Places {
+    let max_pixels = f64::from(reference.max_pixels());
     let all = f64::from(size[0]) * f64::from(size[1]);
     let share = (max_pixels / all).sqrt().min(1.0);
     Places::spread(size, size.map(|side| (f64::from(side) * share) as u32))
@@ -305,7 +252,7 @@ struct ShaderPixel {
 struct ReplicatedShader<'a> {
     program: &'a Program,
     case: &'a Case<'a>,
-    tracer: &'a Tracer<f64>,
+    reference: &'a dyn Resampled,
     places: Places,
     deadline: Instant,
 }
@@ -328,7 +275,7 @@ impl ReplicatedShader<'_> {
     fn shader_pixels(&self, image: &Image) -> Vec<ShaderPixel> {
         let own = |&[r, g, b, _]: &[f32; 4]| {
             let color = [r, g, b].map(f64::from);
-            let mean = self.tracer.inverse_tone_mapped(color);
+            let mean = self.reference.inverse_tone_mapped(color);
             ShaderPixel {
                 tone_mapped: color.map(|part| part.clamp(0.0, 1.0)),
                 // NaN becomes the largest mean, which agrees with nothing.
@@ -350,35 +297,35 @@ impl ReplicatedShader<'_> {
         self.render(&program, &self.places.shifted(Reseeding::shift(salt)))
     }
 
-    /// Compares the replicates of one reseeding with the tracer.
+    /// Compares the replicates of one reseeding with the reference.
     fn compare(
         &self,
         reseeding: Reseeding,
         mut sets: Vec<Vec<ShaderPixel>>,
         pixels: &[[u32; 2]],
-        traced: &[TracedPixel],
-        is_random_in_scene: &[bool],
+        estimates: &[Estimate],
+        is_random_in_reference: &[bool],
         algorithm: &CheckResult,
-    ) -> Result<SceneComparison, Incomparable> {
+    ) -> Result<ReferenceComparison, Incomparable> {
         let weight_sets = sets.split_off(REPLICATES);
         let width = self.case.frame.size[0] as usize;
         let status = |[x, y]: [u32; 2]| algorithm.statuses[y as usize * width + x as usize];
         let is_random = |at: usize| {
-            is_random_in_scene[at]
+            is_random_in_reference[at]
                 || sets
                     .iter()
                     .any(|set| differs(set[at].tone_mapped, sets[0][at].tone_mapped))
         };
         let smoothed = smoothed_variance(&weight_sets, self.places.pixels()[0].len());
-        // A rare event: it occurs in the scene's own samples and in no other set, or sometimes in the
+        // A rare event: it occurs in the reference's own samples and in no other set, or sometimes in the
         // shader's neighboring pixels.
         let is_rare = |at: usize| {
-            let ([x, y], own, traced) = (pixels[at], &sets[0][at], &traced[at]);
+            let (own, estimate) = (&sets[0][at], &estimates[at]);
             let is_noise = |i: usize| {
-                (own.mean[i] - traced.mean()[i]).abs()
+                (own.mean[i] - estimate.mean()[i]).abs()
                     <= MAX_RARE_DEVIATION * smoothed[at][i].sqrt() + EXACT_TOLERANCE
             };
-            differs(self.tracer.pixel(x, y), self.tracer.tone_mapped(traced.mean())) || (0..3).all(is_noise)
+            differs(estimate.own, self.reference.tone_mapped(estimate.mean())) || (0..3).all(is_noise)
         };
         let fixed = (0..pixels.len())
             .filter(|&at| status(pixels[at]) == PixelStatus::Differs && !is_random(at) && !is_rare(at))
@@ -386,24 +333,24 @@ impl ReplicatedShader<'_> {
         if fixed as f64 > (MAX_DIFFERING * pixels.len() as f64).max(1.0) {
             return Err(Incomparable::NotRandom);
         }
-        let clamps_samples = clamps_samples(self.tracer, &sets, traced);
+        let clamps_samples = clamps_samples(self.reference, &sets, estimates);
         let selected =
             (0..pixels.len()).filter(|&at| is_random(at) && status(pixels[at]) != PixelStatus::Undefined);
         let replicated_pixels: Vec<ReplicatedPixel> = selected
             .filter_map(|at| {
-                let traced = &traced[at];
-                let mean = traced.mean();
+                let estimate = &estimates[at];
+                let mean = estimate.mean();
                 let own: [[f64; 3]; REPLICATES] = std::array::from_fn(|set| sets[set][at].mean);
-                if is_white(self.tracer, mean, &own, traced, clamps_samples) {
+                if is_white(self.reference, mean, &own, estimate, clamps_samples) {
                     return None;
                 }
-                let slope = self.tracer.slope(mean);
+                let slope = self.reference.slope(mean);
                 let scaled = |color: [f64; 3]| [0, 1, 2].map(|i| slope[i] * color[i]);
                 let squared = |color: [f64; 3]| scaled(scaled(color));
-                let selected = squared(variance(&traced.selection));
+                let selected = squared(variance(&estimate.selection));
                 let shader_variance = squared(smoothed[at]);
                 let sets = REPLICATES as f64;
-                let single_variance = squared(traced.variance);
+                let single_variance = squared(estimate.variance);
                 Some(ReplicatedPixel {
                     at: pixels[at],
                     weight: [0, 1, 2].map(|i| {
@@ -411,14 +358,14 @@ impl ReplicatedShader<'_> {
                             + shader_variance[i]
                             + MIN_STANDARD_DEVIATION * MIN_STANDARD_DEVIATION)
                     }),
-                    reference: traced.halves.map(scaled),
+                    reference: estimate.halves.map(scaled),
                     reference_variance: single_variance.map(|one| one / sets),
                     single_variance,
                     own: own.map(scaled),
                 })
             })
             .collect();
-        Ok(SceneComparison {
+        Ok(ReferenceComparison {
             test: compare_replicates(&replicated_pixels, self.case.frame.size),
             pixels: replicated_pixels.len(),
             reseeding,
@@ -431,12 +378,12 @@ impl ReplicatedShader<'_> {
         &self,
         reseeding: Reseeding,
         unsalted: &[ShaderPixel],
-        traced: &[TracedPixel],
-        is_random_in_scene: &[bool],
+        estimates: &[Estimate],
+        is_random_in_reference: &[bool],
     ) -> Option<Vec<Vec<ShaderPixel>>> {
         let distance = |own: &[ShaderPixel]| {
-            let pixels = own.iter().zip(traced).map(|(own, traced)| {
-                let reference = self.tracer.tone_mapped(traced.mean());
+            let pixels = own.iter().zip(estimates).map(|(own, estimate)| {
+                let reference = self.reference.tone_mapped(estimate.mean());
                 (0..3)
                     .map(|i| (own.tone_mapped[i] - reference[i]).powi(2))
                     .sum::<f64>()
@@ -444,7 +391,7 @@ impl ReplicatedShader<'_> {
             pixels.sum::<f64>()
         };
         let is_changed = |other: &[ShaderPixel]| {
-            let random = (0..unsalted.len()).filter(|&at| is_random_in_scene[at]);
+            let random = (0..unsalted.len()).filter(|&at| is_random_in_reference[at]);
             let (mut all, mut changed) = (0, 0);
             for at in random {
                 all += 1;
@@ -501,28 +448,31 @@ fn smoothed_variance(sets: &[Vec<ShaderPixel>], width: usize) -> Vec<[f64; 3]> {
 }
 
 /// Whether the shader clamps its samples to white, which changes their mean.
-fn clamps_samples(tracer: &Tracer<f64>, sets: &[Vec<ShaderPixel>], traced: &[TracedPixel]) -> bool {
+fn clamps_samples(reference: &dyn Resampled, sets: &[Vec<ShaderPixel>], estimates: &[Estimate]) -> bool {
     let is_above = |color: &[f64; 3]| {
-        let tone_mapped = tracer.tone_mapped(*color);
+        let tone_mapped = reference.tone_mapped(*color);
         (0..3).any(|i| color[i] > 1.0 && tone_mapped[i] >= 1.0)
     };
     let shader_is_above = sets.iter().flatten().any(|own| is_above(&own.mean));
-    !shader_is_above && traced.iter().any(|traced| traced.selection.iter().any(is_above))
+    !shader_is_above
+        && estimates
+            .iter()
+            .any(|estimate| estimate.selection.iter().any(is_above))
 }
 
 /// Whether a pixel is white on both sides, so that no difference is visible, or may be for a shader that
 /// clamps.
 fn is_white(
-    tracer: &Tracer<f64>,
+    reference: &dyn Resampled,
     mean: [f64; 3],
     own: &[[f64; 3]],
-    traced: &TracedPixel,
+    estimate: &Estimate,
     clamps_samples: bool,
 ) -> bool {
     let own_mean = self::mean(own);
-    let [shown, own_shown] = [mean, own_mean].map(|mean| tracer.tone_mapped(mean));
+    let [shown, own_shown] = [mean, own_mean].map(|mean| reference.tone_mapped(mean));
     let is_beyond = |mean: f64, variance: f64| mean + 3.0 * variance.sqrt() > 1.0;
-    let variances = [traced.variance, variance(own)];
+    let variances = [estimate.variance, variance(own)];
     (0..3).any(|i| {
         (shown[i] >= 1.0 && own_shown[i] >= 1.0)
             || (clamps_samples

@@ -18,7 +18,7 @@ use crate::decide::{Reason, Verdict};
 use crate::expected::{NumberType, ReferenceBand, SceneBand};
 use crate::notes::{self, NotFinite};
 use crate::silhouette_precision::{self, SilhouetteBand};
-use crate::stochastic::SampledRows;
+use crate::stochastic::Stochastic;
 use crate::{Case, CheckResult, Expected, Failure, Findings, GpuRun, join, timed};
 
 /// The message after each band.
@@ -50,8 +50,8 @@ pub(super) struct VerifySession<'a> {
     not_finite: NotFinite,
     /// Spheres with a possibly wrong silhouette, and the image in f64, if there are any.
     silhouettes: Option<(Scene, Vec<SilhouetteBand>, Rgb8Image)>,
-    /// Rows with the colors of random pixels, for a stochastic scene.
-    sampled_rows: Option<SampledRows<'a>>,
+    /// What is recorded to compare means, for a reference that may be stochastic.
+    stochastic: Option<Stochastic<'a>>,
     eval: Duration,
     trace: Duration,
 }
@@ -90,10 +90,9 @@ impl<'a> VerifySession<'a> {
             reference: case.expected.map(|_| empty()),
             not_finite: NotFinite::default(),
             silhouettes: silhouettes.filter(|(_, candidates, _)| !candidates.is_empty()),
-            sampled_rows: case
+            stochastic: case
                 .expected
-                .and_then(Expected::tracer)
-                .and_then(|tracer| SampledRows::new(tracer, case.frame.size)),
+                .and_then(|expected| Stochastic::new(expected, case.frame.size)),
             eval: Duration::ZERO,
             trace: Duration::ZERO,
         }
@@ -190,8 +189,8 @@ impl<'a> VerifySession<'a> {
         let actual = drawn.unwrap_or(&band.single);
         if let Some(reference) = reference {
             self.check_algorithm(rows, band, reference);
-            if let Some(sampled_rows) = &mut self.sampled_rows {
-                sampled_rows.record(&band.double, &reference.image, offset);
+            if let Some(stochastic) = &mut self.stochastic {
+                stochastic.record(&band.double, &reference.image, offset);
             }
         }
         let mut statuses = compare::precision(&band.double, actual, &band.undefined);
@@ -297,7 +296,7 @@ impl<'a> VerifySession<'a> {
                 });
                 let notes = findings.contained(notes);
                 findings.notes.extend(notes);
-                findings.explain(case, program, self.deadline, self.sampled_rows.as_ref());
+                findings.explain(case, program, self.deadline, self.stochastic.as_ref());
                 findings.notes.retain(|note| !case.lints.allows(note));
             }
         }

@@ -1,8 +1,8 @@
-//! Compares shaders that differ from a stochastic scene only by their random numbers.
+//! Compares shaders that differ from a stochastic reference only by their random numbers.
 //!
-//! A shader with other random numbers than its scene renders another image with the same mean. Where all
-//! pixels that differ depend on random numbers, the means are compared: the tracer's over many sets of random
-//! numbers, and the shader's over its replicates, or over many pixels of its one image.
+//! A shader with other random numbers than its reference renders another image with the same mean. Where all
+//! pixels that differ depend on random numbers, the means are compared: the reference's over many sets of
+//! random numbers, and the shader's over its replicates, or over many pixels of its one image.
 
 use std::ops::Range;
 use std::time::Instant;
@@ -10,35 +10,23 @@ use std::time::Instant;
 use rayon::prelude::*;
 use toyproof_eval::{Places, Program};
 use toyproof_image::Image;
-use toyproof_scene::Sampler;
 use toyproof_tracer::{RESAMPLED_ROWS, Tracer};
 
-use crate::compare::{CheckSummary, EXACT_TOLERANCE, PixelStatus, RandomPixel, means, uses_scene_numbers};
+use crate::compare::{CheckSummary, PixelStatus, RandomPixel, means, uses_scene_numbers};
 use crate::decide::{Checks, MAX_VARIANCE_RATIO, MeanComparison, OtherRandomNumbers};
 use crate::mistake::NoisyPixel;
 use crate::notes::sample_pixels;
 use crate::replicates::{self, Incomparable};
+use crate::resampled::{ESTIMATE_SETS, Resampled, SELECTION_SETS, differs};
 use crate::reseed::Reseeding;
 use crate::sample_loops::fewer_samples;
-use crate::{Case, CheckResult};
+use crate::{Case, CheckResult, Expected};
 
 /// The largest number of differing pixels that are resampled.
 const MAX_RESAMPLED_PIXELS: usize = 256;
 
-/// The number of times they are resampled. A feature that covers the part a of a pixel is hit by a sample of
-/// a shader and missed by n other samples with a probability of a·(1 − a)ⁿ, which is below 1/(e·n).
-const RESAMPLES: u32 = 16;
-
 /// The share of them that must change in at least one of the sets.
 const MIN_RANDOM_SHARE: f64 = 0.98;
-
-/// The sets of random numbers that select pixels and estimate their weights. They are disjoint from the sets
-/// that estimate the means, and independent of the shader's image; otherwise pixels would be selected because
-/// a set hit a small feature.
-pub(super) const SELECTION_SETS: Range<u32> = 1..9;
-
-/// The sets of random numbers that estimate the means.
-const ESTIMATE_SETS: Range<u32> = 9..17;
 
 /// The largest number of pixels that are resampled.
 const MAX_PIXELS: u32 = 1 << 18;
@@ -47,10 +35,17 @@ const MAX_PIXELS: u32 = 1 << 18;
 const MAX_SAMPLES: u32 = 1 << 20;
 const MAX_PATHS: u32 = 1 << 18;
 
-/// The colors of a shader and of the reference in rows spread over an image.
-pub(super) struct SampledRows<'a> {
+/// A stochastic reference, with what is recorded to compare the means of a shader with it.
+pub(super) struct Stochastic<'a> {
+    reference: &'a dyn Resampled,
+    size: [u32; 2],
+    /// The rows of a scene.
+    rows: Option<SampledRows<'a>>,
+}
+
+/// The colors of a shader and of a scene in rows spread over an image.
+struct SampledRows<'a> {
     tracer: &'a Tracer<f64>,
-    sampler: Sampler,
     size: [u32; 2],
     /// The first rows, from the bottom up: [`RESAMPLED_ROWS`] rows each, or the rest of the image.
     bottoms: Vec<u32>,
@@ -65,51 +60,32 @@ pub(super) struct ComparedMeans {
     pub(super) reseeding: Option<Reseeding>,
 }
 
-impl<'a> SampledRows<'a> {
-    /// Selects rows of an image of that size; none if the scene uses no random numbers.
-    pub(super) fn new(tracer: &'a Tracer<f64>, size: [u32; 2]) -> Option<Self> {
-        let sampler = tracer.sampler().filter(|&sampler| sampler != Sampler::Center)?;
-        let samples = if tracer.traces_paths() {
-            MAX_PATHS
-        } else {
-            MAX_SAMPLES
-        };
-        let pixels = (samples / tracer.samples()).min(MAX_PIXELS);
-        let all = size[1].div_ceil(RESAMPLED_ROWS);
-        let count = (pixels / (RESAMPLED_ROWS * size[0])).clamp(1, all);
-        let bottom = |at| (2 * at + 1) * all / (2 * count) * RESAMPLED_ROWS;
-        Some(Self {
-            tracer,
-            sampler,
+impl<'a> Stochastic<'a> {
+    /// Selects what is recorded of an image of that size; none if the reference is a scene without random numbers.
+    pub(super) fn new(expected: &'a Expected, size: [u32; 2]) -> Option<Self> {
+        let of = |reference: &'a dyn Resampled, rows| Self {
+            reference,
             size,
-            bottoms: (0..count).map(bottom).collect(),
-            colors: Vec::new(),
-        })
-    }
-
-    /// The rows from `bottom` on.
-    fn rows(&self, bottom: u32) -> Range<u32> {
-        bottom..self.size[1].min(bottom + RESAMPLED_ROWS)
-    }
-
-    /// Records a band of the shader in f64 and of the reference that begins at `row`. No group of rows
-    /// crosses a band's edge.
-    pub(super) fn record(&mut self, band: &Image, reference: &Image, row: u32) {
-        let [width, height] = band.size();
-        let all = row..row + height;
-        for &bottom in self.bottoms.iter().filter(|&bottom| all.contains(bottom)) {
-            let rows = self.rows(bottom);
-            let within = ((rows.start - row) * width) as usize..((rows.end - row) * width) as usize;
-            let pixels = band.pixels()[within.clone()]
-                .iter()
-                .zip(&reference.pixels()[within]);
-            let color = |&[r, g, b, _]: &[f32; 4]| [r, g, b];
-            self.colors
-                .extend(pixels.map(|(own, reference)| [color(own), color(reference)]));
+            rows,
+        };
+        match expected {
+            Expected::Scene(_) => {
+                let tracer = expected.tracer().filter(|tracer| tracer.sampler().is_some())?;
+                Some(of(tracer, Some(SampledRows::new(tracer, size))))
+            }
+            Expected::Shader(shader) => Some(of(&**shader, None)),
+            Expected::Image(image) => Some(of(image, None)),
         }
     }
 
-    /// Compares the means of a shader that differs from its scene only in random pixels; none if it differs
+    /// Records a band of the shader in f64 and of the reference that begins at `row`.
+    pub(super) fn record(&mut self, band: &Image, reference: &Image, row: u32) {
+        if let Some(rows) = &mut self.rows {
+            rows.record(band, reference, row);
+        }
+    }
+
+    /// Compares the means of a shader that differs from its reference only in random pixels; none if it differs
     /// elsewhere too. The precision check of the other pixels is left out.
     pub(super) fn compare_means(
         &self,
@@ -119,17 +95,21 @@ impl<'a> SampledRows<'a> {
         case: &Case,
         deadline: Instant,
     ) -> Option<ComparedMeans> {
-        let is_random = self.differs_randomly(algorithm);
-        if !is_random && !replicates::is_random(program, case, self.tracer, algorithm, deadline) {
+        let reference = self.reference;
+        if !reference.is_stochastic() {
             return None;
         }
-        let samples = self.tracer.samples();
-        let compared = replicates::compare_with_scene(program, case, self.tracer, algorithm, deadline);
+        let is_random = self.differs_randomly(algorithm);
+        if !is_random && !replicates::is_random(program, case, reference, algorithm, deadline) {
+            return None;
+        }
+        let samples = reference.samples();
+        let compared = replicates::compare_with(program, case, reference, algorithm, deadline);
         let (means, reseeding) = match compared {
             Ok(compared) => {
                 let test = compared.test;
                 let is_noisier = test.variance > MAX_VARIANCE_RATIO && test.is_uniform;
-                let fewer_samples = || fewer_samples(&case.checked.tree, samples, test.variance);
+                let fewer_samples = || fewer_samples(&case.checked.tree, samples?, test.variance);
                 let means = MeanComparison::Replicates {
                     test,
                     pixels: compared.pixels as u64,
@@ -137,21 +117,35 @@ impl<'a> SampledRows<'a> {
                 };
                 (means, Some(compared.reseeding))
             }
-            Err(Incomparable::NotReseeded) if is_random => {
-                let pairs = self.pairs(algorithm);
-                if uses_scene_numbers(&pairs) {
-                    return None;
+            Err(Incomparable::UnknownNoise) => (MeanComparison::UnknownNoise, None),
+            Err(Incomparable::NotReseeded) if is_random => match &self.rows {
+                None => (MeanComparison::UnknownNoise, None),
+                Some(rows) => {
+                    let pairs = rows.pairs(algorithm);
+                    if uses_scene_numbers(&pairs) {
+                        return None;
+                    }
+                    let means = MeanComparison::OneImage {
+                        test: means(&pairs, self.size),
+                        pixels: 2 * pairs.len() as u64,
+                    };
+                    (means, None)
                 }
-                let means = MeanComparison::OneImage {
-                    test: means(&pairs, self.size),
-                    pixels: 2 * pairs.len() as u64,
-                };
-                (means, None)
-            }
-            Err(Incomparable::NotReseeded | Incomparable::NotRandom | Incomparable::SceneNumbers) => {
+            },
+            Err(Incomparable::NotReseeded | Incomparable::NotRandom | Incomparable::SameNumbers) => {
                 return None;
             }
         };
+        Some(self.compared(means, reseeding, algorithm, checks))
+    }
+
+    fn compared(
+        &self,
+        means: MeanComparison,
+        reseeding: Option<Reseeding>,
+        algorithm: &CheckResult,
+        checks: &Checks,
+    ) -> ComparedMeans {
         let without_differing = CheckSummary {
             differing: 0,
             ill_conditioned: 0,
@@ -159,8 +153,8 @@ impl<'a> SampledRows<'a> {
             ..algorithm.summary.clone()
         };
         let random_numbers = OtherRandomNumbers {
-            sampler: self.sampler,
-            samples,
+            sampler: self.reference.sampler(),
+            samples: self.reference.samples(),
             means,
             other_pixels: Checks {
                 algorithm: Some(without_differing),
@@ -168,10 +162,10 @@ impl<'a> SampledRows<'a> {
                 toolchain: checks.toolchain.clone(),
             },
         };
-        Some(ComparedMeans {
+        ComparedMeans {
             random_numbers,
             reseeding,
-        })
+        }
     }
 
     /// Returns the precision check without the pixels that differ from the scene, and without random ones: in
@@ -183,13 +177,16 @@ impl<'a> SampledRows<'a> {
     ) -> CheckSummary {
         let width = self.size[0] as usize;
         let statuses = precision.statuses.iter().zip(&algorithm.statuses);
-        let left = statuses.enumerate().filter(|&(at, (&precision, &algorithm))| {
+        let others = statuses.enumerate().filter(|&(_, (&precision, &algorithm))| {
             precision == PixelStatus::Differs
                 && !matches!(algorithm, PixelStatus::Differs | PixelStatus::IllConditioned)
-                && !self.is_random([(at % width) as u32, (at / width) as u32])
         });
+        let others: Vec<[u32; 2]> = others
+            .map(|(at, _)| [(at % width) as u32, (at / width) as u32])
+            .collect();
+        let random = self.reference.are_random(&others);
         CheckSummary {
-            differing: left.count() as u64,
+            differing: random.iter().filter(|&&random| !random).count() as u64,
             ..precision.summary.clone()
         }
     }
@@ -203,19 +200,58 @@ impl<'a> SampledRows<'a> {
         places: &Places,
         deadline: Instant,
     ) -> Option<Vec<NoisyPixel>> {
-        replicates::noisy_pixels(program, case, self.tracer, reseeding, places, deadline)
+        replicates::noisy_pixels(program, case, self.reference, reseeding, places, deadline)
     }
 
-    fn is_random(&self, at: [u32; 2]) -> bool {
-        let first = self.tracer.resampled(at, 1);
-        (2..=RESAMPLES).any(|set| differs(first, self.tracer.resampled(at, set)))
-    }
-
-    /// Whether the differing pixels are random in the scene, and there are any.
+    /// Whether the differing pixels are random in the reference, and there are any.
     fn differs_randomly(&self, algorithm: &CheckResult) -> bool {
         let resampled = sample_pixels(algorithm, self.size, MAX_RESAMPLED_PIXELS);
-        let random = resampled.par_iter().filter(|&&at| self.is_random(at)).count();
+        let random = self.reference.are_random(&resampled);
+        let random = random.iter().filter(|&&random| random).count();
         !resampled.is_empty() && random as f64 >= MIN_RANDOM_SHARE * resampled.len() as f64
+    }
+}
+
+impl<'a> SampledRows<'a> {
+    /// Selects rows of an image of that size.
+    fn new(tracer: &'a Tracer<f64>, size: [u32; 2]) -> Self {
+        let samples = if tracer.traces_paths() {
+            MAX_PATHS
+        } else {
+            MAX_SAMPLES
+        };
+        let pixels = (samples / tracer.samples()).min(MAX_PIXELS);
+        let all = size[1].div_ceil(RESAMPLED_ROWS);
+        let count = (pixels / (RESAMPLED_ROWS * size[0])).clamp(1, all);
+        let bottom = |at| (2 * at + 1) * all / (2 * count) * RESAMPLED_ROWS;
+        Self {
+            tracer,
+            size,
+            bottoms: (0..count).map(bottom).collect(),
+            colors: Vec::new(),
+        }
+    }
+
+    /// The rows from `bottom` on.
+    fn rows(&self, bottom: u32) -> Range<u32> {
+        bottom..self.size[1].min(bottom + RESAMPLED_ROWS)
+    }
+
+    /// Records a band of the shader in f64 and of the reference that begins at `row`. No group of rows
+    /// crosses a band's edge.
+    fn record(&mut self, band: &Image, reference: &Image, row: u32) {
+        let [width, height] = band.size();
+        let all = row..row + height;
+        for &bottom in self.bottoms.iter().filter(|&bottom| all.contains(bottom)) {
+            let rows = self.rows(bottom);
+            let within = ((rows.start - row) * width) as usize..((rows.end - row) * width) as usize;
+            let pixels = band.pixels()[within.clone()]
+                .iter()
+                .zip(&reference.pixels()[within]);
+            let color = |&[r, g, b, _]: &[f32; 4]| [r, g, b];
+            self.colors
+                .extend(pixels.map(|(own, reference)| [color(own), color(reference)]));
+        }
     }
 
     /// Pairs of neighbors, at least one of which is random, with the tracer's means. Each square of four
@@ -318,9 +354,4 @@ impl<'a> SampleSets<'a> {
 fn mean(sets: &[Vec<[f64; 3]>], at: usize) -> [f64; 3] {
     let count = sets.len() as f64;
     [0, 1, 2].map(|i| sets.iter().map(|set| set[at][i]).sum::<f64>() / count)
-}
-
-/// Whether two colors differ.
-pub(super) fn differs(a: [f64; 3], b: [f64; 3]) -> bool {
-    (0..3).any(|i| (a[i] - b[i]).abs() > EXACT_TOLERANCE)
 }

@@ -3,6 +3,7 @@
 
 mod bands;
 mod image;
+mod reseeded;
 mod scene;
 mod shader;
 

@@ -1,8 +1,8 @@
 //! A shader as reference: evaluated in f64 once for all shaders that are compared with it.
 
 use std::ops::Range;
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 use toyproof_diagnostic::Diagnostic;
@@ -18,6 +18,8 @@ use crate::compare::changed_by_rounding;
 use crate::cpu::Evaluator;
 use crate::decide::Share;
 use crate::notes::{self, NotFinite};
+use crate::resampled::Estimate;
+use crate::reseed::Reseeding;
 use crate::{EVALUATOR_TIME_FACTOR, TOTAL_TIME_FACTOR};
 
 /// The default tolerance of colors: half of an 8-bit level.
@@ -26,11 +28,15 @@ pub const DEFAULT_TOLERANCE: f64 = 0.5 / 255.0;
 /// A shader that others are compared with, in one frame.
 #[derive(Debug)]
 pub struct ShaderReference {
-    program: Arc<Program>,
-    frame: Frame,
+    pub(super) program: Arc<Program>,
+    pub(super) frame: Frame,
     tolerance: f64,
-    timeout: Duration,
+    pub(super) timeout: Duration,
     bands: Bands,
+    /// How its random numbers can be changed, if it has any that can.
+    pub(super) reseeding: OnceLock<Option<Reseeding>>,
+    /// The estimates of pixels with other random numbers, and their places.
+    pub(super) estimates: OnceLock<(Places, Option<Arc<Vec<Estimate>>>)>,
 }
 
 /// What the evaluation of a reference shader showed.
@@ -80,6 +86,8 @@ impl ShaderReference {
             frame: frame.clone(),
             tolerance,
             timeout,
+            reseeding: OnceLock::new(),
+            estimates: OnceLock::new(),
         };
         let findings = reference.evaluate(lints)?;
         Ok((reference, findings))

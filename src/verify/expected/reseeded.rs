@@ -1,0 +1,233 @@
+//! Reference shaders with other random numbers, and images, which have none.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use rayon::prelude::*;
+use toyproof_eval::{ParametricProgram, Places, Program, Settings, UndefinedPolicy};
+use toyproof_image::Image;
+use toyproof_scene::Sampler;
+
+use super::image::ImageReference;
+use super::shader::ShaderReference;
+use crate::TOTAL_TIME_FACTOR;
+use crate::replicates::{MAX_DISTANCE_RATIO, MIN_RANDOM_CHANGE, RANDOMNESS_GRID};
+use crate::resampled::{ESTIMATE_SETS, Estimate, RESAMPLES, Resampled, differ_by, mean};
+use crate::reseed::{Reseeding, is_deterministic};
+
+/// The largest number of pixels of a replicate: seventeen of them take about as long as an image of 640×360.
+const MAX_PIXELS: u32 = 1 << 14;
+
+/// The number of sets of random numbers that show whether a reseeding changes the random numbers alone.
+const TRIED_SETS: u32 = 4;
+
+/// The largest ratio of the squared distances from the mean of n sets of an image that is none of them and of
+/// the sets themselves, whose expectation is (n + 1)/(n − 1).
+const MAX_RATIO: f64 = MAX_DISTANCE_RATIO * (TRIED_SETS + 1) as f64 / (TRIED_SETS - 1) as f64;
+
+type Colors = Vec<[f64; 3]>;
+
+impl ShaderReference {
+    /// How the random numbers can be changed; none if there are no random numbers, or nothing changes them
+    /// alone. Computed once.
+    fn reseeding(&self) -> Option<Reseeding> {
+        *self.reseeding.get_or_init(|| {
+            if is_deterministic(self.checked()) {
+                return None;
+            }
+            let places = Places::spread(self.frame.size, [RANDOMNESS_GRID; 2]);
+            let own = self.set(None, 0, &places)?;
+            let mut all = Reseeding::all().into_iter();
+            all.find(|&reseeding| {
+                self.changes_noise_alone(reseeding, &own, &places)
+                    .unwrap_or(false)
+            })
+        })
+    }
+
+    /// Whether a reseeding changes pixels, and the unchanged image is like the changed ones. None if the time
+    /// limit is exceeded.
+    fn changes_noise_alone(&self, reseeding: Reseeding, own: &Colors, places: &Places) -> Option<bool> {
+        let first = self.set(Some(reseeding), 1, places)?;
+        let changes = |(&a, &b): (&[f64; 3], &[f64; 3])| differ_by(a, b, MIN_RANDOM_CHANGE);
+        if !own.iter().zip(&first).any(changes) {
+            return Some(false);
+        }
+        let others = (2..=TRIED_SETS).map(|set| self.set(Some(reseeding), set, places));
+        let sets: Vec<Colors> = [Some(first)].into_iter().chain(others).collect::<Option<_>>()?;
+        let (mut own_distance, mut distance) = (0.0, 0.0);
+        for (at, own) in own.iter().enumerate() {
+            let colors: Colors = sets.iter().map(|set| set[at]).collect();
+            let mean = mean(&colors);
+            own_distance += squared_distance(own, &mean);
+            let distances = colors.iter().map(|color| squared_distance(color, &mean));
+            distance += distances.sum::<f64>() / f64::from(TRIED_SETS);
+        }
+        Some(own_distance <= MAX_RATIO * distance)
+    }
+
+    /// The colors at these places with a set of random numbers; with the shader's own without a reseeding.
+    fn set(&self, reseeding: Option<Reseeding>, set: u32, places: &Places) -> Option<Colors> {
+        let settings = Settings::<f64> {
+            undefined: UndefinedPolicy::Plain,
+            deadline: Some(Instant::now() + self.timeout * TOTAL_TIME_FACTOR),
+            ..Settings::default()
+        };
+        let image = match reseeding {
+            None => self.program.at(&self.frame, places, &settings),
+            Some(reseeding) => {
+                let checked = reseeding.of(self.checked(), set);
+                let program = Program::prepared(&checked, UndefinedPolicy::Plain).ok()?;
+                let places = places.shifted(Reseeding::shift(set));
+                program.at(&self.frame, &places, &settings)
+            }
+        };
+        image.ok().map(|image| colors(&image))
+    }
+
+    /// The colors of some pixels with a set of random numbers.
+    fn pixels(&self, reseeding: Reseeding, set: u32, pixels: &[[u32; 2]]) -> Option<Colors> {
+        let limit = self.timeout * TOTAL_TIME_FACTOR;
+        let checked = reseeding.of(self.checked(), set);
+        let program = ParametricProgram::new(&checked, &[], &self.frame, limit).ok()?;
+        let [dx, dy] = Reseeding::shift(set);
+        // Derivatives need whole quads.
+        let corners = [[0, 0], [1, 0], [0, 1], [1, 1]];
+        let quads = pixels.iter().flat_map(|&[x, y]| {
+            let corner = move |[i, j]: [u32; 2]| [f64::from(x / 2 * 2 + i), f64::from(y / 2 * 2 + j)];
+            corners.map(corner).map(|[x, y]| [x + 0.5 + dx, y + 0.5 + dy])
+        });
+        let quads: Vec<[f64; 2]> = quads.collect();
+        let settings = Settings::<f64> {
+            deadline: Some(Instant::now() + limit),
+            ..Settings::default()
+        };
+        let colors = program.evaluate(&self.frame, &settings, |evaluator| evaluator.colors(&[], &quads));
+        let colors = colors.ok()?;
+        let own = pixels.iter().zip(colors.chunks(4));
+        Some(
+            own.map(|([x, y], quad)| quad[(x % 2 + 2 * (y % 2)) as usize])
+                .collect(),
+        )
+    }
+
+    fn estimated(&self, places: &Places) -> Option<Vec<Estimate>> {
+        let reseeding = self.reseeding()?;
+        let own = self.set(None, 0, places)?;
+        let sets = (1..ESTIMATE_SETS.end).map(|set| self.set(Some(reseeding), set, places));
+        let sets: Vec<Colors> = sets.collect::<Option<_>>()?;
+        let estimates = own.into_iter().enumerate().map(|(at, own)| {
+            let displayed = own.map(|part| part.clamp(0.0, 1.0));
+            Estimate::of(displayed, |set| sets[set as usize - 1][at])
+        });
+        Some(estimates.collect())
+    }
+}
+
+fn colors(image: &Image) -> Colors {
+    let color = |&[r, g, b, _]: &[f32; 4]| [r, g, b].map(f64::from);
+    image.pixels().iter().map(color).collect()
+}
+
+fn squared_distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    (0..3)
+        .map(|i| (a[i].clamp(0.0, 1.0) - b[i].clamp(0.0, 1.0)).powi(2))
+        .sum()
+}
+
+/// Nothing is known about how the shader combines its samples.
+impl Resampled for ShaderReference {
+    fn is_stochastic(&self) -> bool {
+        self.reseeding().is_some()
+    }
+
+    fn sampler(&self) -> Option<Sampler> {
+        None
+    }
+
+    fn samples(&self) -> Option<u32> {
+        None
+    }
+
+    fn max_pixels(&self) -> u32 {
+        MAX_PIXELS
+    }
+
+    fn estimates(&self, places: &Places) -> Option<Arc<Vec<Estimate>>> {
+        let estimated = || self.estimated(places).map(Arc::new);
+        let (known, estimates) = self.estimates.get_or_init(|| (places.clone(), estimated()));
+        if known == places {
+            estimates.clone()
+        } else {
+            estimated()
+        }
+    }
+
+    fn are_random(&self, pixels: &[[u32; 2]]) -> Vec<bool> {
+        let Some(reseeding) = self.reseeding() else {
+            return vec![false; pixels.len()];
+        };
+        let sets: Option<Vec<Colors>> = (1..=RESAMPLES)
+            .into_par_iter()
+            .map(|set| self.pixels(reseeding, set, pixels))
+            .collect();
+        let Some(sets) = sets else {
+            return vec![false; pixels.len()];
+        };
+        let is_random = |at: usize| {
+            let displayed = |set: &Colors| set[at].map(|part| part.clamp(0.0, 1.0));
+            let first = displayed(&sets[0]);
+            sets.iter()
+                .any(|set| differ_by(first, displayed(set), MIN_RANDOM_CHANGE))
+        };
+        (0..pixels.len()).map(is_random).collect()
+    }
+
+    fn sets(&self, places: &Places, count: u32) -> Option<Vec<Colors>> {
+        let reseeding = self.reseeding()?;
+        let displayed = |set: Colors| {
+            set.into_iter()
+                .map(|color| color.map(|part| part.clamp(0.0, 1.0)))
+                .collect()
+        };
+        (1..=count)
+            .map(|set| self.set(Some(reseeding), set, places).map(displayed))
+            .collect()
+    }
+
+    fn least_change(&self) -> f64 {
+        // Moving the pixel by a thousandth of its size changes it less.
+        MIN_RANDOM_CHANGE
+    }
+}
+
+/// A single image says nothing about its noise.
+impl Resampled for ImageReference {
+    fn is_stochastic(&self) -> bool {
+        true
+    }
+
+    fn sampler(&self) -> Option<Sampler> {
+        None
+    }
+
+    fn samples(&self) -> Option<u32> {
+        None
+    }
+
+    fn max_pixels(&self) -> u32 {
+        MAX_PIXELS
+    }
+
+    fn estimates(&self, _: &Places) -> Option<Arc<Vec<Estimate>>> {
+        None
+    }
+
+    fn are_random(&self, pixels: &[[u32; 2]]) -> Vec<bool> {
+        vec![false; pixels.len()]
+    }
+
+    fn sets(&self, _: &Places, _: u32) -> Option<Vec<Colors>> {
+        None
+    }
+}
