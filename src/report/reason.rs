@@ -227,11 +227,14 @@ fn by_means(pixels: Share, sampler: Option<Sampler>, means: Means) -> Statement 
                 .detail("sample the lights directly, or take more samples per pixel")
                 .detail(other_numbers)
         }
-        Means::UnknownNoise => {
-            Statement::new("the shader is stochastic, and means cannot be compared with the reference")
-                .detail("either the reference or the shader cannot be rendered with other random numbers")
-                .detail(own_numbers)
-        }
+        Means::UnknownNoise => Statement::new(
+            "the shader is stochastic, and means cannot be compared with the reference",
+        )
+        .detail(
+            "the noise of one of the two is not known: its random numbers cannot be changed, or neighboring \
+                     pixels share them",
+        )
+        .detail(own_numbers),
         Means::Underpowered => {
             Statement::new("there are too few samples or pixels to compare means with the reference")
                 .detail(format!("check a larger image, or use {source}"))

@@ -8,12 +8,14 @@ use toyproof_eval::Places;
 use toyproof_scene::Sampler;
 use toyproof_tracer::Tracer;
 
-use crate::compare::EXACT_TOLERANCE;
+use crate::compare::{EXACT_TOLERANCE, REPLICATES, ReplicatedPixel};
 
 /// The sets of random numbers that select pixels and estimate their weights. They are disjoint from the sets
 /// that estimate the means, and independent of the shader's image; otherwise pixels would be selected because
 /// a set hit a small feature.
 pub(super) const SELECTION_SETS: Range<u32> = 1..9;
+
+const _: () = assert!((SELECTION_SETS.end - SELECTION_SETS.start) as usize == REPLICATES);
 
 /// The sets of random numbers that estimate the means.
 pub(super) const ESTIMATE_SETS: Range<u32> = 9..17;
@@ -96,6 +98,18 @@ impl Estimate {
 
     pub(super) fn mean(&self) -> [f64; 3] {
         mean(&self.halves)
+    }
+
+    /// The selection sets as replicates of the pixel, all of the same weight.
+    pub(super) fn replicated(&self, at: [u32; 2]) -> ReplicatedPixel {
+        ReplicatedPixel {
+            at,
+            weight: [1.0; 3],
+            reference: self.halves,
+            reference_variance: self.variance,
+            single_variance: self.variance,
+            own: std::array::from_fn(|set| self.selection[set]),
+        }
     }
 
     /// Whether the pixel's color depends on random numbers.

@@ -79,6 +79,9 @@ enum Task {
         /// The tolerance, in 8-bit levels
         #[arg(long, default_value_t = 255.0 * toyproof::verify::DEFAULT_TOLERANCE)]
         tolerance: f64,
+        /// Use other random numbers in stochastic shaders
+        #[arg(long)]
+        reseed: bool,
     },
     /// Run shaders: the process that other tasks start
     #[command(hide = true)]
@@ -100,7 +103,11 @@ fn main() -> ExitCode {
             search,
             names,
         } => repairs::measure(manifest.as_deref(), &only, search, names),
-        Task::References { exercise, tolerance } => references::print_disagreements(&exercise, tolerance),
+        Task::References {
+            exercise,
+            tolerance,
+            reseed,
+        } => references::print_disagreements(&exercise, tolerance, reseed),
         Task::Worker => {
             toyproof::gpu::serve(io::stdin().lock(), io::stdout().lock()).expect("the parent listens");
         }

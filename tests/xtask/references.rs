@@ -4,20 +4,24 @@ use toyproof::verify::Verdict;
 use toyproof_testkit::faults::faults;
 use toyproof_testkit::rewrites::rewrites;
 use toyproof_testkit::{
-    EVERY_EXERCISE, Edit, Exercise, SIZE, check_reference, edited, exported_reference, numbers,
+    EVERY_EXERCISE, Edit, Exercise, SIZE, check_reference, edited, exported_reference, numbers, try_edit,
 };
 
+/// An edit after which the stochastic exercises use other random numbers.
+const OTHER_SEED: Edit = ("pcg(uint(i))", "pcg(uint(i) + 1000u)");
+
 /// Prints the planted faults that are not `wrong`, and the rewrites that are not `correct`, where the exported
-/// shader of each exercise is the reference. `levels` is the tolerance in 8-bit levels.
-pub(super) fn print_disagreements(only: &str, levels: f64) {
+/// shader of each exercise is the reference. `levels` is the tolerance in 8-bit levels. With `reseed`, the shaders
+/// use other random numbers, if they use any of an integer hash.
+pub(super) fn print_disagreements(only: &str, levels: f64, reseed: bool) {
     for exercise in EVERY_EXERCISE {
         if exercise.name.contains(only) {
-            compare(exercise, levels / 255.0);
+            compare(exercise, levels / 255.0, reseed);
         }
     }
 }
 
-fn compare(exercise: &'static Exercise, tolerance: f64) {
+fn compare(exercise: &'static Exercise, tolerance: f64, reseed: bool) {
     let larger = Exercise {
         size: SIZE,
         ..*exercise
@@ -26,7 +30,10 @@ fn compare(exercise: &'static Exercise, tolerance: f64) {
         [exercise, &larger].map(|exercise| exported_reference(exercise, tolerance));
     let (mut all, mut disagreements) = ([0; 2], [0; 2]);
     let mut try_one = |kind: usize, name: &str, edits: &[Edit]| {
-        let shader = edited(exercise, edits);
+        let mut shader = edited(exercise, edits);
+        if reseed {
+            shader = try_edit(&shader, &[OTHER_SEED]).unwrap_or(shader);
+        }
         let mut findings = check_reference(&reference, &shader, exercise);
         if findings.verdict == Verdict::Inconclusive {
             // Too few pixels to compare means.

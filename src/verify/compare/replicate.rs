@@ -268,7 +268,7 @@ fn z_score(excess: f64, variance: f64) -> f64 {
 }
 
 /// Whether the noise of neighbors, their deviation from their own means, is correlated in some direction.
-fn is_correlated(pixels: &[ReplicatedPixel]) -> bool {
+pub(crate) fn is_correlated(pixels: &[ReplicatedPixel]) -> bool {
     let places: std::collections::HashMap<[u32; 2], &ReplicatedPixel> =
         pixels.iter().map(|pixel| (pixel.at, pixel)).collect();
     let correlation = |[dx, dy]: [i32; 2]| {

@@ -11,8 +11,9 @@ use toyproof_scene::Sampler;
 use super::image::ImageReference;
 use super::shader::ShaderReference;
 use crate::TOTAL_TIME_FACTOR;
+use crate::compare::{ReplicatedPixel, is_correlated};
 use crate::replicates::{MAX_DISTANCE_RATIO, MIN_RANDOM_CHANGE, RANDOMNESS_GRID};
-use crate::resampled::{ESTIMATE_SETS, Estimate, RESAMPLES, Resampled, differ_by, mean};
+use crate::resampled::{ESTIMATE_SETS, Estimate, RESAMPLES, Resampled, differ_by, mean, pixels};
 use crate::reseed::{Reseeding, is_deterministic};
 
 /// The largest number of pixels of a replicate: seventeen of them take about as long as an image of 640×360.
@@ -111,6 +112,8 @@ impl ShaderReference {
         )
     }
 
+    /// Estimates pixels from several sets of random numbers. None if there are none, or if neighbors use the
+    /// same: then the variance of a sum over pixels is unknown.
     fn estimated(&self, places: &Places) -> Option<Vec<Estimate>> {
         let reseeding = self.reseeding()?;
         let own = self.set(None, 0, places)?;
@@ -120,7 +123,14 @@ impl ShaderReference {
             let displayed = own.map(|part| part.clamp(0.0, 1.0));
             Estimate::of(displayed, |set| sets[set as usize - 1][at])
         });
-        Some(estimates.collect())
+        let estimates: Vec<Estimate> = estimates.collect();
+        let noise: Vec<ReplicatedPixel> = pixels(places)
+            .into_iter()
+            .zip(&estimates)
+            .filter(|(_, estimate)| estimate.is_random(self))
+            .map(|(at, estimate)| estimate.replicated(at))
+            .collect();
+        (!is_correlated(&noise)).then_some(estimates)
     }
 }
 
