@@ -14,7 +14,7 @@ use crate::compare::{
 };
 use crate::decide::MAX_DIFFERING;
 use crate::mistake::NoisyPixel;
-use crate::resampled::{Estimate, Resampled, differs, mean, pixels, variance};
+use crate::resampled::{Estimate, Estimates, Resampled, differs, mean, pixels, variance};
 
 /// The number of further replicates that estimate the weights of pixels, so that weights are independent of
 /// the values that are compared.
@@ -72,10 +72,11 @@ pub(super) fn compare_with(
         .estimates(&shader.places)
         .ok_or(Incomparable::UnknownNoise)?;
     let is_random_in_reference: Vec<bool> = estimates
+        .pixels
         .par_iter()
         .map(|estimate| estimate.is_random(reference))
         .collect();
-    if uses_reference_numbers(reference, &unsalted, &estimates) {
+    if uses_reference_numbers(reference, &unsalted, &estimates.pixels) {
         return Err(Incomparable::SameNumbers);
     }
     let compare = |(reseeding, sets)| {
@@ -91,7 +92,8 @@ pub(super) fn compare_with(
     let mut first = None;
     // A salt may make a hash equal in neighboring pixels, where another reseeding does not.
     for reseeding in Reseeding::all() {
-        let Some(sets) = shader.replicates(reseeding, &unsalted, &estimates, &is_random_in_reference) else {
+        let Some(sets) = shader.replicates(reseeding, &unsalted, &estimates.pixels, &is_random_in_reference)
+        else {
             continue;
         };
         let comparison = compare((reseeding, sets));
@@ -232,7 +234,7 @@ fn uses_reference_numbers(reference: &dyn Resampled, own: &[ShaderPixel], estima
 }
 
 /// Pixels spread over an image.
-fn places(size: [u32; 2], reference: &dyn Resampled) -> Places {
+pub(super) fn places(size: [u32; 2], reference: &dyn Resampled) -> Places {
     let max_pixels = f64::from(reference.max_pixels());
     let all = f64::from(size[0]) * f64::from(size[1]);
     let share = (max_pixels / all).sqrt().min(1.0);
@@ -303,10 +305,11 @@ impl ReplicatedShader<'_> {
         reseeding: Reseeding,
         mut sets: Vec<Vec<ShaderPixel>>,
         pixels: &[[u32; 2]],
-        estimates: &[Estimate],
+        expected: &Estimates,
         is_random_in_reference: &[bool],
         algorithm: &CheckResult,
     ) -> Result<ReferenceComparison, Incomparable> {
+        let estimates = &expected.pixels;
         let weight_sets = sets.split_off(REPLICATES);
         let width = self.case.frame.size[0] as usize;
         let status = |[x, y]: [u32; 2]| algorithm.statuses[y as usize * width + x as usize];
@@ -366,7 +369,7 @@ impl ReplicatedShader<'_> {
             })
             .collect();
         Ok(ReferenceComparison {
-            test: compare_replicates(&replicated_pixels, self.case.frame.size),
+            test: compare_replicates(&replicated_pixels, self.case.frame.size, expected.are_correlated),
             pixels: replicated_pixels.len(),
             reseeding,
         })

@@ -46,7 +46,7 @@ pub(super) trait Resampled: Sync {
     fn max_pixels(&self) -> u32;
     /// Estimates the pixels at these places; none if the reference cannot be rendered with other random
     /// numbers.
-    fn estimates(&self, places: &Places) -> Option<Arc<Vec<Estimate>>>;
+    fn estimates(&self, places: &Places) -> Option<Arc<Estimates>>;
     /// Whether each of the pixels depends on random numbers.
     fn are_random(&self, pixels: &[[u32; 2]]) -> Vec<bool>;
     /// The colors at these places with the sets of random numbers from 1 to `count`.
@@ -68,6 +68,14 @@ pub(super) trait Resampled: Sync {
     fn slope(&self, _mean: [f64; 3]) -> [f64; 3] {
         [1.0; 3]
     }
+}
+
+/// The estimates for some pixels, row by row.
+#[derive(Debug)]
+pub(super) struct Estimates {
+    pub(super) pixels: Vec<Estimate>,
+    /// Whether neighbors use the same random numbers, so that the variance of sums is unknown.
+    pub(super) are_correlated: bool,
 }
 
 /// The estimates for a pixel.
@@ -165,13 +173,15 @@ impl Resampled for Tracer<f64> {
         (samples / self.samples()).clamp(1, MAX_PIXELS)
     }
 
-    fn estimates(&self, places: &Places) -> Option<Arc<Vec<Estimate>>> {
+    fn estimates(&self, places: &Places) -> Option<Arc<Estimates>> {
         let estimate = |at: [u32; 2]| {
             let [x, y] = at;
             Estimate::of(self.pixel(x, y), |set| self.resampled_mean(at, set))
         };
-        let estimates = pixels(places).into_par_iter().map(estimate).collect();
-        Some(Arc::new(estimates))
+        Some(Arc::new(Estimates {
+            pixels: pixels(places).into_par_iter().map(estimate).collect(),
+            are_correlated: false,
+        }))
     }
 
     fn are_random(&self, pixels: &[[u32; 2]]) -> Vec<bool> {

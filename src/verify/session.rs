@@ -11,11 +11,11 @@ use toyproof_image::{Image, Rgb8Image};
 use toyproof_scene::Scene;
 use toyproof_translate::FloatMode;
 
-use crate::compare::{self, Comparison, DiffLevel, EpsilonColors, Mixed, Reference};
+use crate::compare::{self, Comparison, DiffLevel, Mixed, Reference};
 use crate::contain::{Part, contain};
 use crate::cpu::{Band, Evaluator};
 use crate::decide::{Reason, Verdict};
-use crate::expected::{NumberType, ReferenceBand, SceneBand};
+use crate::expected::{NumberType, ReferenceBand};
 use crate::notes::{self, NotFinite};
 use crate::silhouette_precision::{self, SilhouetteBand};
 use crate::stochastic::Stochastic;
@@ -219,10 +219,6 @@ impl<'a> VerifySession<'a> {
         let from_row = FromRow {
             expected,
             rows,
-            scene: expected.as_scene().map(|scene| SceneBand {
-                scene,
-                offset: rows.start,
-            }),
             derives: self.case.checked.takes_derivatives(),
         };
         let mut undefined = band.undefined.clone();
@@ -308,8 +304,6 @@ impl<'a> VerifySession<'a> {
 struct FromRow<'a> {
     expected: &'a Expected,
     rows: &'a Range<u32>,
-    /// The band of the scene, if the reference is one.
-    scene: Option<SceneBand<'a>>,
     /// Whether the shader takes derivatives.
     derives: bool,
 }
@@ -318,11 +312,11 @@ impl Reference for FromRow<'_> {
     fn tolerance(&self) -> f64 {
         self.expected.tolerance()
     }
-    fn epsilons(&self) -> Option<&dyn EpsilonColors> {
-        self.scene.as_ref().map(|scene| scene as &dyn EpsilonColors)
+    fn accept_epsilons(&self, band: &mut compare::Band, mixed: &mut Mixed) {
+        self.expected.accept_epsilons(self.rows, band, mixed);
     }
     fn is_across_edge(&self, x: u32, y: u32) -> bool {
-        self.derives && self.scene.as_ref().is_some_and(|scene| scene.is_quad_mixed(x, y))
+        self.derives && self.expected.is_across_edge(x, self.rows.start + y)
     }
     fn tied(&self, wanted: &[bool]) -> Vec<bool> {
         self.expected.tied(self.rows, wanted, NumberType::Double)

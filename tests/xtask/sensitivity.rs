@@ -6,7 +6,8 @@ use toyproof::image::{Frame, Image};
 use toyproof::scene::{FrameTime, Point, Projection, Scene, Shape};
 use toyproof::tracer::{ColorRange, EpsilonFamily, EpsilonSet, RayEpsilons, Tracer};
 use toyproof::verify::compare::{
-    CheckSummary, EXACT_TOLERANCE, EpsilonColors, Mixed, PERTURBATIONS, Reference, algorithm,
+    Band, CheckSummary, EXACT_TOLERANCE, EpsilonColors, Mixed, PERTURBATIONS, Reference, accept_epsilons,
+    algorithm,
 };
 use toyproof::verify::{CheckEvidence, Checks, Evidence, Verdict, decide};
 use toyproof_testkit::{EXERCISES, Exercise, checked, frame, scene};
@@ -128,8 +129,8 @@ impl Reference for Traced {
     fn tolerance(&self) -> f64 {
         EXACT_TOLERANCE
     }
-    fn epsilons(&self) -> Option<&dyn EpsilonColors> {
-        Some(self)
+    fn accept_epsilons(&self, band: &mut Band, mixed: &mut Mixed) {
+        accept_epsilons(band, self, mixed);
     }
     /// The exercises take no derivatives.
     fn is_across_edge(&self, _: u32, _: u32) -> bool {

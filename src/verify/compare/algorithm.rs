@@ -18,8 +18,8 @@ const MAX_MIXED_SHARE: f64 = 0.01;
 pub trait Reference: Sync {
     /// The largest difference of a component of colors that agree.
     fn tolerance(&self) -> f64;
-    /// The colors for the ray epsilons that authors may choose; none if nothing is known about rays.
-    fn epsilons(&self) -> Option<&dyn EpsilonColors>;
+    /// Accepts colors that the reference has for other ray epsilons than its own.
+    fn accept_epsilons(&self, band: &mut Band, mixed: &mut Mixed);
     /// Whether the shader takes derivatives, and the pixel's quad lies across an edge.
     fn is_across_edge(&self, x: u32, y: u32) -> bool;
     /// Of the `wanted` pixels, bottom row first, those in which the reference itself changes color when its
@@ -79,8 +79,8 @@ fn spend(budget: &mut f64, pixels: usize) -> bool {
 /// Compares a band of the shader in f64, `actual`, with the reference in f64, `expected`, bottom row first;
 /// coordinates are in the band.
 ///
-/// A pixel agrees if no component is farther than the tolerance from the reference, or, if it is a scene, from
-/// the range of the tracer's colors for the legal ray epsilons. A pixel outside is excluded if it lies on an
+/// A pixel agrees if no component is farther than the tolerance from the reference's color, or from those that
+/// it has for other ray epsilons. A pixel outside is excluded if it lies on an
 /// edge across which the shader takes derivatives, whose values GLSL leaves to the driver. It is excluded, too,
 /// if the reference itself is ill-conditioned there. Otherwise it is ill-conditioned if the shader's own color
 /// changes by more than the tolerance in one of the images of `perturbed`, see [`changed_by_rounding`].
@@ -110,13 +110,13 @@ pub fn algorithm(
             }
         })
         .collect();
-    if let Some(colors) = reference.epsilons() {
+    if statuses.contains(&PixelStatus::Differs) {
         let mut band = Band {
             expected,
             actual,
             statuses: &mut statuses,
         };
-        accept_epsilons(&mut band, colors, mixed);
+        reference.accept_epsilons(&mut band, mixed);
     }
     for (index, status) in statuses.iter_mut().enumerate() {
         let pixel = Pixel::at(index, expected, actual);
@@ -185,15 +185,16 @@ pub(crate) fn changed_by_rounding(
 }
 
 /// A band that is compared.
-struct Band<'a> {
+#[derive(Debug)]
+pub struct Band<'a> {
     expected: &'a Image,
     actual: &'a Image,
     statuses: &'a mut [PixelStatus],
 }
 
 impl Band<'_> {
-    /// The differing pixels that satisfy the condition agree.
-    fn accept(&mut self, agrees: impl Fn(&Pixel) -> bool + Sync) {
+    /// Accepts the differing pixels that satisfy the condition.
+    pub(crate) fn accept(&mut self, agrees: impl Fn(&Pixel) -> bool + Sync) {
         let (expected, actual) = (self.expected, self.actual);
         self.statuses
             .par_iter_mut()
@@ -205,6 +206,11 @@ impl Band<'_> {
             });
     }
 
+    /// The share of the pixels that differ.
+    pub(crate) fn differing_share(&self) -> f64 {
+        differing(self.statuses) as f64 / self.statuses.len().max(1) as f64
+    }
+
     fn differing(&self) -> Vec<Pixel> {
         let statuses = self.statuses.iter().enumerate();
         let differing = statuses.filter(|&(_, &status)| status == PixelStatus::Differs);
@@ -214,10 +220,10 @@ impl Band<'_> {
     }
 }
 
-/// Accepts the colors for the legal ray epsilons: first for a few. More epsilons are tried only where pixels
-/// are still outside: `mixed` ones if few are, then the shader's own, which are fitted to some of the pixels,
-/// then all that authors use, in each pixel by itself.
-fn accept_epsilons(band: &mut Band, colors: &dyn EpsilonColors, mixed: &mut Mixed) {
+/// Accepts the colors of a scene for the legal ray epsilons: first for a few. More epsilons are tried only
+/// where pixels are still outside: `mixed` ones if few are, then the shader's own, which are fitted to some of
+/// the pixels, then all that authors use, in each pixel by itself.
+pub fn accept_epsilons(band: &mut Band, colors: &dyn EpsilonColors, mixed: &mut Mixed) {
     let is_within = |pixel: &Pixel, epsilons| {
         let range = colors.color_range(pixel.x, pixel.y, epsilons);
         range.distance(pixel.actual.map(f64::from)) <= EXACT_TOLERANCE
@@ -399,8 +405,8 @@ mod tests {
         fn tolerance(&self) -> f64 {
             EXACT_TOLERANCE
         }
-        fn epsilons(&self) -> Option<&dyn EpsilonColors> {
-            Some(self)
+        fn accept_epsilons(&self, band: &mut Band, mixed: &mut Mixed) {
+            accept_epsilons(band, self, mixed);
         }
         fn is_across_edge(&self, x: u32, _: u32) -> bool {
             (self.edge)(x)

@@ -13,7 +13,7 @@ mod legend;
 mod mean;
 mod replicate;
 
-pub use algorithm::{EpsilonColors, Mixed, PERTURBATIONS, Reference, algorithm};
+pub use algorithm::{Band, EpsilonColors, Mixed, PERTURBATIONS, Reference, accept_epsilons, algorithm};
 pub(crate) use algorithm::{changed_by_rounding, exclude_tied};
 pub use check::{
     CheckSummary, EXACT_TOLERANCE, PixelStatus, SEEN, TOLERANCE, diff_levels, precision, toolchain,

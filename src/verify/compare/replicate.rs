@@ -103,10 +103,15 @@ impl ReplicatedPixel {
     }
 }
 
-/// Compares the shader's replicates with the tracer's means; `size` is the image's.
+/// Compares the shader's replicates with the reference's means; `size` is the image's. If neighboring pixels
+/// of the reference are correlated, only a bias that exceeds the noise of single pixels is significant.
 #[must_use]
-pub fn compare_replicates(pixels: &[ReplicatedPixel], size: [u32; 2]) -> ReplicateTest {
-    let is_correlated = is_correlated(pixels);
+pub fn compare_replicates(
+    pixels: &[ReplicatedPixel],
+    size: [u32; 2],
+    reference_is_correlated: bool,
+) -> ReplicateTest {
+    let is_correlated = is_correlated(pixels) || reference_is_correlated;
     let (variance, is_uniform) = variance_ratio(pixels, size);
     let events = if variance > RARE_EVENT_VARIANCE_RATIO {
         largest_deviations(pixels)
@@ -142,7 +147,7 @@ pub fn compare_replicates(pixels: &[ReplicatedPixel], size: [u32; 2]) -> Replica
     };
     ReplicateTest {
         bias,
-        is_biased: bias.0 > limit || (is_correlated && exceeds_scene_noise(pixels)),
+        is_biased: (bias.0 > limit && !reference_is_correlated) || (is_correlated && exceeds_noise(pixels)),
         within: bias_bound(pixels, limit, events),
         is_correlated,
         variance,
@@ -300,8 +305,8 @@ pub(crate) fn is_correlated(pixels: &[ReplicatedPixel]) -> bool {
         .any(|direction| correlation(direction) > MIN_CORRELATION)
 }
 
-/// Whether the difference of the means exceeds what the scene's noise can explain, even if pixels share it.
-fn exceeds_scene_noise(pixels: &[ReplicatedPixel]) -> bool {
+/// Whether the difference of the means exceeds what the reference's noise can explain, even if pixels share it.
+fn exceeds_noise(pixels: &[ReplicatedPixel]) -> bool {
     let (mut squares, mut noise) = (0.0, 0.0);
     for pixel in pixels {
         for i in 0..3 {
@@ -377,13 +382,13 @@ mod tests {
     #[test]
     fn the_same_mean_is_unbiased_at_any_noise_level() {
         for times in [0.2, 1.0, 3.0] {
-            let found = compare_replicates(&pixels(|at, set| times * noise(at, set)), SIZE);
+            let found = compare_replicates(&pixels(|at, set| times * noise(at, set)), SIZE, false);
             assert!(!found.is_biased && !found.is_correlated, "{times}: {found:?}");
             assert!((found.variance / (times * times) - 1.0).abs() < 0.1, "{found:?}");
             assert!(found.is_uniform);
         }
         let uneven = |at: [u32; 2], set| noise(at, set) * if at[0] < 32 { 1.0 } else { 2.0 };
-        let found = compare_replicates(&pixels(uneven), SIZE);
+        let found = compare_replicates(&pixels(uneven), SIZE, false);
         assert!(!found.is_biased && !found.is_uniform, "{found:?}");
     }
 
@@ -393,11 +398,15 @@ mod tests {
         for bias in [(|_| 0.003) as fn([u32; 2]) -> f64, |[x, _]| {
             if x > 56 { 0.02 } else { 0.0 }
         }] {
-            let found = compare_replicates(&pixels(|at, set| noise(at, set) + bias(at)), SIZE);
+            let found = compare_replicates(&pixels(|at, set| noise(at, set) + bias(at)), SIZE, false);
             assert!(found.is_biased, "{found:?}");
         }
         // The sum over any block is near 0, and neighbors are not correlated.
-        let found = compare_replicates(&pixels(|at, set| noise(at, set) + 0.02 * checkers(at)), SIZE);
+        let found = compare_replicates(
+            &pixels(|at, set| noise(at, set) + 0.02 * checkers(at)),
+            SIZE,
+            false,
+        );
         assert!(found.is_biased && !found.is_correlated, "{found:?}");
     }
 
@@ -408,12 +417,12 @@ mod tests {
             let occurs = pcg((y * 64 + x) * 16 + set + 9_000_000) < u32::MAX / 1000;
             if occurs { 10.0 - 0.01 } else { -0.01 }
         };
-        let found = compare_replicates(&pixels(rare), SIZE);
+        let found = compare_replicates(&pixels(rare), SIZE, false);
         assert!(
             !found.is_biased && found.variance > RARE_EVENT_VARIANCE_RATIO,
             "{found:?}"
         );
-        let found = compare_replicates(&pixels(|at, set| rare(at, set) - 0.05), SIZE);
+        let found = compare_replicates(&pixels(|at, set| rare(at, set) - 0.05), SIZE, false);
         assert!(found.is_biased, "{found:?}");
     }
 
@@ -423,8 +432,19 @@ mod tests {
             [|_| 1, |[x, _]| x, |[_, y]| y, |[x, y]| x + y, |[x, y]| x + 64 - y];
         for (case, shared) in shared.into_iter().enumerate() {
             let own = |at, set| 0.05 * normal(shared(at) * 16 + set + 3_000_000);
-            let found = compare_replicates(&pixels(own), SIZE);
+            let found = compare_replicates(&pixels(own), SIZE, false);
             assert!(found.is_correlated && !found.is_biased, "{case}: {found:?}");
         }
+    }
+
+    #[test]
+    fn only_a_large_bias_is_significant_against_correlated_noise() {
+        let biased = |bias: f64| {
+            let pixels = pixels(move |at, set| noise(at, set) + bias);
+            [false, true].map(|correlated| compare_replicates(&pixels, SIZE, correlated))
+        };
+        let [independent, correlated] = biased(0.05);
+        assert!(independent.is_biased && !correlated.is_biased && correlated.is_correlated);
+        assert!(biased(1.0)[1].is_biased);
     }
 }

@@ -2,6 +2,7 @@
 //! from one shader to the next.
 
 mod bands;
+mod epsilons;
 mod image;
 mod reseeded;
 mod scene;
@@ -18,10 +19,9 @@ use toyproof_tracer::{ColorRange, EpsilonSet, Tracer};
 
 pub(crate) use self::bands::ReferenceBand;
 pub use self::image::{ImageReference, Quantization};
-pub(crate) use self::scene::SceneBand;
 pub use self::scene::SceneReference;
 pub use self::shader::{DEFAULT_TOLERANCE, ReferenceFindings, ShaderReference};
-use crate::compare::{EXACT_TOLERANCE, SEEN};
+use crate::compare::{Band, EXACT_TOLERANCE, Mixed, SEEN, accept_epsilons};
 
 /// The number type whose rounding is simulated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -184,6 +184,20 @@ impl Expected {
             Self::Shader(shader) => shader.reads_time(),
             Self::Image(_) => false,
         }
+    }
+
+    /// Accepts the colors of a band that the reference has for other ray epsilons.
+    pub(crate) fn accept_epsilons(&self, rows: &Range<u32>, band: &mut Band, mixed: &mut Mixed) {
+        match self {
+            Self::Scene(scene) => accept_epsilons(band, &scene.band(rows), mixed),
+            Self::Shader(shader) => shader.accept_epsilons(rows, band),
+            Self::Image(_) => {}
+        }
+    }
+
+    /// Whether the quad of a pixel lies across an edge of a scene, so that derivatives are undefined there.
+    pub(crate) fn is_across_edge(&self, x: u32, y: u32) -> bool {
+        self.tracer().is_some_and(|tracer| tracer.is_quad_mixed(x, y))
     }
 
     /// Of the `wanted` pixels of some rows, those in which the reference itself changes color by rounding in

@@ -12,8 +12,10 @@ use super::image::ImageReference;
 use super::shader::ShaderReference;
 use crate::TOTAL_TIME_FACTOR;
 use crate::compare::{ReplicatedPixel, is_correlated};
-use crate::replicates::{MAX_DISTANCE_RATIO, MIN_RANDOM_CHANGE, RANDOMNESS_GRID};
-use crate::resampled::{ESTIMATE_SETS, Estimate, RESAMPLES, Resampled, differ_by, mean, pixels};
+use crate::replicates::{self, MAX_DISTANCE_RATIO, MIN_RANDOM_CHANGE, RANDOMNESS_GRID};
+use crate::resampled::{
+    ESTIMATE_SETS, Estimate, Estimates, RESAMPLES, Resampled, differ_by, mean, pixels, variance,
+};
 use crate::reseed::{Reseeding, is_deterministic};
 
 /// The largest number of pixels of a replicate: seventeen of them take about as long as an image of 640×360.
@@ -25,6 +27,9 @@ const TRIED_SETS: u32 = 4;
 /// The largest ratio of the squared distances from the mean of n sets of an image that is none of them and of
 /// the sets themselves, whose expectation is (n + 1)/(n − 1).
 const MAX_RATIO: f64 = MAX_DISTANCE_RATIO * (TRIED_SETS + 1) as f64 / (TRIED_SETS - 1) as f64;
+
+/// The largest variance of correlated noise as a share of the variance of the image's pixels.
+const MAX_NOISE_SHARE: f64 = 0.5;
 
 type Colors = Vec<[f64; 3]>;
 
@@ -112,25 +117,36 @@ impl ShaderReference {
         )
     }
 
-    /// Estimates pixels from several sets of random numbers. None if there are none, or if neighbors use the
-    /// same: then the variance of a sum over pixels is unknown.
-    fn estimated(&self, places: &Places) -> Option<Vec<Estimate>> {
+    /// Estimates pixels from several sets of random numbers; none if there are none.
+    fn estimated(&self, places: &Places) -> Option<Estimates> {
         let reseeding = self.reseeding()?;
         let own = self.set(None, 0, places)?;
         let sets = (1..ESTIMATE_SETS.end).map(|set| self.set(Some(reseeding), set, places));
         let sets: Vec<Colors> = sets.collect::<Option<_>>()?;
-        let estimates = own.into_iter().enumerate().map(|(at, own)| {
+        let estimates = own.iter().enumerate().map(|(at, own)| {
             let displayed = own.map(|part| part.clamp(0.0, 1.0));
             Estimate::of(displayed, |set| sets[set as usize - 1][at])
         });
         let estimates: Vec<Estimate> = estimates.collect();
-        let noise: Vec<ReplicatedPixel> = pixels(places)
+        let random = pixels(places)
             .into_iter()
             .zip(&estimates)
-            .filter(|(_, estimate)| estimate.is_random(self))
-            .map(|(at, estimate)| estimate.replicated(at))
-            .collect();
-        (!is_correlated(&noise)).then_some(estimates)
+            .filter(|(_, estimate)| estimate.is_random(self));
+        let noise: Vec<ReplicatedPixel> = random.map(|(at, estimate)| estimate.replicated(at)).collect();
+        Some(Estimates {
+            are_correlated: is_correlated(&noise),
+            pixels: estimates,
+        })
+    }
+
+    /// Whether the random numbers determine what the image shows, such as the places of objects, rather than
+    /// its noise: neighboring pixels change together, and by as much as pixels differ from each other.
+    fn is_content(estimates: &Estimates) -> bool {
+        let own: Colors = estimates.pixels.iter().map(|estimate| estimate.own).collect();
+        let noise = estimates.pixels.iter().map(|estimate| estimate.variance);
+        let noise: f64 = noise.map(|variance| variance.iter().sum::<f64>()).sum();
+        let of_image = variance(&own).iter().sum::<f64>() * own.len() as f64;
+        estimates.are_correlated && noise > MAX_NOISE_SHARE * of_image
     }
 }
 
@@ -148,7 +164,8 @@ fn squared_distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 /// Nothing is known about how the shader combines its samples.
 impl Resampled for ShaderReference {
     fn is_stochastic(&self) -> bool {
-        self.reseeding().is_some()
+        let estimates = || self.estimates(&replicates::places(self.frame.size, self));
+        self.reseeding().is_some() && estimates().is_none_or(|estimates| !Self::is_content(&estimates))
     }
 
     fn sampler(&self) -> Option<Sampler> {
@@ -163,7 +180,7 @@ impl Resampled for ShaderReference {
         MAX_PIXELS
     }
 
-    fn estimates(&self, places: &Places) -> Option<Arc<Vec<Estimate>>> {
+    fn estimates(&self, places: &Places) -> Option<Arc<Estimates>> {
         let estimated = || self.estimated(places).map(Arc::new);
         let (known, estimates) = self.estimates.get_or_init(|| (places.clone(), estimated()));
         if known == places {
@@ -229,7 +246,7 @@ impl Resampled for ImageReference {
         MAX_PIXELS
     }
 
-    fn estimates(&self, _: &Places) -> Option<Arc<Vec<Estimate>>> {
+    fn estimates(&self, _: &Places) -> Option<Arc<Estimates>> {
         None
     }
 

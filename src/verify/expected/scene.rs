@@ -114,6 +114,14 @@ impl SceneReference {
         })
     }
 
+    /// The colors of some rows.
+    pub(super) fn band(&self, rows: &Range<u32>) -> SceneBand<'_> {
+        SceneBand {
+            scene: self,
+            offset: rows.start,
+        }
+    }
+
     /// Of the `wanted` pixels of some rows, those in which the scene has an edge: no shader can resolve its
     /// side.
     pub(super) fn tied(&self, rows: &Range<u32>, wanted: &[bool], number_type: NumberType) -> Vec<bool> {
@@ -169,16 +177,9 @@ impl SceneReference {
 
 /// The colors that a scene accepts in the band that begins at a row.
 #[derive(Debug)]
-pub(crate) struct SceneBand<'a> {
-    pub(crate) scene: &'a SceneReference,
-    pub(crate) offset: u32,
-}
-
-impl SceneBand<'_> {
-    /// [`Tracer::is_quad_mixed`]
-    pub(crate) fn is_quad_mixed(&self, x: u32, y: u32) -> bool {
-        self.scene.tracer.is_quad_mixed(x, self.offset + y)
-    }
+pub(super) struct SceneBand<'a> {
+    scene: &'a SceneReference,
+    offset: u32,
 }
 
 impl EpsilonColors for SceneBand<'_> {

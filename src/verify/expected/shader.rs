@@ -14,16 +14,20 @@ use toyproof_lint::Lints;
 
 use super::NumberType;
 use super::bands::{Bands, ReferenceBand};
-use crate::compare::changed_by_rounding;
+use super::epsilons::AcceptedColors;
+use crate::compare::{Band, changed_by_rounding};
 use crate::cpu::Evaluator;
 use crate::decide::Share;
 use crate::notes::{self, NotFinite};
-use crate::resampled::Estimate;
+use crate::resampled::Estimates;
 use crate::reseed::Reseeding;
 use crate::{EVALUATOR_TIME_FACTOR, TOTAL_TIME_FACTOR};
 
 /// The default tolerance of colors: half of an 8-bit level.
 pub const DEFAULT_TOLERANCE: f64 = 0.5 / 255.0;
+
+/// The largest share of a band's pixels that may be accepted because of ray epsilons.
+const MAX_ACCEPTED_SHARE: f64 = 0.05;
 
 /// A shader that others are compared with, in one frame.
 #[derive(Debug)]
@@ -33,10 +37,12 @@ pub struct ShaderReference {
     tolerance: f64,
     pub(super) timeout: Duration,
     bands: Bands,
+    /// The colors for other ray epsilons.
+    accepted: OnceLock<Option<AcceptedColors>>,
     /// How its random numbers can be changed, if it has any that can.
     pub(super) reseeding: OnceLock<Option<Reseeding>>,
     /// The estimates of pixels with other random numbers, and their places.
-    pub(super) estimates: OnceLock<(Places, Option<Arc<Vec<Estimate>>>)>,
+    pub(super) estimates: OnceLock<(Places, Option<Arc<Estimates>>)>,
 }
 
 /// What the evaluation of a reference shader showed.
@@ -86,6 +92,7 @@ impl ShaderReference {
             frame: frame.clone(),
             tolerance,
             timeout,
+            accepted: OnceLock::new(),
             reseeding: OnceLock::new(),
             estimates: OnceLock::new(),
         };
@@ -186,6 +193,22 @@ impl ShaderReference {
             let [r, g, b, _] = image.get(x % 2, y % 2);
             [r, g, b].map(f64::from)
         })
+    }
+
+    /// Accepts the colors that the shader has for the usual ray epsilons, where few pixels differ; where many
+    /// do, epsilons are not the cause.
+    pub(super) fn accept_epsilons(&self, rows: &Range<u32>, band: &mut Band) {
+        if band.differing_share() > MAX_ACCEPTED_SHARE {
+            return;
+        }
+        let Some(accepted) = self.accepted.get_or_init(|| AcceptedColors::of(self)) else {
+            return;
+        };
+        let width = self.frame.size[0];
+        band.accept(|pixel| {
+            let at = (rows.start + pixel.y) * width + pixel.x;
+            accepted.range(at as usize).distance(pixel.actual.map(f64::from)) <= self.tolerance
+        });
     }
 
     pub(super) fn tied(
