@@ -6,11 +6,11 @@
 //!
 //! | check | expected | actual |
 //! |---|---|---|
-//! | algorithm | the tracer on the scene, in double precision | the shader on the CPU, in double precision |
+//! | algorithm | the [reference](Expected), in double precision | the shader on the CPU, in double precision |
 //! | precision | the shader in double precision | the shader in float32 on the GPU |
 //! | toolchain | the shader in float32 on the CPU | the shader in float32 on the GPU, to the bit |
 //!
-//! Without a scene there is no algorithm check; without a GPU the evaluator's image in float32 takes the place
+//! Without a reference there is no algorithm check; without a GPU the evaluator's image in float32 takes the place
 //! of the GPU's, and there is no toolchain check; neither is there in a fast run, which leaves the order of
 //! operations to the driver. Images are compared in bands of rows, while they are rendered.
 //!
@@ -22,7 +22,7 @@
 //!   random unit in the last place. If only such pixels differ, the verdict is `unstable`, not `wrong`.
 //! - Colors between those of the accepted offsets of secondary rays: offsets are a matter of style.
 //!
-//! A stochastic shader that uses other random numbers than the scene's is compared by its mean. The verdict
+//! A stochastic shader that uses other random numbers than its reference is compared by its mean. The verdict
 //! does not depend on the load of the machine, the number of threads or the speed of the driver.
 //!
 //! # Explanations

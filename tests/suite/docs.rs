@@ -79,7 +79,7 @@ fn block(page: &str, text: &str) -> String {
         .text
 }
 
-/// A folder with the files that the pages assume: the course, three submissions and a rubric.
+/// A folder with the files that the pages assume: the course, submissions of two assignments, and a rubric.
 fn assumed_files() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     assert_eq!(toyproof(folder.path(), &["scenes", "--write", "glsl"]).code, 0);
@@ -104,6 +104,17 @@ fn assumed_files() -> tempfile::TempDir {
         ),
     ] {
         fs::write(folder.path().join("homework").join(name), text).unwrap();
+    }
+    let torus = block("docs/guide/checking.md", "float distanceTo");
+    let half = torus.replace("t += d;", "t += 0.5 * d;").replace("d < 1e-4", "d < 1e-3");
+    let large = torus.replace("length(p.xz) - 1.0", "length(p.xz) - 1.02");
+    fs::create_dir(folder.path().join("torus")).unwrap();
+    for (name, text) in [
+        ("solution.glsl", torus),
+        ("torus/half.glsl", half),
+        ("torus/large.glsl", large),
+    ] {
+        fs::write(folder.path().join(name), text).unwrap();
     }
     let rubric = block("docs/guide/checking.md", "[compiles]");
     fs::write(folder.path().join("rubric.toml"), rubric).unwrap();
@@ -367,6 +378,17 @@ fn the_autograder_of_the_guide_writes_marks() {
     }
     std::os::unix::fs::symlink(env!("CARGO_BIN_EXE_toyproof"), at("source/toyproof")).unwrap();
     fs::write(at("source/scene.toml"), SPHERE.scene).unwrap();
+    let torus = block("docs/guide/checking.md", "float distanceTo");
+    let half = torus.replace("t += d;", "t += 0.5 * d;").replace("d < 1e-4", "d < 1e-3");
+    let large = torus.replace("length(p.xz) - 1.0", "length(p.xz) - 1.02");
+    fs::create_dir(folder.path().join("torus")).unwrap();
+    for (name, text) in [
+        ("solution.glsl", torus),
+        ("torus/half.glsl", half),
+        ("torus/large.glsl", large),
+    ] {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
     let rubric = block("docs/guide/checking.md", "[compiles]");
     fs::write(at("source/rubric.toml"), rubric).unwrap();
     let script = block("docs/guide/checking.md", "cd /autograder/source");

@@ -44,6 +44,7 @@ mod planted_faults;
 mod povray;
 mod program;
 mod random_draws;
+mod references;
 mod repairs;
 mod reports;
 mod requirements;

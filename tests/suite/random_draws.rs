@@ -24,7 +24,7 @@ void startSample(vec2 fragCoord, int i) {
 ";
 
 /// An integer hash instead of the sine hash.
-const OTHER_HASH: &[Edit] = &[
+pub(crate) const OTHER_HASH: &[Edit] = &[
     ("float seed;\n\nfloat random() {…}\n", HASH),
     ("    seed = 0.0;\n", ""),
     (

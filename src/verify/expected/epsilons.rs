@@ -41,13 +41,15 @@ impl AcceptedColors {
         let groups = epsilons(reference.checked());
         let each = groups.iter().map(Vec::clone);
         let all = (groups.len() > 1).then(|| groups.concat());
-        let own = whole(reference, None)?;
+        let bands = reference.frame.bands().map(|rows| reference.rows(&rows));
+        let bands = bands.map(|band| band.ok().map(|band| band.image.clone()));
+        let own = Image::of_bands(bands.collect::<Option<_>>()?);
         let mut ranges: Vec<ColorRange> = own.pixels().iter().map(|&color| point(color)).collect();
         let mut is_varied = false;
         for group in each.chain(all) {
             for epsilon in USUAL_EPSILONS {
                 let varied = with_epsilon(reference.checked(), &group, epsilon);
-                let Some(image) = whole(reference, Some(&varied)) else {
+                let Some(image) = evaluated(reference, &varied) else {
                     continue;
                 };
                 let changed = (0..ranges.len())
@@ -118,20 +120,15 @@ fn with_epsilon(checked: &Checked, literals: &[ExprId], epsilon: f64) -> Checked
     checked
 }
 
-/// The whole image of the reference, or of a variant of it; none if a limit is exceeded.
-fn whole(reference: &ShaderReference, varied: Option<&Checked>) -> Option<Image> {
+/// The image of a variant of the reference; none if a limit is exceeded.
+fn evaluated(reference: &ShaderReference, varied: &Checked) -> Option<Image> {
     let settings = Settings::<f64> {
         undefined: UndefinedPolicy::Plain,
         deadline: Some(Instant::now() + reference.timeout * TOTAL_TIME_FACTOR),
         ..Settings::default()
     };
+    let program = Program::prepared(varied, UndefinedPolicy::Plain).ok()?;
     let frame = &reference.frame;
-    let rendered = match varied {
-        None => reference.program.render_rows(frame, frame.rows(), &settings),
-        Some(varied) => {
-            let program = Program::prepared(varied, UndefinedPolicy::Plain).ok()?;
-            program.render_rows(frame, frame.rows(), &settings)
-        }
-    };
+    let rendered = program.render_rows(frame, frame.rows(), &settings);
     rendered.ok().map(|rendered| rendered.image)
 }

@@ -32,6 +32,17 @@ pub(crate) enum NumberType {
     Single,
 }
 
+impl NumberType {
+    /// How much numbers of a scene and coordinates of pixels are perturbed, relatively: by a few units in the
+    /// last place.
+    fn perturbation(self) -> f64 {
+        match self {
+            Self::Double => 4.0 * f64::EPSILON,
+            Self::Single => 2.0 * f64::from(f32::EPSILON),
+        }
+    }
+}
+
 /// What shaders are compared with in one frame. Results are computed on first use, from any thread: the
 /// reference of many shaders is rendered once, unless it is too large for the cache.
 #[derive(Debug)]

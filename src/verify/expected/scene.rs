@@ -26,24 +26,6 @@ const PERTURBATIONS: u32 = 4;
 /// number type, edges are not the cause.
 const MAX_TIED_SHARE: f64 = 0.05;
 
-impl NumberType {
-    /// How much numbers of a scene are perturbed, relatively: by a few units in the last place.
-    fn perturbation(self) -> f64 {
-        match self {
-            Self::Double => 4.0 * f64::EPSILON,
-            Self::Single => 2.0 * f64::from(f32::EPSILON),
-        }
-    }
-
-    /// The tolerance above which a pixel has changed.
-    fn tolerance(self) -> f64 {
-        match self {
-            Self::Double => EXACT_TOLERANCE,
-            Self::Single => SEEN,
-        }
-    }
-}
-
 /// The cached color ranges of a row, by column and epsilon set.
 type Row = HashMap<(u32, EpsilonSet), ColorRange>;
 
@@ -151,9 +133,13 @@ impl SceneReference {
         });
         let clamped = |tracer: &Tracer<f64>| tracer.pixel(x, y).map(|part| part.clamp(0.0, 1.0));
         let own = clamped(&self.tracer);
+        let tolerance = match number_type {
+            NumberType::Double => EXACT_TOLERANCE,
+            NumberType::Single => SEEN,
+        };
         perturbed.iter().any(|tracer| {
             let other = clamped(tracer);
-            (0..3).any(|i| (own[i] - other[i]).abs() > number_type.tolerance())
+            (0..3).any(|i| (own[i] - other[i]).abs() > tolerance)
         })
     }
 

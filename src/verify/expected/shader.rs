@@ -9,13 +9,13 @@ use toyproof_diagnostic::Diagnostic;
 use toyproof_eval::{self as eval, Observations, Places, Program, Seed, Settings, UndefinedPolicy};
 use toyproof_glsl::Checked;
 use toyproof_glsl::tree::{ExprKind, Input, VariableKind};
-use toyproof_image::Frame;
+use toyproof_image::{Frame, Image};
 use toyproof_lint::Lints;
 
 use super::NumberType;
 use super::bands::{Bands, ReferenceBand};
 use super::epsilons::AcceptedColors;
-use crate::compare::{Band, changed_by_rounding};
+use crate::compare::{Band, Pixel, changed_by_rounding};
 use crate::cpu::Evaluator;
 use crate::decide::Share;
 use crate::notes::{self, NotFinite};
@@ -226,9 +226,55 @@ impl ShaderReference {
             NumberType::Double => Seed::double,
             NumberType::Single => Seed::single,
         };
-        self.with_evaluator(|evaluator| {
+        let mut tied = self.changed_by_moving(rows, &band.image, wanted, number_type, tolerance);
+        let left: Vec<bool> = wanted
+            .iter()
+            .zip(&tied)
+            .map(|(wanted, tied)| *wanted && !tied)
+            .collect();
+        let changed = self.with_evaluator(|evaluator| {
             let perturbed = |number, wanted: &[bool]| evaluator.perturbed(rows, seed(number), wanted);
-            changed_by_rounding(&band.image, wanted, tolerance, perturbed)
-        })
+            changed_by_rounding(&band.image, &left, tolerance, perturbed)
+        });
+        for (tied, changed) in tied.iter_mut().zip(changed) {
+            *tied |= changed;
+        }
+        tied
+    }
+
+    /// Of the `wanted` pixels, those whose color changes if the pixel moves by a few units in the last place of
+    /// its coordinates: where an edge passes exactly through its center, even exact operations decide nothing.
+    fn changed_by_moving(
+        &self,
+        rows: &Range<u32>,
+        image: &Image,
+        wanted: &[bool],
+        number_type: NumberType,
+        tolerance: f64,
+    ) -> Vec<bool> {
+        let settings = Settings::<f64> {
+            undefined: UndefinedPolicy::Plain,
+            deadline: Some(Instant::now() + self.timeout * EVALUATOR_TIME_FACTOR),
+            wanted: Some(wanted),
+            ..Settings::default()
+        };
+        let step = number_type.perturbation();
+        let mut changed = vec![false; wanted.len()];
+        for [dx, dy] in [[step, step], [-step, -step], [step, -step], [-step, step]] {
+            let along = |pixels: Range<u32>, step: f64| -> Vec<f64> {
+                pixels.map(|at| (f64::from(at) + 0.5) * (1.0 + step)).collect()
+            };
+            let places = Places {
+                columns: along(0..self.frame.size[0], dx),
+                rows: along(rows.clone(), dy),
+            };
+            let Ok(moved) = self.program.at(&self.frame, &places, &settings) else {
+                break;
+            };
+            for (at, changed) in changed.iter_mut().enumerate() {
+                *changed |= wanted[at] && Pixel::at(at, image, &moved).difference() > tolerance;
+            }
+        }
+        changed
     }
 }
