@@ -101,16 +101,13 @@ fn frame_and_scene(
     given: Option<&GivenReference>,
 ) -> Result<(Frame, Option<Scene>), String> {
     let mut frame = args.frame.frame()?;
-    let scene = match given {
-        Some(given) => {
-            given.resize(&mut frame, args.frame.size)?;
-            None
-        }
-        None => {
-            let scenes = Scenes::new(args.reference.scene.as_deref());
-            let found = input.as_ref().ok().and_then(|found| scenes.find(found));
-            found.and_then(|found| found.scene.ok())
-        }
+    let scene = if let Some(given) = given {
+        given.resize(&mut frame, args.frame.size)?;
+        None
+    } else {
+        let scenes = Scenes::new(args.reference.scene.as_deref());
+        let found = input.as_ref().ok().and_then(|found| scenes.find(found));
+        found.and_then(|found| found.scene.ok())
     };
     if let (None, Some(scene)) = (args.frame.size, &scene) {
         frame.size = scene.film.size;

@@ -34,7 +34,7 @@ pub(in crate::cli) struct Scenes {
 /// What a shader is compared with.
 pub(super) enum Reference<'a> {
     /// A scene, its own or the one that `--scene` names.
-    Scene(SceneOfShader),
+    Scene(Box<SceneOfShader>),
     /// The shader or image that `--reference` names.
     Given(&'a PreparedReference),
 }
@@ -93,7 +93,7 @@ impl References {
     /// Returns what a shader is compared with; none if it has no scene.
     pub(super) fn find(&self, found: &Input) -> Option<Reference<'_>> {
         match self {
-            Self::Scenes(scenes) => scenes.find(found).map(Reference::Scene),
+            Self::Scenes(scenes) => scenes.find(found).map(|scene| Reference::Scene(Box::new(scene))),
             Self::Given(given) => Some(Reference::Given(given)),
         }
     }

@@ -80,10 +80,10 @@ fn point([r, g, b, _]: [f32; 4]) -> ColorRange {
 }
 
 fn extend(range: &mut ColorRange, color: [f32; 4]) {
-    for i in 0..3 {
-        // Neither the least nor the greatest of a number and NaN is NaN.
-        range.low[i] = range.low[i].min(f64::from(color[i]));
-        range.high[i] = range.high[i].max(f64::from(color[i]));
+    // Neither the least nor the greatest of a number and NaN is NaN.
+    for ((low, high), part) in range.low.iter_mut().zip(&mut range.high).zip(color) {
+        *low = low.min(f64::from(part));
+        *high = high.max(f64::from(part));
     }
 }
 
