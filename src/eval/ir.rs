@@ -48,7 +48,7 @@ pub(crate) enum ValueDef {
     Word(u32),
     /// One component of an input of the frame.
     Input(Input, u8),
-    /// A parameter: a scalar that is given for each run.
+    /// A parameter, which is given for each point.
     Parameter(Kind, u32),
     /// `gl_FragCoord.x` or `.y`.
     FragCoord(Axis),

@@ -1,5 +1,5 @@
-//! Shaders with parameters: uniforms whose values are given for each run. Many variants of a shader, selected
-//! by parameters, are compiled once and evaluated at a few points each.
+//! Shaders with parameters: uniforms whose values are given for each point. Many variants of a shader, selected
+//! by parameters, are compiled once, and evaluated side by side at a few points each.
 
 use std::cell::RefCell;
 use std::time::Duration;
@@ -9,7 +9,7 @@ use toyproof_glsl::Checked;
 use toyproof_glsl::tree::VariableId;
 use toyproof_image::Frame;
 
-use crate::batch::{Active, Batch, LANES, Lanes};
+use crate::batch::{Active, Batch, LANES};
 use crate::build::{BuildOptions, Refusal};
 use crate::frame::Texture;
 use crate::ir::Kind;
@@ -27,8 +27,8 @@ pub struct ParametricProgram {
 }
 
 impl ParametricProgram {
-    /// Compiles a shader. The `parameters` are declared as uniforms of type `float`, `int` or `bool` in its
-    /// tree. The result of an undefined operation is that of a strict GPU run.
+    /// Compiles a shader. The `parameters` are declared as uniforms of type `float` or `bool` in its tree.
+    /// The result of an undefined operation is that of a strict GPU run.
     ///
     /// # Errors
     /// If the shader is too large once its calls are inlined, or takes longer than `limit` to compile.
@@ -84,6 +84,16 @@ impl ParametricProgram {
 /// The cost of dispatching an instruction, relative to executing it for one chunk of pixels.
 const DISPATCH: f64 = 1.0;
 
+/// A point in the coordinates of `fragCoord`, with the values of the parameters there, in their order. A `bool`
+/// is 0 or 1.
+#[derive(Debug, Clone, Copy)]
+pub struct Point<'v> {
+    /// Where it is.
+    pub at: [f64; 2],
+    /// The parameters; those that are missing are 0.
+    pub values: &'v [f64],
+}
+
 /// Evaluates a [`ParametricProgram`] at points.
 pub struct PointEvaluator<'a> {
     program: &'a ParametricProgram,
@@ -96,41 +106,16 @@ pub struct PointEvaluator<'a> {
 }
 
 impl PointEvaluator<'_> {
-    /// The colors at some points, in the coordinates of `fragCoord`. `values` are those of the parameters, in
-    /// their order; a `bool` is 0 or 1. Four points in a row form a quad, across which derivatives are taken.
+    /// The colors at some points; none where the shader runs more loop iterations than the settings allow.
+    /// Four points in a row form a quad, across which derivatives are taken.
     ///
     /// # Errors
-    /// If a limit is exceeded.
-    pub fn colors(&mut self, values: &[f64], points: &[[f64; 2]]) -> Result<Vec<[f64; 3]>, Failure> {
-        let prepared = &self.program.prepared;
-        let mut batch = self.batch.borrow_mut();
-        for &(number, kind, scalar) in &prepared.parameters {
-            let value = values.get(number as usize).copied().unwrap_or_default();
-            match kind {
-                Kind::Float => batch.float_scalars[scalar as usize].set(value),
-                Kind::Word => batch.word_scalars[scalar as usize].set(word(value)),
-            }
-        }
+    /// If the evaluation is interrupted.
+    pub fn colors(&mut self, points: &[Point<'_>]) -> Result<Vec<Option<[f64; 3]>>, Failure> {
         self.iterations = 0;
         let mut colors = Vec::with_capacity(points.len());
-        for points in points.chunks(prepared.width * LANES) {
-            let chunks = points.len().div_ceil(LANES);
-            self.begin(&mut batch, points, chunks);
-            let instructions = run(&batch, &prepared.code);
-            self.work += instructions as f64 * (DISPATCH + chunks as f64);
-            if let Some(stop) = batch.stopped.take() {
-                let end = BandError::LoopStopped(stop);
-                return Err(end.failure(&self.program.compiled, self.limits, self.max_iterations));
-            }
-            self.iterations = self.iterations.max(batch.max_iterations());
-            for chunk in 0..chunks {
-                let (color, discarded) = self.job.outputs(&batch, chunk);
-                let count = LANES.min(points.len() - chunk * LANES);
-                colors.extend((0..count).map(|lane| match discarded[lane] {
-                    0 => color.map(|component| component[lane]),
-                    _ => [0.0; 3],
-                }));
-            }
+        for points in points.chunks(self.program.prepared.width * LANES) {
+            self.batch_colors(points, &mut colors)?;
         }
         Ok(colors)
     }
@@ -148,14 +133,80 @@ impl PointEvaluator<'_> {
         self.work
     }
 
+    /// Evaluates as many points as a batch holds.
+    fn batch_colors(
+        &mut self,
+        points: &[Point<'_>],
+        colors: &mut Vec<Option<[f64; 3]>>,
+    ) -> Result<(), Failure> {
+        let mut batch = self.batch.borrow_mut();
+        let mut points = points.to_vec();
+        let mut is_excluded = vec![false; points.len()];
+        let chunks = points.len().div_ceil(LANES);
+        // A point that exceeds the limit ends the batch, which is run again with another in its place.
+        while let Some(other) = is_excluded.iter().position(|is_excluded| !is_excluded) {
+            let other = points[other];
+            for (point, &is_excluded) in points.iter_mut().zip(&is_excluded) {
+                if is_excluded {
+                    *point = other;
+                }
+            }
+            self.begin(&mut batch, &points, chunks);
+            let instructions = run(&batch, &self.program.prepared.code);
+            self.work += instructions as f64 * (DISPATCH + chunks as f64);
+            let stop = batch.stopped.take();
+            if let Some(stop) = stop.filter(|stop| !stop.over_limit) {
+                let end = BandError::LoopStopped(stop);
+                return Err(end.failure(&self.program.compiled, self.limits, self.max_iterations));
+            }
+            for (lane, is_excluded) in is_excluded.iter_mut().enumerate() {
+                *is_excluded |= iterations(&batch, lane) > self.max_iterations;
+            }
+            if stop.is_none() {
+                break;
+            }
+        }
+        let mut all = Vec::with_capacity(chunks * LANES);
+        for chunk in 0..chunks {
+            let (color, discarded) = self.job.outputs(&batch, chunk);
+            all.extend((0..LANES).map(|lane| match discarded[lane] {
+                0 => color.map(|component| component[lane]),
+                _ => [0.0; 3],
+            }));
+        }
+        for (lane, is_excluded) in is_excluded.into_iter().enumerate() {
+            if !is_excluded {
+                self.iterations = self.iterations.max(iterations(&batch, lane));
+            }
+            colors.push((!is_excluded).then_some(all[lane]));
+        }
+        Ok(())
+    }
+
     /// Activates the chunks that hold the points. The last chunk is filled with copies of the last point.
-    fn begin(&self, batch: &mut Batch<'_, f64>, points: &[[f64; 2]], chunks: usize) {
-        for (axis, row) in self.program.prepared.coordinates.into_iter().enumerate() {
+    fn begin(&self, batch: &mut Batch<'_, f64>, points: &[Point<'_>], chunks: usize) {
+        let prepared = &self.program.prepared;
+        let point = |chunk: usize, lane: usize| &points[(chunk * LANES + lane).min(points.len() - 1)];
+        for (axis, row) in prepared.coordinates.into_iter().enumerate() {
             let Some(row) = row else { continue };
             for (chunk, cell) in batch.float_row(row).iter().enumerate().take(chunks) {
-                let lanes: Lanes<f64> =
-                    std::array::from_fn(|lane| points[(chunk * LANES + lane).min(points.len() - 1)][axis]);
-                cell.set(lanes);
+                cell.set(std::array::from_fn(|lane| point(chunk, lane).at[axis]));
+            }
+        }
+        for &(number, kind, row) in &prepared.parameters {
+            let value = |chunk, lane| {
+                let values = point(chunk, lane).values;
+                values.get(number as usize).copied().unwrap_or_default()
+            };
+            for chunk in 0..chunks {
+                match kind {
+                    Kind::Float => {
+                        batch.float_row(row)[chunk].set(std::array::from_fn(|lane| value(chunk, lane)))
+                    }
+                    Kind::Word => {
+                        batch.word_row(row)[chunk].set(std::array::from_fn(|lane| word(value(chunk, lane))))
+                    }
+                }
             }
         }
         batch.active[0].set(Active {
@@ -167,6 +218,11 @@ impl PointEvaluator<'_> {
             iterations.set([0; LANES]);
         }
     }
+}
+
+/// The number of loop iterations of a point of a batch.
+fn iterations(batch: &Batch<'_, f64>, lane: usize) -> u32 {
+    batch.iterations.get() + batch.own_iterations[lane / LANES].get()[lane % LANES]
 }
 
 /// A parameter's value as a word; a `bool` is 0 or all bits.
@@ -224,26 +280,36 @@ mod tests {
             .iter()
             .map(|&[x, y]| [f64::from(x) + 0.5, f64::from(y) + 0.5])
             .collect();
+        let with = |values: &'static [f64], points: &[[f64; 2]]| -> Vec<Point<'static>> {
+            points.iter().map(|&at| Point { at, values }).collect()
+        };
         program.evaluate(&frame, &Settings::default(), |evaluator| {
-            let plain = evaluator.colors(&[0.0, 3.0], &points).unwrap();
-            assert_eq!(evaluator.iterations(), 32);
+            let mut colors = |points: &[Point]| -> Vec<_> {
+                evaluator.colors(points).unwrap().into_iter().flatten().collect()
+            };
+            let plain = colors(&with(&[0.0, 3.0], &points));
             for (&[x, y], color) in pixels.iter().zip(&plain) {
                 let [r, g, ..] = image.get(x, y);
                 assert_eq!([color[0] as f32, color[1] as f32], [r, g]);
             }
-            let scaled = evaluator.colors(&[1.0, 3.0], &points[..20]).unwrap();
-            assert!(
-                scaled
-                    .iter()
-                    .zip(&plain)
-                    .all(|(one, other)| one[0] == 3.0 * other[0])
-            );
-            assert_eq!(evaluator.colors(&[0.0, 0.0], &points).unwrap(), plain);
+            // Points with different parameters, side by side.
+            let mut mixed = with(&[0.0, 3.0], &points[..99]);
+            mixed[40..60].copy_from_slice(&with(&[1.0, 3.0], &points[40..60]));
+            mixed[60..80].copy_from_slice(&with(&[1.0, -0.5], &points[60..80]));
+            for (at, (color, plain)) in colors(&mixed).iter().zip(&plain).enumerate() {
+                let scale = match at {
+                    40..60 => 3.0,
+                    60..80 => -0.5,
+                    _ => 1.0,
+                };
+                assert_eq!(color[0], scale * plain[0], "point {at}");
+            }
+            assert_eq!(evaluator.iterations(), 32);
         });
     }
 
     #[test]
-    fn a_limit_of_iterations_ends_a_run_and_not_the_next() {
+    fn points_beyond_the_limit_of_iterations_have_no_color() {
         let checked = checked(TEXT);
         let frame = Frame::default();
         let program =
@@ -252,13 +318,17 @@ mod tests {
             max_iterations: 10,
             ..Settings::default()
         };
+        let heights = [2.5, 100_000.5, 5.5, 9.5, 11.5, 200_000.5];
+        let points = heights.map(|y| Point {
+            at: [0.5, y],
+            values: &[],
+        });
         program.evaluate(&frame, &settings, |evaluator| {
-            let high = evaluator.colors(&[0.0, 0.0], &[[0.5, 100_000.5]]);
-            assert!(
-                matches!(high, Err(Failure::TooOften { limit: 10, .. })),
-                "{high:?}"
-            );
-            assert!(evaluator.colors(&[0.0, 0.0], &[[0.5, 2.5]]).is_ok());
+            let colors = evaluator.colors(&points).unwrap();
+            let is_within = heights.map(|y| y < 11.0);
+            assert_eq!(colors.iter().map(Option::is_some).collect::<Vec<_>>(), is_within);
+            assert_eq!(colors[2].unwrap()[1], 0.55_f64.fract());
+            assert!(evaluator.colors(&points[1..2]).unwrap()[0].is_none());
         });
     }
 }

@@ -191,7 +191,7 @@ impl Builder<'_> {
         let is_speculatable = |block: &[Node]| {
             block.len() <= MAX_SPECULATED_NODES && block.iter().all(|node| matches!(node, Node::Let(_)))
         };
-        // A parameter is the same for all pixels, which makes a branch cheap.
+        // A parameter selects a variant at a few points; all others skip a branch.
         let is_parameter = matches!(self.def(condition), ValueDef::Parameter(..));
         if !is_parameter && is_speculatable(&yes_block) && is_speculatable(&no_block) {
             for node in yes_block.into_iter().chain(no_block) {

@@ -96,7 +96,7 @@ pub(crate) struct Program {
 }
 
 /// Compiles a shader to the intermediate representation. Uniforms that are among the `parameters` get their
-/// values for each run; all others are zero.
+/// values for each point; all others are zero.
 pub(crate) fn compile(
     checked: &Checked,
     parameters: &[VariableId],

@@ -32,7 +32,7 @@ pub struct Prepared<N: Number> {
     /// Red, green, blue.
     pub(crate) color: [Location; 3],
     pub(crate) discarded: Location,
-    /// The numbers, kinds and scalars of the parameters that are used.
+    /// The numbers, kinds and rows of the parameters.
     pub(crate) parameters: Vec<(u32, Kind, u32)>,
     /// The rows of `gl_FragCoord.xy`, where they are used.
     pub(crate) coordinates: [Option<u32>; 2],
@@ -86,8 +86,8 @@ impl Compiled {
                 (ValueDef::Input(input, component), Some(Location::Scalar(to))) => {
                     floats[to as usize] = float_input(frame, input, component);
                 }
-                (ValueDef::Parameter(kind, number), Some(Location::Scalar(to))) => {
-                    parameters.push((number, kind, to));
+                (ValueDef::Parameter(kind, number), Some(Location::Row(row))) => {
+                    parameters.push((number, kind, row * width as u32));
                 }
                 (ValueDef::FragCoord(axis), Some(Location::Row(row))) => {
                     coordinates[axis as usize] = Some(row * width as u32);

@@ -373,12 +373,14 @@ fn assign_kind(
         if function.kind(value) != kind || cell_of[at].is_some() {
             continue;
         }
-        if start != NEVER && divergence.value(value) && !matches!(function.def(value), ValueDef::FragCoord(_))
-        {
-            intervals.push((start, end, IntervalOwner::Value(value.0)));
-        } else if matches!(function.def(value), ValueDef::FragCoord(_)) {
+        if matches!(
+            function.def(value),
+            ValueDef::FragCoord(_) | ValueDef::Parameter(..)
+        ) {
             // Written once for each batch, before all steps.
             intervals.push((0, NEVER, IntervalOwner::Value(value.0)));
+        } else if start != NEVER && divergence.value(value) {
+            intervals.push((start, end, IntervalOwner::Value(value.0)));
         } else if uses.counts[at] > 0 || start != NEVER {
             let next = locations.scalars.of(kind);
             locations.values[at] = Some(Location::Scalar(*next));

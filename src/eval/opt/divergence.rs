@@ -220,7 +220,7 @@ impl<'a> Solver<'a> {
     fn run(mut self) -> Divergence {
         let function = self.map.function;
         for (value, def) in (0..).zip(&function.defs) {
-            if matches!(def, ValueDef::FragCoord(_)) {
+            if matches!(def, ValueDef::FragCoord(_) | ValueDef::Parameter(..)) {
                 self.add(Fact::Value(Value(value)));
             }
         }

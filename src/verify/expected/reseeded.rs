@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use rayon::prelude::*;
-use toyproof_eval::{ParametricProgram, Places, Program, Settings, UndefinedPolicy};
+use toyproof_eval::{ParametricProgram, Places, Point, Program, Settings, UndefinedPolicy};
 use toyproof_image::Image;
 use toyproof_scene::Sampler;
 
@@ -101,20 +101,21 @@ impl ShaderReference {
         let corners = [[0, 0], [1, 0], [0, 1], [1, 1]];
         let quads = pixels.iter().flat_map(|&[x, y]| {
             let corner = move |[i, j]: [u32; 2]| [f64::from(x / 2 * 2 + i), f64::from(y / 2 * 2 + j)];
-            corners.map(corner).map(|[x, y]| [x + 0.5 + dx, y + 0.5 + dy])
+            corners.map(corner).map(|[x, y]| Point {
+                at: [x + 0.5 + dx, y + 0.5 + dy],
+                values: &[],
+            })
         });
-        let quads: Vec<[f64; 2]> = quads.collect();
+        let quads: Vec<Point> = quads.collect();
         let settings = Settings::<f64> {
             deadline: Some(Instant::now() + limit),
             ..Settings::default()
         };
-        let colors = program.evaluate(&self.frame, &settings, |evaluator| evaluator.colors(&[], &quads));
+        let colors = program.evaluate(&self.frame, &settings, |evaluator| evaluator.colors(&quads));
         let colors = colors.ok()?;
         let own = pixels.iter().zip(colors.chunks(4));
-        Some(
-            own.map(|([x, y], quad)| quad[(x % 2 + 2 * (y % 2)) as usize])
-                .collect(),
-        )
+        own.map(|([x, y], quad)| quad[(x % 2 + 2 * (y % 2)) as usize])
+            .collect()
     }
 
     /// Estimates pixels from several sets of random numbers; none if there are none.

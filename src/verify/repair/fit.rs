@@ -1,13 +1,12 @@
-//! Fits one number of an edit to the wrong pixels by the secant method (Press et al., Numerical Recipes,
-//! §9.2).
+//! Fits numbers of edits to the wrong pixels by the secant method (Press et al., Numerical Recipes, §9.2), those
+//! of a group of edits side by side.
 
-use toyproof_eval::PointEvaluator;
-
+use super::group::{Group, Run};
 use super::probe::{FIRST_MEANS, Probes};
-use super::schema::Selection;
 use super::term::Numbers;
+use super::trials::one;
 
-/// The number of probes that are evaluated for a fit: those that are evaluated first.
+/// The number of probes from which a fit is started: those that are evaluated first.
 const PROBES: usize = 16;
 
 /// The largest number of steps, and the difference of colors at which they end.
@@ -17,96 +16,213 @@ const CONVERGED: f64 = 1e-10;
 /// The largest number of pixels from which a fit is started.
 const MAX_STARTS: usize = 2;
 
-/// The numbers of decimal digits to which a fitted number is rounded: authors write short numbers.
-const DIGITS: std::ops::RangeInclusive<usize> = 1..=8;
+/// The number of decimal digits of a fitted number, and of one that is fitted to means.
+const DIGITS: usize = 8;
+const DIGITS_OF_MEANS: usize = 3;
 
-/// Returns the numbers that make some wrong pixel right, each followed by what it may be a rounding of.
-/// `start` is the number with which the edit changes nothing, `before` the colors there.
-pub(super) fn fitted(
-    probes: &Probes,
-    evaluator: &mut PointEvaluator,
-    selection: impl Fn(f64) -> Selection,
-    start: f64,
-    before: &[[f64; 3]],
-) -> Vec<f64> {
-    if probes.are_means() {
-        return fitted_to_means(probes, evaluator, selection, start);
-    }
-    let count = probes.all.len().min(PROBES);
-    let mut colors = |number: f64| {
-        let colors = probes.first_colors(evaluator, &selection(number), count)?;
-        colors
-            .iter()
-            .flatten()
-            .all(|part| part.is_finite())
-            .then_some(colors)
-    };
-    let step = 1e-3 * start.abs().max(0.1);
-    let Some(moved) = colors(start + step) else {
-        return Vec::new();
-    };
-    // The components that depend on the number most, relative to what is missing.
-    let mut components: Vec<(f64, usize, usize)> = Vec::new();
-    for (at, probe) in probes.all[..count]
-        .iter()
-        .enumerate()
-        .filter(|(_, probe)| probe.is_wrong)
-    {
-        let target = probe.target();
-        for i in 0..3 {
-            let slope = (moved[at][i] - before[at][i]) / step;
-            let missing = target[i] - before[at][i];
-            // A component at its limit says only how large a number must be at least.
-            if slope.abs() > 1e-9 && missing.abs() > 1e-6 && (1e-6..1.0 - 1e-6).contains(&target[i]) {
-                components.push(((missing / slope).abs(), at, i));
-            }
-        }
-    }
-    components.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
-    let middle = components.len() / 2;
-    let starts = [components.get(middle), components.first()];
-    let mut numbers = Vec::new();
-    for &(_, at, i) in starts.into_iter().flatten().take(MAX_STARTS) {
-        let target = probes.all[at].target()[i];
-        let mut error = |number: f64| Some(colors(number)?[at][i] - target);
-        let first = before[at][i] - target;
-        if let Some(number) = secant(&mut error, [start, start + step], [first, moved[at][i] - target]) {
-            numbers.extend(roundings(number));
-        }
-    }
-    numbers.dedup_by(|a, b| a.to_bits() == b.to_bits());
-    numbers
+/// A number to be fitted.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Fit {
+    /// The place of the edit in its group.
+    pub(super) candidate: usize,
+    /// The number with which the edit changes nothing.
+    pub(super) start: f64,
+    /// The cost of the edit with a fitted number.
+    pub(super) cost: u32,
 }
 
-/// Returns the numbers that remove the bias of a stochastic shader from some of its pixels.
-fn fitted_to_means(
+impl Fit {
+    fn run(&self, number: f64, probes: std::ops::Range<usize>) -> Run {
+        Run {
+            candidate: Some(self.candidate),
+            numbers: one(number),
+            probes,
+        }
+    }
+}
+
+/// A search for the zero of an error.
+struct Secant {
+    /// The index of the fit.
+    fit: usize,
+    error: ErrorOf,
+    /// The last two numbers and their errors.
+    at: [f64; 2],
+    errors: [f64; 2],
+}
+
+/// What a number should make zero.
+#[derive(Debug, Clone, Copy)]
+enum ErrorOf {
+    /// The distance of a component of the color of a probe from its target.
+    Component { probe: usize, component: usize },
+    /// The bias at the first probes.
+    Mean,
+}
+
+impl ErrorOf {
+    fn probes(self, probes: &Probes) -> std::ops::Range<usize> {
+        match self {
+            Self::Component { probe, .. } => probe..probe + 1,
+            Self::Mean => 0..FIRST_MEANS.min(probes.all.len()),
+        }
+    }
+
+    /// The error, by the colors of its probes.
+    fn of(self, probes: &Probes, colors: &[[f64; 3]]) -> Option<f64> {
+        match self {
+            Self::Component { probe, component } => {
+                let target = probes.all[probe].target()[component];
+                Some(colors.first()?[component] - target)
+            }
+            Self::Mean => probes.project(colors).map(|projection| projection.amplitude),
+        }
+    }
+}
+
+impl Secant {
+    /// The number to try next; none if the search has ended.
+    fn next(&self) -> Option<f64> {
+        let ([a, b], [error_a, error_b]) = (self.at, self.errors);
+        let next = b - error_b * (b - a) / (error_b - error_a);
+        (error_b.abs() >= CONVERGED && next.is_finite()).then_some(next)
+    }
+
+    fn step(&mut self, number: f64, error: f64) {
+        self.at = [self.at[1], number];
+        self.errors = [self.errors[1], error];
+    }
+
+    /// The zero, if the search has found one.
+    fn zero(&self) -> Option<f64> {
+        (self.errors[1].abs() < 1e3 * CONVERGED).then_some(self.at[1])
+    }
+}
+
+/// Returns numbers that make some wrong pixel right, each with the index of its fit. `before` are the colors of
+/// the shader at the probes.
+pub(super) fn fitted(
     probes: &Probes,
-    evaluator: &mut PointEvaluator,
-    selection: impl Fn(f64) -> Selection,
-    start: f64,
-) -> Vec<f64> {
-    let count = probes.all.len().min(FIRST_MEANS);
-    let mut amplitude = |number: f64| {
-        let colors = probes.first_colors(evaluator, &selection(number), count)?;
-        probes.project(&colors).map(|projection| projection.amplitude)
+    group: &mut Group,
+    fits: &[Fit],
+    before: &[[f64; 3]],
+) -> Vec<(usize, f64)> {
+    let mut searches = if probes.are_means() {
+        starts_of_means(probes, group, fits)
+    } else {
+        starts(probes, group, fits, before)
     };
-    let second = start + 0.05 * start.abs().max(0.1);
-    let errors = [start, second].map(&mut amplitude);
-    let [Some(first), Some(moved)] = errors else {
-        return Vec::new();
+    for _ in 0..MAX_STEPS {
+        let next: Vec<(&mut Secant, f64)> = searches
+            .iter_mut()
+            .filter_map(|search| search.next().map(|number| (search, number)))
+            .collect();
+        if next.is_empty() {
+            break;
+        }
+        let runs: Vec<Run> = next
+            .iter()
+            .map(|(search, number)| fits[search.fit].run(*number, search.error.probes(probes)))
+            .collect();
+        for ((search, number), colors) in next.into_iter().zip(group.colors(probes, &runs)) {
+            // Without a number, the search ends here.
+            let error = colors.and_then(|colors| search.error.of(probes, &colors));
+            search.step(number, error.unwrap_or(f64::NAN));
+        }
+    }
+    let digits = if probes.are_means() {
+        DIGITS_OF_MEANS
+    } else {
+        DIGITS
     };
-    let zero = secant(&mut amplitude, [start, second], [first, moved]);
-    zero.map_or_else(Vec::new, |number| {
-        [1, 2, 3].map(|digits| rounded(number, digits)).to_vec()
-    })
+    let mut found: Vec<(usize, f64)> = searches
+        .iter()
+        .filter_map(|search| Some((search.fit, rounded(search.zero()?, digits))))
+        .collect();
+    found.dedup_by(|a, b| a.0 == b.0 && a.1.to_bits() == b.1.to_bits());
+    found
+}
+
+/// Searches from those components of wrong pixels that depend on a number most, relative to what is missing.
+fn starts(probes: &Probes, group: &mut Group, fits: &[Fit], before: &[[f64; 3]]) -> Vec<Secant> {
+    let count = probes.all.len().min(PROBES);
+    let step = |fit: &Fit| 1e-3 * fit.start.abs().max(0.1);
+    let runs: Vec<Run> = fits
+        .iter()
+        .map(|fit| fit.run(fit.start + step(fit), 0..count))
+        .collect();
+    let mut searches = Vec::new();
+    for (number, (fit, moved)) in fits.iter().zip(group.colors(probes, &runs)).enumerate() {
+        let Some(moved) = moved.filter(|moved| moved.iter().flatten().all(|part| part.is_finite())) else {
+            continue;
+        };
+        let mut components: Vec<(f64, usize, usize)> = Vec::new();
+        for at in (0..count).filter(|&at| probes.all[at].is_wrong) {
+            let target = probes.all[at].target();
+            for i in 0..3 {
+                let slope = (moved[at][i] - before[at][i]) / step(fit);
+                let missing = target[i] - before[at][i];
+                // A component at its limit says only how large a number must be at least.
+                if slope.abs() > 1e-9 && missing.abs() > 1e-6 && (1e-6..1.0 - 1e-6).contains(&target[i]) {
+                    components.push(((missing / slope).abs(), at, i));
+                }
+            }
+        }
+        components.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
+        let places = [components.len() / 2, 0];
+        for &(_, probe, component) in places
+            .iter()
+            .filter_map(|&at| components.get(at))
+            .take(MAX_STARTS)
+        {
+            let error =
+                |colors: &[[f64; 3]]| colors[probe][component] - probes.all[probe].target()[component];
+            searches.push(Secant {
+                fit: number,
+                error: ErrorOf::Component { probe, component },
+                at: [fit.start, fit.start + step(fit)],
+                errors: [error(before), error(&moved)],
+            });
+        }
+    }
+    searches
+}
+
+/// Searches for numbers that remove the bias of a stochastic shader.
+fn starts_of_means(probes: &Probes, group: &mut Group, fits: &[Fit]) -> Vec<Secant> {
+    let error = ErrorOf::Mean;
+    let ends = |fit: &Fit| [fit.start, fit.start + 0.05 * fit.start.abs().max(0.1)];
+    let runs: Vec<Run> = fits
+        .iter()
+        .flat_map(|fit| ends(fit).map(|number| fit.run(number, error.probes(probes))))
+        .collect();
+    let errors: Vec<Option<f64>> = group
+        .colors(probes, &runs)
+        .into_iter()
+        .map(|colors| error.of(probes, &colors?))
+        .collect();
+    let search = |(number, (fit, errors)): (usize, (&Fit, &[Option<f64>]))| match errors {
+        &[Some(first), Some(second)] => Some(Secant {
+            fit: number,
+            error,
+            at: ends(fit),
+            errors: [first, second],
+        }),
+        _ => None,
+    };
+    fits.iter()
+        .zip(errors.chunks(2))
+        .enumerate()
+        .filter_map(search)
+        .collect()
 }
 
 /// Returns colors that make some wrong pixel right, one fitted number for each of its components, the
 /// shortest decimals first.
 pub(super) fn fitted_colors(
     probes: &Probes,
-    evaluator: &mut PointEvaluator,
-    selection: impl Fn(&Numbers) -> Selection,
+    group: &mut Group,
+    candidate: usize,
     start: &Numbers,
     before: &[[f64; 3]],
 ) -> Vec<Numbers> {
@@ -114,7 +230,14 @@ pub(super) fn fitted_colors(
         return Vec::new();
     }
     let count = probes.all.len().min(PROBES);
-    let mut colors = |numbers: &Numbers| probes.first_colors(evaluator, &selection(numbers), count);
+    let mut colors = |numbers: &Numbers| {
+        let run = Run {
+            candidate: Some(candidate),
+            numbers: *numbers,
+            probes: 0..count,
+        };
+        group.run(probes, run)
+    };
     let step = start.map(|start| 1e-3 * start.abs().max(0.1));
     let second: Numbers = std::array::from_fn(|i| start[i] + step[i]);
     let Some(moved) = colors(&second) else {
@@ -159,28 +282,18 @@ pub(super) fn fitted_colors(
     found
 }
 
-/// Finds a zero of a function from two arguments and their values.
-fn secant(error: &mut dyn FnMut(f64) -> Option<f64>, mut at: [f64; 2], mut errors: [f64; 2]) -> Option<f64> {
-    for _ in 0..MAX_STEPS {
-        let next = at[1] - errors[1] * (at[1] - at[0]) / (errors[1] - errors[0]);
-        if !next.is_finite() {
-            return None;
-        }
-        let new = error(next)?;
-        (at, errors) = ([at[1], next], [errors[1], new]);
-        if new.abs() < CONVERGED {
-            return Some(next);
-        }
-    }
-    (errors[1].abs() < 1e3 * CONVERGED).then_some(at[1])
-}
-
-/// The short decimals next to a number, the shortest first, as far as they are near enough to be meant.
-fn roundings(number: f64) -> Vec<f64> {
+/// The short decimals next to a fitted number, the shortest first. A number that was fitted to means is known less
+/// exactly.
+pub(super) fn roundings(number: f64, is_of_means: bool) -> Vec<f64> {
+    let (digits, tolerance) = if is_of_means {
+        (DIGITS_OF_MEANS, 0.5)
+    } else {
+        (DIGITS, 2e-3)
+    };
     let mut all: Vec<f64> = Vec::new();
-    for digits in DIGITS {
+    for digits in 1..digits {
         let rounded = rounded(number, digits);
-        let is_near = (rounded - number).abs() <= 2e-3 * number.abs();
+        let is_near = (rounded - number).abs() <= tolerance * number.abs();
         if is_near && all.last().is_none_or(|last| last.to_bits() != rounded.to_bits()) {
             all.push(rounded);
         }
@@ -199,19 +312,34 @@ pub(super) fn rounded(number: f64, digits: usize) -> f64 {
 mod tests {
     use super::*;
 
+    fn zero(function: impl Fn(f64) -> f64, at: [f64; 2]) -> Option<f64> {
+        let mut search = Secant {
+            fit: 0,
+            error: ErrorOf::Mean,
+            at,
+            errors: at.map(&function),
+        };
+        for _ in 0..MAX_STEPS {
+            let Some(number) = search.next() else { break };
+            search.step(number, function(number));
+        }
+        search.zero()
+    }
+
     #[test]
     fn a_zero_is_found_and_rounded_as_an_author_would_write_it() {
-        let mut error = |x: f64| Some(x * x - 0.49);
-        let zero = secant(&mut error, [1.0, 1.001], [0.51, 0.512_001]).unwrap();
+        let zero = zero(|x| x * x - 0.49, [1.0, 1.001]).unwrap();
         assert!((zero - 0.7).abs() < 1e-9);
-        assert_eq!(roundings(zero), [0.7]);
-        assert_eq!(roundings(1.0 / 3.0).last(), Some(&0.333_333_33));
+        assert_eq!(roundings(zero, false), [0.7]);
+        assert_eq!(roundings(1.0 / 3.0, false).last(), Some(&0.333_333_3));
+        assert_eq!(roundings(0.47, true), [0.5, 0.47]);
         assert_eq!(rounded(0.1 + 0.2, 12), 0.3);
     }
 
     #[test]
     fn a_function_without_a_zero_has_none() {
-        assert_eq!(secant(&mut |_| Some(1.0), [0.0, 1.0], [1.0, 1.0]), None);
-        assert_eq!(secant(&mut |x| Some(x * x + 1.0), [1.0, 2.0], [2.0, 5.0]), None);
+        assert_eq!(zero(|_| 1.0, [0.0, 1.0]), None);
+        assert_eq!(zero(|x| x * x + 1.0, [1.0, 2.0]), None);
+        assert_eq!(zero(|x| if x == 0.0 { 1.0 } else { f64::NAN }, [0.0, 1.0]), None);
     }
 }

@@ -5,6 +5,7 @@ mod confirm;
 mod edit;
 mod edits;
 mod fit;
+mod group;
 mod localize;
 mod probe;
 mod scan;
@@ -12,6 +13,7 @@ mod schema;
 mod search;
 mod shader;
 mod term;
+mod trials;
 mod under_test;
 
 use toyproof_diagnostic::{Fix, Span};

@@ -5,21 +5,24 @@
 //! candidate from the expected means is projected onto the shader's own bias ([`Bias`]).
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
-use toyproof_eval::{Places, PointEvaluator};
+use toyproof_eval::Places;
 use toyproof_tracer::ColorRange;
 
-use super::schema::Selection;
 use crate::compare::{EXACT_TOLERANCE, PixelStatus};
 use crate::mistake::NoisyPixel;
 use crate::replicates::MEAN_SETS;
 use crate::{CheckResult, Expected};
 
+/// The number of wrong pixels at which all candidates are evaluated. Most change nothing there.
+const SCREENING: usize = 4;
+
 /// The number of wrong and of right pixels that are probed.
 const MAX_WRONG: usize = 200;
 const MAX_RIGHT: usize = 120;
 
-/// The number of probes that are evaluated first, and how many of them are wrong pixels. Most candidates fail
+/// The number of probes that are evaluated next, and how many of them are wrong pixels. Most of the others fail
 /// there.
 const FIRST: usize = 16;
 const FIRST_WRONG: usize = 12;
@@ -74,7 +77,6 @@ struct Bias {
 #[derive(Debug, Clone)]
 pub(super) struct Probes {
     pub(super) all: Vec<Probe>,
-    points: Vec<[f64; 2]>,
 }
 
 /// What a candidate does at the probes.
@@ -149,10 +151,7 @@ impl Probes {
                 break;
             }
         }
-        (count > 0).then(|| Self {
-            points: all.iter().map(|probe| probe.point).collect(),
-            all,
-        })
+        (count > 0).then_some(Self { all })
     }
 
     /// Probes of a stochastic shader. None if no pixel is significantly biased.
@@ -217,97 +216,75 @@ impl Probes {
         (MAX_LEFT_SHARE * self.all.len() as f64) as usize
     }
 
-    /// The colors of the selected edits at all probes; none if a limit is exceeded.
-    pub(super) fn colors(
-        &self,
-        evaluator: &mut PointEvaluator,
-        selection: &Selection,
-    ) -> Option<Vec<[f64; 3]>> {
-        evaluator.colors(selection.values(), &self.points).ok()
+    /// The number of probes at which all candidates are evaluated.
+    pub(super) fn screening(&self) -> usize {
+        let count = if self.are_means() { FIRST_MEANS } else { SCREENING };
+        count.min(self.all.len())
     }
 
-    /// The colors of the selected edits at the first probes; none if a limit is exceeded.
-    pub(super) fn first_colors(
-        &self,
-        evaluator: &mut PointEvaluator,
-        selection: &Selection,
-        count: usize,
-    ) -> Option<Vec<[f64; 3]>> {
-        evaluator.colors(selection.values(), &self.points[..count]).ok()
-    }
-
-    /// Evaluates the selected edits; none if a limit is exceeded. `before` are the colors without edits.
+    /// Tests an edit, whose colors at some of the probes are given by a function; none if that has none. `before`
+    /// are the colors without edits.
     pub(super) fn test(
         &self,
-        evaluator: &mut PointEvaluator,
-        selection: &Selection,
         before: &[[f64; 3]],
+        mut colors: impl FnMut(Range<usize>) -> Option<Vec<[f64; 3]>>,
     ) -> Option<Outcome> {
+        let are_means = self.are_means();
+        let first = if are_means { FIRST_MEANS } else { FIRST }.min(self.all.len());
+        let mut all = colors(0..first)?;
+        let outcome = self.outcome(&all, before)?;
+        // Partial repairs are worth more probes: two of them may be one repair.
+        let improves = !are_means && outcome.repaired > 0 && outcome.broken == 0;
+        if !outcome.passes && !improves {
+            return Some(outcome);
+        }
+        all.extend(colors(first..self.all.len())?);
+        self.outcome(&all, before)
+    }
+
+    /// What an edit does, by its colors at the first probes; none if their mean is not a number.
+    pub(super) fn outcome(&self, colors: &[[f64; 3]], before: &[[f64; 3]]) -> Option<Outcome> {
         if self.are_means() {
-            return self.test_means(evaluator, selection);
+            return self.outcome_of_means(colors);
         }
-        let mut outcome = Outcome::default();
-        let (mut old_error, mut new_error) = (0.0, 0.0);
-        let first = FIRST.min(self.points.len());
-        for range in [0..first, first..self.points.len()] {
-            let colors = evaluator
-                .colors(selection.values(), &self.points[range.clone()])
-                .ok()?;
-            for (at, color) in range.clone().zip(colors) {
-                let probe = &self.all[at];
-                let distance = probe.distance(color);
-                let is_right = distance <= EXACT_TOLERANCE;
-                if probe.is_wrong {
-                    outcome.repaired += usize::from(is_right);
-                    // The distance of NaN is infinite.
-                    old_error += probe.distance(before[at]).min(1.0);
-                    new_error += distance.min(1.0);
-                } else {
-                    outcome.broken += usize::from(!is_right);
-                }
-            }
-            outcome.evaluated = range.end;
-            let wrong = self.all[..range.end]
-                .iter()
-                .filter(|probe| probe.is_wrong)
-                .count();
-            let left = wrong - outcome.repaired + outcome.broken;
-            outcome.remaining = if old_error > 0.0 {
-                new_error / old_error
+        let mut outcome = Outcome {
+            evaluated: colors.len(),
+            ..Outcome::default()
+        };
+        let (mut wrong, mut old_error, mut new_error) = (0, 0.0, 0.0);
+        for ((probe, &color), &before) in self.all.iter().zip(colors).zip(before) {
+            let distance = probe.distance(color);
+            let is_right = distance <= EXACT_TOLERANCE;
+            if probe.is_wrong {
+                wrong += 1;
+                outcome.repaired += usize::from(is_right);
+                // The distance of NaN is infinite.
+                old_error += probe.distance(before).min(1.0);
+                new_error += distance.min(1.0);
             } else {
-                1.0
-            };
-            outcome.passes = left <= self.max_left();
-            // Partial repairs are worth more probes: two of them may be one repair.
-            let improves = outcome.repaired > 0 && outcome.broken == 0;
-            if !outcome.passes && !improves {
-                break;
+                outcome.broken += usize::from(!is_right);
             }
         }
+        outcome.remaining = if old_error > 0.0 {
+            new_error / old_error
+        } else {
+            1.0
+        };
+        outcome.passes = wrong - outcome.repaired + outcome.broken <= self.max_left();
         Some(outcome)
     }
-}
 
-impl Probes {
-    /// Evaluates the selected edits of a stochastic shader once at each probe.
-    fn test_means(&self, evaluator: &mut PointEvaluator, selection: &Selection) -> Option<Outcome> {
-        let first = FIRST_MEANS.min(self.points.len());
-        let mut colors = Vec::with_capacity(self.points.len());
-        let mut outcome = Outcome::default();
-        for range in [0..first, first..self.points.len()] {
-            colors.extend(evaluator.colors(selection.values(), &self.points[range]).ok()?);
-            let projection = self.project(&colors)?;
-            outcome.evaluated = colors.len();
-            outcome.remaining = projection.remaining.clamp(0.0, 2.0);
-            let is_unbiased =
-                projection.amplitude.abs() <= MAX_AMPLITUDE + MAX_DEVIATIONS * projection.deviation;
-            let limit = MAX_REMAINING + MAX_DEVIATIONS * projection.remaining_deviation;
-            outcome.passes = is_unbiased && projection.remaining <= limit;
-            if !outcome.passes {
-                break;
-            }
-        }
-        Some(outcome)
+    /// What an edit of a stochastic shader does, by a single evaluation of each of the first probes.
+    fn outcome_of_means(&self, colors: &[[f64; 3]]) -> Option<Outcome> {
+        let projection = self.project(colors)?;
+        let is_unbiased = projection.amplitude.abs() <= MAX_AMPLITUDE + MAX_DEVIATIONS * projection.deviation;
+        let limit = MAX_REMAINING + MAX_DEVIATIONS * projection.remaining_deviation;
+        Some(Outcome {
+            evaluated: colors.len(),
+            remaining: projection.remaining.clamp(0.0, 2.0),
+            passes: is_unbiased && projection.remaining <= limit,
+            ..Outcome::default()
+        })
     }
 
     /// The part of the shader's bias that some colors still have, by a single evaluation of each of the first

@@ -25,10 +25,10 @@ const NUMBERS: usize = std::mem::size_of::<Numbers>() / std::mem::size_of::<f64>
 pub(super) struct Selection(Vec<f64>);
 
 impl Selection {
-    /// Selects some edits of a program with `count` edits.
-    pub(super) fn of(count: usize, selected: &[usize], numbers: &Numbers) -> Self {
+    /// Selects an edit, or none, of a program with `count` edits.
+    pub(super) fn of(count: usize, selected: Option<usize>, numbers: &Numbers) -> Self {
         let mut values = vec![0.0; count];
-        for &at in selected {
+        if let Some(at) = selected {
             values[at] = 1.0;
         }
         values.extend(numbers);

@@ -1,18 +1,19 @@
-//! A shader under test: its probes, the suspicion of its parts, and trials of candidates.
+//! A shader under test: its probes, the suspicion of its parts, and the trials of all candidates.
 
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
-use toyproof_eval::{ParametricProgram, PointEvaluator, Settings};
+use toyproof_eval::{ParametricProgram, Settings};
 
 use super::Suspect;
-use super::edit::{Candidate, Change, Trials};
-use super::fit::{fitted, fitted_colors};
+use super::edit::{Candidate, Change};
+use super::group::{Group, Run};
 use super::localize::{DISTURBANCES, Suspicion, disturbed, of_statements, suspicion, suspicions};
-use super::probe::{Outcome, Probes};
-use super::schema::{Selection, compile};
+use super::probe::Probes;
+use super::schema::compile;
 use super::shader::Shader;
 use super::term::Numbers;
+use super::trials::{Trial, try_group};
 use crate::Case;
 
 /// How much the cost of an edit in the least suspicious place exceeds that in the most suspicious one, when
@@ -53,9 +54,6 @@ const MAX_LOCALIZATION_SHARE: f64 = 0.3;
 /// The largest number of suspects.
 const MAX_SUSPECTS: usize = 3;
 
-/// The share of the differences that an edit must remove to be half of a repair.
-const MIN_PROGRESS: f64 = 0.25;
-
 /// A shader with its probes.
 pub(super) struct ShaderUnderTest<'a> {
     case: &'a Case<'a>,
@@ -72,13 +70,6 @@ pub(super) struct ShaderUnderTest<'a> {
     pub(super) work: f64,
     /// The work of one probe.
     pub(super) probe_work: f64,
-}
-
-/// A candidate that was tried, with its numbers.
-#[derive(Debug, Clone)]
-pub(super) struct Trial {
-    pub(super) candidate: Candidate,
-    pub(super) outcome: Outcome,
 }
 
 /// A part of the work with its results.
@@ -107,11 +98,15 @@ impl<'a> ShaderUnderTest<'a> {
             probe_work: 0.0,
         };
         let program = compile(shader, &[], case.frame, COMPILE_LIMIT).ok()?;
-        let nothing = Selection::of(0, &[], &Numbers::default());
         let colors = |probes: &Probes| {
-            tested.evaluate(&program, |evaluator| {
-                let colors = probes.colors(evaluator, &nothing)?;
-                Some((colors, evaluator.iterations(), evaluator.work()))
+            tested.evaluate(&program, 0, |group| {
+                let run = Run {
+                    candidate: None,
+                    numbers: Numbers::default(),
+                    probes: 0..probes.all.len(),
+                };
+                let colors = group.run(probes, run)?;
+                Some((colors, group.iterations(), group.work()))
             })
         };
         let (before, ..) = colors(probes)?;
@@ -131,29 +126,32 @@ impl<'a> ShaderUnderTest<'a> {
         Some(tested)
     }
 
-    fn evaluate<T>(&self, program: &ParametricProgram, work: impl FnOnce(&mut PointEvaluator) -> T) -> T {
+    fn evaluate<T>(
+        &self,
+        program: &ParametricProgram,
+        count: usize,
+        work: impl FnOnce(&mut Group) -> T,
+    ) -> T {
         let settings = Settings::<f64> {
             max_iterations: self.max_iterations,
             deadline: Some(self.deadline),
             ..Settings::default()
         };
-        program.evaluate(self.case.frame, &settings, work)
+        program.evaluate(self.case.frame, &settings, |evaluator| {
+            work(&mut Group::new(evaluator, count))
+        })
     }
 
-    /// Compiles some candidates and runs `work` with an evaluator of them.
-    fn with_group<T>(
-        &self,
-        candidates: &[&Candidate],
-        work: impl FnOnce(&mut PointEvaluator) -> Vec<T>,
-    ) -> Worked<T> {
+    /// Compiles some candidates and runs `work` with them.
+    fn with_group<T>(&self, candidates: &[&Candidate], work: impl FnOnce(&mut Group) -> Vec<T>) -> Worked<T> {
         let Ok(program) = compile(self.shader, candidates, self.case.frame, COMPILE_LIMIT) else {
             return (Vec::new(), REFUSED_WORK);
         };
-        self.evaluate(&program, |evaluator| {
-            let results = work(evaluator);
+        self.evaluate(&program, candidates.len(), |group| {
+            let results = work(group);
             (
                 results,
-                evaluator.work() + COMPILE_FACTOR * program.instructions() as f64,
+                group.work() + COMPILE_FACTOR * program.instructions() as f64,
             )
         })
     }
@@ -206,16 +204,20 @@ impl<'a> ShaderUnderTest<'a> {
         weight: f64,
     ) -> Worked<(usize, Suspicion)> {
         let candidates: Vec<&Candidate> = group.iter().map(|(_, candidate)| candidate).collect();
-        self.with_group(&candidates, |evaluator| {
-            let influence = |(number, (site, _)): (usize, &(usize, Candidate))| {
-                let selection = Selection::of(group.len(), &[number], &Numbers::default());
-                let colors = self.probes.first_colors(evaluator, &selection, count)?;
-                Some((
-                    *site,
-                    suspicion(&self.probes.all[..count], &self.before, &colors, weight),
-                ))
+        let runs: Vec<Run> = (0..group.len())
+            .map(|at| Run {
+                candidate: Some(at),
+                numbers: Numbers::default(),
+                probes: 0..count,
+            })
+            .collect();
+        self.with_group(&candidates, |evaluated| {
+            let colors = evaluated.colors(&self.probes, &runs);
+            let influence = |((site, _), colors): (&(usize, Candidate), Option<Vec<[f64; 3]>>)| {
+                let suspicion = suspicion(&self.probes.all[..count], &self.before, &colors?, weight);
+                Some((*site, suspicion))
             };
-            group.iter().enumerate().filter_map(influence).collect()
+            group.iter().zip(colors).filter_map(influence).collect()
         })
     }
 
@@ -322,89 +324,8 @@ impl<'a> ShaderUnderTest<'a> {
 
     fn try_group(&self, group: &[(f64, Candidate)]) -> Worked<Trial> {
         let candidates: Vec<&Candidate> = group.iter().map(|(_, candidate)| candidate).collect();
-        self.with_group(&candidates, |evaluator| {
-            let mut trials = Vec::new();
-            for (number, candidate) in candidates.iter().enumerate() {
-                let mut attempt = Attempt {
-                    tested: self,
-                    candidate,
-                    select: &|numbers| Selection::of(candidates.len(), &[number], numbers),
-                    evaluator,
-                    trials: &mut trials,
-                };
-                attempt.run();
-            }
-            trials
+        self.with_group(&candidates, |group| {
+            try_group(group, &candidates, &self.probes, &self.before)
         })
     }
-}
-
-/// The trials of one candidate.
-struct Attempt<'a, 'e> {
-    tested: &'a ShaderUnderTest<'a>,
-    candidate: &'a Candidate,
-    select: &'a dyn Fn(&Numbers) -> Selection,
-    evaluator: &'a mut PointEvaluator<'e>,
-    trials: &'a mut Vec<Trial>,
-}
-
-impl Attempt<'_, '_> {
-    fn run(&mut self) {
-        let (tested, candidate) = (self.tested, self.candidate);
-        let (probes, before) = (&tested.probes, &tested.before);
-        match &candidate.trials {
-            Trials::Once => {
-                self.test(&Numbers::default(), candidate.cost);
-            }
-            Trials::Values { values, fit } => {
-                let mut passes = false;
-                for &(value, cost) in values {
-                    passes |= self.test(&one(value), cost);
-                }
-                let Some((cost, start)) = fit.filter(|_| !passes) else {
-                    return;
-                };
-                let select = self.select;
-                let found = fitted(
-                    probes,
-                    self.evaluator,
-                    |number| select(&one(number)),
-                    start,
-                    before,
-                );
-                for number in found {
-                    if self.test(&one(number), cost) {
-                        break;
-                    }
-                }
-            }
-            Trials::Color(start) => {
-                for numbers in fitted_colors(probes, self.evaluator, self.select, start, before) {
-                    if self.test(&numbers, candidate.cost) {
-                        break;
-                    }
-                }
-            }
-        }
-    }
-
-    /// Tries the candidate with these numbers, and returns whether it passes.
-    fn test(&mut self, numbers: &Numbers, cost: u32) -> bool {
-        let (probes, before) = (&self.tested.probes, &self.tested.before);
-        let Some(outcome) = probes.test(self.evaluator, &(self.select)(numbers), before) else {
-            return false;
-        };
-        let is_progress = outcome.repaired > outcome.broken
-            || (outcome.broken == 0 && outcome.remaining < 1.0 - MIN_PROGRESS);
-        if outcome.passes || is_progress {
-            let candidate = self.candidate.with_numbers(numbers, cost);
-            self.trials.push(Trial { candidate, outcome });
-        }
-        outcome.passes
-    }
-}
-
-/// The numbers of an edit that has one.
-fn one(number: f64) -> Numbers {
-    [number, 0.0, 0.0]
 }
