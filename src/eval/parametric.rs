@@ -201,10 +201,10 @@ impl PointEvaluator<'_> {
             for chunk in 0..chunks {
                 match kind {
                     Kind::Float => {
-                        batch.float_row(row)[chunk].set(std::array::from_fn(|lane| value(chunk, lane)))
+                        batch.float_row(row)[chunk].set(std::array::from_fn(|lane| value(chunk, lane)));
                     }
                     Kind::Word => {
-                        batch.word_row(row)[chunk].set(std::array::from_fn(|lane| word(value(chunk, lane))))
+                        batch.word_row(row)[chunk].set(std::array::from_fn(|lane| word(value(chunk, lane))));
                     }
                 }
             }

@@ -250,6 +250,7 @@ pub fn check_and_repair(shader: &str, exercise: &Exercise) -> Findings {
         source: shader,
         lenient: false,
         budget: DEFAULT_BUDGET,
+        donors: None,
     };
     check_with(None, Some(search), None, shader, exercise)
 }

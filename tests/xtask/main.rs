@@ -70,6 +70,9 @@ enum Task {
         /// Search for known mistakes as well
         #[arg(long)]
         names: bool,
+        /// A folder of correct shaders, whose expressions are tried where no edit is found
+        #[arg(long, value_name = "DIR")]
+        correct: Option<PathBuf>,
     },
     /// Print the verdicts that change where the exported shader of a scene is the reference instead of the scene
     References {
@@ -102,7 +105,8 @@ fn main() -> ExitCode {
             only,
             search,
             names,
-        } => repairs::measure(manifest.as_deref(), &only, search, names),
+            correct,
+        } => repairs::measure(manifest.as_deref(), &only, search, names, correct.as_deref()),
         Task::References {
             exercise,
             tolerance,

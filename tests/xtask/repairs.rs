@@ -1,18 +1,20 @@
 //! How many wrong shaders are repaired, and at which lines.
 
 use std::collections::BTreeMap;
+use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
 use toyproof::diagnostic::{File, Files};
+use toyproof::glsl::Checked;
 use toyproof::image::Frame;
 use toyproof::lint::Lints;
 use toyproof::scene;
 use toyproof::translate::FloatMode;
 use toyproof::verify::mistake::Hypotheses;
-use toyproof::verify::repair::SearchOptions;
+use toyproof::verify::repair::{Donors, SearchOptions};
 use toyproof::verify::{Case, Expected, Verdict, verify};
 use toyproof_testkit::faults::faults;
 use toyproof_testkit::{checked, edited};
@@ -30,20 +32,56 @@ struct Sample {
     lines: Vec<usize>,
 }
 
+impl Sample {
+    /// The number of the scene.
+    fn number(&self) -> &str {
+        let name = self.scene.file_stem().and_then(OsStr::to_str).unwrap_or_default();
+        name.split('-').next().unwrap_or_default()
+    }
+}
+
+/// Collects the expressions of the shaders of a folder whose names begin with a number.
+fn read_donors(folder: &Path, number: &str) -> Donors {
+    let mut files: Vec<PathBuf> = fs::read_dir(folder)
+        .expect("the folder can be read")
+        .map(|entry| entry.expect("the folder can be read").path())
+        .filter(|path| {
+            path.file_name()
+                .and_then(OsStr::to_str)
+                .is_some_and(|name| name.starts_with(number))
+        })
+        .collect();
+    files.sort();
+    let texts = files
+        .iter()
+        .map(|file| fs::read_to_string(file).expect("the shader can be read"));
+    let shaders: Vec<Checked> = texts.map(|text| checked(&text)).collect();
+    Donors::of(&shaders)
+}
+
 /// Prints each sample's repairs, and the rates of each group. Without a manifest the samples are the planted
-/// faults of the exercises; its lines are JSON objects with `file`, `scene`, `group` and `lines`.
-pub(super) fn measure(manifest: Option<&Path>, only: &str, budget: f64, names: bool) {
+/// faults of the exercises; its lines are JSON objects with `file`, `scene`, `group` and `lines`. What is not
+/// repaired is searched again with the expressions of correct shaders: those in the folder `correct` whose names
+/// begin with the number of the scene.
+pub(super) fn measure(manifest: Option<&Path>, only: &str, budget: f64, names: bool, correct: Option<&Path>) {
     let samples = match manifest {
         Some(manifest) => read(manifest),
         None => planted(),
     };
+    let mut donors: BTreeMap<&str, Donors> = BTreeMap::new();
     let mut rates: BTreeMap<&str, Rates> = BTreeMap::new();
     for sample in samples
         .iter()
         .filter(|sample| sample.name.contains(only) || sample.group == only)
     {
         let of_group = rates.entry(sample.group.as_str()).or_default();
-        try_sample(sample, budget, names, of_group);
+        let number = sample.number();
+        let donors = correct.map(|folder| {
+            donors
+                .entry(number)
+                .or_insert_with(|| read_donors(folder, number))
+        });
+        try_sample(sample, budget, names, donors.as_deref(), of_group);
     }
     for (group, rates) in &mut rates {
         rates.print(group);
@@ -106,7 +144,7 @@ struct Rates {
     times: Vec<Duration>,
 }
 
-fn try_sample(sample: &Sample, budget: f64, names: bool, rates: &mut Rates) {
+fn try_sample(sample: &Sample, budget: f64, names: bool, donors: Option<&Donors>, rates: &mut Rates) {
     let mut files = Files::default();
     let scene_text = fs::read_to_string(&sample.scene).expect("the scene can be read");
     let scene_file = files.add(File::new("scene", scene_text));
@@ -118,16 +156,18 @@ fn try_sample(sample: &Sample, budget: f64, names: bool, rates: &mut Rates) {
     let checked = checked(&sample.shader);
     let expected = Expected::of_scene(scene.clone(), &frame);
     let hypotheses = names.then(|| Hypotheses::of(&scene, &frame)).flatten();
+    let options = SearchOptions {
+        source: &sample.shader,
+        lenient: false,
+        budget,
+        donors: None,
+    };
     let case = Case {
         checked: &checked,
         lints: &Lints::default(),
         expected: Some(&expected),
         hypotheses: hypotheses.as_ref(),
-        search: Some(SearchOptions {
-            source: &sample.shader,
-            lenient: false,
-            budget,
-        }),
+        search: Some(options),
         frame: &frame,
         float: FloatMode::Strict,
         timeout: Duration::from_secs(20),
@@ -142,6 +182,16 @@ fn try_sample(sample: &Sample, budget: f64, names: bool, rates: &mut Rates) {
             return;
         }
     };
+    let mut search = findings.search.unwrap_or_default();
+    if search.repairs.is_empty() && findings.verdict == Verdict::Wrong && donors.is_some() {
+        let again = Case {
+            search: Some(SearchOptions { donors, ..options }),
+            hypotheses: None,
+            ..case
+        };
+        let again = verify(None, &again).ok().and_then(|findings| findings.search);
+        search.repairs = again.unwrap_or_default().repairs;
+    }
     let time = start.elapsed();
     for panic in &findings.panics {
         println!("PANIC {}: {panic}", sample.name);
@@ -151,7 +201,6 @@ fn try_sample(sample: &Sample, budget: f64, names: bool, rates: &mut Rates) {
         rates.others += 1;
         return;
     }
-    let search = findings.search.unwrap_or_default();
     let line = |start: u32| sample.shader[..start as usize].matches('\n').count() + 1;
     let is_mistake = |start: u32| sample.lines.contains(&line(start));
     let of_repair = |repair: &toyproof::verify::repair::Repair| {

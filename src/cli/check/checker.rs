@@ -342,6 +342,7 @@ impl<'a> Checker<'a> {
                 source: shader.text(checked),
                 lenient: self.args.language.is_lenient(),
                 budget: self.args.search,
+                donors: None,
             }),
             frame: &frame,
             float: self.args.driver.float(),

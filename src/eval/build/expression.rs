@@ -6,7 +6,7 @@ use super::lvalue::Location;
 use super::lvalue::{component_count, indexed_element, member_offset, scalar_kind};
 use super::{Builder, Result};
 use crate::ir::Operation;
-use crate::ir::{NONE, Node, Value, ValueDef};
+use crate::ir::{NONE, Node, Value};
 use crate::trace::EventKind;
 
 /// The maximum number of nodes of an operand of `?:`, `&&` or `||` that is computed for all pixels instead of
@@ -191,9 +191,7 @@ impl Builder<'_> {
         let is_speculatable = |block: &[Node]| {
             block.len() <= MAX_SPECULATED_NODES && block.iter().all(|node| matches!(node, Node::Let(_)))
         };
-        // A parameter selects a variant at a few points; all others skip a branch.
-        let is_parameter = matches!(self.def(condition), ValueDef::Parameter(..));
-        if !is_parameter && is_speculatable(&yes_block) && is_speculatable(&no_block) {
+        if is_speculatable(&yes_block) && is_speculatable(&no_block) {
             for node in yes_block.into_iter().chain(no_block) {
                 self.push(node);
             }

@@ -385,10 +385,6 @@ impl Builder<'_> {
         Ok(())
     }
 
-    fn def(&self, value: Value) -> ValueDef {
-        self.writer.borrow().defs[value.0 as usize]
-    }
-
     fn float(&self, value: f64) -> Value {
         self.value(ValueDef::Float(value.to_bits()))
     }

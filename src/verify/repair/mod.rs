@@ -17,6 +17,7 @@ mod trials;
 mod under_test;
 
 use toyproof_diagnostic::{Fix, Span};
+use toyproof_glsl::Checked;
 use toyproof_image::Rgb8Image;
 
 pub(crate) use self::search::{NoisyImage, search};
@@ -38,6 +39,19 @@ pub struct SearchOptions<'a> {
     /// The work that may be done, in units of about a second on one core. Work is counted, not timed, so that
     /// the result is the same on any machine and with any number of threads.
     pub budget: f64,
+    /// Expressions of correct shaders; if given, only these are tried.
+    pub donors: Option<&'a Donors>,
+}
+
+/// Expressions of correct shaders for the same assignment. Where no small edit repairs a shader, one of them may.
+#[derive(Debug, Default)]
+pub struct Donors(Vec<edits::Donor>);
+
+impl Donors {
+    /// Collects the expressions of some shaders; their order does not matter.
+    pub fn of<'a>(shaders: impl IntoIterator<Item = &'a Checked>) -> Self {
+        Self(edits::donors(shaders.into_iter().map(|shader| &shader.tree)))
+    }
 }
 
 /// The default of [`SearchOptions::budget`].

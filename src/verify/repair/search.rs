@@ -13,7 +13,7 @@ use super::probe::Probes;
 use super::shader::Shader;
 use super::trials::Trial;
 use super::under_test::{ShaderUnderTest, WAVE};
-use super::{Repair, SearchOptions, SearchResult, Suspect};
+use super::{Donors, Repair, SearchOptions, SearchResult, Suspect};
 use crate::mistake::NoisyPixel;
 use crate::{Case, CheckResult};
 
@@ -68,6 +68,7 @@ pub(crate) fn search(
         case,
         shader: &shader,
         constants: Constants::of(expected),
+        donors: options.donors,
         judge: Judge::new(case, expected, options),
         deadline,
         found: Vec::new(),
@@ -114,6 +115,8 @@ struct Search<'a> {
     case: &'a Case<'a>,
     shader: &'a Shader<'a>,
     constants: Constants,
+    /// The donors of other shaders, if only these are tried.
+    donors: Option<&'a Donors>,
     judge: Judge<'a>,
     deadline: Instant,
     found: Vec<Found>,
@@ -144,6 +147,10 @@ impl Search<'_> {
         else {
             return;
         };
+        if self.donors.is_some() {
+            self.suspects = Some(tested.suspects(&[]));
+            return self.donors(&mut tested, budget);
+        }
         let partial = self.explore(&mut tested, None, SINGLES_SHARE * budget);
         self.suspects = Some(tested.suspects(&partial));
         if self.found.iter().all(|found| found.rank > MAX_NATURAL_RANK) {
@@ -162,10 +169,11 @@ impl Search<'_> {
         self.try_in_order(tested, all, first, budget)
     }
 
-    /// Tries expressions of the scene's shader in the most suspicious places.
+    /// Tries expressions of other shaders, or of the scene's, in the most suspicious places.
     fn donors(&mut self, tested: &mut ShaderUnderTest, budget: f64) {
         let sites = tested.suspicious_sites(MAX_DONOR_SITES);
-        let all = donor_candidates(tested.shader, &self.constants, &sites);
+        let donors = self.donors.map_or(&self.constants.donors, |donors| &donors.0);
+        let all = donor_candidates(tested.shader, &self.constants, donors, &sites);
         self.try_in_order(tested, all, None, budget);
     }
 

@@ -110,8 +110,7 @@ impl Term {
     /// Whether an expression of the shader is a part of the term.
     pub(super) fn keeps(&self, expr: ExprId) -> bool {
         let mut keeps = false;
-        self.clone()
-            .each_mut(&mut |part| keeps |= part.kind == TermKind::Keep(expr));
+        self.each(&mut |part| keeps |= part.kind == TermKind::Keep(expr));
         keeps
     }
 
@@ -152,6 +151,11 @@ impl Term {
             }
             _ => {}
         }
+    }
+
+    /// Calls `visit` with the term and all of its parts.
+    pub(super) fn each(&self, visit: &mut dyn FnMut(&Self)) {
+        self.clone().each_mut(&mut |part| visit(part));
     }
 
     // As nodes of the tree.

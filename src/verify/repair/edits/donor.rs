@@ -1,7 +1,8 @@
-//! Donors: expressions of the shader that renders the scene, with the names of the author's shader in place
-//! of its own. They repair what no small edit does.
+//! Donors: expressions of the shader that renders the scene, or of other correct shaders, with the names of the
+//! author's shader in place of their own. They repair what no small edit does.
 
-use std::collections::{HashMap, HashSet};
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, HashMap};
 
 use toyproof_glsl::tree::{
     ExprId, ExprKind, FunctionId, Scalar, StatementKind, Tree, Type, VariableId, VariableKind,
@@ -18,13 +19,19 @@ const MIN_SIZE: usize = 3;
 const MAX_SIZE: usize = 28;
 const MAX_HOLES: usize = 3;
 
+/// The largest number of donors, and of replacements by them.
+const MAX_DONORS: usize = 4000;
+const MAX_CANDIDATES: usize = 40_000;
+
 /// The largest number of values that are tried for a name, and of combinations of them.
 const MAX_VALUES: usize = 5;
 const MAX_COMBINATIONS: usize = 24;
 
-/// The cost of a donor, and of each part of it.
+/// The cost of a donor, the number of its parts that cost as much as one unit more, and what it gains where it
+/// consists of the same operations as what it replaces.
 const DONOR: u32 = 26;
 const PARTS_PER_COST: usize = 4;
+const SIMILARITY: f64 = 8.0;
 
 /// The largest depth of inlined calls.
 const MAX_INLINED: u32 = 3;
@@ -36,36 +43,95 @@ pub(in crate::repair) struct Donor {
     /// The types of the holes.
     holes: Vec<Type>,
     size: usize,
+    /// Its operations, sorted.
+    operations: Vec<String>,
 }
 
-/// Collects the donors of a shader, each once.
-pub(super) fn donors(tree: &Tree) -> Vec<Donor> {
-    let mut known = HashSet::new();
-    let mut donors = Vec::new();
-    for (id, expr) in tree.exprs.iter() {
-        if !is_value(expr.ty) || !super::plausibility::is_operation(&expr.kind) {
-            continue;
+impl Donor {
+    /// The cost of writing it in place of an expression with these operations, which are sorted.
+    fn cost(&self, operations: &[String]) -> u32 {
+        let gain = (SIMILARITY * similarity(&self.operations, operations)).round();
+        DONOR + (self.size / PARTS_PER_COST) as u32 - gain as u32
+    }
+}
+
+/// The share of the elements of two sorted lists that they have in common (Dice's coefficient).
+fn similarity(one: &[String], other: &[String]) -> f64 {
+    let (mut a, mut b, mut common) = (0, 0, 0);
+    while a < one.len() && b < other.len() {
+        match one[a].cmp(&other[b]) {
+            std::cmp::Ordering::Less => a += 1,
+            std::cmp::Ordering::Greater => b += 1,
+            std::cmp::Ordering::Equal => (a, b, common) = (a + 1, b + 1, common + 1),
         }
-        let mut translation = Translation {
-            tree,
-            holes: Vec::new(),
-            size: 0,
-        };
-        let Some(term) = translation.term(id, &HashMap::new(), 0) else {
-            continue;
-        };
+    }
+    2.0 * f64::from(common) / (one.len() + other.len()).max(1) as f64
+}
+
+/// Collects the donors of some shaders, each once, those that most of them have first.
+pub(in crate::repair) fn donors<'a>(trees: impl IntoIterator<Item = &'a Tree>) -> Vec<Donor> {
+    let mut all: BTreeMap<String, (Donor, usize)> = BTreeMap::new();
+    for tree in trees {
+        let own: BTreeMap<String, Donor> = donors_of(tree)
+            .map(|donor| (format!("{:?}", donor.term), donor))
+            .collect();
+        for (key, donor) in own {
+            all.entry(key).or_insert((donor, 0)).1 += 1;
+        }
+    }
+    let mut all: Vec<(String, (Donor, usize))> = all.into_iter().collect();
+    all.sort_by(|(a, (one, uses)), (b, (other, other_uses))| {
+        let rank = |uses: usize, donor: &Donor| (Reverse(uses), donor.size);
+        rank(*uses, one).cmp(&rank(*other_uses, other)).then(a.cmp(b))
+    });
+    all.truncate(MAX_DONORS);
+    all.into_iter().map(|(_, (donor, _))| donor).collect()
+}
+
+fn donors_of(tree: &Tree) -> impl Iterator<Item = Donor> {
+    let candidates = tree
+        .exprs
+        .iter()
+        .filter(|(_, expr)| is_value(expr.ty) && super::plausibility::is_operation(&expr.kind));
+    candidates.filter_map(|(id, _)| {
+        let (term, translation) = translated(tree, id)?;
         let holes: Vec<Type> = translation.holes.iter().map(|&(_, ty)| ty).collect();
         let fits =
             (MIN_SIZE..=MAX_SIZE).contains(&translation.size) && (1..=MAX_HOLES).contains(&holes.len());
-        if fits && known.insert(format!("{term:?}")) {
-            donors.push(Donor {
-                term,
-                holes,
-                size: translation.size,
-            });
-        }
-    }
-    donors
+        fits.then(|| Donor {
+            operations: operations(&term),
+            term,
+            holes,
+            size: translation.size,
+        })
+    })
+}
+
+/// The operations of a term, sorted.
+fn operations(term: &Term) -> Vec<String> {
+    let mut all = Vec::new();
+    term.each(&mut |part| match &part.kind {
+        TermKind::Unary(op, _) => all.push(format!("{}_", op.symbol())),
+        TermKind::Binary(op, ..) => all.push(op.symbol().to_owned()),
+        TermKind::Conditional(_) => all.push("?".to_owned()),
+        TermKind::BuiltIn(function, _) => all.push(function.name().to_owned()),
+        TermKind::Construct(..) => all.push("new".to_owned()),
+        TermKind::Swizzle(_, components) => all.push(components.name()),
+        _ => {}
+    });
+    all.sort_unstable();
+    all
+}
+
+/// An expression as a term, with holes for its names; none if it cannot be written in another shader.
+fn translated(tree: &Tree, expr: ExprId) -> Option<(Term, Translation<'_>)> {
+    let mut translation = Translation {
+        tree,
+        holes: Vec::new(),
+        size: 0,
+    };
+    let term = translation.term(expr, &HashMap::new(), 0)?;
+    Some((term, translation))
 }
 
 fn is_value(ty: Type) -> bool {
@@ -235,29 +301,34 @@ impl Translation<'_> {
 pub(in crate::repair) fn candidates(
     shader: &Shader,
     constants: &Constants,
+    donors: &[Donor],
     sites: &[usize],
 ) -> Vec<Candidate> {
     let writer = Writer::new(shader, constants);
+    let per_site = MAX_CANDIDATES / sites.len().max(1);
     let mut all = Vec::new();
     for &site in sites {
         let expr = shader.sites[site].exprs[0];
-        for donor in constants
-            .donors
+        let operations = translated(shader.tree, expr).map_or_else(Vec::new, |(own, _)| operations(&own));
+        let mut fitting: Vec<(u32, &Donor)> = donors
             .iter()
             .filter(|donor| donor.term.ty == shader.tree[expr].ty)
-        {
-            for values in writer.fillings(site, &donor.holes) {
-                all.push(Candidate {
-                    change: Change::Expression {
-                        site,
-                        term: donor.term.filled(&values),
-                    },
-                    trials: Trials::Once,
-                    cost: DONOR + (donor.size / PARTS_PER_COST) as u32,
-                    kind: EditKind::Expression,
-                });
-            }
-        }
+            .map(|donor| (donor.cost(&operations), donor))
+            .collect();
+        fitting.sort_by_key(|&(cost, _)| cost);
+        let candidates = fitting.into_iter().flat_map(|(cost, donor)| {
+            let fillings = writer.fillings(site, &donor.holes).into_iter();
+            fillings.map(move |values| Candidate {
+                change: Change::Expression {
+                    site,
+                    term: donor.term.filled(&values),
+                },
+                trials: Trials::Once,
+                cost,
+                kind: EditKind::Expression,
+            })
+        });
+        all.extend(candidates.take(per_site));
     }
     all
 }

@@ -12,7 +12,7 @@ use std::collections::HashSet;
 
 use toyproof_glsl::tree::{ExprKind, Input, Member, Scalar, Swizzle, Tree, Type, VariableId, VariableKind};
 
-pub(super) use self::donor::candidates as donor_candidates;
+pub(super) use self::donor::{Donor, candidates as donor_candidates, donors};
 pub(super) use self::number::Constants;
 use super::edit::{Candidate, Change, EditKind, Trials};
 use super::shader::Shader;

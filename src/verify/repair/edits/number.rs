@@ -37,7 +37,7 @@ pub(in crate::repair) struct Constants {
     integers: Vec<i32>,
     vectors: Vec<Vec<f64>>,
     pub(super) shapes: Shapes,
-    pub(super) donors: Vec<Donor>,
+    pub(in crate::repair) donors: Vec<Donor>,
 }
 
 impl Constants {
@@ -64,7 +64,7 @@ impl Constants {
     fn in_tree(tree: &Tree) -> Self {
         let mut constants = Self {
             shapes: Shapes::of(tree),
-            donors: donors(tree),
+            donors: donors([tree]),
             ..Self::default()
         };
         for (id, expr) in tree.exprs.iter() {
