@@ -14,7 +14,7 @@ use toyproof::lint::Lints;
 use toyproof::scene;
 use toyproof::translate::FloatMode;
 use toyproof::verify::mistake::Hypotheses;
-use toyproof::verify::repair::{Donors, SearchOptions};
+use toyproof::verify::repair::{Donors, Repair, SearchOptions, SearchResult};
 use toyproof::verify::{Case, Expected, Verdict, verify};
 use toyproof_testkit::faults::faults;
 use toyproof_testkit::{checked, edited};
@@ -201,57 +201,60 @@ fn try_sample(sample: &Sample, budget: f64, names: bool, donors: Option<&Donors>
         rates.others += 1;
         return;
     }
-    let line = |start: u32| sample.shader[..start as usize].matches('\n').count() + 1;
-    let is_mistake = |start: u32| sample.lines.contains(&line(start));
-    let of_repair = |repair: &toyproof::verify::repair::Repair| {
-        repair.fix.edits.iter().any(|edit| is_mistake(edit.span.start))
-    };
-    rates.wrong += 1;
-    rates.times.push(time);
-    rates.repaired += usize::from(!search.repairs.is_empty());
-    rates.named += usize::from(findings.mistake.is_some());
-    rates.named_or_repaired += usize::from(findings.mistake.is_some() || !search.repairs.is_empty());
-    let first = search.repairs.first().is_some_and(of_repair);
-    let any = search.repairs.iter().any(of_repair);
-    rates.first_line += usize::from(first);
-    rates.any_line += usize::from(any);
-    let suspects = search
-        .suspects
-        .iter()
-        .any(|suspect| is_mistake(suspect.span.start));
-    rates.suspects += usize::from(search.repairs.is_empty());
-    rates.suspect_in_three += usize::from(search.repairs.is_empty() && suspects);
-    let mark = match (search.repairs.is_empty(), first, any) {
-        (true, ..) => "NONE ",
-        (_, true, _) => "first",
-        (_, _, true) => "any  ",
-        _ => "other",
-    };
-    println!(
-        "{mark} {:5.2} s {} lines {:?}{}",
-        time.as_secs_f64(),
-        sample.name,
-        sample.lines,
-        if search.is_cut { " (cut)" } else { "" }
-    );
-    for repair in &search.repairs {
-        let at = repair.fix.edits.first().map_or(0, |edit| line(edit.span.start));
-        println!(
-            "        {at}: {} [{}] {} of {}",
-            repair.fix.message, repair.mistake.id, repair.agreeing, repair.pixels
-        );
-    }
-    if search.repairs.is_empty() {
-        let suspects: Vec<String> = search
-            .suspects
-            .iter()
-            .map(|suspect| format!("{} ({:.2})", line(suspect.span.start), suspect.score))
-            .collect();
-        println!("        suspects {}", suspects.join(", "));
-    }
+    rates.add(sample, &search, findings.mistake.is_some(), time);
 }
 
 impl Rates {
+    /// Adds a wrong shader, and prints what was found.
+    fn add(&mut self, sample: &Sample, search: &SearchResult, is_named: bool, time: Duration) {
+        let line = |start: u32| sample.shader[..start as usize].matches('\n').count() + 1;
+        let is_mistake = |start: u32| sample.lines.contains(&line(start));
+        let of_repair = |repair: &Repair| repair.fix.edits.iter().any(|edit| is_mistake(edit.span.start));
+        self.wrong += 1;
+        self.times.push(time);
+        self.repaired += usize::from(!search.repairs.is_empty());
+        self.named += usize::from(is_named);
+        self.named_or_repaired += usize::from(is_named || !search.repairs.is_empty());
+        let first = search.repairs.first().is_some_and(of_repair);
+        let any = search.repairs.iter().any(of_repair);
+        self.first_line += usize::from(first);
+        self.any_line += usize::from(any);
+        let suspects = search
+            .suspects
+            .iter()
+            .any(|suspect| is_mistake(suspect.span.start));
+        self.suspects += usize::from(search.repairs.is_empty());
+        self.suspect_in_three += usize::from(search.repairs.is_empty() && suspects);
+        let mark = match (search.repairs.is_empty(), first, any) {
+            (true, ..) => "NONE ",
+            (_, true, _) => "first",
+            (_, _, true) => "any  ",
+            _ => "other",
+        };
+        println!(
+            "{mark} {:5.2} s {} lines {:?}{}",
+            time.as_secs_f64(),
+            sample.name,
+            sample.lines,
+            if search.is_cut { " (cut)" } else { "" }
+        );
+        for repair in &search.repairs {
+            let at = repair.fix.edits.first().map_or(0, |edit| line(edit.span.start));
+            println!(
+                "        {at}: {} [{}] {} of {}",
+                repair.fix.message, repair.mistake.id, repair.agreeing, repair.pixels
+            );
+        }
+        if search.repairs.is_empty() {
+            let suspects: Vec<String> = search
+                .suspects
+                .iter()
+                .map(|suspect| format!("{} ({:.2})", line(suspect.span.start), suspect.score))
+                .collect();
+            println!("        suspects {}", suspects.join(", "));
+        }
+    }
+
     fn print(&mut self, group: &str) {
         self.times.sort_unstable();
         let percent = |count: usize, of: usize| 100.0 * count as f64 / of.max(1) as f64;
