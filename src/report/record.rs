@@ -163,14 +163,17 @@ impl Record {
         }
     }
 
-    /// Adds what the search for a fix found. The fix names the mistake if no known one explains the image.
+    /// Adds what the search for a fix found. The fix names the mistake, unless a known one alone explains the
+    /// image.
     pub(super) fn set_search(&mut self, search: &SearchResult, files: &Files) {
         self.fix = Repair::first_of(&search.repairs, files);
         let suspects = search.suspects.iter();
         self.suspects = suspects.map(|suspect| Suspect::new(suspect, files)).collect();
         self.is_search_cut = search.is_cut;
-        if self.mistake.is_none() {
-            self.mistake = search.repairs.first().map(|repair| Mistake::of(&repair.mistake));
+        if let Some(repair) = search.repairs.first()
+            && self.mistake.as_ref().is_none_or(Mistake::is_ambiguous)
+        {
+            self.mistake = Some(Mistake::of(&repair.mistake));
         }
     }
 
@@ -262,6 +265,11 @@ impl Mistake {
             is_symptom: diagnosis.mistakes.iter().all(|mistake| mistake.is_symptom),
             alternatives: alternatives.collect(),
         }
+    }
+
+    /// Whether several mistakes may be meant.
+    fn is_ambiguous(&self) -> bool {
+        self.is_symptom || !self.alternatives.is_empty()
     }
 
     /// What to call it in a report.

@@ -120,9 +120,14 @@ pub fn lines(record: &Record, layout: &Layout) -> String {
         }
         let hints = fix_lines(record).into_iter();
         lines.extend(hints.map(|(label, sentence)| layout.below(&format!("{label}: "), &sentence)));
+        if record.fix.is_none() {
+            if layout.detail >= Detail::Full {
+                lines.extend(suspect_texts(record, layout));
+            }
+            lines.extend(record.is_search_cut.then(|| layout.below("", CUT_SEARCH)));
+        }
     }
     if layout.detail >= Detail::Full {
-        lines.extend(search_lines(record, layout));
         lines.extend(check_lines(record).iter().map(|line| layout.below("", line)));
     }
     if layout.detail >= Detail::Normal
@@ -207,18 +212,13 @@ pub(super) fn fix_lines(record: &Record) -> Vec<(&'static str, String)> {
         .collect()
 }
 
-/// The text of each suspect statement, and whether the search for a fix was incomplete; nothing if there is a
-/// fix.
-fn search_lines(record: &Record, layout: &Layout) -> Vec<String> {
-    if record.fix.is_some() {
-        return Vec::new();
-    }
+/// The text of each suspect statement.
+fn suspect_texts(record: &Record, layout: &Layout) -> Vec<String> {
     let suspects = record.suspects.iter().map(|suspect| {
         let label = format!("  {}:{}  ", suspect.range.line, suspect.range.column);
         layout.below(&label, &suspect.text)
     });
-    let cut = record.is_search_cut.then(|| layout.below("", CUT_SEARCH));
-    suspects.chain(cut).collect()
+    suspects.collect()
 }
 
 /// What is stated of a search that found no fix and was not complete.
@@ -514,6 +514,7 @@ mod tests {
             Some("             suspect lines: 4, 2"),
             "{normal}"
         );
+        assert!(normal.contains(CUT_SEARCH), "{normal}");
         let full = text(&suspected(), Detail::Full, None);
         let below = format!(
             "suspect lines: 4, 2\n\
