@@ -1,12 +1,13 @@
 //! Wrong shaders are repaired at the line of their mistake, and the search keeps its limits.
 
 use rayon::ThreadPoolBuilder;
-use toyproof::verify::repair::{Repair, SearchResult};
+use toyproof::glsl::Checked;
+use toyproof::verify::repair::{Donors, Repair, SearchResult};
 use toyproof::verify::{Findings, Verdict};
 
 use crate::support::{
     ANIMATION, EVERY_EXERCISE, Exercise, MANY_OBJECTS, QUADRICS, REFLECTIONS, SHADING, SPHERE, WHITTED,
-    check_and_repair, edited,
+    check_and_repair, check_and_repair_with, checked, edited,
 };
 
 /// A mistake, the exercise in which it is made, and the first repair's text and mistake.
@@ -175,6 +176,32 @@ fn two_mistakes_are_repaired_together() {
         "{}",
         first.fix.message
     );
+}
+
+#[test]
+fn an_expression_of_another_shader_repairs_what_no_small_edit_does() {
+    let shader = edited(
+        &SHADING,
+        &[("max(dot(normal, toLight), 0.0)", "fract(7.3 * normal.x)")],
+    );
+    let main = "void mainImage(out vec4 color, in vec2 pixel) {
+        color = vec4(lambert(vec3(pixel, 1.0), vec3(0.0, 0.0, 1.0)));
+    }";
+    let lambert = |expression: &str| {
+        let function = format!("float lambert(vec3 n, vec3 l) {{ return {expression}; }}\n");
+        checked(&(function + main))
+    };
+    let [clamped, doubled] = ["clamp(dot(l, n), 0.0, 1.0)", "2.0 * dot(n, l) - 1.0"].map(lambert);
+    let fixes = |shaders: &[&Checked]| {
+        let donors = Donors::of(shaders.iter().copied());
+        let result = search(check_and_repair_with(Some(&donors), &shader, &SHADING));
+        let repairs = result.repairs.into_iter();
+        repairs.map(|repair| repair.fix.message).collect::<Vec<_>>()
+    };
+    assert_eq!(fixes(&[&doubled]), [""; 0]);
+    let expected = ["replace `fract(7.3 * normal.x)` with `clamp(dot(normal, toLight), 0.0, 1.0)`"];
+    assert_eq!(fixes(&[&doubled, &clamped]), expected);
+    assert_eq!(fixes(&[&clamped, &doubled]), expected);
 }
 
 #[test]

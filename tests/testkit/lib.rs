@@ -33,7 +33,7 @@ use toyproof::tracer::Tracer;
 use toyproof::translate::FloatMode;
 use toyproof::verify::compare::CheckSummary;
 use toyproof::verify::mistake::Hypotheses;
-use toyproof::verify::repair::{DEFAULT_BUDGET, SearchOptions};
+use toyproof::verify::repair::{DEFAULT_BUDGET, Donors, SearchOptions};
 use toyproof::verify::{Case, Expected, Findings, ShaderReference, verify};
 
 /// A shader of the course and its scene.
@@ -246,11 +246,19 @@ pub fn check_and_name_on_cpu(shader: &str, exercise: &Exercise) -> Findings {
 /// # Panics
 /// Like [`check_exercise`].
 pub fn check_and_repair(shader: &str, exercise: &Exercise) -> Findings {
+    check_and_repair_with(None, shader, exercise)
+}
+
+/// Checks a shader by the evaluator alone, and searches for repairs among the donors, if there are any.
+///
+/// # Panics
+/// Like [`check_exercise`].
+pub fn check_and_repair_with(donors: Option<&Donors>, shader: &str, exercise: &Exercise) -> Findings {
     let search = SearchOptions {
         source: shader,
         lenient: false,
         budget: DEFAULT_BUDGET,
-        donors: None,
+        donors,
     };
     check_with(None, Some(search), None, shader, exercise)
 }

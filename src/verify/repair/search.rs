@@ -44,7 +44,7 @@ const SINGLES_SHARE: f64 = 0.6;
 const DONORS_SHARE: f64 = 0.8;
 
 /// The largest number of places in which donors are tried.
-const MAX_DONOR_SITES: usize = 40;
+const MAX_DONOR_SITES: usize = 120;
 
 /// The largest number of edits that are tried as the first of two, and of those in one statement.
 const MAX_FIRSTS: usize = 8;

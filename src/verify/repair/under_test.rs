@@ -262,12 +262,10 @@ impl<'a> ShaderUnderTest<'a> {
             .filter(|&site| self.sites[site].ochiai > 0.0 && self.shader.sites[site].exprs.len() == 1)
             .collect();
         // Of equals, whole expressions first.
-        let user = |site: usize| self.shader.sites[site].user.is_some();
+        let length = |site: usize| self.shader.text(self.shader.sites[site].span).len();
         sites.sort_by(|&a, &b| {
-            self.sites[b]
-                .ochiai
-                .total_cmp(&self.sites[a].ochiai)
-                .then(user(a).cmp(&user(b)))
+            let ochiai = |site: usize| self.sites[site].ochiai;
+            ochiai(b).total_cmp(&ochiai(a)).then(length(b).cmp(&length(a)))
         });
         sites.truncate(count);
         sites

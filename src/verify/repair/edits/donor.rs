@@ -27,10 +27,11 @@ const MAX_CANDIDATES: usize = 40_000;
 const MAX_VALUES: usize = 5;
 const MAX_COMBINATIONS: usize = 24;
 
-/// The cost of a donor, the number of its parts that cost as much as one unit more, and what it gains where it
-/// consists of the same operations as what it replaces.
+/// The cost of a donor, the numbers of its parts and of more likely names that cost one unit more, and what it
+/// gains where it consists of the same operations as what it replaces.
 const DONOR: u32 = 26;
 const PARTS_PER_COST: usize = 4;
+const NAMES_PER_COST: usize = 6;
 const SIMILARITY: f64 = 8.0;
 
 /// The largest depth of inlined calls.
@@ -316,16 +317,23 @@ pub(in crate::repair) fn candidates(
             .map(|donor| (donor.cost(&operations), donor))
             .collect();
         fitting.sort_by_key(|&(cost, _)| cost);
-        let candidates = fitting.into_iter().flat_map(|(cost, donor)| {
-            let fillings = writer.fillings(site, &donor.holes).into_iter();
-            fillings.map(move |values| Candidate {
-                change: Change::Expression {
-                    site,
-                    term: donor.term.filled(&values),
-                },
-                trials: Trials::Once,
-                cost,
-                kind: EditKind::Expression,
+        let fillings: Vec<Vec<Vec<Term>>> = fitting
+            .iter()
+            .map(|(_, donor)| writer.fillings(site, &donor.holes))
+            .collect();
+        // Every donor with its most likely names, then with the next.
+        let candidates = (0..MAX_COMBINATIONS).flat_map(|at| {
+            let filled = fitting.iter().zip(&fillings);
+            filled.filter_map(move |(&(cost, donor), fillings)| {
+                Some(Candidate {
+                    change: Change::Expression {
+                        site,
+                        term: donor.term.filled(fillings.get(at)?),
+                    },
+                    trials: Trials::Once,
+                    cost: cost + (at / NAMES_PER_COST) as u32,
+                    kind: EditKind::Expression,
+                })
             })
         });
         all.extend(candidates.take(per_site));
