@@ -2,7 +2,7 @@
 //! of a group of edits side by side.
 
 use super::group::{Group, Run};
-use super::probe::{FIRST_MEANS, Probes};
+use super::probe::Probes;
 use super::term::Numbers;
 use super::trials::one;
 
@@ -64,7 +64,7 @@ impl ErrorOf {
     fn probes(self, probes: &Probes) -> std::ops::Range<usize> {
         match self {
             Self::Component { probe, .. } => probe..probe + 1,
-            Self::Mean => 0..FIRST_MEANS.min(probes.all.len()),
+            Self::Mean => 0..probes.screening(),
         }
     }
 

@@ -15,8 +15,10 @@ use crate::mistake::NoisyPixel;
 use crate::replicates::MEAN_SETS;
 use crate::{CheckResult, Expected};
 
-/// The number of wrong pixels at which all candidates are evaluated. Most change nothing there.
+/// The number of wrong pixels at which all candidates are evaluated, and of a stochastic shader's, whose bias is
+/// the most significant. Most candidates change nothing there.
 const SCREENING: usize = 4;
+const SCREENING_MEANS: usize = 8;
 
 /// The number of wrong and of right pixels that are probed.
 const MAX_WRONG: usize = 200;
@@ -35,7 +37,7 @@ const MIXED_RIGHT: usize = 3;
 const MAX_LEFT_SHARE: f64 = 0.01;
 
 /// The number of probes of a stochastic shader that are evaluated first.
-pub(super) const FIRST_MEANS: usize = 32;
+const FIRST_MEANS: usize = 32;
 
 /// The significance of a pixel's bias, in standard deviations, and the least difference of a biased one.
 const MIN_DEVIATIONS: f64 = 2.0;
@@ -183,13 +185,17 @@ impl Probes {
             .enumerate()
             .map(probe)
             .partition(|probe| probe.is_wrong);
-        let shuffled = |probes: Vec<Probe>| -> Vec<Probe> {
-            bit_reversed(probes.len())
-                .into_iter()
-                .map(|at| probes[at].clone())
-                .collect()
+        let shuffled = |probes: &[Probe]| -> Vec<Probe> {
+            let order = bit_reversed(probes.len()).into_iter();
+            order.map(|at| probes[at].clone()).collect()
         };
-        Self::of(shuffled(wrong), shuffled(right))
+        let mut wrong = shuffled(&wrong);
+        wrong.sort_by(|a, b| b.significance().total_cmp(&a.significance()));
+        let first = wrong.len().min(SCREENING_MEANS);
+        let rest = shuffled(&wrong[first..]);
+        wrong.truncate(first);
+        wrong.extend(rest);
+        Self::of(wrong, shuffled(&right))
     }
 
     /// Whether the shader has random numbers of its own.
@@ -218,7 +224,11 @@ impl Probes {
 
     /// The number of probes at which all candidates are evaluated.
     pub(super) fn screening(&self) -> usize {
-        let count = if self.are_means() { FIRST_MEANS } else { SCREENING };
+        let count = if self.are_means() {
+            SCREENING_MEANS
+        } else {
+            SCREENING
+        };
         count.min(self.all.len())
     }
 
@@ -326,6 +336,16 @@ pub(super) struct Projection {
 }
 
 impl Probe {
+    /// How much larger the bias is than the deviation of one evaluation; 0 without random numbers.
+    fn significance(&self) -> f64 {
+        let significance = |bias: Bias| -> f64 {
+            (0..3)
+                .map(|i| bias.difference[i].powi(2) / (bias.variance[i] + LEAST_VARIANCE))
+                .sum()
+        };
+        self.bias.map_or(0.0, significance)
+    }
+
     /// The distance of a color from the accepted ones; infinite for NaN.
     pub(super) fn distance(&self, color: [f64; 3]) -> f64 {
         self.range.distance(color)
