@@ -25,7 +25,8 @@ use toyproof::gpu::{AdapterSelector, LocalRenderer};
 use toyproof::image::Frame;
 use toyproof::lab::chart::{Point, Scatter};
 use toyproof::scene::{
-    self, Fresnel, Integrator, Light, Model, Motion, Object, Period, Sampler, Scene, Shape, export,
+    self, Cuboid, Fresnel, Integrator, Light, Model, Motion, Object, Pattern, PatternKind, Period, Sampler,
+    Scene, Shape, Space, export,
 };
 use toyproof::tracer::{Real, Tracer};
 use toyproof::translate::{FloatMode, lower_strict};
@@ -287,10 +288,33 @@ fn beside_povray(folder: &Path) {
     );
 }
 
+/// A matte surface.
+fn surface(shape: Shape) -> Object {
+    Object {
+        shape,
+        material: material(Model::Lambert),
+        motion: None,
+    }
+}
+
+/// Gives all surfaces a pattern that moves with them.
+fn patterned(scene: &mut Scene, kind: PatternKind) {
+    for object in &mut scene.objects {
+        object.material.pattern = Some(Pattern {
+            kind,
+            color: [0.2, 0.3, 0.4],
+            size: 0.3,
+            space: Space::Object {
+                axes: object.shape.axes(),
+            },
+        });
+    }
+}
+
 /// What a scene has besides ten spheres under a light without shadows.
 type Feature = (&'static str, fn(&mut Scene));
 
-static FEATURES: [Feature; 11] = [
+static FEATURES: [Feature; 15] = [
     ("shadows", |scene| scene.lights[0].shadow = true),
     ("a second light", |scene| {
         scene.lights.push(Light {
@@ -329,15 +353,32 @@ static FEATURES: [Feature; 11] = [
     }),
     ("a gamma", |scene| scene.film.gamma = 2.2),
     ("a plane", |scene| {
-        let shape = Shape::Plane {
+        scene.objects.push(surface(Shape::Plane {
             point: [0.0, -10.0, 0.0],
             normal: [0.0, 1.0, 0.0],
-        };
-        scene.objects.push(Object {
-            shape,
-            material: material(Model::Lambert),
-            motion: None,
-        });
+        }));
+    }),
+    ("a box", |scene| {
+        scene.objects.push(surface(Shape::Box(Cuboid {
+            center: [0.0, -1.0, -10.0],
+            size: [3.0, 2.0, 3.0],
+            axes: [[0.8, 0.0, 0.6], [0.0, 1.0, 0.0], [-0.6, 0.0, 0.8]],
+        })));
+    }),
+    ("checkers on all spheres", |scene| {
+        patterned(scene, PatternKind::Checker);
+    }),
+    ("stripes on all spheres", |scene| {
+        patterned(
+            scene,
+            PatternKind::Stripes {
+                direction: [0.6, 0.8, 0.0],
+            },
+        );
+    }),
+    ("a turned camera", |scene| {
+        // The same image, so that the price is that of the rays.
+        scene.camera.look_at = Some([0.0, 0.0, -15.0]);
     }),
     ("motion", |scene| {
         let motion = Motion {

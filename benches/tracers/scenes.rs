@@ -27,7 +27,7 @@ pub(crate) fn material(model: Model) -> Material {
     Material {
         model,
         color: [0.8, 0.6, 0.4],
-        checker: None,
+        pattern: None,
     }
 }
 
@@ -64,6 +64,9 @@ pub(crate) fn spheres(count: usize, model: Model) -> Scene {
         },
         camera: Camera {
             eye: [0.0; 3],
+            look_at: None,
+            up: Camera::UP,
+            roll: 0.0,
             projection: Projection::Pinhole { screen_distance: 2.0 },
         },
         background: Background::Uniform([0.1, 0.2, 0.3]),

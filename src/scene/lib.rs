@@ -30,10 +30,10 @@ use std::ops::Range;
 
 pub use file::parse;
 pub use film::{Camera, Figure, Film, Integrator, Outline, Projection, Sampler, ToneMap};
-pub use material::{Background, Checker, Disney, Fresnel, Light, Material, Model};
+pub use material::{Background, Disney, Fresnel, Light, Material, Model, Pattern, PatternKind, Space};
 pub use motion::{FrameTime, Motion, Period};
 pub use requirements::Requirements;
-pub use shape::{Equation, Quadric, QuadricKind, Scatter, Scattered, Shape, unit};
+pub use shape::{Cuboid, Equation, Quadric, QuadricKind, Scatter, Scattered, Shape, unit};
 pub use template::template;
 
 /// A color, linear RGB; each component ≥ 0, nominally in [0, 1].
@@ -125,6 +125,13 @@ impl Scene {
         for object in &mut scene.objects {
             if let Some(motion) = object.motion.take() {
                 object.shape = object.shape.transformed(&transforms[motion]);
+                if let Some(Pattern {
+                    space: Space::Object { axes },
+                    ..
+                }) = &mut object.material.pattern
+                {
+                    *axes = axes.map(|axis| transforms[motion].direction(axis));
+                }
             }
         }
         scene.motions.clear();

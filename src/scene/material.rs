@@ -9,17 +9,46 @@ pub struct Material {
     pub model: Model,
     /// Its color.
     pub color: Color,
-    /// A checker pattern with a second color.
-    pub checker: Option<Checker>,
+    /// A pattern with a second color.
+    pub pattern: Option<Pattern>,
 }
 
-/// A checker pattern: the second color is used where `floor(x / size) + floor(z / size)` is odd.
+/// A pattern: the second color is used where the sum of its whole numbers is odd.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Checker {
+pub struct Pattern {
+    /// The whole numbers.
+    pub kind: PatternKind,
     /// The second color.
     pub color: Color,
-    /// The side of a square in scene units; > 0.
+    /// The side of a square, or the width of a stripe, in scene units; > 0.
     pub size: f64,
+    /// The coordinates p = (x, y, z) of a point.
+    pub space: Space,
+}
+
+/// The whole numbers of a pattern at p.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum PatternKind {
+    /// `floor(x / size)`, `floor(z / size)`, and in [`Space::Object`] also `floor(y / size)`.
+    Checker,
+    /// `floor(direction · p / size)`
+    Stripes {
+        /// The direction across the stripes, of length 1.
+        direction: Point,
+    },
+}
+
+/// The coordinates of a pattern.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Space {
+    /// Those of the scene: surfaces move through the pattern.
+    World,
+    /// Relative to [`Shape::origin`](super::Shape::origin), along the surface's own axes: the pattern moves
+    /// with the surface. In planes, and in the faces of boxes, the coordinate across them is 0.
+    Object {
+        /// The directions of x, y and z: a right-handed orthonormal basis.
+        axes: [Point; 3],
+    },
 }
 
 /// A reflection model. D is the ray's direction, N the outward normal, L the direction to a light, V = −D.

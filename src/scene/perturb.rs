@@ -2,7 +2,9 @@
 
 use toyproof_image::pcg;
 
-use super::{Camera, Checker, Light, Model, Object, Outline, Point, Projection, QuadricKind, Scene, Shape};
+use super::{
+    Camera, Cuboid, Light, Model, Object, Outline, Pattern, Point, Projection, QuadricKind, Scene, Shape,
+};
 
 /// The lower bound, in scene units, of the scale of coordinate perturbations, unless the scene is smaller.
 /// Coordinates are perturbed relative to their size or this scale, whichever is larger: a coordinate that is
@@ -59,6 +61,8 @@ impl Scene {
                     width: random.length(width),
                 },
             },
+            look_at: self.camera.look_at.map(|point| random.point(point)),
+            ..self.camera
         };
         for Light { position, radius, .. } in &mut scene.lights {
             *position = random.point(*position);
@@ -69,7 +73,7 @@ impl Scene {
         }
         for Object { shape, material, .. } in &mut scene.objects {
             *shape = random.shape(*shape);
-            if let Some(Checker { size, .. }) = &mut material.checker {
+            if let Some(Pattern { size, .. }) = &mut material.pattern {
                 *size = random.length(*size);
             }
         }
@@ -92,11 +96,7 @@ impl Scene {
     /// Returns the largest distance of a surface from the eye along a coordinate axis.
     fn size(&self) -> f64 {
         let eye = self.camera.eye;
-        let places = self.objects.iter().map(|object| match object.shape {
-            Shape::Sphere { center, .. } => center,
-            Shape::Quadric(quadric) => quadric.origin,
-            Shape::Plane { point, .. } => point,
-        });
+        let places = self.objects.iter().map(|object| object.shape.origin());
         let distances = places.flat_map(|place| (0..3).map(move |axis| (place[axis] - eye[axis]).abs()));
         distances.fold(0.0, f64::max)
     }
@@ -118,6 +118,11 @@ impl Random {
                 quadric.kind = self.kind(quadric.kind);
                 Shape::Quadric(quadric)
             }
+            Shape::Box(Cuboid { center, size, axes }) => Shape::Box(Cuboid {
+                center: self.point(center),
+                size: size.map(|side| self.length(side)),
+                axes,
+            }),
         }
     }
 

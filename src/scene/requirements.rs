@@ -17,6 +17,10 @@ pub struct Requirements {
     pub surfaces: bool,
     /// Surfaces other than spheres.
     pub shapes: bool,
+    /// Surfaces with a pattern.
+    pub patterns: bool,
+    /// A camera that is turned.
+    pub turned_camera: bool,
     /// So many spheres that an acceleration structure pays.
     pub many_spheres: bool,
     /// Secondary rays: mirrors, glass, sampled directions.
@@ -55,6 +59,11 @@ impl Requirements {
             figures: !scene.figures.is_empty(),
             surfaces: !scene.objects.is_empty(),
             shapes: spheres < scene.objects.len(),
+            patterns: scene
+                .objects
+                .iter()
+                .any(|object| object.material.pattern.is_some()),
+            turned_camera: scene.camera.axes().is_some(),
             many_spheres: spheres > MAX_UNSORTED_SPHERES,
             secondary_rays: scene.film.max_depth > 1
                 && (path_tracing || branches || surface(|model| *model == Model::Mirror)),
@@ -75,7 +84,9 @@ impl fmt::Display for Requirements {
         let labels = [
             (self.figures, "figures"),
             (self.surfaces && !self.shapes, "spheres only"),
-            (self.shapes, "planes or quadrics"),
+            (self.shapes, "planes, quadrics or boxes"),
+            (self.patterns, "patterns"),
+            (self.turned_camera, "a turned camera"),
             (self.many_spheres, "many spheres"),
             (self.secondary_rays, "secondary rays"),
             (self.branches, "ray splitting at glass"),

@@ -2,11 +2,14 @@
 
 use std::ops::Range;
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use toyproof_image::pcg;
 
 use super::motion::Transform;
 use super::{Material, Object, Point};
+
+/// The directions of the scene's x, y and z.
+pub(super) const IDENTITY: [Point; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// A shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,6 +30,19 @@ pub enum Shape {
         /// The normal, of length 1, to either side.
         normal: Point,
     },
+    /// A box.
+    Box(Cuboid),
+}
+
+/// A box. It is closed, and its normals point outward.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cuboid {
+    /// The center.
+    pub center: Point,
+    /// The lengths of the edges along the axes; > 0.
+    pub size: [f64; 3],
+    /// The directions of the edges: a right-handed orthonormal basis.
+    pub axes: [Point; 3],
 }
 
 /// A quadric in a local frame.
@@ -154,6 +170,45 @@ impl Shape {
             Self::Sphere { .. } => true,
             Self::Quadric(quadric) => matches!(quadric.kind, QuadricKind::Ellipsoid { .. }),
             Self::Plane { .. } => false,
+            Self::Box(_) => true,
+        }
+    }
+
+    /// Returns the origin of its own coordinates: the center of a sphere or a quadric, the end of a quadric
+    /// that begins there, the point of a plane, and the corner of a box with the smallest coordinates.
+    #[must_use]
+    pub fn origin(&self) -> Point {
+        match *self {
+            Self::Sphere { center, .. } => center,
+            Self::Quadric(quadric) => quadric.origin,
+            Self::Plane { point, .. } => point,
+            Self::Box(Cuboid { center, size, axes }) => {
+                let half = axes
+                    .iter()
+                    .zip(size)
+                    .map(|(axis, size)| DVec3::from_array(*axis) * (0.5 * size));
+                (DVec3::from_array(center) - half.sum::<DVec3>()).to_array()
+            }
+        }
+    }
+
+    /// Returns the directions of its own coordinates x, y and z, before any motion. The axis of a quadric and
+    /// the normal of a plane are y; x and z result from the shortest rotation of the scene's y to that
+    /// direction.
+    #[must_use]
+    pub fn axes(&self) -> [Point; 3] {
+        let upright = |y: Point| {
+            let rotation = DQuat::from_rotation_arc(DVec3::Y, DVec3::from_array(y));
+            DVec3::AXES.map(|axis| (rotation * axis).to_array())
+        };
+        match *self {
+            Self::Sphere { .. } => IDENTITY,
+            Self::Quadric(quadric) => match quadric.kind {
+                QuadricKind::Ellipsoid { .. } => quadric.axes,
+                _ => upright(quadric.axes[2]),
+            },
+            Self::Plane { normal, .. } => upright(normal),
+            Self::Box(cuboid) => cuboid.axes,
         }
     }
 
@@ -173,6 +228,11 @@ impl Shape {
                 point: transform.point(point),
                 normal: transform.direction(normal),
             },
+            Self::Box(Cuboid { center, size, axes }) => Self::Box(Cuboid {
+                center: transform.point(center),
+                size,
+                axes: axes.map(|axis| transform.direction(axis)),
+            }),
         }
     }
 }

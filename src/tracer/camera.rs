@@ -16,6 +16,9 @@ use crate::spheres::{Origins, PACKET_RAYS, Packet};
 #[derive(Debug)]
 pub(super) struct Camera<T: Real> {
     eye: T::Vec3,
+    forward: T::Vec3,
+    /// The directions to the right, up and forward; none for x, y and −z.
+    axes: Option<[T::Vec3; 3]>,
     projection: ScreenProjection<T>,
     width: T,
     height: T,
@@ -32,6 +35,8 @@ impl<T: Real> Camera<T> {
         let [width, height] = scene.film.size.map(|side| T::from_f64(f64::from(side)));
         Self {
             eye: T::Vec3::from_f64(scene.camera.eye),
+            forward: T::Vec3::from_f64(scene.camera.forward()),
+            axes: scene.camera.axes().map(|axes| axes.map(T::Vec3::from_f64)),
             projection: match scene.camera.projection {
                 Projection::Pinhole { screen_distance } => ScreenProjection::Pinhole {
                     screen_distance: T::from_f64(screen_distance),
@@ -70,16 +75,14 @@ impl<T: Real> Camera<T> {
                     x: &[x],
                     y: &[y],
                     screen_distance,
+                    axes: self.axes.map(|axes| axes.map(T::Vec3::to_array)),
                     directions: direction.each_mut().map(|component| &mut component[..]),
                 };
                 T::run(Level::Base, kernel);
                 let [[x], [y], [z]] = direction;
                 (self.eye, T::Vec3::new(x, y, z))
             }
-            ScreenProjection::Parallel { .. } => (
-                self.parallel_origin([x, y]),
-                T::Vec3::from_f64(PARALLEL_DIRECTION),
-            ),
+            ScreenProjection::Parallel { .. } => (self.parallel_origin([x, y]), self.forward),
         };
         Ray {
             origin,
@@ -90,13 +93,14 @@ impl<T: Real> Camera<T> {
 
     /// Creates a packet of such rays.
     pub(super) fn packet(&self, [x, y]: &[[T; PACKET_RAYS]; 2], level: Level) -> Packet<T> {
-        let mut directions = PARALLEL_DIRECTION.map(|component| [T::from_f64(component); PACKET_RAYS]);
+        let mut directions = self.forward.to_array().map(|component| [component; PACKET_RAYS]);
         let origins = match self.projection {
             ScreenProjection::Pinhole { screen_distance } => {
                 let kernel = PinholeDirections {
                     x,
                     y,
                     screen_distance,
+                    axes: self.axes.map(|axes| axes.map(T::Vec3::to_array)),
                     directions: directions.each_mut().map(|component| &mut component[..]),
                 };
                 T::run(level, kernel);
@@ -116,18 +120,22 @@ impl<T: Real> Camera<T> {
             ScreenProjection::Parallel { half_width } => half_width,
             ScreenProjection::Pinhole { .. } => T::zero(),
         };
-        self.eye + T::Vec3::new(x * half_width, y * half_width, T::zero())
+        let (x, y) = (x * half_width, y * half_width);
+        match self.axes {
+            None => self.eye + T::Vec3::new(x, y, T::zero()),
+            Some([right, up, _]) => self.eye + (right * x + up * y),
+        }
     }
 }
 
-/// The direction of all rays of the parallel projection.
-const PARALLEL_DIRECTION: [f64; 3] = [0.0, 0.0, -1.0];
-
-/// Computes the unit directions from a pinhole to points (x, y, −`screen_distance`) on the screen.
+/// Computes the unit directions from a pinhole to points (x, y, `screen_distance`) on the screen, to the right,
+/// up and forward.
 struct PinholeDirections<'a, T> {
     x: &'a [T],
     y: &'a [T],
     screen_distance: T,
+    /// The directions to the right, up and forward; none for x, y and −z.
+    axes: Option<[[T; 3]; 3]>,
     directions: [&'a mut [T]; 3],
 }
 
@@ -137,10 +145,15 @@ impl<T: Real> Kernel<T> for PinholeDirections<'_, T> {
     #[inline(always)]
     fn run<S: Lanes<T>>(self, simd: S) {
         let distance = Wide::splat(simd, self.screen_distance);
+        let axes = self.axes.map(|axes| axes.map(|axis| Wide3::splat(simd, axis)));
         let mut at = 0;
         while at < self.x.len() {
             let (x, y) = (Wide::load(simd, &self.x[at..]), Wide::load(simd, &self.y[at..]));
-            let Wide3(x, y, z) = Wide3(x, y, -distance).normalize(simd);
+            let direction = match axes {
+                None => Wide3(x, y, -distance),
+                Some([right, up, forward]) => right * x + up * y + forward * distance,
+            };
+            let Wide3(x, y, z) = direction.normalize(simd);
             x.store(&mut self.directions[0][at..]);
             y.store(&mut self.directions[1][at..]);
             z.store(&mut self.directions[2][at..]);

@@ -25,6 +25,7 @@ mod glass;
 mod lanes;
 mod light;
 mod material;
+mod pattern;
 mod ray;
 mod ray_epsilon;
 mod real;

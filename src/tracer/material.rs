@@ -5,6 +5,7 @@ use std::f64::consts::{FRAC_1_PI, TAU};
 use toyproof_scene::{self as scene, Disney};
 
 use crate::glass::Glass;
+use crate::pattern::Pattern;
 use crate::ray::{spherical_direction, tangent_basis};
 use crate::real::{Real, Vector};
 
@@ -12,8 +13,7 @@ use crate::real::{Real, Vector};
 pub(super) struct Material<T: Real> {
     pub(super) model: Model<T>,
     color: T::Vec3,
-    /// The second color of the checkerboard, and the side of its squares.
-    checker: Option<(T::Vec3, T)>,
+    pattern: Option<Pattern<T>>,
 }
 
 /// How a surface scatters or emits light.
@@ -27,7 +27,8 @@ pub(super) enum Model<T: Real> {
 }
 
 impl<T: Real> Material<T> {
-    pub(super) fn new(material: &scene::Material) -> Self {
+    pub(super) fn new(object: &scene::Object) -> Self {
+        let material = &object.material;
         Self {
             model: match material.model {
                 scene::Model::Facing => Model::Facing,
@@ -45,24 +46,17 @@ impl<T: Real> Material<T> {
                 }),
             },
             color: T::Vec3::from_f64(material.color),
-            checker: material
-                .checker
-                .map(|checker| (T::Vec3::from_f64(checker.color), T::from_f64(checker.size))),
+            pattern: material
+                .pattern
+                .map(|pattern| Pattern::new(&pattern, &object.shape)),
         }
     }
 
-    /// Returns the color at a point.
-    pub(super) fn color(&self, point: T::Vec3) -> T::Vec3 {
-        let Some((other, side)) = self.checker else {
-            return self.color;
-        };
-        let [x, _, z] = point.to_array().map(|along| (along / side).floor());
-        let sum = x + z;
-        let two = T::one() + T::one();
-        if sum - two * (sum / two).floor() == T::zero() {
-            self.color
-        } else {
-            other
+    /// Returns the color at a point of the surface with the given normal.
+    pub(super) fn color(&self, point: T::Vec3, normal: T::Vec3) -> T::Vec3 {
+        match &self.pattern {
+            Some(pattern) if pattern.is_second(point, normal) => pattern.color,
+            _ => self.color,
         }
     }
 }

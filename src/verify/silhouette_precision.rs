@@ -102,6 +102,8 @@ impl SilhouetteBand {
 /// The rays of an image.
 struct View {
     eye: DVec3,
+    /// The directions to the right, up and forward.
+    axes: [DVec3; 3],
     projection: Projection,
     size: [f64; 2],
 }
@@ -110,6 +112,10 @@ impl View {
     fn new(scene: &Scene) -> Self {
         Self {
             eye: DVec3::from_array(scene.camera.eye),
+            axes: match scene.camera.axes() {
+                Some(axes) => axes.map(DVec3::from_array),
+                None => [DVec3::X, DVec3::Y, DVec3::NEG_Z],
+            },
             projection: scene.camera.projection,
             size: scene.film.size.map(f64::from),
         }
@@ -128,7 +134,8 @@ impl View {
                 (distance, 2.0 * angle * screen_distance * self.size[0] / 2.0)
             }
             Projection::Parallel { width } => {
-                let distance = f.z.hypot(radius);
+                let [_, _, forward] = self.axes;
+                let distance = f.dot(forward).hypot(radius);
                 let error = DISCRIMINANT_ERROR_PARALLEL * U * distance * distance;
                 (distance, error / radius * self.size[0] / width)
             }
@@ -172,15 +179,17 @@ impl View {
                 let sine = radius / band.distance;
                 let (u, v) = axis.any_orthonormal_pair();
                 let d = axis * (1.0 - sine * sine).sqrt() + (u * angle.cos() + v * angle.sin()) * sine;
-                if d.z >= 0.0 {
+                let [x, y, depth] = self.axes.map(|axis| axis.dot(d));
+                if depth <= 0.0 {
                     return None;
                 }
-                [d.x, d.y].map(|side| side / -d.z * screen_distance * scale)
+                [x, y].map(|side| side / depth * screen_distance * scale)
             }
             Projection::Parallel { width } => {
                 let [x, y] = [angle.cos(), angle.sin()].map(|side| side * radius);
-                let (x, y) = (center.x + x - self.eye.x, center.y + y - self.eye.y);
-                [x, y].map(|side| side / (width / 2.0) * scale)
+                let [right, up, _] = self.axes;
+                let to_center = center - self.eye;
+                [right.dot(to_center) + x, up.dot(to_center) + y].map(|side| side / (width / 2.0) * scale)
             }
         };
         Some([x + self.size[0] / 2.0, y + self.size[1] / 2.0])

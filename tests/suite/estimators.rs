@@ -72,7 +72,7 @@ impl World<'_> {
                 let normal = DVec3::from_array(normal);
                 [normal.dot(DVec3::from_array(point) - origin) / normal.dot(direction); 2]
             }
-            Shape::Quadric(_) => unreachable!("not in these scenes"),
+            Shape::Quadric(_) | Shape::Box(_) => unreachable!("not in these scenes"),
         };
         let ahead = candidates.into_iter().filter(|&t| t > 1e-7);
         ahead.fold(f64::INFINITY, f64::min)
@@ -88,7 +88,7 @@ impl World<'_> {
         let normal = match self.scene.objects[surface].shape {
             Shape::Sphere { center, .. } => (point - DVec3::from_array(center)).normalize(),
             Shape::Plane { normal, .. } => DVec3::from_array(normal),
-            Shape::Quadric(_) => unreachable!("not in these scenes"),
+            Shape::Quadric(_) | Shape::Box(_) => unreachable!("not in these scenes"),
         };
         Some(Hit {
             point,

@@ -69,13 +69,61 @@ impl Random {
             }
             _ => String::new(),
         };
-        let checker = if self.chance(0.2) {
-            let (other, size) = (self.color(), self.between(0.3, 1.1));
-            format!(", checker = {{ color = {other}, size = {size:?} }}")
+        let pattern = if self.chance(0.25) {
+            self.pattern()
         } else {
             String::new()
         };
-        format!("material = {{ model = \"{model}\", color = {color}{own}{checker} }}\n")
+        format!("material = {{ model = \"{model}\", color = {color}{own}{pattern} }}\n")
+    }
+
+    /// A key of a material: mostly checkers, in the coordinates of the scene or of the surface.
+    fn pattern(&mut self) -> String {
+        let (other, size) = (self.color(), self.between(0.3, 1.1));
+        let space = if self.chance(0.4) {
+            ", space = \"object\""
+        } else {
+            ""
+        };
+        if self.chance(0.6) {
+            return format!(", checker = {{ color = {other}, size = {size:?}{space} }}");
+        }
+        let direction = self.triple([0.2, -1.0, -1.0], [1.0; 3]);
+        format!(", stripes = {{ color = {other}, size = {size:?}, direction = {direction}{space} }}")
+    }
+
+    /// The keys of a camera that looks at the surfaces, or along −z.
+    fn camera(&mut self) -> String {
+        let mut text = "[camera]\n".to_owned();
+        if self.chance(0.5) {
+            let eye = self.triple([-3.0, -0.5, -1.0], [3.0, 3.0, 1.0]);
+            let target = self.triple([-1.0, -0.5, -8.0], [1.0, 0.5, -6.0]);
+            text += &format!("eye = {eye}\nlook_at = {target}\n");
+            if self.chance(0.3) {
+                text += &format!("up = {}\n", self.triple([-0.5, 0.5, -0.5], [0.5, 1.0, 0.5]));
+            }
+        }
+        if self.chance(0.4) {
+            text += &format!("roll = {:?}\n", self.between(-180.0, 180.0));
+        }
+        if self.chance(0.4) {
+            text + "projection = \"parallel\"\nwidth = 5.0\n"
+        } else {
+            text + &format!("fov = {:?}\n", self.between(30.0, 80.0))
+        }
+    }
+
+    /// A table of a box, without its material.
+    fn cuboid(&mut self) -> String {
+        let center = self.triple([-2.0, -0.8, -9.0], [2.0, 1.2, -5.0]);
+        let size = self.triple([0.3; 3], [1.8; 3]);
+        let rotation = if self.chance(0.5) {
+            let axis = self.triple([-1.0, 0.3, -1.0], [1.0; 3]);
+            format!("axis = {axis}\nangle = {:?}\n", self.between(-180.0, 180.0))
+        } else {
+            String::new()
+        };
+        format!("[[box]]\ncenter = {center}\nsize = {size}\n{rotation}")
     }
 
     /// One of the motions, or none.
@@ -152,8 +200,8 @@ fn random_scene(seed: u32) -> String {
     if random.chance(0.3) {
         text.push("gamma = 2.2\n".to_owned());
     }
-    if random.chance(0.2) {
-        text.push("[camera]\nprojection = \"parallel\"\nwidth = 5.0\n".to_owned());
+    if random.chance(0.4) {
+        text.push(random.camera());
     }
     text.push(if random.chance(0.5) {
         format!("[background]\ncolor = {}\n", random.color())
@@ -221,7 +269,12 @@ fn random_surfaces(random: &mut Random, motions: u32, traces_paths: bool) -> Vec
     let closed = |random: &mut Random| {
         if traces_paths && random.chance(0.3) {
             let color = random.triple([1.0; 3], [9.0; 3]);
-            format!("material = {{ model = \"emitter\", color = {color} }}\n")
+            let pattern = if random.chance(0.3) {
+                random.pattern()
+            } else {
+                String::new()
+            };
+            format!("material = {{ model = \"emitter\", color = {color}{pattern} }}\n")
         } else {
             random.material(models)
         }
@@ -249,6 +302,18 @@ fn random_surfaces(random: &mut Random, motions: u32, traces_paths: bool) -> Vec
         for _ in 0..=(random.number() * 2.0) as u32 {
             text.push(random.quadric() + &random.material(&open) + &random.motion(motions));
         }
+    }
+    if random.chance(0.5) {
+        for _ in 0..=(random.number() * 3.0) as u32 {
+            text.push(random.cuboid() + &random.material(models) + &random.motion(motions));
+        }
+    }
+    if random.chance(0.1) {
+        let material = random.material(&open);
+        let corner = random.triple([-2.0, -1.0, -9.0], [0.0, 0.0, -8.0]);
+        text.push(format!(
+            "[[scatter]]\ncorner = {corner}\ncells = [3, 2, 2]\nspacing = 0.9\nradius = [0.1, 0.4]\n{material}"
+        ));
     }
     text
 }
@@ -310,7 +375,18 @@ fn exported_shaders_hold_only_what_their_scene_requires() {
     for word in ["Plane", "Light", "model", "MAX_DEPTH", "shade(", "AMBIENT"] {
         assert!(!one.contains(word), "{word} in\n{one}");
     }
-    for word in ["Quadric", "checkered", "figure", "rotate", "PI", "brdf"] {
+    for word in [
+        "Quadric",
+        "Box",
+        "checkered",
+        "Pattern",
+        "patterned",
+        "forward",
+        "figure",
+        "rotate",
+        "PI",
+        "brdf",
+    ] {
         assert!(!one.contains(word), "{word} in\n{one}");
     }
     let refused = exported("[film]\nsamples = 4\nsampler = \"sobol\"\n[background]\n");

@@ -4,7 +4,7 @@
 use std::fmt::Write;
 
 use super::{Parts, number, vector};
-use crate::{Background, Figure, Outline, Projection, Sampler, Scene, ToneMap};
+use crate::{Background, Camera, Figure, Outline, Projection, Sampler, Scene, ToneMap};
 
 impl Parts<'_> {
     pub(super) fn main(&self, scene: &Scene) -> String {
@@ -73,8 +73,23 @@ fn post_process(scene: &Scene) -> String {
 
 /// Returns `pixelColor`, the color at a point of the image: that of a figure, or of the ray.
 pub(super) fn camera_function(scene: &Scene) -> String {
-    let eye = vector(scene.camera.eye);
-    let ray = match scene.camera.projection {
+    let camera = &scene.camera;
+    let is_turned = camera.axes().is_some();
+    let (eye, axes) = if is_turned {
+        ("eye".to_owned(), camera_axes(camera))
+    } else {
+        (vector(camera.eye), String::new())
+    };
+    let ray = match camera.projection {
+        Projection::Pinhole { screen_distance } if is_turned => format!(
+            "trace(eye, «CameraDirection: normalize(«ScreenPoint: x * right + y * up + \
+             «ScreenDistance: {}» * forward»)»)",
+            number(screen_distance)
+        ),
+        Projection::Parallel { width } if is_turned => format!(
+            "trace(eye + {} * «ParallelOffset: (x * right + y * up)», «ParallelDirection: forward»)",
+            number(0.5 * width)
+        ),
         Projection::Pinhole { screen_distance } => {
             format!(
                 "trace({eye}, \
@@ -91,8 +106,37 @@ pub(super) fn camera_function(scene: &Scene) -> String {
     format!(
         "vec3 pixelColor(vec2 fragCoord) {{\n    «AspectStatement: float aspect = «AspectRatio: iResolution.x / iResolution.y»;»\n    \
          float x = «ScreenX: fragCoord.x / iResolution.x * 2.0 - 1.0»;\n    \
-         float y = «ScreenYOverAspect: «ScreenY: (fragCoord.y / iResolution.y * 2.0 - 1.0)» / aspect»;\n{figures}    return {ray};\n}}\n"
+         float y = «ScreenYOverAspect: «ScreenY: (fragCoord.y / iResolution.y * 2.0 - 1.0)» / aspect»;\n{figures}{axes}    return {ray};\n}}\n"
     )
+}
+
+/// Returns the code that computes the axes of a camera that is turned.
+fn camera_axes(camera: &Camera) -> String {
+    let forward = match camera.look_at {
+        Some(look_at) => format!("«Forward: normalize({} - eye)»", vector(look_at)),
+        None => vector(camera.forward()),
+    };
+    let eye = vector(camera.eye);
+    let reference = vector(camera.up);
+    let mut text = format!("    vec3 eye = {eye};\n    vec3 forward = {forward};\n");
+    if camera.roll == 0.0 {
+        let _ = write!(
+            text,
+            "    vec3 right = «Right: normalize(cross(forward, {reference}))»;\n    \
+             vec3 up = «Up: cross(right, forward)»;\n"
+        );
+    } else {
+        let _ = write!(
+            text,
+            "    vec3 level = «Right: normalize(cross(forward, {reference}))»;\n    \
+             vec3 upright = «Up: cross(level, forward)»;\n    \
+             float roll = «Roll: radians({})»;\n    \
+             vec3 right = cos(roll) * level - sin(roll) * upright;\n    \
+             vec3 up = cos(roll) * upright + sin(roll) * level;\n",
+            number(camera.roll)
+        );
+    }
+    text
 }
 
 // Figures on the screen.

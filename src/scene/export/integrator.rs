@@ -1,9 +1,10 @@
 //! The function `trace`: mirrors and glass, or path tracing.
 
-use super::Parts;
 use super::image::AROUND;
 use super::shading::{GLASS, Kind, REFLECTIVE};
 use super::slot::Slot;
+use super::{Parts, is_emitter};
+use crate::Object;
 
 /// A mirrored ray, offset from its surface.
 const MIRRORED: &str = "Ray(«ReflectedOrigin: hit.point + «ReflectionOffset: 0.001» * side», \
@@ -179,7 +180,19 @@ impl Parts<'_> {
         }
         if self.uses(Kind::Emitter) && self.reflects() {
             let brdf = self.path_brdf(Slot::EmitterDiffuseBrdf, "direction", "view");
-            pieces.push(SAMPLE_LIGHT.replace("BRDF", &brdf));
+            let has_pattern =
+                |(_, _, object): &(_, _, &Object)| is_emitter(object) && object.material.pattern.is_some();
+            let emitter = "spheres[emitter]";
+            let (point, color) = if self.spheres.iter().any(has_pattern) {
+                (LIT_FROM, self.patterns.color(emitter, "from", "normal"))
+            } else {
+                ("", format!("{emitter}.color"))
+            };
+            let sample_light = SAMPLE_LIGHT
+                .replace("LIT_FROM\n", point)
+                .replace("EMITTED", &color)
+                .replace("BRDF", &brdf);
+            pieces.push(sample_light);
         }
         let emitter = "float share = 1.0;
 if (density > 0.0) {
@@ -287,6 +300,12 @@ float weight(float density, float other) {
 }
 ";
 
+/// The point of an emitter with a pattern from which the light comes.
+const LIT_FROM: &str = "    float t = intersectSphere(Ray(hit.point, direction), spheres[emitter]);
+    vec3 from = hit.point + t * direction;
+    vec3 normal = normalize(from - spheres[emitter].center);
+";
+
 const SAMPLE_LIGHT: &str = "bool inShadow(Ray ray, int emitter) {
     return nearestHit(ray).t < intersectSphere(ray, spheres[emitter]);
 }
@@ -302,9 +321,10 @@ vec3 sampleLight(Intersection hit, vec3 view) {
     if («EmitterHidden: cosine <= 0.0 || inShadow(Ray(hit.point + «ShadowOffset: 0.001» * hit.normal, direction), emitter)») {
         return vec3(0.0);
     }
+LIT_FROM
     float density = lightDensity(hit.point, spheres[emitter]);
     float other = brdfDensity(hit, direction, view);
-    return «WeightedEmitter: «UnweightedEmitter: spheres[emitter].color * BRDF * cosine» * weight(density, other)» / density;
+    return «WeightedEmitter: «UnweightedEmitter: EMITTED * BRDF * cosine» * weight(density, other)» / density;
 }
 ";
 

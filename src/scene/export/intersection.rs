@@ -1,19 +1,19 @@
-//! Intersections of rays with spheres, planes, quadrics, and grids of spheres.
+//! Intersections of rays with spheres, planes, quadrics, boxes, and grids of spheres.
 
 use std::fmt::Write;
 
 use super::image::PCG;
+use super::pattern::Patterns;
 use super::structure::{moved_direction, moved_point};
 use super::{Parts, number, vector};
-use crate::{Quadric, QuadricKind, Sampler, Scatter};
+use crate::shape::IDENTITY;
+use crate::{Cuboid, Object, Quadric, QuadricKind, Sampler, Scatter};
 
 impl Parts<'_> {
     pub(super) fn intersections(&self, sampler: Sampler) -> Vec<String> {
         let mut pieces = Vec::new();
         let mut loops = String::new();
-        if self.checkers {
-            pieces.push(CHECKERED.to_owned());
-        }
+        pieces.extend(self.patterns.function());
         if self.has_spheres() {
             pieces.push(INTERSECT_SPHERE.to_owned());
         }
@@ -35,6 +35,10 @@ impl Parts<'_> {
             let normal = "quadricNormal(quadrics[i], hit.point, ray.direction)";
             loops += &self.nearest("Quadric", "quadrics", "quadrics[i]", normal);
         }
+        if !self.boxes.is_empty() {
+            pieces.push(box_functions(self.has_turned_boxes()));
+            loops += &self.nearest("Box", "boxes", "boxes[i]", "boxNormal(boxes[i], hit.point)");
+        }
         pieces.push(format!(
             "«NearestHitSignature: Intersection nearestHit(Ray ray)» {{\n    Intersection hit;\n    \
              hit.t = «InitialT: NO_HIT»;\n{loops}    «ReturnHit: return hit;»\n}}\n"
@@ -46,12 +50,9 @@ impl Parts<'_> {
     /// hit.
     fn nearest(&self, kind: &str, all: &str, own: &str, normal: &str) -> String {
         let count = all.to_uppercase();
-        let color = if self.checkers {
-            format!("checkered(hit.point, {own}.color, {own}.other, {own}.side)")
-        } else if kind == "Sphere" {
-            format!("«SphereColor: {own}.color»")
-        } else {
-            format!("{own}.color")
+        let color = match self.patterns {
+            Patterns::None if kind == "Sphere" => format!("«SphereColor: {own}.color»"),
+            patterns => patterns.color(own, "hit.point", "hit.normal"),
         };
         let (first, count) = if kind == "Sphere" {
             ("«FirstSphere: 0»", format!("«SphereCount: {count}»"))
@@ -77,13 +78,6 @@ impl Parts<'_> {
         )
     }
 }
-
-const CHECKERED: &str = "// A checkerboard in x and z.
-vec3 checkered(vec3 point, vec3 color, vec3 other, float side) {
-    vec2 square = «CheckerSquare: floor(point.xz / side)»;
-    return mod(«CheckerSum: square.x + square.y», 2.0) < 0.5 ? «CheckerEven: color» : «CheckerOdd: other»;
-}
-";
 
 const INTERSECT_SPHERE: &str =
     "// Starts at the point of the ray closest to the center: smaller numbers have smaller rounding errors.
@@ -260,6 +254,83 @@ vec3 quadricNormal(Quadric quadric, vec3 point, vec3 direction) {
 }
 ";
 
+// Boxes.
+
+impl Parts<'_> {
+    /// Whether boxes have axes of their own.
+    pub(super) fn has_turned_boxes(&self) -> bool {
+        let is_turned =
+            |(cuboid, object): &(Cuboid, &Object)| cuboid.axes != IDENTITY || object.motion.is_some();
+        self.boxes.iter().any(is_turned)
+    }
+
+    /// Returns the values of the members of a box that not every surface has.
+    pub(super) fn box_values(&self, cuboid: &Cuboid, motion: Option<usize>) -> String {
+        let half_size = vector(cuboid.size.map(|side| 0.5 * side));
+        let mut text = format!("{}, {half_size}", moved_point(cuboid.center, motion));
+        if self.has_turned_boxes() {
+            let axes = cuboid
+                .axes
+                .map(|axis| moved_direction(axis, cuboid.center, motion));
+            let _ = write!(text, ", mat3({})", axes.join(", "));
+        }
+        text
+    }
+}
+
+/// Returns the functions that intersect boxes, with axes of their own or with those of the scene.
+fn box_functions(is_turned: bool) -> String {
+    let (to_local, to_scene) = if is_turned {
+        (" * box.axes", "box.axes * ")
+    } else {
+        ("", "")
+    };
+    let local = |vector: &str| match to_local {
+        "" => vector.to_owned(),
+        _ => format!("({vector}){to_local}"),
+    };
+    BOX_FUNCTIONS
+        .replace("ORIGIN", &local("ray.origin - box.center"))
+        .replace("DIRECTION", &format!("ray.direction{to_local}"))
+        .replace("POINT", &local("point - box.center"))
+        .replace("TO_SCENE", to_scene)
+}
+
+const BOX_FUNCTIONS: &str =
+    "// A box is where three slabs overlap: the ray is inside after it has entered all, until it leaves one.
+float intersectBox(Ray ray, Box box) {
+    vec3 o = ORIGIN;
+    vec3 d = DIRECTION;
+    // A tiny component instead of 0 avoids a division by 0.
+    d = mix(d, vec3(1.0e-20), equal(d, vec3(0.0)));
+    vec3 side = sign(d) * box.halfSize;
+    vec3 near = (-side - o) / d;
+    vec3 far = (side - o) / d;
+    float enter = «BoxEnter: max(near.x, max(near.y, near.z))»;
+    float leave = «BoxLeave: min(far.x, min(far.y, far.z))»;
+    if («BoxMissed: enter >= leave») {
+        return NO_HIT;
+    }
+    if (enter > «BoxMinT: 0.00001») {
+        return enter;
+    }
+    return «BoxFromInside: leave > «BoxMinT: 0.00001» ? leave : NO_HIT»;
+}
+
+// The normal of the nearest face.
+vec3 boxNormal(Box box, vec3 point) {
+    vec3 p = POINT;
+    vec3 depth = box.halfSize - abs(p);
+    vec3 face = vec3(0.0, 0.0, 1.0);
+    if (depth.x < depth.y && depth.x < depth.z) {
+        face = vec3(1.0, 0.0, 0.0);
+    } else if (depth.y < depth.z) {
+        face = vec3(0.0, 1.0, 0.0);
+    }
+    return «BoxNormal: TO_SCENE(«BoxSide: sign(p)» * face)»;
+}
+";
+
 // Grids with a sphere in each cell, traversed along the ray.
 
 impl Parts<'_> {
@@ -269,14 +340,25 @@ impl Parts<'_> {
         if sampler != Sampler::Independent {
             pieces.push(PCG.to_owned());
         }
-        let mut members = String::new();
-        if self.checkers {
-            members += ", grid.other, grid.side";
-        }
+        let has_plain = self
+            .grids
+            .iter()
+            .any(|scatter| scatter.material.pattern.is_none());
+        let [statements, arguments] = self.patterns.of_cell(has_plain);
+        let mut members = arguments.to_owned();
         for property in self.properties() {
             let _ = write!(members, ", grid.{}", property.name);
         }
-        pieces.push(CELL_SPHERE.replace("MEMBERS", &members));
+        let color = "grid.color * (0.2 + 0.8 * «CellColor: vec3(r, g, b)»)";
+        let (statements, color) = match statements {
+            "" => (String::new(), color),
+            _ => (format!("    vec3 color = {color};\n{statements}"), "color"),
+        };
+        let cell_sphere = CELL_SPHERE
+            .replace("STATEMENTS", &statements)
+            .replace("COLOR", color)
+            .replace("MEMBERS", &members);
+        pieces.push(cell_sphere);
         pieces.push(INTERSECT_GRID.to_owned());
         pieces
     }
@@ -323,7 +405,7 @@ Sphere cellSphere(Grid grid, ivec3 cell) {
     float g = cellRandom();
     float b = cellRandom();
     vec3 center = grid.corner + grid.spacing * vec3(cell) + radius + room * «CellPlace: vec3(x, y, z)»;
-    return Sphere(center, radius, grid.color * (0.2 + 0.8 * «CellColor: vec3(r, g, b)»)MEMBERS);
+STATEMENTS    return Sphere(center, radius, COLORMEMBERS);
 }
 ";
 

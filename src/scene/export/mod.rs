@@ -4,6 +4,7 @@
 mod image;
 mod integrator;
 mod intersection;
+mod pattern;
 mod shading;
 mod slot;
 mod structure;
@@ -12,9 +13,12 @@ use thiserror::Error;
 
 use self::image::{background_function, camera_function, figure_functions, random_functions};
 use self::intersection::quadric_functions;
+use self::pattern::{Patterns, is_own};
 use self::shading::{DISNEY_STRUCTURE, GLASS, Kind, REFLECTIVE};
 use self::structure::motion_functions;
-use crate::{Integrator, Object, Point, Quadric, Requirements, Sampler, Scatter, Scattered, Scene, Shape};
+use crate::{
+    Cuboid, Integrator, Object, Point, Quadric, Requirements, Sampler, Scatter, Scattered, Scene, Shape,
+};
 pub use slot::{MarkedShader, Slot};
 
 /// A feature of a scene that exported shaders do not support.
@@ -62,10 +66,11 @@ struct Parts<'a> {
     spheres: Vec<(Point, f64, &'a Object)>,
     planes: Vec<(Point, Point, &'a Object)>,
     quadrics: Vec<(Quadric, &'a Object)>,
-    /// Scatters without motion; the spheres of the others are in `spheres`.
+    boxes: Vec<(Cuboid, &'a Object)>,
+    /// Scatters without motion, and without a pattern in the coordinates of each sphere; the spheres of the
+    /// others are in `spheres`.
     grids: Vec<&'a Scatter>,
-    /// Whether any surface is checkered.
-    checkers: bool,
+    patterns: Patterns,
     /// The models in use, in order of their first object.
     models: Vec<Kind>,
     traces_paths: bool,
@@ -77,22 +82,23 @@ impl<'a> Parts<'a> {
             spheres: Vec::new(),
             planes: Vec::new(),
             quadrics: Vec::new(),
+            boxes: Vec::new(),
             grids: Vec::new(),
-            checkers: false,
+            patterns: Patterns::of(scene),
             models: Vec::new(),
             traces_paths: scene.film.integrator == Integrator::Path,
         };
         let mut in_grids = vec![false; scene.objects.len()];
         for Scattered { scatter, objects } in &scene.scatters {
             let is_emitter = parts.traces_paths && Kind::of(&scatter.material.model) == Kind::Emitter;
-            if scatter.motion.is_none() && !is_emitter {
+            let has_own_space = scatter.material.pattern.as_ref().is_some_and(is_own);
+            if scatter.motion.is_none() && !is_emitter && !has_own_space {
                 in_grids[objects.clone()].fill(true);
                 parts.grids.push(scatter);
             }
         }
         for (object, in_grid) in scene.objects.iter().zip(in_grids) {
             let kind = Kind::of(&object.material.model);
-            parts.checkers |= object.material.checker.is_some();
             if !parts.models.contains(&kind) {
                 parts.models.push(kind);
             }
@@ -103,6 +109,7 @@ impl<'a> Parts<'a> {
                 Shape::Sphere { center, radius } => parts.spheres.push((center, radius, object)),
                 Shape::Plane { point, normal } => parts.planes.push((point, normal, object)),
                 Shape::Quadric(quadric) => parts.quadrics.push((quadric, object)),
+                Shape::Box(cuboid) => parts.boxes.push((cuboid, object)),
             }
         }
         if parts.traces_paths {
@@ -136,6 +143,7 @@ impl<'a> Parts<'a> {
             if self.uses(Kind::Disney) {
                 pieces.push(DISNEY_STRUCTURE.to_owned());
             }
+            pieces.extend(self.patterns.structure());
             pieces.push(self.structures(scene));
         }
         if scene.film.sampler != Sampler::Center {
@@ -186,6 +194,7 @@ impl<'a> Parts<'a> {
             ("SPHERES", self.spheres.len()),
             ("PLANES", self.planes.len()),
             ("QUADRICS", self.quadrics.len()),
+            ("BOXES", self.boxes.len()),
             ("GRIDS", self.grids.len()),
             ("EMITTERS", emitters),
             ("LIGHTS", lights),

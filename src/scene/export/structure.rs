@@ -6,17 +6,13 @@ use super::intersection::{GRID_STRUCTURE, QUADRIC_FORM, QUADRIC_STRUCTURE, grid_
 use super::shading::LightShare;
 use super::slot::Slot;
 use super::{Parts, number, vector};
-use crate::{Light, Material, Motion, Period, Point, Scene};
+use crate::{Light, Motion, Object, Period, Point, Scene, Shape};
 
 impl Parts<'_> {
     /// Returns the members that all surfaces have.
     fn members(&self) -> String {
-        let checker = if self.checkers {
-            "    vec3 other;\n    float side;\n"
-        } else {
-            ""
-        };
-        format!("    vec3 color;\n{checker}{}", self.own_members())
+        let pattern = self.patterns.members();
+        format!("    vec3 color;\n{pattern}{}", self.own_members())
     }
 
     /// Whether there are spheres, in grids or not.
@@ -34,16 +30,10 @@ impl Parts<'_> {
     }
 
     /// Returns the values of the members that all surfaces have.
-    fn values(&self, material: &Material) -> String {
-        let mut text = vector(material.color);
-        if self.checkers {
-            let (other, side) = material
-                .checker
-                .map_or((material.color, 1.0), |checker| (checker.color, checker.size));
-            let _ = write!(text, ", {}, {}", vector(other), number(side));
-        }
+    fn values(&self, object: &Object) -> String {
+        let mut text = vector(object.material.color) + &self.patterns.values(object);
         for property in self.properties() {
-            let _ = write!(text, ", {}", (property.value)(material));
+            let _ = write!(text, ", {}", (property.value)(&object.material));
         }
         text
     }
@@ -83,6 +73,17 @@ impl Parts<'_> {
                 "\n{form}\n{structure}{members}}};\n\nQuadric quadrics[QUADRICS];\n"
             );
         }
+        if !self.boxes.is_empty() {
+            let axes = if self.has_turned_boxes() {
+                "    mat3 axes;\n"
+            } else {
+                ""
+            };
+            let _ = write!(
+                text,
+                "\nstruct Box {{\n    vec3 center;\n    vec3 halfSize;\n{axes}{members}}};\n\nBox boxes[BOXES];\n"
+            );
+        }
         if !self.grids.is_empty() {
             let structure = GRID_STRUCTURE;
             let _ = write!(text, "\n{structure}{members}}};\n\nGrid grids[GRIDS];\n");
@@ -110,7 +111,7 @@ impl Parts<'_> {
         let mut text = "void makeScene() {\n".to_owned();
         for (index, (center, radius, object)) in self.spheres.iter().enumerate() {
             let (center, radius) = (moved_point(*center, object.motion), number(*radius));
-            let values = self.values(&object.material);
+            let values = self.values(object);
             let _ = writeln!(
                 text,
                 "    spheres[{index}] = Sphere({center}, {radius}, {values});"
@@ -119,15 +120,27 @@ impl Parts<'_> {
         for (index, (point, normal, object)) in self.planes.iter().enumerate() {
             let normal = moved_direction(*normal, *point, object.motion);
             let point = moved_point(*point, object.motion);
-            let values = self.values(&object.material);
+            let values = self.values(object);
             let _ = writeln!(text, "    planes[{index}] = Plane({point}, {normal}, {values});");
         }
         for (index, (one, object)) in self.quadrics.iter().enumerate() {
-            let (own, values) = (quadric_values(one, object.motion), self.values(&object.material));
+            let (own, values) = (quadric_values(one, object.motion), self.values(object));
             let _ = writeln!(text, "    quadrics[{index}] = Quadric({own}, {values});");
         }
+        for (index, (cuboid, object)) in self.boxes.iter().enumerate() {
+            let (own, values) = (self.box_values(cuboid, object.motion), self.values(object));
+            let _ = writeln!(text, "    boxes[{index}] = Box({own}, {values});");
+        }
         for (index, scatter) in self.grids.iter().enumerate() {
-            let (own, values) = (grid_values(scatter), self.values(&scatter.material));
+            let sphere = Object {
+                shape: Shape::Sphere {
+                    center: scatter.corner,
+                    radius: scatter.spacing,
+                },
+                material: scatter.material,
+                motion: scatter.motion,
+            };
+            let (own, values) = (grid_values(scatter), self.values(&sphere));
             let _ = writeln!(text, "    grids[{index}] = Grid({own}, {values});");
         }
         if self.is_lit() {

@@ -63,6 +63,26 @@ impl Table<'_, '_> {
         self.checked(key, Some(default), |x| not_positive(*x), default)
     }
 
+    /// Returns an angle in degrees, of at most one turn.
+    pub(super) fn degrees_or(&mut self, key: &'static str, default: f64) -> f64 {
+        let problem = |x: &f64| (!(-360.0..=360.0).contains(x)).then_some("must be from -360 to 360 degrees");
+        self.checked(key, Some(default), problem, default)
+    }
+
+    /// Returns the distance of a screen of width 2 that fills a horizontal angle of view, given in degrees.
+    pub(super) fn screen_distance(&mut self, key: &'static str) -> f64 {
+        let distance = |fov: f64| {
+            // libm's sine and cosine: the same bits on every platform.
+            let (sine, cosine) = libm::sincos((0.5 * fov).to_radians());
+            cosine / sine
+        };
+        let problem = |fov: &f64| {
+            let is_angle = *fov > 0.0 && *fov < 180.0 && distance(*fov).is_finite();
+            (!is_angle).then_some("must be greater than 0 and less than 180 degrees")
+        };
+        distance(self.checked(key, None, problem, 90.0))
+    }
+
     /// Returns a number from 0 to 1.
     pub(super) fn share_or(&mut self, key: &'static str, default: f64) -> f64 {
         let problem = |x: &f64| (!(0.0..=1.0).contains(x)).then_some("must be from 0 to 1");
@@ -81,19 +101,28 @@ impl Table<'_, '_> {
         self.checked(key, Some(default), |point| not_finite(point), default)
     }
 
-    /// Returns the radii along three axes.
-    pub(super) fn radii(&mut self, key: &'static str) -> Point {
-        let problem = |radii: &Point| radii.iter().copied().find_map(not_positive);
+    /// Returns the radii or the edges along three axes.
+    pub(super) fn lengths(&mut self, key: &'static str) -> Point {
+        let problem = |lengths: &Point| lengths.iter().copied().find_map(not_positive);
         self.checked(key, None, problem, [1.0; 3])
     }
 
     /// Returns a direction, normalized; it may have any length but 0.
+    pub(super) fn direction(&mut self, key: &'static str) -> Point {
+        self.checked_direction(key, None)
+    }
+
+    /// Like [`Table::direction`], with a default.
     pub(super) fn direction_or(&mut self, key: &'static str, default: Point) -> Point {
+        self.checked_direction(key, Some(default))
+    }
+
+    fn checked_direction(&mut self, key: &'static str, default: Option<Point>) -> Point {
         let problem = |direction: &Point| {
             let is_zero = *direction == [0.0; 3];
             not_finite(direction).or(is_zero.then_some("must not be the zero vector"))
         };
-        let vector = DVec3::from_array(self.checked(key, Some(default), problem, default));
+        let vector = DVec3::from_array(self.checked(key, default, problem, [1.0; 3]));
         (vector / vector.abs().max_element()).normalize().to_array()
     }
 

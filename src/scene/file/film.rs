@@ -1,5 +1,6 @@
 //! `[film]`, `[camera]` and `[[figure]]`
 
+use glam::DVec3;
 use toyproof_diagnostic::Span;
 
 use super::super::{Camera, Figure, Film, Integrator, Outline, Projection, Sampler, ToneMap};
@@ -65,30 +66,80 @@ impl FilmTable {
 
 /// The default of `screen_distance` and of `width`, in scene units.
 const DEFAULT_EXTENT: f64 = 2.0;
+/// The smallest sine of the angle between `up` and the viewing direction: with a smaller one, float32 shaders
+/// compute the axes of the camera with errors that are visible.
+const MIN_UP_SINE: f64 = 1e-3;
 
 pub(super) const DEFAULT_CAMERA: Camera = Camera {
     eye: [0.0; 3],
+    look_at: None,
+    up: Camera::UP,
+    roll: 0.0,
     projection: Projection::Pinhole {
         screen_distance: DEFAULT_EXTENT,
     },
 };
 
 pub(super) fn camera(table: &mut Table) -> Camera {
-    let eye = table.point_or("eye", DEFAULT_CAMERA.eye);
+    let default = DEFAULT_CAMERA;
+    let [look_at_span, up_span] = ["look_at", "up"].map(|key| table.value_span(key));
+    let camera = Camera {
+        eye: table.point_or("eye", default.eye),
+        look_at: look_at_span.map(|_| table.point("look_at")),
+        up: table.direction_or("up", default.up),
+        roll: table.degrees_or("roll", default.roll),
+        projection: projection(table),
+    };
+    // Negated, so that a distance that overflows is rejected as well.
+    let up_sine = DVec3::from_array(camera.forward())
+        .cross(DVec3::from_array(camera.up))
+        .length();
+    if let Some(span) = look_at_span.or(up_span)
+        && table.is_valid()
+        && !(up_sine >= MIN_UP_SINE)
+    {
+        if camera.look_at == Some(camera.eye) {
+            table.reject(span, "`look_at` must differ from `eye`", "move one of them");
+        } else if let Some(span) = up_span {
+            let message = "`up` must not be parallel to the viewing direction";
+            table.reject(
+                span,
+                message,
+                "use a direction that is up in the image, such as `up = [0.0, 1.0, 0.0]`",
+            );
+        } else {
+            let message = "`look_at` must not be straight above or below `eye`";
+            table.reject(
+                span,
+                message,
+                "add a direction that is up in the image, such as `up = [0.0, 0.0, -1.0]`",
+            );
+        }
+    }
+    camera
+}
+
+fn projection(table: &mut Table) -> Projection {
     let names = [("pinhole", false), ("parallel", true)];
     let is_parallel = table.choice("projection", "projection", &names);
-    let projection = if is_parallel.is_some_and(|name| name.value) {
-        table.reject_keys(&["screen_distance"], "projection", "pinhole", "parallel");
-        Projection::Parallel {
+    if is_parallel.is_some_and(|name| name.value) {
+        table.reject_keys(&["screen_distance", "fov"], "projection", "pinhole", "parallel");
+        return Projection::Parallel {
             width: table.positive_or("width", DEFAULT_EXTENT),
-        }
-    } else {
-        table.reject_keys(&["width"], "projection", "parallel", "pinhole");
-        Projection::Pinhole {
-            screen_distance: table.positive_or("screen_distance", DEFAULT_EXTENT),
-        }
-    };
-    Camera { eye, projection }
+        };
+    }
+    table.reject_keys(&["width"], "projection", "parallel", "pinhole");
+    let fov_span = table.value_span("fov");
+    if let Some(span) = fov_span
+        && table.has("screen_distance")
+    {
+        let message = "`fov` and `screen_distance` both set the angle of view";
+        table.reject(span, message, "remove one of them");
+    }
+    let screen_distance = table.positive_or("screen_distance", DEFAULT_EXTENT);
+    Projection::Pinhole {
+        screen_distance: fov_span.map_or(screen_distance, |_| table.screen_distance("fov")),
+    }
 }
 
 // `[[figure]]`

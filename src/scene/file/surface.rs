@@ -2,22 +2,28 @@
 
 use toyproof_diagnostic::{Span, grouped, nearest};
 
+use super::super::shape::IDENTITY;
 use super::super::{
-    Checker, Disney, Fresnel, Material, Model, Motion, Object, Period, Point, Quadric, QuadricKind, Scatter,
-    Shape,
+    Cuboid, Disney, Fresnel, Material, Model, Motion, Object, Pattern, PatternKind, Period, Point, Quadric,
+    QuadricKind, Scatter, Shape, Space,
 };
 use crate::toml_reader::{Table, list_of};
+use glam::{DQuat, DVec3};
 
 /// The maximum number of spheres of one scatter.
 const MAX_SCATTER: u64 = 65_536;
 /// The default axis: upright.
 const UP: Point = [0.0, 1.0, 0.0];
 
+/// The smallest sine of the angle between the direction of a plane's stripes and its normal: with a smaller
+/// one, the stripes are more than a thousand times as wide as their `size`.
+const MIN_STRIPES_SINE: f64 = 1e-3;
+
 /// Reads the shape of a surface from its table.
 type ReadShape = fn(&mut Table) -> Shape;
 
 /// The tables that describe one surface each, and what reads their shape.
-pub(super) const SHAPES: [(&str, ReadShape); 7] = [
+pub(super) const SHAPES: [(&str, ReadShape); 8] = [
     ("sphere", sphere),
     ("plane", plane),
     ("ellipsoid", ellipsoid),
@@ -40,12 +46,13 @@ pub(super) const SHAPES: [(&str, ReadShape); 7] = [
         })
     }),
     ("hyperboloid", hyperboloid),
+    ("box", cuboid),
 ];
 
 /// Reads a surface, and where its model stands.
 pub(super) fn object(table: &mut Table, names: &MotionNames, shape: ReadShape) -> (Object, Option<Span>) {
     let shape = shape(table);
-    let (material, model) = material(table);
+    let (material, model) = material(table, &shape);
     let object = Object {
         shape,
         material,
@@ -72,9 +79,9 @@ fn ellipsoid(table: &mut Table) -> Shape {
     Shape::Quadric(Quadric {
         origin: table.point("center"),
         kind: QuadricKind::Ellipsoid {
-            radii: table.radii("radii"),
+            radii: table.lengths("radii"),
         },
-        axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        axes: IDENTITY,
     })
 }
 
@@ -109,6 +116,28 @@ fn hyperboloid(table: &mut Table) -> Shape {
     Shape::Quadric(Quadric::around(axis, origin, kind))
 }
 
+fn cuboid(table: &mut Table) -> Shape {
+    let center = table.point("center");
+    let size = table.lengths("size");
+    if let Some(span) = table.value_span("axis")
+        && !table.has("angle")
+    {
+        let message = "`axis` is the axis of a rotation, and needs an `angle`";
+        table.reject(span, message, "add `angle = 30.0`, in degrees, or remove `axis`");
+    }
+    let axis = table.direction_or("axis", UP);
+    let angle = table.degrees_or("angle", 0.0);
+    // libm's sine and cosine: the same bits on every platform.
+    let (sine, cosine) = libm::sincos(0.5 * angle.to_radians());
+    let [x, y, z] = axis.map(|along| along * sine);
+    let rotation = DQuat::from_xyzw(x, y, z, cosine);
+    Shape::Box(Cuboid {
+        center,
+        size,
+        axes: IDENTITY.map(|axis| (rotation * DVec3::from_array(axis)).to_array()),
+    })
+}
+
 /// Reads a scatter, and where its model stands.
 pub(super) fn scatter(table: &mut Table, names: &MotionNames) -> (Scatter, Option<Span>) {
     let corner = table.point("corner");
@@ -124,7 +153,11 @@ pub(super) fn scatter(table: &mut Table, names: &MotionNames) -> (Scatter, Optio
         }
     }
     let seed = table.count_or("seed", [0, u32::MAX], 0);
-    let (material, model) = material(table);
+    let sphere = Shape::Sphere {
+        center: corner,
+        radius: spacing,
+    };
+    let (material, model) = material(table, &sphere);
     let scatter = Scatter {
         corner,
         cells,
@@ -211,21 +244,20 @@ const FRESNEL: [(&str, Fresnel); 2] = [("exact", Fresnel::Exact), ("schlick", Fr
 const PLACEHOLDER: Material = Material {
     model: Model::Facing,
     color: [1.0; 3],
-    checker: None,
+    pattern: None,
 };
 
 const MATERIAL_EXAMPLE: &str = "material = { model = \"lambert\", color = [1.0, 0.5, 0.2] }";
 const CHECKER_EXAMPLE: &str = "checker = { color = [1.0, 1.0, 1.0], size = 1.0 }";
+const STRIPES_EXAMPLE: &str =
+    "stripes = { color = [1.0, 1.0, 1.0], size = 1.0, direction = [1.0, 0.0, 0.0] }";
 
-/// Reads the material of a surface, and where its model stands.
-fn material(surface: &mut Table) -> (Material, Option<Span>) {
+/// Reads the material of a surface of this shape, and where its model stands.
+fn material(surface: &mut Table, shape: &Shape) -> (Material, Option<Span>) {
     let material = surface.required_table("material", MATERIAL_EXAMPLE, |table| {
         let name = table.required_choice("model", "material model", &MODELS);
         let color = table.color("color");
-        let checker = table.inline_table("checker", CHECKER_EXAMPLE, |table| Checker {
-            color: table.color("color"),
-            size: table.positive("size"),
-        });
+        let pattern = pattern(table, shape);
         let Some(name) = name else {
             table.ignore_rest();
             return (PLACEHOLDER, None);
@@ -240,11 +272,71 @@ fn material(surface: &mut Table) -> (Material, Option<Span>) {
         let material = Material {
             model: model(name.value, table),
             color,
-            checker,
+            pattern,
         };
         (material, Some(name.span))
     });
     material.unwrap_or((PLACEHOLDER, None))
+}
+
+/// Reads the pattern of a material, if it has one.
+fn pattern(material: &mut Table, shape: &Shape) -> Option<Pattern> {
+    if let Some(span) = material.value_span("stripes")
+        && material.has("checker")
+    {
+        let message = "a material has either a `checker` or `stripes`";
+        material.reject(span, message, "remove one of the two");
+    }
+    let of_kind = |kind, space, table: &mut Table| Pattern {
+        kind,
+        color: table.color("color"),
+        size: table.positive("size"),
+        space,
+    };
+    let checker = material.inline_table("checker", CHECKER_EXAMPLE, |table| {
+        let space = space(table, shape);
+        of_kind(PatternKind::Checker, space, table)
+    });
+    let stripes = material.inline_table("stripes", STRIPES_EXAMPLE, |table| {
+        let space = space(table, shape);
+        let kind = PatternKind::Stripes {
+            direction: stripes_direction(table, shape, &space),
+        };
+        of_kind(kind, space, table)
+    });
+    checker.or(stripes)
+}
+
+fn space(pattern: &mut Table, shape: &Shape) -> Space {
+    let is_object = pattern.choice("space", "space", &[("world", false), ("object", true)]);
+    if is_object.is_some_and(|name| name.value) {
+        Space::Object { axes: shape.axes() }
+    } else {
+        Space::World
+    }
+}
+
+/// Reads the direction across stripes, which must not be the normal of a plane: the whole plane would lie at
+/// the edge of a stripe, or near it.
+fn stripes_direction(pattern: &mut Table, shape: &Shape, space: &Space) -> Point {
+    let span = pattern.value_span("direction");
+    let direction = pattern.direction("direction");
+    if let (Shape::Plane { normal, .. }, Some(span)) = (*shape, span) {
+        let normal = match space {
+            Space::World => normal,
+            Space::Object { .. } => UP,
+        };
+        let along = DVec3::from_array(direction).cross(DVec3::from_array(normal));
+        if along.length() < MIN_STRIPES_SINE {
+            let message = "the `direction` of stripes must not be perpendicular to the plane";
+            pattern.reject(
+                span,
+                message,
+                "use a direction in the plane, such as the one in which the stripes follow each other",
+            );
+        }
+    }
+    direction
 }
 
 fn model(name: ModelName, table: &mut Table) -> Model {

@@ -47,6 +47,9 @@ fn missing_keys_have_defaults() {
         scene.camera,
         Camera {
             eye: [0.0; 3],
+            look_at: None,
+            up: [0.0, 1.0, 0.0],
+            roll: 0.0,
             projection: Projection::Pinhole { screen_distance: 2.0 },
         }
     );

@@ -5,6 +5,7 @@
     reason = "only what is inlined into a kernel is compiled for its instruction set"
 )]
 
+mod cuboid;
 #[cfg(test)]
 mod tests;
 
@@ -12,6 +13,7 @@ use std::fmt::Debug;
 
 use toyproof_scene::{self as scene, Equation};
 
+use self::cuboid::Cuboid;
 use crate::lanes::{Columns, Kernel, Lanes, Level, MAX_LANES, Wide};
 use crate::ray::Ray;
 use crate::ray_epsilon::RayEpsilonPolicy;
@@ -41,6 +43,7 @@ pub(super) enum Shape<T: Real> {
     Sphere(Sphere<T>),
     Quadric(Quadric<T>),
     Plane(Plane<T>),
+    Box(Cuboid<T>),
 }
 
 impl<T: Real> Shape<T> {
@@ -49,6 +52,7 @@ impl<T: Real> Shape<T> {
             scene::Shape::Sphere { center, radius } => Self::Sphere(Sphere::new(*center, *radius)),
             scene::Shape::Quadric(quadric) => Self::Quadric(Quadric::new(quadric)),
             scene::Shape::Plane { point, normal } => Self::Plane(Plane::new(*point, *normal)),
+            scene::Shape::Box(cuboid) => Self::Box(Cuboid::new(cuboid)),
         }
     }
 }
@@ -59,6 +63,7 @@ impl<T: Real> Primitive<T> for Shape<T> {
             Self::Sphere(sphere) => sphere.intersect(ray, policy),
             Self::Quadric(quadric) => quadric.intersect(ray, policy),
             Self::Plane(plane) => plane.intersect(ray, policy),
+            Self::Box(cuboid) => cuboid.intersect(ray, policy),
         }
     }
 
@@ -67,6 +72,7 @@ impl<T: Real> Primitive<T> for Shape<T> {
             Self::Sphere(sphere) => sphere.intersect_own(ray, policy),
             Self::Quadric(quadric) => quadric.intersect_own(ray, policy),
             Self::Plane(plane) => plane.intersect_own(ray, policy),
+            Self::Box(cuboid) => cuboid.intersect_own(ray, policy),
         }
     }
 
@@ -75,13 +81,14 @@ impl<T: Real> Primitive<T> for Shape<T> {
             Self::Sphere(sphere) => sphere.surface(ray, t),
             Self::Quadric(quadric) => quadric.surface(ray, t),
             Self::Plane(plane) => plane.surface(ray, t),
+            Self::Box(cuboid) => cuboid.surface(ray, t),
         }
     }
 
     fn sphere(&self) -> Option<&Sphere<T>> {
         match self {
             Self::Sphere(sphere) => Some(sphere),
-            Self::Quadric(_) | Self::Plane(_) => None,
+            Self::Quadric(_) | Self::Plane(_) | Self::Box(_) => None,
         }
     }
 }

@@ -1,12 +1,14 @@
 //! Shapes at all scales, after pbrt's shape tests: coordinates are log-uniformly distributed.
 
+use std::f64::consts::TAU;
+
 use dashu_ratio::RBig;
 use glam::{DQuat, DVec3};
 use proptest::prelude::*;
 use toyproof_image::pcg;
 use toyproof_scene::{self as scene, QuadricKind, unit};
 
-use super::{Plane, Primitive, Quadric, Shape, Sphere};
+use super::{Cuboid, Plane, Primitive, Quadric, Shape, Sphere};
 use crate::ray::{Hit, Ray};
 use crate::ray_epsilon::Exact;
 use crate::real::{Real, Vector};
@@ -65,7 +67,7 @@ fn shape(random: &mut Random, center: DVec3, size: f64) -> scene::Shape {
     let axis = random.direction().to_array();
     let (radius, height) = (size * random.between(0.5, 1.0), size * random.between(0.5, 1.0));
     let around = |kind| scene::Shape::Quadric(scene::Quadric::around(axis, center, kind));
-    match (random.number() * 7.0) as u32 {
+    match (random.number() * 8.0) as u32 {
         0 => scene::Shape::Sphere { center, radius },
         1 => scene::Shape::Plane {
             point: center,
@@ -77,12 +79,24 @@ fn shape(random: &mut Random, center: DVec3, size: f64) -> scene::Shape {
         3 => around(QuadricKind::Cylinder { radius, height }),
         4 => around(QuadricKind::Cone { radius, height }),
         5 => around(QuadricKind::Paraboloid { radius, height }),
+        6 => cuboid(random, center, [2.0 * radius, height, size]),
         _ => around(QuadricKind::Hyperboloid {
             waist: 0.5 * radius,
             radius,
             height,
         }),
     }
+}
+
+/// Returns a box in a random orientation, or along the axes of the scene.
+fn cuboid(random: &mut Random, center: [f64; 3], size: [f64; 3]) -> scene::Shape {
+    let rotation = if random.number() < 0.5 {
+        DQuat::IDENTITY
+    } else {
+        DQuat::from_axis_angle(random.direction(), random.between(0.0, TAU))
+    };
+    let axes = DVec3::AXES.map(|axis| (rotation * axis).to_array());
+    scene::Shape::Box(scene::Cuboid { center, size, axes })
 }
 
 /// Counts rays that leave a convex surface, and those of them that hit it again.
@@ -104,8 +118,9 @@ fn self_hits<T: Real>(seeds: u32, sizes: [f64; 2], offsets: [f64; 2]) -> (u32, u
                     radii: [size, 0.5 * size, 0.25 * size],
                 },
             )),
+            cuboid(random, center.to_array(), [size, 0.5 * size, 1.5 * size]),
         ];
-        let shape = Shape::<T>::new(&convex[(random.number() * 2.0) as usize]);
+        let shape = Shape::<T>::new(&convex[(random.number() * 3.0) as usize]);
         let distance = size * random.log_uniform(0.5, 2.0).abs();
         let ray = toward::<T>(center + random.direction() * distance, center);
         let Some(t) = shape.intersect(&ray, &Exact) else {
@@ -212,6 +227,14 @@ fn distance(shape: &scene::Shape, point: DVec3) -> f64 {
         scene::Shape::Plane { point: on, normal } => DVec3::from_array(*normal)
             .dot(point - DVec3::from_array(*on))
             .abs(),
+        scene::Shape::Box(cuboid) => {
+            let p = point - DVec3::from_array(cuboid.center);
+            let depths = [0, 1, 2].map(|i| {
+                let along = DVec3::from_array(cuboid.axes[i]).dot(p);
+                (0.5 * cuboid.size[i] - along.abs()).abs()
+            });
+            depths.into_iter().fold(f64::INFINITY, f64::min)
+        }
         scene::Shape::Quadric(quadric) => {
             let p = point - DVec3::from_array(quadric.origin);
             let [x, y, z] = quadric.axes.map(|axis| DVec3::from_array(axis).dot(p));
@@ -252,6 +275,81 @@ fn hits_lie_on_the_shape_at_every_scale() {
         residuals::<f32>(20_000, [-30.0, 30.0], 2e-3),
     ];
     assert!(hits.iter().all(|hits| *hits > 10_000), "{hits:?}");
+}
+
+/// A box of 2×4×6 around the origin.
+fn block() -> Cuboid<f64> {
+    Cuboid::new(&scene::Cuboid {
+        center: [0.0; 3],
+        size: [2.0, 4.0, 6.0],
+        axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+    })
+}
+
+fn along(origin: [f64; 3], direction: [f64; 3]) -> Ray<f64> {
+    Ray {
+        origin: DVec3::from_array(origin),
+        direction: DVec3::from_array(direction),
+        from: None,
+    }
+}
+
+#[test]
+fn rays_hit_boxes_from_outside_and_from_inside() {
+    let block = block();
+    let hit = |origin, direction| block.intersect(&along(origin, direction), &Exact);
+    assert_eq!(hit([0.5, 0.5, 9.0], [0.0, 0.0, -1.0]), Some(6.0));
+    assert_eq!(hit([0.5, 0.5, 1.0], [0.0, 0.0, -1.0]), Some(4.0));
+    assert_eq!(hit([0.5, 0.5, 9.0], [0.0, 0.0, 1.0]), None);
+    // Components of 0 with either sign, within and beside the other slabs.
+    for zero in [0.0, -0.0] {
+        assert_eq!(hit([-5.0, 1.9, 2.9], [1.0, zero, zero]), Some(4.0));
+        assert_eq!(hit([-5.0, 2.1, 2.9], [1.0, zero, zero]), None);
+        // In the plane of a face, and along an edge.
+        assert_eq!(hit([-5.0, 2.0, 0.0], [1.0, zero, zero]), None);
+        assert_eq!(hit([-5.0, -2.0, 3.0], [1.0, zero, zero]), None);
+        assert_eq!(hit([1.0, 0.0, 0.0], [zero, 1.0, zero]), None);
+    }
+    // Diagonally, through the middle of an edge and past it.
+    assert_eq!(hit([-3.0, 0.0, 0.0], [1.0, 1.0, 0.0]), None);
+    assert_eq!(hit([-3.0, -0.5, 0.0], [1.0, 1.0, 0.0]), Some(2.0));
+    // Almost parallel to a slab: t is large, but finite.
+    let tiny = 2f64.powi(-900);
+    assert_eq!(hit([0.0; 3], [tiny, 0.0, 0.0]), Some(tiny.recip()));
+    assert_eq!(hit([0.0; 3], [2f64.powi(-1030), 0.0, 0.0]), None);
+}
+
+#[test]
+fn rays_that_start_on_a_box_hit_another_face_or_none() {
+    let block = block();
+    let hit = |origin, direction| block.intersect_own(&along(origin, direction), &Exact);
+    assert_eq!(hit([1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]), Some(2.0));
+    assert_eq!(hit([1.0, 0.0, 0.0], [-0.5, 1.0, 0.0]), Some(2.0));
+    assert_eq!(hit([1.0, 0.0, 0.0], [1.0, 0.0, 0.0]), None);
+    assert_eq!(hit([1.0, 0.0, 0.0], [0.0, 1.0, 0.0]), None);
+    assert_eq!(hit([1.0, 0.0, 0.0], [1e-9, -1.0, 0.0]), None);
+    // Rounding has put the start outside or inside by a little.
+    for x in [1.0 - 1e-12, 1.0 + 1e-12] {
+        assert!(hit([x, 0.0, 0.0], [-1.0, 0.0, 0.0]).is_some_and(|t| (t - 2.0).abs() < 1e-11));
+        assert_eq!(hit([x, 0.0, 0.0], [1.0, 0.0, 0.0]), None);
+    }
+}
+
+#[test]
+fn normals_of_boxes_point_outward_on_each_face() {
+    let block = block();
+    for axis in 0..3 {
+        for side in [-1.0, 1.0] {
+            let mut direction = [0.0; 3];
+            direction[axis] = -side;
+            let outside = along([0.1, 0.2, 0.3].map(|c| c - 0.5), direction);
+            let origin = outside.origin - outside.direction * 20.0;
+            let ray = Ray { origin, ..outside };
+            let t = block.intersect(&ray, &Exact).unwrap();
+            let [_, normal] = block.surface(&ray, t);
+            assert_eq!(normal, -ray.direction);
+        }
+    }
 }
 
 #[test]
@@ -384,7 +482,7 @@ proptest! {
         (o, target, c, r) in ray_and_sphere(),
         shift in prop::array::uniform3(-100.0..100.0f64),
         axis in prop::array::uniform3(0.1..1.0f64),
-        angle in 0.0..std::f64::consts::TAU,
+        angle in 0.0..TAU,
     ) {
         let [o, target, c] = [o, target, c].map(DVec3::from_array);
         prop_assume!(!is_ill_conditioned(o, target, c, r));

@@ -53,11 +53,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         previous: Option<Spheres<T>>,
         shape: impl Fn(&Object) -> P,
     ) -> Self {
-        let materials: Vec<_> = scene
-            .objects
-            .iter()
-            .map(|object| Material::new(&object.material))
-            .collect();
+        let materials: Vec<_> = scene.objects.iter().map(Material::new).collect();
         let emitters = scene.objects.iter().zip(&materials).enumerate();
         let spheres: Vec<_> = (0..)
             .zip(&scene.objects)

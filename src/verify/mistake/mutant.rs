@@ -127,7 +127,12 @@ pub(super) fn variants(scene: &Scene) -> Vec<MarkedShader> {
         return Vec::new();
     };
     let mut rewrites: Vec<&[(Slot, &str)]> = Vec::new();
-    let other_surfaces = [Slot::PlaneMinT, Slot::NearQuadricMinT, Slot::GridSteps];
+    let other_surfaces = [
+        Slot::PlaneMinT,
+        Slot::NearQuadricMinT,
+        Slot::BoxMinT,
+        Slot::GridSteps,
+    ];
     if !other_surfaces.into_iter().any(|slot| shader.has(slot)) {
         if scene.objects.len() == 1 {
             rewrites.push(NO_SHADOWS);
@@ -176,7 +181,12 @@ fn with_min_t(shader: &MarkedShader) -> Option<MarkedShader> {
         let at_surface = origins.into_iter().fold(shader.clone(), |shader, origin| {
             shader.with_all(origin, "hit.point")
         });
-        return Some(at_surface.with_all(Slot::SphereMinT, "0.001"));
+        let min_ts = [Slot::SphereMinT, Slot::BoxMinT];
+        return Some(
+            min_ts
+                .into_iter()
+                .fold(at_surface, |shader, min_t| shader.with_all(min_t, "0.001")),
+        );
     }
     let min_ts = [Slot::NearQuadricMinT, Slot::FarQuadricMinT];
     shader.replaced(&min_ts.map(|slot| (slot, "0.001")))
@@ -203,7 +213,8 @@ const OFFSETS: [Slot; 4] = [
     Slot::RefractionOffset,
     Slot::SampledOffset,
 ];
-const MIN_TS: [Slot; 4] = [
+const MIN_TS: [Slot; 5] = [
+    Slot::BoxMinT,
     Slot::SphereMinT,
     Slot::PlaneMinT,
     Slot::NearQuadricMinT,

@@ -126,8 +126,12 @@ impl Differences {
         let tracer = Tracer::<f64>::new(scene);
         let moved = [[1e-3, 0.0], [-1e-3, 0.0], [0.0, 1e-3], [0.0, -1e-3]].map(|[x, y]| {
             let mut scene = scene.clone();
-            scene.camera.eye[0] += x;
-            scene.camera.eye[1] += y;
+            // Moved, not turned, so that everything visible moves in the image.
+            let points = [Some(&mut scene.camera.eye), scene.camera.look_at.as_mut()];
+            for point in points.into_iter().flatten() {
+                point[0] += x;
+                point[1] += y;
+            }
             Tracer::<f64>::new(&scene)
         });
         let ours = tracer.render(|| ());

@@ -88,7 +88,7 @@ fn materials(changes: &mut Changes) {
         "checkered surfaces have only one color",
         |scene| {
             for object in &mut scene.objects {
-                object.material.checker = None;
+                object.material.pattern = None;
             }
         },
     );
@@ -108,6 +108,7 @@ fn describe(shape: &Shape) -> String {
         Shape::Sphere { center, .. } => format!("the sphere at {}", place(*center)),
         Shape::Plane { point, .. } => format!("the plane through {}", place(*point)),
         Shape::Quadric(quadric) => format!("the quadric at {}", place(quadric.origin)),
+        Shape::Box(cuboid) => format!("the box at {}", place(cuboid.center)),
     }
 }
 

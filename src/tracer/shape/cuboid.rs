@@ -1,0 +1,99 @@
+//! Boxes.
+
+use toyproof_scene as scene;
+
+use super::Primitive;
+use crate::ray::Ray;
+use crate::ray_epsilon::RayEpsilonPolicy;
+use crate::real::{Real, Vector};
+
+/// A box: the points p with |p_i| ≤ half_i in local coordinates, the intersection of three slabs.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Cuboid<T: Real> {
+    center: T::Vec3,
+    /// Directions of the local axes.
+    axes: [T::Vec3; 3],
+    /// Half the lengths of the edges.
+    half: [T; 3],
+}
+
+impl<T: Real> Cuboid<T> {
+    pub(super) fn new(cuboid: &scene::Cuboid) -> Self {
+        Self {
+            center: T::Vec3::from_f64(cuboid.center),
+            axes: cuboid.axes.map(T::Vec3::from_f64),
+            half: cuboid.size.map(|side| T::from_f64(0.5 * side)),
+        }
+    }
+
+    /// Returns a point in local coordinates.
+    fn localize(&self, point: T::Vec3) -> [T; 3] {
+        let relative = point - self.center;
+        self.axes.map(|axis| axis.dot(relative))
+    }
+
+    /// Returns the interval of t within the box of the line o + t·d, in local coordinates; none if it is
+    /// empty. A line in a face's plane only touches the box, and is outside.
+    fn interval(&self, o: [T; 3], d: [T; 3]) -> Option<[T; 2]> {
+        let (mut enter, mut leave) = (T::neg_infinity(), T::infinity());
+        for ((o, d), half) in o.into_iter().zip(d).zip(self.half) {
+            if d == T::zero() {
+                if o.abs() >= half {
+                    return None;
+                }
+                continue;
+            }
+            let side = half.copysign(d);
+            enter = enter.max((-side - o) / d);
+            leave = leave.min((side - o) / d);
+        }
+        (enter < leave).then_some([enter, leave])
+    }
+
+    /// Returns the axis of the face on which a local point lies, up to rounding: the one whose face is
+    /// nearest.
+    fn face(&self, point: [T; 3]) -> usize {
+        let depth = |axis: usize| self.half[axis] - point[axis].abs();
+        let nearer = |best: usize, axis: usize| if depth(axis) < depth(best) { axis } else { best };
+        (1..3).fold(0, nearer)
+    }
+}
+
+impl<T: Real> Primitive<T> for Cuboid<T> {
+    fn intersect(&self, ray: &Ray<T>, policy: &impl RayEpsilonPolicy<T>) -> Option<T> {
+        let d = self.axes.map(|axis| axis.dot(ray.direction));
+        let t_min = policy.t_min(ray.from.is_some());
+        let interval = self.interval(self.localize(ray.origin), d)?;
+        interval.into_iter().find(|t| *t > t_min && t.is_finite())
+    }
+
+    /// The ray starts on a face, which it does not hit again: it leaves the box there, or passes through it
+    /// to another face. The normal of [`Primitive::surface`] at that point is the same face's.
+    fn intersect_own(&self, ray: &Ray<T>, policy: &impl RayEpsilonPolicy<T>) -> Option<T> {
+        let o = self.localize(ray.origin);
+        let d = self.axes.map(|axis| axis.dot(ray.direction));
+        let own = self.face(o);
+        if d[own] == T::zero() || o[own].is_sign_negative() == d[own].is_sign_negative() {
+            return None;
+        }
+        let leave = |axis: usize| (self.half[axis].copysign(d[axis]) - o[axis]) / d[axis];
+        // 0 / 0 for a ray within the plane of a face: that face is ignored.
+        let t = (0..3).map(leave).fold(T::infinity(), T::min);
+        (t > policy.t_min(true) && t.is_finite()).then_some(t)
+    }
+
+    fn surface(&self, ray: &Ray<T>, t: T) -> [T::Vec3; 2] {
+        let point = ray.origin + ray.direction * t;
+        let local = self.localize(point);
+        let face = self.face(local);
+        let outward = self.axes[face];
+        [
+            point,
+            if local[face] < T::zero() {
+                -outward
+            } else {
+                outward
+            },
+        ]
+    }
+}
