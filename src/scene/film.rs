@@ -105,7 +105,8 @@ impl Camera {
         let Some(look_at) = self.look_at else {
             return [0.0, 0.0, -1.0];
         };
-        let way = DVec3::from_array(look_at) - DVec3::from_array(self.eye);
+        // Halved, so that the difference does not overflow.
+        let way = 0.5 * DVec3::from_array(look_at) - 0.5 * DVec3::from_array(self.eye);
         (way / way.abs().max_element()).normalize().to_array()
     }
 

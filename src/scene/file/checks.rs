@@ -69,18 +69,20 @@ impl Table<'_, '_> {
         self.checked(key, Some(default), problem, default)
     }
 
-    /// Returns the distance of a screen of width 2 that fills a horizontal angle of view, given in degrees.
-    pub(super) fn screen_distance(&mut self, key: &'static str) -> f64 {
+    /// Returns the distance of a screen of width 2 that fills a horizontal angle of view, if there is such a
+    /// key, in degrees.
+    pub(super) fn field_of_view(&mut self, key: &'static str) -> Option<f64> {
         let distance = |fov: f64| {
             // libm's sine and cosine: the same bits on every platform.
             let (sine, cosine) = libm::sincos((0.5 * fov).to_radians());
             cosine / sine
         };
-        let problem = |fov: &f64| {
-            let is_angle = *fov > 0.0 && *fov < 180.0 && distance(*fov).is_finite();
-            (!is_angle).then_some("must be greater than 0 and less than 180 degrees")
-        };
-        distance(self.checked(key, None, problem, 90.0))
+        let located = self.optional::<f64>(key)?;
+        let fov = located.value;
+        if !(fov > 0.0 && fov < 180.0 && distance(fov).is_finite()) {
+            self.reject_value(key, &located, "must be greater than 0 and less than 180 degrees");
+        }
+        Some(distance(fov))
     }
 
     /// Returns a number from 0 to 1.
@@ -95,6 +97,15 @@ impl Table<'_, '_> {
 
     pub(super) fn point(&mut self, key: &'static str) -> Point {
         self.checked(key, None, |point| not_finite(point), [1.0; 3])
+    }
+
+    /// Returns a point, if there is such a key.
+    pub(super) fn optional_point(&mut self, key: &'static str) -> Option<Point> {
+        let located = self.optional::<Point>(key)?;
+        if let Some(problem) = not_finite(&located.value) {
+            self.reject_value(key, &located, problem);
+        }
+        Some(located.value)
     }
 
     pub(super) fn point_or(&mut self, key: &'static str, default: Point) -> Point {

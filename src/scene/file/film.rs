@@ -85,12 +85,11 @@ pub(super) fn camera(table: &mut Table) -> Camera {
     let [look_at_span, up_span] = ["look_at", "up"].map(|key| table.value_span(key));
     let camera = Camera {
         eye: table.point_or("eye", default.eye),
-        look_at: look_at_span.map(|_| table.point("look_at")),
+        look_at: table.optional_point("look_at"),
         up: table.direction_or("up", default.up),
         roll: table.degrees_or("roll", default.roll),
         projection: projection(table),
     };
-    // Negated, so that a distance that overflows is rejected as well.
     let up_sine = DVec3::from_array(camera.forward())
         .cross(DVec3::from_array(camera.up))
         .length();
@@ -98,23 +97,22 @@ pub(super) fn camera(table: &mut Table) -> Camera {
         && table.is_valid()
         && !(up_sine >= MIN_UP_SINE)
     {
-        if camera.look_at == Some(camera.eye) {
-            table.reject(span, "`look_at` must differ from `eye`", "move one of them");
-        } else if let Some(span) = up_span {
-            let message = "`up` must not be parallel to the viewing direction";
-            table.reject(
-                span,
-                message,
+        let (span, message, help) = match up_span {
+            _ if camera.look_at == Some(camera.eye) => {
+                (span, "`look_at` must differ from `eye`", "move one of them")
+            }
+            Some(up_span) => (
+                up_span,
+                "`up` must not be parallel to the viewing direction",
                 "use a direction that is up in the image, such as `up = [0.0, 1.0, 0.0]`",
-            );
-        } else {
-            let message = "`look_at` must not be straight above or below `eye`";
-            table.reject(
+            ),
+            None => (
                 span,
-                message,
+                "`look_at` must not be straight above or below `eye`",
                 "add a direction that is up in the image, such as `up = [0.0, 0.0, -1.0]`",
-            );
-        }
+            ),
+        };
+        table.reject(span, message, help);
     }
     camera
 }
@@ -129,8 +127,7 @@ fn projection(table: &mut Table) -> Projection {
         };
     }
     table.reject_keys(&["width"], "projection", "parallel", "pinhole");
-    let fov_span = table.value_span("fov");
-    if let Some(span) = fov_span
+    if let Some(span) = table.value_span("fov")
         && table.has("screen_distance")
     {
         let message = "`fov` and `screen_distance` both set the angle of view";
@@ -138,7 +135,7 @@ fn projection(table: &mut Table) -> Projection {
     }
     let screen_distance = table.positive_or("screen_distance", DEFAULT_EXTENT);
     Projection::Pinhole {
-        screen_distance: fov_span.map_or(screen_distance, |_| table.screen_distance("fov")),
+        screen_distance: table.field_of_view("fov").unwrap_or(screen_distance),
     }
 }
 

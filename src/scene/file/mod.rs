@@ -162,7 +162,7 @@ impl Surfaces<'_> {
                 table.reject(
                     model,
                     "glass needs a closed shape",
-                    "use [[sphere]] or [[ellipsoid]]",
+                    "use [[sphere]], [[ellipsoid]] or [[box]]",
                 );
             }
             _ if self.film.integrator == Integrator::Whitted => {}

@@ -44,7 +44,7 @@ macro_rules! case {
 }
 
 /// The course's scenes that POV-Ray can express, and some of our own.
-static CASES: [Case; 15] = [
+static CASES: [Case; 18] = [
     case!("../../../glsl/", "02-sphere"),
     case!("../../../glsl/", "03-shading"),
     case!("../../../glsl/", "04-many-objects"),
@@ -70,6 +70,9 @@ static CASES: [Case; 15] = [
     case!("", "glass"),
     case!("", "mirrors"),
     case!("", "quadrics"),
+    case!("", "boxes"),
+    case!("", "patterns"),
+    case!("", "turned"),
 ];
 
 /// The scene at its frame time, with one sample in the center of each pixel, in linear light.

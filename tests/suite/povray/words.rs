@@ -198,6 +198,10 @@ fn pigment(object: &Object, across: Option<usize>) -> String {
                 .zip(direction)
                 .map(|(axis, along)| *axis * along)
                 .sum();
+            // The direction across the face: one stripe covers it.
+            if direction == DVec3::ZERO {
+                return format!("rgb {color}");
+            }
             let (u, v) = direction.normalize().any_orthonormal_pair();
             (
                 [direction.normalize(), u, v],
