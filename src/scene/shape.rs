@@ -167,10 +167,9 @@ impl Shape {
     #[must_use]
     pub fn is_closed(&self) -> bool {
         match self {
-            Self::Sphere { .. } => true,
+            Self::Sphere { .. } | Self::Box(_) => true,
             Self::Quadric(quadric) => matches!(quadric.kind, QuadricKind::Ellipsoid { .. }),
             Self::Plane { .. } => false,
-            Self::Box(_) => true,
         }
     }
 

@@ -20,6 +20,8 @@
 //! quads whose samples see different surfaces.
 
 mod camera;
+#[cfg(test)]
+mod closed_forms;
 mod film;
 mod glass;
 mod lanes;

@@ -9,24 +9,24 @@ use toyproof_scene::{self as scene, Sampler};
 
 use super::*;
 
-fn scene(text: &str) -> Scene {
+pub(crate) fn scene(text: &str) -> Scene {
     let mut files = Files::default();
     let file = files.add(File::new("s", text));
     scene::parse(&files, file).unwrap()
 }
 
-fn pixel(text: &str, x: u32, y: u32) -> [f64; 3] {
+pub(crate) fn pixel(text: &str, x: u32, y: u32) -> [f64; 3] {
     Tracer::<f64>::new(&scene(text)).pixel(x, y)
 }
 
-fn assert_near(actual: [f64; 3], expected: [f64; 3]) {
+pub(crate) fn assert_near(actual: [f64; 3], expected: [f64; 3]) {
     for (a, e) in actual.iter().zip(expected) {
         assert!((a - e).abs() < 1e-12, "{actual:?} is not {expected:?}");
     }
 }
 
 /// One pixel that looks along −z.
-const ONE: &str = "[film]\nsize = [1, 1]\n";
+pub(crate) const ONE: &str = "[film]\nsize = [1, 1]\n";
 
 fn ball(center: &str, radius: &str, material: &str) -> String {
     format!("[[sphere]]\ncenter = {center}\nradius = {radius}\nmaterial = {material}\n")
@@ -527,7 +527,23 @@ material = { model = "mirror", color = [0.9, 0.9, 0.9] }
 center = [0.3, 0.6, -6.0]
 radius = 0.9
 material = { model = "glossy", color = [0.9, 0.3, 0.2], exponent = 20.0 }
+[[box]]
+center = [0.2, -0.6, -3.2]
+size = [0.5, 0.6, 0.4]
+axis = [0.2, 1.0, 0.1]
+angle = 40.0
+material = { model = "glass", color = [0.9, 1.0, 1.0], ior = 1.4 }
+[[box]]
+center = [1.6, 0.2, -5.5]
+size = [0.7, 2.0, 0.7]
+material = { model = "lambert", color = [0.3, 0.6, 0.9], checker = { color = [0.9, 0.9, 0.8], size = 0.25, space = "object" } }
 "#;
+
+/// Cameras that are turned.
+const TURNED: [&str; 2] = [
+    "[camera]\neye = [1, 2, 1]\nlook_at = [0, 0, -4]\nroll = 20\nfov = 50\n",
+    "[camera]\neye = [1, 2, 1]\nlook_at = [0, 0, -4]\nprojection = \"parallel\"\nwidth = 4\n",
+];
 
 #[test]
 fn every_instruction_set_and_number_of_threads_paints_the_same_bits() {
@@ -540,6 +556,9 @@ fn every_instruction_set_and_number_of_threads_paints_the_same_bits() {
         })
         .collect();
     scenes.push(("mixed".to_owned(), scene(MIXED)));
+    for camera in TURNED {
+        scenes.push((camera.to_owned(), scene(&(MIXED.to_owned() + camera))));
+    }
     for (name, scene) in &scenes {
         assert_same_bits::<f32>(name, scene);
         assert_same_bits::<f64>(name, scene);

@@ -95,12 +95,10 @@ pub(super) fn camera(table: &mut Table) -> Camera {
         .length();
     if let Some(span) = look_at_span.or(up_span)
         && table.is_valid()
-        && !(up_sine >= MIN_UP_SINE)
+        && (up_sine.is_nan() || up_sine < MIN_UP_SINE)
     {
         let (span, message, help) = match up_span {
-            _ if camera.look_at == Some(camera.eye) => {
-                (span, "`look_at` must differ from `eye`", "move one of them")
-            }
+            _ if up_sine.is_nan() => (span, "`look_at` must differ from `eye`", "move one of them"),
             Some(up_span) => (
                 up_span,
                 "`up` must not be parallel to the viewing direction",

@@ -7,9 +7,9 @@ use crate::ray::Ray;
 use crate::ray_epsilon::RayEpsilonPolicy;
 use crate::real::{Real, Vector};
 
-/// A box: the points p with |p_i| ≤ half_i in local coordinates, the intersection of three slabs.
+/// A box: the intersection of three slabs, each of the points p with `|p[i]| ≤ half[i]` in local coordinates.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Cuboid<T: Real> {
+pub(crate) struct Cuboid<T: Real> {
     center: T::Vec3,
     /// Directions of the local axes.
     axes: [T::Vec3; 3],
