@@ -72,6 +72,9 @@ shape hyperboloid 'center = [0.0, 0.9, -2.0]
 waist = 0.5
 radius = 1.1
 height = 1.8'
+shape box 'center = [0.0, 0.65, -2.0]
+size = [1.6, 1.3, 1.1]
+angle = 35.0'
 shape scatter 'corner = [-2.1, 0.0, -4.0]
 cells = [6, 2, 3]
 spacing = 0.7
@@ -87,6 +90,40 @@ material mirror 'model = "mirror", color = [0.9, 0.85, 0.7]'
 material glass 'model = "glass", color = [0.95, 1.0, 0.95], ior = 1.5'
 material emitter 'model = "emitter", color = [1.0, 0.8, 0.3]'
 material checker 'model = "lambert", color = [0.8, 0.25, 0.1], checker = { color = [0.9, 0.85, 0.7], size = 0.5 }'
+material checker-object 'model = "lambert", color = [0.8, 0.25, 0.1], checker = { color = [0.9, 0.85, 0.7], size = 0.4, space = "object" }'
+material stripes 'model = "lambert", color = [0.8, 0.25, 0.1], stripes = { color = [0.9, 0.85, 0.7], size = 0.3, direction = [1.0, 2.0, 0.5] }'
+
+# Patterns in the coordinates of their surfaces.
+render patterns 480x180 <<SCENE
+$studio
+[[box]]
+center = [-1.3, 0.6, -2.6]
+size = [1.2, 1.2, 1.2]
+angle = 35.0
+material = { model = "lambert", color = [0.8, 0.25, 0.1], checker = { color = [0.9, 0.85, 0.7], size = 0.3, space = "object" } }
+[[cylinder]]
+base = [-0.35, 0.3, -2.4]
+axis = [0.4, 0.8, -0.3]
+radius = 0.3
+height = 1.2
+material = { model = "lambert", color = [0.15, 0.35, 0.7], stripes = { color = [0.9, 0.85, 0.7], size = 0.15, direction = [0.0, 1.0, 0.0], space = "object" } }
+[[plane]]
+point = [0.6, 0.0, -2.6]
+normal = [-1.0, 0.8, 0.3]
+material = { model = "lambert", color = [0.3, 0.5, 0.25], checker = { color = [0.9, 0.85, 0.7], size = 0.3, space = "object" } }
+SCENE
+
+# The same surfaces with another camera: camera NAME KEYS.
+camera() {
+    printf '%s\n[[box]]\ncenter = [0.0, 0.7, -2.0]\nsize = [1.4, 1.4, 1.4]\n%s\n' "$studio" "$matte" |
+        sed "s/^eye = .*/$2/; /^screen_distance/d" |
+        render "camera-$1" 240x135
+}
+
+camera eye 'eye = [2.5, 2.0, 2.0]'
+camera look-at 'eye = [2.5, 2.0, 2.0]\nlook_at = [0.0, 0.7, -2.0]'
+camera roll 'eye = [2.5, 2.0, 2.0]\nlook_at = [0.0, 0.7, -2.0]\nroll = 20.0'
+camera fov 'eye = [2.5, 2.0, 2.0]\nlook_at = [0.0, 0.7, -2.0]\nroll = 20.0\nfov = 35.0'
 
 render figures 240x135 <<'SCENE'
 [background]

@@ -13,7 +13,8 @@ use crate::real::{Real, Vector};
 pub(super) struct Material<T: Real> {
     pub(super) model: Model<T>,
     color: T::Vec3,
-    pattern: Option<Pattern<T>>,
+    /// Boxed, because most surfaces have none.
+    pattern: Option<Box<Pattern<T>>>,
 }
 
 /// How a surface scatters or emits light.
@@ -48,16 +49,20 @@ impl<T: Real> Material<T> {
             color: T::Vec3::from_f64(material.color),
             pattern: material
                 .pattern
-                .map(|pattern| Pattern::new(&pattern, &object.shape)),
+                .map(|pattern| Box::new(Pattern::new(&pattern, &object.shape))),
         }
     }
 
-    /// Returns the color at a point of the surface with the given normal.
-    pub(super) fn color(&self, point: T::Vec3, normal: T::Vec3) -> T::Vec3 {
-        match &self.pattern {
-            Some(pattern) if pattern.is_second(point, normal) => pattern.color,
-            _ => self.color,
+    /// Returns the color at a point of the surface, which is given with the normal there, and computed only if
+    /// the color depends on it.
+    pub(super) fn color(&self, at: impl FnOnce() -> [T::Vec3; 2]) -> T::Vec3 {
+        if let Some(pattern) = &self.pattern {
+            let [point, normal] = at();
+            if pattern.is_second(point, normal) {
+                return pattern.color;
+            }
         }
+        self.color
     }
 }
 

@@ -34,7 +34,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
                 return sum + throughput * self.background.color(ray.direction);
             };
             let material = &self.materials[hit.surface];
-            let color = material.color(hit.point, hit.normal);
+            let color = material.color(|| [hit.point, hit.normal]);
             match &material.model {
                 Model::Emitter => return sum + throughput * color * self.emitter_weight(&hit, last_sample),
                 Model::Mirror => {
@@ -100,9 +100,10 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         }
         let density = cone.density() / number;
         let weight = power_heuristic(density, brdf.density(frame, direction));
-        let lit_from = ray.origin + direction * distance;
-        let normal = (lit_from - emitter.center) / emitter.radius;
-        let radiance = self.materials[emitter.surface].color(lit_from, normal);
+        let radiance = self.materials[emitter.surface].color(|| {
+            let point = ray.origin + direction * distance;
+            [point, (point - emitter.center) / emitter.radius]
+        });
         radiance * brdf.value(color, frame, direction) * (cosine * weight / density)
     }
 

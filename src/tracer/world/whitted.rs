@@ -192,7 +192,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         let Branch { ray, segments, .. } = path.branch;
         let light = if let Some(hit) = hit {
             let material = &self.materials[hit.surface];
-            let color = material.color(hit.point, hit.normal);
+            let color = material.color(|| [hit.point, hit.normal]);
             let facing = ray.direction.dot(hit.normal);
             match &material.model {
                 Model::Facing => color * facing.abs(),
