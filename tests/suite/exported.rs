@@ -5,8 +5,9 @@ use toyproof::diagnostic::{File, Files};
 use toyproof::scene;
 use toyproof::scene::export;
 use toyproof::verify::Verdict;
+use toyproof::verify::mistake::Diagnosis;
 
-use crate::support::{Exercise, check_exercise_with, numbers};
+use crate::support::{Exercise, check_and_name_on_cpu, check_exercise_with, numbers};
 
 /// The number of scenes, unless `EXPORTED_SCENES` gives it.
 const SCENES: u32 = 100;
@@ -352,6 +353,79 @@ fn random_scenes_and_their_shaders_agree() {
         failed.len(),
         failed.join("\n")
     );
+}
+
+/// A turned camera, a turned box, and patterns of both kinds in the coordinates of their surfaces.
+const TURNED: &str = r#"
+[camera]
+eye = [1.0, 0.8, 1.0]
+look_at = [0.1, 0.0, -6.0]
+roll = 20.0
+fov = 50.0
+[[light]]
+position = [9.0, 9.0, 5.0]
+[[box]]
+center = [-0.8, 0.2, -6.0]
+size = [1.5, 1.2, 1.0]
+axis = [0.2, 1.0, 0.0]
+angle = 30.0
+material = { model = "lambert", color = [0.9, 0.4, 0.2], checker = { color = [0.2, 0.3, 0.4], size = 0.3, space = "object" } }
+[[sphere]]
+center = [1.2, 0.0, -6.5]
+radius = 1.0
+material = { model = "lambert", color = [0.2, 0.4, 0.9], stripes = { color = [0.9, 0.9, 0.6], size = 0.3, direction = [1.0, 2.0, 0.0], space = "object" } }
+"#;
+
+#[test]
+fn mistakes_in_cameras_boxes_and_patterns_are_named() {
+    let shader: &'static str = Box::leak(exported(TURNED).unwrap().into_boxed_str());
+    let exercise = Exercise {
+        name: "turned",
+        shader,
+        scene: TURNED,
+        frame: 0,
+        time: 0.0,
+        size: [160, 90],
+    };
+    let mistakes = [
+        ("radians(20.0)", "-radians(20.0)", "roll-reversed"),
+        ("cross(forward, ", "cross(-forward, ", "camera-cross-swapped"),
+        ("- eye)", ")", "look-at-as-direction"),
+        (
+            "max(near.x, max(near.y, near.z))",
+            "min(near.x, min(near.y, near.z))",
+            "box-entered-at-first-slab",
+        ),
+        ("sign(p) * face", "-sign(p) * face", "box-normal-inward"),
+        (
+            "box.axes * (sign(p) * face)",
+            "sign(p) * face",
+            "box-normal-in-local-space",
+        ),
+        (
+            "float side = pattern.side",
+            "float side = 0.5 * pattern.side",
+            "pattern-too-small",
+        ),
+        (
+            "? color : pattern.other",
+            "? pattern.other : color",
+            "pattern-colors-swapped",
+        ),
+    ];
+    let mut wrong = Vec::new();
+    for (from, to, expected) in mistakes {
+        assert_eq!(shader.matches(from).count(), 1, "{from}");
+        let findings = check_and_name_on_cpu(&shader.replace(from, to), &exercise);
+        let name = findings.mistake.as_ref().map_or_else(String::new, Diagnosis::id);
+        if name != expected {
+            wrong.push(format!(
+                "{to}: {name} instead of {expected}: {}",
+                numbers(&findings)
+            ));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 #[test]

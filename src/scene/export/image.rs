@@ -113,30 +113,27 @@ pub(super) fn camera_function(scene: &Scene) -> String {
 /// Returns the code that computes the axes of a camera that is turned.
 fn camera_axes(camera: &Camera) -> String {
     let forward = match camera.look_at {
-        Some(look_at) => format!("«Forward: normalize({} - eye)»", vector(look_at)),
+        Some(look_at) => format!("«Forward: normalize(«LookAt: {}» - eye)»", vector(look_at)),
         None => vector(camera.forward()),
     };
-    let eye = vector(camera.eye);
-    let reference = vector(camera.up);
-    let mut text = format!("    vec3 eye = {eye};\n    vec3 forward = {forward};\n");
-    if camera.roll == 0.0 {
-        let _ = write!(
-            text,
-            "    vec3 right = «Right: normalize(cross(forward, {reference}))»;\n    \
-             vec3 up = «Up: cross(right, forward)»;\n"
-        );
+    let level = format!(
+        "«Right: normalize(«RightCross: cross(forward, «UpReference: {}»)»)»",
+        vector(camera.up)
+    );
+    let axes = if camera.roll == 0.0 {
+        format!("    vec3 right = {level};\n    vec3 up = «Up: cross(right, forward)»;\n")
     } else {
-        let _ = write!(
-            text,
-            "    vec3 level = «Right: normalize(cross(forward, {reference}))»;\n    \
+        format!(
+            "    vec3 level = {level};\n    \
              vec3 upright = «Up: cross(level, forward)»;\n    \
-             float roll = «Roll: radians({})»;\n    \
+             float roll = «Roll: radians(«RollDegrees: {}»)»;\n    \
              vec3 right = cos(roll) * level - sin(roll) * upright;\n    \
              vec3 up = cos(roll) * upright + sin(roll) * level;\n",
             number(camera.roll)
-        );
-    }
-    text
+        )
+    };
+    let eye = vector(camera.eye);
+    format!("    vec3 eye = {eye};\n    vec3 forward = {forward};\n{axes}")
 }
 
 // Figures on the screen.

@@ -303,24 +303,24 @@ float intersectBox(Ray ray, Box box) {
     vec3 d = DIRECTION;
     // A tiny component instead of 0 avoids a division by 0.
     d = mix(d, vec3(1.0e-20), equal(d, vec3(0.0)));
-    vec3 side = sign(d) * box.halfSize;
+    vec3 side = sign(d) * «BoxReach: box.halfSize»;
     vec3 near = (-side - o) / d;
     vec3 far = (side - o) / d;
     float enter = «BoxEnter: max(near.x, max(near.y, near.z))»;
     float leave = «BoxLeave: min(far.x, min(far.y, far.z))»;
-    if («BoxMissed: enter >= leave») {
+    if (enter >= leave) {
         return NO_HIT;
     }
     if (enter > «BoxMinT: 0.00001») {
         return enter;
     }
-    return «BoxFromInside: leave > «BoxMinT: 0.00001» ? leave : NO_HIT»;
+    return leave > «BoxMinT: 0.00001» ? leave : NO_HIT;
 }
 
 // The normal of the nearest face.
 vec3 boxNormal(Box box, vec3 point) {
     vec3 p = POINT;
-    vec3 depth = box.halfSize - abs(p);
+    vec3 depth = «BoxDepth: box.halfSize» - abs(p);
     vec3 face = vec3(0.0, 0.0, 1.0);
     if (depth.x < depth.y && depth.x < depth.z) {
         face = vec3(1.0, 0.0, 0.0);

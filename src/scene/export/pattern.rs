@@ -65,7 +65,7 @@ impl Patterns {
             (own_space, "    vec3 origin;\n    mat3 axes;\n"),
             (on_faces, "    bool onFaces;\n"),
         ];
-        Some(format!("struct Pattern {{\n{}}};\n", used(&members)))
+        Some(format!("{PATTERN}struct Pattern {{\n{}}};\n", used(&members)))
     }
 
     /// Returns the members of surfaces.
@@ -144,7 +144,7 @@ impl Patterns {
         };
         let normal = if on_faces { ", vec3 normal" } else { "" };
         let place = if own_space {
-            "«PatternPlace: (point - pattern.origin) * pattern.axes»"
+            "(point - pattern.origin) * pattern.axes"
         } else {
             "point"
         };
@@ -154,14 +154,16 @@ impl Patterns {
         } else {
             "square.x + square.z"
         };
-        let stripe = "«Stripe: floor(dot(place, pattern.direction) / pattern.side)»";
-        let checker = format!(
-            "    vec3 square = floor(place / pattern.side);\n    float sum = «PatternSum: {checker_sum}»;\n"
-        );
+        let stripe = "floor(dot(place, pattern.direction) / side)";
+        let checker =
+            format!("    vec3 square = floor(place / side);\n    float sum = «PatternSum: {checker_sum}»;\n");
         let only_stripes = format!("    float sum = {stripe};\n");
         let either = format!("    if (pattern.direction != vec3(0.0)) {{\n        sum = {stripe};\n    }}\n");
         let lines = [
-            (true, format!("    vec3 place = {place};\n")),
+            (
+                true,
+                format!("    float side = «PatternSide: pattern.side»;\n    vec3 place = {place};\n"),
+            ),
             (on_faces, FACES.to_owned()),
             (checkers, checker),
             (!checkers, only_stripes),
@@ -170,7 +172,7 @@ impl Patterns {
         Some(format!(
             "// Where the sum of the pattern's whole numbers is odd, the second color.\n\
              vec3 patterned(vec3 point{normal}, vec3 color, Pattern pattern) {{\n{}    \
-             return mod(sum, 2.0) < 0.5 ? «CheckerEven: color» : «CheckerOdd: pattern.other»;\n}}\n",
+             return mod(sum, 2.0) < 0.5 ? «PatternEven: color» : «PatternOdd: pattern.other»;\n}}\n",
             used(&lines)
         ))
     }
@@ -239,6 +241,9 @@ fn frame(object: &Object) -> (String, String) {
         format!("mat3({})", columns.join(", ")),
     )
 }
+
+const PATTERN: &str =
+    "// A second color. Stripes follow each other along the direction, which is 0 for a checker.\n";
 
 const CHECKERED: &str = "// A checkerboard in x and z.
 vec3 checkered(vec3 point, vec3 color, vec3 other, float side) {

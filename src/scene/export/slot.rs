@@ -43,9 +43,9 @@ slots! {
     RayInFrame OriginInFrame AxisFrame QuadricNormal QuadricSide
     EllipsoidQ EllipsoidEnds ConeSlope ConeLow ParaboloidG HyperboloidK
     CheckerSquare CheckerSum CheckerEven CheckerOdd
-    PatternPlace PatternSum Stripe AcrossFace
+    PatternSide PatternSum PatternEven PatternOdd AcrossFace
     // Boxes.
-    BoxEnter BoxLeave BoxMissed BoxMinT BoxFromInside BoxNormal BoxSide
+    BoxEnter BoxLeave BoxReach BoxDepth BoxMinT BoxNormal BoxSide
     // Grids.
     GridSteps GridStride GridStep NextCellIsX NextCellIsY CellSeed CellNumber
     CellRadius CellRoom CellPlace CellColor HashResult
@@ -54,7 +54,7 @@ slots! {
     CarriedBy0 CarriedBy1 CarriedBy2 RotationArguments
     // Camera.
     AspectStatement AspectRatio ScreenX ScreenY ScreenYOverAspect CameraDirection ScreenPoint ScreenZ ScreenDistance
-    ParallelOffset ParallelDirection Forward Right Up Roll
+    ParallelOffset ParallelDirection Forward LookAt Right RightCross UpReference Up Roll RollDegrees
     // Film.
     FinalColor ToneMapStatement ToneMapped GammaStatement GammaExponent Gamma
     SampleCondition SampleStatement Sample MeanStatement MeanDivisor SampleIndex

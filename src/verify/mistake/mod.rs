@@ -382,7 +382,19 @@ mod exercises {
     ];
 
     /// Scenes with what no exercise has.
-    const OTHER_SCENES: [&str; 4] = [NESTED_MOTIONS, BOTH_GLASSES, DIFFUSE_PATHS, MOVED_CAMERA];
+    const OTHER_SCENES: [&str; 5] = [NESTED_MOTIONS, BOTH_GLASSES, DIFFUSE_PATHS, MOVED_CAMERA, TURNED];
+
+    /// A turned camera, a turned box, and patterns.
+    pub(super) const TURNED: &str = r#"
+        camera = { eye = [2, 3, 1], look_at = [0.1, 0, -6], roll = 20, fov = 50 }
+        light = [{ position = [9, 9, 5] }]
+        box = [
+            { center = [-0.8, 0.2, -6], size = [1.5, 1.2, 1], axis = [0.2, 1, 0], angle = 30, material = { model = "lambert", color = [0.9, 0.4, 0.2], checker = { color = [0.2, 0.3, 0.4], size = 0.3, space = "object" } } },
+        ]
+        sphere = [
+            { center = [1.2, 0, -6.5], radius = 1, material = { model = "lambert", color = [0.2, 0.4, 0.9], stripes = { color = [0.9, 0.9, 0.6], size = 0.3, direction = [1, 2, 0], space = "object" } } },
+        ]
+    "#;
 
     const NESTED_MOTIONS: &str = r#"
         motion = [

@@ -113,6 +113,30 @@ pub(super) static QUADRICS: &[Mistake] = mistakes! {
         [CheckerEven = "«CheckerOdd»", CheckerOdd = "«CheckerEven»"];
 };
 
+/// Boxes and patterns.
+pub(super) static BOXES: &[Mistake] = mistakes! {
+    "box-entered-at-first-slab": "rays enter boxes at the first of the three slabs instead of the last one",
+        [BoxEnter = "min(near.x, min(near.y, near.z))"];
+    "box-left-at-last-slab": "rays leave boxes at the last of the three slabs instead of the first one",
+        [BoxLeave = "max(far.x, max(far.y, far.z))"];
+    "box-size-not-halved": "boxes are twice as large as the scene's: their size is not halved",
+        [BoxReach = "2.0 * …", BoxDepth = "2.0 * …"];
+    "box-normal-inward": "the normal of boxes points inward", [BoxSide = "-sign(p)"];
+    "box-normal-from-center": "the direction from the box's center is used as the normal instead of the face's",
+        [BoxNormal = "normalize(point - box.center)"];
+    "box-normal-in-local-space": "the normal of boxes is not transformed back to world space",
+        [BoxNormal = "«BoxSide» * face"];
+    "pattern-too-large": "the squares or stripes of patterns are twice as large as the scene's",
+        [PatternSide = "2.0 * …"];
+    "pattern-too-small": "the squares or stripes of patterns are half as large as the scene's",
+        [PatternSide = "0.5 * …"];
+    "pattern-colors-swapped": "the two colors of patterns are swapped",
+        [PatternEven = "«PatternOdd»", PatternOdd = "«PatternEven»"];
+    "pattern-without-y": "y does not count in the checker of a surface", [PatternSum = "square.x + square.z"];
+    "coordinate-across-face": "the coordinate across the faces of a box counts, so rounding decides the color",
+        [AcrossFace = "1.0"];
+};
+
 /// Grids with a sphere in each cell, and the random numbers of the spheres.
 pub(super) static GRIDS: &[Mistake] = mistakes! {
     "first-cell-only": "only the first cell of the grid is tested", [GridSteps = "1"];

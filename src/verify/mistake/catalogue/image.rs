@@ -44,6 +44,15 @@ pub(super) static CAMERA: &[Mistake] = mistakes! {
     "screen-at-1": "the screen distance is 1 instead of the scene's", [ScreenZ = "-1.0"];
     "one-ray-for-all": "all pixels cast the same ray: its origin does not depend on the pixel",
         [ParallelOffset = "vec3(0.0)"];
+    "look-at-as-direction": "the scene's `look_at` is used as a direction: the camera's position is not subtracted",
+        [Forward = "normalize(«LookAt»)"];
+    "right-not-normalized": "the camera's axis to the right is not normalized", [Right = "«RightCross»"];
+    "camera-cross-swapped": "the camera's axis to the right points to the left: the factors of its cross product are swapped",
+        [RightCross = "cross(«UpReference», forward)"];
+    "up-not-perpendicular": "the camera's axis up is the scene's `up`, which is not perpendicular to the viewing direction",
+        [Up = "«UpReference»"];
+    "roll-reversed": "the camera rolls counter-clockwise instead of clockwise", [Roll = "-…"];
+    "roll-in-degrees": "the camera's roll is not converted to radians", [Roll = "«RollDegrees»"];
 };
 
 /// Samples, tone map and gamma.

@@ -32,10 +32,11 @@ impl Mistake {
 
 /// Returns all mistakes; of two that render the same image, the first is reported.
 pub(super) fn all() -> impl Iterator<Item = &'static Mistake> {
-    let topics: [&[Mistake]; 16] = [
+    let topics: [&[Mistake]; 17] = [
         shading::SHADOWS,
         geometry::INTERSECTIONS,
         geometry::QUADRICS,
+        geometry::BOXES,
         geometry::GRIDS,
         image::FILM,
         image::CAMERA,

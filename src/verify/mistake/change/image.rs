@@ -52,6 +52,14 @@ pub(super) fn camera(changes: &mut Changes) {
             |scene| scene.camera.eye = [0.0; 3],
         );
     }
+    changes.add(
+        "look-at-ignored",
+        "the camera looks along −z instead of toward the scene's `look_at`",
+        |scene| scene.camera.look_at = None,
+    );
+    changes.add("roll-ignored", "the camera's roll is ignored", |scene| {
+        scene.camera.roll = 0.0;
+    });
 }
 
 pub(super) fn film(changes: &mut Changes) {

@@ -41,6 +41,7 @@ pub(super) fn all(scene: &Scene, frame_time: FrameTime) -> Vec<Change> {
     objects::lights(&mut changes);
     motion::motions(&mut changes);
     objects::objects(&mut changes);
+    objects::boxes(&mut changes);
     motion::hierarchy(&mut changes);
     image::figures(&mut changes);
     changes.all
@@ -118,7 +119,7 @@ mod tests {
     use toyproof_tracer::Tracer;
 
     use super::*;
-    use crate::mistake::exercises::{EXERCISES, scene_of};
+    use crate::mistake::exercises::{EXERCISES, TURNED, scene_of};
 
     /// The number of pixels of a small image in which the exported shader differs from the tracer.
     fn differing(scene: &Scene, frame_time: FrameTime) -> usize {
@@ -156,7 +157,10 @@ mod tests {
                      [[scatter]]\ncorner = [0.5, -1.0, -7.0]\ncells = [1, 2, 1]\nspacing = 1.0\nradius = [0.2, 0.4]\nseed = 9\n\
                      material = { model = \"lambert\", color = [1, 1, 1] }\n";
         let frame_time = FrameTime { frame: 10, time: 1.3 };
-        for (name, text) in EXERCISES.into_iter().chain([("two scatters", grids)]) {
+        for (name, text) in EXERCISES
+            .into_iter()
+            .chain([("two scatters", grids), ("turned", TURNED)])
+        {
             let scene = scene_of(text);
             let own = differing(&scene, frame_time);
             for change in general(&scene, frame_time)

@@ -1,6 +1,6 @@
 //! Changes of the surfaces, their materials, and the lights.
 
-use toyproof_scene::{Fresnel, Model, Scene, Shape};
+use toyproof_scene::{Fresnel, Model, Pattern, PatternKind, Scene, Shape, Space};
 
 use super::{Changes, place};
 
@@ -86,9 +86,44 @@ fn materials(changes: &mut Changes) {
     changes.add(
         "checker-missing",
         "checkered surfaces have only one color",
+        |scene| retain_patterns(scene, |pattern| pattern.kind != PatternKind::Checker),
+    );
+    changes.add(
+        "stripes-missing",
+        "striped surfaces have only one color",
+        |scene| {
+            retain_patterns(scene, |pattern| pattern.kind == PatternKind::Checker);
+        },
+    );
+    changes.add(
+        "pattern-in-world-space",
+        "patterns are in the coordinates of the scene instead of those of the surface",
         |scene| {
             for object in &mut scene.objects {
-                object.material.pattern = None;
+                if let Some(pattern) = &mut object.material.pattern {
+                    pattern.space = Space::World;
+                }
+            }
+        },
+    );
+}
+
+fn retain_patterns(scene: &mut Scene, keep: fn(&Pattern) -> bool) {
+    for object in &mut scene.objects {
+        object.material.pattern = object.material.pattern.filter(keep);
+    }
+}
+
+/// Boxes without their rotation.
+pub(super) fn boxes(changes: &mut Changes) {
+    changes.add(
+        "box-rotation-ignored",
+        "the rotation of boxes is ignored",
+        |scene| {
+            for object in &mut scene.objects {
+                if let Shape::Box(cuboid) = &mut object.shape {
+                    cuboid.axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+                }
             }
         },
     );
