@@ -1,6 +1,8 @@
 //! Random scenes, each rendered by its exported shader: the tracer, the front end and the evaluator must
 //! agree on all of them.
 
+use std::fmt::Write as _;
+
 use toyproof::diagnostic::{File, Files};
 use toyproof::scene;
 use toyproof::scene::export;
@@ -99,13 +101,14 @@ impl Random {
         if self.chance(0.5) {
             let eye = self.triple([-3.0, -0.5, -1.0], [3.0, 3.0, 1.0]);
             let target = self.triple([-1.0, -0.5, -8.0], [1.0, 0.5, -6.0]);
-            text += &format!("eye = {eye}\nlook_at = {target}\n");
+            let _ = writeln!(text, "eye = {eye}\nlook_at = {target}");
             if self.chance(0.3) {
-                text += &format!("up = {}\n", self.triple([-0.5, 0.5, -0.5], [0.5, 1.0, 0.5]));
+                let up = self.triple([-0.5, 0.5, -0.5], [0.5, 1.0, 0.5]);
+                let _ = writeln!(text, "up = {up}");
             }
         }
         if self.chance(0.4) {
-            text += &format!("roll = {:?}\n", self.between(-180.0, 180.0));
+            let _ = writeln!(text, "roll = {:?}", self.between(-180.0, 180.0));
         }
         if self.chance(0.4) {
             text + "projection = \"parallel\"\nwidth = 5.0\n"

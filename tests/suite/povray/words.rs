@@ -149,9 +149,9 @@ fn matte(object: &Object, ambient: Color, diffuse: f64) -> String {
     match object.shape {
         Shape::Box(cuboid) if own_axes(&object.material).is_some() => {
             let sides = (0..3).flat_map(|across| [-0.5, 0.5].map(|side| (across, side)));
-            sides
-                .map(|(across, side)| format!("{}{} }}\n", face(&cuboid, across, side), look(Some(across))))
-                .collect()
+            let faces =
+                sides.map(|(across, side)| face(&cuboid, across, side) + &look(Some(across)) + " }\n");
+            faces.collect()
         }
         Shape::Plane { .. } => shape_with(&object.shape, &look(Some(1))),
         _ => shape_with(&object.shape, &look(None)),
@@ -216,7 +216,7 @@ fn pigment(object: &Object, across: Option<usize>) -> String {
     };
     let rows: Vec<String> = rows
         .iter()
-        .map(|row| row.to_array())
+        .map(DVec3::to_array)
         .chain([origin])
         .map(|v| row(&v))
         .collect();
