@@ -83,7 +83,7 @@ fn spend(budget: &mut f64, pixels: usize) -> bool {
 /// it has for other ray epsilons. A pixel outside is excluded if it lies on an
 /// edge across which the shader takes derivatives, whose values GLSL leaves to the driver. It is excluded, too,
 /// if the reference itself is ill-conditioned there. Otherwise it is ill-conditioned if the shader's own color
-/// changes by more than the tolerance in one of the images of `perturbed`, see [`changed_by_rounding`].
+/// changes by more than the tolerance in one of the images of `perturbed`, see `changed_by_rounding`.
 ///
 /// # Panics
 /// If the sizes differ.

@@ -29,8 +29,8 @@ const MAX_NUMBER: f64 = 1e6;
 /// The smallest factor of a hash, such as `43758.5453123`.
 const MIN_HASH_FACTOR: f64 = 1000.0;
 
-/// What the reference shader, or the one that renders the scene, consists of: its numbers, vectors, shapes of operations, and
-/// donors.
+/// What the reference shader, or the one that renders the scene, consists of: its numbers, vectors, shapes of
+/// operations, and donors.
 #[derive(Debug, Default)]
 pub(in crate::repair) struct Constants {
     pub(super) floats: Vec<f64>,
