@@ -164,8 +164,7 @@ impl Findings {
         if evidence.random_numbers.is_none() {
             self.explain_few_pixels(case, program);
         }
-        let noisy = stochastic.zip(reseeding);
-        self.search_for_repair(case, program, noisy, deadline);
+        self.search_for_repair(case, program, stochastic, reseeding, deadline);
         self.notes
             .extend(notes::unbound(case.checked, case.lints, case.frame));
         self.locate_loss_of_precision(case, program, deadline);
@@ -221,27 +220,30 @@ impl Findings {
         }
     }
 
-    /// Searches for edits that repair a wrong image, and for the lines that it depends on. `noisy` is there if
-    /// the shader has random numbers of its own.
+    /// Searches for edits that repair a wrong image, and for the lines that it depends on. `reseeding` is there if
+    /// the shader's means were compared.
     fn search_for_repair(
         &mut self,
         case: &Case,
         program: &Program,
-        noisy: Option<(&Stochastic, Reseeding)>,
+        stochastic: Option<&Stochastic>,
+        reseeding: Option<Reseeding>,
         deadline: Instant,
     ) {
         if let (Verdict::Wrong, Some(options), Some(algorithm)) = (self.verdict, case.search, &self.algorithm)
         {
             let compares_means = self.reason.compares_means();
             let image = || {
-                let (rows, reseeding) = noisy?;
+                let stochastic = stochastic?;
+                // A shader that differs in other pixels, too, may have random numbers of its own.
+                let reseeding =
+                    reseeding.or_else(|| stochastic.reseeding(program, case, algorithm, deadline))?;
                 let places = Places::spread(case.frame.size, [NOISY_SIDE; 2]);
-                let pixels = rows.noisy_pixels(program, case, reseeding, &places, deadline)?;
+                let pixels = stochastic.noisy_pixels(program, case, reseeding, &places, deadline)?;
                 Some(NoisyImage { pixels, places })
             };
-            let means: Option<&dyn Fn() -> Option<NoisyImage>> = compares_means.then_some(&image);
             let search = contain(Part::Repair, || {
-                repair::search(case, options, algorithm, means, deadline)
+                repair::search(case, options, algorithm, compares_means, &image, deadline)
             });
             self.search = self.contained(search);
         }

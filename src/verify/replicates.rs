@@ -131,6 +131,18 @@ pub(super) fn is_random(
     algorithm: &CheckResult,
     deadline: Instant,
 ) -> bool {
+    effective_reseeding(program, case, reference, algorithm, MIN_CHANGED_SHARE, deadline).is_some()
+}
+
+/// The first reseeding that changes some of the differing pixels of a shader, at least this share of them.
+pub(super) fn effective_reseeding(
+    program: &Program,
+    case: &Case,
+    reference: &dyn Resampled,
+    algorithm: &CheckResult,
+    least: f64,
+    deadline: Instant,
+) -> Option<Reseeding> {
     let size = case.frame.size;
     let shader = ReplicatedShader {
         program,
@@ -139,9 +151,7 @@ pub(super) fn is_random(
         places: Places::spread(size, [RANDOMNESS_GRID; 2]),
         deadline,
     };
-    let Some(unsalted) = shader.unsalted() else {
-        return false;
-    };
+    let unsalted = shader.unsalted()?;
     let [columns, rows] = shader.places.pixels();
     let differs = |at: usize| {
         let [x, y] = [columns[at % columns.len()], rows[at / columns.len()]];
@@ -149,14 +159,14 @@ pub(super) fn is_random(
         matches!(status, PixelStatus::Differs | PixelStatus::IllConditioned)
     };
     let differing: Vec<usize> = (0..unsalted.len()).filter(|&at| differs(at)).collect();
-    Reseeding::all().into_iter().any(|reseeding| {
+    Reseeding::all().into_iter().find(|&reseeding| {
         shader.salted(reseeding, 1).is_some_and(|other| {
             let changes = |&&at: &&usize| {
                 let [a, b] = [&unsalted, &other].map(|own| own[at].tone_mapped);
                 (0..3).any(|i| (a[i] - b[i]).abs() > MIN_RANDOM_CHANGE)
             };
             let changed = differing.iter().filter(changes).count();
-            changed > 0 && changed as f64 >= MIN_CHANGED_SHARE * differing.len() as f64
+            changed > 0 && changed as f64 >= least * differing.len() as f64
         })
     })
 }

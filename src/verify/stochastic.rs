@@ -191,6 +191,21 @@ impl<'a> Stochastic<'a> {
         }
     }
 
+    /// A reseeding that changes pixels of a shader that differs; none if the shader has no random numbers, or the
+    /// reference has none.
+    pub(super) fn reseeding(
+        &self,
+        program: &Program,
+        case: &Case,
+        algorithm: &CheckResult,
+        deadline: Instant,
+    ) -> Option<Reseeding> {
+        let reference = self.reference;
+        reference
+            .is_stochastic()
+            .then(|| replicates::effective_reseeding(program, case, reference, algorithm, 0.0, deadline))?
+    }
+
     /// Returns the means of a shader with other random numbers, and of the scene, at these places.
     pub(super) fn noisy_pixels(
         &self,

@@ -54,12 +54,14 @@ const MAX_FIRSTS_OF_STATEMENT: usize = 2;
 const WORK_PER_UNIT: f64 = 3e8;
 
 /// Searches for the repairs of a wrong shader. None if there is nothing to search for. `means` renders some
-/// pixels of a shader whose means were compared; it may still use the random numbers of the scene.
+/// pixels of a shader that has random numbers, if it has any and so has its reference. It has other numbers
+/// than the reference if its means were compared, though its mistake may be there.
 pub(crate) fn search(
     case: &Case,
     options: SearchOptions,
     check: &CheckResult,
-    means: Option<&dyn Fn() -> Option<NoisyImage>>,
+    compares_means: bool,
+    means: &dyn Fn() -> Option<NoisyImage>,
     deadline: Instant,
 ) -> Option<SearchResult> {
     let expected = case.expected?;
@@ -81,17 +83,21 @@ pub(crate) fn search(
     };
     let budget = options.budget * WORK_PER_UNIT;
     let exact = Probes::select(check, expected, case.frame.size[0] as usize)?;
-    // A shader with other random numbers has no exact colors, unless its mistake is in the scene's own hash.
-    let exact_share = match means {
-        None => 1.0,
-        Some(_) if search.constants.has_hash_of(case.checked) => EXACT_SHARE,
-        Some(_) => 0.0,
+    // A shader with other random numbers has no exact colors, unless its mistake is in the reference's own hash.
+    let follows_reference = search.constants.has_hash_of(case.checked);
+    let mut noisy = if follows_reference { None } else { means() };
+    let exact_share = match (compares_means, &noisy) {
+        (_, Some(_)) => 0.0,
+        (true, None) => EXACT_SHARE,
+        (false, None) => 1.0,
     };
     if exact_share > 0.0 {
         search.run(&exact, exact_share * budget);
     }
-    if search.found.is_empty()
-        && let Some(image) = means.and_then(|means| means())
+    if compares_means && search.found.is_empty() && noisy.is_none() {
+        noisy = means();
+    }
+    if let Some(image) = noisy
         && let Some(probes) = Probes::of_means(&image.pixels, &image.places)
     {
         search.attempts = MAX_ATTEMPTS - MAX_ATTEMPTS_BY_MEANS;

@@ -38,6 +38,8 @@ pub(in crate::repair) struct Constants {
     vectors: Vec<Vec<f64>>,
     pub(super) shapes: Shapes,
     pub(in crate::repair) donors: Vec<Donor>,
+    /// The numbers of hashes.
+    hash: Vec<u64>,
 }
 
 impl Constants {
@@ -65,6 +67,7 @@ impl Constants {
         let mut constants = Self {
             shapes: Shapes::of(tree),
             donors: donors([tree]),
+            hash: hash_numbers(tree),
             ..Self::default()
         };
         for (id, expr) in tree.exprs.iter() {
@@ -97,16 +100,10 @@ impl Constants {
             .any(|&own| own.to_bits() == number.abs().to_bits())
     }
 
-    /// Whether a shader has a number of the hash that the scene's shader draws random numbers from.
+    /// Whether a shader has a number of the hash from which the reference draws random numbers.
     pub(in crate::repair) fn has_hash_of(&self, checked: &Checked) -> bool {
-        let is_shared = |expr: &Expr| match &expr.kind {
-            ExprKind::Literal(Literal {
-                value: Value::Float(value),
-                ..
-            }) => *value >= MIN_HASH_FACTOR && self.has(*value),
-            _ => false,
-        };
-        checked.tree.exprs.iter().any(|(_, expr)| is_shared(expr))
+        let numbers = hash_numbers(&checked.tree);
+        numbers.iter().any(|number| self.hash.contains(number))
     }
 
     /// Whether a vector is one of the scene's.
@@ -119,6 +116,31 @@ fn add<T: PartialEq>(all: &mut Vec<T>, value: T) {
     if !all.contains(&value) {
         all.push(value);
     }
+}
+
+/// The numbers of a shader's hashes, as bits: large ones, but neither round ones nor powers of 2, by which integers
+/// are made floats.
+fn hash_numbers(tree: &Tree) -> Vec<u64> {
+    let number = |expr: &Expr| match &expr.kind {
+        ExprKind::Literal(Literal { value, .. }) => match *value {
+            Value::Float(value) => Some(value),
+            Value::Int(value) => Some(f64::from(value)),
+            Value::Uint(value) => Some(f64::from(value)),
+            Value::Bool(_) => None,
+        },
+        _ => None,
+    };
+    let numbers = tree.exprs.iter().filter_map(|(_, expr)| number(expr));
+    numbers
+        .filter(|&number| is_hash_number(number.abs()))
+        .map(f64::to_bits)
+        .collect()
+}
+
+fn is_hash_number(number: f64) -> bool {
+    let is_round = number % (MIN_HASH_FACTOR / 10.0) == 0.0;
+    let is_power = |number: f64| number.log2().fract() == 0.0;
+    number >= MIN_HASH_FACTOR && !is_round && !is_power(number) && !is_power(number + 1.0)
 }
 
 /// The value of a literal with an optional sign.
@@ -311,6 +333,21 @@ impl Writer<'_> {
                 ty,
             );
             self.replace(site, EditKind::Number, VECTOR + 4, splat);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hashes_have_large_numbers_that_are_not_round() {
+        for number in [43_758.545_312_3, 747_796_405.0, 1_973.0] {
+            assert!(is_hash_number(number), "{number}");
+        }
+        for number in [1e6, 10_000.0, 16_777_216.0, 4_294_967_295.0, 12.9898] {
+            assert!(!is_hash_number(number), "{number}");
         }
     }
 }
