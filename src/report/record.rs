@@ -165,7 +165,7 @@ impl Record {
 
     /// Adds what the search for a fix found. The fix names the mistake, unless a known one alone explains the
     /// image.
-    pub(super) fn set_search(&mut self, search: &SearchResult, files: &Files) {
+    pub fn set_search(&mut self, search: &SearchResult, files: &Files) {
         self.fix = Repair::first_of(&search.repairs, files);
         let suspects = search.suspects.iter();
         self.suspects = suspects.map(|suspect| Suspect::new(suspect, files)).collect();

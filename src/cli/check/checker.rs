@@ -9,17 +9,18 @@ use std::time::SystemTime;
 use rayon::ThreadPool;
 use sha2::{Digest, Sha256};
 use toyproof_diagnostic::{self as diagnostic, Deadline, Diagnostic, Files, Severity, path_name};
+use toyproof_glsl::Checked;
 use toyproof_gpu::Worker;
 use toyproof_image as image;
 use toyproof_image::{Frame, output};
 use toyproof_scene::Scene;
 use toyproof_verify::contain::{Part, contain};
-use toyproof_verify::repair::SearchOptions;
+use toyproof_verify::repair::{Donors, SearchOptions};
 use toyproof_verify::{Case, Failure, Findings, Verdict, verify};
 
 use super::Args;
-use super::images::IMAGES;
-use super::reference::{Reference, References, SceneCache};
+use super::images::{FIXED, IMAGES, ImageKind};
+use super::reference::{CachedReference, Reference, References, SceneCache};
 use crate::cli::files::{Input, ReadError};
 use crate::cli::inputs::shell_word;
 use crate::cli::names::{Names, with_suffix};
@@ -98,6 +99,14 @@ pub(super) struct WorkerContext {
 }
 
 impl WorkerContext {
+    /// Creates the context for one of `threads` threads that need no GPU.
+    pub(super) fn without_gpu(threads: usize) -> Self {
+        Self {
+            worker: None,
+            pool: pool::thread_pool(threads),
+        }
+    }
+
     /// Creates the context for one of `threads` threads.
     pub(super) fn new(args: &Args, threads: usize) -> Self {
         Self {
@@ -231,11 +240,7 @@ impl<'a> Checker<'a> {
     }
 
     fn check_shader(&self, context: &mut WorkerContext, submission: &Submission) -> Outcome {
-        let shader = Shader::load(
-            &submission.input,
-            &self.args.language,
-            Deadline::after(self.args.driver.timeout()),
-        );
+        let shader = self.load(submission);
         let found = submission.input.as_ref().ok();
         let reference = found.and_then(|found| self.references.find(found));
         let mut outcome = Outcome::known(Record::new(shader.name.clone()));
@@ -245,7 +250,7 @@ impl<'a> Checker<'a> {
         outcome.report(shader.lints.warnings.clone(), &shader.files);
         let findings = self.verify(context, &mut outcome, &shader, reference.as_ref());
         if let (Some(out), Some(stem)) = (&self.args.out, &submission.output_stem) {
-            keep(out, stem, findings.as_ref().ok(), &mut outcome);
+            keep(out, stem, &IMAGES, findings.as_ref().ok(), &mut outcome);
         }
         match (findings, reference) {
             (Ok(findings), _) => outcome.set_findings(&findings, &shader.files),
@@ -318,14 +323,8 @@ impl<'a> Checker<'a> {
             Unusable::Invalid(diagnostics) => Failure::Invalid(diagnostics.clone()),
         })?;
         let mut frame = self.frame.clone();
-        let cached = match reference {
-            None => None,
-            Some(Reference::Scene(scene)) => {
-                let scene = self.sized(scene.scene.clone()?, &mut frame);
-                Some(self.scenes.get(scene, &frame))
-            }
-            Some(Reference::Given(given)) => Some(Arc::clone(&given.cached)),
-        };
+        let cached = reference.map(|reference| self.cached(reference, &mut frame));
+        let cached = cached.transpose()?;
         let hypotheses = contain(Part::Mistake, || {
             cached.as_ref().and_then(|cached| cached.hypotheses(&frame))
         });
@@ -338,12 +337,7 @@ impl<'a> Checker<'a> {
             lints: &shader.lints,
             expected: cached.as_ref().map(|cached| &cached.expected),
             hypotheses,
-            search: (self.args.search > 0.0).then(|| SearchOptions {
-                source: shader.text(checked),
-                lenient: self.args.language.is_lenient(),
-                budget: self.args.search,
-                donors: None,
-            }),
+            search: (self.args.search > 0.0).then(|| self.search_options(shader, checked)),
             frame: &frame,
             float: self.args.driver.float(),
             timeout: self.args.driver.timeout(),
@@ -378,6 +372,82 @@ impl<'a> Checker<'a> {
         }
     }
 
+    /// Searches a wrong shader for places where an expression of a correct one repairs it. Returns its record with
+    /// the fix, if there is one, and writes the image after the fix.
+    pub(super) fn search_again(
+        &self,
+        context: &WorkerContext,
+        submission: &Submission,
+        record: &Record,
+        donors: &Donors,
+    ) -> Option<Outcome> {
+        let shader = self.load(submission);
+        let checked = shader.checked.as_ref().ok()?;
+        let reference = self.references.find(submission.input.as_ref().ok()?)?;
+        let mut frame = self.frame.clone();
+        let cached = self.cached(&reference, &mut frame).ok()?;
+        let case = Case {
+            checked,
+            lints: &shader.lints,
+            expected: Some(&cached.expected),
+            hypotheses: None,
+            search: Some(SearchOptions {
+                donors: Some(donors),
+                ..self.search_options(&shader, checked)
+            }),
+            frame: &frame,
+            float: self.args.driver.float(),
+            timeout: self.args.driver.timeout(),
+            pool: context.pool.as_ref(),
+        };
+        let findings = contain(Part::Repair, || verify(None, &case)).ok()?.ok()?;
+        let search = findings
+            .search
+            .as_ref()
+            .filter(|search| !search.repairs.is_empty())?;
+        let mut outcome = Outcome::known(record.clone());
+        outcome.record.set_search(search, &shader.files);
+        outcome.record.help = self.help(&outcome);
+        if let (Some(out), Some(stem)) = (&self.args.out, &submission.output_stem) {
+            keep(out, stem, &[FIXED], Some(&findings), &mut outcome);
+        }
+        Some(outcome)
+    }
+
+    fn load(&self, submission: &Submission) -> Shader {
+        Shader::load(
+            &submission.input,
+            &self.args.language,
+            Deadline::after(self.args.driver.timeout()),
+        )
+    }
+
+    /// Collects the expressions of correct shaders.
+    pub(super) fn donors<'s>(&self, correct: impl Iterator<Item = &'s Submission>) -> Donors {
+        let shaders: Vec<Shader> = correct.map(|submission| self.load(submission)).collect();
+        Donors::of(shaders.iter().filter_map(|shader| shader.checked.as_ref().ok()))
+    }
+
+    fn search_options<'s>(&self, shader: &'s Shader, checked: &Checked) -> SearchOptions<'s> {
+        SearchOptions {
+            source: shader.text(checked),
+            lenient: self.args.language.is_lenient(),
+            budget: self.args.search,
+            donors: None,
+        }
+    }
+
+    /// What a shader is compared with; the frame gets its size.
+    fn cached(&self, reference: &Reference, frame: &mut Frame) -> Result<Arc<CachedReference>, Failure> {
+        match reference {
+            Reference::Scene(scene) => {
+                let scene = self.sized(scene.scene.clone()?, frame);
+                Ok(self.scenes.get(scene, frame))
+            }
+            Reference::Given(given) => Ok(Arc::clone(&given.cached)),
+        }
+    }
+
     /// Gives frame and scene one size: that of the arguments, else the scene's.
     fn sized(&self, mut scene: Scene, frame: &mut Frame) -> Scene {
         frame.size = self.args.frame.size.unwrap_or(scene.film.size);
@@ -386,9 +456,9 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// Writes the images, and removes stale ones of an earlier run.
-fn keep(out: &Path, stem: &Path, findings: Option<&Findings>, outcome: &mut Outcome) {
-    for kind in IMAGES {
+/// Writes images of these kinds, and removes stale ones of an earlier run.
+fn keep(out: &Path, stem: &Path, kinds: &[ImageKind], findings: Option<&Findings>, outcome: &mut Outcome) {
+    for kind in kinds {
         let path = with_suffix(stem, kind.suffix);
         let encoded = contain(Part::Image, || {
             let shown = findings.and_then(kind.make)?;

@@ -21,6 +21,15 @@ pub(super) struct ImageKind {
     pub(super) make: fn(&Findings) -> Option<Cow<'_, Rgb8Image>>,
 }
 
+/// The image after the fix of a wrong shader.
+pub(super) const FIXED: ImageKind = ImageKind {
+    suffix: "-fixed.png",
+    make: |findings| {
+        let fix = findings.search.as_ref()?.repairs.first()?;
+        Some(Cow::Borrowed(&fix.image))
+    },
+};
+
 /// The rendered image, the reference, their difference, the image after the fix of a wrong shader, and an
 /// image for each check that finds a difference.
 pub(super) const IMAGES: [ImageKind; 7] = [
@@ -39,13 +48,7 @@ pub(super) const IMAGES: [ImageKind; 7] = [
             Some(difference(findings, marks, SEEN_BY_EYE))
         },
     },
-    ImageKind {
-        suffix: "-fixed.png",
-        make: |findings| {
-            let fix = findings.search.as_ref()?.repairs.first()?;
-            Some(Cow::Borrowed(&fix.image))
-        },
-    },
+    FIXED,
     ImageKind {
         suffix: "-algorithm.png",
         make: |findings| check(findings, findings.algorithm.as_ref(), SEEN_BY_EYE),

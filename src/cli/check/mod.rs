@@ -1,10 +1,12 @@
 //! `toyproof check`
 
 mod checker;
+mod donors;
 mod images;
 mod reference;
 mod reports;
 
+use std::collections::HashSet;
 use std::num::NonZero;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
@@ -202,6 +204,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         device: None,
         failed: false,
         layout: layout(&submissions, args.format, terminal),
+        unrepaired: HashSet::new(),
         has_sources: submissions.len() <= MAX_WITH_SOURCE,
         hidden_warnings: 0,
         start: Instant::now(),
@@ -237,6 +240,8 @@ struct Batch<'a> {
     /// Whether something failed that no verdict shows.
     failed: bool,
     layout: Layout,
+    /// The submissions that are wrong, and that no edit repairs.
+    unrepaired: HashSet<usize>,
     /// Whether errors and warnings are shown with their source lines.
     has_sources: bool,
     /// The number of warnings that were not shown.
@@ -277,11 +282,7 @@ impl Batch<'_> {
                 plural(of as u64, "result is", "results are")
             ));
         }
-        let threads = match self.args.jobs {
-            Some(jobs) => usize::from(jobs),
-            None => std::thread::available_parallelism().map_or(1, NonZero::get),
-        }
-        .clamp(1, todo.len().max(1));
+        let threads = self.threads(todo.len());
         pool::for_each(
             &todo,
             threads,
@@ -321,7 +322,18 @@ impl Batch<'_> {
                     .help("run the same command with --resume to check the others");
             }
             self.failed = true;
+        } else if self.args.search > 0.0 {
+            self.search_again(submissions, checker, &stop);
         }
+    }
+
+    /// The number of threads for that number of shaders.
+    fn threads(&self, shaders: usize) -> usize {
+        let threads = match self.args.jobs {
+            Some(jobs) => usize::from(jobs),
+            None => std::thread::available_parallelism().map_or(1, NonZero::get),
+        };
+        threads.clamp(1, shaders.max(1))
     }
 
     /// Appends a record to `results.jsonl`.
@@ -342,6 +354,9 @@ impl Batch<'_> {
 
     /// Prints the messages and the result line of a shader.
     fn report_outcome(&mut self, index: usize, mut outcome: Outcome) {
+        if outcome.record.verdict == Verdict::Wrong && outcome.record.fix.is_none() {
+            self.unrepaired.insert(index);
+        }
         outcome.record.redact(self.args.teachers_hints());
         for message in &outcome.messages {
             self.print(message, outcome.record.verdict);
