@@ -10,7 +10,7 @@ use serde_json::Value;
 use crate::program::{Run, check_homework, command, run, toyproof};
 use crate::requirements::require_folder;
 use crate::support::wait::wait_until;
-use crate::support::{MANY_OBJECTS, SPHERE};
+use crate::support::{MANY_OBJECTS, SHADING, SPHERE, edited};
 
 /// Creates a folder of submissions: every third is wrong, every seventh does not compile.
 fn homework(count: usize) -> tempfile::TempDir {
@@ -367,4 +367,55 @@ fn another_build_reuses_nothing() {
         .unwrap();
     let stderr = String::from_utf8(run.stderr).unwrap();
     assert!(run.status.success() && !stderr.contains("taken over"), "{stderr}");
+}
+
+/// The first shader's cosine repairs the second; the third has nothing in common with either.
+#[test]
+fn correct_shaders_repair_wrong_ones_that_no_edit_repairs() {
+    let folder = tempfile::tempdir().unwrap();
+    let hw = folder.path().join("hw");
+    fs::create_dir(&hw).unwrap();
+    fs::write(folder.path().join("scene.toml"), SHADING.scene).unwrap();
+    let cosine = "max(dot(normal, toLight), 0.0)";
+    let shaders = [
+        (
+            "a",
+            edited(&SHADING, &[(cosine, "clamp(dot(toLight, normal), 0.0, 1.0)")]),
+        ),
+        ("b", edited(&SHADING, &[(cosine, "fract(7.3 * normal.x)")])),
+        (
+            "c",
+            "void mainImage(out vec4 c, in vec2 p) { c = vec4(fract(0.1 * p), 0, 1); }".to_owned(),
+        ),
+    ];
+    for (name, text) in &shaders {
+        fs::write(hw.join(name).with_extension("glsl"), text).unwrap();
+    }
+    let run = check(folder.path(), &["--search", "1"]);
+    let fixes: Vec<_> = records(folder.path())
+        .into_iter()
+        .map(|record| record["fix"]["text"].clone())
+        .collect();
+    let fix = "replace `fract(7.3 * normal.x)` with `clamp(dot(normal, toLight), 0.0, 1.0)`";
+    assert_eq!(fixes, [Value::Null, fix.into(), Value::Null]);
+    assert!(
+        run.stderr
+            .contains("\n1 more shader is repaired by expressions of correct shaders:\n"),
+        "{}",
+        run.stderr
+    );
+    assert!(
+        run.stdout.contains("clamp(dot(normal, toLight)"),
+        "{}",
+        run.stdout
+    );
+    assert!(folder.path().join("out/b-fixed.png").is_file());
+    // Alone, it has no fix.
+    fs::remove_file(hw.join("a.glsl")).unwrap();
+    check(folder.path(), &["--search", "1"]);
+    assert!(
+        records(folder.path())
+            .iter()
+            .all(|record| record["fix"].is_null())
+    );
 }

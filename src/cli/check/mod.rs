@@ -81,8 +81,9 @@ pub(super) struct Args {
     jobs: Option<u16>,
     /// How long to search for a fix of a wrong shader; 0 turns the search off
     ///
-    /// The search tries edits of the shader until its image is the expected one. A unit is about a second of
-    /// one core. Work is counted, not timed, so that the result is the same on every machine.
+    /// The search tries edits of the shader until its image is the expected one. Where several shaders are
+    /// checked, a second search tries expressions of the correct ones. A unit is about a second of one core.
+    /// Work is counted, not timed, so that the result is the same on every machine.
     #[arg(long, value_name = "N", default_value_t = DEFAULT_BUDGET, value_parser = parse_search, allow_negative_numbers = true)]
     search: f64,
     #[command(flatten)]
