@@ -124,8 +124,8 @@ pub(super) const TERMS: [(&str, &str, &str); 20] = [
     (
         "suspect-lines",
         "suspect lines",
-        "The lines on which the wrong pixels depend more than the others, the most suspicious first. The mistake is in one of \
-         them in about two of five shaders.",
+        "The lines on which the wrong pixels depend more than the others, the most suspicious first. In about two of \
+         five shaders, the mistake is in one of them.",
     ),
     (
         "symptom",

@@ -153,8 +153,10 @@ impl ShaderReference {
 
     pub(super) fn reads_time(&self) -> bool {
         let tree = &self.checked().tree;
-        let is_time = |kind: &ExprKind| matches!(kind, ExprKind::Variable(variable) if tree[*variable].kind == VariableKind::Input(Input::Time));
-        tree.exprs.iter().any(|(_, expr)| is_time(&expr.kind))
+        tree.exprs.iter().any(|(_, expr)| match expr.kind {
+            ExprKind::Variable(variable) => tree[variable].kind == VariableKind::Input(Input::Time),
+            _ => false,
+        })
     }
 
     pub(super) fn tolerance(&self) -> f64 {
