@@ -128,9 +128,54 @@ impl Writer<'_> {
         {
             self.replace(site, kind, DELETION + 2, term);
         }
+        if op == Multiply {
+            self.split_product(site);
+        }
         // The product of the inner operands in another order: a * (b + c) for a * b + c.
         if matches!(op, Add | Subtract) {
             self.regrouped(site, op, left, right);
+        }
+    }
+
+    /// Replaces an inner operator of a product of at least three factors: a + b * c for a * b * c.
+    fn split_product(&mut self, site: usize) {
+        let tree = self.tree;
+        let product = |expr: ExprId| match tree[expr].kind {
+            ExprKind::Binary {
+                op: BinaryOp::Multiply,
+                left,
+                right,
+            } => Some((left, right)),
+            _ => None,
+        };
+        let whole = self.shader.sites[site].exprs[0];
+        let user = self.shader.sites[site].user.and_then(product);
+        if user.is_some_and(|(left, _)| left == whole) {
+            return;
+        }
+        // The factors after the operator, from the last one.
+        let mut rest: Option<Term> = None;
+        let mut part = whole;
+        while let Some((left, right)) = product(part) {
+            if let Some(rest) = &rest {
+                let operands = [Term::keep(tree, left), Term::keep(tree, right)];
+                let [before, factor] = operands;
+                for op in [BinaryOp::Add, BinaryOp::Subtract] {
+                    let after = Term::binary(BinaryOp::Multiply, factor.clone(), rest.clone());
+                    if let Some(term) = after.and_then(|after| Term::binary(op, before.clone(), after)) {
+                        self.replace(site, EditKind::Operator, OTHER, term);
+                    }
+                }
+            }
+            let factor = Term::keep(tree, right);
+            rest = match rest {
+                None => Some(factor),
+                Some(rest) => Term::binary(BinaryOp::Multiply, factor, rest),
+            };
+            if rest.is_none() {
+                return;
+            }
+            part = left;
         }
     }
 

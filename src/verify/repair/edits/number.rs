@@ -8,6 +8,7 @@ use toyproof_glsl::{self as glsl, Checked};
 use toyproof_scene::{Scene, export};
 
 use super::super::edit::{EditKind, Trials};
+use super::super::fit::rounded;
 use super::super::term::{Term, TermKind};
 use super::Writer;
 use super::donor::{Donor, donors};
@@ -15,13 +16,17 @@ use super::plausibility::Shapes;
 use crate::Expected;
 
 /// The costs: numbers of the scene that are missing in the shader, and that it has, others, vectors of the
-/// scene, fitted numbers, and variables.
+/// scene, numbers with another last digit, fitted numbers, and variables.
 const SCENE: u32 = 10;
 const OWN: u32 = 14;
 const RELATED: u32 = 12;
 const VECTOR: u32 = 13;
+const NEAR: u32 = 24;
 const FITTED: u32 = 30;
 const VARIABLE: u32 = 16;
+
+/// The largest difference of the last digit.
+const MAX_STEPS: u32 = 5;
 
 /// The largest number that an edit writes: larger ones stand for infinity.
 const MAX_NUMBER: f64 = 1e6;
@@ -137,6 +142,13 @@ fn hash_numbers(tree: &Tree) -> Vec<u64> {
         .collect()
 }
 
+/// The value of the last digit that an author would write of a number.
+fn last_digit(number: f64) -> f64 {
+    let text = number.to_string();
+    let decimals = text.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    10f64.powi(-i32::try_from(decimals).unwrap_or(0))
+}
+
 fn is_hash_number(number: f64) -> bool {
     let is_round = number % (MIN_HASH_FACTOR / 10.0) == 0.0;
     let is_power = |number: f64| number.log2().fract() == 0.0;
@@ -231,7 +243,14 @@ impl Writer<'_> {
         ];
         for value in related {
             // As an author would write it: 0.1 rather than 0.1000…01.
-            add(super::super::fit::rounded(value, 12), RELATED);
+            add(rounded(value, 12), RELATED);
+        }
+        // A wrong last digit. Where a number moves edges, it cannot be fitted.
+        let unit = last_digit(old);
+        for steps in 1..=MAX_STEPS {
+            for value in [old + f64::from(steps) * unit, old - f64::from(steps) * unit] {
+                add(rounded(value, 12), NEAR);
+            }
         }
         let trials = Trials::Values {
             values,
@@ -340,6 +359,13 @@ impl Writer<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_last_digit_is_the_last_one_that_is_written() {
+        for (number, digit) in [(2.6, 0.1), (0.25, 0.01), (-15.0, 1.0), (1e6, 1.0)] {
+            assert_eq!(last_digit(number), digit, "{number}");
+        }
+    }
 
     #[test]
     fn hashes_have_large_numbers_that_are_not_round() {

@@ -1,20 +1,21 @@
 //! Edits of statements: deleted, moved and inserted ones, and other targets and operators of assignments.
 
-use toyproof_glsl::tree::{BinaryOp, Direction, ExprKind, Scalar, Type, VariableId, VariableKind};
+use toyproof_glsl::tree::{BinaryOp, Direction, ExprKind, Scalar, Type, UnaryOp, VariableId, VariableKind};
 
 use super::super::edit::{Action, Candidate, Change, EditKind, Trials};
 use super::super::shader::Shape;
-use super::super::term::{Term, TermKind};
+use super::super::term::{Term, TermKind, binary_type};
 use super::Writer;
 
-/// The costs: another operator of an assignment, another target, another value, deletions, moves and
-/// insertions.
+/// The costs: another operator of an assignment, another target, another value, deletions, moves, and insertions
+/// of assignments of values, and of others.
 const OPERATOR: u32 = 11;
 const TARGET: u32 = 16;
 const VALUE: u32 = 20;
 const DELETION: u32 = 17;
 const MOVE: u32 = 20;
 const ASSIGNMENT: u32 = 24;
+const COMPOUND: u32 = 27;
 
 /// The largest number of variables and members that are assigned.
 const MAX_TARGETS: usize = 24;
@@ -100,6 +101,15 @@ impl Writer<'_> {
             if !is_value(ty) {
                 continue;
             }
+            if matches!(ty, Type::Scalar(Scalar::Float) | Type::Vector(Scalar::Float, _)) {
+                let negated = Term::unary(UnaryOp::Minus, target.clone());
+                self.insert(at, None, &target, negated, ASSIGNMENT);
+            }
+            if ty == Type::FLOAT && matches!(target.kind, TermKind::Member(..)) {
+                for number in [0.0, 1.0] {
+                    self.insert(at, None, &target, Term::float(number), COMPOUND);
+                }
+            }
             let mut values = self.values(at, ty);
             values.extend(
                 declared
@@ -107,13 +117,24 @@ impl Writer<'_> {
                     .map(|id| Term::variable(tree, id)),
             );
             for value in values {
-                if value != target {
-                    let kind = TermKind::Assign(None, Box::new(target.clone()), Box::new(value));
-                    let assignment = Action::After(Term::new(kind, ty));
-                    self.change(EditKind::MissingStatement, ASSIGNMENT, vec![(at, assignment)]);
+                if value == target {
+                    continue;
                 }
+                for op in [BinaryOp::Multiply, BinaryOp::Add] {
+                    if binary_type(op, ty, value.ty) == Some(ty) {
+                        self.insert(at, Some(op), &target, value.clone(), COMPOUND);
+                    }
+                }
+                self.insert(at, None, &target, value, ASSIGNMENT);
             }
         }
+    }
+
+    /// Inserts an assignment behind a statement.
+    fn insert(&mut self, at: usize, op: Option<BinaryOp>, target: &Term, value: Term, cost: u32) {
+        let kind = TermKind::Assign(op, Box::new(target.clone()), Box::new(value));
+        let assignment = Action::After(Term::new(kind, target.ty));
+        self.change(EditKind::MissingStatement, cost, vec![(at, assignment)]);
     }
 
     /// A variable and its members.
@@ -147,7 +168,7 @@ impl Writer<'_> {
         for other in [None, Some(Add), Some(Multiply), Some(Subtract), Some(Divide)] {
             let fits = match other {
                 None => tree[value].ty == ty,
-                Some(op) => super::super::term::binary_type(op, ty, tree[value].ty) == Some(ty),
+                Some(op) => binary_type(op, ty, tree[value].ty) == Some(ty),
             };
             if other != op && fits {
                 self.replace(
