@@ -10,8 +10,8 @@
 //! | precision | the shader in double precision | the shader in float32 on the GPU |
 //! | toolchain | the shader in float32 on the CPU | the shader in float32 on the GPU, to the bit |
 //!
-//! Without a reference there is no algorithm check; without a GPU the evaluator's image in float32 takes the place
-//! of the GPU's, and there is no toolchain check; neither is there in a fast run, which leaves the order of
+//! Without a reference there is no algorithm check; without a GPU the evaluator's image in float32 takes the
+//! place of the GPU's, and there is no toolchain check; neither is there in a fast run, which leaves the order of
 //! operations to the driver. Images are compared in bands of rows, while they are rendered.
 //!
 //! # Pixels that are not held against a shader

@@ -33,17 +33,27 @@ const MAX_SAMPLES: u32 = 1 << 18;
 const MAX_PATHS: u32 = 1 << 17;
 const MAX_PIXELS: u32 = 1 << 15;
 
+/// The largest number of pixels of a replicate of a shader: seventeen of them take about as long as an image of
+/// 640×360.
+const MAX_PIXELS_OF_SHADERS: u32 = 1 << 14;
+
 /// A reference whose pixels may depend on random numbers. Colors are those of pixels; means are those of a
 /// pixel's samples, before the tone map, as far as it is known.
 pub(super) trait Resampled: Sync {
     /// Whether some pixels depend on random numbers, or may do so.
     fn is_stochastic(&self) -> bool;
     /// The sampler of a scene.
-    fn sampler(&self) -> Option<Sampler>;
+    fn sampler(&self) -> Option<Sampler> {
+        None
+    }
     /// The number of samples of a pixel, if it is known.
-    fn samples(&self) -> Option<u32>;
+    fn samples(&self) -> Option<u32> {
+        None
+    }
     /// The largest number of pixels of which many replicates are affordable.
-    fn max_pixels(&self) -> u32;
+    fn max_pixels(&self) -> u32 {
+        MAX_PIXELS_OF_SHADERS
+    }
     /// Estimates the pixels at these places; none if the reference cannot be rendered with other random
     /// numbers.
     fn estimates(&self, places: &Places) -> Option<Arc<Estimates>>;

@@ -380,19 +380,6 @@ fn the_autograder_of_the_guide_writes_marks() {
     }
     std::os::unix::fs::symlink(env!("CARGO_BIN_EXE_toyproof"), at("source/toyproof")).unwrap();
     fs::write(at("source/scene.toml"), SPHERE.scene).unwrap();
-    let torus = block("docs/guide/checking.md", "float distanceTo");
-    let half = torus
-        .replace("t += d;", "t += 0.5 * d;")
-        .replace("d < 1e-4", "d < 1e-3");
-    let large = torus.replace("length(p.xz) - 1.0", "length(p.xz) - 1.02");
-    fs::create_dir(folder.path().join("torus")).unwrap();
-    for (name, text) in [
-        ("solution.glsl", torus),
-        ("torus/half.glsl", half),
-        ("torus/large.glsl", large),
-    ] {
-        fs::write(folder.path().join(name), text).unwrap();
-    }
     let rubric = block("docs/guide/checking.md", "[compiles]");
     fs::write(at("source/rubric.toml"), rubric).unwrap();
     let script = block("docs/guide/checking.md", "cd /autograder/source");

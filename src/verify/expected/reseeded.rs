@@ -6,7 +6,6 @@ use std::time::Instant;
 use rayon::prelude::*;
 use toyproof_eval::{ParametricProgram, Places, Point, Program, Settings, UndefinedPolicy};
 use toyproof_image::Image;
-use toyproof_scene::Sampler;
 
 use super::image::ImageReference;
 use super::shader::ShaderReference;
@@ -17,9 +16,6 @@ use crate::resampled::{
     ESTIMATE_SETS, Estimate, Estimates, RESAMPLES, Resampled, differ_by, mean, pixels, variance,
 };
 use crate::reseed::{Reseeding, is_deterministic};
-
-/// The largest number of pixels of a replicate: seventeen of them take about as long as an image of 640×360.
-const MAX_PIXELS: u32 = 1 << 14;
 
 /// The number of sets of random numbers that show whether a reseeding changes the random numbers alone.
 const TRIED_SETS: u32 = 4;
@@ -169,18 +165,6 @@ impl Resampled for ShaderReference {
         self.reseeding().is_some() && estimates().is_none_or(|estimates| !Self::is_content(&estimates))
     }
 
-    fn sampler(&self) -> Option<Sampler> {
-        None
-    }
-
-    fn samples(&self) -> Option<u32> {
-        None
-    }
-
-    fn max_pixels(&self) -> u32 {
-        MAX_PIXELS
-    }
-
     fn estimates(&self, places: &Places) -> Option<Arc<Estimates>> {
         let estimated = || self.estimated(places).map(Arc::new);
         let (known, estimates) = self.estimates.get_or_init(|| (places.clone(), estimated()));
@@ -233,18 +217,6 @@ impl Resampled for ShaderReference {
 impl Resampled for ImageReference {
     fn is_stochastic(&self) -> bool {
         true
-    }
-
-    fn sampler(&self) -> Option<Sampler> {
-        None
-    }
-
-    fn samples(&self) -> Option<u32> {
-        None
-    }
-
-    fn max_pixels(&self) -> u32 {
-        MAX_PIXELS
     }
 
     fn estimates(&self, _: &Places) -> Option<Arc<Estimates>> {

@@ -1,5 +1,5 @@
-//! Fits numbers of edits to the wrong pixels by the secant method (Press et al., Numerical Recipes, §9.2), those
-//! of a group of edits side by side.
+//! Fits numbers of edits to the wrong pixels by the secant method (Press et al., Numerical Recipes, §9.2), for
+//! a group of edits side by side.
 
 use super::group::{Group, Run};
 use super::probe::Probes;
@@ -282,8 +282,8 @@ pub(super) fn fitted_colors(
     found
 }
 
-/// The short decimals next to a fitted number, the shortest first. A number that was fitted to means is known less
-/// exactly.
+/// The short decimals next to a fitted number, the shortest first. A number that was fitted to means is known
+/// less exactly.
 pub(super) fn roundings(number: f64, is_of_means: bool) -> Vec<f64> {
     let (digits, tolerance) = if is_of_means {
         (DIGITS_OF_MEANS, 0.5)

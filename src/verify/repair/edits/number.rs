@@ -123,8 +123,8 @@ fn add<T: PartialEq>(all: &mut Vec<T>, value: T) {
     }
 }
 
-/// The numbers of a shader's hashes, as bits: large ones, but neither round ones nor powers of 2, by which integers
-/// are made floats.
+/// The numbers of a shader's hashes, as bits: large ones, but neither round ones nor powers of 2, by which
+/// integers are made floats.
 fn hash_numbers(tree: &Tree) -> Vec<u64> {
     let number = |expr: &Expr| match &expr.kind {
         ExprKind::Literal(Literal { value, .. }) => match *value {
