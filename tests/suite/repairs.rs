@@ -109,6 +109,54 @@ fn mistakes_of_each_kind_are_repaired_where_they_are() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
+/// Adds the light sources one by one in place of a loop, with these calls.
+fn with_calls(calls: &'static str) -> String {
+    let functions = "void advance(inout int light) { light++; }
+
+void addLight(inout vec3 sum, inout int light, vec3 point, vec3 normal) {
+    vec3 toLight = normalize(lights[light].position - point);
+    sum += lights[light].color * max(dot(normal, toLight), 0.0);
+}
+
+void addNextLight(inout vec3 sum, inout int light, vec3 point, vec3 normal) {
+    advance(light);
+    addLight(sum, light, point, normal);
+}
+
+vec3 shade(";
+    let before = "for (int i = 0; i < 2; i++) {
+        vec3 toLight = normalize(lights[i].position - point);
+        sum += lights[i].color * max(dot(normal, toLight), 0.0);
+    }";
+    edited(&SHADING, &[("vec3 shade(", functions), (before, calls)])
+}
+
+#[test]
+fn statements_are_repeated() {
+    let cases = [
+        (
+            "int light = -1;
+    addNextLight(sum, light, point, normal);",
+            "repeat `addNextLight(sum, light, point, normal);`",
+        ),
+        (
+            "int light = -1;
+    advance(light);
+    addLight(sum, light, point, normal);
+    addLight(sum, light, point, normal);",
+            "repeat `advance(light);` after `addLight(sum, light, point, normal);`",
+        ),
+    ];
+    for (calls, message) in cases {
+        let result = search(check_and_repair(&with_calls(calls), &SHADING));
+        let found = result
+            .repairs
+            .first()
+            .map(|repair| (repair.fix.message.as_str(), repair.mistake.id));
+        assert_eq!(found, Some((message, "missing-statement")), "{calls}");
+    }
+}
+
 #[test]
 fn the_edited_text_renders_the_scene() {
     let shader = edited(&SPHERE, &[("/ aspect;", "* aspect;")]);

@@ -259,8 +259,12 @@ fn statement_edits(shader: &Shader, actions: &[(usize, Action)]) -> Option<Fix> 
                 });
                 let verb = if is_move { "move" } else { "repeat" };
                 let side = if is_before { "before" } else { "after" };
-                let (copy, own) = (shortened(copy), shortened(shader.text(own)));
-                messages.push(format!("{verb} `{copy}` {side} `{own}`"));
+                let copy = shortened(copy);
+                messages.push(if at == other {
+                    format!("{verb} `{copy}`")
+                } else {
+                    format!("{verb} `{copy}` {side} `{}`", shortened(shader.text(own)))
+                });
             }
             Action::After(term) => {
                 let text = format!("{};", term.text(shader.tree, source, 0));

@@ -1,19 +1,23 @@
-//! Edits of statements: deleted, moved and inserted ones, and other targets and operators of assignments.
+//! Edits of statements: deleted, moved, repeated and inserted ones, and other targets and operators of assignments.
 
-use toyproof_glsl::tree::{BinaryOp, Direction, ExprKind, Scalar, Type, UnaryOp, VariableId, VariableKind};
+use toyproof_glsl::tree::{
+    BinaryOp, Direction, ExprKind, Scalar, Type, UnaryOp, VariableId, VariableKind, walk,
+};
 
 use super::super::edit::{Action, Candidate, Change, EditKind, Trials};
 use super::super::shader::Shape;
 use super::super::term::{Term, TermKind, binary_type};
 use super::Writer;
 
-/// The costs: another operator of an assignment, another target, another value, deletions, moves, and insertions
-/// of assignments of values, and of others.
+/// The costs: another operator of an assignment, another target, another value, deletions, moves, repetitions,
+/// copies to another place, and insertions of assignments of values, and of others.
 const OPERATOR: u32 = 11;
 const TARGET: u32 = 16;
 const VALUE: u32 = 20;
 const DELETION: u32 = 17;
 const MOVE: u32 = 20;
+const REPETITION: u32 = 21;
+const COPY: u32 = 25;
 const ASSIGNMENT: u32 = 24;
 const COMPOUND: u32 = 27;
 
@@ -53,7 +57,40 @@ impl Writer<'_> {
             }
         }
         if matches!(statement.kind, Shape::Expression(_) | Shape::Declaration(_)) {
+            self.copies(at);
             self.assignments(at);
+        }
+    }
+
+    /// Repeats a statement, and copies others of its function behind it whose variables are in scope there.
+    fn copies(&mut self, at: usize) {
+        let tree = self.tree;
+        let statements = &self.shader.statements;
+        let own = &statements[at];
+        let function = own.at.map(|id| id.function);
+        let declared = match own.kind {
+            Shape::Declaration(variable) => Some(variable),
+            _ => None,
+        };
+        let is_in_scope = |id: VariableId| own.scope.contains(&id) || declared == Some(id);
+        for (other, statement) in statements.iter().enumerate() {
+            let Shape::Expression(expr) = statement.kind else {
+                continue;
+            };
+            let uses_others = |kind: &ExprKind| matches!(*kind, ExprKind::Variable(id) if !is_in_scope(id));
+            if statement.at.map(|id| id.function) != function
+                || statement.is_expanded
+                || !walk::has_side_effects(tree, expr)
+                || walk::any(tree, expr, uses_others)
+            {
+                continue;
+            }
+            let cost = if other == at { REPETITION } else { COPY };
+            self.change(
+                EditKind::MissingStatement,
+                cost,
+                vec![(at, Action::CopyAfter(other))],
+            );
         }
     }
 
