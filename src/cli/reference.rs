@@ -9,7 +9,8 @@ use toyproof_diagnostic::{Deadline, grouped, path_name};
 use toyproof_glsl::Checked;
 use toyproof_image::{self as image, Frame, Image};
 use toyproof_verify::{
-    DEFAULT_TOLERANCE, Expected, ImageReference, MAX_UNDEFINED, Quantization, ShaderReference, unbound,
+    Conditioning, DEFAULT_TOLERANCE, Expected, ImageReference, MAX_UNDEFINED, Quantization, ShaderReference,
+    unbound,
 };
 
 use super::Terminal;
@@ -201,8 +202,26 @@ impl GivenReference {
         if undefined.count > 0 {
             terminal.warn(format_args!("{share}; they are left out of the comparison"));
         }
-        Ok(Expected::Shader(Box::new(reference)))
+        let expected = Expected::Shader(Box::new(reference));
+        if let Some(conditioning) = expected.conditioning() {
+            terminal.warn(ill_conditioned(name, frame.size, &conditioning));
+        }
+        Ok(expected)
     }
+}
+
+/// Describes an ill-conditioned reference.
+pub(super) fn ill_conditioned(name: &str, [width, height]: [u32; 2], conditioning: &Conditioning) -> String {
+    let help = match &conditioning.edit {
+        Some(edit) => format!("{edit}, or choose another --size"),
+        None => "choose another --size".to_owned(),
+    };
+    format!(
+        "{name} is ill-conditioned at {width}×{height}: rounding decides the color of about {:.1} % of its pixels, as \
+         where an edge passes exactly through the sample point; other correct formulas may render them differently, \
+         and no shader is judged by them\nhelp: {help}",
+        100.0 * conditioning.ill_conditioned.ratio()
+    )
 }
 
 /// Reads a shader or an image, by its extension, and the bytes that identify its content.

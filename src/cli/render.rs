@@ -7,11 +7,13 @@ use std::time::Instant;
 use clap::ValueEnum;
 use indicatif::ProgressBar;
 use toyproof_diagnostic::{Files, grouped, magnitude, path_name, plural};
-use toyproof_image::Image;
+use toyproof_image::{Frame, Image};
 use toyproof_scene::{self as scene, FrameTime, Requirements, Sampler, Scene};
 use toyproof_tracer::{Real, Tracer};
+use toyproof_verify::Expected;
 
 use super::inputs::may_write;
+use super::reference::ill_conditioned;
 use super::run::{Precision, default_image, encode, has_image_extension};
 use super::scenes::read_scene;
 use super::sequence::{self, Frames, Sequence};
@@ -189,8 +191,23 @@ fn render_frame(
             start.elapsed().as_secs_f64()
         );
         terminal.confirm(path, &facts);
+        warn_if_ill_conditioned(scene, frame_time, args, terminal);
     }
     written
+}
+
+/// Warns of pixels whose color rounding decides.
+fn warn_if_ill_conditioned(scene: &Scene, frame_time: FrameTime, args: &Args, terminal: &Terminal) {
+    let frame = Frame {
+        size: scene.film.size,
+        frame: frame_time.frame,
+        time: frame_time.time as f32,
+        ..Frame::default()
+    };
+    if let Some(conditioning) = Expected::of_scene(scene.clone(), &frame).conditioning() {
+        let name = path_name(&args.scene);
+        terminal.warn(ill_conditioned(&name, frame.size, &conditioning));
+    }
 }
 
 /// Reads a scene, given by its file or by the name of a built-in scene; prints the errors.

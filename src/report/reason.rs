@@ -4,6 +4,7 @@ use toyproof_diagnostic::{Diagnostic, Files, Severity, grouped, plural, printabl
 use toyproof_eval as eval;
 use toyproof_gpu as gpu;
 use toyproof_scene::Sampler;
+use toyproof_verify::compare::Region;
 use toyproof_verify::{Failure, Findings, MAX_DIFFERING, Means, Reason, ReferenceKind, Share, Verdict};
 
 use super::Mistake;
@@ -25,8 +26,12 @@ impl Statement {
         }
     }
 
-    fn detail(mut self, detail: impl Into<String>) -> Self {
-        self.details.push(detail.into());
+    fn detail(self, detail: impl Into<String>) -> Self {
+        self.details([detail.into()])
+    }
+
+    fn details(mut self, details: impl IntoIterator<Item = String>) -> Self {
+        self.details.extend(details);
         self
     }
 }
@@ -54,8 +59,8 @@ pub fn state(findings: &Findings, files: &Files) -> Statement {
             [r, g, b] => format!("every pixel has the same color, ({r}, {g}, {b}) of 255"),
         });
     }
-    if let (Reason::AlgorithmDiffers(share), false) = (&findings.reason, is_explained)
-        && share.count == share.of
+    if let (Reason::AlgorithmDiffers { differing, .. }, false) = (&findings.reason, is_explained)
+        && differing.count == differing.of
         && findings.actual.only_color().is_none()
     {
         statement
@@ -108,7 +113,13 @@ pub(super) fn state_reason(reason: &Reason, files: &Files) -> Statement {
         ))
         .detail("naga, the driver or toyproof is at fault, not the shader"),
         Reason::NoReference => Statement::new("the shader renders; there is no reference to compare it with"),
-        Reason::AlgorithmDiffers(share) => Statement::new(differing(*share)),
+        Reason::AlgorithmDiffers {
+            differing: share,
+            regions,
+        } => {
+            let region = regions.largest_compact.filter(|_| share.ratio() <= MAX_DIFFERING);
+            Statement::new(differing(*share)).details(region.map(compact_region))
+        }
         Reason::SelfIntersection(share) => Statement::new(format!(
             "{} {} on rounding errors {}",
             pixels(*share),
@@ -314,6 +325,16 @@ pub fn failure_position(failure: &eval::Failure, files: &Files) -> String {
 }
 
 /// States how many pixels differ from the reference.
+/// Why few differing pixels are a mistake.
+fn compact_region(region: Region) -> String {
+    let [x, y] = region.middle();
+    format!(
+        "{} of them form a region around ({x}, {y}), as a small object does: that many single pixels would be \
+         tolerated",
+        grouped(region.pixels)
+    )
+}
+
 fn differing(share: Share) -> String {
     if share.count == share.of {
         format!("all {} pixels differ from the reference", grouped(share.of))

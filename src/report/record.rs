@@ -346,10 +346,8 @@ pub(super) mod samples {
             differing,
             ill_conditioned,
             undefined,
-            tied: 0,
             max_abs: 0.25,
-            first: None,
-            worst: None,
+            ..CheckSummary::default()
         }
     }
 

@@ -4,7 +4,7 @@ use serde::Serialize;
 use toyproof_diagnostic::{Diagnostics, FileId, Files, grouped};
 use toyproof_scene::toml_reader::{self, Format, Table};
 use toyproof_verify::compare::CheckSummary;
-use toyproof_verify::{MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABLE, Verdict};
+use toyproof_verify::{MAX_UNDEFINED, MAX_UNSTABLE, Verdict, is_different};
 
 use super::{Record, details, terminal};
 
@@ -217,8 +217,7 @@ fn algorithm(check: CheckPoints, record: &Record) -> Mark {
     let Some(result) = &record.algorithm else {
         return check.not_performed(name, record);
     };
-    let passed =
-        result.share(result.differing) <= MAX_DIFFERING && result.share(result.undefined) <= MAX_UNDEFINED;
+    let passed = !is_different(result) && result.share(result.undefined) <= MAX_UNDEFINED;
     let lost = result.share(result.differing + result.undefined);
     let mistake = record.mistake.iter().map(|mistake| mistake.text.clone());
     let why: Vec<_> = [or_no_difference(terminal::algorithm(result))]

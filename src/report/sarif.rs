@@ -25,8 +25,8 @@ const VERDICTS: [(Verdict, &str, &str); 3] = [
     (
         Verdict::Wrong,
         "The shader's image differs from the reference",
-        "More than 0.1 % of the pixels differ from the reference in double precision, so the algorithm is wrong. \
-         `toyproof debug SHADER --pixel X,Y` traces one of them.",
+        "More than 0.1 % of the pixels, or a compact region of them, differ from the reference in double precision, \
+         so the algorithm is wrong. `toyproof debug SHADER --pixel X,Y` traces one of them.",
     ),
     (
         Verdict::Unstable,

@@ -93,8 +93,9 @@ impl Scene {
         scene
     }
 
-    /// Returns the largest distance of a surface from the eye along a coordinate axis.
-    fn size(&self) -> f64 {
+    /// Returns the largest distance of a surface from the eye along a coordinate axis, in scene units.
+    #[must_use]
+    pub fn size(&self) -> f64 {
         let eye = self.camera.eye;
         let places = self.objects.iter().map(|object| object.shape.origin());
         let distances = places.flat_map(|place| (0..3).map(move |axis| (place[axis] - eye[axis]).abs()));

@@ -9,7 +9,9 @@ use toyproof_glsl::Code;
 use toyproof_scene::Sampler;
 
 use crate::Failure;
-use crate::compare::{CheckSummary, MeanTest, RARE_EVENT_VARIANCE_RATIO, REPLICATES, ReplicateTest, SEEN};
+use crate::compare::{
+    CheckSummary, MeanTest, RARE_EVENT_VARIANCE_RATIO, REPLICATES, Regions, ReplicateTest, SEEN,
+};
 
 /// The verdict on a shader, in the order of precedence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -58,8 +60,14 @@ impl fmt::Display for Verdict {
 
 /// The largest share of differing pixels in f64 of a shader that is not wrong. Only legal ray epsilons cause
 /// such differences: a ray that grazes an edge between two of the tested epsilons may have the color of
-/// neither.
+/// neither. Such rays form lines, so that a compact region of differing pixels is a mistake however small.
 pub const MAX_DIFFERING: f64 = 0.001;
+
+/// Whether the differing pixels of the algorithm check are a mistake: they are many, or form a compact region.
+#[must_use]
+pub fn is_different(algorithm: &CheckSummary) -> bool {
+    algorithm.share(algorithm.differing) > MAX_DIFFERING || algorithm.regions.largest_compact.is_some()
+}
 
 /// The largest share of pixels that visibly change with the number type, or are ill-conditioned in f64, of a
 /// shader that is not unstable. Silhouettes of a well-written shader in float32 cause less than a tenth of
@@ -211,7 +219,12 @@ pub enum Reason {
     /// There is no reference: `ok`.
     NoReference,
     /// These pixels differ in double precision: `wrong`.
-    AlgorithmDiffers(Share),
+    AlgorithmDiffers {
+        /// The pixels that differ.
+        differing: Share,
+        /// Their regions.
+        regions: Regions,
+    },
     /// In these pixels, rounding decides whether a ray hits the surface that it starts from: `wrong`.
     SelfIntersection(Share),
     /// These pixels depend on undefined behavior: `inconclusive`.
@@ -367,8 +380,9 @@ fn by_checks(checks: &Checks) -> (Verdict, Reason) {
         return (Verdict::Ok, Reason::NoReference);
     };
     let differing = Share::differing(algorithm);
-    if differing.ratio() > MAX_DIFFERING {
-        return (Verdict::Wrong, Reason::AlgorithmDiffers(differing));
+    if is_different(algorithm) {
+        let regions = algorithm.regions;
+        return (Verdict::Wrong, Reason::AlgorithmDiffers { differing, regions });
     }
     let undefined = Share::of(algorithm, algorithm.undefined);
     if undefined.ratio() > MAX_UNDEFINED {
@@ -483,6 +497,7 @@ fn by_replicates(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::compare::PixelStatus;
 
     /// The result of a check of 10,000 pixels.
     fn summary([differing, ill_conditioned, undefined]: [u64; 3], max_abs: f64) -> CheckSummary {
@@ -526,6 +541,20 @@ mod tests {
         assert_eq!(verdict(checks([0, 31, 0], 0, SAME)), Verdict::Unstable);
         assert_eq!(verdict(checks([0, 0, 0], 31, SAME)), Verdict::Unstable);
         assert_eq!(verdict(checks([0, 0, 501], 0, SAME)), Verdict::Inconclusive);
+    }
+
+    #[test]
+    fn a_compact_region_is_a_difference_however_small() {
+        let mut checks = checks([10, 0, 0], 0, SAME);
+        let algorithm = checks.algorithm.as_mut().unwrap();
+        let statuses: Vec<_> = (0..100)
+            .map(|at| match at {
+                0..3 | 20..23 | 40..43 => PixelStatus::Differs,
+                _ => PixelStatus::Agrees,
+            })
+            .collect();
+        algorithm.regions = Regions::of(&statuses, 20);
+        assert_eq!(verdict(checks), Verdict::Wrong);
     }
 
     #[test]

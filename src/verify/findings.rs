@@ -7,7 +7,7 @@ use toyproof_diagnostic::{Diagnostic, Span};
 use toyproof_eval::{self as eval, Places, Program};
 use toyproof_image::{Image, Rgb8Image};
 
-use crate::compare::{self, CheckSummary, Comparison, DiffLevel, PixelStatus};
+use crate::compare::{self, CheckSummary, Comparison, DiffLevel, PixelStatus, Regions};
 use crate::contain::{Panic, Part, contain};
 use crate::decide::{CheckEvidence, Checks, Evidence, MAX_UNSTABLE, Reason, Share, Verdict, decide};
 use crate::mistake::Diagnosis;
@@ -110,6 +110,13 @@ impl CheckResult {
             (offset + at, [r, g, b])
         }));
         self.statuses.extend(statuses);
+    }
+
+    /// The result with the regions of its differing pixels, once all bands of an image that many pixels wide
+    /// were added.
+    pub(super) fn with_regions(mut self, width: u32) -> Self {
+        self.summary.regions = Regions::of(&self.statuses, width);
+        self
     }
 }
 

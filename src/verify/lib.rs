@@ -143,11 +143,11 @@ use toyproof_translate::FloatMode;
 use self::cpu::Evaluator;
 pub use self::decide::{
     CheckEvidence, Checks, Evidence, MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABLE, MeanComparison, Means,
-    OtherRandomNumbers, Reason, Share, Verdict, decide,
+    OtherRandomNumbers, Reason, Share, Verdict, decide, is_different,
 };
 pub use self::expected::{
-    DEFAULT_TOLERANCE, Expected, ImageReference, Quantization, ReferenceFindings, ReferenceKind,
-    SceneReference, ShaderReference,
+    Conditioning, DEFAULT_TOLERANCE, Expected, ImageReference, Quantization, ReferenceFindings,
+    ReferenceKind, SceneReference, ShaderReference,
 };
 pub use self::findings::{CheckResult, Findings, GpuRun};
 pub use self::notes::unbound;

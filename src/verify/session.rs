@@ -267,9 +267,10 @@ impl<'a> VerifySession<'a> {
         match self.evaluator {
             Err(failure) => findings.evaluator_failed(failure),
             Ok(evaluator) => {
-                findings.algorithm = self.case.expected.map(|_| self.algorithm);
-                findings.precision = Some(self.precision);
-                findings.toolchain = self.toolchain;
+                let complete = |check: CheckResult| check.with_regions(self.case.frame.size[0]);
+                findings.algorithm = self.case.expected.map(|_| complete(self.algorithm));
+                findings.precision = Some(complete(self.precision));
+                findings.toolchain = self.toolchain.map(complete);
                 let (case, program) = (self.case, evaluator.program());
                 findings.notes = notes::notes(&self.observed, self.excludes_pixels, case.lints);
                 let (not_finite, silhouettes, actual) = (self.not_finite, self.silhouettes, &findings.actual);

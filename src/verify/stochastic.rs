@@ -12,7 +12,7 @@ use toyproof_eval::{Places, Program};
 use toyproof_image::Image;
 use toyproof_tracer::{RESAMPLED_ROWS, Tracer};
 
-use crate::compare::{CheckSummary, PixelStatus, RandomPixel, means, uses_scene_numbers};
+use crate::compare::{CheckSummary, PixelStatus, RandomPixel, Regions, means, uses_scene_numbers};
 use crate::decide::{Checks, MAX_VARIANCE_RATIO, MeanComparison, OtherRandomNumbers};
 use crate::mistake::NoisyPixel;
 use crate::notes::sample_pixels;
@@ -150,6 +150,7 @@ impl<'a> Stochastic<'a> {
             differing: 0,
             ill_conditioned: 0,
             tied: 0,
+            regions: Regions::default(),
             ..algorithm.summary.clone()
         };
         let random_numbers = OtherRandomNumbers {

@@ -7,8 +7,8 @@ use toyproof::verify::mistake::Diagnosis;
 use toyproof::verify::{Reason, Verdict};
 
 use crate::support::{
-    Edit, Exercise, IMPORTANCE_SAMPLING, MANY_OBJECTS, REFLECTIONS, SOFT_SHADOWS, STILL, WHITTED,
-    check_exercise_with, edited, numbers, scene,
+    Edit, Exercise, IMPORTANCE_SAMPLING, MANY_OBJECTS, REFLECTIONS, SHADING, SOFT_SHADOWS, STILL, WHITTED,
+    algorithm, check_exercise_with, edited, numbers, scene,
 };
 
 /// Checks an edited exercise in a size.
@@ -445,4 +445,32 @@ fn edges_through_pixel_centers_are_not_the_shaders_fault() {
     let shader = shader.replace("vec3(0.9, 0.3, 0.2)", "vec3(0.9, 0.31, 0.2)");
     let findings = check_exercise_with(None, &shader, &exercise);
     assert_eq!(findings.verdict, Verdict::Wrong, "{:?}", findings.reason);
+}
+
+#[test]
+fn a_small_object_that_is_missing_is_a_mistake() {
+    let scene = |radius: f64| {
+        let sphere = format!(
+            "{}\n[[sphere]]\ncenter = [1.71, 1.12, -6.0]\nradius = {radius}\n\
+             material = {{ model = \"lambert\", color = [0.9, 0.2, 0.2] }}\n",
+            SHADING.scene
+        );
+        Exercise {
+            scene: sphere.leak(),
+            ..SHADING
+        }
+    };
+    // A disk of a dozen pixels of 14,400, and one of four.
+    for (radius, expected) in [(0.075, Verdict::Wrong), (0.04, Verdict::Correct)] {
+        let findings = check_exercise_with(None, SHADING.shader, &scene(radius));
+        let summary = algorithm(&findings);
+        assert!(
+            (1..=14).contains(&summary.differing),
+            "{radius}: {}",
+            numbers(&findings)
+        );
+        assert_eq!(findings.verdict, expected, "{radius}: {}", numbers(&findings));
+        let area = summary.regions.largest_compact.map(|region| region.pixels);
+        assert_eq!(area, (expected == Verdict::Wrong).then_some(summary.differing));
+    }
 }

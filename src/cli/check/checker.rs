@@ -24,6 +24,7 @@ use super::reference::{CachedReference, Reference, References, SceneCache};
 use crate::cli::files::{Input, ReadError};
 use crate::cli::inputs::shell_word;
 use crate::cli::names::{Names, with_suffix};
+use crate::cli::reference::ill_conditioned;
 use crate::cli::shader::{Shader, Unusable, denied};
 use crate::cli::{Terminal, files, pool};
 use crate::report::{self, Record};
@@ -325,6 +326,12 @@ impl<'a> Checker<'a> {
         let mut frame = self.frame.clone();
         let cached = reference.map(|reference| self.cached(reference, &mut frame));
         let cached = cached.transpose()?;
+        if let (Some(Reference::Scene(scene)), Some(cached)) = (reference, &cached)
+            && let Some(conditioning) = cached.conditioning()
+        {
+            let warning = ill_conditioned(&scene.name, frame.size, &conditioning);
+            outcome.messages.push(Message::Warning(warning));
+        }
         let hypotheses = contain(Part::Mistake, || {
             cached.as_ref().and_then(|cached| cached.hypotheses(&frame))
         });

@@ -2,13 +2,14 @@
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use toyproof_diagnostic::{File, Files, path_name};
 use toyproof_image::Frame;
 use toyproof_scene::{self as scene, Scene};
 use toyproof_verify::mistake::Hypotheses;
-use toyproof_verify::{Expected, Failure};
+use toyproof_verify::{Conditioning, Expected, Failure, ReferenceKind};
 
 use super::Args;
 use crate::cli::Terminal;
@@ -200,6 +201,7 @@ const MAX_CACHED_BYTES: usize = 256 << 20;
 pub(super) struct CachedReference {
     pub(super) expected: Expected,
     hypotheses: OnceLock<Option<Hypotheses>>,
+    is_tested: AtomicBool,
 }
 
 impl CachedReference {
@@ -207,7 +209,14 @@ impl CachedReference {
         Self {
             expected,
             hypotheses: OnceLock::new(),
+            is_tested: AtomicBool::new(false),
         }
+    }
+
+    /// How ill-conditioned a scene is, the first time that it is asked for; none if it is not.
+    pub(super) fn conditioning(&self) -> Option<Conditioning> {
+        let is_first = self.expected.kind() == ReferenceKind::Scene && !self.is_tested.swap(true, Relaxed);
+        is_first.then(|| self.expected.conditioning())?
     }
 
     /// The hypotheses that a wrong image is compared with; none without a scene.

@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 use toyproof_image::Image;
 
-use crate::compare::{DiffLevel, Pixel};
+use crate::compare::{DiffLevel, Pixel, Regions};
 
 /// The largest difference of a component of two images that agree.
 ///
@@ -56,6 +56,9 @@ pub struct CheckSummary {
     pub first: Option<Pixel>,
     /// The one with the largest difference among those.
     pub worst: Option<Pixel>,
+    /// The regions of the differing pixels; none before they were found.
+    #[serde(default)]
+    pub regions: Regions,
 }
 
 impl CheckSummary {
@@ -100,6 +103,7 @@ impl CheckSummary {
             max_abs,
             first,
             worst: worst.map(|(_, pixel)| pixel),
+            regions: Regions::default(),
         }
     }
 

@@ -11,6 +11,7 @@ mod check;
 mod images;
 mod legend;
 mod mean;
+mod region;
 mod replicate;
 
 pub use algorithm::{Band, EpsilonColors, Mixed, PERTURBATIONS, Reference, accept_epsilons, algorithm};
@@ -22,6 +23,7 @@ pub use images::{Comparison, Pixel, compare};
 pub use legend::{DiffLevel, IN_BITS, Legend, SEEN_BY_EYE, difference};
 pub(crate) use mean::{MIN_SHARED_CORRELATION, MIN_STANDARD_DEVIATION};
 pub use mean::{MeanTest, RandomPixel, means, uses_scene_numbers};
+pub use region::{Region, Regions};
 pub(crate) use replicate::is_correlated;
 pub use replicate::{
     RARE_EVENT_VARIANCE_RATIO, REPLICATES, ReplicateTest, ReplicatedPixel, compare_replicates,

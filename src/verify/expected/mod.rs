@@ -2,6 +2,7 @@
 //! from one shader to the next.
 
 mod bands;
+mod conditioning;
 mod epsilons;
 mod image;
 mod reseeded;
@@ -18,6 +19,7 @@ use toyproof_scene::Scene;
 use toyproof_tracer::{ColorRange, EpsilonSet, Tracer};
 
 pub(crate) use self::bands::ReferenceBand;
+pub use self::conditioning::Conditioning;
 pub use self::image::{ImageReference, Quantization};
 pub use self::scene::SceneReference;
 pub use self::shader::{DEFAULT_TOLERANCE, ReferenceFindings, ShaderReference};

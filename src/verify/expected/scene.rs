@@ -70,6 +70,17 @@ impl SceneReference {
         }
     }
 
+    /// The reference of another scene in the same frame.
+    pub(super) fn with_scene(&self, scene: Scene) -> Self {
+        let frame = Frame {
+            size: self.scene.film.size,
+            frame: self.time.frame,
+            time: self.time.time as f32,
+            ..Frame::default()
+        };
+        Self::new(scene, &frame)
+    }
+
     pub(super) fn scene(&self) -> &Scene {
         &self.scene
     }
@@ -121,7 +132,7 @@ impl SceneReference {
 
     /// Whether the reference itself changes color in a pixel when the scene's numbers are perturbed by a few
     /// units in the last place: rounding decides the color there, whatever the shader's formulas.
-    fn is_tied(&self, x: u32, y: u32, number_type: NumberType) -> bool {
+    pub(super) fn is_tied(&self, x: u32, y: u32, number_type: NumberType) -> bool {
         let perturbed = self.perturbed[number_type as usize].get_or_init(|| {
             let at_moment = self.at_moment();
             let tracers = (0..PERTURBATIONS).flat_map(|seed| {

@@ -6,7 +6,9 @@ use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 use toyproof_diagnostic::Diagnostic;
-use toyproof_eval::{self as eval, Observations, Places, Program, Seed, Settings, UndefinedPolicy};
+use toyproof_eval::{
+    self as eval, Observations, Places, Program, RandomRounding, Seed, Settings, UndefinedPolicy,
+};
 use toyproof_glsl::Checked;
 use toyproof_glsl::tree::{ExprKind, Input, VariableKind};
 use toyproof_image::{Frame, Image};
@@ -228,7 +230,13 @@ impl ShaderReference {
             NumberType::Double => Seed::double,
             NumberType::Single => Seed::single,
         };
-        let mut tied = self.changed_by_moving(rows, &band.image, wanted, number_type, tolerance);
+        let along = |pixels: Range<u32>| pixels.map(|at| f64::from(at) + 0.5).collect();
+        let places = Places {
+            columns: along(0..self.frame.size[0]),
+            rows: along(rows.clone()),
+        };
+        let step = number_type.perturbation();
+        let mut tied = self.changed_by_moving(&places, &band.image, wanted, step, tolerance);
         let left: Vec<bool> = wanted
             .iter()
             .zip(&tied)
@@ -244,14 +252,47 @@ impl ShaderReference {
         tied
     }
 
-    /// Of the `wanted` pixels, those whose color changes if the pixel moves by a few units in the last place of
-    /// its coordinates: where an edge passes exactly through its center, even exact operations decide nothing.
+    /// Of the pixels at some places, the number of those in which rounding decides the color.
+    pub(super) fn ill_conditioned_at(&self, places: &Places) -> u64 {
+        let deadline = Some(Instant::now() + self.timeout * EVALUATOR_TIME_FACTOR);
+        let settings = Settings::<f64> {
+            undefined: UndefinedPolicy::Plain,
+            deadline,
+            ..Settings::default()
+        };
+        let Ok(image) = self.program.at(&self.frame, places, &settings) else {
+            return 0;
+        };
+        let wanted = vec![true; image.pixels().len()];
+        let step = NumberType::Double.perturbation();
+        let moved = self.changed_by_moving(places, &image, &wanted, step, self.tolerance);
+        let left: Vec<bool> = moved.iter().map(|moved| !moved).collect();
+        let rounded = changed_by_rounding(&image, &left, self.tolerance, |seed, wanted| {
+            let settings = Settings::<RandomRounding> {
+                undefined: UndefinedPolicy::Plain,
+                noise: Seed::double(seed),
+                deadline,
+                wanted: Some(wanted),
+                ..Settings::default()
+            };
+            self.program.at(&self.frame, places, &settings).ok()
+        });
+        let changed = moved
+            .iter()
+            .zip(rounded)
+            .filter(|(moved, rounded)| **moved || *rounded);
+        changed.count() as u64
+    }
+
+    /// Of the `wanted` pixels at some places, those whose color changes if the pixel moves by `step` relative to
+    /// its coordinates, a few units in the last place: where an edge passes exactly through its center, even exact
+    /// operations decide nothing.
     fn changed_by_moving(
         &self,
-        rows: &Range<u32>,
+        places: &Places,
         image: &Image,
         wanted: &[bool],
-        number_type: NumberType,
+        step: f64,
         tolerance: f64,
     ) -> Vec<bool> {
         let settings = Settings::<f64> {
@@ -260,17 +301,14 @@ impl ShaderReference {
             wanted: Some(wanted),
             ..Settings::default()
         };
-        let step = number_type.perturbation();
         let mut changed = vec![false; wanted.len()];
         for [dx, dy] in [[step, step], [-step, -step], [step, -step], [-step, step]] {
-            let along = |pixels: Range<u32>, step: f64| -> Vec<f64> {
-                pixels.map(|at| (f64::from(at) + 0.5) * (1.0 + step)).collect()
+            let along = |places: &[f64], step: f64| places.iter().map(|at| at * (1.0 + step)).collect();
+            let moved = Places {
+                columns: along(&places.columns, dx),
+                rows: along(&places.rows, dy),
             };
-            let places = Places {
-                columns: along(0..self.frame.size[0], dx),
-                rows: along(rows.clone(), dy),
-            };
-            let Ok(moved) = self.program.at(&self.frame, &places, &settings) else {
+            let Ok(moved) = self.program.at(&self.frame, &moved, &settings) else {
                 break;
             };
             for (at, changed) in changed.iter_mut().enumerate() {
