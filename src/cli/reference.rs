@@ -217,9 +217,8 @@ pub(super) fn ill_conditioned(name: &str, [width, height]: [u32; 2], conditionin
         None => "choose another --size".to_owned(),
     };
     format!(
-        "{name} is ill-conditioned at {width}×{height}: rounding decides the color of about {:.1} % of its pixels, as \
-         where an edge passes exactly through the sample point; other correct formulas may render them differently, \
-         and no shader is judged by them\nhelp: {help}",
+        "{name} is ill-conditioned at {width}×{height}: rounding decides the color of about {:.1} % of its pixels, such as \
+         where an edge passes exactly through the sample point; no shader is judged by these\nhelp: {help}",
         100.0 * conditioning.ill_conditioned.ratio()
     )
 }

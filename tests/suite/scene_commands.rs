@@ -129,6 +129,70 @@ fn a_new_scene_renders_and_its_shader_is_correct() {
 }
 
 #[test]
+fn ill_conditioned_scenes_are_reported_with_the_edit_that_cures_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let floor = "[camera]\neye = [0.0, 0.0, 0.0]\n\
+                 [[plane]]\npoint = [0.0, -1.037, 0.0]\nmaterial = { model = \"emitter\", color = [1.0, 1.0, 1.0], \
+                 checker = { color = [0.0, 0.0, 0.0], size = 1.0 } }\n";
+    let path = |name: &str| folder.path().join(name);
+    fs::write(path("floor.toml"), floor).unwrap();
+    let export = ["export", "floor.toml", "-o", "floor.glsl"];
+    assert_eq!(toyproof(folder.path(), &export).code, 0);
+    fs::copy(path("floor.glsl"), path("other.glsl")).unwrap();
+    let render = |size: &str| {
+        let run = toyproof(
+            folder.path(),
+            &["render", "floor.toml", "-o", "floor.png", "--size", size],
+        );
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        run.stderr
+    };
+    // The eye is above an edge of the tiles, and in images of odd width a column of pixels is.
+    assert!(!render("160x90").contains("ill-conditioned"));
+    let warning = "warning: floor.toml is ill-conditioned at 161×90: rounding decides";
+    let help = "help: move the eye from [0.0, 0.0, 0.0] to [0.0013, 0.0009, 0.0005], or choose another --size";
+    let message = render("161x90");
+    assert!(message.contains(warning), "{message}");
+
+    // Its own shader is right in both sizes, and the warning is printed once.
+    let check = [
+        "check",
+        "floor.glsl",
+        "other.glsl",
+        "--scene",
+        "floor.toml",
+        "--device",
+        "cpu",
+        "--size",
+    ];
+    for size in ["160x90", "161x90"] {
+        let run = toyproof(folder.path(), &[&check[..], &[size]].concat());
+        assert_eq!(run.code, 0, "{}{}", run.stdout, run.stderr);
+        let count = run.stderr.matches("ill-conditioned").count();
+        assert_eq!(count, usize::from(size == "161x90"), "{}", run.stderr);
+    }
+    let run = toyproof(
+        folder.path(),
+        &[
+            "check",
+            "floor.glsl",
+            "--reference",
+            "other.glsl",
+            "--device",
+            "cpu",
+            "--size",
+            "161x90",
+        ],
+    );
+    let warning = "warning: other.glsl is ill-conditioned at 161×90";
+    assert!(run.code == 0 && run.stderr.contains(warning), "{}", run.stderr);
+    assert!(message.contains(help), "{message}");
+    let cured = floor.replace("eye = [0.0, 0.0, 0.0]", "eye = [0.0013, 0.0009, 0.0005]");
+    fs::write(path("floor.toml"), cured).unwrap();
+    assert!(!render("161x90").contains("ill-conditioned"));
+}
+
+#[test]
 fn a_new_scene_never_overwrites() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("mine.toml"), "mine").unwrap();
