@@ -218,7 +218,7 @@ pub(super) fn ill_conditioned(name: &str, [width, height]: [u32; 2], conditionin
     };
     format!(
         "{name} is ill-conditioned at {width}×{height}: rounding decides the color of about {:.1} % of its pixels, such as \
-         where an edge passes exactly through the sample point; no shader is judged by these\nhelp: {help}",
+         where an edge passes exactly through the sample point; no shader fails because of these\nhelp: {help}",
         100.0 * conditioning.ill_conditioned.ratio()
     )
 }

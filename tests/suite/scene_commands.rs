@@ -150,7 +150,8 @@ fn ill_conditioned_scenes_are_reported_with_the_edit_that_cures_them() {
     // The eye is above an edge of the tiles, and in images of odd width a column of pixels is.
     assert!(!render("160x90").contains("ill-conditioned"));
     let warning = "warning: floor.toml is ill-conditioned at 161×90: rounding decides";
-    let help = "help: move the eye from [0.0, 0.0, 0.0] to [0.0013, 0.0009, 0.0005], or choose another --size";
+    let help =
+        "help: move the eye from [0.0, 0.0, 0.0] to [0.0013, 0.0009, 0.0005], or choose another --size";
     let message = render("161x90");
     assert!(message.contains(warning), "{message}");
 
