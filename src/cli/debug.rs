@@ -100,7 +100,7 @@ fn frame_and_scene(
     input: &Result<Input, ReadError>,
     given: Option<&GivenReference>,
 ) -> Result<(Frame, Option<Scene>), String> {
-    let mut frame = args.frame.frame()?;
+    let mut frame = args.frame.inputs().load().map_err(|error| error.to_string())?;
     let scene = if let Some(given) = given {
         given.resize(&mut frame, args.frame.size)?;
         None

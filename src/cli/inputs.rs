@@ -9,7 +9,7 @@ use toyproof_diagnostic::{Deadline, path_name};
 use toyproof_glsl as glsl;
 use toyproof_gpu::{AdapterSelector, Worker};
 use toyproof_image::output::Originals;
-use toyproof_image::{self as image, Frame, Image, check_size};
+use toyproof_image::{Channel, FrameInputs, check_size};
 use toyproof_translate::FloatMode;
 
 use super::{Terminal, WORKER};
@@ -35,12 +35,12 @@ pub(super) struct FrameArgs {
     /// Width and height in pixels [default: the scene's, else 640x360]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub(super) size: Option<[u32; 2]>,
-    /// iTime, in seconds
-    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = parse_seconds::<f32>, allow_negative_numbers = true)]
-    time: f32,
-    /// iFrame
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(i32).range(0..), allow_negative_numbers = true)]
-    frame: i32,
+    /// iTime, in seconds [default: 0]
+    #[arg(long, value_name = "S", value_parser = parse_seconds::<f32>, allow_negative_numbers = true)]
+    time: Option<f32>,
+    /// iFrame [default: 0]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(i32).range(0..), allow_negative_numbers = true)]
+    frame: Option<i32>,
     /// iMouse, in pixels [default: 0,0,0,0]
     #[arg(long, value_name = "X,Y[,Z,W]", value_parser = parse_mouse, allow_hyphen_values = true, hide_short_help = true)]
     mouse: Option<[f32; 4]>,
@@ -62,61 +62,72 @@ pub(super) struct FrameArgs {
 }
 
 impl FrameArgs {
-    /// The image files of the channels.
-    pub(super) fn files(&self) -> impl Iterator<Item = &PathBuf> {
-        let channels = [&self.channel0, &self.channel1, &self.channel2, &self.channel3];
-        let named = channels.into_iter().flatten();
-        named.filter(|path| path.as_os_str() != "noise")
+    /// Whether any flag of a frame is given.
+    pub(super) fn is_given(&self) -> bool {
+        let Self {
+            size,
+            time,
+            frame,
+            mouse,
+            date,
+            ..
+        } = self;
+        let is_given = [
+            size.is_some(),
+            time.is_some(),
+            frame.is_some(),
+            mouse.is_some(),
+            date.is_some(),
+        ];
+        is_given.contains(&true) || self.channels().iter().any(|channel| channel.is_some())
     }
 
-    /// The flags that set this frame, for a command that the user may run.
-    pub(super) fn flags(&self) -> Vec<String> {
-        let list = |numbers: [f32; 4]| numbers.map(|number| number.to_string()).join(",");
-        let mut flags = Vec::new();
-        if let Some([width, height]) = self.size {
-            flags.push(format!("--size {width}x{height}"));
-        }
-        if self.time != 0.0 {
-            flags.push(format!("--time {}", self.time));
-        }
-        if self.frame != 0 {
-            flags.push(format!("--frame {}", self.frame));
-        }
-        flags.extend(self.mouse.map(|mouse| format!("--mouse {}", list(mouse))));
-        flags.extend(self.date.map(|date| format!("--date {}", list(date))));
-        let channels = [&self.channel0, &self.channel1, &self.channel2, &self.channel3];
-        for (index, channel) in channels.into_iter().enumerate() {
-            if let Some(path) = channel {
-                flags.push(format!("--channel{index} {}", shell_word(&path_name(path))));
-            }
-        }
-        flags
+    fn channels(&self) -> [&Option<PathBuf>; 4] {
+        [&self.channel0, &self.channel1, &self.channel2, &self.channel3]
     }
 
-    /// The frame with its channels loaded; its size is the flag's or the default.
-    pub(super) fn frame(&self) -> Result<Frame, String> {
-        let default = Frame::default();
-        let channel = |path: &Option<PathBuf>| -> Result<Option<Image>, String> {
-            match path {
-                None => Ok(None),
-                Some(path) if path.as_os_str() == "noise" => Ok(Some(image::noise())),
-                Some(path) => image::read(path).map(Some).map_err(|error| error.to_string()),
-            }
-        };
-        Ok(Frame {
-            size: self.size.unwrap_or(default.size),
-            time: self.time,
-            frame: self.frame,
+    /// The frame that the flags describe.
+    pub(super) fn inputs(&self) -> FrameInputs {
+        FrameInputs {
+            size: self.size,
+            time: self.time.unwrap_or_default(),
+            frame: self.frame.unwrap_or_default(),
             mouse: self.mouse.unwrap_or_default(),
             date: self.date.unwrap_or_default(),
-            channels: [
-                channel(&self.channel0)?,
-                channel(&self.channel1)?,
-                channel(&self.channel2)?,
-                channel(&self.channel3)?,
-            ],
-        })
+            channels: self
+                .channels()
+                .map(|channel| channel.as_deref().map(Channel::named)),
+        }
     }
+}
+
+/// The flags that describe a frame, for a command that the user may run.
+pub(super) fn frame_flags(inputs: &FrameInputs) -> Vec<String> {
+    let list = |numbers: [f32; 4]| numbers.map(|number| number.to_string()).join(",");
+    let mut flags = Vec::new();
+    if let Some([width, height]) = inputs.size {
+        flags.push(format!("--size {width}x{height}"));
+    }
+    if inputs.time != 0.0 {
+        flags.push(format!("--time {}", inputs.time));
+    }
+    if inputs.frame != 0 {
+        flags.push(format!("--frame {}", inputs.frame));
+    }
+    for (flag, numbers) in [("--mouse", inputs.mouse), ("--date", inputs.date)] {
+        if numbers != [0.0; 4] {
+            flags.push(format!("{flag} {}", list(numbers)));
+        }
+    }
+    for (index, channel) in inputs.channels.iter().enumerate() {
+        if let Some(channel) = channel {
+            let name = channel
+                .file()
+                .map_or_else(|| Channel::NOISE.to_owned(), path_name);
+            flags.push(format!("--channel{index} {}", shell_word(&name)));
+        }
+    }
+    flags
 }
 
 /// The accepted language, and the treatment of warnings.

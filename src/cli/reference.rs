@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use sha2::{Digest, Sha256};
-use toyproof_diagnostic::{Deadline, grouped, path_name};
+use toyproof_diagnostic::{Deadline, Diagnostic, grouped, path_name};
 use toyproof_glsl::Checked;
 use toyproof_image::{self as image, Frame, Image};
 use toyproof_verify::{
@@ -48,6 +48,29 @@ fn parse_tolerance(text: &str) -> Result<f64, String> {
 const EIGHT_BIT_TOLERANCE: f64 = 1.0 / 255.0;
 
 impl ReferenceArgs {
+    /// A scene as reference.
+    pub(super) fn scene(scene: PathBuf) -> Self {
+        Self {
+            scene: Some(scene),
+            reference: None,
+            tolerance: None,
+        }
+    }
+
+    /// A shader or an image as reference, with a tolerance in 8-bit levels.
+    pub(super) fn given(path: PathBuf, tolerance: Option<f64>) -> Self {
+        Self {
+            scene: None,
+            reference: Some(path),
+            tolerance,
+        }
+    }
+
+    /// Whether a flag names the reference.
+    pub(super) fn is_given(&self) -> bool {
+        self.scene.is_some() || self.reference.is_some()
+    }
+
     /// The flags that name the same reference, for a command that the user may run.
     pub(super) fn flags(&self) -> Vec<String> {
         let named = [("--scene", &self.scene), ("--reference", &self.reference)];
@@ -137,45 +160,62 @@ impl GivenReference {
         if let Some([w, h]) = size.filter(|&size| size != image.size()) {
             let ([width, height], name) = (image.size(), &self.name);
             return Err(format!(
-                "{name} has {width}×{height} pixels, and --size is {w}x{h}; only images of equal size can be \
-                 compared\nhelp: leave --size out"
+                "{name} has {width}×{height} pixels, and the given size is {w}x{h}; only images of equal size can be \
+                 compared\nhelp: leave the size out"
             ));
         }
         frame.size = image.size();
         Ok(())
     }
 
-    /// Renders the reference in a frame, which has the size of an image; prints what is wrong with it.
+    /// Renders the reference in some frames, which have the size of an image; prints what is wrong with it.
     ///
     /// # Errors
     /// Shaders cannot be compared with it.
-    pub(super) fn expected(
+    pub(super) fn expected<'f>(
         &self,
-        frame: &Frame,
+        frames: impl Iterator<Item = &'f Frame>,
         timeout: Duration,
         terminal: &Terminal,
-    ) -> Result<Expected, ()> {
-        match &self.content {
+    ) -> Result<Vec<Expected>, ()> {
+        let mut evaluation = Evaluation {
+            name: &self.name,
+            tolerance: self.tolerance,
+            timeout,
+            reported: Vec::new(),
+        };
+        let expected = frames.map(|frame| match &self.content {
             Content::Image(image, quantization) => {
                 let image = ImageReference::new(image.clone(), *quantization, self.tolerance);
                 Ok(Expected::Image(image))
             }
-            Content::Shader(shader, checked) => self.evaluated(shader, checked, frame, timeout, terminal),
-        }
+            Content::Shader(shader, checked) => evaluation.run(shader, checked, frame, terminal),
+        });
+        expected.collect()
     }
+}
 
-    /// Evaluates the shader, and reports what is undefined in it.
-    fn evaluated(
-        &self,
+/// The evaluation of a reference shader in one frame after the other.
+struct Evaluation<'a> {
+    name: &'a str,
+    tolerance: f64,
+    timeout: Duration,
+    /// What has been reported of earlier frames.
+    reported: Vec<Diagnostic>,
+}
+
+impl Evaluation<'_> {
+    /// Evaluates the shader in a frame, and reports what is undefined in it.
+    fn run(
+        &mut self,
         shader: &Shader,
         checked: &Checked,
         frame: &Frame,
-        timeout: Duration,
         terminal: &Terminal,
     ) -> Result<Expected, ()> {
-        let name = &self.name;
+        let name = self.name;
         let spinner = terminal.spinner(name);
-        let evaluated = ShaderReference::new(checked, &shader.lints, frame, self.tolerance, timeout);
+        let evaluated = ShaderReference::new(checked, &shader.lints, frame, self.tolerance, self.timeout);
         spinner.finish_and_clear();
         let (reference, findings) = evaluated.map_err(|failure| {
             let position = report::failure_position(&failure, &shader.files);
@@ -183,9 +223,16 @@ impl GivenReference {
                 "the reference {name} cannot be evaluated: {failure}{position}; no shader was checked"
             ));
         })?;
-        terminal.diagnostics(&shader.lints.warnings, &shader.files);
-        terminal.diagnostics(&unbound(checked, &shader.lints, frame), &shader.files);
-        terminal.diagnostics(&findings.notes, &shader.files);
+        let notes = [
+            shader.lints.warnings.clone(),
+            unbound(checked, &shader.lints, frame),
+            findings.notes,
+        ];
+        for mut notes in notes {
+            notes.retain(|note| !self.reported.contains(note));
+            terminal.diagnostics(&notes, &shader.files);
+            self.reported.extend(notes);
+        }
         let undefined = findings.undefined;
         let share = format!(
             "the reference {name} has no defined color in {} of {} pixels ({:.1} %)",

@@ -73,9 +73,11 @@ impl Precision {
 }
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
-    let (worker, frame) = match (args.driver.worker(), args.frame.frame()) {
-        (Ok(worker), Ok(frame)) => (worker, frame),
-        (Err(error), _) | (_, Err(error)) => {
+    let inputs_of_frame = args.frame.inputs();
+    let load = || inputs_of_frame.load().map_err(|error| error.to_string());
+    let (worker, frame) = match args.driver.worker().and_then(|worker| Ok((worker, load()?))) {
+        Ok(found) => found,
+        Err(error) => {
             terminal.error(error);
             return Exit::Error;
         }
@@ -102,7 +104,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let one = standard || (!several && !output.is_dir());
     let mut names = Names::new(&[".png"], &[]);
     let mut exit = Exit::Success;
-    let channels = args.frame.files().map(PathBuf::as_path).collect();
+    let channels = inputs_of_frame.files().collect();
     if !may_write(&output, &channels, terminal) || (one && !has_image_extension(&output, terminal)) {
         return Exit::Error;
     }

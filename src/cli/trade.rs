@@ -78,7 +78,11 @@ fn measure(args: &Args, interrupted: &AtomicBool, terminal: &Terminal) -> Result
         terminal.error(error);
         Exit::Error
     };
-    let frame = args.frame.frame().map_err(fail)?;
+    let frame = args
+        .frame
+        .inputs()
+        .load()
+        .map_err(|error| fail(error.to_string()))?;
     let is_shader = files::is_shader(&args.subject);
     let scene = (!is_shader).then(|| load_scene(&args.subject, terminal).ok_or(Exit::Error));
     let scene = scene.transpose()?;

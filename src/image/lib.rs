@@ -14,11 +14,13 @@
 
 mod file;
 mod frame;
+mod frame_inputs;
 pub mod output;
 mod rgb8;
 
 pub use file::{ImageError, check_extension, encode, encode_shown, read, read_shown};
 pub use frame::{BLOCK_BYTES, FRAME_RATE, Frame, SAMPLE_RATE};
+pub use frame_inputs::{Channel, FrameInputs};
 pub use rgb8::Rgb8Image;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;

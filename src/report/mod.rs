@@ -2,6 +2,7 @@
 
 mod csv;
 mod explanation;
+mod frames;
 mod gradescope;
 mod hints;
 mod html;
@@ -16,6 +17,7 @@ mod trace;
 
 pub use csv::csv;
 pub use explanation::{Explanation, explain, explanations};
+pub use frames::{CheckedFrame, FrameRecord};
 pub use gradescope::gradescope;
 pub use hints::Hints;
 pub use html::{Exhibit, Gallery, MAX_IMAGE_BYTES, html, subsample};

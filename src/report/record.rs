@@ -1,5 +1,7 @@
 //! The report for programs: `verdict.json`, and `--format json` on standard output.
 
+use std::ops::AddAssign;
+
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{self as diagnostic, Files};
 use toyproof_eval as eval;
@@ -9,7 +11,7 @@ use toyproof_verify::repair::SearchResult;
 use toyproof_verify::{CheckResult, Evidence, Failure, Findings, Reason, Verdict, decide};
 
 use super::reason::{Statement, state, state_reason};
-use super::{Repair, Suspect};
+use super::{FrameRecord, Repair, Suspect};
 
 /// The JSON Schema of a [`Report`].
 pub const SCHEMA: &str = include_str!("verdict.schema.json");
@@ -105,6 +107,10 @@ pub struct Record {
     /// The likely cause of the verdict in the shader's text; null if none is known.
     #[serde(default)]
     pub cause: Option<Position>,
+    /// The results in the frames of an assignment, of which the first with the worst verdict gives everything
+    /// above; null without an assignment.
+    #[serde(default)]
+    pub frames: Option<Vec<FrameRecord>>,
     /// The diagnostics on the shader and its scene.
     pub diagnostics: Vec<diagnostic::Json>,
     /// The time of each stage.
@@ -132,6 +138,7 @@ impl Record {
             suspects: Vec::new(),
             is_search_cut: false,
             cause: None,
+            frames: None,
             diagnostics: Vec::new(),
             seconds: Seconds::default(),
         }
@@ -315,6 +322,16 @@ impl Seconds {
     }
 }
 
+impl AddAssign for Seconds {
+    fn add_assign(&mut self, other: Self) {
+        let sum = |a: Option<f64>, b: Option<f64>| a.into_iter().chain(b).reduce(|a, b| a + b);
+        self.translate = sum(self.translate, other.translate);
+        self.gpu = sum(self.gpu, other.gpu);
+        self.eval = sum(self.eval, other.eval);
+        self.trace = sum(self.trace, other.trace);
+    }
+}
+
 /// Sample records for the tests of the formats.
 #[cfg(test)]
 pub(super) mod samples {
@@ -419,6 +436,7 @@ pub(super) mod samples {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::frames::samples::in_frames;
     use crate::report::record::samples::{every_verdict, record};
     use crate::report::repair::samples::{repaired, suspected};
     use crate::report::{Hints, repair};
@@ -443,6 +461,7 @@ mod tests {
         let mut hidden = repaired();
         hidden.redact(Hints::Line);
         records.push(hidden);
+        records.push(in_frames([Verdict::Correct, Verdict::Wrong]));
         let report = Report::new(Some("x".to_owned()), records);
         let mut json: serde_json::Value = serde_json::from_str(&report.json()).unwrap();
         assert!(
@@ -455,6 +474,8 @@ mod tests {
             ("/shaders/9/fix/edits", serde_json::json!([])),
             ("/shaders/9/fix/alternatives/0/agreeing", "many".into()),
             ("/shaders/10/suspects/0/score", 2.into()),
+            ("/shaders/12/frames/0/size", serde_json::json!([0, 4])),
+            ("/shaders/12/frames/1/verdict", "splendid".into()),
             ("/shaders/0/verdict", "splendid".into()),
         ] {
             let mut json = json.clone();

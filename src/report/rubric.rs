@@ -6,6 +6,7 @@ use toyproof_scene::toml_reader::{self, Format, Table};
 use toyproof_verify::compare::CheckSummary;
 use toyproof_verify::{MAX_UNDEFINED, MAX_UNSTABLE, Verdict, is_different};
 
+use super::frames::FrameChecks;
 use super::{Record, details, terminal};
 
 /// The maximum points of a check.
@@ -80,24 +81,33 @@ impl Rubric {
     /// The first syntax error of the TOML, or all other errors.
     pub fn parse(files: &Files, file: FileId) -> Result<Self, Diagnostics> {
         toml_reader::read(&FORMAT, files, file, |document| {
-            let visibility = document.choice("visibility", "visibility", &VISIBILITIES);
-            let compiles = document.table("compiles", points);
-            let algorithm = document.table("algorithm", check_points);
-            let precision = document.table("precision", check_points);
-            let rubric = Self {
-                compiles: compiles.unwrap_or_default(),
-                algorithm: algorithm.unwrap_or_default(),
-                precision: precision.unwrap_or_default(),
-                visibility: visibility.map_or_else(Visibility::default, |visibility| visibility.value),
-            };
+            let rubric = Self::read(document);
             document.report_unknown_keys();
-            let sum = rubric.compiles + rubric.algorithm.points + rubric.precision.points;
-            if document.is_valid() && sum == 0.0 {
+            if document.is_valid() && rubric.check_points() == 0.0 {
                 let help = "add a table such as [algorithm] with `points = 6`";
                 document.reject(document.span(), "the rubric gives no points", help);
             }
             rubric
         })
+    }
+
+    /// Reads a rubric that is a table of a file.
+    pub(crate) fn read(table: &mut Table) -> Self {
+        let visibility = table.choice("visibility", "visibility", &VISIBILITIES);
+        let compiles = table.table("compiles", points);
+        let algorithm = table.table("algorithm", check_points);
+        let precision = table.table("precision", check_points);
+        Self {
+            compiles: compiles.unwrap_or_default(),
+            algorithm: algorithm.unwrap_or_default(),
+            precision: precision.unwrap_or_default(),
+            visibility: visibility.map_or_else(Visibility::default, |visibility| visibility.value),
+        }
+    }
+
+    /// The maximum points of all checks.
+    pub(crate) fn check_points(&self) -> f64 {
+        self.compiles + self.algorithm.points + self.precision.points
     }
 
     /// Computes the marks of a shader, one for each check that has points.
@@ -214,38 +224,52 @@ fn compiles(points: f64, record: &Record) -> Mark {
 
 fn algorithm(check: CheckPoints, record: &Record) -> Mark {
     let name = "algorithm";
-    let Some(result) = &record.algorithm else {
-        return check.not_performed(name, record);
-    };
-    let passed = !is_different(result) && result.share(result.undefined) <= MAX_UNDEFINED;
-    let lost = result.share(result.differing + result.undefined);
     let mistake = record.mistake.iter().map(|mistake| mistake.text.clone());
-    let why: Vec<_> = [or_no_difference(terminal::algorithm(result))]
-        .into_iter()
-        .chain(mistake)
-        .collect();
+    let mistake: Vec<_> = mistake.collect();
     let hints = terminal::fix_lines(record).into_iter();
     let hints = hints.map(|(label, sentence)| format!("\n{label}: {sentence}"));
-    check.mark(name, passed, lost, why.join("; ") + &hints.collect::<String>())
+    let hints = hints.collect::<String>();
+    lowest(check, name, record, |frame| {
+        let result = frame.algorithm?;
+        let passed = !is_different(result) && result.share(result.undefined) <= MAX_UNDEFINED;
+        let lost = result.share(result.differing + result.undefined);
+        let found = or_no_difference(terminal::algorithm(result));
+        let why: Vec<_> = [found].into_iter().chain(mistake.clone()).collect();
+        Some(check.mark(name, passed, lost, why.join("; ") + &hints))
+    })
 }
 
 /// Ill-conditioned pixels count as lost to the precision check, too.
 fn precision(check: CheckPoints, record: &Record) -> Mark {
     let name = "precision";
-    let Some(result) = &record.precision else {
-        return check.not_performed(name, record);
-    };
-    let ill_conditioned = record
-        .algorithm
-        .as_ref()
-        .map_or(0.0, |result: &CheckSummary| result.share(result.ill_conditioned));
-    let lost = result.share(result.differing).max(ill_conditioned);
-    check.mark(
-        name,
-        lost <= MAX_UNSTABLE,
-        lost,
-        or_no_difference(terminal::precision(result)),
-    )
+    lowest(check, name, record, |frame| {
+        let result = frame.precision?;
+        let ill_conditioned = frame
+            .algorithm
+            .map_or(0.0, |result: &CheckSummary| result.share(result.ill_conditioned));
+        let lost = result.share(result.differing).max(ill_conditioned);
+        let why = or_no_difference(terminal::precision(result));
+        Some(check.mark(name, lost <= MAX_UNSTABLE, lost, why))
+    })
+}
+
+/// The lowest mark of a check in all frames; that of a check that was not performed, if it was not in any.
+fn lowest(
+    check: CheckPoints,
+    name: &'static str,
+    record: &Record,
+    mark: impl Fn(&FrameChecks) -> Option<Mark>,
+) -> Mark {
+    let marks = record.checks_in_frames().into_iter().map(|frame| {
+        let mut mark = mark(&frame)?;
+        if let Some(label) = frame.label.filter(|_| mark.points < mark.of) {
+            mark.why = format!("at {label}: {}", mark.why);
+        }
+        Some(mark)
+    });
+    let marks: Option<Vec<_>> = marks.collect();
+    let lowest = marks.and_then(|marks| marks.into_iter().min_by(|a, b| a.points.total_cmp(&b.points)));
+    lowest.unwrap_or_else(|| check.not_performed(name, record))
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::time::Duration;
 
+use toyproof::assignment::Assignment;
 use toyproof::diagnostic::{Deadline, Diagnostic, File, Files, human};
 use toyproof::glsl::{self, Checked, Code};
 use toyproof::image::{Frame, noise};
@@ -97,6 +98,11 @@ fn diagnostics_of(example: &Example, scene: Option<&Scene>) -> (Vec<Diagnostic>,
                 Rubric::parse(&files, file).err().unwrap_or_default().into(),
                 files,
             )
+        }
+        "toml assignment" => {
+            let file = files.add(File::new("assignment.toml", example.text));
+            let assignment = Assignment::parse(&files, file, Path::new("glsl"));
+            (assignment.err().unwrap_or_default().into(), files)
         }
         other => panic!("unknown language {other}"),
     }

@@ -7,6 +7,7 @@
 )]
 
 mod architecture;
+mod assignments;
 mod bad_input;
 mod batch;
 mod browser;

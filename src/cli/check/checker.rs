@@ -12,7 +12,7 @@ use toyproof_diagnostic::{self as diagnostic, Deadline, Diagnostic, Files, Sever
 use toyproof_glsl::Checked;
 use toyproof_gpu::Worker;
 use toyproof_image as image;
-use toyproof_image::{Frame, output};
+use toyproof_image::{Frame, FrameInputs, output};
 use toyproof_scene::Scene;
 use toyproof_verify::contain::{Part, contain};
 use toyproof_verify::repair::{Donors, SearchOptions};
@@ -20,14 +20,15 @@ use toyproof_verify::{Case, Failure, Findings, Verdict, verify};
 
 use super::Args;
 use super::images::{FIXED, IMAGES, ImageKind};
+use super::plan::{Plan, PlannedFrame};
 use super::reference::{CachedReference, Reference, References, SceneCache};
 use crate::cli::files::{Input, ReadError};
-use crate::cli::inputs::shell_word;
+use crate::cli::inputs::{frame_flags, shell_word};
 use crate::cli::names::{Names, with_suffix};
 use crate::cli::reference::ill_conditioned;
 use crate::cli::shader::{Shader, Unusable, denied};
 use crate::cli::{Terminal, files, pool};
-use crate::report::{self, Record};
+use crate::report::{self, CheckedFrame, Record};
 
 /// A shader to check.
 pub(super) struct Submission {
@@ -43,6 +44,7 @@ impl Submission {
     pub(super) fn new(
         input: Result<Input, ReadError>,
         args: &Args,
+        plan: &Plan,
         references: &References,
         names: &mut Names,
     ) -> Self {
@@ -55,7 +57,7 @@ impl Submission {
             name: found.map_or_else(String::new, Input::name),
             key: found
                 .filter(|_| args.out.is_some())
-                .and_then(|found| key(found, args, references)),
+                .and_then(|found| key(found, args, plan, references)),
             output_stem,
             input,
         }
@@ -68,23 +70,25 @@ fn build() -> Option<(u64, SystemTime)> {
     Some((file.len(), file.modified().ok()?))
 }
 
-/// Hashes everything that a record depends on: the build of toyproof, the shader, its reference, the flags,
-/// and the contents of the files that the flags name.
-fn key(found: &Input, args: &Args, references: &References) -> Option<String> {
+/// Hashes everything that a record depends on: the build of toyproof, the shader, its reference, the assignment,
+/// the flags, and the contents of the files that they name.
+fn key(found: &Input, args: &Args, plan: &Plan, references: &References) -> Option<String> {
     let mut hash = Sha256::new();
     let mut add = |part: &[u8]| {
         hash.update((part.len() as u64).to_le_bytes());
         hash.update(part);
     };
-    let settings = (&args.frame, &args.language, &args.driver, args.search);
+    let inputs: Vec<_> = plan.frames.iter().map(|planned| &planned.inputs).collect();
+    let settings = (&inputs, &args.language, &args.driver, args.search);
     add(format!("{:?}", build()?).as_bytes());
-    let named = (&args.reference.scene, &args.reference.reference);
+    let named = (&plan.reference.scene, &plan.reference.reference);
     add(format!("{settings:?} {named:?} {}", found.name()).as_bytes());
+    add(plan.assignment.as_deref().unwrap_or_default().as_bytes());
     add(files::read(found).ok()?.text().as_bytes());
     if let Some(content) = references.content(found) {
         add(&content.ok()?);
     }
-    for path in args.frame.files() {
+    for path in inputs.into_iter().flat_map(FrameInputs::files) {
         add(&std::fs::read(path).ok()?);
     }
     let hash: [u8; 32] = hash.finalize().into();
@@ -195,6 +199,14 @@ impl Outcome {
     fn report(&mut self, diagnostics: Vec<Diagnostic>, files: &Files) {
         let json = diagnostics.iter().map(|one| diagnostic::json(one, files));
         self.record.diagnostics.extend(json);
+        // What is the same in several frames is printed once.
+        let is_new = |diagnostic: &Diagnostic| {
+            !self.messages.iter().any(|message| match message {
+                Message::Diagnostics(known, _) => known.contains(diagnostic),
+                _ => false,
+            })
+        };
+        let diagnostics: Vec<_> = diagnostics.into_iter().filter(is_new).collect();
         if !diagnostics.is_empty() {
             self.messages
                 .push(Message::Diagnostics(diagnostics, files.clone()));
@@ -210,19 +222,19 @@ impl Outcome {
 /// Checks shaders, on any thread.
 pub(super) struct Checker<'a> {
     args: &'a Args,
+    plan: &'a Plan,
     references: &'a References,
-    frame: Frame,
     /// Whether the missing driver has been reported.
     fell_back: AtomicBool,
     scenes: SceneCache,
 }
 
 impl<'a> Checker<'a> {
-    pub(super) fn new(args: &'a Args, references: &'a References, frame: Frame) -> Self {
+    pub(super) fn new(args: &'a Args, plan: &'a Plan, references: &'a References) -> Self {
         Self {
             args,
+            plan,
             references,
-            frame,
             fell_back: AtomicBool::new(false),
             scenes: SceneCache::default(),
         }
@@ -249,21 +261,70 @@ impl<'a> Checker<'a> {
             reference.record(&mut outcome.record);
         }
         outcome.report(shader.lints.warnings.clone(), &shader.files);
-        let findings = self.verify(context, &mut outcome, &shader, reference.as_ref());
+        let findings = self.check_frames(context, &mut outcome, &shader, reference.as_ref());
         if let (Some(out), Some(stem)) = (&self.args.out, &submission.output_stem) {
-            keep(out, stem, &IMAGES, findings.as_ref().ok(), &mut outcome);
-        }
-        match (findings, reference) {
-            (Ok(findings), _) => outcome.set_findings(&findings, &shader.files),
-            (Err(failure @ Failure::InvalidScene(_)), Some(Reference::Scene(scene))) => {
-                outcome.set_failure(failure, &scene.files);
-            }
-            (Err(failure), _) => outcome.set_failure(failure, &shader.files),
+            keep(out, stem, &IMAGES, findings.as_ref(), &mut outcome);
         }
         if outcome.record.help.is_none() {
             outcome.record.help = self.help(&outcome);
         }
         outcome
+    }
+
+    /// Checks a shader in all frames, up to one of which there is no image. Returns the findings in the first
+    /// frame with the worst verdict, which the record then has as well.
+    fn check_frames(
+        &self,
+        context: &mut WorkerContext,
+        outcome: &mut Outcome,
+        shader: &Shader,
+        reference: Option<&Reference<'_>>,
+    ) -> Option<Findings> {
+        let start = outcome.record.clone();
+        let mut checked: Vec<CheckedFrame> = Vec::new();
+        let mut worst: Option<(Verdict, Option<Findings>)> = None;
+        for (index, PlannedFrame { inputs, frame }) in self.plan.frames.iter().enumerate() {
+            let mut frame = frame.clone();
+            outcome.record = start.clone();
+            // What explains the first wrong image is reported.
+            let explains = !checked.iter().any(|frame| frame.record.verdict == Verdict::Wrong);
+            let findings = self.verify(context, outcome, shader, reference, (index, &mut frame), explains);
+            let findings = match (findings, reference) {
+                (Ok(findings), _) => {
+                    outcome.set_findings(&findings, &shader.files);
+                    Some(findings)
+                }
+                (Err(failure @ Failure::InvalidScene(_)), Some(Reference::Scene(scene))) => {
+                    outcome.set_failure(failure, &scene.files);
+                    None
+                }
+                (Err(failure), _) => {
+                    outcome.set_failure(failure, &shader.files);
+                    None
+                }
+            };
+            let verdict = outcome.record.verdict;
+            let has_image = findings.is_some();
+            if worst.as_ref().is_none_or(|(worst, _)| verdict < *worst) {
+                worst = Some((verdict, findings));
+            }
+            checked.push(CheckedFrame {
+                inputs,
+                size: frame.size,
+                record: std::mem::replace(&mut outcome.record, start.clone()),
+            });
+            if !has_image {
+                break;
+            }
+        }
+        outcome.record = match (&self.plan.assignment, checked.pop()) {
+            (None, Some(only)) => only.record,
+            (_, last) => {
+                checked.extend(last);
+                Record::of_frames(checked, self.plan.frames.len())
+            }
+        };
+        worst.and_then(|(_, findings)| findings)
     }
 
     /// The command that shows more of a fault.
@@ -303,29 +364,34 @@ impl<'a> Checker<'a> {
         Some(self.command("debug", record, format!("--pixel {},{}", pixel.x, pixel.y)))
     }
 
-    /// A command on a shader, with the flags of this run that it takes.
+    /// A command on a shader, with the flags of this run that it takes, and those of the frame that gives the
+    /// verdict.
     fn command(&self, name: &str, record: &Record, flag: String) -> String {
         let mut command = vec![format!("toyproof {name}"), shell_word(&record.shader), flag];
-        command.extend(self.args.reference.flags());
-        command.extend(self.args.frame.flags());
+        command.extend(self.plan.reference.flags());
+        command.extend(frame_flags(&self.plan.frames[record.shown_frame()].inputs));
         command.extend(self.args.language.flags());
         command.join(" ")
     }
 
+    /// Verifies a shader in the planned frame with this index, which gets its size. Mistakes and repairs are
+    /// searched for if it `explains` a wrong image.
     fn verify(
         &self,
         context: &mut WorkerContext,
         outcome: &mut Outcome,
         shader: &Shader,
         reference: Option<&Reference<'_>>,
+        (index, frame): (usize, &mut Frame),
+        explains: bool,
     ) -> Result<Findings, Failure> {
         let checked = shader.checked.as_ref().map_err(|unusable| match unusable {
             Unusable::Unreadable(error) => Failure::Unreadable(error.reason.clone()),
             Unusable::Invalid(diagnostics) => Failure::Invalid(diagnostics.clone()),
         })?;
-        let mut frame = self.frame.clone();
-        let cached = reference.map(|reference| self.cached(reference, &mut frame));
+        let cached = reference.map(|reference| self.cached(reference, index, frame));
         let cached = cached.transpose()?;
+        let frame = &*frame;
         if let (Some(Reference::Scene(scene)), Some(cached)) = (reference, &cached)
             && let Some(conditioning) = cached.conditioning()
         {
@@ -333,7 +399,8 @@ impl<'a> Checker<'a> {
             outcome.messages.push(Message::Warning(warning));
         }
         let hypotheses = contain(Part::Mistake, || {
-            cached.as_ref().and_then(|cached| cached.hypotheses(&frame))
+            let cached = cached.as_ref().filter(|_| explains);
+            cached.and_then(|cached| cached.hypotheses(frame))
         });
         let hypotheses = hypotheses.unwrap_or_else(|panic| {
             outcome.fail(format!("{}: {panic}", outcome.record.shader));
@@ -344,8 +411,8 @@ impl<'a> Checker<'a> {
             lints: &shader.lints,
             expected: cached.as_ref().map(|cached| &cached.expected),
             hypotheses,
-            search: (self.args.search > 0.0).then(|| self.search_options(shader, checked)),
-            frame: &frame,
+            search: (explains && self.args.search > 0.0).then(|| self.search_options(shader, checked)),
+            frame,
             float: self.args.driver.float(),
             timeout: self.args.driver.timeout(),
             pool: context.pool.as_ref(),
@@ -391,8 +458,9 @@ impl<'a> Checker<'a> {
         let shader = self.load(submission);
         let checked = shader.checked.as_ref().ok()?;
         let reference = self.references.find(submission.input.as_ref().ok()?)?;
-        let mut frame = self.frame.clone();
-        let cached = self.cached(&reference, &mut frame).ok()?;
+        let index = record.shown_frame();
+        let mut frame = self.plan.frames[index].frame.clone();
+        let cached = self.cached(&reference, index, &mut frame).ok()?;
         let case = Case {
             checked,
             lints: &shader.lints,
@@ -444,22 +512,22 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// What a shader is compared with; the frame gets its size.
-    fn cached(&self, reference: &Reference, frame: &mut Frame) -> Result<Arc<CachedReference>, Failure> {
+    /// What a shader is compared with in the planned frame with this index, which gets its size.
+    fn cached(
+        &self,
+        reference: &Reference,
+        index: usize,
+        frame: &mut Frame,
+    ) -> Result<Arc<CachedReference>, Failure> {
         match reference {
             Reference::Scene(scene) => {
-                let scene = self.sized(scene.scene.clone()?, frame);
-                Ok(self.scenes.get(scene, frame))
+                let mut scene: Scene = scene.scene.clone()?;
+                frame.size = self.plan.frames[index].inputs.size.unwrap_or(scene.film.size);
+                scene.film.size = frame.size;
+                Ok(self.scenes.get(scene, index, frame))
             }
-            Reference::Given(given) => Ok(Arc::clone(&given.cached)),
+            Reference::Given(given) => Ok(Arc::clone(&given.cached[index])),
         }
-    }
-
-    /// Gives frame and scene one size: that of the arguments, else the scene's.
-    fn sized(&self, mut scene: Scene, frame: &mut Frame) -> Scene {
-        frame.size = self.args.frame.size.unwrap_or(scene.film.size);
-        scene.film.size = frame.size;
-        scene
     }
 }
 

@@ -3,6 +3,7 @@
 mod checker;
 mod donors;
 mod images;
+mod plan;
 mod reference;
 mod reports;
 
@@ -20,6 +21,7 @@ use toyproof_verify::repair::DEFAULT_BUDGET;
 
 use self::checker::{Checker, Message, Outcome, Submission, WorkerContext};
 use self::images::IMAGES;
+use self::plan::Plan;
 use self::reference::References;
 pub(super) use self::reference::Scenes;
 use self::reports::Results;
@@ -35,13 +37,15 @@ use crate::report::{self, Detail, Hints, Layout, Record, Report, Rubric};
 /// Check shaders against a reference, and give a verdict on each
 ///
 /// The reference of a shader is the scene that --scene names, or the shader or image that --reference names,
-/// else the .toml file beside the shader. A shader without one is `ok` if it renders: nothing is compared.
+/// else that of the assignment, else the .toml file beside the shader. A shader without one is `ok` if it renders:
+/// nothing is compared.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
   toyproof scenes --write course && toyproof check course --out report
   toyproof check homework --scene 02-sphere --out marks --rubric rubric.toml
   toyproof check homework --reference solution.glsl --out marks
+  toyproof check homework --assignment shadows/assignment.toml --out marks
   toyproof check mine.glsl --scene scene.toml --format json
 
 Exit code: 0 if every shader is correct or ok, 1 if one is not, 2 for any other error.")]
@@ -51,6 +55,12 @@ pub(super) struct Args {
     shaders: Vec<PathBuf>,
     #[command(flatten)]
     reference: ReferenceArgs,
+    /// The assignment (.toml): reference, frames and points [default: assignment.toml in the shaders' folder]
+    ///
+    /// A shader must be right in all frames. Flags of a frame (--size, --time, --mouse and so on) replace the
+    /// frames of the assignment by that one, and --rubric replaces its points.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["scene", "reference"])]
+    assignment: Option<PathBuf>,
     /// Write images and reports into this folder
     ///
     /// For each shader: the images NAME-actual.png, NAME-reference.png, NAME-difference.png,
@@ -153,17 +163,14 @@ const MAX_WITH_SOURCE: usize = 3;
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     // A worker is created and dropped here, so that wrong arguments are reported before any work starts.
-    let mut frame = match args.driver.worker().and_then(|_| args.frame.frame()) {
-        Ok(frame) => frame,
-        Err(error) => {
-            terminal.error(error);
-            return Exit::Error;
-        }
-    };
-    let Ok(rubric) = reports::rubric(args, terminal) else {
+    if let Err(error) = args.driver.worker() {
+        terminal.error(error);
+        return Exit::Error;
+    }
+    let Ok(mut plan) = Plan::new(args, terminal) else {
         return Exit::Error;
     };
-    let Ok(references) = References::new(args, &mut frame, terminal) else {
+    let Ok(references) = References::new(args, &mut plan, terminal) else {
         return Exit::Error;
     };
     let mut results = None;
@@ -193,12 +200,12 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let mut names = Names::new(&IMAGES.map(|kind| kind.suffix), &reserved);
     let submissions: Vec<Submission> = find(&args.shaders, terminal)
         .into_iter()
-        .map(|input| Submission::new(input, args, &references, &mut names))
+        .map(|input| Submission::new(input, args, &plan, &references, &mut names))
         .collect();
     let mut batch = Batch {
         args,
         terminal,
-        rubric,
+        rubric: plan.rubric.take(),
         results,
         order: InOrder::default(),
         records: Vec::new(),
@@ -210,7 +217,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         hidden_warnings: 0,
         start: Instant::now(),
     };
-    batch.check(&submissions, &Checker::new(args, &references, frame));
+    batch.check(&submissions, &Checker::new(args, &plan, &references));
     batch.finish(&submissions)
 }
 

@@ -12,6 +12,7 @@ use toyproof_verify::mistake::Hypotheses;
 use toyproof_verify::{Conditioning, Expected, Failure, ReferenceKind};
 
 use super::Args;
+use super::plan::{Plan, PlannedFrame};
 use crate::cli::Terminal;
 use crate::cli::files::{self, Input, InputSource, ReadError, Skipped};
 use crate::cli::reference::GivenReference;
@@ -50,11 +51,12 @@ impl Reference<'_> {
     }
 }
 
-/// The shader or image that `--reference` names, rendered in the frame of all shaders.
+/// A reference shader or image, rendered in the frames of all shaders.
 pub(super) struct PreparedReference {
     name: String,
     hash: [u8; 32],
-    pub(super) cached: Arc<CachedReference>,
+    /// One for each frame.
+    pub(super) cached: Vec<Arc<CachedReference>>,
 }
 
 /// Finds what shaders are compared with.
@@ -66,28 +68,34 @@ pub(super) enum References {
 }
 
 impl References {
-    /// Reads what the arguments name. The frame gets the size of a reference image.
+    /// Reads what shaders are compared with. The frames get the size of a reference image.
     ///
     /// # Errors
     /// It is unusable; what is wrong with it has been printed.
-    pub(super) fn new(args: &Args, frame: &mut Frame, terminal: &Terminal) -> Result<Self, ()> {
+    pub(super) fn new(args: &Args, plan: &mut Plan, terminal: &Terminal) -> Result<Self, ()> {
         let timeout = args.driver.timeout();
-        let Some(given) = GivenReference::read(&args.reference, &args.language, timeout, terminal)? else {
-            let scenes = Scenes::new(args.reference.scene.as_deref());
+        let Some(given) = GivenReference::read(&plan.reference, &args.language, timeout, terminal)? else {
+            let scenes = Scenes::new(plan.reference.scene.as_deref());
             return if scenes.is_usable(terminal) {
                 Ok(Self::Scenes(scenes))
             } else {
                 Err(())
             };
         };
-        given
-            .resize(frame, args.frame.size)
-            .map_err(|error| terminal.error(error))?;
-        let expected = given.expected(frame, timeout, terminal)?;
+        for PlannedFrame { inputs, frame } in &mut plan.frames {
+            given
+                .resize(frame, inputs.size)
+                .map_err(|error| terminal.error(error))?;
+        }
+        let frames = plan.frames.iter().map(|planned| &planned.frame);
+        let expected = given.expected(frames, timeout, terminal)?;
+        let cached = expected
+            .into_iter()
+            .map(|expected| Arc::new(CachedReference::new(expected)));
         Ok(Self::Given(PreparedReference {
             name: given.name,
             hash: given.hash,
-            cached: Arc::new(CachedReference::new(expected)),
+            cached: cached.collect(),
         }))
     }
 
@@ -191,7 +199,7 @@ fn leaving_link(found: &Input, shader: &Path, beside: &Path) -> Option<Skipped> 
 
 // The scenes that shaders have been compared with, shared by all threads.
 
-/// The cache holds at most this many scenes, the most recently used, and fewer if they exceed
+/// The cache holds at most this many scenes in each frame, the most recently used, and fewer if they exceed
 /// `MAX_CACHED_BYTES`.
 const MAX_CACHED_SCENES: usize = 8;
 const MAX_CACHED_BYTES: usize = 256 << 20;
@@ -226,28 +234,35 @@ impl CachedReference {
     }
 }
 
-/// A cache of the most recently used scenes, the latest first. All have the same frame time.
+/// A cache of the most recently used scenes, the latest first, each with the index of its frame.
 #[derive(Debug, Default)]
 pub(super) struct SceneCache {
-    latest: Mutex<VecDeque<Arc<CachedReference>>>,
+    latest: Mutex<VecDeque<(usize, Arc<CachedReference>)>>,
 }
 
 impl SceneCache {
-    /// Returns the cached results of a scene in this frame, creating them if needed.
-    pub(super) fn get(&self, scene: Scene, frame: &Frame) -> Arc<CachedReference> {
+    /// Returns the cached results of a scene in the frame with this index, creating them if needed.
+    pub(super) fn get(&self, scene: Scene, index: usize, frame: &Frame) -> Arc<CachedReference> {
         let mut latest = self.latest.lock().unwrap_or_else(PoisonError::into_inner);
         let before = latest
             .iter()
-            .position(|known| known.expected.scene() == Some(&scene));
-        let known = before
-            .and_then(|at| latest.remove(at))
-            .unwrap_or_else(|| Arc::new(CachedReference::new(Expected::of_scene(scene, frame))));
-        latest.push_front(Arc::clone(&known));
-        let bytes = |latest: &VecDeque<Arc<CachedReference>>| {
-            let bytes = latest.iter().map(|known| known.expected.bytes());
+            .position(|(known_index, known)| *known_index == index && known.expected.scene() == Some(&scene));
+        let known = before.and_then(|at| latest.remove(at)).map_or_else(
+            || Arc::new(CachedReference::new(Expected::of_scene(scene, frame))),
+            |(_, known)| known,
+        );
+        latest.push_front((index, Arc::clone(&known)));
+        let bytes = |latest: &VecDeque<(usize, Arc<CachedReference>)>| {
+            let bytes = latest.iter().map(|(_, known)| known.expected.bytes());
             bytes.sum::<usize>()
         };
-        while latest.len() > MAX_CACHED_SCENES || (latest.len() > 1 && bytes(&latest) > MAX_CACHED_BYTES) {
+        let in_frame =
+            |latest: &VecDeque<(usize, _)>| latest.iter().filter(|(known, _)| *known == index).count();
+        while in_frame(&latest) > MAX_CACHED_SCENES {
+            let oldest = latest.iter().rposition(|(known, _)| *known == index);
+            oldest.and_then(|at| latest.remove(at));
+        }
+        while latest.len() > 1 && bytes(&latest) > MAX_CACHED_BYTES {
             latest.pop_back();
         }
         known
@@ -274,7 +289,7 @@ mod tests {
             size: [64, 36],
             ..Frame::default()
         };
-        let known = |title: &str| scenes.get(scene(title), &frame);
+        let known = |title: &str| scenes.get(scene(title), 0, &frame);
         let first = known("0");
         for at in 1..MAX_CACHED_SCENES {
             known(&at.to_string());
@@ -284,5 +299,7 @@ mod tests {
             known(&format!("other {at}"));
         }
         assert!(!Arc::ptr_eq(&first, &known("0")));
+        let other_frame = scenes.get(scene("0"), 1, &frame);
+        assert!(!Arc::ptr_eq(&other_frame, &known("0")));
     }
 }

@@ -35,7 +35,7 @@ impl Article<'_> {
 <h2 id="h{index}" tabindex="-1">{name}</h2>
 {facts}<p class="result"><span class="verdict {verdict}">{verdict_term}</span> {reason}</p>
 {details}{mistake}{fix}{help}<div class="images"></div>
-{checks}{source}</article>
+{frames}{checks}{source}</article>
 "#,
             name = Text(name),
             images = self.images(),
@@ -50,6 +50,7 @@ impl Article<'_> {
                 .unwrap_or_default(),
             fix = self.fix(),
             help = record.help.as_deref().map(command).unwrap_or_default(),
+            frames = frames(record),
             checks = checks(record),
             source = source(record, self.exhibit.source.as_deref(), self.limit, self.glossary),
         )
@@ -190,6 +191,30 @@ fn details(details: &[String]) -> String {
         .iter()
         .map(|detail| format!("<li>{}</li>\n", sentence(detail)));
     format!("<ul class=\"details\">\n{}</ul>\n", details.collect::<String>())
+}
+
+/// The list of the frames in which the shader was checked, if there are several; the images show the first
+/// with the shader's verdict.
+fn frames(record: &Record) -> String {
+    let frames = match record.frames.as_deref() {
+        Some(frames @ [_, _, ..]) => frames,
+        _ => return String::new(),
+    };
+    let shown = record.shown_frame();
+    let items = frames.iter().enumerate().map(|(index, frame)| {
+        let verdict = frame.verdict.to_string();
+        let shown = if index == shown { " (shown here)" } else { "" };
+        format!(
+            "<li><span class=\"verdict {verdict}\">{verdict_term}</span> {label}{shown}: {reason}</li>\n",
+            verdict_term = term(&verdict, &verdict),
+            label = Text(&frame.label()),
+            reason = sentence(&frame.reason),
+        )
+    });
+    format!(
+        "<h3>Frames</h3>\n<ol class=\"frames\">\n{}</ol>\n",
+        items.collect::<String>()
+    )
 }
 
 /// The command that shows more; the script adds a button that copies it.

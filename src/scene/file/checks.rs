@@ -37,7 +37,7 @@ impl Table<'_, '_> {
     }
 
     /// Rejects a value; `problem` follows the key in the message.
-    pub(super) fn reject_value<T>(&self, key: &str, located: &Located<T>, problem: &str) {
+    pub fn reject_value<T>(&self, key: &str, located: &Located<T>, problem: &str) {
         let found = self.excerpt(located.span);
         self.reject(located.span, format!("`{key}` {problem}, found {found}"), "");
     }
@@ -146,7 +146,7 @@ impl Table<'_, '_> {
     }
 
     /// Returns a whole number in a range.
-    pub(super) fn count_or(&mut self, key: &'static str, [min, max]: [u32; 2], default: u32) -> u32 {
+    pub fn count_or(&mut self, key: &'static str, [min, max]: [u32; 2], default: u32) -> u32 {
         let Some(located) = self.optional::<i64>(key) else {
             return default;
         };
@@ -160,7 +160,8 @@ impl Table<'_, '_> {
         }
     }
 
-    pub(super) fn size_or(&mut self, key: &'static str, default: [u32; 2]) -> [u32; 2] {
+    /// Returns the size of an image in pixels.
+    pub fn size_or(&mut self, key: &'static str, default: [u32; 2]) -> [u32; 2] {
         let Some(located) = self.optional::<[i64; 2]>(key) else {
             return default;
         };

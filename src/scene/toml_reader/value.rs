@@ -125,6 +125,18 @@ impl Value for String {
     }
 }
 
+impl Value for Vec<f64> {
+    const EXPECTED: &'static str = "a list of numbers";
+    const EXAMPLE: &'static str = "[1.0, 2.0]";
+
+    fn read(value: &Spanned<DeValue>) -> Result<Self, Mismatch> {
+        let DeValue::Array(values) = value.get_ref() else {
+            return Err(Mismatch::of(value));
+        };
+        values.iter().map(f64::read).collect()
+    }
+}
+
 /// Reads a list of exactly `N` values.
 fn list<T: Value + Copy, const N: usize>(value: &Spanned<DeValue>, unit: T) -> Result<[T; N], Mismatch> {
     let DeValue::Array(values) = value.get_ref() else {

@@ -1,0 +1,220 @@
+//! The TOML of an assignment.
+
+use std::path::{Path, PathBuf};
+
+use toyproof_diagnostic::{Diagnostics, FileId, Files};
+use toyproof_image::{Channel, Frame, FrameInputs};
+use toyproof_scene::toml_reader::{self, Format, Located, Table};
+
+use super::{Assignment, MAX_FRAMES, Reference};
+use crate::report::Rubric;
+
+static FORMAT: Format = Format {
+    form_code: "E0505",
+    value_code: "E0506",
+    aliases: &[],
+    renamed: &[],
+};
+
+/// The largest tolerance, in 8-bit levels.
+const MAX_TOLERANCE: f64 = 255.0;
+
+const PATHS: &str = "paths are relative to the folder of this file";
+
+impl Assignment {
+    /// Parses an assignment whose file lies in `folder`. The files that it names must exist.
+    ///
+    /// # Errors
+    /// The first syntax error of the TOML, or all other errors.
+    pub fn parse(files: &Files, file: FileId, folder: &Path) -> Result<Self, Diagnostics> {
+        toml_reader::read(&FORMAT, files, file, |document| {
+            let reference = reference(document, folder);
+            let mut frames = Vec::new();
+            document.tables("frame", |table| {
+                let frame = frame(table, folder);
+                if frames.contains(&frame) && table.is_valid() {
+                    table.reject(
+                        table.span(),
+                        "this frame is listed twice",
+                        "remove one of the two",
+                    );
+                } else if frames.len() == MAX_FRAMES {
+                    let message = format!("an assignment has at most {MAX_FRAMES} frames");
+                    table.reject(table.span(), message, "remove this one");
+                }
+                frames.push(frame);
+            });
+            if frames.is_empty() {
+                frames.push(FrameInputs::default());
+            }
+            let rubric = document.table("rubric", Rubric::read);
+            document.report_unknown_keys();
+            let reference = match reference {
+                Some(reference) => reference,
+                None => {
+                    if document.is_valid() {
+                        let help = "add `scene = \"scene.toml\"` or `reference = \"solution.glsl\"`";
+                        document.reject(
+                            document.span(),
+                            "the assignment has neither a scene nor a reference",
+                            help,
+                        );
+                    }
+                    Reference::Scene(PathBuf::new())
+                }
+            };
+            let points = rubric.as_ref().map(Rubric::check_points);
+            if points == Some(0.0) && document.is_valid() {
+                let help = "add a table such as [rubric.algorithm] with `points = 6`";
+                document.reject(document.span(), "the rubric gives no points", help);
+            }
+            Self {
+                reference,
+                frames,
+                rubric,
+            }
+        })
+    }
+}
+
+/// Reads what the shaders are compared with; none if no key gives it.
+fn reference(document: &mut Table, folder: &Path) -> Option<Reference> {
+    let scene = path(document, "scene", folder);
+    let given = path(document, "reference", folder);
+    let tolerance = document.optional::<f64>("tolerance");
+    if let Some(tolerance) = &tolerance {
+        if !(0.0..=MAX_TOLERANCE).contains(&tolerance.value) {
+            document.reject_value(
+                "tolerance",
+                tolerance,
+                "must be a number of 8-bit levels from 0 to 255",
+            );
+        }
+        if scene.is_some() {
+            let help = "remove it; only a `reference` has a tolerance";
+            document.reject(tolerance.span, "`tolerance` cannot be used with `scene`", help);
+        }
+    }
+    match (scene, given) {
+        (Some(_), Some(given)) => {
+            let help = "remove one of them";
+            document.reject(given.span, "`reference` cannot be used with `scene`", help);
+            None
+        }
+        (Some(scene), None) => {
+            let is_toml = scene
+                .value
+                .extension()
+                .is_some_and(|extension| extension == "toml");
+            if !is_toml && document.is_valid() {
+                let found = document.excerpt(scene.span);
+                let help = "a shader or an image is named by `reference`";
+                document.reject(
+                    scene.span,
+                    format!("`scene` must be a .toml file, found {found}"),
+                    help,
+                );
+            }
+            Some(Reference::Scene(scene.value))
+        }
+        (None, Some(given)) => Some(Reference::Given {
+            path: given.value,
+            tolerance: tolerance.map(|tolerance| tolerance.value),
+        }),
+        (None, None) => None,
+    }
+}
+
+/// Reads the path of a file that must exist, relative to the folder of the assignment.
+fn path(table: &mut Table, key: &'static str, folder: &Path) -> Option<Located<PathBuf>> {
+    let Located { value: name, span } = table.optional::<String>(key)?;
+    let value = folder.join(&name);
+    if !value.is_file() {
+        let found = table.excerpt(span);
+        table.reject(span, format!("there is no file {found}"), PATHS);
+    }
+    Some(Located { value, span })
+}
+
+fn frame(table: &mut Table, folder: &Path) -> FrameInputs {
+    let size = table
+        .has("size")
+        .then(|| table.size_or("size", Frame::default().size));
+    let time = table.optional::<f64>("time").map_or(0.0, |time| {
+        if !(time.value as f32).is_finite() {
+            table.reject_value("time", &time, "must be a finite number of seconds");
+        }
+        time.value as f32
+    });
+    FrameInputs {
+        size,
+        time,
+        frame: table.count_or("frame", [0, i32::MAX as u32], 0) as i32,
+        mouse: mouse(table),
+        date: date(table),
+        channels: ["channel0", "channel1", "channel2", "channel3"].map(|key| channel(table, key, folder)),
+    }
+}
+
+/// Reads the position of a drag, and of its click, which may be omitted.
+fn mouse(table: &mut Table) -> [f32; 4] {
+    let Some(mouse) = numbers(table, "mouse") else {
+        return [0.0; 4];
+    };
+    match mouse.value[..] {
+        [x, y] => [x, y, 0.0, 0.0],
+        [x, y, z, w] => [x, y, z, w],
+        _ => {
+            table.reject_value(
+                "mouse",
+                &mouse,
+                "must be two or four numbers: [x, y] or [x, y, z, w]",
+            );
+            [0.0; 4]
+        }
+    }
+}
+
+fn date(table: &mut Table) -> [f32; 4] {
+    let Some(date) = numbers(table, "date") else {
+        return [0.0; 4];
+    };
+    match date.value[..] {
+        [year, month, day, seconds] if (0.0..=11.0).contains(&month) => [year, month, day, seconds],
+        _ => {
+            let problem =
+                "must be four numbers: year, month from 0 (January) to 11, day, seconds since midnight";
+            table.reject_value("date", &date, problem);
+            [0.0; 4]
+        }
+    }
+}
+
+/// Reads a list of finite numbers.
+fn numbers(table: &mut Table, key: &'static str) -> Option<Located<Vec<f32>>> {
+    let Located { value, span } = table.optional::<Vec<f64>>(key)?;
+    let value: Vec<f32> = value.into_iter().map(|number| number as f32).collect();
+    let located = Located { value, span };
+    if !located.value.iter().all(|number| number.is_finite()) {
+        table.reject_value(key, &located, "must have finite numbers");
+    }
+    Some(located)
+}
+
+/// Reads the texture of a channel: `noise`, or an image.
+fn channel(table: &mut Table, key: &'static str, folder: &Path) -> Option<Channel> {
+    let Located { value: name, span } = table.optional::<String>(key)?;
+    match Channel::named(Path::new(&name)) {
+        Channel::Noise => Some(Channel::Noise),
+        Channel::File(name) => {
+            let path = folder.join(name);
+            let channel = Channel::File(path.clone());
+            if !path.is_file() {
+                let found = table.excerpt(span);
+                let help = format!("name an image (.png, .exr) or \"noise\"; {PATHS}");
+                table.reject(span, format!("there is no file {found}"), &help);
+            }
+            Some(channel)
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! What shaders are checked against: what the arguments name, or an assignment.
+
+use std::path::{Path, PathBuf};
+
+use toyproof_diagnostic::{Files, path_name};
+use toyproof_image::{Frame, FrameInputs};
+
+use super::{Args, reports};
+use crate::assignment::{self, Assignment, FILE_NAME};
+use crate::cli::Terminal;
+use crate::cli::files::{self, Skipped};
+use crate::cli::reference::ReferenceArgs;
+use crate::cli::shader::Unusable;
+use crate::report::Rubric;
+
+/// What shaders are checked against.
+pub(super) struct Plan {
+    /// What they are compared with.
+    pub(super) reference: ReferenceArgs,
+    /// The frames, at least one.
+    pub(super) frames: Vec<PlannedFrame>,
+    pub(super) rubric: Option<Rubric>,
+    /// The text of the assignment, if there is one.
+    pub(super) assignment: Option<String>,
+}
+
+/// A frame in which shaders are checked.
+pub(super) struct PlannedFrame {
+    pub(super) inputs: FrameInputs,
+    /// With the channels loaded. Its size is the one of the inputs or the default; a scene or a reference image
+    /// may set another.
+    pub(super) frame: Frame,
+}
+
+impl Plan {
+    /// Reads what the arguments name, or the assignment that they name or that lies in the folder of all shaders.
+    ///
+    /// # Errors
+    /// It is unusable; what is wrong with it has been printed.
+    pub(super) fn new(args: &Args, terminal: &Terminal) -> Result<Self, ()> {
+        let rubric = reports::rubric(args, terminal)?;
+        let found = match &args.assignment {
+            Some(path) => Some(named(path, terminal)?),
+            None if args.reference.is_given() => None,
+            None => beside(&args.shaders).map_err(|error| terminal.error(error))?,
+        };
+        let mut plan = Self {
+            reference: args.reference.clone(),
+            frames: Vec::new(),
+            rubric,
+            assignment: None,
+        };
+        let mut frames = vec![args.frame.inputs()];
+        if let Some(path) = found {
+            let (assignment, text) = read(&path, terminal)?;
+            terminal.detail(&format!("assignment: {}", path_name(&path)));
+            if !args.frame.is_given() {
+                frames = assignment.frames;
+            }
+            plan.reference = match assignment.reference {
+                assignment::Reference::Scene(scene) => ReferenceArgs::scene(scene),
+                assignment::Reference::Given { path, tolerance } => ReferenceArgs::given(path, tolerance),
+            };
+            plan.rubric = plan.rubric.or(assignment.rubric);
+            plan.assignment = Some(text);
+        }
+        for inputs in frames {
+            let frame = inputs.load().map_err(|error| terminal.error(error))?;
+            plan.frames.push(PlannedFrame { inputs, frame });
+        }
+        Ok(plan)
+    }
+}
+
+/// The file that `--assignment` names, which may be its folder.
+fn named(path: &Path, terminal: &Terminal) -> Result<PathBuf, ()> {
+    let file = if path.is_dir() {
+        path.join(FILE_NAME)
+    } else {
+        path.to_owned()
+    };
+    if file.is_file() {
+        return Ok(file);
+    }
+    let name = path_name(&file);
+    terminal.error(format_args!(
+        "there is no assignment {name}\nhelp: `toyproof new assignment` creates one"
+    ));
+    Err(())
+}
+
+/// The assignment in the folder of all shaders. Folders of submissions are searched for shaders, but an
+/// assignment in one of them is not used: its author is a student.
+fn beside(shaders: &[PathBuf]) -> Result<Option<PathBuf>, String> {
+    let mut found: Option<PathBuf> = None;
+    let mut without = None;
+    for shader in shaders {
+        let folder = if shader.is_dir() {
+            shader
+        } else {
+            shader.parent().unwrap_or(Path::new(""))
+        };
+        let path = folder.join(FILE_NAME);
+        if shader == Path::new("-") || !path.is_file() {
+            without = Some(shader);
+            continue;
+        }
+        if let Some(skipped) = Skipped::of(&path, folder) {
+            return Err(format!("the assignment cannot be used: {skipped}"));
+        }
+        match &found {
+            Some(other) if *other != path => {
+                let [first, second] = [other, &path].map(|path| path_name(path));
+                return Err(format!(
+                    "there are several assignments: {first} and {second}\nhelp: name one with --assignment, or check \
+                     their shaders one after the other"
+                ));
+            }
+            _ => found = Some(path),
+        }
+    }
+    match (&found, without) {
+        (Some(path), Some(shader)) => {
+            let [path, shader] = [path, shader].map(|path| path_name(path));
+            Err(format!(
+                "{path} is not the assignment of {shader}, which is elsewhere\nhelp: name it with --assignment, or \
+                 check the shaders one after the other"
+            ))
+        }
+        _ => Ok(found),
+    }
+}
+
+/// Reads an assignment, and its text.
+fn read(path: &Path, terminal: &Terminal) -> Result<(Assignment, String), ()> {
+    let mut files = Files::default();
+    let unusable = match files::read_text(path) {
+        Ok(text) => {
+            let content = text.text().to_owned();
+            let file = files.add(text);
+            let folder = path.parent().unwrap_or(Path::new(""));
+            match Assignment::parse(&files, file, folder) {
+                Ok(assignment) => return Ok((assignment, content)),
+                Err(errors) => Unusable::Invalid(errors.into()),
+            }
+        }
+        Err(error) => Unusable::of(error, &mut files),
+    };
+    match unusable {
+        Unusable::Invalid(diagnostics) => terminal.diagnostics(&diagnostics, &files),
+        Unusable::Unreadable(error) => terminal.error(error),
+    }
+    Err(())
+}

@@ -1,0 +1,88 @@
+//! The inputs of a frame as a user describes them: the files of its channels are not read yet.
+
+use std::path::{Path, PathBuf};
+
+use crate::{Frame, Image, ImageError, noise, read};
+
+/// The inputs of a frame.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct FrameInputs {
+    /// `iResolution.xy`, in pixels; none for the size of what the frame is compared with.
+    pub size: Option<[u32; 2]>,
+    /// `iTime`, in seconds.
+    pub time: f32,
+    /// `iFrame`, from 0.
+    pub frame: i32,
+    /// `iMouse`, in pixels.
+    pub mouse: [f32; 4],
+    /// `iDate`: year, month from 0, day, seconds since midnight.
+    pub date: [f32; 4],
+    /// The textures of `iChannel0` to `iChannel3`; none for black.
+    pub channels: [Option<Channel>; 4],
+}
+
+/// The texture of a channel.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Channel {
+    /// The noise texture, see [`noise`].
+    Noise,
+    /// An image file.
+    File(PathBuf),
+}
+
+impl Channel {
+    /// The name of the noise texture, where a file name could be.
+    pub const NOISE: &str = "noise";
+
+    /// The channel that a user names: `noise`, or a file.
+    #[must_use]
+    pub fn named(name: &Path) -> Self {
+        if name.as_os_str() == Self::NOISE {
+            Self::Noise
+        } else {
+            Self::File(name.to_owned())
+        }
+    }
+
+    /// The path of the file; none for noise.
+    #[must_use]
+    pub fn file(&self) -> Option<&Path> {
+        match self {
+            Self::Noise => None,
+            Self::File(path) => Some(path),
+        }
+    }
+
+    fn load(&self) -> Result<Image, ImageError> {
+        match self {
+            Self::Noise => Ok(noise()),
+            Self::File(path) => read(path),
+        }
+    }
+}
+
+impl FrameInputs {
+    /// The image files of the channels.
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        self.channels.iter().flatten().filter_map(Channel::file)
+    }
+
+    /// The frame with its channels loaded; without a size, it has the default one.
+    ///
+    /// # Errors
+    /// If an image file cannot be read.
+    pub fn load(&self) -> Result<Frame, ImageError> {
+        let mut channels = [const { None }; 4];
+        for (image, channel) in channels.iter_mut().zip(&self.channels) {
+            *image = channel.as_ref().map(Channel::load).transpose()?;
+        }
+        Ok(Frame {
+            size: self.size.unwrap_or(Frame::default().size),
+            time: self.time,
+            frame: self.frame,
+            mouse: self.mouse,
+            date: self.date,
+            channels,
+        })
+    }
+}
