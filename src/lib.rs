@@ -35,7 +35,7 @@
 //! | `verify` | the three checks and the verdict (without `gpu`: algorithm and precision) |
 //! | `gpu` | rendering on a Vulkan driver, in a worker process |
 //! | `lab` | measurements of stability, and of accuracy against time |
-//! | `report` | reports: JSON, HTML, `JUnit`, SARIF, CSV, Gradescope; assignments |
+//! | `report` | reports: JSON, HTML, `JUnit`, SARIF, CSV, Gradescope; with `lab`, assignments |
 //! | `cli` | the command line |
 //!
 //! # Example
@@ -60,7 +60,7 @@
 //! `examples/` has programs that parse, evaluate and verify a shader. A program that renders on a GPU must be
 //! able to start itself as the worker process: see `toyproof_gpu`.
 
-#[cfg(feature = "report")]
+#[cfg(all(feature = "lab", feature = "report"))]
 pub mod assignment;
 #[cfg(feature = "cli")]
 pub mod cli;

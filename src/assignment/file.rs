@@ -4,10 +4,13 @@ use std::path::{Path, PathBuf};
 
 use toyproof_diagnostic::{Diagnostics, FileId, Files};
 use toyproof_image::{Channel, Frame, FrameInputs};
-use toyproof_scene::toml_reader::{self, Format, Located, Table};
+use toyproof_scene::toml_reader::{self, Format, Literal, Located, Table};
 
-use super::{Assignment, MAX_FRAMES, Reference};
-use crate::report::Rubric;
+use super::{
+    Assignment, DEFAULT_CASE_TOLERANCE, FunctionCase, FunctionCases, FunctionTest, MAX_FRAMES, Reference,
+    Rules,
+};
+use crate::report::{Rubric, optional_points};
 
 static FORMAT: Format = Format {
     form_code: "E0505",
@@ -48,30 +51,37 @@ impl Assignment {
                 frames.push(FrameInputs::default());
             }
             let rubric = document.table("rubric", Rubric::read);
-            document.report_unknown_keys();
-            let reference = match reference {
-                Some(reference) => reference,
-                None => {
-                    if document.is_valid() {
-                        let help = "add `scene = \"scene.toml\"` or `reference = \"solution.glsl\"`";
-                        document.reject(
-                            document.span(),
-                            "the assignment has neither a scene nor a reference",
-                            help,
-                        );
-                    }
-                    Reference::Scene(PathBuf::new())
+            let rules = document.table("rules", rules);
+            let mut functions: Vec<FunctionTest> = Vec::new();
+            document.tables("function", |table| {
+                let test = function(table);
+                if functions.iter().any(|other| other.name == test.name) && table.is_valid() {
+                    let message = format!("there are two tests of `{}`", test.name);
+                    table.reject(table.span(), message, "move its cases to the first test");
                 }
-            };
-            let points = rubric.as_ref().map(Rubric::check_points);
-            if points == Some(0.0) && document.is_valid() {
+                functions.push(test);
+            });
+            document.report_unknown_keys();
+            if reference.is_none() && document.is_valid() {
+                let help = "add `scene = \"scene.toml\"` or `reference = \"solution.glsl\"`";
+                let message = "the assignment has neither a scene nor a reference";
+                document.reject(document.span(), message, help);
+            }
+            let of_rules = rules.as_ref().map_or(0.0, |rules| rules.points);
+            let of_functions: f64 = functions.iter().map(|test| test.points).sum();
+            let others = of_rules + of_functions;
+            let of_checks = rubric.as_ref().map_or(0.0, Rubric::check_points);
+            if rubric.is_some() && of_checks + others == 0.0 && document.is_valid() {
                 let help = "add a table such as [rubric.algorithm] with `points = 6`";
                 document.reject(document.span(), "the rubric gives no points", help);
             }
             Self {
-                reference,
+                // Without one, there are errors.
+                reference: reference.unwrap_or_else(|| Reference::Scene(PathBuf::new())),
                 frames,
-                rubric,
+                rubric: rubric.or_else(|| (others > 0.0).then(Rubric::default)),
+                rules,
+                functions,
             }
         })
     }
@@ -216,5 +226,130 @@ fn channel(table: &mut Table, key: &'static str, folder: &Path) -> Option<Channe
             }
             Some(channel)
         }
+    }
+}
+
+/// The largest value of `max_lines`: a shader has at most a megabyte.
+const MAX_LINES: u32 = 1_000_000;
+
+fn rules(table: &mut Table) -> Rules {
+    Rules {
+        points: optional_points(table),
+        must_define: names(table, "must_define"),
+        must_not_call: names(table, "must_not_call"),
+        textures: table.optional("textures").is_none_or(|textures| textures.value),
+        max_lines: table
+            .has("max_lines")
+            .then(|| table.count_or("max_lines", [1, MAX_LINES], MAX_LINES)),
+    }
+}
+
+/// Reads a list of names of functions.
+fn names(table: &mut Table, key: &'static str) -> Vec<String> {
+    let Some(Located { value, span }) = table.optional::<Vec<String>>(key) else {
+        return Vec::new();
+    };
+    if let Some(name) = value.iter().find(|name| !is_identifier(name)) {
+        table.reject(
+            span,
+            format!("`{key}` must have names of functions; `{name}` is none"),
+            "",
+        );
+    }
+    value
+}
+
+fn is_identifier(name: &str) -> bool {
+    let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    name.chars().all(is_part) && name.starts_with(|c: char| !c.is_ascii_digit())
+}
+
+/// The largest number of cases of a test.
+const MAX_CASES: usize = 256;
+
+const EXAMPLE_CASE: &str = "arguments = [[0.0, 0.0, 4.0], 1.5]";
+
+fn function(table: &mut Table) -> FunctionTest {
+    let name = table.required::<String>("name");
+    if let Some(name) = &name
+        && !is_identifier(&name.value)
+    {
+        table.reject_value("name", name, "must be the name of a function");
+    }
+    let points = optional_points(table);
+    let source = table.choice("cases", "source of cases", &[("stress", ())]);
+    let mut listed = Vec::new();
+    table.tables("case", |table| {
+        if listed.len() == MAX_CASES {
+            let message = format!("a function has at most {MAX_CASES} cases");
+            table.reject(table.span(), message, "remove this one");
+        }
+        listed.push(case(table));
+    });
+    let cases = match &source {
+        Some(source) => {
+            if !listed.is_empty() {
+                let help = "remove `cases`, or all [[function.case]]";
+                table.reject(source.span, "`cases` cannot be used with [[function.case]]", help);
+            }
+            FunctionCases::Stress
+        }
+        None => {
+            if listed.is_empty() && table.is_valid() {
+                let help = format!(
+                    "add [[function.case]] with `{EXAMPLE_CASE}` and `result`, or `cases = \"stress\"`"
+                );
+                table.reject(table.span(), "the function has no cases", &help);
+            }
+            FunctionCases::Listed(listed)
+        }
+    };
+    FunctionTest {
+        name: name.map_or_else(String::new, |name| name.value),
+        points,
+        cases,
+    }
+}
+
+fn case(table: &mut Table) -> FunctionCase {
+    let arguments = table.required::<Vec<Literal>>("arguments");
+    if let Some(arguments) = &arguments
+        && !arguments.value.iter().all(is_float)
+    {
+        table.reject_value(
+            "arguments",
+            arguments,
+            "must have finite numbers that float32 can hold",
+        );
+    }
+    let result = table.optional::<Literal>("result");
+    let outputs = table.optional::<Vec<Literal>>("outputs");
+    if result.is_none() && outputs.is_none() && table.is_valid() {
+        let help = "add `result = 2.5`, or `outputs = [2.5]` for `out` parameters";
+        table.reject(
+            table.span(),
+            "the case has neither a `result` nor `outputs`",
+            help,
+        );
+    }
+    let tolerance = table.optional::<f64>("tolerance");
+    if let Some(tolerance) = &tolerance
+        && !(0.0..f64::INFINITY).contains(&tolerance.value)
+    {
+        table.reject_value("tolerance", tolerance, "must be finite and at least 0");
+    }
+    FunctionCase {
+        arguments: arguments.map_or_else(Vec::new, |arguments| arguments.value),
+        result: result.map(|result| result.value),
+        outputs: outputs.map(|outputs| outputs.value),
+        tolerance: tolerance.map_or(DEFAULT_CASE_TOLERANCE, |tolerance| tolerance.value),
+    }
+}
+
+fn is_float(literal: &Literal) -> bool {
+    match literal {
+        Literal::Number { value, .. } => (*value as f32).is_finite(),
+        Literal::Boolean(_) => true,
+        Literal::List(list) => list.iter().all(is_float),
     }
 }

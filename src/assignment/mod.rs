@@ -15,12 +15,18 @@
 //! ```
 
 mod file;
+mod function;
+mod rules;
+mod template;
 
 use std::path::PathBuf;
 
 use toyproof_image::FrameInputs;
 
-use crate::report::Rubric;
+pub use self::function::{DEFAULT_CASE_TOLERANCE, FunctionCase, FunctionCases, FunctionTest, Subject};
+pub use self::rules::Rules;
+pub use self::template::Model;
+use crate::report::{Record, Rubric};
 
 /// The name of an assignment's file, which is used for the shaders of its folder.
 pub const FILE_NAME: &str = "assignment.toml";
@@ -35,8 +41,28 @@ pub struct Assignment {
     pub reference: Reference,
     /// The frames in which a shader must be right, at least one.
     pub frames: Vec<FrameInputs>,
-    /// The points, if the assignment gives any.
+    /// The points of the checks, if the assignment gives any points.
     pub rubric: Option<Rubric>,
+    /// The rules for the shaders' text.
+    pub rules: Option<Rules>,
+    /// The functions that are tested.
+    pub functions: Vec<FunctionTest>,
+}
+
+impl Assignment {
+    /// Tests the functions of a shader, and checks its rules; adds the results to its record. `subject` is none if
+    /// the shader does not compile.
+    pub fn check_text(&self, subject: Option<&Subject>, record: &mut Record) {
+        record.rules = self.rules.as_ref().map(|rules| match subject {
+            Some(subject) => rules.check(subject.files, subject.checked, subject.text),
+            None => rules.unchecked(),
+        });
+        let functions = self.functions.iter().map(|test| match subject {
+            Some(subject) => test.run(subject),
+            None => test.untested(),
+        });
+        record.functions = functions.collect();
+    }
 }
 
 /// What the shaders of an assignment are compared with.

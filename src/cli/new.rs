@@ -1,11 +1,19 @@
 //! `toyproof new`
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
-use toyproof_diagnostic::path_name;
+use toyproof_diagnostic::{Files, path_name};
+use toyproof_image as image;
 use toyproof_scene as scene;
+use toyproof_verify::Expected;
 
+use super::inputs::{LanguageArgs, parse_time_limit};
+use super::reference::{GivenReference, ReferenceArgs};
+use super::scenes::read_scene;
 use super::{Exit, Terminal};
+use crate::assignment::{FILE_NAME, Model};
+use crate::cli::files;
 
 /// Create a new file from a template
 #[derive(Debug, clap::Args)]
@@ -25,6 +33,15 @@ enum What {
         after_long_help = "Example:\n  toyproof new scene week1\n  toyproof render week1.toml -o week1.png"
     )]
     Scene(SceneArgs),
+    /// Create an assignment: a folder with a model solution, what shaders are checked against, and thumbnails
+    ///
+    /// From a shader, the model solution is the reference, in one frame and in further ones for the time and the
+    /// mouse if it reads them. From a scene, the scene is the reference, and the model solution is exported from it.
+    #[command(
+        after_long_help = "Example:\n  toyproof new assignment shadows --from solution.glsl\n  \
+                           toyproof check homework --assignment shadows/assignment.toml"
+    )]
+    Assignment(AssignmentArgs),
 }
 
 #[derive(Debug, clap::Args)]
@@ -35,6 +52,24 @@ struct SceneArgs {
     /// The file to create [default: NAME.toml]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+}
+
+#[derive(Debug, clap::Args)]
+struct AssignmentArgs {
+    /// The name of the assignment, which becomes the name of its folder
+    #[arg(value_parser = parse_name)]
+    name: String,
+    /// The model solution (.glsl) or the scene (.toml, or a name listed by `toyproof scenes`)
+    #[arg(long, value_name = "SHADER|SCENE")]
+    from: PathBuf,
+    /// The folder to create [default: NAME]
+    #[arg(short, long, value_name = "FOLDER")]
+    output: Option<PathBuf>,
+    /// The time limit for one image: seconds, or a number with a unit (500ms, 2m)
+    #[arg(long, value_name = "TIME", default_value = "10s", value_parser = parse_time_limit)]
+    timeout: Duration,
+    #[command(flatten)]
+    language: LanguageArgs,
 }
 
 /// Parses a name that is also the name of a file.
@@ -53,6 +88,10 @@ fn parse_name(text: &str) -> Result<String, String> {
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     match &args.what {
         What::Scene(args) => new_scene(args, terminal),
+        What::Assignment(args) => match new_assignment(args, terminal) {
+            Ok(()) => Exit::Success,
+            Err(()) => Exit::Error,
+        },
     }
 }
 
@@ -82,6 +121,107 @@ fn new_scene(args: &SceneArgs, terminal: &Terminal) -> Exit {
         terminal.note(&format!("  toyproof check {shader}"));
     }
     Exit::Success
+}
+
+/// The names of the files of an assignment.
+const SOLUTION: &str = "solution.glsl";
+const SCENE: &str = "scene.toml";
+
+/// Creates the folder of an assignment. Everything is rendered before the first file is written.
+fn new_assignment(args: &AssignmentArgs, terminal: &Terminal) -> Result<(), ()> {
+    let folder = args.output.clone().unwrap_or_else(|| PathBuf::from(&args.name));
+    let name = path_name(&folder);
+    if folder.exists() {
+        terminal.error(format_args!(
+            "{name} already exists; choose another name, or another folder with `-o`"
+        ));
+        return Err(());
+    }
+    let files = if files::is_shader(&args.from) {
+        from_shader(args, terminal)?
+    } else {
+        from_scene(args, terminal)?
+    };
+    for (file, bytes) in &files {
+        if !terminal.write(&folder.join(file), bytes) {
+            return Err(());
+        }
+    }
+    terminal.note(&format!("created {name}:"));
+    for (file, _) in &files {
+        terminal.note(&format!("  {file}"));
+    }
+    terminal.note("next:");
+    let assignment = quoted(&path_name(&folder.join(FILE_NAME)));
+    terminal.note(&format!("  edit {assignment}"));
+    terminal.note(&format!("  toyproof check {}", quoted(&name)));
+    terminal.note(&format!("  toyproof check SUBMISSIONS --assignment {assignment}"));
+    Ok(())
+}
+
+/// The names and the contents of files. The assignment is the last: once it exists, the others do.
+type NewFiles = Vec<(String, Vec<u8>)>;
+
+/// The files of an assignment whose reference is a shader.
+fn from_shader(args: &AssignmentArgs, terminal: &Terminal) -> Result<NewFiles, ()> {
+    let reference = ReferenceArgs::given(args.from.clone(), None);
+    let given = GivenReference::read(&reference, &args.language, args.timeout, terminal)?.ok_or(())?;
+    let (shader, checked) = given.shader().ok_or(())?;
+    let model = Model::Shader(checked);
+    let text = shader.text(checked).as_bytes().to_vec();
+    let frames = load(&model, terminal)?;
+    let expected = given.expected(frames.iter(), args.timeout, terminal)?;
+    let mut files = vec![(SOLUTION.to_owned(), text)];
+    for (index, (expected, frame)) in expected.iter().zip(&frames).enumerate() {
+        files.push(thumbnail(index, expected, frame, terminal)?);
+    }
+    files.push((FILE_NAME.to_owned(), model.assignment(SOLUTION).into_bytes()));
+    Ok(files)
+}
+
+/// The files of an assignment whose reference is a scene.
+fn from_scene(args: &AssignmentArgs, terminal: &Terminal) -> Result<NewFiles, ()> {
+    let text = read_scene(&args.from).map_err(|error| terminal.error(error))?;
+    let content = text.text().as_bytes().to_vec();
+    let mut parsed = Files::default();
+    let file = parsed.add(text);
+    let scene =
+        scene::parse(&parsed, file).map_err(|errors| terminal.diagnostics(&Vec::from(errors), &parsed))?;
+    let mut files = vec![(SCENE.to_owned(), content)];
+    match scene::export::shader(&scene) {
+        Ok(solution) => files.push((SOLUTION.to_owned(), solution.into_bytes())),
+        Err(error) => terminal.warn(format_args!("there is no {SOLUTION}: {error}")),
+    }
+    let model = Model::Scene {
+        is_animated: !scene.motions.is_empty(),
+    };
+    for (index, mut frame) in load(&model, terminal)?.into_iter().enumerate() {
+        frame.size = scene.film.size;
+        let expected = Expected::of_scene(scene.clone(), &frame);
+        files.push(thumbnail(index, &expected, &frame, terminal)?);
+    }
+    files.push((FILE_NAME.to_owned(), model.assignment(SCENE).into_bytes()));
+    Ok(files)
+}
+
+/// The frames of a new assignment, which have no files.
+fn load(model: &Model, terminal: &Terminal) -> Result<Vec<image::Frame>, ()> {
+    let frames = model.frames().into_iter();
+    let frames: Result<_, _> = frames.map(|inputs| inputs.load()).collect();
+    frames.map_err(|error| terminal.error(error))
+}
+
+/// The image of a frame, as students should see it.
+fn thumbnail(
+    index: usize,
+    expected: &Expected,
+    frame: &image::Frame,
+    terminal: &Terminal,
+) -> Result<(String, Vec<u8>), ()> {
+    let name = format!("frame-{}.png", index + 1);
+    let image = expected.image(frame).map_err(|failure| terminal.error(failure))?;
+    let bytes = image::encode(&image, name.as_ref()).map_err(|error| terminal.error(error))?;
+    Ok((name, bytes))
 }
 
 /// Quotes a file name for a shell, if it has spaces.

@@ -173,14 +173,18 @@ impl Record {
     /// States in which frames the shader is not right.
     fn name_frames(&mut self, frames: &[FrameRecord], shown: usize, planned: usize) {
         let count = grouped(planned as u64);
+        let all = match planned {
+            2 => "both frames".to_owned(),
+            _ => format!("all {count} frames"),
+        };
         if self.verdict.is_good() {
             let at = |frame: &FrameRecord| format!("at {}: {}", frame.label(), frame.reason);
             self.details = frames.iter().map(at).collect();
             self.reason = match self.verdict {
-                Verdict::Ok => format!(
-                    "the shader renders in all {count} frames; there is no reference to compare it with"
-                ),
-                _ => format!("all {count} frames agree with the reference"),
+                Verdict::Ok => {
+                    format!("the shader renders in {all}; there is no reference to compare it with")
+                }
+                _ => format!("{all} agree with the reference"),
             };
             return;
         }

@@ -51,7 +51,7 @@ pub fn gradescope(records: &[Record], rubric: &Rubric) -> String {
         let marks = rubric.marks(record).into_iter();
         marks.map(move |mark| Test {
             name: match records {
-                [_] => mark.name.to_owned(),
+                [_] => mark.name.into_owned(),
                 _ => format!("{}: {}", record.shader, mark.name),
             },
             name_format: Format::Text,

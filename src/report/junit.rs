@@ -7,7 +7,7 @@ use toyproof_verify::Verdict;
 
 use super::{Record, details};
 
-/// Formats the file. A fault of the shader is a failure; what prevented its verdict is an error; an
+/// Formats the file. A fault of the shader, or a violated requirement of an assignment, is a failure; what prevented its verdict is an error; an
 /// inconclusive verdict is skipped. Characters that XML 1.0 forbids are removed.
 #[must_use]
 pub fn junit(records: &[Record]) -> String {
@@ -24,10 +24,18 @@ pub fn junit(records: &[Record]) -> String {
 
 fn test_case(record: &Record) -> TestCase {
     let details = xml_text(&details(record));
-    let status = status(record.verdict).map(|mut status| {
+    let fault = record.faults().into_iter().next();
+    let (status, kind, message) = match (status(record.verdict), fault) {
+        (None, Some((kind, sentence))) => {
+            let failure = TestCaseStatus::non_success(NonSuccessKind::Failure);
+            (Some(failure), kind.to_owned(), sentence)
+        }
+        (status, _) => (status, record.verdict.to_string(), record.reason.clone()),
+    };
+    let status = status.map(|mut status| {
         status
-            .set_type(record.verdict.to_string())
-            .set_message(xml_text(&record.reason))
+            .set_type(kind)
+            .set_message(xml_text(&message))
             .set_description(details.as_str());
         status
     });

@@ -1,5 +1,6 @@
 //! Reports of the findings, for people and for programs: one file per format, each a function of the records.
 
+mod assigned;
 mod csv;
 mod explanation;
 mod frames;
@@ -15,6 +16,7 @@ mod sarif;
 mod terminal;
 mod trace;
 
+pub use assigned::{FunctionRecord, RulesRecord, Violation};
 pub use csv::csv;
 pub use explanation::{Explanation, explain, explanations};
 pub use frames::{CheckedFrame, FrameRecord};
@@ -25,6 +27,7 @@ pub use junit::junit;
 pub use reason::{Statement, failure_position, loop_truncated, state};
 pub use record::{Alternative, Mistake, Position, Record, Report, SCHEMA, Seconds};
 pub use repair::{Repair, RepairEdit, SourceRange, Suspect};
+pub(crate) use rubric::optional_points;
 pub use rubric::{Mark, Rubric, Visibility};
 pub use sarif::sarif;
 pub use terminal::{Detail, Layout, Tally, lines, place, summary};

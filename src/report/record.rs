@@ -11,7 +11,7 @@ use toyproof_verify::repair::SearchResult;
 use toyproof_verify::{CheckResult, Evidence, Failure, Findings, Reason, Verdict, decide};
 
 use super::reason::{Statement, state, state_reason};
-use super::{FrameRecord, Repair, Suspect};
+use super::{FrameRecord, FunctionRecord, Repair, RulesRecord, Suspect};
 
 /// The JSON Schema of a [`Report`].
 pub const SCHEMA: &str = include_str!("verdict.schema.json");
@@ -111,6 +111,12 @@ pub struct Record {
     /// above; null without an assignment.
     #[serde(default)]
     pub frames: Option<Vec<FrameRecord>>,
+    /// The rules of an assignment; null if it has none.
+    #[serde(default)]
+    pub rules: Option<RulesRecord>,
+    /// The tests of functions that an assignment has.
+    #[serde(default)]
+    pub functions: Vec<FunctionRecord>,
     /// The diagnostics on the shader and its scene.
     pub diagnostics: Vec<diagnostic::Json>,
     /// The time of each stage.
@@ -139,6 +145,8 @@ impl Record {
             is_search_cut: false,
             cause: None,
             frames: None,
+            rules: None,
+            functions: Vec::new(),
             diagnostics: Vec::new(),
             seconds: Seconds::default(),
         }
@@ -218,7 +226,7 @@ impl Record {
 }
 
 /// A position in a shader.
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Position {
     /// Line, from 1.
     pub line: usize,

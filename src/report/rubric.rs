@@ -1,8 +1,10 @@
 //! The points that a shader earns for each check, defined by a short TOML file.
 
+use std::borrow::Cow;
+
 use serde::Serialize;
 use toyproof_diagnostic::{Diagnostics, FileId, Files, grouped};
-use toyproof_scene::toml_reader::{self, Format, Table};
+use toyproof_scene::toml_reader::{self, Format, Located, Table};
 use toyproof_verify::compare::CheckSummary;
 use toyproof_verify::{MAX_UNDEFINED, MAX_UNSTABLE, Verdict, is_different};
 
@@ -21,7 +23,7 @@ static FORMAT: Format = Format {
 };
 
 /// The points of each check.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Rubric {
     compiles: f64,
     algorithm: CheckPoints,
@@ -57,8 +59,8 @@ pub enum Visibility {
 /// The points that a shader earned for one check.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mark {
-    /// `compiles`, `algorithm` or `precision`.
-    pub name: &'static str,
+    /// `compiles`, `algorithm` or `precision`; of an assignment also `rules`, or the name of a function.
+    pub name: Cow<'static, str>,
     /// The points earned, in [0, `of`], rounded to hundredths.
     pub points: f64,
     /// The maximum points.
@@ -110,7 +112,7 @@ impl Rubric {
         self.compiles + self.algorithm.points + self.precision.points
     }
 
-    /// Computes the marks of a shader, one for each check that has points.
+    /// Computes the marks of a shader, one for each check, and each part of an assignment, that has points.
     #[must_use]
     pub fn marks(&self, record: &Record) -> Vec<Mark> {
         let algorithm = algorithm(self.algorithm, record);
@@ -121,15 +123,25 @@ impl Rubric {
             "not graded: the algorithm check must earn points first".clone_into(&mut precision.why);
         }
         let marks = [compiles(self.compiles, record), algorithm, precision];
-        marks.into_iter().filter(|mark| mark.of > 0.0).collect()
+        let marks = marks.into_iter().filter(|mark| mark.of > 0.0);
+        marks.chain(record.assigned_marks()).collect()
     }
 }
 
-/// Reads the points of a table.
+/// Reads the points of a table, which must give them.
 fn points(table: &mut Table) -> f64 {
-    let Some(points) = table.required::<f64>("points") else {
-        return 0.0;
-    };
+    let points = table.required::<f64>("points");
+    points.map_or(0.0, |points| valid_points(table, &points))
+}
+
+/// Reads the points of a table; 0 if it gives none.
+pub(crate) fn optional_points(table: &mut Table) -> f64 {
+    let points = table.optional::<f64>("points");
+    points.map_or(0.0, |points| valid_points(table, &points))
+}
+
+/// Rejects points out of range.
+fn valid_points(table: &Table, points: &Located<f64>) -> f64 {
     if !(0.0..=f64::from(MAX_POINTS)).contains(&points.value) {
         let (max, found) = (grouped(u64::from(MAX_POINTS)), table.excerpt(points.span));
         table.reject(
@@ -178,7 +190,7 @@ impl CheckPoints {
             self.partial(1.0 - lost)
         };
         Mark {
-            name,
+            name: name.into(),
             points,
             of: self.points,
             why,
@@ -292,7 +304,7 @@ mod tests {
         Rubric::parse(&files, file).map_err(|errors| errors.iter().map(described).collect())
     }
 
-    fn points(rubric: &str, record: &Record) -> Vec<(&'static str, f64, f64)> {
+    fn points(rubric: &str, record: &Record) -> Vec<(Cow<'static, str>, f64, f64)> {
         let marks = read(rubric).unwrap().marks(record);
         marks
             .into_iter()

@@ -120,6 +120,12 @@ pub fn lines(record: &Record, layout: &Layout) -> String {
         }
         let hints = fix_lines(record).into_iter();
         lines.extend(hints.map(|(label, sentence)| layout.below(&format!("{label}: "), &sentence)));
+        let faults = record.faults().into_iter();
+        lines.extend(faults.map(|(label, sentence)| layout.below(&format!("{label}: "), &sentence)));
+        if layout.detail >= Detail::Full {
+            let right = record.right_functions();
+            lines.extend(right.map(|sentence| layout.below("function: ", &sentence)));
+        }
         if record.fix.is_none() {
             if layout.detail >= Detail::Full {
                 lines.extend(suspect_texts(record, layout));

@@ -434,3 +434,411 @@ fn errors_in_an_assignment_have_their_place() {
     "#]],
     );
 }
+
+/// A shader with the functions of a ray tracer, the body of one of which is to be inserted.
+fn with_intersection(function: &str) -> String {
+    format!(
+        "struct Ray {{ vec3 origin; vec3 direction; }};
+struct Sphere {{ vec3 center; float radius; }};
+{function}
+void mainImage(out vec4 fragColor, in vec2 fragCoord) {{
+    fragColor = vec4(fragCoord / iResolution.xy, 0.5, 1.0);
+}}
+"
+    )
+}
+
+/// The roots of t² + 2 b t + c = 0.
+const ROOTS: &str = "    vec3 f = o - center;
+    float b = dot(f, d);
+    float disc = b * b - dot(f, f) + r * r;
+    if (disc < 0.0) return -1.0;
+    float near = -b - sqrt(disc);
+    return near > 0.0 ? near : -b + sqrt(disc);
+}";
+
+/// A folder with an assignment whose image is a gradient, and one submission.
+fn intersecting(assignment: &str, function: &str) -> tempfile::TempDir {
+    let assignment = format!("reference = \"solution.glsl\"\n[[frame]]\nsize = [16, 9]\n{assignment}");
+    folder(&[
+        ("task/assignment.toml", &assignment),
+        ("task/solution.glsl", &with_intersection("")),
+        ("hw/a.glsl", &with_intersection(function)),
+    ])
+}
+
+/// The exit code, and the record of the only submission.
+fn checked(folder: &tempfile::TempDir) -> (i32, Value) {
+    let run = check(folder.path(), &[&TASK[..], &["--format", "json"]].concat());
+    (run.code, records(&run).remove(0))
+}
+
+const CASES: &str = "[[function]]\nname = \"intersectSphere\"\npoints = 2\n\
+    [[function.case]]\narguments = [[0.0, 0.0, 0.0], [0, 0, -1], [0, 0, -6], 1.5]\nresult = 4.5\n\
+    [[function.case]]\narguments = [[0, 0, 0], [0.0, 1.0, 0.0], [0, 0, -6], 1.5]\nresult = -1\n";
+
+#[test]
+fn a_function_is_tested_in_listed_cases() {
+    let right = format!("float intersectSphere(vec3 o, vec3 d, vec3 center, float r) {{\n{ROOTS}");
+    let (code, record) = checked(&intersecting(CASES, &right));
+    let function = &record["functions"][0];
+    assert_eq!(
+        (code, &function["passed"], &function["right"]),
+        (0, &true.into(), &2.into())
+    );
+    assert_eq!(function["at"]["line"], 3);
+
+    let wrong = right.replace("-b - sqrt", "-b + sqrt");
+    let (code, record) = checked(&intersecting(CASES, &wrong));
+    assert_eq!((code, &record["verdict"]), (1, &"correct".into()), "{record}");
+    let function = &record["functions"][0];
+    assert_eq!(
+        (&function["passed"], &function["right"]),
+        (&false.into(), &1.into())
+    );
+    assert_eq!(
+        function["message"],
+        "in case 1, intersectSphere([0.0, 0.0, 0.0], [0, 0, -1], [0, 0, -6], 1.5) is 7.5, expected 4.5"
+    );
+
+    let (code, record) = checked(&intersecting(CASES, ""));
+    let expected =
+        "there is no function `intersectSphere`; expected `float intersectSphere(vec3, vec3, vec3, float)`";
+    assert_eq!((code, &record["functions"][0]["message"]), (1, &expected.into()));
+
+    let other = "float intersectSphere(Ray ray, out float t) { t = 1.0; return 2.0; }";
+    let (code, record) = checked(&intersecting(CASES, other));
+    let expected = "`intersectSphere` has another signature: expected `float intersectSphere(vec3, vec3, vec3, float)`, \
+                    found `float intersectSphere(Ray, out float)`";
+    assert_eq!((code, &record["functions"][0]["message"]), (1, &expected.into()));
+}
+
+#[test]
+fn arguments_and_results_have_any_type() {
+    let cases = "[[function]]\nname = \"hit\"\n\
+        [[function.case]]\narguments = [[[0, 0, 0], [0, 0, -1]], [[0, 0, -6], 1.5], 3, true, [[1, 2], [3, 4]]]\n\
+        result = true\noutputs = [[0.0, 0.0, -4.5], [[2, 4], [6, 8]]]\n";
+    let function =
+        "bool hit(Ray ray, const in Sphere sphere, int count, bool flag, out vec3 point, inout mat2 m) {
+    point = ray.origin + (abs(sphere.center.z) - sphere.radius) * ray.direction;
+    m *= 2.0;
+    return flag && count == 3;
+}";
+    let folder = intersecting(cases, function);
+    let (code, record) = checked(&folder);
+    // The order of the parameters counts: `m` follows `point`, which is not an argument.
+    assert_eq!(
+        (code, &record["functions"][0]["passed"]),
+        (0, &true.into()),
+        "{record}"
+    );
+    let (code, record) = checked(&intersecting(cases, &function.replace("m *= 2.0", "m *= 2.001")));
+    assert_eq!(code, 1);
+    assert_eq!(
+        record["functions"][0]["message"],
+        "in case 1, hit([[0, 0, 0], [0, 0, -1]], [[0, 0, -6], 1.5], 3, true, [[1, 2], [3, 4]]) is \
+         (1.0, 0.0, 0.0, -4.5, 2.001, 4.002, 6.003, 8.004), expected (1.0, 0.0, 0.0, -4.5, 2.0, 4.0, 6.0, 8.0)"
+    );
+    // Functions are evaluated in double precision, and NaN is a result like others.
+    let cases = "[[function]]\nname = \"f\"\n[[function.case]]\narguments = [0.1]\nresult = 0.1\ntolerance = 1e-15\n\
+                 [[function.case]]\narguments = [1e30]\nresult = nan\n";
+    let function = "float f(float x) { return x > 1.0 ? sqrt(-x) : x; }";
+    let (code, record) = checked(&intersecting(cases, function));
+    assert_eq!(code, 0, "{record}");
+}
+
+#[test]
+fn a_function_of_any_signature_is_tested_with_the_cases_of_stress() {
+    let cases = "[[function]]\nname = \"intersectSphere\"\ncases = \"stress\"\npoints = 3\n";
+    let right = format!(
+        "float intersectSphere(Ray ray, Sphere sphere) {{\n    vec3 o = ray.origin, d = ray.direction, center = sphere.center;\n    float r = sphere.radius;\n{ROOTS}"
+    );
+    let (code, record) = checked(&intersecting(cases, &right));
+    let function = &record["functions"][0];
+    assert_eq!(
+        (code, &function["passed"], &function["cases"]),
+        (0, &true.into(), &240.into()),
+        "{record}"
+    );
+    let (code, record) = checked(&intersecting(cases, &right.replace("r * r", "r")));
+    let function = &record["functions"][0];
+    assert_eq!(
+        (code, &function["message"]),
+        (1, &"it does not square the radius".into())
+    );
+    let (code, record) = checked(&intersecting(
+        cases,
+        "float intersectSphere(float x) { return x; }",
+    ));
+    assert_eq!(
+        (code, &record["functions"][0]["cases"]),
+        (1, &0.into()),
+        "{record}"
+    );
+}
+
+#[test]
+fn a_function_that_does_not_end_is_not_right() {
+    let cases = "[[function]]\nname = \"f\"\n[[function.case]]\narguments = [1.0]\nresult = 1.0\n";
+    let endless = "float f(float x) { while (x > -1.0) x = abs(sin(x)) + 0.1; return x; }";
+    let folder = intersecting(cases, endless);
+    let run = check(
+        folder.path(),
+        &[&TASK[..], &["--timeout", "300ms", "--format", "json"]].concat(),
+    );
+    let record = records(&run).remove(0);
+    assert_eq!((run.code, &record["verdict"]), (1, &"correct".into()));
+    let message = record["functions"][0]["message"].as_str().unwrap();
+    assert!(message.starts_with("the test cannot be run: "), "{message}");
+}
+
+#[test]
+fn violated_rules_are_listed_with_their_lines() {
+    let rules = "[rules]\nmust_define = [\"intersectSphere\"]\nmust_not_call = [\"pow\", \"helper\"]\n\
+                 textures = false\nmax_lines = 9\npoints = 1\n";
+    let kept =
+        "float intersectSphere() { return 1.0; } // pow(1.0, 2.0)\n\n/* texture(iChannel0, vec2(0)) */";
+    let (code, record) = checked(&intersecting(rules, kept));
+    assert_eq!(
+        (code, &record["rules"]["violations"]),
+        (0, &serde_json::json!([]))
+    );
+
+    let broken = "float helper() {\n    return pow(2.0, 3.0) + texture(iChannel0, vec2(0.0)).x;\n}\nfloat g() { return helper(); }";
+    let folder = intersecting(&format!("{rules}{CASES}"), broken);
+    let flags = ["--out", "out", "--search", "0"];
+    let run = check(folder.path(), &[&TASK[..], &flags].concat());
+    assert_eq!(run.code, 1);
+    expect![[r#"
+        correct      hw/a.glsl  all 144 pixels agree with the reference
+                     rule: the function `intersectSphere` must be defined
+                     rule: line 4: `pow` must not be called
+                     rule: line 6: `helper` must not be called
+                     rule: line 4: textures must not be read
+                     function: there is no function `intersectSphere`; expected `float intersectSphere(vec3, vec3, vec3, float)`
+    "#]].assert_eq(&run.stdout);
+    let read = |name: &str| fs::read_to_string(folder.path().join("out").join(name)).unwrap();
+    let page = read("report.html");
+    assert!(
+        page.contains("<li>Rule: line 4: <code>pow</code> must not be called.</li>"),
+        "{page}"
+    );
+    assert!(
+        read("junit.xml").contains("<failure message=\"the function `intersectSphere` must be defined\"")
+    );
+    let results: Value = serde_json::from_str(&read("results.json")).unwrap();
+    let marks: Vec<_> = results["tests"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|test| {
+            let [score, of] = ["score", "max_score"].map(|key| test[key].as_f64().unwrap());
+            (test["name"].as_str().unwrap(), score, of)
+        })
+        .collect();
+    assert_eq!(marks, [("rules", 0.0, 1.0), ("intersectSphere", 0.0, 2.0)]);
+}
+
+#[test]
+fn a_shader_that_does_not_compile_earns_no_points() {
+    let folder = intersecting(
+        &format!("[rules]\ntextures = false\npoints = 1\n{CASES}"),
+        "float f(",
+    );
+    let (code, record) = checked(&folder);
+    assert_eq!((code, &record["verdict"]), (1, &"invalid".into()));
+    assert_eq!(record["rules"]["violations"], Value::Null);
+    let run = check(folder.path(), &[&TASK[..], &["--out", "out"]].concat());
+    assert!(
+        !run.stdout.contains("function:") && !run.stdout.contains("rule:"),
+        "{run:?}"
+    );
+    let results = fs::read_to_string(folder.path().join("out/results.json")).unwrap();
+    let results: Value = serde_json::from_str(&results).unwrap();
+    let tests = results["tests"].as_array().unwrap();
+    let outputs: Vec<_> = tests
+        .iter()
+        .map(|test| (&test["score"], test["output"].as_str().unwrap()))
+        .collect();
+    assert_eq!(outputs, [(&0.0.into(), "the shader does not compile"); 2]);
+}
+
+#[test]
+fn errors_in_rules_and_functions_have_their_place() {
+    let errors =
+        |text: &str, expected: &Expect| errors(&format!("reference = \"solution.glsl\"\n{text}"), expected);
+    errors(
+        "[rules]\nmust_define = \"f\"\nmust_not_call = [\"a b\"]\ntextures = 0\nmax_lines = 0\npoints = -1\n",
+        &expect![[r#"
+            assignment.toml:3:15: error[E0505]: `must_define` must be a list of strings, found a string
+            assignment.toml:4:17: error[E0506]: `must_not_call` must have names of functions; `a b` is none
+            assignment.toml:5:12: error[E0505]: `textures` must be `true` or `false`, found 0
+            assignment.toml:6:13: error[E0506]: `max_lines` must be from 1 to 1,000,000, found 0
+            assignment.toml:7:10: error[E0506]: `points` must be from 0 to 1,000,000, found -1
+        "#]],
+    );
+    errors(
+        "[rules]\nmax_line = 4\n",
+        &expect![[r#"
+        assignment.toml:3:1: error[E0505]: unknown key `max_line` in [rules]
+    "#]],
+    );
+    errors(
+        "[[function]]\n",
+        &expect![[r#"
+        assignment.toml:2:1: error[E0505]: missing key `name` in [[function]]
+    "#]],
+    );
+    errors(
+        "[[function]]\nname = \"f()\"\ncases = \"many\"\n",
+        &expect![[r#"
+        assignment.toml:3:8: error[E0506]: `name` must be the name of a function, found "f()"
+        assignment.toml:4:9: error[E0505]: unknown source of cases `many`
+    "#]],
+    );
+    errors(
+        "[[function]]\nname = \"f\"\n",
+        &expect![[r#"
+        assignment.toml:2:1: error[E0506]: the function has no cases
+    "#]],
+    );
+    errors(
+        "[[function]]\nname = \"f\"\n[[function.case]]\n",
+        &expect![[r#"
+        assignment.toml:4:1: error[E0505]: missing key `arguments` in [[case]]
+    "#]],
+    );
+    errors(
+        "[[function]]\nname = \"f\"\n[[function.case]]\narguments = [1.0]\n",
+        &expect![[r#"
+            assignment.toml:4:1: error[E0506]: the case has neither a `result` nor `outputs`
+        "#]],
+    );
+    errors(
+        "[[function]]\nname = \"f\"\n[[function.case]]\narguments = [\"1.0\"]\nresult = \"yes\"\n",
+        &expect![[r#"
+            assignment.toml:5:14: error[E0505]: `arguments` must be a list of values, found a string
+            assignment.toml:6:10: error[E0505]: `result` must be a number, `true`, `false` or a list of these, found a string
+        "#]],
+    );
+    errors(
+        "[[function]]\nname = \"f\"\n[[function.case]]\narguments = [1e39]\nresult = 1\ntolerance = -1\n",
+        &expect![[r#"
+            assignment.toml:5:13: error[E0506]: `arguments` must have finite numbers that float32 can hold, found [1e39]
+            assignment.toml:7:13: error[E0506]: `tolerance` must be finite and at least 0, found -1
+        "#]],
+    );
+    errors(
+        "[[function]]\nname = \"f\"\ncases = \"stress\"\n[[function.case]]\narguments = []\nresult = 1\n",
+        &expect![[r#"
+            assignment.toml:4:9: error[E0506]: `cases` cannot be used with [[function.case]]
+        "#]],
+    );
+    errors(
+        &format!("{CASES}{CASES}"),
+        &expect![[r#"
+        assignment.toml:11:1: error[E0506]: there are two tests of `intersectSphere`
+    "#]],
+    );
+}
+
+#[test]
+fn a_new_assignment_accepts_its_model_solution() {
+    let folder = folder(&[("model.glsl", DISK)]);
+    let new = ["new", "assignment", "disks", "--from", "model.glsl"];
+    let run = toyproof(folder.path(), &new);
+    assert_eq!(run.code, 0, "{run:?}");
+    let read = |name: &str| fs::read_to_string(folder.path().join("disks").join(name)).unwrap();
+    assert_eq!(read("solution.glsl"), DISK);
+    let text = read("assignment.toml");
+    let frames = text.lines().filter(|line| *line == "[[frame]]").count();
+    assert_eq!(frames, 3, "one for the time, one for the mouse: {text}");
+    for index in 1..=frames {
+        let path = folder.path().join(format!("disks/frame-{index}.png"));
+        assert_eq!(toyproof::image::read(&path).unwrap().size(), [320, 180]);
+    }
+    let check = check(folder.path(), &["disks", "--format", "json"]);
+    let record = &records(&check)[0];
+    assert_eq!(
+        (check.code, &record["verdict"]),
+        (0, &"correct".into()),
+        "{record}"
+    );
+    assert_eq!(record["frames"].as_array().unwrap().len(), 3);
+
+    let again = toyproof(folder.path(), &new);
+    assert_eq!(again.code, 2);
+    assert!(again.stderr.contains("disks already exists"), "{again:?}");
+}
+
+#[test]
+fn the_keys_in_the_comments_of_a_new_assignment_are_valid() {
+    let folder = folder(&[(
+        "model.glsl",
+        &with_intersection(&format!(
+            "float intersectSphere(vec3 o, vec3 d, vec3 center, float r) {{\n{ROOTS}"
+        )),
+    )]);
+    let new = ["new", "assignment", "spheres", "--from", "model.glsl"];
+    assert_eq!(toyproof(folder.path(), &new).code, 0);
+    let path = folder.path().join("spheres/assignment.toml");
+    let text = fs::read_to_string(&path).unwrap();
+    assert!(text.contains("# must_define = [\"intersectSphere\"]"), "{text}");
+    // What is meant to be used without the comment has an `=`, or is a header.
+    let lines = text.lines().map(|line| match line.strip_prefix("# ") {
+        Some(key) if key.starts_with('[') || (!key.starts_with(' ') && key.contains(" = ")) => key,
+        _ => line,
+    });
+    fs::write(&path, lines.collect::<Vec<_>>().join("\n")).unwrap();
+    let run = check(folder.path(), &["spheres", "--format", "json"]);
+    let record = &records(&run)[0];
+    assert_eq!(run.code, 0, "{record}");
+    assert_eq!(record["functions"][0]["passed"], true);
+}
+
+#[test]
+fn a_new_assignment_from_a_scene_has_its_solution() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = toyproof(
+        folder.path(),
+        &[
+            "new",
+            "assignment",
+            "week 2",
+            "--from",
+            "02-sphere",
+            "-o",
+            "a/week2",
+        ],
+    );
+    assert_eq!(run.code, 0, "{run:?}");
+    for file in ["scene.toml", "solution.glsl", "frame-1.png", "assignment.toml"] {
+        assert!(folder.path().join("a/week2").join(file).is_file(), "{file}");
+    }
+    let run = check(folder.path(), &["a/week2", "--size", "64x36", "-q"]);
+    assert_eq!(run.code, 0, "{run:?}");
+    assert!(run.stdout.starts_with("correct"), "{run:?}");
+}
+
+#[test]
+fn a_model_that_cannot_be_used_leaves_no_file() {
+    let undefined =
+        "void mainImage(out vec4 c, in vec2 p) { float a[2]; a[0] = 0.25; c = vec4(a[int(p.x)]); }";
+    let folder = folder(&[
+        ("broken.glsl", "void mainImage("),
+        ("undefined.glsl", undefined),
+        ("s.toml", "[film]\nsize = 3\n"),
+    ]);
+    for (from, message) in [
+        ("broken.glsl", "broken.glsl:1:"),
+        ("undefined.glsl", "has no defined color in"),
+        ("missing.glsl", "no such file"),
+        ("s.toml", "s.toml:2:"),
+        ("nothing", "no such file or built-in scene"),
+    ] {
+        let run = toyproof(folder.path(), &["new", "assignment", "new", "--from", from]);
+        assert_eq!(run.code, 2, "{from}: {run:?}");
+        assert!(run.stderr.contains(message), "{from}: {run:?}");
+        assert!(!folder.path().join("new").exists(), "{from}");
+    }
+}

@@ -79,7 +79,8 @@ fn block(page: &str, text: &str) -> String {
         .text
 }
 
-/// A folder with the files that the pages assume: the course, submissions of two assignments, and a rubric.
+/// A folder with the files that the pages assume: the course, submissions of two assignments, one of which
+/// has a file, and a rubric.
 fn assumed_files() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     assert_eq!(toyproof(folder.path(), &["scenes", "--write", "glsl"]).code, 0);
@@ -110,8 +111,13 @@ fn assumed_files() -> tempfile::TempDir {
         .replace("t += d;", "t += 0.5 * d;")
         .replace("d < 1e-4", "d < 1e-3");
     let large = torus.replace("length(p.xz) - 1.0", "length(p.xz) - 1.02");
-    fs::create_dir(folder.path().join("torus")).unwrap();
+    let assignment = block("docs/guide/assignments.md", "[rubric.compiles]");
+    for name in ["torus", "torus-task"] {
+        fs::create_dir(folder.path().join(name)).unwrap();
+    }
     for (name, text) in [
+        ("torus-task/assignment.toml", assignment),
+        ("torus-task/solution.glsl", torus.clone()),
         ("solution.glsl", torus),
         ("torus/half.glsl", half),
         ("torus/large.glsl", large),

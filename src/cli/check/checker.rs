@@ -22,6 +22,7 @@ use super::Args;
 use super::images::{FIXED, IMAGES, ImageKind};
 use super::plan::{Plan, PlannedFrame};
 use super::reference::{CachedReference, Reference, References, SceneCache};
+use crate::assignment::Subject;
 use crate::cli::files::{Input, ReadError};
 use crate::cli::inputs::{frame_flags, shell_word};
 use crate::cli::names::{Names, with_suffix};
@@ -83,7 +84,8 @@ fn key(found: &Input, args: &Args, plan: &Plan, references: &References) -> Opti
     add(format!("{:?}", build()?).as_bytes());
     let named = (&plan.reference.scene, &plan.reference.reference);
     add(format!("{settings:?} {named:?} {}", found.name()).as_bytes());
-    add(plan.assignment.as_deref().unwrap_or_default().as_bytes());
+    let assignment = plan.assignment.as_ref().map(|(_, text)| text.as_bytes());
+    add(assignment.unwrap_or_default());
     add(files::read(found).ok()?.text().as_bytes());
     if let Some(content) = references.content(found) {
         add(&content.ok()?);
@@ -262,6 +264,21 @@ impl<'a> Checker<'a> {
         }
         outcome.report(shader.lints.warnings.clone(), &shader.files);
         let findings = self.check_frames(context, &mut outcome, &shader, reference.as_ref());
+        if let Some((assignment, _)) = &self.plan.assignment {
+            let subject = shader.checked.as_ref().ok().map(|checked| Subject {
+                checked,
+                files: &shader.files,
+                text: shader.text(checked),
+                lenient: self.args.language.is_lenient(),
+                timeout: self.args.driver.timeout(),
+            });
+            let subject = subject.filter(|_| outcome.record.verdict != Verdict::Invalid);
+            let mut check_text = || assignment.check_text(subject.as_ref(), &mut outcome.record);
+            match &context.pool {
+                Some(pool) => pool.install(check_text),
+                None => check_text(),
+            }
+        }
         if let (Some(out), Some(stem)) = (&self.args.out, &submission.output_stem) {
             keep(out, stem, &IMAGES, findings.as_ref(), &mut outcome);
         }

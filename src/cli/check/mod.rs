@@ -461,7 +461,7 @@ impl Batch<'_> {
         let verdicts = || report.shaders().iter().map(|record| record.verdict);
         if failed || verdicts().any(|verdict| verdict == Verdict::Error) {
             Exit::Error
-        } else if verdicts().all(Verdict::is_good) {
+        } else if report.shaders().iter().all(Record::is_passed) {
             Exit::Success
         } else {
             Exit::ShaderFault

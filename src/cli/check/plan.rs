@@ -20,8 +20,8 @@ pub(super) struct Plan {
     /// The frames, at least one.
     pub(super) frames: Vec<PlannedFrame>,
     pub(super) rubric: Option<Rubric>,
-    /// The text of the assignment, if there is one.
-    pub(super) assignment: Option<String>,
+    /// The assignment and its text, if there is one.
+    pub(super) assignment: Option<(Assignment, String)>,
 }
 
 /// A frame in which shaders are checked.
@@ -55,14 +55,16 @@ impl Plan {
             let (assignment, text) = read(&path, terminal)?;
             terminal.detail(&format!("assignment: {}", path_name(&path)));
             if !args.frame.is_given() {
-                frames = assignment.frames;
+                frames.clone_from(&assignment.frames);
             }
-            plan.reference = match assignment.reference {
-                assignment::Reference::Scene(scene) => ReferenceArgs::scene(scene),
-                assignment::Reference::Given { path, tolerance } => ReferenceArgs::given(path, tolerance),
+            plan.reference = match &assignment.reference {
+                assignment::Reference::Scene(scene) => ReferenceArgs::scene(scene.clone()),
+                assignment::Reference::Given { path, tolerance } => {
+                    ReferenceArgs::given(path.clone(), *tolerance)
+                }
             };
-            plan.rubric = plan.rubric.or(assignment.rubric);
-            plan.assignment = Some(text);
+            plan.rubric = plan.rubric.or_else(|| assignment.rubric.clone());
+            plan.assignment = Some((assignment, text));
         }
         for inputs in frames {
             let frame = inputs.load().map_err(|error| terminal.error(error))?;

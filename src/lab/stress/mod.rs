@@ -15,6 +15,7 @@ mod summary;
 mod tally;
 
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 use axis::{Case, Kind, Step, axes};
 use cells::Cells;
@@ -136,9 +137,9 @@ pub fn study(
                     Ok(())
                 }
             };
-            record("f32", 24, CPU, &render_on_cpu::<f32>(&program, &frame)?)?;
+            record("f32", 24, CPU, &render_on_cpu::<f32>(&program, &frame, None)?)?;
             if subject.in_f64 {
-                record("f64", 53, CPU, &render_on_cpu::<f64>(&program, &frame)?)?;
+                record("f64", 53, CPU, &render_on_cpu::<f64>(&program, &frame, None)?)?;
             }
             if let Some(worker) = worker.as_deref_mut() {
                 let (colors, device) = render_on_gpu(worker, &checked, &frame, settings.float)?;
@@ -236,9 +237,14 @@ fn case_frame(cases: &[Case]) -> Frame {
 }
 
 /// Runs a shader on the evaluator, and returns the colors of all pixels in order: one per case, then padding.
-fn render_on_cpu<N: Number>(program: &Program, frame: &Frame) -> Result<Vec<[f64; 3]>, Failure> {
+fn render_on_cpu<N: Number>(
+    program: &Program,
+    frame: &Frame,
+    deadline: Option<Instant>,
+) -> Result<Vec<[f64; 3]>, Failure> {
     let settings = eval::Settings::<N> {
         undefined: UndefinedPolicy::Plain,
+        deadline,
         ..eval::Settings::default()
     };
     let framebuffer = program.render(frame, &settings)?.framebuffer;

@@ -35,7 +35,7 @@ impl Article<'_> {
 <h2 id="h{index}" tabindex="-1">{name}</h2>
 {facts}<p class="result"><span class="verdict {verdict}">{verdict_term}</span> {reason}</p>
 {details}{mistake}{fix}{help}<div class="images"></div>
-{frames}{checks}{source}</article>
+{assigned}{frames}{checks}{source}</article>
 "#,
             name = Text(name),
             images = self.images(),
@@ -50,6 +50,7 @@ impl Article<'_> {
                 .unwrap_or_default(),
             fix = self.fix(),
             help = record.help.as_deref().map(command).unwrap_or_default(),
+            assigned = assigned(record),
             frames = frames(record),
             checks = checks(record),
             source = source(record, self.exhibit.source.as_deref(), self.limit, self.glossary),
@@ -193,12 +194,25 @@ fn details(details: &[String]) -> String {
     format!("<ul class=\"details\">\n{}</ul>\n", details.collect::<String>())
 }
 
+/// The violated rules and the tested functions of an assignment.
+fn assigned(record: &Record) -> String {
+    let faults = record.faults().into_iter();
+    let right = record.right_functions().map(|sentence| ("function", sentence));
+    let items: String = faults
+        .chain(right)
+        .map(|(label, text)| format!("<li>{}</li>\n", sentence(&format!("{label}: {text}"))))
+        .collect();
+    if items.is_empty() {
+        return items;
+    }
+    format!("<h3>Rules and functions</h3>\n<ul class=\"assigned\">\n{items}</ul>\n")
+}
+
 /// The list of the frames in which the shader was checked, if there are several; the images show the first
 /// with the shader's verdict.
 fn frames(record: &Record) -> String {
-    let frames = match record.frames.as_deref() {
-        Some(frames @ [_, _, ..]) => frames,
-        _ => return String::new(),
+    let Some(frames @ [_, _, ..]) = record.frames.as_deref() else {
+        return String::new();
     };
     let shown = record.shown_frame();
     let items = frames.iter().enumerate().map(|(index, frame)| {

@@ -11,8 +11,8 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 use toyproof_diagnostic::{Diagnostic, Diagnostics, FileId, Files, Span, grouped, nearest, plural};
 
-pub use self::value::Value;
 use self::value::describe;
+pub use self::value::{Literal, Value};
 
 /// What is particular to one kind of file.
 #[derive(Debug)]

@@ -125,16 +125,64 @@ impl Value for String {
     }
 }
 
-impl Value for Vec<f64> {
-    const EXPECTED: &'static str = "a list of numbers";
-    const EXAMPLE: &'static str = "[1.0, 2.0]";
+/// A number, a truth value, or a list of such: a value whose type the file does not determine.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Literal {
+    /// A number.
+    Number {
+        /// The number.
+        value: f64,
+        /// Whether it is written as an integer.
+        is_integer: bool,
+    },
+    /// `true` or `false`.
+    Boolean(bool),
+    /// A list.
+    List(Vec<Literal>),
+}
+
+impl Value for Literal {
+    const EXPECTED: &'static str = "a number, `true`, `false` or a list of these";
+    const EXAMPLE: &'static str = "1.0";
 
     fn read(value: &Spanned<DeValue>) -> Result<Self, Mismatch> {
-        let DeValue::Array(values) = value.get_ref() else {
-            return Err(Mismatch::of(value));
-        };
-        values.iter().map(f64::read).collect()
+        match value.get_ref() {
+            DeValue::Integer(_) | DeValue::Float(_) => Ok(Self::Number {
+                value: f64::read(value)?,
+                is_integer: matches!(value.get_ref(), DeValue::Integer(_)),
+            }),
+            DeValue::Boolean(value) => Ok(Self::Boolean(*value)),
+            // The parser limits the nesting.
+            DeValue::Array(values) => values
+                .iter()
+                .map(Self::read)
+                .collect::<Result<_, _>>()
+                .map(Self::List),
+            _ => Err(Mismatch::of_number(value)),
+        }
     }
+}
+
+macro_rules! lists_of_any_length {
+    ($($element:ty: $expected:literal, $example:literal;)*) => {$(
+        impl Value for Vec<$element> {
+            const EXPECTED: &'static str = $expected;
+            const EXAMPLE: &'static str = $example;
+
+            fn read(value: &Spanned<DeValue>) -> Result<Self, Mismatch> {
+                match value.get_ref() {
+                    DeValue::Array(values) => values.iter().map(<$element>::read).collect(),
+                    _ => Err(Mismatch::of(value)),
+                }
+            }
+        }
+    )*};
+}
+
+lists_of_any_length! {
+    f64: "a list of numbers", "[1.0, 2.0]";
+    String: "a list of strings", "[\"name\"]";
+    Literal: "a list of values", "[[0.0, 0.0, 4.0], 1.5]";
 }
 
 /// Reads a list of exactly `N` values.

@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 use toyproof_eval as eval;
 use toyproof_glsl::Checked;
-use toyproof_image::Frame;
+use toyproof_image::{Frame, Image};
 use toyproof_scene::Scene;
 use toyproof_tracer::{ColorRange, EpsilonSet, Tracer};
 
@@ -146,6 +146,16 @@ impl Expected {
             NumberType::Double => self.tolerance(),
             NumberType::Single => SEEN.max(self.tolerance()),
         }
+    }
+
+    /// Returns the whole image, in the frame of the reference.
+    ///
+    /// # Errors
+    /// If a shader that is too large for the cache cannot be evaluated again.
+    pub fn image(&self, frame: &Frame) -> Result<Image, eval::Failure> {
+        let bands = frame.bands().map(|rows| self.rows(&rows));
+        let images = bands.map(|band| band.map(|band| band.image.clone()));
+        Ok(Image::of_bands(images.collect::<Result<_, _>>()?))
     }
 
     /// Returns a band of the reference. Callers block while another thread renders it, so no rayon thread may

@@ -7,6 +7,7 @@ mod role;
 mod signature;
 
 use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
 
 use serde::Serialize;
 use toyproof_eval::{Program, UndefinedPolicy};
@@ -88,6 +89,12 @@ pub struct Example {
     pub found_at: String,
 }
 
+/// A shader with another `mainImage` than its own, which is kept as `tpMainImage`.
+#[must_use]
+pub fn with_main(text: &str, main: &str) -> String {
+    format!("#define mainImage tpMainImage\n{text}\n#undef mainImage\n{main}")
+}
+
 /// A shader that calls a function of `text` for each case.
 #[must_use]
 pub fn subject(text: &str, signature: &Signature, options: glsl::Options) -> Subject {
@@ -95,11 +102,7 @@ pub fn subject(text: &str, signature: &Signature, options: glsl::Options) -> Sub
     Subject {
         name: signature.name.clone(),
         kind: Kind::Spheres,
-        // The user's own `mainImage` is kept under another name.
-        text: format!(
-            "#define mainImage tpMainImage\n{text}\n#undef mainImage\n{}",
-            main(&steps, &result)
-        ),
+        text: with_main(text, &main(&steps, &result)),
         in_f64: true,
         reading: Reading::Function(signature.clone()),
         options,
@@ -126,6 +129,7 @@ pub fn examine(
     let runner = FunctionRunner {
         program: &program,
         signature,
+        deadline: None,
     };
     let convention_f32 = runner.miss_convention::<f32>()?;
     let convention_f64 = runner.miss_convention::<f64>()?;
@@ -142,16 +146,61 @@ pub fn examine(
     })
 }
 
+/// The results of a function for rays and spheres of typical size.
+#[derive(Debug, Clone, Copy)]
+pub struct TypicalResults {
+    /// The number of cases.
+    pub cases: u64,
+    /// The number of cases with the right result.
+    pub right: u64,
+    /// The mistake that explains the others.
+    pub mistake: Option<Mistake>,
+}
+
+/// Tests a function in f64, for rays of length 1 and spheres of typical size. `timeout` is the time limit of its
+/// compilation and of its evaluation.
+///
+/// # Errors
+///
+/// [`Failure`] if the function cannot be run in time.
+pub fn test_typical(
+    subject: &Subject,
+    signature: &Signature,
+    timeout: Duration,
+) -> Result<TypicalResults, Failure> {
+    let checked = check_subject(subject)?;
+    let program = Program::prepared_within(&checked, UndefinedPolicy::Plain, Some(timeout))
+        .map_err(toyproof_eval::Failure::from)?;
+    let runner = FunctionRunner {
+        program: &program,
+        signature,
+        deadline: Some(Instant::now() + timeout),
+    };
+    let convention = runner.miss_convention::<f64>()?;
+    let ray_spheres = typical_cases(true);
+    let outcomes = runner.outcomes::<f64>(&ray_spheres, &convention)?;
+    let outcomes: Vec<_> = ray_spheres.into_iter().zip(outcomes).collect();
+    let is_right =
+        |(ray_sphere, outcome): &&(RaySphere, Outcome)| outcome.is_right(&reference(ray_sphere, false));
+    let right = outcomes.iter().filter(is_right).count();
+    Ok(TypicalResults {
+        cases: outcomes.len() as u64,
+        right: right as u64,
+        mistake: mistake::recognize(&outcomes, &[], convention.behind_is_miss()),
+    })
+}
+
 /// Evaluates a function on chosen cases.
 struct FunctionRunner<'a> {
     program: &'a Program,
     signature: &'a Signature,
+    deadline: Option<Instant>,
 }
 
 impl FunctionRunner<'_> {
     fn colors<N: toyproof_eval::Number>(&self, ray_spheres: &[RaySphere]) -> Result<Vec<[f64; 3]>, Failure> {
         let cases: Vec<_> = ray_spheres.iter().copied().map(Case::Sphere).collect();
-        let mut colors = render_on_cpu::<N>(self.program, &case_frame(&cases))?;
+        let mut colors = render_on_cpu::<N>(self.program, &case_frame(&cases), self.deadline)?;
         colors.truncate(ray_spheres.len());
         Ok(colors)
     }

@@ -38,6 +38,7 @@ pub fn replacements(
     let runner = FunctionRunner {
         program: &program,
         signature,
+        deadline: None,
     };
     let Some(new_body) = runner.body()? else {
         return Ok(Vec::new());
@@ -76,6 +77,7 @@ impl FunctionRunner<'_> {
         let other = FunctionRunner {
             program: &program,
             signature,
+            deadline: None,
         };
         let ray_spheres = super::typical_cases(true);
         let ours = self.outcomes::<f64>(&ray_spheres, &self.miss_convention::<f64>()?)?;

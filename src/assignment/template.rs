@@ -1,0 +1,128 @@
+//! An assignment to begin with.
+
+use std::fmt::Write as _;
+
+use toyproof_glsl::Checked;
+use toyproof_glsl::tree::{ExprKind, Input, VariableKind};
+use toyproof_image::FrameInputs;
+
+/// The size of the frames of an assignment from a shader, in pixels.
+const SIZE: [u32; 2] = [320, 180];
+
+/// The time of the frame that shows motion, in seconds: not a period of common animations.
+const TIME: f32 = 2.3;
+
+/// What a new assignment is made from.
+#[derive(Debug, Clone, Copy)]
+pub enum Model<'a> {
+    /// A model solution.
+    Shader(&'a Checked),
+    /// A scene.
+    Scene {
+        /// Whether something in it moves.
+        is_animated: bool,
+    },
+}
+
+impl Model<'_> {
+    /// The frames in which shaders should be compared with the model: one, and another for the time and for the
+    /// mouse if the image may depend on them.
+    #[must_use]
+    pub fn frames(&self) -> Vec<FrameInputs> {
+        let size = match self {
+            Self::Shader(_) => Some(SIZE),
+            Self::Scene { .. } => None,
+        };
+        let still = FrameInputs {
+            size,
+            ..FrameInputs::default()
+        };
+        let mut frames = vec![still.clone()];
+        if self.is_animated() {
+            frames.push(FrameInputs {
+                time: TIME,
+                frame: (TIME * toyproof_image::FRAME_RATE) as i32,
+                ..still.clone()
+            });
+        }
+        if self.reads(Input::Mouse) {
+            // A click and a drag that differ in both coordinates.
+            let [width, height] = SIZE.map(|side| side as f32);
+            let mouse = [0.25 * width, 0.6 * height, 0.5 * width, 0.5 * height];
+            frames.push(FrameInputs { mouse, ..still });
+        }
+        frames
+    }
+
+    fn is_animated(&self) -> bool {
+        match self {
+            Self::Shader(_) => self.reads(Input::Time) || self.reads(Input::Frame),
+            Self::Scene { is_animated } => *is_animated,
+        }
+    }
+
+    fn reads(&self, input: Input) -> bool {
+        let Self::Shader(checked) = self else {
+            return false;
+        };
+        let tree = &checked.tree;
+        tree.exprs.iter().any(|(_, expr)| match expr.kind {
+            ExprKind::Variable(variable) => tree[variable].kind == VariableKind::Input(input),
+            _ => false,
+        })
+    }
+
+    /// The functions that the model solution defines, apart from `mainImage`.
+    fn functions(&self) -> Vec<&str> {
+        let Self::Shader(checked) = self else {
+            return Vec::new();
+        };
+        let functions = checked.tree.functions.iter().map(|(_, function)| function);
+        let defined = functions.filter(|function| function.body.is_some() && function.name != "mainImage");
+        let mut names: Vec<_> = defined.map(|function| function.name.as_str()).collect();
+        // Overloads follow each other or not.
+        names.sort_unstable();
+        names.dedup();
+        names
+    }
+
+    /// The text of an assignment for this model, whose file is named, with comments on all keys.
+    #[must_use]
+    pub fn assignment(&self, file: &str) -> String {
+        let (reference, tolerance) = match self {
+            Self::Shader(_) => (
+                format!("reference = \"{file}\""),
+                "# tolerance = 0.5                # the largest difference of a color, in 8-bit levels\n",
+            ),
+            Self::Scene { .. } => (format!("scene = \"{file}\""), ""),
+        };
+        let frames: String = self.frames().iter().map(frame).collect();
+        let functions = self.functions();
+        let quoted: Vec<_> = functions.iter().map(|name| format!("\"{name}\"")).collect();
+        let names = if quoted.is_empty() {
+            "\"intersectSphere\"".to_owned()
+        } else {
+            quoted.join(", ")
+        };
+        include_str!("template.toml")
+            .replace("{reference}\n", &format!("{reference}\n{tolerance}"))
+            .replace("{frames}\n", &frames)
+            .replace("{functions}", &names)
+    }
+}
+
+/// The table of a frame.
+fn frame(inputs: &FrameInputs) -> String {
+    let mut text = String::from("\n[[frame]]\n");
+    if let Some([width, height]) = inputs.size {
+        let _ = writeln!(text, "size = [{width}, {height}]");
+    }
+    if inputs.time != 0.0 {
+        let _ = writeln!(text, "time = {:?}\nframe = {}", inputs.time, inputs.frame);
+    }
+    if inputs.mouse != [0.0; 4] {
+        let [x, y, z, w] = inputs.mouse;
+        let _ = writeln!(text, "mouse = [{x:?}, {y:?}, {z:?}, {w:?}]");
+    }
+    text
+}
