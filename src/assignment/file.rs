@@ -252,7 +252,7 @@ fn names(table: &mut Table, key: &'static str) -> Vec<String> {
     if let Some(name) = value.iter().find(|name| !is_identifier(name)) {
         table.reject(
             span,
-            format!("`{key}` must have names of functions; `{name}` is none"),
+            format!("`{key}` must list names of functions; `{name}` is not a name"),
             "",
         );
     }

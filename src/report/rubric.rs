@@ -304,11 +304,14 @@ mod tests {
         Rubric::parse(&files, file).map_err(|errors| errors.iter().map(described).collect())
     }
 
-    fn points(rubric: &str, record: &Record) -> Vec<(Cow<'static, str>, f64, f64)> {
+    fn points(rubric: &str, record: &Record) -> Vec<(&'static str, f64, f64)> {
         let marks = read(rubric).unwrap().marks(record);
         marks
             .into_iter()
-            .map(|mark| (mark.name, mark.points, mark.of))
+            .map(|mark| match mark.name {
+                Cow::Borrowed(name) => (name, mark.points, mark.of),
+                Cow::Owned(name) => panic!("{name} is not a check"),
+            })
             .collect()
     }
 

@@ -620,7 +620,7 @@ fn violated_rules_are_listed_with_their_lines() {
     let read = |name: &str| fs::read_to_string(folder.path().join("out").join(name)).unwrap();
     let page = read("report.html");
     assert!(
-        page.contains("<li>Rule: line 4: <code>pow</code> must not be called.</li>"),
+        page.contains("<li>rule: line 4: <code>pow</code> must not be called</li>"),
         "{page}"
     );
     assert!(
@@ -671,7 +671,7 @@ fn errors_in_rules_and_functions_have_their_place() {
         "[rules]\nmust_define = \"f\"\nmust_not_call = [\"a b\"]\ntextures = 0\nmax_lines = 0\npoints = -1\n",
         &expect![[r#"
             assignment.toml:3:15: error[E0505]: `must_define` must be a list of strings, found a string
-            assignment.toml:4:17: error[E0506]: `must_not_call` must have names of functions; `a b` is none
+            assignment.toml:4:17: error[E0506]: `must_not_call` must list names of functions; `a b` is not a name
             assignment.toml:5:12: error[E0505]: `textures` must be `true` or `false`, found 0
             assignment.toml:6:13: error[E0506]: `max_lines` must be from 1 to 1,000,000, found 0
             assignment.toml:7:10: error[E0506]: `points` must be from 0 to 1,000,000, found -1

@@ -286,7 +286,8 @@ fn an_image_is_compared_as_displayed() {
     let run = toyproof(folder.path(), &other_size);
     assert_eq!(run.code, 2, "{run:?}");
     assert!(
-        run.stderr.contains("a.png has 64×36 pixels, and --size is 32x18"),
+        run.stderr
+            .contains("a.png has 64×36 pixels, and the given size is 32x18"),
         "{run:?}"
     );
 }
