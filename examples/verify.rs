@@ -36,6 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         lints: &lints,
         expected: Some(&Expected::of_scene(scene, &frame)),
         hypotheses: None,
+        alternatives: None,
         search: None,
         frame: &frame,
         float: FloatMode::Strict,

@@ -57,6 +57,7 @@
 //!     expected: Some(&expected),
 //!     hypotheses: None,
 //!     search: None,
+//!     alternatives: None,
 //!     frame: &frame,
 //!     float: FloatMode::Strict,
 //!     timeout: Duration::from_secs(10),
@@ -101,6 +102,7 @@
 )]
 
 mod acne;
+pub mod alternative;
 pub mod compare;
 pub mod contain;
 #[cfg(feature = "gpu")]
@@ -152,6 +154,7 @@ pub use self::expected::{
 pub use self::findings::{CheckResult, Findings, GpuRun};
 pub use self::notes::unbound;
 pub use self::on_gpu::{GpuFailure, Worker};
+use crate::alternative::Alternatives;
 use crate::contain::Panic;
 use crate::mistake::Hypotheses;
 use crate::repair::SearchOptions;
@@ -168,6 +171,8 @@ pub struct Case<'a> {
     pub expected: Option<&'a Expected>,
     /// The mistakes that are searched for in a wrong image, for that scene and frame.
     pub hypotheses: Option<&'a Hypotheses>,
+    /// What a wrong image is compared with as a whole; none if it is not.
+    pub alternatives: Option<Alternatives<'a>>,
     /// The frame.
     pub frame: &'a Frame,
     /// How to search for repairs of a wrong shader; none if not at all.

@@ -123,6 +123,7 @@ fn warnings_of(files: &Files, checked: &Checked, scene: Option<&Scene>) -> Vec<D
         lints: &lints,
         expected: expected.as_ref(),
         hypotheses: None,
+        alternatives: None,
         search: None,
         frame: &frame,
         float: FloatMode::Strict,

@@ -321,6 +321,7 @@ fn check_expected(
         lints: &lints,
         expected: Some(expected),
         hypotheses,
+        alternatives: None,
         search,
         frame: &frame,
         float: FloatMode::Strict,

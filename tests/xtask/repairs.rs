@@ -167,6 +167,7 @@ fn try_sample(sample: &Sample, budget: f64, names: bool, donors: Option<&Donors>
         lints: &Lints::default(),
         expected: Some(&expected),
         hypotheses: hypotheses.as_ref(),
+        alternatives: None,
         search: Some(options),
         frame: &frame,
         float: FloatMode::Strict,

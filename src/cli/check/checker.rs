@@ -14,6 +14,7 @@ use toyproof_gpu::Worker;
 use toyproof_image as image;
 use toyproof_image::{Frame, FrameInputs, output};
 use toyproof_scene::Scene;
+use toyproof_verify::alternative::Alternatives;
 use toyproof_verify::contain::{Part, contain};
 use toyproof_verify::repair::{Donors, SearchOptions};
 use toyproof_verify::{Case, Failure, Findings, Verdict, verify};
@@ -80,7 +81,13 @@ fn key(found: &Input, args: &Args, plan: &Plan, references: &References) -> Opti
         hash.update(part);
     };
     let inputs: Vec<_> = plan.frames.iter().map(|planned| &planned.inputs).collect();
-    let settings = (&inputs, &args.language, &args.driver, args.search);
+    let settings = (
+        &inputs,
+        &args.language,
+        &args.driver,
+        args.search,
+        &args.permit,
+    );
     add(format!("{:?}", build()?).as_bytes());
     let named = (&plan.reference.scene, &plan.reference.reference);
     add(format!("{settings:?} {named:?} {}", found.name()).as_bytes());
@@ -428,6 +435,10 @@ impl<'a> Checker<'a> {
             lints: &shader.lints,
             expected: cached.as_ref().map(|cached| &cached.expected),
             hypotheses,
+            alternatives: Some(Alternatives {
+                permitted: &self.args.permit,
+                scenes: None,
+            }),
             search: (explains && self.args.search > 0.0).then(|| self.search_options(shader, checked)),
             frame,
             float: self.args.driver.float(),
@@ -483,6 +494,7 @@ impl<'a> Checker<'a> {
             lints: &shader.lints,
             expected: Some(&cached.expected),
             hypotheses: None,
+            alternatives: None,
             search: Some(SearchOptions {
                 donors: Some(donors),
                 ..self.search_options(&shader, checked)

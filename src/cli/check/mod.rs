@@ -16,6 +16,7 @@ use std::time::{Duration, Instant};
 use clap::ValueEnum;
 use toyproof_diagnostic::{Severity, grouped, path_name, plural};
 use toyproof_verify::Verdict;
+use toyproof_verify::alternative::Difference;
 use toyproof_verify::contain::{Part, contain};
 use toyproof_verify::repair::DEFAULT_BUDGET;
 
@@ -61,6 +62,11 @@ pub(super) struct Args {
     /// frames of the assignment by that one, and --rubric replaces its points.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scene", "reference"])]
     assignment: Option<PathBuf>,
+    /// Differences from the reference with which a shader is still correct, such as antialiasing,color-curve
+    ///
+    /// They are those of the section “Right, but not as asked” of the guide's page on mistakes, by their ids.
+    #[arg(long, value_name = "ID", value_delimiter = ',')]
+    permit: Vec<Difference>,
     /// Write images and reports into this folder
     ///
     /// For each shader: the images NAME-actual.png, NAME-reference.png, NAME-difference.png,

@@ -82,6 +82,7 @@ impl<'a> Judge<'a> {
             lints: &Lints::default(),
             expected: Some(expected),
             hypotheses: None,
+            alternatives: None,
             search: None,
             frame,
             ..*self.case
