@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use include_dir::{Dir, include_dir};
 use toyproof_diagnostic::{File, Files, nearest, path_name};
-use toyproof_scene as scene;
+use toyproof_scene::{self as scene, Scene};
 
 use super::{Exit, Terminal};
 use crate::cli::files::{self, ReadError};
@@ -67,6 +67,16 @@ fn title(name: &str, text: &str) -> String {
 }
 
 // Scenes by file or by name.
+
+/// The built-in scenes by their names.
+pub(super) fn builtin_scenes() -> impl Iterator<Item = (String, Scene)> {
+    course_files().filter_map(|(name, text)| {
+        let stem = name.strip_suffix(".toml")?;
+        let mut files = Files::default();
+        let file = files.add(File::new(name, text));
+        Some((stem.to_owned(), scene::parse(&files, file).ok()?))
+    })
+}
 
 /// Reads the text of a scene: that of the file, else that of the built-in scene of this name, with or without
 /// `.toml`.

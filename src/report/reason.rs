@@ -4,6 +4,7 @@ use toyproof_diagnostic::{Diagnostic, Files, Severity, grouped, plural, printabl
 use toyproof_eval as eval;
 use toyproof_gpu as gpu;
 use toyproof_scene::Sampler;
+use toyproof_verify::alternative::Difference;
 use toyproof_verify::compare::Region;
 use toyproof_verify::{Failure, Findings, MAX_DIFFERING, Means, Reason, ReferenceKind, Share, Verdict};
 
@@ -43,7 +44,7 @@ pub fn state(findings: &Findings, files: &Files) -> Statement {
     if let Some(mistake) = &findings.tolerated_mistake {
         statement.details.push(format!(
             "a known mistake explains these pixels: {}",
-            Mistake::new(mistake).text
+            Mistake::new(mistake, files).text
         ));
     }
     let is_repaired = findings
@@ -158,6 +159,11 @@ pub(super) fn state_reason(reason: &Reason, files: &Files) -> Statement {
             excluded,
             tied,
         } => agrees(differing, excluded, tied),
+        Reason::Permitted {
+            difference,
+            text,
+            differing,
+        } => permitted(*difference, text, *differing),
         &Reason::OtherRandomNumbers {
             differing,
             sampler,
@@ -190,6 +196,17 @@ fn agrees(differing: Share, excluded: u64, tied: u64) -> Statement {
             plural(tied, "pixel", "pixels")
         )),
     }
+}
+
+fn permitted(difference: Difference, text: &str, differing: Share) -> Statement {
+    let others = match differing.count {
+        0 => String::new(),
+        _ => format!("; besides, {}", of_all(differing, ["differs", "differ"])),
+    };
+    Statement::new(format!(
+        "agrees with the reference but for `{difference}`, which is permitted{others}"
+    ))
+    .detail(text)
 }
 
 fn by_means(pixels: Share, sampler: Option<Sampler>, means: Means) -> Statement {

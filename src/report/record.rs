@@ -157,7 +157,10 @@ impl Record {
         let answer = |check: &Option<CheckResult>| check.as_ref().map(|check| check.summary.clone());
         self.verdict = findings.verdict;
         self.set_statement(state(findings, files));
-        self.mistake = findings.mistake.as_ref().map(Mistake::new);
+        self.mistake = findings
+            .mistake
+            .as_ref()
+            .map(|mistake| Mistake::new(mistake, files));
         if let Some(search) = &findings.search {
             self.set_search(search, files);
         }
@@ -263,13 +266,13 @@ pub struct Alternative {
 }
 
 impl Mistake {
-    /// Combines the recognized mistakes.
+    /// Combines the recognized mistakes; `files` are those of the shader.
     #[must_use]
-    pub fn new(diagnosis: &Diagnosis) -> Self {
-        let texts = diagnosis
-            .mistakes
-            .iter()
-            .map(|mistake| mistake.description.as_ref());
+    pub fn new(diagnosis: &Diagnosis, files: &Files) -> Self {
+        let texts = diagnosis.mistakes.iter().map(|mistake| match mistake.at {
+            Some(at) => format!("{} (line {})", mistake.description, files.position(at).line),
+            None => mistake.description.to_string(),
+        });
         let alternatives = diagnosis.alternatives.iter().map(|other| Alternative {
             id: other.id.to_owned(),
             text: other.description.to_string(),

@@ -252,6 +252,7 @@ pub(super) mod samples {
         let repair = |id, fix, agreeing| Repair {
             fix,
             mistake: KnownMistake {
+                at: None,
                 id,
                 description: "an operator is wrong".into(),
                 is_symptom: false,

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use glam::{DQuat, DVec3};
+use toyproof_image::Frame;
 
 use super::Point;
 
@@ -13,6 +14,15 @@ pub struct FrameTime {
     pub frame: i32,
     /// `iTime`, in seconds.
     pub time: f64,
+}
+
+impl From<&Frame> for FrameTime {
+    fn from(frame: &Frame) -> Self {
+        Self {
+            frame: frame.frame,
+            time: f64::from(frame.time),
+        }
+    }
 }
 
 /// A rotation about an axis through a point, counter-clockwise as seen against the axis.

@@ -125,6 +125,23 @@ impl Tracer<f64> {
         mean.map(|component| tone_map_slope(&self.film, component))
     }
 
+    /// Computes the tone-mapped color of one sample at a position in pixels from the bottom left, y up. Only scenes
+    /// without a [sampler](Self::sampler) have a color at each position; others use the same random numbers
+    /// everywhere.
+    #[must_use]
+    pub fn color_at(&self, position: [f64; 2]) -> [f64; 3] {
+        let sample = Sample {
+            pixel: [0; 2],
+            index: 0,
+            count: 1,
+            set: 0,
+        };
+        let stream = SampleStream::new(self.film.sampler, sample);
+        let primary = self.primary_hit(self.camera.screen(position));
+        let color = self.radiance(primary, stream, &Exact).to_array();
+        color.map(|component| tone_map(&self.film, component))
+    }
+
     /// Renders an image of the pixels in these columns and rows only.
     #[must_use]
     pub fn sampled(&self, columns: &[u32], rows: &[u32]) -> Image {

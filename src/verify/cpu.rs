@@ -6,10 +6,24 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use toyproof_eval::{
-    Failure, Fault, Number, Observations, Observed, Program, RandomRounding, RenderedF32, Seed, Settings,
-    Substitute, UndefinedPolicy,
+    Failure, Fault, Number, Observations, Observed, Places, Program, RandomRounding, RenderedF32, Seed,
+    Settings, Substitute, UndefinedPolicy,
 };
 use toyproof_image::{Frame, Image};
+
+/// The time limit of an image in [`evaluate_at`]. It is generous, since most take milliseconds and the result
+/// must not depend on the machine's load.
+const PLACES_TIMEOUT: Duration = Duration::from_secs(60);
+
+/// Evaluates a shader in f64 at some places of a frame; none if it exceeds the time limit.
+pub(super) fn evaluate_at(program: &Program, frame: &Frame, places: &Places) -> Option<Image> {
+    let settings = Settings::<f64> {
+        undefined: UndefinedPolicy::Plain,
+        deadline: Some(Instant::now() + PLACES_TIMEOUT),
+        ..Settings::default()
+    };
+    program.at(frame, places, &settings).ok()
+}
 
 /// Renders a shader band by band.
 pub(super) struct Evaluator<'a> {

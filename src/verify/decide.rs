@@ -9,6 +9,7 @@ use toyproof_glsl::Code;
 use toyproof_scene::Sampler;
 
 use crate::Failure;
+use crate::alternative::Difference;
 use crate::compare::{
     CheckSummary, MeanTest, RARE_EVENT_VARIANCE_RATIO, REPLICATES, Regions, ReplicateTest, SEEN,
 };
@@ -244,6 +245,15 @@ pub enum Reason {
         /// The number of pixels in which rounding decides the color of the reference itself, such as where an
         /// edge of a scene passes through the sample.
         tied: u64,
+    },
+    /// Without a difference that is permitted, the shader agrees with its reference: `correct`.
+    Permitted {
+        /// The difference.
+        difference: Difference,
+        /// What it is in this shader.
+        text: String,
+        /// The pixels that differ besides, which are few.
+        differing: Share,
     },
     /// The shader differs from its reference only by its random numbers.
     OtherRandomNumbers {

@@ -7,6 +7,7 @@ use toyproof_diagnostic::{Diagnostic, Span};
 use toyproof_eval::{self as eval, Places, Program};
 use toyproof_image::{Image, Rgb8Image};
 
+use crate::alternative::WrongShader;
 use crate::compare::{self, CheckSummary, Comparison, DiffLevel, PixelStatus, Regions};
 use crate::contain::{Panic, Part, contain};
 use crate::decide::{CheckEvidence, Checks, Evidence, MAX_UNSTABLE, Reason, Share, Verdict, decide};
@@ -14,7 +15,7 @@ use crate::mistake::Diagnosis;
 use crate::repair::{self, NoisyImage, SearchResult};
 use crate::reseed::Reseeding;
 use crate::stochastic::Stochastic;
-use crate::{Case, Expected, ReferenceKind, acne, notes};
+use crate::{Case, Expected, ReferenceKind, acne, alternative, notes};
 
 /// The largest number of pairs of mistakes that are searched for in a wrong image: a few seconds' work.
 const MAX_PAIRS: usize = 512;
@@ -145,10 +146,17 @@ impl Findings {
             ..CheckEvidence::default()
         };
         self.decide(evidence.clone().into());
+        if self.is_permitted(case, program, &mut evidence) {
+            return;
+        }
         // A mistake that explains every pixel is reported whatever random numbers the shader uses. Pairs are
         // searched for only if the comparison of random pixels reaches no verdict: with other random numbers,
         // two mistakes do not render the image of the pair.
-        self.search_for_mistake(case, program, if stochastic.is_some() { 0 } else { MAX_PAIRS });
+        self.search_for_mistake(case, program, 0);
+        self.search_for_alternative(case, program, &evidence.checks);
+        if stochastic.is_none() {
+            self.search_for_mistake(case, program, MAX_PAIRS);
+        }
         let mut reseeding = None;
         if self.is_unexplained()
             && let Some(stochastic) = stochastic
@@ -175,6 +183,56 @@ impl Findings {
         self.notes
             .extend(notes::unbound(case.checked, case.lints, case.frame));
         self.locate_loss_of_precision(case, program, deadline);
+    }
+
+    /// Whether a wrong shader is right but for a permitted difference. Then the verdict and the algorithm check are
+    /// those without it.
+    fn is_permitted(&mut self, case: &Case, program: &Program, evidence: &mut CheckEvidence) -> bool {
+        let permitted = case
+            .alternatives
+            .map_or(&[][..], |alternatives| alternatives.permitted);
+        let (Verdict::Wrong, Some(algorithm)) = (self.verdict, &self.algorithm) else {
+            return false;
+        };
+        if permitted.is_empty() {
+            return false;
+        }
+        let found = contain(Part::Mistake, || {
+            let wrong = WrongShader::new(case, program, algorithm, &evidence.checks)?;
+            alternative::find_permitted(&wrong, permitted)
+        });
+        let Some((difference, found)) = self.contained(found) else {
+            return false;
+        };
+        let differing = Share::differing(&found.algorithm);
+        evidence.checks.algorithm = Some(found.algorithm.clone());
+        self.decide(evidence.clone().into());
+        if self.verdict == Verdict::Correct {
+            let text = found.mistake.description.into_owned();
+            self.reason = Reason::Permitted {
+                difference,
+                text,
+                differing,
+            };
+        }
+        if let Some(algorithm) = &mut self.algorithm {
+            algorithm.summary = found.algorithm;
+        }
+        true
+    }
+
+    /// Searches for a difference that concerns the whole image.
+    fn search_for_alternative(&mut self, case: &Case, program: &Program, checks: &Checks) {
+        if let (Some(alternatives), Some(algorithm)) = (case.alternatives, &self.algorithm)
+            && matches!(self.reason, Reason::AlgorithmDiffers(_))
+            && self.is_unexplained()
+        {
+            let found = contain(Part::Mistake, || {
+                let wrong = WrongShader::new(case, program, algorithm, checks)?;
+                alternative::find(&wrong, &alternatives)
+            });
+            self.mistake = self.contained(found).map(|found| Diagnosis::of(found.mistake));
+        }
     }
 
     /// Whether there is a fault, and no mistake is known that explains it.

@@ -137,6 +137,7 @@ use rayon::ThreadPool;
 use thiserror::Error;
 use toyproof_diagnostic::{Diagnostic, Overdue, grouped, plural};
 use toyproof_eval::{self as eval, Program};
+use toyproof_glsl::tree::{ExprKind, Input, VariableKind};
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_image::Frame;
 use toyproof_lint::Lints;
@@ -288,6 +289,15 @@ fn within<T: Send>(pool: Option<&ThreadPool>, work: impl FnOnce() -> T + Send) -
         Some(pool) => pool.install(work),
         None => work(),
     }
+}
+
+/// Whether a shader reads an input.
+fn reads(checked: &Checked, input: Input) -> bool {
+    let tree = &checked.tree;
+    tree.exprs.iter().any(|(_, expr)| match expr.kind {
+        ExprKind::Variable(variable) => tree[variable].kind == VariableKind::Input(input),
+        _ => false,
+    })
 }
 
 fn timed<T>(work: impl FnOnce() -> T) -> (T, Duration) {

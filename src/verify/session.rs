@@ -302,11 +302,11 @@ impl<'a> VerifySession<'a> {
 }
 
 /// The reference of a band.
-struct FromRow<'a> {
-    expected: &'a Expected,
-    rows: &'a Range<u32>,
+pub(super) struct FromRow<'a> {
+    pub(super) expected: &'a Expected,
+    pub(super) rows: &'a Range<u32>,
     /// Whether the shader takes derivatives.
-    derives: bool,
+    pub(super) derives: bool,
 }
 
 impl Reference for FromRow<'_> {

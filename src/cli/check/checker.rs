@@ -14,7 +14,7 @@ use toyproof_gpu::Worker;
 use toyproof_image as image;
 use toyproof_image::{Frame, FrameInputs, output};
 use toyproof_scene::Scene;
-use toyproof_verify::alternative::Alternatives;
+use toyproof_verify::alternative::{Alternatives, OtherScenes};
 use toyproof_verify::contain::{Part, contain};
 use toyproof_verify::repair::{Donors, SearchOptions};
 use toyproof_verify::{Case, Failure, Findings, Verdict, verify};
@@ -22,7 +22,7 @@ use toyproof_verify::{Case, Failure, Findings, Verdict, verify};
 use super::Args;
 use super::images::{FIXED, IMAGES, ImageKind};
 use super::plan::{Plan, PlannedFrame};
-use super::reference::{CachedReference, Reference, References, SceneCache};
+use super::reference::{CachedReference, Reference, References, SceneCache, other_scenes};
 use crate::assignment::Subject;
 use crate::cli::files::{Input, ReadError};
 use crate::cli::inputs::{frame_flags, shell_word};
@@ -236,6 +236,8 @@ pub(super) struct Checker<'a> {
     /// Whether the missing driver has been reported.
     fell_back: AtomicBool,
     scenes: SceneCache,
+    /// What shaders may render instead of their own scenes.
+    other_scenes: OtherScenes,
 }
 
 impl<'a> Checker<'a> {
@@ -246,6 +248,7 @@ impl<'a> Checker<'a> {
             references,
             fell_back: AtomicBool::new(false),
             scenes: SceneCache::default(),
+            other_scenes: other_scenes(plan.reference.scene.as_deref()),
         }
     }
 
@@ -437,7 +440,7 @@ impl<'a> Checker<'a> {
             hypotheses,
             alternatives: Some(Alternatives {
                 permitted: &self.args.permit,
-                scenes: None,
+                scenes: Some(&self.other_scenes),
             }),
             search: (explains && self.args.search > 0.0).then(|| self.search_options(shader, checked)),
             frame,

@@ -3,11 +3,12 @@
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
 
 use toyproof_diagnostic::{File, Files, path_name};
 use toyproof_image::Frame;
 use toyproof_scene::{self as scene, Scene};
+use toyproof_verify::alternative::OtherScenes;
 use toyproof_verify::mistake::Hypotheses;
 use toyproof_verify::{Conditioning, Expected, Failure, ReferenceKind};
 
@@ -16,7 +17,7 @@ use super::plan::{Plan, PlannedFrame};
 use crate::cli::Terminal;
 use crate::cli::files::{self, Input, InputSource, ReadError, Skipped};
 use crate::cli::reference::GivenReference;
-use crate::cli::scenes::read_scene;
+use crate::cli::scenes::{builtin_scenes, read_scene};
 use crate::report::Record;
 
 /// The scene of a shader.
@@ -188,6 +189,42 @@ impl Scenes {
             files,
         })
     }
+}
+
+/// The largest number of scene files beside a given one that are read.
+const MAX_NEIGHBORS: usize = 32;
+
+/// The scenes that a shader may render instead of its own: the built-in ones, and those in the folder of the scene
+/// that `--scene` names.
+pub(super) fn other_scenes(named: Option<&Path>) -> OtherScenes {
+    let folder = named.filter(|path| path.is_file()).and_then(Path::parent);
+    let folder = folder.map(|folder| {
+        if folder.as_os_str().is_empty() {
+            Path::new(".")
+        } else {
+            folder
+        }
+    });
+    let folder = folder.map(Path::to_owned);
+    LazyLock::new(Box::new(move || {
+        let mut paths: Vec<PathBuf> = folder
+            .and_then(|folder| std::fs::read_dir(folder).ok())
+            .into_iter()
+            .flatten()
+            .filter_map(|entry| Some(entry.ok()?.path()))
+            .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
+            .collect();
+        paths.sort_unstable();
+        let neighbors = paths.into_iter().take(MAX_NEIGHBORS).filter_map(|path| {
+            let mut files = Files::default();
+            let file = files.add(files::read_text(&path).ok()?);
+            let name = path.file_stem()?.to_string_lossy().into_owned();
+            Some((name, scene::parse(&files, file).ok()?))
+        });
+        let mut scenes: Vec<(String, Scene)> = neighbors.collect();
+        scenes.extend(builtin_scenes());
+        scenes
+    }))
 }
 
 /// Checks whether the scene beside a shader is a link that leads out of the searched folder, or else of the

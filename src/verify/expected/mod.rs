@@ -12,10 +12,11 @@ mod shader;
 use std::ops::Range;
 use std::sync::Arc;
 
-use toyproof_eval as eval;
+use rayon::prelude::*;
+use toyproof_eval::{self as eval, Places};
 use toyproof_glsl::Checked;
 use toyproof_image::{Frame, Image};
-use toyproof_scene::Scene;
+use toyproof_scene::{FrameTime, Scene};
 use toyproof_tracer::{ColorRange, EpsilonSet, Tracer};
 
 pub(crate) use self::bands::ReferenceBand;
@@ -24,6 +25,7 @@ pub use self::image::{ImageReference, Quantization};
 pub use self::scene::SceneReference;
 pub use self::shader::{DEFAULT_TOLERANCE, ReferenceFindings, ShaderReference};
 use crate::compare::{Band, EXACT_TOLERANCE, Mixed, SEEN, accept_epsilons};
+use crate::cpu::evaluate_at;
 
 /// The number type whose rounding is simulated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -116,6 +118,42 @@ impl Expected {
         match self {
             Self::Scene(scene) => Some(Self::of_scene(scene.scene().clone(), frame)),
             Self::Shader(shader) => Some(Self::Shader(Box::new(shader.in_frame(frame)?))),
+            Self::Image(_) => None,
+        }
+    }
+
+    /// The colors at some places of another frame; none for an image.
+    pub(crate) fn colors_in(&self, frame: &Frame, places: &Places) -> Option<Image> {
+        match self {
+            Self::Scene(scene) => {
+                let mut scene = scene.scene().clone();
+                scene.film.size = frame.size;
+                let [columns, rows] = places.pixels();
+                Some(Tracer::<f64>::at(&scene, FrameTime::from(frame)).sampled(&columns, &rows))
+            }
+            Self::Shader(shader) => evaluate_at(&shader.program, frame, places),
+            Self::Image(_) => None,
+        }
+    }
+
+    /// The colors at some positions within pixels, row by row; none for an image, and for a scene with a sampler,
+    /// whose pixels are means already.
+    pub(crate) fn colors_within(&self, positions: &Places) -> Option<Vec<[f64; 3]>> {
+        match self {
+            Self::Scene(scene) => {
+                let tracer = scene.tracer();
+                let Places { columns, rows } = positions;
+                let color =
+                    |at: usize| tracer.color_at([columns[at % columns.len()], rows[at / columns.len()]]);
+                let count = columns.len() * rows.len();
+                let is_defined = tracer.sampler().is_none();
+                is_defined.then(|| (0..count).into_par_iter().map(color).collect())
+            }
+            Self::Shader(shader) => {
+                let image = evaluate_at(&shader.program, &shader.frame, positions)?;
+                let colors = image.pixels().iter();
+                Some(colors.map(|&[r, g, b, _]| [r, g, b].map(f64::from)).collect())
+            }
             Self::Image(_) => None,
         }
     }

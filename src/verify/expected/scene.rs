@@ -49,10 +49,7 @@ pub struct SceneReference {
 impl SceneReference {
     pub(super) fn new(mut scene: Scene, frame: &Frame) -> Self {
         scene.film.size = frame.size;
-        let time = FrameTime {
-            frame: frame.frame,
-            time: f64::from(frame.time),
-        };
+        let time = FrameTime::from(frame);
         Self {
             tracer: Tracer::at(&scene, time),
             bands: Bands::new(frame),

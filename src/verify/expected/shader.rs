@@ -10,7 +10,7 @@ use toyproof_eval::{
     self as eval, Observations, Places, Program, RandomRounding, Seed, Settings, UndefinedPolicy,
 };
 use toyproof_glsl::Checked;
-use toyproof_glsl::tree::{ExprKind, Input, VariableKind};
+use toyproof_glsl::tree::Input;
 use toyproof_image::{Frame, Image};
 use toyproof_lint::Lints;
 
@@ -23,7 +23,7 @@ use crate::decide::Share;
 use crate::notes::{self, NotFinite};
 use crate::resampled::Estimates;
 use crate::reseed::Reseeding;
-use crate::{EVALUATOR_TIME_FACTOR, TOTAL_TIME_FACTOR};
+use crate::{EVALUATOR_TIME_FACTOR, TOTAL_TIME_FACTOR, reads};
 
 /// The default tolerance of colors: half of an 8-bit level.
 pub const DEFAULT_TOLERANCE: f64 = 0.5 / 255.0;
@@ -154,11 +154,7 @@ impl ShaderReference {
     }
 
     pub(super) fn reads_time(&self) -> bool {
-        let tree = &self.checked().tree;
-        tree.exprs.iter().any(|(_, expr)| match expr.kind {
-            ExprKind::Variable(variable) => tree[variable].kind == VariableKind::Input(Input::Time),
-            _ => false,
-        })
+        reads(self.checked(), Input::Time)
     }
 
     pub(super) fn tolerance(&self) -> f64 {

@@ -6,7 +6,7 @@ use toyproof_scene::FrameTime;
 
 use super::exercises::scenes;
 use super::{KnownMistake, catalogue, change, fit, mutant};
-use crate::{acne, repair};
+use crate::{acne, alternative, repair};
 
 const PAGE: &str = include_str!("../../../docs/guide/mistakes.md");
 
@@ -28,6 +28,7 @@ fn rows() -> BTreeMap<&'static str, [&'static str; 2]> {
 fn known_mistakes() -> Vec<KnownMistake> {
     let mut all = vec![acne::mistake()];
     all.extend(repair::mistakes());
+    all.extend(alternative::examples());
     all.extend(catalogue::all().map(catalogue::Mistake::known));
     let frame_time = FrameTime { frame: 10, time: 1.3 };
     for scene in scenes() {

@@ -16,6 +16,7 @@ use std::borrow::Cow;
 use std::sync::OnceLock;
 
 use rayon::prelude::*;
+use toyproof_diagnostic::Span;
 use toyproof_eval::{Places, Program};
 use toyproof_image::Frame;
 use toyproof_scene::export::MarkedShader;
@@ -37,6 +38,8 @@ pub struct KnownMistake {
     pub description: Cow<'static, str>,
     /// Whether it is only a symptom of many mistakes: most of the image is lost.
     pub is_symptom: bool,
+    /// Where it is in the shader, if that is known.
+    pub at: Option<Span>,
 }
 
 impl KnownMistake {
@@ -45,6 +48,7 @@ impl KnownMistake {
             id,
             description: description.into(),
             is_symptom: false,
+            at: None,
         }
     }
 
@@ -164,10 +168,7 @@ impl Hypotheses {
     }
 
     fn in_size(scene: &Scene, small: View, fine: Option<OnceLock<Box<Self>>>) -> Self {
-        let frame_time = FrameTime {
-            frame: small.frame.frame,
-            time: f64::from(small.frame.time),
-        };
+        let frame_time = FrameTime::from(&small.frame);
         let shaders = mutant::variants(scene);
         let tracer = MutantSource::Scene(Box::new(scene.clone()), frame_time);
         let correct_images = [tracer]

@@ -1,21 +1,17 @@
 //! Mutants: tracers with mistakes in them, and the variants of the shader that students write without a mistake.
 
+use crate::cpu::evaluate_at;
 use crate::mistake::KnownMistake;
 use crate::mistake::catalogue::Mistake;
 use crate::mistake::thumbnail::View;
 use std::sync::OnceLock;
-use std::time::{Duration, Instant};
 use toyproof_diagnostic::{File, Files};
-use toyproof_eval::{Program, Settings, UndefinedPolicy};
+use toyproof_eval::{Program, UndefinedPolicy};
 use toyproof_glsl as glsl;
 use toyproof_image::Image;
 use toyproof_scene::export::{self, MarkedShader, Slot};
 use toyproof_scene::{FrameTime, Scene};
 use toyproof_tracer::Tracer;
-
-/// The time limit of an image. It is generous, since most take milliseconds and the result must not depend on
-/// the machine's load.
-const RENDER_TIMEOUT: Duration = Duration::from_secs(60);
 
 /// What a mutant renders.
 #[derive(Debug, Clone)]
@@ -48,12 +44,7 @@ impl MutantSource {
 
 /// Renders a view of a shader in f64.
 pub(super) fn render(program: &Program, view: &View) -> Option<Image> {
-    let settings = Settings::<f64> {
-        undefined: UndefinedPolicy::Plain,
-        deadline: Some(Instant::now() + RENDER_TIMEOUT),
-        ..Settings::default()
-    };
-    program.at(&view.frame, &view.places, &settings).ok()
+    evaluate_at(program, &view.frame, &view.places)
 }
 
 /// A tracer with mistakes in it. Its image is rendered once, on first use.
