@@ -7,11 +7,12 @@ use toyproof_diagnostic::{Diagnostic, Span};
 use toyproof_eval::{self as eval, Places, Program};
 use toyproof_image::{Image, Rgb8Image};
 
+use crate::alternative::{Alternative, Alternatives, WrongShader};
 use crate::alternative::WrongShader;
 use crate::compare::{self, CheckSummary, Comparison, DiffLevel, PixelStatus, Regions};
 use crate::contain::{Panic, Part, contain};
 use crate::decide::{CheckEvidence, Checks, Evidence, MAX_UNSTABLE, Reason, Share, Verdict, decide};
-use crate::mistake::Diagnosis;
+use crate::mistake::{Diagnosis, Stage};
 use crate::repair::{self, NoisyImage, SearchResult};
 use crate::reseed::Reseeding;
 use crate::stochastic::Stochastic;
@@ -152,10 +153,13 @@ impl Findings {
         // A mistake that explains every pixel is reported whatever random numbers the shader uses. Pairs are
         // searched for only if the comparison of random pixels reaches no verdict: with other random numbers,
         // two mistakes do not render the image of the pair.
-        self.search_for_mistake(case, program, 0);
-        self.search_for_alternative(case, program, &evidence.checks);
+        self.search_for_mistake(Stage::Single, case, program);
+        self.search_for_alternative(case, program, &evidence.checks, alternative::find);
+        self.search_for_mistake(Stage::Number, case, program);
+        // A wrong number, such as a light's intensity, says more than the curve that it amounts to.
+        self.search_for_alternative(case, program, &evidence.checks, alternative::find_curve);
         if stochastic.is_none() {
-            self.search_for_mistake(case, program, MAX_PAIRS);
+            self.search_for_mistake(Stage::Pair(MAX_PAIRS), case, program);
         }
         let mut reseeding = None;
         if self.is_unexplained()
@@ -174,7 +178,7 @@ impl Findings {
             }
         }
         if stochastic.is_some() && evidence.random_numbers.is_none() {
-            self.search_for_mistake(case, program, MAX_PAIRS);
+            self.search_for_mistake(Stage::Pair(MAX_PAIRS), case, program);
         }
         if evidence.random_numbers.is_none() {
             self.explain_few_pixels(case, program);
@@ -221,17 +225,26 @@ impl Findings {
         true
     }
 
-    /// Searches for a difference that concerns the whole image.
-    fn search_for_alternative(&mut self, case: &Case, program: &Program, checks: &Checks) {
+    /// Searches for a difference that concerns the whole image, which says more than a symptom.
+    fn search_for_alternative(
+        &mut self,
+        case: &Case,
+        program: &Program,
+        checks: &Checks,
+        find: impl FnOnce(&WrongShader, &Alternatives) -> Option<Alternative>,
+    ) {
+        let is_symptom = |mistake: &Diagnosis| mistake.mistakes.iter().all(|mistake| mistake.is_symptom);
         if let (Some(alternatives), Some(algorithm)) = (case.alternatives, &self.algorithm)
             && matches!(self.reason, Reason::AlgorithmDiffers(_))
-            && self.is_unexplained()
+            && self.mistake.as_ref().is_none_or(is_symptom)
         {
             let found = contain(Part::Mistake, || {
                 let wrong = WrongShader::new(case, program, algorithm, checks)?;
-                alternative::find(&wrong, &alternatives)
+                find(&wrong, &alternatives)
             });
-            self.mistake = self.contained(found).map(|found| Diagnosis::of(found.mistake));
+            if let Some(found) = self.contained(found) {
+                self.mistake = Some(Diagnosis::of(found.mistake));
+            }
         }
     }
 
@@ -277,10 +290,12 @@ impl Findings {
         compared.reseeding
     }
 
-    /// Searches for the mistake that explains a wrong image, or for two, among at most `pairs` pairs.
-    fn search_for_mistake(&mut self, case: &Case, program: &Program, pairs: usize) {
+    /// Searches for the mistake that explains a wrong image, or for two.
+    fn search_for_mistake(&mut self, stage: Stage, case: &Case, program: &Program) {
         if let (Verdict::Wrong, None, Some(hypotheses)) = (self.verdict, &self.mistake, case.hypotheses) {
-            let diagnosis = contain(Part::Mistake, || hypotheses.recognize(program, case.frame, pairs));
+            let diagnosis = contain(Part::Mistake, || {
+                hypotheses.recognize_in(stage, program, case.frame)
+            });
             self.mistake = self.contained(diagnosis);
         }
     }

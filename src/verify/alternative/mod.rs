@@ -43,16 +43,23 @@ pub(crate) struct Alternative {
     pub(crate) algorithm: CheckSummary,
 }
 
-/// Returns the difference that explains a wrong image; none if no single one does.
+/// Returns the difference other than a color curve that explains a wrong image; none if no single one does.
 pub(crate) fn find(wrong: &WrongShader, alternatives: &Alternatives) -> Option<Alternative> {
     if let Some(scenes) = alternatives.scenes
         && let Some(found) = scenes::find(wrong, scenes)
     {
         return Some(found);
     }
-    Difference::ALL
-        .into_iter()
-        .find_map(|difference| of_kind(wrong, difference))
+    let mut all = Difference::ALL.into_iter();
+    all.find_map(|difference| match difference {
+        Difference::ColorCurve => None,
+        difference => of_kind(wrong, difference),
+    })
+}
+
+/// Returns the color curve that explains a wrong image.
+pub(crate) fn find_curve(wrong: &WrongShader, _: &Alternatives) -> Option<Alternative> {
+    of_kind(wrong, Difference::ColorCurve)
 }
 
 /// Returns the first of the permitted differences that explains a wrong image.

@@ -108,6 +108,18 @@ impl Diagnosis {
     }
 }
 
+/// A part of the search for the mistake, in the order of the parts. The later ones find nothing where a single
+/// mistake matches, even if it is not reported.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stage {
+    /// The mistakes of the catalogue, and changes of the scene.
+    Single,
+    /// One wrong number, and single mistakes with other ray epsilons.
+    Number,
+    /// Two mistakes at once, in at most that many pairs.
+    Pair(usize),
+}
+
 /// The largest width and height, in pixels, and the largest work of the first comparison, so that hundreds of
 /// images take seconds.
 const SMALL_SIDE: u32 = 96;
@@ -213,10 +225,19 @@ impl Hypotheses {
         })
     }
 
-    /// Returns the mistake, or the two, that render the `student`'s image of that frame, in f64. Where no
-    /// single one does, at most `pairs` pairs are searched; the result does not depend on the machine's load.
+    /// Returns the mistake, or the two, that render the `student`'s image of that frame, in f64. The result does
+    /// not depend on the machine's load.
     #[must_use]
     pub fn recognize(&self, student: &Program, frame: &Frame, pairs: usize) -> Option<Diagnosis> {
+        let stages = [Stage::Single, Stage::Number, Stage::Pair(pairs)];
+        stages
+            .into_iter()
+            .find_map(|stage| self.recognize_in(stage, student, frame))
+    }
+
+    /// Returns what [`Self::recognize`] finds in one of its stages.
+    #[must_use]
+    pub fn recognize_in(&self, stage: Stage, student: &Program, frame: &Frame) -> Option<Diagnosis> {
         let small = render(student, &self.small)?;
         let pixels = small.pixels().len();
         let correct_images = self
@@ -229,7 +250,7 @@ impl Hypotheses {
         if differing < MIN_WRONG_PIXELS_SMALL
             && let Some(fine) = self.fine(frame)
         {
-            return fine.recognize(student, frame, pairs);
+            return fine.recognize_in(stage, student, frame);
         }
         if differing < MIN_WRONG_PIXELS || differing as f64 <= pixels as f64 * MAX_DIFFERING {
             return None;
@@ -245,38 +266,38 @@ impl Hypotheses {
         };
         let general_matches = wrong_image.matching(&self.general);
         let single_matches = wrong_image.matching(&self.wrong);
-        if let Some(general) = general_matches.first() {
-            return match single_matches[..] {
-                [single] => confirmed(single, &[]),
-                _ => confirmed(general, &single_matches),
+        if stage == Stage::Single {
+            return match (general_matches.first(), &single_matches[..]) {
+                (Some(_), [single]) => confirmed(single, &[]),
+                (Some(general), singles) => confirmed(general, singles),
+                (None, [first, others @ ..]) if others.len() <= MAX_OTHER_MISTAKES => {
+                    confirmed(first, others)
+                }
+                _ => None,
             };
         }
-        if let Some((first, others)) = single_matches.split_first() {
-            return (others.len() <= MAX_OTHER_MISTAKES)
-                .then(|| confirmed(first, others))
-                .flatten();
+        if !general_matches.is_empty() || !single_matches.is_empty() {
+            return None;
         }
         // Some numbers remove all color from any image, and so do many pairs: an image of one color allows no
         // further conclusion.
         if small.pixels().windows(2).all(|pair| pair[0] == pair[1]) {
             return None;
         }
-        let shader = self.shaders.first();
-        let fitted = fit::fitted_mutants(&self.scene, self.frame_time, shader, &wrong_image, correct);
-        if let Some(mutant) = wrong_image.matching(&fitted).first() {
-            return confirmed(mutant, &[]);
-        }
-        let near_misses = wrong_image.near_misses(self.general.iter().chain(&self.wrong));
-        let with_other_epsilons: Vec<Mutant> = near_misses
-            .iter()
-            .flat_map(|mutant| mutant.with_other_epsilons(self.frame_time, self.scene.max_offset))
-            .collect();
-        if let Some(mutant) = wrong_image.matching(&with_other_epsilons).first() {
-            return confirmed(mutant, &[]);
-        }
-        if pairs == 0 {
-            return None;
-        }
+        let Stage::Pair(pairs) = stage else {
+            let shader = self.shaders.first();
+            let fitted = fit::fitted_mutants(&self.scene, self.frame_time, shader, &wrong_image, correct);
+            if let Some(mutant) = wrong_image.matching(&fitted).first() {
+                return confirmed(mutant, &[]);
+            }
+            let near_misses = wrong_image.near_misses(self.general.iter().chain(&self.wrong));
+            let with_other_epsilons: Vec<Mutant> = near_misses
+                .iter()
+                .flat_map(|mutant| mutant.with_other_epsilons(self.frame_time, self.scene.max_offset))
+                .collect();
+            let matching = wrong_image.matching(&with_other_epsilons);
+            return matching.first().and_then(|mutant| confirmed(mutant, &[]));
+        };
         // General mistakes first: of those that render the same image, they claim least.
         let thumbnail = Thumbnail::render(student, &self.correct, &self.small)?;
         let mut likely = pair::likely(self.general.iter().chain(&self.wrong), &wrong_image, correct);
