@@ -405,14 +405,15 @@ pub fn summary(records: &[Record]) -> String {
     format!("{} {noun}: {}", grouped(count), Tally::of(records))
 }
 
-/// The color of a verdict.
+/// The color of a verdict; none where nothing was compared.
 fn style(verdict: Verdict) -> Style {
     let color = match verdict {
-        Verdict::Correct | Verdict::Ok => AnsiColor::Green,
-        Verdict::Unstable | Verdict::Inconclusive => AnsiColor::Yellow,
-        _ => AnsiColor::Red,
+        Verdict::Ok => None,
+        Verdict::Correct => Some(AnsiColor::Green),
+        Verdict::Unstable | Verdict::Inconclusive => Some(AnsiColor::Yellow),
+        _ => Some(AnsiColor::Red),
     };
-    Style::new().fg_color(Some(color.into())).bold()
+    Style::new().fg_color(color.map(Into::into)).bold()
 }
 
 #[cfg(test)]

@@ -112,12 +112,14 @@ fn assumed_files() -> tempfile::TempDir {
         .replace("d < 1e-4", "d < 1e-3");
     let large = torus.replace("length(p.xz) - 1.0", "length(p.xz) - 1.02");
     let assignment = block("docs/guide/assignments.md", "[rubric.compiles]");
+    let photo = torus.replace("vec4(color, 1.0)", "vec4(pow(color, vec3(1.0 / 2.2)), 1.0)");
     for name in ["torus", "torus-task"] {
         fs::create_dir(folder.path().join(name)).unwrap();
     }
     for (name, text) in [
         ("torus-task/assignment.toml", assignment),
         ("torus-task/solution.glsl", torus.clone()),
+        ("photo.glsl", photo),
         ("solution.glsl", torus),
         ("torus/half.glsl", half),
         ("torus/large.glsl", large),

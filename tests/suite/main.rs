@@ -6,6 +6,7 @@
     reason = "tests show the paths that they made themselves"
 )]
 
+mod alternatives;
 mod architecture;
 mod assignments;
 mod bad_input;

@@ -358,7 +358,12 @@ impl Checker<'_> {
         };
         let diagnostic = Code::NoMainImage.at(at?, message);
         let help = "define `void mainImage(out vec4 fragColor, in vec2 fragCoord)`, which ShaderToy calls for each pixel";
-        self.report(diagnostic.help(help));
+        let mut diagnostic = diagnostic.help(help);
+        if near.is_none() && !self.tree.functions.is_empty() {
+            diagnostic = diagnostic
+                .help("put the text of a tab without it, such as Common, in front of the tab that has it");
+        }
+        self.report(diagnostic);
         None
     }
 }

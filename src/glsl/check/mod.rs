@@ -23,7 +23,7 @@ pub(crate) use self::declare::{Declarator, Qualifiers, Storage};
 use self::function::Context;
 pub(crate) use self::function::Parameter;
 pub(crate) use self::prelude::Channels;
-use self::scope::Scopes;
+use self::scope::{Scopes, UnknownName};
 pub(crate) use self::statement::Labels;
 use self::types::Extent;
 pub(crate) use self::types::{Members, Size, Specifier};
@@ -48,8 +48,8 @@ pub(crate) struct Checker<'a> {
     function: Option<Context>,
     /// Every call: caller, callee and place.
     calls: Vec<(FunctionId, FunctionId, Place)>,
-    /// The names that were reported as undeclared, and where.
-    unknown: Vec<(Symbol, Place)>,
+    /// The names that were reported as undeclared.
+    unknown: Vec<UnknownName>,
     /// Structures some of whose members could not be parsed.
     incomplete: Vec<StructId>,
     /// Names that unparsable text may declare.

@@ -101,6 +101,24 @@ pub(super) fn did_you_mean(code: Code, at: Place, message: &str, near: Option<&s
         .fix(Fix::new(question, at.spelling, near))
 }
 
+/// The help on names that ShaderToy's other tabs may declare: it puts the text of Common in front of each.
+const OTHER_TAB: &str =
+    "if another tab, such as Common, declares it, put that tab's text in front of this one";
+
+/// Whether a name is written like those of macros and constants.
+fn is_constant_name(name: &str) -> bool {
+    name.len() > 1 && !name.contains(|c: char| c.is_ascii_lowercase())
+}
+
+/// A name that was reported as undeclared.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct UnknownName {
+    name: Symbol,
+    at: Place,
+    /// Whether it is called.
+    is_call: bool,
+}
+
 impl Checker<'_> {
     /// Reports an undeclared variable, once in each function.
     pub(super) fn undeclared(&mut self, name: Symbol, at: Place) -> ExprId {
@@ -125,14 +143,10 @@ impl Checker<'_> {
         let near = nearest(text, functions)
             .or_else(|| nearest(text, variables))
             .map(str::to_owned);
-        let is_plain = !at.is_expanded() && !call.is_expanded();
-        // The point before the `)`.
-        let end = call.span.end.saturating_sub(1);
-        let end = is_plain.then(|| Span::new(call.span.file, end, end));
         self.report_undeclared(
             name,
             at,
-            end,
+            Some(call),
             format!("unknown function `{text}`"),
             near.as_deref(),
         )
@@ -142,7 +156,7 @@ impl Checker<'_> {
         &mut self,
         name: Symbol,
         at: Place,
-        call_end: Option<Span>,
+        call: Option<Place>,
         message: String,
         near: Option<&str>,
     ) -> ExprId {
@@ -156,18 +170,30 @@ impl Checker<'_> {
         let diagnostic = match Foreign::named(self.text(name)) {
             Some(foreign) => {
                 let diagnostic = Code::Undeclared.at(at, message);
+                let plain_call = call.filter(|call| !at.is_expanded() && !call.is_expanded());
+                // The point before the `)`.
+                let call_end = plain_call.map(|call| {
+                    let end = call.span.end.saturating_sub(1);
+                    Span::new(call.span.file, end, end)
+                });
                 foreign.advise(diagnostic, at, call_end).note(foreign.note())
             }
             None => did_you_mean(Code::Undeclared, at, &message, near),
         };
         self.report(diagnostic);
-        self.unknown.push((name, at));
+        self.unknown.push(UnknownName {
+            name,
+            at,
+            is_call: call.is_some(),
+        });
         self.error_expr(at)
     }
 
-    /// After parsing: changes the errors about names that are declared later in the text accordingly.
+    /// After parsing: changes the errors about names that are declared later in the text accordingly. The first
+    /// name that is declared nowhere, and resembles nothing, may be declared in another tab.
     pub(super) fn find_late_declarations(&mut self) {
-        for (name, at) in std::mem::take(&mut self.unknown) {
+        let mut names_tab = false;
+        for UnknownName { name, at, is_call } in std::mem::take(&mut self.unknown) {
             let late = match self.scopes.find(name) {
                 Some(&Entity::Variable(id)) => self.tree[id].at,
                 Some(&Entity::Struct(id)) => Some(self.tree[id].at),
@@ -178,7 +204,10 @@ impl Checker<'_> {
                 .errors
                 .iter_mut()
                 .find(|error| error.span == Some(at.span) && error.code == Code::Undeclared.as_str());
-            if let (Some(late), Some(reported)) = (late, reported)
+            let Some(reported) = reported else {
+                continue;
+            };
+            if let Some(late) = late
                 && late.span.start > at.span.start
             {
                 let text = self.interner.text(name);
@@ -187,6 +216,13 @@ impl Checker<'_> {
                 reported.fixes.clear();
                 reported.notes.clear();
                 reported.helps = vec!["move the declaration above the first use".to_owned()];
+            } else if !names_tab
+                && reported.fixes.is_empty()
+                && reported.notes.is_empty()
+                && (is_call || is_constant_name(self.interner.text(name)))
+            {
+                names_tab = true;
+                reported.helps.push(OTHER_TAB.to_owned());
             }
         }
     }

@@ -1,6 +1,6 @@
 //! The table of all shaders, and the form that filters its rows.
 
-use toyproof_diagnostic::{Severity, grouped};
+use toyproof_diagnostic::{Severity, grouped, plural};
 use toyproof_verify::Verdict;
 use toyproof_verify::compare::CheckSummary;
 
@@ -36,7 +36,7 @@ pub(super) fn overview(
         .concat();
     format!(
         r#"<section id="overview" aria-label="All shaders">
-<form id="filter" role="search" aria-label="Filter the shaders" hidden>
+{notice}<form id="filter" role="search" aria-label="Filter the shaders" hidden>
 <label class="search"><span>Search</span> <input type="search" name="words" autocomplete="off" placeholder="Name or reason"></label>
 <fieldset>
 <legend>Show verdicts</legend>
@@ -55,7 +55,21 @@ pub(super) fn overview(
 </section>
 "#,
         chips = chips(records),
+        notice = notice(records),
     )
+}
+
+/// A notice of shaders that were compared with nothing.
+fn notice(records: &[Record]) -> String {
+    let without = records.iter().filter(|record| record.verdict == Verdict::Ok);
+    match without.count() as u64 {
+        0 => String::new(),
+        count => format!(
+            "<p class=\"notice\">Nothing was compared for {} {}: no reference was given.</p>\n",
+            grouped(count),
+            plural(count, "shader", "shaders")
+        ),
+    }
 }
 
 /// The number of shaders of each verdict, the best first, as check boxes that show or hide them.

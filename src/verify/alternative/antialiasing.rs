@@ -52,6 +52,10 @@ const MIN_EDGE_PIXELS: u64 = 24;
 /// The smallest number of independent samples whose means scatter as little as the colors do.
 const MIN_EFFECTIVE_SAMPLES: f64 = 2.0;
 
+/// The largest sum of squared distances to the means within the pixels, as a share of that to the colors at their
+/// centers. For n samples it is 1/(n + 1); where a color is wrong for another reason, both sums are equal.
+const MAX_UNEXPLAINED: f64 = 0.4;
+
 /// The smallest share of edge pixels whose color is neither end of the range within them.
 const MIN_INTERMEDIATE: f64 = 0.3;
 
@@ -177,7 +181,7 @@ fn confirmed_grid(wrong: &WrongShader, rows: &Rows, offsets: &[f64], side: u32) 
         .zip(&samples)
         .filter(|&(pixel, samples)| is_mean(wrong, pixel, samples));
     compared(wrong, agreeing.map(|(pixel, _)| pixel), || {
-        format!("{side}×{side} samples are averaged in each pixel; the reference has one, at its center")
+        format!("each pixel is the mean of {side}×{side} samples; the reference has one, at its center")
     })
 }
 
@@ -187,7 +191,7 @@ fn confirmed_average(wrong: &WrongShader, rows: &Rows) -> Option<Alternative> {
     compared(wrong, statistics.within.into_iter(), || ANY_SAMPLES.to_owned())
 }
 
-const ANY_SAMPLES: &str = "several samples are averaged in each pixel; the reference has one, at its center";
+const ANY_SAMPLES: &str = "each pixel is the mean of several samples; the reference has one, at its center";
 
 fn compared(
     wrong: &WrongShader,
@@ -207,7 +211,7 @@ fn compared(
     )
 }
 
-/// How the colors of pixels lie among those within them.
+/// How the colors of pixels lie among those within them, of which the middle one is that of the center.
 #[derive(Default)]
 struct Statistics {
     pixels: usize,
@@ -216,9 +220,10 @@ struct Statistics {
     /// The pixels with an edge, and those of them whose color is neither end of the range.
     edges: u64,
     intermediate: u64,
-    /// The sums of the variances within pixels, and of the squared distances to the means.
+    /// The sums of the variances within pixels, and of the squared distances to the means and to the centers.
     variance: f64,
-    squares: f64,
+    to_mean: f64,
+    to_center: f64,
 }
 
 impl Statistics {
@@ -250,7 +255,8 @@ impl Statistics {
             self.intermediate += u64::from((low + margin..=high - margin).contains(&own[i]));
             let squares = samples.iter().map(|sample| (sample[i] - mean[i]).powi(2));
             self.variance += squares.sum::<f64>() / samples.len() as f64;
-            self.squares += (own[i] - mean[i]).powi(2);
+            self.to_mean += (own[i] - mean[i]).powi(2);
+            self.to_center += (own[i] - samples[samples.len() / 2][i]).powi(2);
         }
     }
 
@@ -261,7 +267,8 @@ impl Statistics {
     fn is_average(&self) -> bool {
         self.edges >= MIN_EDGE_PIXELS
             && self.intermediate as f64 >= MIN_INTERMEDIATE * self.edges as f64
-            && self.variance >= MIN_EFFECTIVE_SAMPLES * self.squares
+            && self.variance >= MIN_EFFECTIVE_SAMPLES * self.to_mean
+            && self.to_mean <= MAX_UNEXPLAINED * self.to_center
     }
 }
 
@@ -284,7 +291,7 @@ fn within(wrong: &WrongShader, rows: &Rows) -> Option<Statistics> {
 /// The descriptions of what is recognized here, as examples.
 #[cfg(test)]
 pub(super) fn examples() -> Vec<KnownMistake> {
-    let grid = "2×2 samples are averaged in each pixel; the reference has one, at its center";
+    let grid = "each pixel is the mean of 2×2 samples; the reference has one, at its center";
     [grid, ANY_SAMPLES]
         .map(|text| KnownMistake::new(Difference::Antialiasing.id(), text))
         .into()

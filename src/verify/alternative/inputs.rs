@@ -78,14 +78,14 @@ pub(super) fn time(wrong: &WrongShader) -> Option<Alternative> {
         .or_else(|| with(Input::Date, dated, DATE))
 }
 
-const FRAME_AT_60: &str =
-    "`iFrame` is used in place of `iTime`: the image is right only where 60 frames per second are shown";
+const FRAME_AT_60: &str = "the time is computed from `iFrame`: the image is right only where 60 frames are shown per second; use `iTime`";
 const FRAME_AS_SECONDS: &str =
-    "`iFrame`, the number of the frame, is used as the time in seconds: use `iTime`";
-const SECONDS_AS_FRAME: &str = "`iTime`, in seconds, is used as the number of the frame: use `iFrame`";
-const TIME_AT_60: &str =
-    "`iTime` is used in place of `iFrame`: the image is right only where 60 frames per second are shown";
-const DATE: &str = "`iDate` is used in place of `iTime`: it starts at midnight, not with the shader";
+    "the number of the frame, `iFrame`, is used as the time in seconds; use `iTime`";
+const SECONDS_AS_FRAME: &str =
+    "the time in seconds, `iTime`, is used as the number of the frame; use `iFrame`";
+const TIME_AT_60: &str = "the number of the frame is computed from `iTime`: the image is right only where 60 frames are \
+                          shown per second; use `iFrame`";
+const DATE: &str = "the time is read from `iDate`, which starts at midnight; use `iTime`";
 
 // Resolutions that are written as numbers.
 
@@ -101,32 +101,51 @@ const MAX_DISTANCE: usize = 4;
 /// The largest number of resolutions that are tried.
 const MAX_RESOLUTIONS: usize = 24;
 
-/// Finds the resolution with which the image is right, among the numbers of the shader.
+/// The factors of one side of a resolution that is no longer right.
+const OTHER_SIDES: [f64; 2] = [0.8, 1.25];
+
+/// Finds the resolution with which the image is right, among the numbers of the shader. With another width or
+/// another height it must be wrong: otherwise the image only shows too little of a mistake.
 pub(super) fn fixed_resolution(wrong: &WrongShader) -> Option<Alternative> {
     let frame = wrong.frame();
+    let in_size = |size: [u32; 2]| Frame {
+        size,
+        ..frame.clone()
+    };
+    let is_right = |size: [u32; 2]| {
+        let other = in_size(size);
+        let places = Places::spread(size, PROBES);
+        let expected = wrong.expected.colors_in(&other, &places)?;
+        let actual = View::with_inputs(other).image(wrong.program, &places)?;
+        Some(wrong.agree(&expected, &actual))
+    };
+    let is_wrong_nearby = |[width, height]: [u32; 2]| {
+        let mut factors = OTHER_SIDES.into_iter();
+        factors.all(|factor| {
+            let scaled = |side: u32| (f64::from(side) * factor).round() as u32;
+            let others = [[scaled(width), height], [width, scaled(height)]];
+            others.into_iter().all(|other| is_right(other) == Some(false))
+        })
+    };
     let candidates = resolutions(wrong.case.checked, frame.size);
     candidates.into_iter().find_map(|(size, at, text)| {
-        let other = Frame {
-            size,
-            ..frame.clone()
-        };
-        let places = Places::spread(size, PROBES);
-        let view = View::with_inputs(other.clone());
-        let expected = wrong.expected.colors_in(&other, &places)?;
-        if !wrong.agree(&expected, &view.image(wrong.program, &places)?) {
+        if is_right(size) != Some(true) || !is_wrong_nearby(size) {
             return None;
         }
+        let other = in_size(size);
         let expected = wrong.expected.in_frame(&other)?;
-        wrong.confirmed(&view, &expected, &other, || KnownMistake {
-            at: Some(at),
-            ..KnownMistake::new(Difference::FixedResolution.id(), fixed(&text))
+        wrong.confirmed(&View::with_inputs(other.clone()), &expected, &other, || {
+            KnownMistake {
+                at: Some(at),
+                ..KnownMistake::new(Difference::FixedResolution.id(), fixed(&text))
+            }
         })
     })
 }
 
 fn fixed(text: &str) -> String {
     format!(
-        "the image is right only in the resolution that is written in the shader, {text}: use `iResolution`"
+        "the image is right only in the resolution that is written in the shader, {text}; use `iResolution`"
     )
 }
 
