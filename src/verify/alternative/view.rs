@@ -280,6 +280,14 @@ fn description(x: Convention, y: Convention) -> String {
                 return "screen coordinates are divided by `iResolution.x` instead of `iResolution.y`"
                     .to_owned();
             }
+            Factor { two, aspect: 0 } => {
+                let size = if two > 0 { "half" } else { "twice" };
+                return format!(
+                    "the image is {size} as large as expected: screen coordinates are multiplied by {}, or the screen's \
+                     distance or the width of the projection is wrong by this factor",
+                    x.factor.text()
+                );
+            }
             _ => {}
         }
     }

@@ -12,7 +12,6 @@ mod shader;
 use std::ops::Range;
 use std::sync::Arc;
 
-use rayon::prelude::*;
 use toyproof_eval::{self as eval, Places};
 use toyproof_glsl::Checked;
 use toyproof_image::{Frame, Image};
@@ -26,6 +25,7 @@ pub use self::scene::SceneReference;
 pub use self::shader::{DEFAULT_TOLERANCE, ReferenceFindings, ShaderReference};
 use crate::compare::{Band, EXACT_TOLERANCE, Mixed, SEEN, accept_epsilons};
 use crate::cpu::evaluate_at;
+use crate::resampled::Resampled;
 
 /// The number type whose rounding is simulated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -136,18 +136,27 @@ impl Expected {
         }
     }
 
-    /// The colors at some positions within pixels, row by row; none for an image, and for a scene with a sampler,
-    /// whose pixels are means already.
+    /// Whether random numbers decide where and how pixels are sampled.
+    pub(crate) fn is_stochastic(&self) -> bool {
+        match self {
+            Self::Scene(scene) => scene.tracer().sampler().is_some(),
+            Self::Shader(shader) => shader.is_stochastic(),
+            Self::Image(_) => false,
+        }
+    }
+
+    /// The colors at some positions within pixels, row by row, of a reference that is not stochastic; none for an
+    /// image.
     pub(crate) fn colors_within(&self, positions: &Places) -> Option<Vec<[f64; 3]>> {
         match self {
             Self::Scene(scene) => {
-                let tracer = scene.tracer();
                 let Places { columns, rows } = positions;
-                let color =
-                    |at: usize| tracer.color_at([columns[at % columns.len()], rows[at / columns.len()]]);
-                let count = columns.len() * rows.len();
-                let is_defined = tracer.sampler().is_none();
-                is_defined.then(|| (0..count).into_par_iter().map(color).collect())
+                let positions = rows.iter().flat_map(|&y| columns.iter().map(move |&x| [x, y]));
+                Some(
+                    positions
+                        .map(|position| scene.tracer().color_at(position))
+                        .collect(),
+                )
             }
             Self::Shader(shader) => {
                 let image = evaluate_at(&shader.program, &shader.frame, positions)?;
